@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "app/command_line/command_line.h"
 #include "app/session.h"
@@ -25,9 +24,6 @@ void add_mesh(Command& program, Session& session);
 void add_env(Command& program, Session& session);
 void add_view(Command& program, Session& session);
 void add_serve(Command& program, Session& session);
-
-/// --crease, for every command that reads a mesh to light or to write it.
-void add_crease_option(Command& command, std::optional<float>& degrees);
 
 /// Keeps so many vertices of a mesh, its floor not counted, and says how many it became.
 [[nodiscard]] Mesh simplified_to(Mesh mesh, std::uint32_t num_vertices, const Session& session);

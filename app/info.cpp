@@ -24,7 +24,7 @@ namespace {
 
 struct InfoArguments {
     std::string path;
-    std::string layout;
+    std::optional<cubemap::Layout> layout;
     std::string picture;
     bool check = false;
 };
@@ -112,24 +112,19 @@ void add_info(Command& program, Session& session) {
     Command command =
         program.add_command("info", "what a file is: a scene, an environment or a mesh");
     auto options = std::make_shared<InfoArguments>();
-    command
-        .add_option("FILE", options->path,
-                    ".prt, .exr, .hdr, .obj, .gltf, .glb, .ply, .off or .stl")
-        .file()
-        .required();
-    command
-        .add_option("--layout", options->layout,
-                    "layout of an environment, where the file does not tell")
-        .one_of(layout_names());
-    command
-        .add_option("--picture", options->picture,
+    command.add(row("FILE", options->path,
+                    ".prt, .exr, .hdr, .obj, .gltf, .glb, .ply, .off or .stl",
+                    {.file = true, .required = true}));
+    command.add(row<LayoutText>("--layout", options->layout,
+                                "layout of an environment, where the file does not tell"));
+    command.add(row("--picture", options->picture,
                     "draw an environment, lat-long with the axes and the sun marked, or a mesh "
-                    "with its faults marked: .png")
-        .file();
-    command.add_flag(
+                    "with its faults marked: .png",
+                    {.file = true}));
+    command.add(row(
         "--check", options->check,
         "verify a scene: all checksums, sections and what must hold between them; exit code 1 and "
-        "one line when something is wrong");
+        "one line when something is wrong"));
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

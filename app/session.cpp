@@ -20,6 +20,7 @@
 
 #include "files/output_file.h"
 #include "prt/precompute.h"
+#include "prt/team.h"
 
 namespace relumine::app {
 
@@ -47,19 +48,6 @@ std::string duration(double seconds) {
     const long whole = std::lround(seconds);
     return whole < 60 ? fmt::format("{} s", whole)
                       : fmt::format("{} min {:02} s", whole / 60, whole % 60);
-}
-
-std::optional<glm::vec3> three_numbers(const std::string& text) {
-    std::istringstream stream(text);
-    glm::vec3 result(0.0f);
-    char comma = ',';
-    char rest = 0;
-    for (int i = 0; i < 3; ++i)
-        if ((i > 0 && !(stream >> comma && comma == ',')) || !(stream >> result[i]))
-            return {};
-    if (stream >> rest)
-        return {};
-    return result;
 }
 
 /// What the thread of signals shares with the others. It may outlive the Session.
@@ -126,13 +114,19 @@ Patience::~Patience() {
     --shared().num_patient;
 }
 
+bool Session::is_first() const {
+    return team == nullptr || team->is_first();
+}
+
 void Session::add_common_options(Command& command) {
-    command.add_flag("--json", json, "print one JSON object with all figures on stdout");
-    command.add_option("--threads", num_threads, "threads to use, 0 for all")
-        .between(0, 4096)
-        .show_default();
-    command.add_flag("-q,--quiet", quiet, "print errors only");
-    command.add_flag("-v,--verbose", verbose, "print more");
+    OptionTable table = {
+        row("--json", json, "print one JSON object with all figures on stdout"),
+        row("--threads", num_threads, "threads to use, 0 for all", {.min = 0, .max = 4096}),
+        row("-q,--quiet", quiet, "print errors only"), row("-v,--verbose", verbose, "print more")};
+    for (OptionRow& each : table) {
+        each.shapes_frames = false;
+        command.add(std::move(each));
+    }
 }
 
 void Session::poll() const {
@@ -251,31 +245,6 @@ double Stopwatch::lap() {
 
 double Stopwatch::total() const {
     return now() - start_;
-}
-
-glm::vec3 parse_vec3(const std::string& option, const std::string& text) {
-    const std::optional<glm::vec3> result = three_numbers(text);
-    if (!result)
-        throw UsageError(option, fmt::format("expected X,Y,Z, got '{}'", text));
-    for (int axis = 0; axis < 3; ++axis)
-        if (!(std::abs(double{(*result)[axis]}) <= LargestPosition))
-            throw UsageError(
-                option, fmt::format("expected numbers within {}, got '{}'", LargestPosition, text));
-    return *result;
-}
-
-glm::vec3 parse_color(const std::string& option, const std::string& text) {
-    const bool is_grey = text.find(',') == std::string::npos;
-    const std::optional<glm::vec3> color =
-        three_numbers(is_grey ? fmt::format("{0},{0},{0}", text) : text);
-    if (!color)
-        throw UsageError(option, fmt::format("expected R,G,B or one number, got '{}'", text));
-    constexpr float Largest = 1e6f; // what it multiplies stays a float
-    for (int channel = 0; channel < 3; ++channel)
-        if (!((*color)[channel] >= 0.0f && (*color)[channel] <= Largest))
-            throw UsageError(option,
-                             fmt::format("expected numbers of 0 to {}, got '{}'", Largest, text));
-    return *color;
 }
 
 std::uint64_t peak_bytes() {

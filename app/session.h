@@ -9,8 +9,6 @@
 #include <string>
 #include <vector>
 
-#include <glm/vec3.hpp>
-
 #include "app/command_line/command_line.h"
 #include "app/report.h"
 
@@ -32,6 +30,9 @@ public:
     prt::Team* team = nullptr;
 
     Session();
+
+    /// Whether this process writes the outputs.
+    [[nodiscard]] bool is_first() const;
 
     /// Adds --json, --threads, -q and -v to a subcommand.
     void add_common_options(Command& command);
@@ -99,18 +100,6 @@ private:
     double start_;
     double last_;
 };
-
-/// Options take no position farther from the origin on any axis: rays begin there, and they must
-/// stay within prt::LargestCoordinate.
-inline constexpr double LargestPosition = 1e18;
-
-/// Three numbers "X,Y,Z" of an option, each within LargestPosition. Throws UsageError (wrong usage)
-/// for anything else.
-[[nodiscard]] glm::vec3 parse_vec3(const std::string& option, const std::string& text);
-
-/// A colour "R,G,B" or one number for all three, each of 0 to 1e6. Throws UsageError for anything
-/// else.
-[[nodiscard]] glm::vec3 parse_color(const std::string& option, const std::string& text);
 
 /// Largest memory use of this process so far.
 [[nodiscard]] std::uint64_t peak_bytes();

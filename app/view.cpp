@@ -15,7 +15,6 @@
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
-#include "app/options/size_text.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
 #include "viewer/view.h"
@@ -32,9 +31,8 @@ struct Options {
     std::string layers;
     std::string script;
     std::string screenshot;
-    std::string size = "1440x860";
-    std::string exposure = "auto";
-    std::string tone_map = "neutral";
+    /// The window's size, the exposure and the tone curve of pictures count.
+    relumine::OutputOptions picture = {.width = 1440, .height = 860};
 };
 
 #ifdef RELUMINE_VIEWER_MISSING
@@ -45,17 +43,6 @@ void run(const Options& /*options*/, Session& /*session*/) {
 }
 
 #else
-
-void set_size(const std::string& text, viewer::ViewOptions& view) {
-    const std::optional<SizeText> size = parse_size_text(text);
-    const auto fits = [](std::uint32_t side) {
-        return side >= 320 && side <= 16384;
-    };
-    if (!size || !fits(size->width) || !fits(size->height))
-        throw UsageError("--size", fmt::format("expected WxH, 320 to 16384 each, got '{}'", text));
-    view.width = static_cast<int>(size->width);
-    view.height = static_cast<int>(size->height);
-}
 
 /// Without an environment: an even grey, in which layers show.
 cubemap::CubeMap plain_grey() {
@@ -74,8 +61,7 @@ viewer::Shading shading_of(const Scene& scene) {
             .bias = scene.settings.bias};
 }
 
-void report(const viewer::ViewReport& result, const relight::LightEditor& editor,
-            const Session& session) {
+void report(const viewer::ViewReport& result, const LitScene& lit, const Session& session) {
     const std::vector<double>& seconds = result.drag_seconds;
     double sum = 0.0;
     double worst = 0.0;
@@ -92,9 +78,9 @@ void report(const viewer::ViewReport& result, const relight::LightEditor& editor
     session.report({{"renderer", result.renderer},
                     {"frames", result.num_frames},
                     {"seconds_frame_mean", result.mean_frame_seconds},
-                    {"clusters", editor.relighter().transfer().num_clusters()},
-                    {"receivers", editor.radiance().size()},
-                    {"face_resolution", editor.environment().resolution},
+                    {"clusters", lit.relighter().transfer().num_clusters()},
+                    {"receivers", lit.radiance().size()},
+                    {"face_resolution", environment_of(lit).resolution},
                     {"drag_events", seconds.size()},
                     {"seconds_drag_mean", mean},
                     {"seconds_drag_worst", worst},
@@ -103,8 +89,9 @@ void report(const viewer::ViewReport& result, const relight::LightEditor& editor
 
 void run(const Options& options, Session& session) {
     viewer::ViewOptions view{.screenshot = options.screenshot, .stop = session.stop()};
-    set_size(options.size, view);
-    const std::optional<double> exposure_ev = parse_exposure(options.exposure);
+    view.width = static_cast<int>(options.picture.width);
+    view.height = static_cast<int>(options.picture.height);
+    const std::optional<double> exposure_ev = options.picture.exposure_ev;
     if (!options.screenshot.empty())
         check_output(options.screenshot,
                      {options.scene.path, options.environment.path, options.script});
@@ -120,33 +107,28 @@ void run(const Options& options, Session& session) {
         EnvironmentOptions environment = options.environment;
         environment.path = path.string();
         environment.rotate_degrees = 0.0; // the window turns it itself
-        Environment loaded = load_environment(environment, session);
-        return viewer::LoadedEnvironment{.map = std::move(loaded.map),
-                                         .sharp = relight::backdrop_of(loaded.file)};
+        return load_environment(environment, session);
     };
-    relight::LightEditor& editor = lit.editor();
     const std::string& path = options.environment.path;
-    editor.set_rotation(options.environment.rotate_degrees);
-    viewer::LoadedEnvironment first =
-        path.empty() ? viewer::LoadedEnvironment{.map = plain_grey(), .sharp = {}} : load(path);
-    editor.set_base(std::move(first.map));
+    lit.edit({.base = base_of(path.empty()
+                                  ? Environment{.map = plain_grey(), .file = {}, .assumptions = {}}
+                                  : load(path)),
+              .rotation_degrees = options.environment.rotate_degrees});
     options.bounces.bounce(lit, {}, options.scene.path);
-    viewer::LightDesk desk(editor, path);
+    viewer::LightDesk desk(lit);
     viewer::ViewState state{.mesh = lit.scene().mesh,
-                            .rays = lit.rays(),
+                            .rays = lit.rays().of_mesh(),
                             .desk = desk,
                             .shading = shading_of(lit.scene()),
                             .load_environment = load};
-    if (first.sharp)
-        state.sharp.emplace_back(editor.base(), std::move(first.sharp));
     if (!options.layers.empty() && !viewer::open(state, options.layers))
         throw std::runtime_error(state.message);
     state.scene_look.exposure_ev = static_cast<float>(
         exposure_ev ? *exposure_ev : Painter(lit, {}).choose_exposure_ev(lit.lighting()));
     state.environment_look.exposure_ev = state.scene_look.exposure_ev;
-    state.scene_look.tone = relight::tone_curve(options.tone_map).value_or(ToneCurve::Neutral);
+    state.scene_look.tone = options.picture.tone;
     state.environment_look.tone = state.scene_look.tone;
-    report(viewer::view(state, view), editor, session);
+    report(viewer::view(state, view), lit, session);
     session.poll();
 }
 
@@ -160,17 +142,19 @@ void add_view(Command& program, Session& session) {
     options->scene.add_to(command);
     options->environment.add_to(command).required(false);
     options->bounces.add_to(command);
-    command.add_option("--layers", options->layers, "light layers to begin with, .json").file();
-    add_exposure_options(command, options->exposure, options->tone_map);
-    command.add_option("--size", options->size, "the window's size").show_default();
-    command
-        .add_option("--script", options->script,
-                    "play a script instead of waiting for a person (docs/viewer.md)")
-        .file();
-    command
-        .add_option("--screenshot", options->screenshot,
-                    "write the last frame of the script, or the first there is, as .png or .exr")
-        .file();
+    command.add(
+        row("--layers", options->layers, "light layers to begin with, .json", {.file = true}));
+    for (OptionRow& each : options_of(options->picture))
+        if (each.name == "--exposure" || each.name == "--tone-map")
+            command.add(std::move(each));
+    command.add(size_row(options->picture.width, options->picture.height, "the window's size",
+                         {.min = 320}));
+    command.add(row("--script", options->script,
+                    "play a script instead of waiting for a person (docs/viewer.md)",
+                    {.file = true}));
+    command.add(row("--screenshot", options->screenshot,
+                    "write the last frame of the script, or the first there is, as .png or .exr",
+                    {.file = true}));
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

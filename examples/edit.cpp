@@ -4,7 +4,6 @@
 #include <exception>
 #include <vector>
 
-#include "cubemap/layers/layer_file.h"
 #include "relumine/relumine.h"
 
 int main(int argc, char** argv) try {
@@ -22,28 +21,28 @@ int main(int argc, char** argv) try {
                                   .region =
                                       cubemap::Disc{.direction = {0, -1, 0}, .radius_degrees = 90},
                                   .effect = cubemap::Gain{.factor = 0.25f}};
-    lit.set_layers({dim, key});
-    relight::LightEditor& editor = lit.editor();
-    editor.mark();
+    set_layers(lit, {dim, key});
+    mark(lit);
 
     // A drag: many edits, each relights only what it touches, then one step of undo.
     double seconds = 0.0;
     for (int event = 0; event < 20; ++event) {
         std::get<cubemap::Disc>(key.region).direction.x -= 0.1;
-        seconds += lit.set_layer(1, key).seconds;
+        seconds += set_layer(lit, 1, key).seconds;
     }
-    editor.mark();
+    mark(lit);
     const std::vector<glm::vec3> dragged(lit.radiance().begin(), lit.radiance().end());
-    editor.undo();
-    editor.redo(); // bit by bit what it was
+    undo(lit);
+    redo(lit); // bit by bit what it was
 
-    std::vector<glm::vec3> seen; // any thread may ask at any time
-    editor.snapshot(seen);
+    SharedRadiance shared; // any thread may ask it at any time
+    shared.publish(lit.radiance());
+    const std::vector<glm::vec3> seen = shared.snapshot();
 
     // Which directions light the vertex nearest to a point? Their integral is its radiance.
     const std::uint32_t receiver = nearest_receiver(lit.scene(), {0.0f, 2.0f, 0.0f});
-    const cubemap::CubeMap who = lit.contribution_map({&receiver, 1});
-    cubemap::save_layers(argv[3], {.layers = {editor.layers().begin(), editor.layers().end()}});
+    const cubemap::CubeMap who = contribution_map(lit, {&receiver, 1});
+    cubemap::save_layers(argv[3], {.layers = lit.state().layers});
     std::printf("20 events, %.2f ms each; vertex %u: %.4f, by direction %.4f\n", 50.0 * seconds,
                 receiver, static_cast<double>(seen[receiver].g), cubemap::total_power(who).y);
     return seen == dragged ? 0 : 1;

@@ -12,10 +12,10 @@ int main(int argc, char** argv) try {
     LitScene lit(precompute(load_mesh(argv[1]), {.tolerance = 0.03f, .output = argv[2]}));
     // Then any light, in milliseconds: a grey sky with a soft key light in it.
     lit.light(cubemap::CubeMap(64, glm::vec3(0.3f)));
-    lit.set_layers({{.name = "key",
-                     .region = cubemap::Disc{.direction = {1, 1, 1}, .radius_degrees = 10},
-                     .effect = cubemap::Emit{.radiance = glm::vec3(20.0f, 18.0f, 15.0f)}}});
-    lit.save(argv[3], {.albedo = glm::vec3(0.8f), .width = 320, .height = 240});
+    set_layers(lit, {{.name = "key",
+                      .region = cubemap::Disc{.direction = {1, 1, 1}, .radius_degrees = 10},
+                      .effect = cubemap::Emit{.radiance = glm::vec3(20.0f, 18.0f, 15.0f)}}});
+    save(lit, argv[3], {.albedo = glm::vec3(0.8f), .width = 320, .height = 240});
 } catch (const std::exception& error) {
     std::fprintf(stderr, "first: %s\n", error.what());
     return 1;

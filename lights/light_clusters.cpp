@@ -164,19 +164,6 @@ FrameLights frame_lights(const LightClusters& clusters, const StrengthOptions& o
     return lights;
 }
 
-FrameLights importance_lights(const FrameImages& images, std::size_t num_frames,
-                              std::size_t lights_per_frame, const FrameSamplesOptions& options) {
-    FrameSamplesOptions sampling = options;
-    sampling.samples_per_frame = lights_per_frame;
-    const FrameSamples samples = sample_frames(images, num_frames, sampling);
-    FrameLights lights{.frames = std::vector<std::vector<DistantLight>>(num_frames)};
-    for (const FrameSample& sample : samples.samples)
-        lights.frames[sample.frame].push_back({.direction = sample.direction,
-                                               .irradiance = sample.irradiance,
-                                               .solid_angle = sample.solid_angle});
-    return lights;
-}
-
 glm::dvec3 total_irradiance(const FrameLights& lights) {
     glm::dvec3 sum(0.0);
     for (const std::vector<DistantLight>& frame : lights.frames)

@@ -80,12 +80,6 @@ struct StrengthOptions {
 [[nodiscard]] FrameLights frame_lights(const LightClusters& clusters,
                                        const StrengthOptions& options = {});
 
-/// Returns the baseline of [S]: `lights_per_frame` lights by importance sampling for each frame on
-/// its own. options.samples_per_frame is ignored.
-[[nodiscard]] FrameLights importance_lights(const FrameImages& images, std::size_t num_frames,
-                                            std::size_t lights_per_frame,
-                                            const FrameSamplesOptions& options = {});
-
 /// Returns the irradiance of all lights in all frames.
 [[nodiscard]] glm::dvec3 total_irradiance(const FrameLights& lights);
 

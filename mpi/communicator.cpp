@@ -144,54 +144,67 @@ void Communicator::give_up() {
     std::abort();
 }
 
-void Communicator::sum(std::span<std::int64_t> values) {
+void Communicator::reduce(std::span<std::int64_t> values, bool is_sum) {
     meet();
     run([&](MPI_Request& request) {
         MPI_Iallreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_INT64_T,
-                       MPI_SUM, MPI_COMM_WORLD, &request);
+                       is_sum ? MPI_SUM : MPI_MAX, MPI_COMM_WORLD, &request);
     });
 }
 
-void Communicator::max(std::span<std::int64_t> values) {
-    meet();
-    run([&](MPI_Request& request) {
-        MPI_Iallreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_INT64_T,
-                       MPI_MAX, MPI_COMM_WORLD, &request);
+/// Calls start(piece, size, request) for pieces of some bytes.
+template<typename Byte, typename Start>
+void Communicator::run_in_pieces(std::span<Byte> bytes, const Start& start) {
+    for (std::size_t begin = 0; begin < bytes.size(); begin += MostBytes)
+        run([&](MPI_Request& request) {
+            start(bytes.data() + begin, static_cast<int>(std::min(MostBytes, bytes.size() - begin)),
+                  request);
+        });
+}
+
+void Communicator::broadcast_from(std::uint32_t process, std::span<std::byte> bytes) {
+    run_in_pieces(bytes, [&](std::byte* piece, int size, MPI_Request& request) {
+        MPI_Ibcast(piece, size, MPI_BYTE, number(process), MPI_COMM_WORLD, &request);
     });
+}
+
+void Communicator::send(std::span<const std::byte> bytes, std::uint32_t to) {
+    run_in_pieces(bytes, [&](const std::byte* piece, int size, MPI_Request& request) {
+        MPI_Isend(piece, size, MPI_BYTE, number(to), DataTag, MPI_COMM_WORLD, &request);
+    });
+}
+
+void Communicator::receive(std::span<std::byte> bytes, std::uint32_t from) {
+    run_in_pieces(bytes, [&](std::byte* piece, int size, MPI_Request& request) {
+        MPI_Irecv(piece, size, MPI_BYTE, number(from), DataTag, MPI_COMM_WORLD, &request);
+    });
+}
+
+/// What each process is about to send, in bytes.
+std::vector<std::size_t> Communicator::sizes(std::size_t own) {
+    meet();
+    const std::uint64_t own_size = own;
+    std::vector<std::uint64_t> of_all(part_.count);
+    run([&](MPI_Request& request) {
+        MPI_Iallgather(&own_size, 1, MPI_UINT64_T, of_all.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD,
+                       &request);
+    });
+    return {of_all.begin(), of_all.end()};
 }
 
 std::vector<std::byte> Communicator::broadcast(std::vector<std::byte> bytes) {
-    meet();
-    const auto size = static_cast<std::size_t>(
-        largest(part_.index == 0 ? static_cast<std::int64_t>(bytes.size()) : 0));
-    bytes.resize(size);
+    bytes.resize(sizes(bytes.size()).front());
     meet(); // all have the memory
     broadcast_from(0, bytes);
     return bytes;
 }
 
-void Communicator::broadcast_from(std::uint32_t process, std::span<std::byte> bytes) {
-    for (std::size_t begin = 0; begin < bytes.size(); begin += MostBytes)
-        run([&](MPI_Request& request) {
-            MPI_Ibcast(bytes.data() + begin,
-                       static_cast<int>(std::min(MostBytes, bytes.size() - begin)), MPI_BYTE,
-                       number(process), MPI_COMM_WORLD, &request);
-        });
-}
-
 std::vector<std::vector<std::byte>> Communicator::all_gather(std::vector<std::byte> bytes) {
-    meet();
-    const std::uint64_t own_size = bytes.size();
-    std::vector<std::uint64_t> sizes(part_.count);
-    run([&](MPI_Request& request) {
-        MPI_Iallgather(&own_size, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD,
-                       &request);
-    });
+    const std::vector<std::size_t> of_each = sizes(bytes.size());
     std::vector<std::vector<std::byte>> of_all(part_.count);
-    for (std::size_t i = 0; i < of_all.size(); ++i)
-        if (i != part_.index)
-            of_all[i].resize(static_cast<std::size_t>(sizes[i]));
     of_all[part_.index] = std::move(bytes);
+    for (std::size_t i = 0; i < of_all.size(); ++i)
+        of_all[i].resize(of_each[i]);
     meet(); // all have the memory
     // MPI_Iallgatherv counts the bytes of all processes together with int; these do not.
     for (std::uint32_t i = 0; i < part_.count; ++i)
@@ -199,39 +212,11 @@ std::vector<std::vector<std::byte>> Communicator::all_gather(std::vector<std::by
     return of_all;
 }
 
-void Communicator::send(std::span<const std::byte> bytes, std::uint32_t to) {
-    for (std::size_t begin = 0; begin < bytes.size(); begin += MostBytes) {
-        const std::span<const std::byte> part =
-            bytes.subspan(begin, std::min(MostBytes, bytes.size() - begin));
-        run([&](MPI_Request& request) {
-            MPI_Isend(part.data(), static_cast<int>(part.size()), MPI_BYTE, number(to), DataTag,
-                      MPI_COMM_WORLD, &request);
-        });
-    }
-}
-
-void Communicator::receive(std::span<std::byte> bytes, std::uint32_t from) {
-    for (std::size_t begin = 0; begin < bytes.size(); begin += MostBytes) {
-        const std::span<std::byte> part =
-            bytes.subspan(begin, std::min(MostBytes, bytes.size() - begin));
-        run([&](MPI_Request& request) {
-            MPI_Irecv(part.data(), static_cast<int>(part.size()), MPI_BYTE, number(from), DataTag,
-                      MPI_COMM_WORLD, &request);
-        });
-    }
-}
-
 std::vector<std::vector<std::byte>> Communicator::gather(std::vector<std::byte> bytes) {
-    meet();
-    const std::uint64_t own_size = bytes.size();
-    std::vector<std::uint64_t> sizes(part_.index == 0 ? part_.count : 0);
-    run([&](MPI_Request& request) {
-        MPI_Igather(&own_size, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, 0, MPI_COMM_WORLD,
-                    &request);
-    });
-    std::vector<std::vector<std::byte>> of_all(sizes.size());
-    for (std::size_t i = 1; i < sizes.size(); ++i)
-        of_all[i].resize(static_cast<std::size_t>(sizes[i]));
+    const std::vector<std::size_t> of_each = sizes(bytes.size());
+    std::vector<std::vector<std::byte>> of_all(part_.index == 0 ? part_.count : 0);
+    for (std::size_t i = 1; i < of_all.size(); ++i)
+        of_all[i].resize(of_each[i]);
     meet(); // the first has the memory
     if (part_.index != 0) {
         send(bytes, 0);
@@ -245,16 +230,12 @@ std::vector<std::vector<std::byte>> Communicator::gather(std::vector<std::byte> 
 
 std::vector<std::byte> Communicator::scatter(std::vector<std::vector<std::byte>> bytes) {
     meet();
-    std::vector<std::uint64_t> sizes;
-    sizes.reserve(bytes.size());
-    for (const std::vector<std::byte>& of_process : bytes)
-        sizes.push_back(of_process.size());
-    std::uint64_t own_size = 0;
-    run([&](MPI_Request& request) {
-        MPI_Iscatter(sizes.data(), 1, MPI_UINT64_T, &own_size, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD,
-                     &request);
-    });
-    std::vector<std::byte> own(part_.index != 0 ? static_cast<std::size_t>(own_size) : 0);
+    std::vector<std::uint64_t> of_each(part_.count);
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+        of_each[i] = bytes[i].size();
+    broadcast_from(0, std::as_writable_bytes(std::span(of_each)));
+    std::vector<std::byte> own(part_.index != 0 ? static_cast<std::size_t>(of_each[part_.index])
+                                                : 0);
     meet(); // all have the memory
     if (part_.index != 0) {
         receive(own, 0);

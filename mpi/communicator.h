@@ -36,8 +36,8 @@ public:
 
     [[nodiscard]] prt::Part part() const override { return part_; }
     [[nodiscard]] bool has_others() const override { return part_.count > 1; }
-    void sum(std::span<std::int64_t> values) override;
-    void max(std::span<std::int64_t> values) override;
+    void sum(std::span<std::int64_t> values) override { reduce(values, true); }
+    void max(std::span<std::int64_t> values) override { reduce(values, false); }
     [[nodiscard]] std::vector<std::vector<std::byte>>
     all_gather(std::vector<std::byte> bytes) override;
     [[nodiscard]] std::vector<std::byte> broadcast(std::vector<std::byte> bytes) override;
@@ -55,7 +55,11 @@ private:
     std::int64_t largest(std::int64_t value);
     template<typename Start>
     void run(const Start& start);
+    template<typename Byte, typename Start>
+    void run_in_pieces(std::span<Byte> bytes, const Start& start);
     [[noreturn]] void give_up();
+    void reduce(std::span<std::int64_t> values, bool is_sum);
+    [[nodiscard]] std::vector<std::size_t> sizes(std::size_t own);
     void broadcast_from(std::uint32_t process, std::span<std::byte> bytes);
     void send(std::span<const std::byte> bytes, std::uint32_t to);
     void receive(std::span<std::byte> bytes, std::uint32_t from);

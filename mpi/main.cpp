@@ -47,11 +47,10 @@ int run(const std::vector<std::string>& arguments, app::Session& session, Commun
     app::add_animate(root, session);
     app::add_verify(root, session);
     for (const char* name : Commands)
-        root.command(name)
-            .add_option("--timeout", timeout,
-                        "end all processes when one has not answered for so many seconds; 0: wait")
-            .between(0.0, 1e9)
-            .show_default();
+        root.command(name).add(
+            row("--timeout", timeout,
+                "end all processes when one has not answered for so many seconds; 0: wait",
+                {.min = 0, .max = 1e9, .shapes_frames = false}));
 
     std::optional<files::ThreadLimit> thread_limit;
     program.before_run([&] {

@@ -70,6 +70,17 @@ Receivers trial_receivers(const Receivers& receivers) {
     return trial;
 }
 
+/// What later stages may take, once the beams are gone and the columns are joined.
+double left_after_clusters(const SceneSizes& sizes, std::uint64_t bytes_per_receiver,
+                           std::uint64_t column_bytes, std::uint64_t max_bytes) {
+    SceneSizes without_beams = sizes;
+    without_beams.has_beams = false;
+    const double used = static_cast<double>(scene_bytes(without_beams)) +
+                        static_cast<double>(sizes.num_receivers * bytes_per_receiver) +
+                        JoinedPerColumn * static_cast<double>(column_bytes);
+    return std::max(0.0, static_cast<double>(max_bytes) - used);
+}
+
 } // namespace
 
 std::uint64_t scene_bytes(const SceneSizes& sizes) {
@@ -113,23 +124,14 @@ std::uint64_t max_column_bytes(const SceneSizes& sizes, std::uint64_t plane_byte
 
 std::uint64_t max_glossy_bytes(const SceneSizes& sizes, std::uint64_t column_bytes,
                                std::uint64_t max_bytes) {
-    SceneSizes without_beams = sizes;
-    without_beams.has_beams = false;
-    const double used = static_cast<double>(scene_bytes(without_beams)) +
-                        static_cast<double>(sizes.num_receivers * GlossyBytesPerReceiver) +
-                        JoinedPerColumn * static_cast<double>(column_bytes);
-    return static_cast<std::uint64_t>(std::max(0.0, static_cast<double>(max_bytes) - used) /
-                                      JoinedPerGlossyByte);
+    const double left = left_after_clusters(sizes, GlossyBytesPerReceiver, column_bytes, max_bytes);
+    return static_cast<std::uint64_t>(left / JoinedPerGlossyByte);
 }
 
 std::uint64_t max_bounce_bytes(const SceneSizes& sizes, std::uint64_t column_bytes,
                                std::uint64_t max_bytes) {
-    SceneSizes without_beams = sizes;
-    without_beams.has_beams = false;
-    const double used = static_cast<double>(scene_bytes(without_beams)) +
-                        static_cast<double>(sizes.num_receivers * BounceBytesPerReceiver) +
-                        JoinedPerColumn * static_cast<double>(column_bytes);
-    return static_cast<std::uint64_t>(std::max(0.0, static_cast<double>(max_bytes) - used));
+    return static_cast<std::uint64_t>(
+        left_after_clusters(sizes, BounceBytesPerReceiver, column_bytes, max_bytes));
 }
 
 std::uint64_t plane_bytes_within(const SceneSizes& sizes, std::uint64_t max_bytes) {
@@ -140,15 +142,12 @@ std::uint64_t plane_bytes_within(const SceneSizes& sizes, std::uint64_t max_byte
 
 MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receivers,
                                const Blockers& blockers, const PrecomputeOptions& options,
-                               std::uint64_t max_bytes) {
+                               std::uint64_t max_bytes, const std::stop_token& stop) {
     const Receivers trial = trial_receivers(receivers);
     PrecomputeOptions trial_options = options;
     // The same RMS for fewer receivers.
     trial_options.epsilon = {};
     trial_options.tolerance = rms_tolerance(options.tolerance, options.epsilon, receivers.size());
-    trial_options.checkpoint = nullptr;
-    trial_options.reduction = nullptr;
-    trial_options.on_progress = {};
     const PrecomputeContext context{.column_scale = static_cast<double>(receivers.size()) /
                                                     static_cast<double>(trial.size())};
     // No limit is the largest number, which must not overflow when scaled.
@@ -158,11 +157,12 @@ MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receive
     PrecomputeStatistics statistics;
     MemoryEstimate estimate;
     try {
-        static_cast<void>(precompute(trial, blockers, trial_options, context, &statistics));
-    } catch (const TooManyClusters& error) {
+        static_cast<void>(
+            precompute(trial, blockers, trial_options, {.stop = stop}, context, &statistics));
+    } catch (const TooLarge& error) {
         estimate.is_at_least = true;
-        statistics.num_clusters = error.num_clusters;
-        statistics.column_bytes = error.column_bytes;
+        statistics.num_clusters = error.count;
+        statistics.column_bytes = error.bytes;
     }
     estimate.num_clusters =
         static_cast<std::uint64_t>(static_cast<double>(statistics.num_clusters) / TrialExcess);

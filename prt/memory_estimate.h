@@ -63,12 +63,13 @@ struct MemoryEstimate {
 /// over the scene. The tolerance is an RMS, so the trial takes about as many clusters as the whole.
 /// The trial stops when `max_bytes` are not enough.
 ///
-/// `options` are the options of the run, plane_bytes among them. The stop token is polled.
+/// `options` are the options of the run, plane_bytes among them.
 ///
-/// Throws:  as precompute(), except TooManyClusters.
+/// Throws:  as precompute(), except TooLarge.
 [[nodiscard]] MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receivers,
                                              const Blockers& blockers,
                                              const PrecomputeOptions& options,
-                                             std::uint64_t max_bytes);
+                                             std::uint64_t max_bytes,
+                                             const std::stop_token& stop = {});
 
 } // namespace relumine::prt

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "prt/clusters/clustering.h"
-#include "prt/glossy/glossy_precompute.h"
 #include "prt/precompute_context.h"
 #include "prt/visibility/ray_scene.h"
 
@@ -49,17 +48,13 @@ void check(const Receivers& receivers, const PrecomputeOptions& options) {
 
 } // namespace
 
-TooManyClusters::TooManyClusters(std::uint64_t clusters, std::uint64_t bytes)
-    : std::runtime_error(fmt::format("too many clusters: {} take {} bytes", clusters, bytes)),
-      num_clusters(clusters), column_bytes(bytes) {}
-
 Transfer precompute(const Receivers& receivers, const Blockers& blockers,
-                    const PrecomputeOptions& options, const PrecomputeContext& context,
-                    PrecomputeStatistics* statistics) {
+                    const PrecomputeOptions& options, const Work& work,
+                    const PrecomputeContext& context, PrecomputeStatistics* statistics) {
     check(receivers, options);
     const auto start = std::chrono::steady_clock::now();
     PrecomputeStatistics local;
-    Transfer transfer = Clustering(receivers, blockers, options, context).run(local);
+    Transfer transfer = Clustering(receivers, blockers, options, work, context).run(local);
     local.num_clusters = transfer.num_clusters();
     local.num_samples = local.num_directions * receivers.size();
     local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -69,9 +64,9 @@ Transfer precompute(const Receivers& receivers, const Blockers& blockers,
 }
 
 Transfer precompute(const Receivers& receivers, const Blockers& blockers,
-                    const PrecomputeOptions& options, PrecomputeStatistics* statistics) {
-    return precompute(receivers, blockers, options, {.more_follows = has_highlights(receivers)},
-                      statistics);
+                    const PrecomputeOptions& options, const Work& work,
+                    PrecomputeStatistics* statistics) {
+    return precompute(receivers, blockers, options, work, PrecomputeContext(), statistics);
 }
 
 } // namespace relumine::prt

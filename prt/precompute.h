@@ -5,6 +5,7 @@
 #include "prt/receivers/receivers.h"
 #include "prt/transfer/transfer.h"
 #include "prt/visibility/blockers.h"
+#include "prt/work.h"
 
 namespace relumine::prt {
 
@@ -18,9 +19,9 @@ namespace relumine::prt {
 /// Threads: parallel over receivers (TBB). The result is the same bit by bit for any number of
 ///          threads, with or without a checkpoint taken up.
 /// Throws:  std::invalid_argument for options out of range or no receivers; Cancelled when stopped;
-///          TooManyClusters.
+///          TooLarge.
 [[nodiscard]] Transfer precompute(const Receivers& receivers, const Blockers& blockers,
-                                  const PrecomputeOptions& options = {},
+                                  const PrecomputeOptions& options = {}, const Work& work = {},
                                   PrecomputeStatistics* statistics = nullptr);
 
 } // namespace relumine::prt

@@ -1,16 +1,9 @@
-// What a precompute is asked for, what it counted, and how it may end early.
+// What a precompute is asked for, and what it counted.
 #pragma once
 
 #include <cstdint>
-#include <exception>
-#include <functional>
 #include <limits>
 #include <optional>
-#include <stdexcept>
-#include <stop_token>
-
-#include "prt/checkpoint.h"
-#include "prt/team.h"
 
 namespace relumine::prt {
 
@@ -32,24 +25,12 @@ struct PrecomputeOptions {
     float bias = 0.0f;
     /// Limit on the planes of visibility in memory, one bit per receiver and direction. About 250
     /// planes are in memory in any case. With a lower limit, directions on borders between batches
-    /// of cells are traced more than once. The result is the same.
+    /// of cells are traced more than once. The result is the same. For all processes together.
     std::uint64_t plane_bytes = std::uint64_t{512} << 20;
     /// Limit on the columns of clusters in memory. They are the largest part of it beside the
-    /// planes, and joining and writing them takes as much again. Beyond the limit TooManyClusters
-    /// is thrown.
+    /// planes, and joining and writing them takes as much again. Beyond the limit TooLarge is
+    /// thrown. For each of the processes that share the work.
     std::uint64_t max_column_bytes = std::numeric_limits<std::uint64_t>::max();
-    /// Where processes share the work: each has its part of the receivers, and what they decide
-    /// follows from figures of all. Null: this process does it all. `plane_bytes` is then for all
-    /// processes together, max_column_bytes for each; `stop` ends all when one is asked to.
-    Team* reduction = nullptr;
-    /// Stores the work now and then, and gives back the work of an earlier run; may be null. Where
-    /// the receivers have highlights, a last checkpoint is left for precompute_glossy(), which
-    /// follows.
-    Checkpoint* checkpoint = nullptr;
-    /// Polled a few times a second or more often.
-    std::stop_token stop = {};
-    /// Receives an estimate of the fraction done, in [0, 1], which never falls; one call at a time.
-    std::function<void(double)> on_progress = {};
 };
 
 struct PrecomputeStatistics {
@@ -70,21 +51,6 @@ struct PrecomputeStatistics {
     double seconds = 0.0;
     /// The part of `seconds` for checkpoints.
     double seconds_checkpoints = 0.0;
-};
-
-/// Thrown by precompute() when its stop token asks for it.
-struct Cancelled : std::exception {
-    [[nodiscard]] const char* what() const noexcept override { return "cancelled"; }
-};
-
-/// Thrown by precompute() when the clusters take more than max_column_bytes, or would in the end.
-/// It leaves a checkpoint.
-struct TooManyClusters : std::runtime_error {
-    TooManyClusters(std::uint64_t clusters, std::uint64_t bytes);
-    /// A lower bound.
-    std::uint64_t num_clusters;
-    /// A lower bound on these clusters' bytes.
-    std::uint64_t column_bytes;
 };
 
 } // namespace relumine::prt

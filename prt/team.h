@@ -101,4 +101,10 @@ private:
     Part part_;
 };
 
+/// Returns the process that does all of the work.
+[[nodiscard]] inline Alone& alone() {
+    static Alone all;
+    return all;
+}
+
 } // namespace relumine::prt

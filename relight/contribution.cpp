@@ -103,7 +103,8 @@ private:
 } // namespace
 
 cubemap::CubeMap contribution_map(const Relighter& relighter,
-                                  std::span<const std::uint32_t> receivers) {
+                                  std::span<const std::uint32_t> receivers,
+                                  const SurfaceBounces* bounces) {
     const prt::Transfer& transfer = relighter.transfer();
     if (receivers.empty())
         throw std::invalid_argument("expected at least one receiver");
@@ -123,9 +124,8 @@ cubemap::CubeMap contribution_map(const Relighter& relighter,
             throw std::invalid_argument("expected an index of a receiver");
         counted.push_back({.receiver = receiver, .factor = glm::dvec3(share)});
     }
-    if (!relighter.bounced().empty()) {
-        const std::vector<glm::dvec3> factors =
-            bounce_factors(relighter.bounces(), transfer, receivers);
+    if (bounces != nullptr) {
+        const std::vector<glm::dvec3> factors = bounce_factors(*bounces, transfer, receivers);
         for (std::uint32_t receiver = 0; receiver < factors.size(); ++receiver)
             if (factors[receiver] != glm::dvec3(0.0))
                 counted.push_back({.receiver = receiver, .factor = factors[receiver]});
@@ -155,21 +155,6 @@ cubemap::CubeMap contribution_map(const Relighter& relighter,
     for (std::size_t cluster = 0; cluster < cells.size(); ++cluster)
         spreader.spread(cells[cluster], from_cluster[cluster], false);
     return spreader.take();
-}
-
-Relighter relit_by_part(const Relighter& relighter, std::span<const float> weights) {
-    cubemap::CubeMap part = relighter.environment();
-    if (weights.size() != part.texels.size())
-        throw std::invalid_argument("expected one weight per texel");
-    for (std::size_t texel = 0; texel < weights.size(); ++texel)
-        part.texels[texel] *= weights[texel];
-    Relighter other(relighter.transfer(), relighter.shadow_rays());
-    other.set_environment(std::move(part));
-    if (!relighter.bounced().empty()) {
-        other.set_bounces(relighter.bounces());
-        other.bounce();
-    }
-    return other;
 }
 
 } // namespace relumine::relight

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,7 +16,6 @@
 #include "lights/light_list.h"
 #include "prt/transfer/transfer.h"
 #include "relight/binned_environment.h"
-#include "relight/bounces/bounce_light.h"
 #include "relight/sharp/shadow_rays.h"
 #include "relight/sharp/sharp_lights.h"
 
@@ -23,33 +23,32 @@ namespace relumine::relight {
 
 using cubemap::TexelRectangle;
 
-/// The time that set_environment() took, by its parts.
-struct RelightTimes {
-    /// Summing the environment into clusters.
-    double seconds_bin = 0.0;
-    /// Summing the clusters into radiance [JN, Eq. 8].
-    double seconds_relight = 0.0;
-    /// Finding sharp lights and tracing their shadow rays; next to nothing where there are none.
-    double seconds_trace = 0.0;
-    std::size_t num_sharp_lights = 0;
-};
-
-/// The effect of an update.
+/// The effect of new light.
 struct UpdateReport {
     /// Clusters whose light was summed anew.
     std::size_t num_clusters = 0;
     /// Receivers that see any of these clusters, counted in whole blocks of 16.
     std::size_t num_receivers = 0;
-    /// Sharp lights that were traced: those where none stood before.
+    /// After an update those that were traced: where none stood before.
     std::size_t num_sharp_lights = 0;
     double seconds = 0.0;
-    /// The part of `seconds` for tracing sharp lights.
+    // Parts of `seconds`, where they are known.
+    /// Summing the environment into clusters.
+    double seconds_bin = 0.0;
+    /// Finding sharp lights and tracing their shadow rays; next to nothing where there are none.
     double seconds_trace = 0.0;
+    /// Summing the clusters into radiance [JN, Eq. 8].
+    double seconds_relight = 0.0;
     /// All clusters were summed, because that was less work.
     bool resummed = false;
+    /// Of an edited scene: rectangles without overlaps that hold every texel that changed; good
+    /// until the next edit.
+    std::span<const TexelRectangle> texels = {};
 };
 
-/// Keeps the light of a scene's receivers under an environment that may change.
+class ReceiverLight;
+
+/// Keeps the direct light of receivers under an environment that may change.
 ///
 /// Threads: parallel inside (TBB); every result is the same bit by bit for any number of threads.
 ///          One thread at a time may call functions that are not const.
@@ -64,7 +63,6 @@ public:
     explicit Relighter(const prt::Transfer&& transfer, const ShadowRays& rays = {}) = delete;
     ~Relighter();
     Relighter(Relighter&&) noexcept;
-    Relighter& operator=(Relighter&&) noexcept;
 
     /// Lights all receivers [JN, Eq. 8]. The map may have any resolution: clusters are cells of the
     /// continuous sphere.
@@ -72,7 +70,7 @@ public:
     /// Cost:    O(6 R^2 + size of the transfer).
     /// Throws:  std::invalid_argument for a map without texels, or a radiance that
     ///          require_radiance() refuses.
-    RelightTimes set_environment(cubemap::CubeMap environment);
+    UpdateReport set_environment(cubemap::CubeMap environment);
 
     /// Takes the next frame of a sequence, binned by an EnvironmentBinner of the same transfer and
     /// ShadowRays::tolerance (0 without shadow rays).
@@ -96,19 +94,7 @@ public:
     ///
     /// Throws:  std::invalid_argument for irradiance that require_radiance() refuses, or a
     ///          direction that is not of unit length.
-    RelightTimes set_lights(std::span<const lights::DistantLight> lights);
-
-    /// Replaces a rectangle of the environment and updates the radiance [JN, Section 5.2, Eq. 15].
-    /// The result equals set_environment() of the changed map to 1e-5 relative, after any number of
-    /// updates.
-    ///
-    /// Shape:   radiance is [(x1 - x0) * (y1 - y0)], row by row.
-    /// Cost:    proportional to the transfer of the clusters under the rectangle. The first update
-    ///          after set_frame() copies the map, because others may hold it.
-    /// Throws:  std::invalid_argument for a rectangle outside the face, a wrong size, a radiance
-    ///          that require_radiance() refuses, or no environment; nothing has changed then.
-    UpdateReport update_region(const TexelRectangle& rectangle,
-                               std::span<const glm::vec3> radiance);
+    UpdateReport set_lights(std::span<const lights::DistantLight> lights);
 
     /// Updates several rectangles at once; they may overlap. `edit` changes texels of the
     /// environment, inside the rectangles only. Its radiance must be finite and >= 0, which is not
@@ -125,32 +111,6 @@ public:
     /// Cost:    a relighting without the binning.
     void resum();
 
-    /// Lets light go on from surface to surface, or ends that. Nothing bounces before bounce() or
-    /// step().
-    ///
-    /// Throws:  std::invalid_argument as BounceLight; nothing has changed then.
-    void set_bounces(SurfaceBounces bounces);
-    [[nodiscard]] const SurfaceBounces& bounces() const;
-
-    /// Adds what surfaces send to each other to radiance(), found from nothing: equal light gives
-    /// equal bits. set_environment(), set_frame() and set_lights() take it away again.
-    /// update_region() keeps it as it is until the next call of bounce() or step(), while the
-    /// direct light is new.
-    ///
-    /// `more` is light that bounces as well but is no part of radiance(): direct light for
-    /// albedo 1, [num_receivers] or empty.
-    ///
-    /// Cost:    docs/measurements.md.
-    /// Throws:  std::logic_error without set_bounces(); std::invalid_argument for a wrong size.
-    BounceReport bounce(std::span<const glm::vec3> more = {});
-    /// Goes one bounce on from the bounces of the light before: for light that changes while it is
-    /// looked at.
-    BounceReport step();
-    /// The part of radiance() that comes from other surfaces, [num_receivers]; empty without it.
-    [[nodiscard]] std::span<const glm::vec3> bounced() const;
-    /// Whether more steps would change nothing that can be seen.
-    [[nodiscard]] bool is_settled() const;
-
     /// Outgoing radiance in the environment's unit. With surfaces in the transfer, it is the
     /// radiance towards the eye where the transfer has a glossy part. Without surfaces it is for
     /// albedo 1.
@@ -165,30 +125,75 @@ public:
     /// Cost:    O(receivers).
     [[nodiscard]] std::vector<glm::vec3> soft_radiance() const;
 
-    /// Direct radiance as if every receiver were Lambert of albedo 1: irradiance over pi, without
-    /// bounces.
+    /// Radiance as if every receiver were Lambert of albedo 1: irradiance over pi.
     ///
     /// Shape:   [num_receivers] in the receivers' own order.
     [[nodiscard]] std::span<const glm::vec3> diffuse_radiance() const;
 
-    [[nodiscard]] const cubemap::CubeMap& environment() const;
+    /// Without texels under set_lights() and before the first light.
+    [[nodiscard]] const cubemap::CubeMap& environment() const { return *environment_; }
 
-    [[nodiscard]] const prt::Transfer& transfer() const;
-    /// Returns the direct radiance of the receiver at a place of the transfer for albedo 1, as far
-    /// as it comes from one cluster without its sharp lights.
+    [[nodiscard]] const prt::Transfer& transfer() const { return transfer_; }
+    /// Returns the radiance of the receiver at a place of the transfer for albedo 1, as far as it
+    /// comes from one cluster without its sharp lights.
     [[nodiscard]] glm::dvec3 from_cluster(std::size_t place, std::size_t cluster) const;
-    [[nodiscard]] std::span<const SharpLight> sharp_lights() const;
-    [[nodiscard]] const ShadowRays& shadow_rays() const;
+    [[nodiscard]] std::span<const SharpLight> sharp_lights() const { return sharp_lights_; }
+    [[nodiscard]] const ShadowRays& shadow_rays() const { return rays_; }
 
 private:
-    class Impl;
-    std::unique_ptr<Impl> impl_;
+    void hold_own(std::shared_ptr<cubemap::CubeMap> map);
+    std::optional<std::size_t> replace_sharp_lights(std::vector<SharpLight> lights);
+    void set_cells();
+    void sum_all(UpdateReport& report);
+
+    const prt::Transfer& transfer_;
+    ShadowRays rays_;
+    /// [num_clusters] all light of each cluster.
+    std::vector<VectorIrradiance> sums_;
+    /// [num_clusters] power of each cluster: the length of its luminance vector.
+    std::vector<double> powers_;
+    std::vector<SharpLight> sharp_lights_;
+    EnvironmentBinner binner_;
+    /// For environment_.
+    std::shared_ptr<const LightBinning> binning_;
+    std::shared_ptr<const cubemap::CubeMap> environment_ =
+        std::make_shared<const cubemap::CubeMap>();
+    /// environment_ for updates; null where others may hold it, too.
+    std::shared_ptr<cubemap::CubeMap> own_environment_;
+    std::unique_ptr<ReceiverLight> light_;
+    /// Scratch: clusters whose light changes.
+    std::vector<std::uint32_t> changed_;
 };
+
+/// Checks what is to replace a rectangle of a map.
+///
+/// Throws:  std::invalid_argument for a rectangle outside the face, a map without texels, a wrong
+///          size, a radiance that require_radiance() refuses.
+void require_texels(const TexelRectangle& rectangle, std::span<const glm::vec3> radiance,
+                    const cubemap::CubeMap& map);
+/// Writes the texels of a rectangle, row by row.
+void put_texels(const TexelRectangle& rectangle, std::span<const glm::vec3> radiance,
+                cubemap::CubeMap& map);
+
+/// Replaces a rectangle of the environment and updates the radiance [JN, Section 5.2, Eq. 15].
+/// The result equals set_environment() of the changed map to 1e-5 relative, after any number of
+/// updates.
+///
+/// Shape:   radiance is [(x1 - x0) * (y1 - y0)], row by row.
+/// Cost:    proportional to the transfer of the clusters under the rectangle. The first update
+///          after set_frame() copies the map, because others may hold it.
+/// Throws:  std::invalid_argument for a rectangle outside the face, a wrong size, a radiance
+///          that require_radiance() refuses, or no environment; nothing has changed then.
+UpdateReport update_region(Relighter& relighter, const TexelRectangle& rectangle,
+                           std::span<const glm::vec3> radiance);
 
 /// Returns the sharp lights, for a picture to trace at every point. Returns none for an environment
 /// with more than 64 sharp lights, as a scene of few clusters has: the shadows of so many lights
 /// are soft, and the picture would take half a minute.
 [[nodiscard]] std::span<const SharpLight> picture_lights(const Relighter& relighter);
+
+/// Returns what bins environments for set_frame(). The Relighter's transfer must outlive it.
+[[nodiscard]] EnvironmentBinner binner_of(const Relighter& relighter);
 
 /// Returns the radiance of all receivers under an environment, in one call, as
 /// Relighter::radiance().

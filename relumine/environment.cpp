@@ -1,6 +1,7 @@
 #include "relumine/environment.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <memory>
 #include <stdexcept>
@@ -39,6 +40,10 @@ glm::dmat3 flipped(char axis) {
 
 cubemap::LoadOptions load_options(const EnvironmentOptions& options) {
     const cubemap::Convention& from = convention_of(options);
+    if (options.layout && !from.reads(*options.layout))
+        throw OptionError("--layout",
+                          fmt::format("expected {} with --from {}, got {}", layouts_of(from),
+                                      from.name, cubemap::option_name(*options.layout)));
     cubemap::LoadOptions result{.layout = options.layout, .fix_bad_pixels = options.fix_bad_pixels};
     if (!result.layout && from.layouts.size() == 1)
         result.layout = from.layouts.front();
@@ -70,6 +75,67 @@ cubemap::EnvironmentImage as_convention_has_it(cubemap::EnvironmentImage image,
 }
 
 } // namespace
+
+std::span<const std::string_view> LayoutText::choices() {
+    static const auto Names = [] {
+        std::array<std::string_view, cubemap::AllLayouts.size()> names;
+        std::transform(cubemap::AllLayouts.begin(), cubemap::AllLayouts.end(), names.begin(),
+                       cubemap::option_name);
+        return names;
+    }();
+    return Names;
+}
+
+cubemap::Layout LayoutText::read(const std::string& text) {
+    return cubemap::AllLayouts.at(option_text::word(choices(), text));
+}
+
+std::string LayoutText::show(cubemap::Layout layout) {
+    return std::string(cubemap::option_name(layout));
+}
+
+std::span<const std::string_view> ConventionText::choices() {
+    static const auto Names = [] {
+        std::vector<std::string_view> names;
+        for (const cubemap::Convention& convention : cubemap::conventions())
+            names.push_back(convention.name);
+        return names;
+    }();
+    return Names;
+}
+
+std::span<const std::string_view> FlipText::choices() {
+    return AxisWords;
+}
+
+std::string layouts_of(const cubemap::Convention& convention) {
+    std::vector<std::string_view> names;
+    for (const cubemap::Layout layout : convention.layouts)
+        names.push_back(cubemap::option_name(layout));
+    return files::joined(names, ", ");
+}
+
+OptionTable options_of(EnvironmentOptions& o) {
+    return {row<LayoutText>("--layout", o.layout,
+                            "layout of the environment, where the file does not tell"),
+            row<ConventionText>("--from", o.from,
+                                "whose convention the environment follows (`relumine env convert "
+                                "--help`)"),
+            row("--fix-env", o.fix_bad_pixels,
+                "replace NaN and negative radiance by 0, infinite by the largest finite"),
+            row<FlipText>("--flip", o.flip,
+                          "mirror the environment along an axis, before --tilt: y turns it upside "
+                          "down"),
+            row("--tilt", o.tilt_degrees,
+                "turn the environment about +X, degrees, before --rotate: +Y goes to +Z at 90",
+                {.min = -36000, .max = 36000}),
+            row("--rotate", o.rotate_degrees,
+                "turn the environment about +Y, degrees: +Z goes to +X at 90",
+                {.min = -36000, .max = 36000}),
+            row("--face-resolution", o.face_resolution,
+                "texels along a cube face's edge, 0 for the environment's own",
+                {.min = 0, .max = 16384})};
+}
 
 cubemap::EnvironmentImage load_environment_image(const std::filesystem::path& path,
                                                  const EnvironmentOptions& options) {
@@ -154,6 +220,7 @@ Environment load_environment(const std::filesystem::path& path, const Environmen
     const double seconds_load = std::chrono::duration<double>(Clock::now() - start).count();
     Environment result = environment_of(image, options);
     result.seconds_load = seconds_load;
+    result.path = path;
     return result;
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,9 +13,12 @@
 #include <glm/mat3x3.hpp>
 
 #include "cubemap/cube_map.h"
+#include "cubemap/image/convention.h"
 #include "cubemap/image/environment.h"
 #include "relight/pictures/backdrop.h"
 #include "relight/reference/exact.h"
+#include "relumine/mesh.h"
+#include "relumine/option_table.h"
 
 namespace relumine {
 
@@ -22,7 +26,7 @@ struct EnvironmentOptions {
     /// Overrides what the file says; a square picture does not say
     std::optional<cubemap::Layout> layout = {};
     /// Whose convention the file follows: a name of cubemap::conventions()
-    std::string_view from = "openexr";
+    std::string from = "openexr";
     /// R, texels along a cube face's edge; 0: as fine as the file, and finer where single pixels of
     /// it hold much of the light: cubemap::automatic_resolution()
     std::uint32_t face_resolution = 0;
@@ -36,6 +40,29 @@ struct EnvironmentOptions {
     /// Turns the environment about +Y, degrees: light from +Z comes from +X at 90; applied last
     double rotate_degrees = 0.0;
 };
+
+/// The words of layouts, conventions and axes
+struct LayoutText {
+    static constexpr const char* Type = "TEXT";
+    static std::span<const std::string_view> choices();
+    static cubemap::Layout read(const std::string& text);
+    static std::string show(cubemap::Layout layout);
+};
+struct ConventionText : ValueText<std::string> {
+    static std::span<const std::string_view> choices();
+};
+struct FlipText {
+    static constexpr const char* Type = "TEXT";
+    static std::span<const std::string_view> choices();
+    static char read(const std::string& text) { return text.front(); }
+    static std::string show(char axis) { return axis == 0 ? "" : std::string(1, axis); }
+};
+
+/// The layouts that a convention has, in words.
+[[nodiscard]] std::string layouts_of(const cubemap::Convention& convention);
+
+/// All options of reading and turning an environment.
+[[nodiscard]] OptionTable options_of(EnvironmentOptions& options);
 
 /// An environment ready to light a scene, and what was found out about its file.
 struct Environment {
@@ -52,6 +79,8 @@ struct Environment {
     double seconds_load = 0.0;
     /// With the turn
     double seconds_resample = 0.0;
+    /// Of the file
+    std::filesystem::path path = {};
 };
 
 /// Reads the image as the file has it: `layout`, `from` and `fix_bad_pixels` of the options count.

@@ -28,10 +28,10 @@ struct LitPartOptions {
 /// Memory:  the mesh, all receivers, and the part's share of the counts: docs/scale.md.
 /// Throws:  std::runtime_error "path: expected X, got Y"; std::invalid_argument as
 ///          LitScene::light().
-relight::RelightTimes light_part(const LitPartOptions& options, cubemap::CubeMap environment,
+relight::UpdateReport light_part(const LitPartOptions& options, cubemap::CubeMap environment,
                                  std::size_t* num_receivers = nullptr);
 
-/// Puts the light of all parts together, in any order, and writes it as LitScene::save() writes an
+/// Puts the light of all parts together, in any order, and writes it as save() writes an
 /// .npy file: the same bytes for any number of parts. Returns the number of receivers.
 ///
 /// Throws:  std::runtime_error that names the part that is missing, given twice, damaged or of

@@ -1,498 +1,479 @@
 #include "relumine/lit_scene.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <memory>
-#include <mutex>
-#include <optional>
+#include <cstring>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 
-#include "cubemap/layers/layer_composite.h"
-#include "prt/visibility/lazy_beam_scene.h"
-#include "relight/contribution.h"
-#include "relight/reference/path_tracer.h"
+#include "files/hash.h"
+#include "prt/clusters/dealt_tiles.h"
 #include "relight/sharp/shadow_rays.h"
-#include "relumine/shared_slices.h"
 
 namespace relumine {
 
-relight::SurfaceBounces bounces_of(const Scene& scene, std::span<const glm::vec3> albedo,
-                                   const BounceLimits& limits) {
-    if (!scene.bounces)
-        throw std::invalid_argument("expected a scene with bounces, got one without");
-    relight::SurfaceBounces bounces{
-        .matrix = &*scene.bounces, .albedo = {albedo.begin(), albedo.end()}, .limits = limits};
-    const std::vector<prt::Surface>& surfaces = scene.receivers.surfaces;
-    if (surfaces.size() == bounces.albedo.size())
-        for (std::size_t i = 0; i < surfaces.size(); ++i)
-            bounces.albedo[i] *= surfaces[i].albedo;
-    return bounces;
-}
-
 namespace {
 
-/// The pixels of an environment's file as a backdrop, made when it is first drawn: to resample
-/// pictures of faces takes as long as to light a scene.
-class FileBackdrop {
-public:
-    FileBackdrop() = default;
-    explicit FileBackdrop(cubemap::EnvironmentFile file) : state_(std::make_shared<State>()) {
-        state_->file = std::move(file);
-    }
-    /// Returns the backdrop; empty without a file.
-    [[nodiscard]] relight::Backdrop get() const {
-        if (!state_)
-            return {};
-        std::call_once(state_->once,
-                       [&] { state_->backdrop = relight::backdrop_of(state_->file); });
-        return state_->backdrop;
-    }
+void add(std::span<const glm::vec3> values, std::span<glm::vec3> sum) {
+    std::transform(sum.begin(), sum.end(), values.begin(), sum.begin(), std::plus<>());
+}
 
-private:
-    struct State {
-        cubemap::EnvironmentFile file;
-        std::once_flag once;
-        relight::Backdrop backdrop;
-    };
-    std::shared_ptr<State> state_;
-};
+std::vector<glm::vec3> copy_of(std::span<const glm::vec3> values) {
+    return {values.begin(), values.end()};
+}
+
+void require_same_hash(prt::Team& team, const std::filesystem::path& path, std::uint64_t own) {
+    const std::vector<std::byte> bytes = prt::to_send(std::span(&own, 1));
+    if (team.broadcast(bytes) != bytes)
+        throw std::runtime_error(
+            fmt::format("{}: expected the scene and the light of the first process, got others",
+                        path.string()));
+}
+
+/// Gives the first process the values of all receivers, by their order. They are [receivers of the
+/// process] in each.
+std::vector<glm::vec3> gathered(prt::Team& team, std::span<const std::uint32_t> order,
+                                std::span<const glm::vec3> own) {
+    const std::vector<std::vector<std::byte>> of_all = team.gather(prt::to_send(own));
+    std::vector<glm::vec3> values(of_all.empty() ? 0 : order.size());
+    for (std::uint32_t process = 0; process < of_all.size(); ++process) {
+        const std::vector<std::uint32_t> places =
+            prt::places_of({process, team.part().count}, order.size());
+        if (of_all[process].size() != places.size() * sizeof(glm::vec3))
+            throw std::runtime_error("expected the light of all receivers");
+        for (std::size_t i = 0; i < places.size(); ++i)
+            std::memcpy(&values[order[places[i]]], of_all[process].data() + i * sizeof(glm::vec3),
+                        sizeof(glm::vec3));
+    }
+    return values;
+}
 
 } // namespace
-
-struct LitScene::Impl {
-    Impl(std::shared_ptr<const Scene>&& given, const LightOptions& options)
-        : owned_scene(std::move(given)), scene(*owned_scene), rays(scene.mesh),
-          clusters_only(options.clusters_only) {
-        if (scene.blockers)
-            others.emplace(*scene.blockers);
-        moving_light_rays.emplace(scene.blockers ? *scene.blockers : scene.mesh, blockers());
-    }
-
-    [[nodiscard]] const prt::RayScene& blockers() const { return others ? *others : rays; }
-
-    [[nodiscard]] bool has_clusters() const { return scene.transfer.num_receivers() != 0; }
-
-    [[nodiscard]] relight::ShadowRays shadow_rays() const {
-        if (clusters_only)
-            return {};
-        return {.blockers = &*moving_light_rays,
-                .positions = scene.receivers.positions,
-                .bias = scene.settings.bias,
-                .tolerance = rms_tolerance(scene)};
-    }
-
-    /// Of sharp lights; 0 where they are not traced.
-    [[nodiscard]] float sharp_tolerance() const {
-        return clusters_only ? 0.0f : rms_tolerance(scene);
-    }
-
-    void require_clusters() const {
-        if (!has_clusters())
-            throw std::invalid_argument(
-                "expected a precomputed scene, got a mesh without clusters");
-    }
-
-    relight::Relighter& plain_relighter() {
-        require_clusters();
-        if (!relighter)
-            relighter.emplace(scene.transfer, shadow_rays());
-        return *relighter;
-    }
-
-    [[nodiscard]] const relight::Relighter* present_relighter() const {
-        if (editor)
-            return &editor->relighter();
-        return relighter ? &*relighter : nullptr;
-    }
-
-    [[nodiscard]] bool has_environment() const {
-        return present_relighter() != nullptr && present_relighter()->environment().resolution != 0;
-    }
-
-    /// For what only an environment can do.
-    const relight::Relighter& lit_relighter() const {
-        if (!has_environment())
-            throw std::logic_error("expected a scene lit by an environment");
-        return *present_relighter();
-    }
-
-    /// The editor takes over what lights the scene.
-    relight::LightEditor& edited() {
-        require_clusters();
-        if (editor)
-            return *editor;
-        auto made = std::make_unique<relight::LightEditor>(scene.transfer, shadow_rays());
-        if (has_environment())
-            made->set_base(relighter->environment());
-        if (relighter && !relighter->bounced().empty()) {
-            made->set_bounces(relighter->bounces());
-            made->settle();
-        }
-        editor = std::move(made);
-        relighter.reset();
-        file = {};
-        is_lit_by_list = false;
-        return *editor;
-    }
-
-    /// Adds the bounces of a path tracer to exact direct light. Returns the standard error of the
-    /// sum, relative to it, L2 over the receivers.
-    double add_traced(std::span<const std::uint32_t> receivers, const VerifyOptions& options,
-                      std::vector<glm::dvec3>& exact) const {
-        const std::vector<glm::vec3> albedo_of_vertices =
-            prt::vertex_values(scene.mesh, scene.receivers, lit_relighter().bounces().albedo);
-        const auto traced = in_slices<relight::TracedBounces>(
-            options.reduction, receivers, [&](std::span<const std::uint32_t> slice) {
-                return relight::trace_bounces(scene.mesh, albedo_of_vertices, scene.receivers,
-                                              slice, rays, lit_relighter().environment(),
-                                              {.num_paths = options.num_paths,
-                                               .seed = options.seed,
-                                               .two_sided = scene.settings.two_sided_bounces,
-                                               .bias = scene.settings.bias,
-                                               .stop = options.stop,
-                                               .on_progress = options.on_progress});
-            });
-        double errors = 0.0, all = 0.0;
-        for (std::size_t i = 0; i < exact.size(); ++i) {
-            const glm::dvec3 albedo =
-                scene.receivers.surfaces.empty()
-                    ? glm::dvec3(1.0)
-                    : glm::dvec3(scene.receivers.surfaces[receivers[i]].albedo);
-            const glm::dvec3 error = albedo * traced[i].standard_error;
-            exact[i] += albedo * traced[i].radiance;
-            errors += glm::dot(error, error);
-            all += glm::dot(exact[i], exact[i]);
-        }
-        return all > 0.0 ? std::sqrt(errors / all) : 0.0;
-    }
-
-    /// What the vertices interpolate against exact integration, at random points between them.
-    [[nodiscard]] std::optional<Verification::Surface>
-    verify_surface(const VerifyOptions& options) const {
-        Verification::Surface result{
-            .points = prt::random_points(scene.mesh, options.num_surface_points, options.seed),
-            .error = {}};
-        if (result.points.empty())
-            return std::nullopt;
-        const std::span<const glm::vec3> at_vertices = lit_relighter().diffuse_radiance();
-        prt::Receivers receivers;
-        std::vector<std::uint32_t> indices;
-        std::vector<glm::vec3> interpolated;
-        for (const prt::MeshPoint& point : result.points) {
-            indices.push_back(static_cast<std::uint32_t>(indices.size()));
-            receivers.positions.push_back(prt::smooth_position(scene.mesh, point));
-            receivers.normals.push_back(prt::shading_normal(scene.mesh, point));
-            interpolated.push_back(prt::value_at(scene.mesh, at_vertices, point));
-        }
-        const relight::ExactOptions exact_options{.bias = scene.settings.bias,
-                                                  .stop = options.stop};
-        const auto exact = in_slices<glm::dvec3>(
-            options.reduction, std::span<const std::uint32_t>(indices),
-            [&](std::span<const std::uint32_t> slice) {
-                return file.image != nullptr
-                           ? relight::exact_radiance(receivers, slice, blockers(), file,
-                                                     exact_options)
-                           : relight::exact_radiance(receivers, slice, blockers(),
-                                                     lit_relighter().environment(), exact_options);
-            });
-        result.error = relight::compare(indices, exact, interpolated);
-        return result;
-    }
-
-    std::shared_ptr<const Scene> owned_scene;
-    const Scene& scene;
-    prt::RayScene rays;
-    /// Of the scene's own blockers
-    std::optional<prt::RayScene> others;
-    /// Of sharp lights, which may move with every frame
-    std::optional<prt::LazyBeamScene> moving_light_rays;
-    bool clusters_only;
-    /// One of the two lights the scene; none before the first light()
-    std::optional<relight::Relighter> relighter;
-    std::unique_ptr<relight::LightEditor> editor;
-    /// What the environment was made from, while nothing has changed it
-    cubemap::EnvironmentFile file;
-    /// Behind light lists
-    cubemap::CubeMap black{1};
-    cubemap::CubeMap nothing;
-    bool is_lit_by_list = false;
-    /// The pixels of the environment that was given to light(). Empty: there are none, or the
-    /// environment has changed without a layer.
-    FileBackdrop sharp;
-    /// Of a scene without clusters
-    std::vector<glm::vec3> radiance;
-    std::vector<lights::DistantLight> list;
-};
 
 LitScene::LitScene(Scene scene, const LightOptions& options)
     : LitScene(std::make_shared<const Scene>(std::move(scene)), options) {}
 
 LitScene::LitScene(std::shared_ptr<const Scene> scene, const LightOptions& options)
-    : impl_(std::make_unique<Impl>(std::move(scene), options)) {
-    const Scene& own = impl_->scene;
-    if (has_clusters() && own.receivers.size() != own.transfer.num_receivers())
+    : LitScene(std::move(scene), nullptr, options) {}
+
+LitScene::LitScene(prt::ScenePart part, const LightOptions& options)
+    : LitScene(nullptr, std::make_unique<prt::ScenePart>(std::move(part)), options) {}
+
+LitScene::LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::ScenePart> part,
+                   const LightOptions& options)
+    : scene_(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(scene)),
+      rays_(std::make_unique<const SceneRays>(*scene_)), alone_(std::make_unique<prt::Alone>()),
+      team_(part && options.team != nullptr ? options.team : alone_.get()), path_(options.path) {
+    const bool has_clusters = relumine::has_clusters(*scene_);
+    if (has_clusters && scene_->receivers.size() != scene_->transfer.num_receivers())
         throw std::invalid_argument(fmt::format("expected the transfer of {} receivers, got {}",
-                                                own.receivers.size(),
-                                                own.transfer.num_receivers()));
-    if (options.clusters_only)
-        impl_->require_clusters();
+                                                scene_->receivers.size(),
+                                                scene_->transfer.num_receivers()));
+    if (!options.clusters_only)
+        shadow_rays_ = {.blockers = &rays_->for_moving_lights(),
+                        .positions = part ? part->positions : scene_->receivers.positions,
+                        .bias = scene_->settings.bias,
+                        .tolerance = rms_tolerance(*scene_)};
+    if (part) {
+        require_same(*team_, path_);
+        // The scene's surfaces may have got other colours.
+        part->transfer.surfaces.clear();
+        if (!scene_->receivers.surfaces.empty())
+            for (const std::uint32_t receiver : part->receivers)
+                part->transfer.surfaces.push_back(scene_->receivers.surfaces[receiver]);
+    }
+    part_ = std::move(part);
+    if (has_clusters)
+        relighter_ = std::make_unique<relight::Relighter>(
+            part_ ? part_->transfer : scene_->transfer, shadow_rays_);
+    else if (options.clusters_only)
+        static_cast<void>(relighter());
 }
 
-LitScene::~LitScene() = default;
-LitScene::LitScene(LitScene&&) noexcept = default;
-LitScene& LitScene::operator=(LitScene&&) noexcept = default;
-
-const Scene& LitScene::scene() const {
-    return impl_->scene;
+const relight::Relighter& LitScene::relighter() const {
+    if (!relighter_)
+        throw std::invalid_argument("expected a precomputed scene, got a mesh without clusters");
+    return *relighter_;
 }
 
-bool LitScene::has_clusters() const {
-    return impl_->has_clusters();
+std::span<const glm::vec3> LitScene::radiance() const {
+    if (!is_lit_ || !total_.empty() || !relighter_)
+        return total_;
+    return relighter_->radiance();
 }
 
-const prt::RayScene& LitScene::rays() const {
-    return impl_->rays;
+// Light
+
+void LitScene::require_same_light(const Light& light) const {
+    if (!team_->has_others())
+        return;
+    if (const auto* map = std::get_if<cubemap::CubeMap>(&light.environment))
+        require_same(*team_, path_, map);
+    else if (const auto* binned = std::get_if<BinnedEnvironment>(&light.environment))
+        require_same(*team_, path_, binned->map.get());
+    require_same_hash(*team_, path_, files::hash_of(std::as_bytes(std::span(light.lights))));
 }
 
-const prt::RayScene& LitScene::blockers() const {
-    return impl_->blockers();
-}
-
-relight::ShadowRays LitScene::shadow_rays() const {
-    return impl_->shadow_rays();
-}
-
-RelightTimes LitScene::light(cubemap::CubeMap environment) {
-    const RelightTimes times =
-        impl_->editor ? impl_->editor->set_base(std::move(environment))
-                      : impl_->plain_relighter().set_environment(std::move(environment));
-    impl_->is_lit_by_list = false;
-    impl_->sharp = {};
-    impl_->file = {};
-    return times;
-}
-
-RelightTimes LitScene::light(Environment environment) {
-    const RelightTimes times = light(std::move(environment.map));
-    impl_->sharp = FileBackdrop(environment.file);
-    if (!impl_->editor)
-        impl_->file = std::move(environment.file);
-    return times;
-}
-
-UpdateReport LitScene::update(Environment environment) {
-    const UpdateReport report = impl_->edited().update_base(std::move(environment.map));
-    impl_->sharp = FileBackdrop(environment.file);
+UpdateReport LitScene::light(Light light) {
+    const auto start = std::chrono::steady_clock::now();
+    const bool has_environment = !std::holds_alternative<std::monostate>(light.environment);
+    if (has_environment)
+        static_cast<void>(relighter());
+    require_same_light(light);
+    UpdateReport report;
+    Added added;
+    if (!has_environment && relighter_) {
+        report = relighter_->set_lights(light.lights);
+    } else if (!has_environment || !light.lights.empty()) {
+        if (const auto* map = std::get_if<cubemap::CubeMap>(&light.environment))
+            relight::require_radiance(map->texels);
+        added = light_of_list(light.lights);
+    }
+    if (has_environment) {
+        report = light_by_environment(light);
+    } else {
+        state_ = {};
+        history_.restart({});
+    }
+    added_ = std::move(added);
+    bounces_.forget();
+    is_lit_ = true;
+    finish();
+    report.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return report;
 }
 
-BinnedEnvironment LitScene::bin(std::shared_ptr<const cubemap::CubeMap> environment) const {
-    impl_->require_clusters();
-    return relight::EnvironmentBinner(impl_->scene.transfer, impl_->sharp_tolerance())
-        .bin(std::move(environment));
-}
-
-void LitScene::light(BinnedEnvironment environment, const cubemap::EnvironmentFile& file) {
-    if (impl_->editor)
-        impl_->editor->set_base(std::move(environment.map));
-    else
-        impl_->plain_relighter().set_frame(std::move(environment));
-    impl_->is_lit_by_list = false;
-    impl_->sharp = FileBackdrop(file);
-}
-
-RelightTimes LitScene::light(std::span<const lights::DistantLight> lights) {
-    RelightTimes times;
-    if (!has_clusters()) {
-        impl_->radiance =
-            relight::radiance_under(lights, impl_->scene.receivers.normals, shadow_rays());
-        impl_->list.assign(lights.begin(), lights.end());
-    } else {
-        times = impl_->plain_relighter().set_lights(lights);
-        impl_->editor.reset();
+/// Lights the scene with a list to get its light.
+LitScene::Added LitScene::light_of_list(std::span<const lights::DistantLight> lights) {
+    Added added;
+    if (relighter_) {
+        relighter_->set_lights(lights);
+        added.radiance = copy_of(relighter_->radiance());
+        added.diffuse = copy_of(relighter_->diffuse_radiance());
+        const auto traced = relight::picture_lights(*relighter_);
+        added.lights.assign(traced.begin(), traced.end());
+        if (!traced.empty())
+            added.soft = relighter_->soft_radiance();
+        return added;
     }
-    impl_->is_lit_by_list = true;
-    impl_->file = {};
-    return times;
+    added.radiance = relight::radiance_under(lights, scene_->receivers.normals, shadow_rays_);
+    for (const lights::DistantLight& light : lights)
+        added.lights.push_back({.cluster = 0,
+                                .cell = {},
+                                .direction = light.direction,
+                                .irradiance = {.red = light.irradiance.r * light.direction,
+                                               .green = light.irradiance.g * light.direction,
+                                               .blue = light.irradiance.b * light.direction}});
+    added.soft.resize(added.radiance.size());
+    return added;
+}
+
+UpdateReport LitScene::light_by_environment(Light& light) {
+    auto* map = std::get_if<cubemap::CubeMap>(&light.environment);
+    auto* binned = std::get_if<BinnedEnvironment>(&light.environment);
+    if (is_edited()) {
+        LightState next = state_;
+        next.base = std::make_shared<const LightBase>(
+            map != nullptr ? std::make_shared<const cubemap::CubeMap>(std::move(*map))
+                           : binned->map,
+            std::move(light.file), std::move(light.path));
+        const UpdateReport report = relight_all(next);
+        state_ = std::move(next);
+        return report;
+    }
+    const UpdateReport report = map != nullptr
+                                    ? relighter_->set_environment(std::move(*map))
+                                    : relighter_->set_frame(std::move(*binned), light.bound);
+    state_ = {.base = std::make_shared<const LightBase>(nullptr, std::move(light.file),
+                                                        std::move(light.path))};
+    return report;
+}
+
+// Edits
+
+UpdateReport LitScene::relight_all(const LightState& next) {
+    if (!next.base->map() || next.base->map()->resolution == 0)
+        throw std::invalid_argument("expected a base with texels");
+    LayerCompositor compositor(next);
+    UpdateReport report = relighter_->set_environment(compositor.whole());
+    compositor_ = std::move(compositor);
+    report.texels = compositor_.changed();
+    return report;
+}
+
+UpdateReport LitScene::update(const LightState& next) {
+    compositor_.find_changes(next);
+    UpdateReport report;
+    if (!compositor_.changed().empty()) {
+        report = relighter_->update_regions(
+            compositor_.changed(),
+            [this](cubemap::CubeMap& environment) { compositor_.composite(environment); });
+        bounces_.unsettle();
+    }
+    compositor_.accept();
+    report.texels = compositor_.changed();
+    return report;
+}
+
+/// Makes the present environment the base of edits to come, and the first mark.
+void LitScene::begin_edits() {
+    const LightState first{.base = std::make_shared<const LightBase>(
+                               std::make_shared<const cubemap::CubeMap>(relighter_->environment()),
+                               state_.base ? state_.base->file() : cubemap::EnvironmentFile(),
+                               state_.base ? state_.base->path() : std::filesystem::path())};
+    compositor_ = LayerCompositor(first);
+    state_ = first;
+    history_.restart(first);
+    // As if the environment had just been set.
+    relighter_->resum();
+    if (bounces_.bounced().empty())
+        bounces_.unset();
+    else
+        find_bounces(false);
+}
+
+UpdateReport LitScene::edit(LightState next, Ending ending) {
+    if (!std::isfinite(next.rotation_degrees))
+        throw std::invalid_argument("expected a finite rotation");
+    for (const cubemap::LightLayer& layer : next.layers)
+        cubemap::validate(layer);
+    const bool has_base = next.base && next.base->map();
+    const bool is_dark = relighter().environment().resolution == 0;
+    if (is_dark && !has_base)
+        throw std::invalid_argument("expected an environment before its layers");
+    if (!is_dark && !is_edited())
+        begin_edits();
+    if (!has_base)
+        next.base = state_.base;
+    const bool is_whole = is_dark || next.rotation_degrees != state_.rotation_degrees ||
+                          (next.base != state_.base &&
+                           (next.rotation_degrees != 0.0 ||
+                            next.base->map()->resolution != state_.base->map()->resolution));
+    UpdateReport report;
+    if (is_whole) {
+        report = relight_all(next);
+        bounces_.forget();
+    } else if (ending == Ending::Quick || next != state_) {
+        report = update(next);
+    }
+    if (is_dark)
+        history_.restart({.base = next.base});
+    is_lit_ = true;
+    state_ = std::move(next);
+    if (ending == Ending::Exact) {
+        if (!is_whole)
+            relighter_->resum();
+        if (bounces_.is_set())
+            find_bounces(false);
+    }
+    finish();
+    return report;
 }
 
 UpdateReport LitScene::update_region(const cubemap::TexelRectangle& rectangle,
                                      std::span<const glm::vec3> radiance) {
-    impl_->sharp = {};
-    if (!impl_->editor) {
-        const UpdateReport report = impl_->plain_relighter().update_region(rectangle, radiance);
-        impl_->file = {};
-        return report;
+    if (is_edited()) {
+        relight::require_texels(rectangle, radiance, *state_.base->map());
+        auto map = std::make_shared<cubemap::CubeMap>(*state_.base->map());
+        relight::put_texels(rectangle, radiance, *map);
+        LightState next = state_;
+        next.base = std::make_shared<const LightBase>(std::move(map));
+        return edit(std::move(next));
     }
-    if (!impl_->has_environment())
-        throw std::invalid_argument("expected an environment before its first update");
-    cubemap::CubeMap base = *impl_->editor->base();
-    const std::uint32_t r = base.resolution;
-    if (rectangle.x0 >= rectangle.x1 || rectangle.y0 >= rectangle.y1 || rectangle.x1 > r ||
-        rectangle.y1 > r)
-        throw std::invalid_argument(
-            fmt::format("expected a rectangle inside the {0} x {0} face", r));
-    const std::size_t width = rectangle.x1 - rectangle.x0;
-    if (radiance.size() != width * (rectangle.y1 - rectangle.y0))
-        throw std::invalid_argument("expected one radiance per texel of the rectangle");
-    auto value = radiance.begin();
-    for (std::uint32_t y = rectangle.y0; y < rectangle.y1; ++y)
-        for (std::uint32_t x = rectangle.x0; x < rectangle.x1; ++x)
-            base.at(rectangle.face, x, y) = *value++;
-    return impl_->editor->update_base(std::move(base));
+    static_cast<void>(relighter());
+    const UpdateReport report = relight::update_region(*relighter_, rectangle, radiance);
+    state_ = {};
+    bounces_.unsettle();
+    finish();
+    return report;
 }
 
-UpdateReport LitScene::set_layers(std::vector<cubemap::LightLayer> layers) {
-    if (!impl_->has_environment())
-        throw std::invalid_argument("expected an environment before its layers");
-    return impl_->edited().set_layers(std::move(layers));
+// Bounces
+
+BounceReport LitScene::bounce(const Bouncing& how) {
+    std::optional<relight::SurfaceBounces> surfaces;
+    if (!how.albedo.empty())
+        surfaces = bounces_of(*scene_, how.albedo, how.limits);
+    if (!is_lit_ || (!surfaces && !bounces_.is_set()))
+        throw std::logic_error("expected a scene that is lit, and an albedo");
+    if (surfaces)
+        bounces_.set(*scene_, std::move(*surfaces),
+                     part_ && part_->bounces
+                         ? relight::SharedRows{.reduction = team_,
+                                               .first = part_->bounces->first,
+                                               .num_emitters = part_->bounces->num_emitters}
+                         : relight::SharedRows{});
+    const BounceReport report = find_bounces(how.is_step);
+    finish();
+    return report;
 }
 
-UpdateReport LitScene::set_layer(std::size_t index, const cubemap::LightLayer& layer) {
-    if (!impl_->has_environment())
-        throw std::invalid_argument("expected an environment before its layers");
-    return impl_->edited().set_layer(index, layer);
-}
-
-relight::LightEditor& LitScene::editor() {
-    return impl_->edited();
-}
-
-std::span<const glm::vec3> LitScene::radiance() const {
-    const relight::Relighter* lit = impl_->present_relighter();
-    if (lit != nullptr && (impl_->is_lit_by_list || impl_->has_environment()))
-        return lit->radiance();
-    return impl_->radiance;
-}
-
-BounceReport LitScene::bounce(std::span<const glm::vec3> albedo, const BounceLimits& limits,
-                              std::span<const glm::vec3> more) {
-    relight::SurfaceBounces bounces = bounces_of(impl_->scene, albedo, limits);
-    if (radiance().empty())
-        throw std::logic_error("expected a scene that is lit");
-    if (impl_->editor) {
-        impl_->editor->set_bounces(std::move(bounces));
-        return impl_->editor->settle(more);
+BounceReport LitScene::find_bounces(bool is_step) {
+    std::span<const glm::vec3> direct = relighter_->diffuse_radiance();
+    std::vector<glm::vec3> sum;
+    if (!added_.diffuse.empty() || team_->has_others()) {
+        sum = copy_of(direct);
+        if (!added_.diffuse.empty())
+            add(added_.diffuse, sum);
+        if (team_->has_others()) {
+            const std::vector<std::uint32_t>& order = scene_->transfer.order;
+            const std::vector<std::uint32_t> places = prt::places_of(team_->part(), order.size());
+            std::vector<glm::vec3> by_place(order.size());
+            for (std::size_t i = 0; i < places.size(); ++i)
+                by_place[places[i]] = sum[i];
+            prt::share_by_place(*team_, std::span(by_place));
+            sum.resize(order.size());
+            for (std::size_t place = 0; place < order.size(); ++place)
+                sum[order[place]] = by_place[place];
+        }
+        direct = sum;
     }
-    impl_->relighter->set_bounces(std::move(bounces));
-    return impl_->relighter->bounce(more);
+    return is_step ? bounces_.step(direct) : bounces_.find(direct);
 }
 
-std::span<const glm::vec3> LitScene::bounced() const {
-    const relight::Relighter* lit = impl_->present_relighter();
-    return lit == nullptr ? std::span<const glm::vec3>() : lit->bounced();
+/// Adds what surfaces send to values of this process's receivers.
+void LitScene::add_bounced(std::span<glm::vec3> own) const {
+    const std::span<const glm::vec3> bounced = bounces_.bounced();
+    if (bounced.empty())
+        return;
+    if (!part_)
+        return add(bounced, own);
+    for (std::size_t i = 0; i < own.size(); ++i)
+        own[i] += bounced[part_->receivers[i]];
 }
 
-const cubemap::CubeMap& LitScene::environment() const {
-    if (impl_->is_lit_by_list)
-        return impl_->black;
-    return impl_->has_environment() ? impl_->present_relighter()->environment() : impl_->nothing;
-}
-
-const relight::Relighter& LitScene::relighter() const {
-    const relight::Relighter* relighter = impl_->present_relighter();
-    if (relighter == nullptr)
-        throw std::logic_error("expected a scene that is lit");
-    return *relighter;
-}
-
-Verification LitScene::verify(const VerifyOptions& options) const {
-    const relight::Relighter& relighter = impl_->lit_relighter();
-    Verification result;
-    result.receivers = relight::random_receivers(impl_->scene.transfer, options.num_samples,
-                                                 options.seed, impl_->scene.receivers.num_own());
-    const relight::ExactOptions exact_options{.bias = impl_->scene.settings.bias,
-                                              .stop = options.stop,
-                                              .on_progress = options.on_progress};
-    const auto exact_under = [&](const auto& light) {
-        return in_slices<glm::dvec3>(
-            options.reduction, std::span<const std::uint32_t>(result.receivers),
-            [&](std::span<const std::uint32_t> slice) {
-                return relight::exact_radiance(impl_->scene.receivers, slice, impl_->blockers(),
-                                               light, exact_options);
-            });
-    };
-    result.of_file = impl_->file.image != nullptr;
-    std::vector<glm::dvec3> exact =
-        result.of_file ? exact_under(impl_->file) : exact_under(relighter.environment());
-    if (!bounced().empty())
-        result.noise = impl_->add_traced(result.receivers, options, exact);
-    result.error = relight::compare(result.receivers, exact, radiance());
-    if (options.num_surface_points != 0 && prt::on_vertices(impl_->scene.layout))
-        result.surface = impl_->verify_surface(options);
-    return result;
-}
-
-cubemap::CubeMap LitScene::contribution_map(std::span<const std::uint32_t> receivers) const {
-    return relight::contribution_map(impl_->lit_relighter(), receivers);
-}
-
-Share LitScene::lit_by(const cubemap::Region& region) const {
-    const auto sum_of = [](std::span<const glm::vec3> radiance) {
-        double sum = 0.0;
-        for (const glm::vec3& value : radiance)
-            sum += static_cast<double>(value.r) + static_cast<double>(value.g) +
-                   static_cast<double>(value.b);
-        return sum;
-    };
-    const relight::Relighter& relighter = impl_->lit_relighter();
-    cubemap::validate(region);
-    Share result{.radiance = {}, .environment = relighter.environment()};
-    const std::vector<float> weights = cubemap::coverage_map(region, result.environment.resolution);
-    for (std::size_t texel = 0; texel < weights.size(); ++texel)
-        result.environment.texels[texel] *= weights[texel];
-    const relight::Relighter part = relight::relit_by_part(relighter, weights);
-    Lighting light = lighting_of(part);
-    result.radiance.assign(light.radiance.begin(), light.radiance.end());
-    result.lights = std::move(light.lights);
-    result.soft = std::move(light.soft);
-    const double all = sum_of(relighter.radiance());
-    result.share = all > 0.0 ? sum_of(result.radiance) / all : 0.0;
-    return result;
-}
-
-Lighting Share::lighting() const {
-    return {.radiance = radiance, .environment = &environment, .lights = lights, .soft = soft};
-}
-
-Lighting LitScene::lighting() const {
-    if (radiance().empty())
-        throw std::logic_error("expected a scene that is lit");
-    Lighting result;
-    if (const relight::Relighter* relighter = impl_->present_relighter()) {
-        result = lighting_of(*relighter);
-    } else {
-        for (const lights::DistantLight& light : impl_->list)
-            result.lights.push_back({.cluster = 0,
-                                     .cell = {},
-                                     .direction = light.direction,
-                                     .irradiance = {.red = light.irradiance.r * light.direction,
-                                                    .green = light.irradiance.g * light.direction,
-                                                    .blue = light.irradiance.b * light.direction}});
-        result.soft.resize(impl_->radiance.size());
+/// Sums the parts of the light.
+void LitScene::finish() {
+    if (relighter_ && bounces_.bounced().empty() && added_.radiance.empty()) {
+        total_.clear();
+        return;
     }
-    result.radiance = radiance();
-    relight::Backdrop sharp = impl_->sharp.get();
-    if (result.environment == nullptr || !sharp)
+    total_ = added_.radiance;
+    if (!relighter_)
+        return;
+    total_.assign(relighter_->radiance().begin(), relighter_->radiance().end());
+    add_bounced(total_);
+    if (!added_.radiance.empty())
+        add(added_.radiance, total_);
+}
+
+Lighting LitScene::lighting(bool is_drawn) const {
+    if (!is_lit_)
+        throw std::logic_error("expected a scene that is lit");
+    Lighting result{.radiance = radiance()};
+    if (is_drawn) {
+        if (relighter_) {
+            const auto traced = relight::picture_lights(*relighter_);
+            result.lights.assign(traced.begin(), traced.end());
+        }
+        result.lights.insert(result.lights.end(), added_.lights.begin(), added_.lights.end());
+    }
+    if (!result.lights.empty()) {
+        if (!relighter_)
+            result.soft.resize(added_.soft.size());
+        else if (result.lights.size() > added_.lights.size())
+            result.soft = relighter_->soft_radiance();
+        else
+            result.soft = copy_of(relighter_->radiance());
+        add_bounced(result.soft);
+        if (!added_.radiance.empty())
+            add(added_.lights.empty() ? added_.radiance : added_.soft, result.soft);
+    }
+    if (team_->has_others()) {
+        const std::vector<std::uint32_t>& order = scene_->transfer.order;
+        const bool has_soft = !result.lights.empty();
+        result.gathered = std::make_shared<const std::vector<glm::vec3>>(
+            gathered(*team_, order, result.radiance));
+        result.radiance = *result.gathered;
+        if (has_soft)
+            result.soft = gathered(*team_, order, result.soft);
+        if (!team_->is_first())
+            return {};
+    }
+    if (!relighter_ || relighter_->environment().resolution == 0)
         return result;
-    if (!impl_->editor)
-        result.sharp = std::move(sharp);
-    else if (impl_->editor->rotation() == 0.0)
-        result.sharp =
-            relight::edited_backdrop(std::move(sharp), *impl_->editor->base(), *result.environment);
+    result.environment = &relighter_->environment();
+    if (!is_drawn || !state_.base || !state_.base->backdrop())
+        return result;
+    if (!is_edited())
+        result.sharp = state_.base->backdrop();
+    else if (state_.rotation_degrees == 0.0)
+        result.sharp = relight::edited_backdrop(state_.base->backdrop(), *state_.base->map(),
+                                                *result.environment);
     return result;
 }
 
-Picture LitScene::draw(const OutputOptions& options) const {
-    return Painter(*this, options).draw(lighting());
+void require_same(prt::Team& team, const std::filesystem::path& path,
+                  const cubemap::CubeMap* environment) {
+    if (team.has_others())
+        require_same_hash(team, path,
+                          environment == nullptr
+                              ? files::file_hash(path)
+                              : files::hash_of(std::as_bytes(std::span(environment->texels))));
 }
 
-void LitScene::save(const std::filesystem::path& path, const OutputOptions& options) const {
-    Painter(*this, options).save(path, lighting());
+bool has_environment(const LitScene& lit) {
+    return has_clusters(lit.scene()) && lit.relighter().environment().resolution != 0;
+}
+
+const cubemap::CubeMap& environment_of(const LitScene& lit) {
+    static const cubemap::CubeMap Black(1), Nothing;
+    if (has_environment(lit))
+        return lit.relighter().environment();
+    return lit.radiance().empty() ? Nothing : Black;
+}
+
+BinnedEnvironment bin(const LitScene& lit, cubemap::CubeMap environment) {
+    return relight::binner_of(lit.relighter()).bin(std::move(environment));
+}
+
+UpdateReport update(LitScene& lit, Environment environment) {
+    LightState next = lit.state();
+    next.base = base_of(std::move(environment));
+    return lit.edit(std::move(next));
+}
+
+UpdateReport set_layers(LitScene& lit, std::vector<cubemap::LightLayer> layers) {
+    LightState next = lit.state();
+    next.layers = std::move(layers);
+    return lit.edit(std::move(next));
+}
+
+UpdateReport set_layer(LitScene& lit, std::size_t index, const cubemap::LightLayer& layer) {
+    LightState next = lit.state();
+    next.layers.at(index) = layer;
+    return lit.edit(std::move(next));
+}
+
+UpdateReport set_rotation(LitScene& lit, double degrees) {
+    LightState next = lit.state();
+    next.rotation_degrees = degrees;
+    return lit.edit(std::move(next));
+}
+
+void mark(LitScene& lit) {
+    lit.edit(lit.state(), Ending::Exact);
+    lit.history().mark(lit.state());
+}
+
+void forget_history(LitScene& lit) {
+    lit.edit(lit.state(), Ending::Exact);
+    lit.history().restart(lit.state());
+}
+
+UpdateReport undo(LitScene& lit) {
+    const LightState* before = lit.history().undo();
+    return before == nullptr ? UpdateReport() : lit.edit(*before, Ending::Exact);
+}
+
+UpdateReport redo(LitScene& lit) {
+    const LightState* after = lit.history().redo();
+    return after == nullptr ? UpdateReport() : lit.edit(*after, Ending::Exact);
 }
 
 } // namespace relumine

@@ -123,6 +123,43 @@ std::string prefix_of(const Mesh& mesh) {
 
 } // namespace
 
+OptionRow crease_row(std::optional<float>& degrees) {
+    return row("--crease", degrees,
+               "normals from the faces: smooth over edges up to so many degrees, broken beyond",
+               {.min = 0, .max = 180, .type = "DEGREES"});
+}
+
+OptionTable options_of(MeshOptions& o) {
+    return {
+        row("--floor", o.floor_vertices,
+            "add a floor of N x N vertices under the mesh; 193 when no N is given",
+            {.min = 2, .max = 65535, .type = "[N]", .bare = "193"}),
+        row("--floor-scale", o.floor_scale,
+            "side of the floor over the mesh's width, or half its height if that is more",
+            {.min = 1e-6, .max = 1e6, .needs = "--floor"}),
+        row("--up", o.up, "the mesh's axis that points up (y; z for .stl, which comes from CAD)"),
+        row("--normals", o.normals,
+            "vertex normals: the file's where it has them, or always smooth"),
+        crease_row(o.crease)};
+}
+
+OptionTable options_of(RefineOptions& o) {
+    return {row("--error", o.error,
+                "split edges while the light at their middle may differ so much from the mean of "
+                "their ends: RMS of the transfer, 1/sr",
+                {.min = 0, .max = 1}),
+            row("--max-vertices", o.max_vertices,
+                "let the mesh grow to so many vertices; the edges that matter most come first",
+                {.min = 1, .max = 4294967294.0, .type = "N", .shows_default = false}),
+            row("--min-edge", o.min_edge,
+                "leave no edges shorter than this, in the mesh's unit (1/1000 of its diagonal)",
+                {.min = 0, .max = LargestPosition, .type = "LENGTH"}),
+            row("--max-edge", o.max_edge, "split all edges that are longer than this",
+                {.min = 0, .max = LargestPosition, .type = "LENGTH"}),
+            row("--curved", o.curved,
+                "put new vertices on the smooth surface that the normals pretend")};
+}
+
 Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
     Mesh mesh;
     mesh.geometry = mesh::load(path, options.normals, &mesh.source_hash);
@@ -148,7 +185,7 @@ float lowest(std::span<const glm::vec3> positions) {
 
 } // namespace
 
-Mesh refined(Mesh mesh, const RefineOptions& options, RefineReport* report) {
+Mesh refined(Mesh mesh, const RefineOptions& options, const prt::Work& work, RefineReport* report) {
     const mesh::TriangleMesh& before = mesh.blockers ? *mesh.blockers : mesh.geometry;
     const std::size_t num_old = mesh.geometry.num_vertices();
     const std::size_t n = mesh.floor_vertices;
@@ -158,7 +195,7 @@ Mesh refined(Mesh mesh, const RefineOptions& options, RefineReport* report) {
     try {
         const prt::RayScene rays(before, prt::RayScene::Packets::Wide);
         const prt::BeamScene beams(before, rays);
-        after = prt::refine(mesh.geometry, beams, options, report);
+        after = prt::refine(mesh.geometry, beams, options, work, report);
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(prefix_of(mesh) + error.what());
     }

@@ -1,6 +1,7 @@
 // Meshes, as load_mesh() reads them and precompute() takes them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -11,8 +12,17 @@
 #include "mesh/triangle_mesh.h"
 #include "mesh/up_axis.h"
 #include "prt/refinement/refine.h"
+#include "relumine/option_table.h"
 
 namespace relumine {
+
+inline constexpr std::array<std::string_view, 3> AxisWords = {"x", "y", "z"};
+inline constexpr std::array<std::string_view, 2> NormalWords = {"file", "smooth"};
+
+template<>
+inline constexpr std::span<const std::string_view> WordsOf<mesh::UpAxis> = AxisWords;
+template<>
+inline constexpr std::span<const std::string_view> WordsOf<mesh::NormalSource> = NormalWords;
 
 /// A triangle mesh and its origin. A TriangleMesh made in code converts to it.
 struct Mesh {
@@ -47,6 +57,11 @@ struct MeshOptions {
     float floor_scale = 4.0f;
 };
 
+[[nodiscard]] OptionTable options_of(MeshOptions& options);
+
+/// --crease of MeshOptions alone
+[[nodiscard]] OptionRow crease_row(std::optional<float>& degrees);
+
 /// Reads an .obj, .gltf, .glb, .ply, .off or .stl file, turns it upright and adds the floor.
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y" for a file that cannot be read;
@@ -56,6 +71,9 @@ struct MeshOptions {
 using prt::RefineOptions;
 using prt::RefineReport;
 
+/// Of what shapes the mesh; `light` is a file to the command line, and `bias` that of the scene.
+[[nodiscard]] OptionTable options_of(RefineOptions& options);
+
 /// Returns the mesh with more vertices where its light changes between two of them, or where edges
 /// are long: prt::refine(). The original triangles remain what blocks light, unless the new
 /// vertices lie on a curved surface, which then does. The vertices of the file keep their places;
@@ -64,7 +82,7 @@ using prt::RefineReport;
 ///
 /// Throws:  std::runtime_error "SOURCE: ..." where prt::refine() throws std::invalid_argument;
 ///          Cancelled.
-[[nodiscard]] Mesh refined(Mesh mesh, const RefineOptions& options = {},
+[[nodiscard]] Mesh refined(Mesh mesh, const RefineOptions& options = {}, const prt::Work& work = {},
                            RefineReport* report = nullptr);
 
 /// Returns the mesh with so many vertices, its floor not counted: mesh::simplified(). The original

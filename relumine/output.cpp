@@ -18,7 +18,6 @@
 #include "relight/pictures/array_file.h"
 #include "relight/pictures/exposure.h"
 #include "relight/pictures/receiver_picture.h"
-#include "relight/relighter.h"
 #include "relumine/lit_scene.h"
 
 namespace relumine {
@@ -124,20 +123,9 @@ std::vector<glm::vec3> colors_of(const Scene& scene, std::span<const glm::vec3> 
                                  : factors(scene, albedo));
 }
 
-Lighting lighting_of(const relight::Relighter& relighter) {
-    Lighting lighting{.radiance = relighter.radiance()};
-    if (relighter.environment().resolution != 0)
-        lighting.environment = &relighter.environment();
-    if (const auto lights = relight::picture_lights(relighter); !lights.empty()) {
-        lighting.lights.assign(lights.begin(), lights.end());
-        lighting.soft = relighter.soft_radiance();
-    }
-    return lighting;
-}
-
 struct Painter::Impl {
     Impl(const LitScene& lit, const OutputOptions& given)
-        : scene(lit.scene()), rays(lit.rays()), options(given),
+        : scene(lit.scene()), rays(lit.rays().of_mesh()), options(given),
           floor(picture_floor(scene, options)) {
         // The transfer of a scene that processes share has no highlights.
         if (is_on_vertices() && !scene.settings.glossy_tolerance)
@@ -156,9 +144,7 @@ struct Painter::Impl {
                 .height = options.height,
                 .samples_per_axis = options.samples_per_axis};
     }
-    [[nodiscard]] Camera camera() const {
-        return options.camera ? *options.camera : camera_of(scene, size().aspect());
-    }
+    [[nodiscard]] Camera camera() const { return camera_of(scene, options); }
 
     const std::vector<glm::vec3>& shown_factors() {
         if (shown.empty())
@@ -388,6 +374,14 @@ double Painter::exposure_ev(const std::filesystem::path& path) const {
     if (impl_->options.exposure_ev)
         return *impl_->options.exposure_ev;
     return is_linear_data(files::extension_of(path)) ? 0.0 : impl_->chosen_ev.value_or(0.0);
+}
+
+Picture draw(const LitScene& lit, const OutputOptions& options) {
+    return Painter(lit, options).draw(lit.lighting());
+}
+
+void save(const LitScene& lit, const std::filesystem::path& path, const OutputOptions& options) {
+    Painter(lit, options).save(path, lit.lighting());
 }
 
 bool is_output_of(const std::filesystem::path& path, const Scene& scene) {

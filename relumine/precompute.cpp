@@ -4,63 +4,113 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <ctime>
 #include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
+#include "prt/glossy/lobe_list.h"
 #include "prt/parts/part_file.h"
-#include "prt/parts/shared_work.h"
 #include "prt/parts/team_checkpoint.h"
 #include "prt/receivers/pixel_receivers.h"
+#include "prt/receivers/receiver_order.h"
 #include "prt/scene/checkpoint_file.h"
 #include "prt/scene/fingerprint.h"
-#include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
 #include "relight/pictures/framing.h"
-#include "relight/probe_lights.h"
-#include "relumine/memory_limit.h"
-#include "relumine/part_work.h"
+#include "relumine/stages.h"
 
 namespace relumine {
 
 namespace {
 
+/// What a process takes for its share, while it lasts.
+class ProcessClock {
+public:
+    explicit ProcessClock(const prt::Team& team)
+        : team_(team), waiting_before_(team.seconds_waiting()) {}
+
+    [[nodiscard]] ProcessFigures figures(const prt::PrecomputeStatistics& clusters) const {
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
+        return {.num_rays = clusters.num_own_rays,
+                .seconds = seconds.count(),
+                .seconds_waiting = team_.seconds_waiting() - waiting_before_,
+                .seconds_of_processors =
+                    static_cast<double>(std::clock() - processors_before_) / CLOCKS_PER_SEC,
+                .plane_bytes = clusters.plane_bytes,
+                .column_bytes = clusters.column_bytes};
+    }
+
+private:
+    const prt::Team& team_;
+    double waiting_before_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    std::clock_t processors_before_ = std::clock();
+};
+
+/// All processes trace rays as the first one does.
+Engine shared_engine(prt::Team& team, Engine engine) {
+    return static_cast<Engine>(team.broadcast({static_cast<std::byte>(engine)}).front());
+}
+
+/// Computes the light of a plan with all processes of a team. The first one's scene gets it.
+void compute(prt::Plan& plan, const prt::RayScene& rays, const Stages::Options& options,
+             const PrecomputeWork& work, PrecomputeReport& report) {
+    const ProcessClock clock(work.team);
+    prt::PartLight own = Stages(plan, work, report, options).run(rays);
+    const ProcessFigures figures = clock.figures(report.clusters);
+    std::vector<prt::PartLight> light = prt::gather_light(work.team, plan.scene, std::move(own));
+    for (const std::vector<std::byte>& bytes :
+         work.team.gather(prt::to_send(std::span(&figures, 1))))
+        std::memcpy(&report.processes.emplace_back(), bytes.data(), sizeof figures);
+    if (!work.team.is_first())
+        return;
+    const auto start = std::chrono::steady_clock::now();
+    prt::BounceStatistics bounces;
+    prt::join_light(plan.scene, light, &bounces);
+    if (report.bounces) {
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        bounces.seconds = report.bounces->seconds + seconds.count();
+        report.bounces = bounces;
+    }
+}
+
 /// One precompute, step by step.
 class Precompute {
 public:
-    Precompute(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport& report)
-        : options_(options), report_(report),
-          prefix_(mesh.source.empty() ? "" : mesh.source + ": "),
-          limit_(options.max_memory, prefix_) {
-        scene_.settings.floor_vertices = mesh.floor_vertices;
-        scene_.settings.floor_added = mesh.floor_added;
+    Precompute(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWork& work,
+               PrecomputeReport& report)
+        : options_(options), work_(work), report_(report),
+          prefix_(mesh.source.empty() ? "" : mesh.source + ": ") {
         scene_.blockers = std::move(mesh.blockers);
-        scene_.settings.source = std::filesystem::path(mesh.source).filename().string();
-        scene_.settings.source_hash = mesh.source_hash;
         scene_.mesh = std::move(mesh.geometry);
-        clustering_ = {.tolerance = options.tolerance,
-                       .epsilon = options.epsilon,
-                       .min_level = options.min_level,
-                       .face_resolution = options.face_resolution,
-                       .bias = options.bias.value_or(prt::automatic_bias(scene_.mesh)),
-                       .stop = options.stop,
-                       .on_progress = progress(Stage::Clusters)};
+        scene_.settings = {.tolerance = options.tolerance,
+                           .epsilon = options.epsilon,
+                           .min_level = options.min_level,
+                           .face_resolution = options.face_resolution,
+                           .bias = options.bias.value_or(prt::automatic_bias(scene_.mesh)),
+                           .floor_vertices = mesh.floor_vertices,
+                           .source = std::filesystem::path(mesh.source).filename().string(),
+                           .floor_added = mesh.floor_added,
+                           .source_hash = mesh.source_hash};
+        report_ = {};
     }
 
     /// Chooses the clusters and leaves the counts to the parts.
     void run_plan() {
         is_plan_ = true;
         check_options();
-        compute();
-        report_.file_bytes = prt::save_plan(options_.output, scene_, planned_bounces_);
+        const prt::RayScene rays = prepare();
+        stages().choose_clusters(rays);
+        report_.file_bytes = prt::save_plan(options_.output, plan_);
     }
 
     Scene run() {
         check_options();
         try {
-            compute();
+            light_up();
             if (!options_.output.empty())
                 report_.file_bytes = prt::save_scene(options_.output, scene_);
         } catch (...) {
@@ -84,7 +134,7 @@ private:
                                                     options_.output.string(), extension));
         if (options_.output.empty() && options_.resume)
             throw std::invalid_argument("expected an output to resume the work of, got none");
-        if (options_.team != nullptr && options_.max_memory)
+        if (work_.team.has_others() && options_.max_memory)
             throw std::invalid_argument(
                 "expected no limit of memory where processes share the work");
         if (!(options_.checkpoint_seconds >= 0.0))
@@ -92,54 +142,57 @@ private:
                                                     options_.checkpoint_seconds));
     }
 
-    /// Both parts of the transfer. The rays and all they are made of go before the scene is
-    /// written, which needs memory of its own.
-    void compute() {
+    /// Makes the plan: mesh, receivers and what is asked for. Returns what answers ray queries.
+    prt::RayScene prepare() {
         report_.num_vertices = scene_.mesh.num_vertices();
         report_.num_triangles = scene_.mesh.num_triangles();
-        report_.bias = clustering_.bias;
-        prt::SceneSizes sizes{.num_vertices = report_.num_vertices,
-                              .num_triangles = report_.num_triangles,
-                              .has_beams = options_.engine == Engine::Beams};
-        limit_.check_scene(sizes);
-        const prt::RayScene rays = ray_scene(blocking_mesh());
+        report_.bias = scene_.settings.bias;
+        stages().check_scene();
+        prt::RayScene rays = ray_scene(blocking_mesh(scene_), prefix_);
         place_receivers(rays);
         require_few_clusters();
-        sizes.num_receivers = report_.num_receivers = scene_.receivers.size();
+        report_.num_receivers = scene_.receivers.size();
         set_surfaces();
         poll();
-        const bool has_highlights = prt::has_highlights(scene_.receivers);
-        open_checkpoint(has_highlights);
-        keep_settings();
-        if (has_highlights)
+        if (prt::has_highlights(scene_.receivers)) {
             scene_.settings.glossy_tolerance = options_.glossy_tolerance;
-        hand_out(has_highlights);
-        const ProcessWork work(options_.team);
-        try {
-            cluster(rays, sizes);
-        } catch (const std::invalid_argument& error) {
-            throw std::invalid_argument(prefix_ + error.what());
+            warn_of_smooth_surfaces();
         }
-        if (has_highlights && !is_plan_)
-            add_highlights(rays, sizes);
-        if (options_.bounce_tolerance && !is_plan_)
-            add_bounces(rays, sizes);
-        if (options_.team != nullptr)
-            take_in(work.figures(report_.clusters));
-        prt::set_surfaces(scene_.transfer, scene_.receivers);
+        if (options_.bounce_tolerance) {
+            scene_.settings.two_sided_bounces = options_.two_sided_bounces;
+            plan_.bounces = {.tolerance = *options_.bounce_tolerance};
+        }
+        return rays;
     }
 
-    [[nodiscard]] const mesh::TriangleMesh& blocking_mesh() const {
-        return scene_.blockers ? *scene_.blockers : scene_.mesh;
+    /// The rays and all they are made of go before the scene is written, which needs memory of its
+    /// own.
+    void light_up() {
+        const prt::RayScene rays = prepare();
+        open_checkpoint();
+        if (work_.team.has_others()) {
+            // The cells to begin with.
+            const std::uint32_t level =
+                std::min(options_.min_level, prt::texel_level(options_.face_resolution));
+            scene_.transfer.quadtree =
+                prt::Quadtree::of([=](const prt::Cell& cell) { return cell.level < level; });
+            scene_.transfer.order = prt::spatial_order(scene_.receivers);
+            prt::share_plan(work_.team, plan_);
+            static_cast<void>(shared_engine(work_.team, options_.engine));
+        }
+        compute(plan_, rays, stage_options(), work_, report_);
     }
 
-    [[nodiscard]] prt::RayScene ray_scene(const mesh::TriangleMesh& mesh) const {
-        try {
-            return prt::RayScene(mesh);
-        } catch (const std::runtime_error& error) {
-            throw std::runtime_error(prefix_ + error.what());
-        }
+    [[nodiscard]] Stages::Options stage_options() {
+        Stages::Options options{.engine = options_.engine,
+                                .max_memory = options_.max_memory,
+                                .prefix = prefix_,
+                                .checkpoint = checkpoint_.get()};
+        if (team_checkpoint_)
+            options.checkpoint = &*team_checkpoint_;
+        return options;
     }
+    [[nodiscard]] Stages stages() { return {plan_, work_, report_, stage_options()}; }
 
     /// Refuses what would take hours. A limit of memory has an estimate of its own.
     void require_few_clusters() const {
@@ -147,17 +200,15 @@ private:
         // single texels. The work that is let through takes minutes.
         constexpr double FinestTolerance = 1e-4; // 1/sr
         // A plan is made from a sample, and processes share the receivers.
-        const double most_pairs = 0x1p32 * (is_plan_                   ? 16.0
-                                            : options_.team != nullptr ? options_.team->part().count
-                                                                       : 1.0);
+        const double most_pairs = 0x1p32 * (is_plan_ ? 16.0 : work_.team.part().count);
         if (options_.max_memory)
             return;
         const auto num_receivers = static_cast<double>(scene_.receivers.size());
-        const double tolerance = clustering_.epsilon
-                                     ? double{*clustering_.epsilon} * std::sqrt(num_receivers)
-                                     : double{clustering_.tolerance};
-        const double all = 6.0 * clustering_.face_resolution * clustering_.face_resolution;
-        const double least = std::min(all, 6.0 * std::exp2(2.0 * clustering_.min_level));
+        const double tolerance = options_.epsilon
+                                     ? double{*options_.epsilon} * std::sqrt(num_receivers)
+                                     : double{options_.tolerance};
+        const double all = 6.0 * options_.face_resolution * options_.face_resolution;
+        const double least = std::min(all, 6.0 * std::exp2(2.0 * options_.min_level));
         const bool is_fine = tolerance < FinestTolerance;
         const double clusters = is_fine ? all : least;
         const double pairs = clusters * num_receivers;
@@ -173,7 +224,7 @@ private:
                         is_fine && least * num_receivers <= most_pairs
                             ? fmt::format("{} or more", FinestTolerance)
                             : "a smaller depth",
-                        scene_.receivers.size(), clustering_.face_resolution, clusters, 4.0 * pairs,
+                        scene_.receivers.size(), options_.face_resolution, clusters, 4.0 * pairs,
                         pairs * 10.0 / prt::BlockSize * 1e-9));
     }
 
@@ -181,7 +232,7 @@ private:
         try {
             if (const auto* pixels = std::get_if<Pixels>(&options_.receivers)) {
                 if (scene_.blockers)
-                    place_pixels(*pixels, ray_scene(scene_.mesh));
+                    place_pixels(*pixels, ray_scene(scene_.mesh, prefix_));
                 else
                     place_pixels(*pixels, rays);
             } else if (const auto* texels = std::get_if<Texels>(&options_.receivers)) {
@@ -310,137 +361,7 @@ private:
                              report_.num_highlights_left_out));
     }
 
-    void open_checkpoint(bool has_highlights) {
-        const bool is_wanted = !is_plan_ && (options_.checkpoint_seconds > 0.0 || options_.resume);
-        if (options_.output.empty() || !is_wanted)
-            return;
-        constexpr double Never = 1e9;
-        // A disk that stays full need not be told of every twenty seconds.
-        const auto warn_once = [this, last = std::string()](const std::string& message) mutable {
-            if (std::exchange(last, message) != message)
-                warn(Warning::Checkpoint, message);
-        };
-        prt::Fingerprint fingerprint = prt::fingerprint(
-            blocking_mesh(), scene_.receivers, clustering_,
-            {.glossy_tolerance =
-                 has_highlights ? std::optional(options_.glossy_tolerance) : std::nullopt,
-             .bounce_tolerance = options_.bounce_tolerance,
-             .two_sided_bounces = options_.two_sided_bounces});
-        fingerprint.emplace_back(
-            "number of processes",
-            fmt::format("{}", options_.team != nullptr ? options_.team->part().count : 1));
-        checkpoint_ = std::make_unique<prt::CheckpointFile>(
-            options_.output, std::move(fingerprint),
-            prt::CheckpointFile::Options{
-                .resume = options_.resume,
-                .interval = std::chrono::duration<double>(
-                    options_.checkpoint_seconds > 0.0 ? options_.checkpoint_seconds : Never),
-                .on_problem = warn_once});
-        clustering_.checkpoint = checkpoint_.get();
-        if (options_.team != nullptr)
-            clustering_.checkpoint = &team_checkpoint_.emplace(*options_.team, checkpoint_.get());
-        if (checkpoint_->exists())
-            note(fmt::format("going on from {}",
-                             prt::CheckpointFile::folder_for(options_.output).string()));
-    }
-
-    /// Tells the other processes what there is to do.
-    void hand_out(bool has_highlights) {
-        if (options_.team == nullptr)
-            return;
-        clustering_.reduction = options_.team;
-        prt::SharedWork work{.receivers = scene_.receivers,
-                             .clusters = clustering_,
-                             .has_beams = options_.engine == Engine::Beams,
-                             .has_checkpoint = clustering_.checkpoint != nullptr};
-        const auto shape_of = [](const mesh::TriangleMesh& mesh) {
-            mesh::TriangleMesh shape;
-            shape.positions = mesh.positions;
-            shape.triangles = mesh.triangles;
-            return shape;
-        };
-        if (options_.bounce_tolerance) {
-            work.bounces = {.tolerance = *options_.bounce_tolerance,
-                            .two_sided = options_.two_sided_bounces};
-            work.mesh = shape_of(scene_.mesh);
-            work.mesh.normals = scene_.mesh.normals;
-            if (scene_.blockers)
-                work.blockers = shape_of(*scene_.blockers);
-        } else {
-            work.mesh = shape_of(blocking_mesh());
-            work.receivers.points.clear();
-        }
-        if (has_highlights)
-            work.highlights = {.tolerance = options_.glossy_tolerance};
-        static_cast<void>(options_.team->broadcast(prt::packed_work(work)));
-    }
-
-    /// Joins the light of all processes.
-    void take_in(const ProcessFigures& own_figures) {
-        prt::Transfer& transfer = scene_.transfer;
-        report_.processes = {own_figures};
-        std::vector<prt::PartLight> light =
-            prt::gather_light(*options_.team, {.counts = std::exchange(transfer.counts, {}),
-                                               .glossy = std::exchange(transfer.glossy, {}),
-                                               .bounces = std::exchange(own_bounces_, {})});
-        for (const std::vector<std::byte>& bytes : options_.team->gather({}))
-            if (!bytes.empty())
-                std::memcpy(&report_.processes.emplace_back(), bytes.data(),
-                            sizeof(ProcessFigures));
-        prt::join_light(transfer, light);
-        if (!options_.bounce_tolerance)
-            return;
-        scene_.bounces =
-            prt::join_bounces_of(scene_.receivers, transfer, light, &report_.bounces.emplace());
-        report_.bounces->seconds = seconds_bounces_;
-    }
-
-    /// What the scene remembers of how it was made.
-    void keep_settings() {
-        prt::SceneSettings& settings = scene_.settings;
-        settings.tolerance = clustering_.tolerance;
-        settings.epsilon = clustering_.epsilon;
-        settings.min_level = clustering_.min_level;
-        settings.face_resolution = clustering_.face_resolution;
-        settings.bias = clustering_.bias;
-    }
-
-    void cluster(const prt::RayScene& rays, const prt::SceneSizes& sizes) {
-        std::optional<prt::BeamScene> beams;
-        if (options_.engine == Engine::Beams)
-            beams.emplace(blocking_mesh(), rays);
-        const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
-        report_.memory = limit_.check_estimate(sizes, scene_.receivers, blockers, clustering_);
-        if (report_.memory)
-            note(fmt::format("memory: about {} for about {} clusters",
-                             megabytes(report_.memory->peak_bytes), report_.memory->num_clusters));
-        try {
-            if (is_plan_)
-                plan(blockers);
-            else
-                scene_.transfer =
-                    prt::precompute(scene_.receivers, blockers, clustering_, &report_.clusters);
-        } catch (const prt::TooManyClusters& error) {
-            throw limit_.stopped(error);
-        }
-    }
-
-    void plan(const prt::Blockers& blockers) {
-        prt::Transfer sampled;
-        scene_.transfer = prt::plan_clusters(scene_.receivers, blockers, clustering_,
-                                             &report_.clusters, &sampled);
-        if (!options_.bounce_tolerance)
-            return;
-        scene_.settings.two_sided_bounces = options_.two_sided_bounces;
-        prt::PlannedBounces& bounces = planned_bounces_.emplace();
-        bounces.tolerance = *options_.bounce_tolerance;
-        bounces.probes.resize(sampled.num_receivers());
-        const std::vector<prt::ProbeRadiance> probes = relight::probe_radiance(sampled);
-        for (std::size_t place = 0; place < probes.size(); ++place)
-            bounces.probes[sampled.order[place]] = probes[place];
-    }
-
-    void add_highlights(const prt::RayScene& rays, const prt::SceneSizes& sizes) {
+    void warn_of_smooth_surfaces() {
         const float narrowest = prt::narrowest_roughness(options_.face_resolution);
         const std::vector<prt::Surface>& surfaces = scene_.receivers.surfaces;
         report_.num_too_smooth = static_cast<std::size_t>(
@@ -453,123 +374,101 @@ private:
                  fmt::format("{} receivers are smoother than roughness {:.3f}: cells of the "
                              "quadtree cannot hold so sharp a highlight, it comes out wider",
                              report_.num_too_smooth, narrowest));
-        prt::GlossyOptions glossy{.tolerance = options_.glossy_tolerance,
-                                  .face_resolution = options_.face_resolution,
-                                  .bias = clustering_.bias,
-                                  .reduction = options_.team,
-                                  .checkpoint = clustering_.checkpoint,
-                                  .stop = options_.stop,
-                                  .on_progress = progress(Stage::Highlights)};
-        const std::optional<std::uint64_t> max_bytes =
-            limit_.max_glossy_bytes(sizes, report_.clusters.column_bytes);
-        if (max_bytes) {
-            const std::uint64_t estimate =
-                prt::estimate_glossy_entries(scene_.receivers, rays, scene_.transfer, glossy);
-            if (estimate * prt::BytesPerEntry > *max_bytes)
-                throw limit_.too_many_highlights(*max_bytes, "an estimate of", estimate);
-            report_.highlights_estimate = estimate;
-            glossy.max_bytes = *max_bytes;
-        }
-        prt::GlossyStatistics statistics;
-        try {
-            scene_.transfer.glossy =
-                options_.team != nullptr
-                    ? prt::part_highlights(scene_.receivers, scene_.transfer, rays, glossy,
-                                           options_.team->part(), &statistics)
-                    : prt::precompute_glossy(scene_.receivers, rays, scene_.transfer, glossy,
-                                             &statistics);
-        } catch (const prt::TooManyEntries& error) {
-            throw limit_.too_many_highlights(glossy.max_bytes, "at least", error.num_entries);
-        }
-        report_.highlights = statistics;
     }
 
-    void add_bounces(const prt::RayScene& rays, const prt::SceneSizes& sizes) {
-        std::optional<prt::RayScene> of_mesh;
-        if (scene_.blockers)
-            of_mesh.emplace(ray_scene(scene_.mesh));
-        prt::BounceOptions bounces{.tolerance = *options_.bounce_tolerance,
-                                   .two_sided = options_.two_sided_bounces,
-                                   .bias = clustering_.bias,
-                                   .reduction = options_.team,
-                                   .checkpoint = clustering_.checkpoint,
-                                   .stop = options_.stop,
-                                   .on_progress = progress(Stage::Bounces)};
-        if (const auto bytes = limit_.max_bounce_bytes(sizes, report_.clusters.column_bytes))
-            bounces.max_bytes = *bytes;
-        scene_.settings.two_sided_bounces = options_.two_sided_bounces;
-        if (options_.team != nullptr) {
-            const auto start = std::chrono::steady_clock::now();
-            own_bounces_ = bounce_samples(scene_.mesh, scene_.receivers, scene_.transfer,
-                                          of_mesh ? *of_mesh : rays, bounces);
-            seconds_bounces_ =
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    void open_checkpoint() {
+        if (work_.team.has_others())
+            team_checkpoint_.emplace(work_.team, nullptr);
+        if (options_.output.empty() || !(options_.checkpoint_seconds > 0.0 || options_.resume))
             return;
-        }
-        prt::set_surfaces(scene_.transfer, scene_.receivers);
-        prt::BounceStatistics statistics;
-        try {
-            scene_.bounces =
-                prt::precompute_bounces(scene_.mesh, scene_.receivers, scene_.transfer,
-                                        relight::probe_radiance(scene_.transfer),
-                                        of_mesh ? *of_mesh : rays, bounces, &statistics);
-        } catch (const prt::TooManyHits& error) {
-            throw limit_.too_many_hits(bounces.max_bytes, error.num_hits);
-        }
-        report_.bounces = statistics;
+        constexpr double Never = 1e9;
+        // A disk that stays full need not be told of every twenty seconds.
+        const auto warn_once = [this, last = std::string()](const std::string& message) mutable {
+            if (std::exchange(last, message) != message)
+                warn(Warning::Checkpoint, message);
+        };
+        prt::Fingerprint fingerprint = prt::fingerprint(scene_, options_.bounce_tolerance);
+        fingerprint.emplace_back("number of processes", fmt::format("{}", work_.team.part().count));
+        checkpoint_ = std::make_unique<prt::CheckpointFile>(
+            options_.output, std::move(fingerprint),
+            prt::CheckpointFile::Options{
+                .resume = options_.resume,
+                .interval = std::chrono::duration<double>(
+                    options_.checkpoint_seconds > 0.0 ? options_.checkpoint_seconds : Never),
+                .on_problem = warn_once});
+        if (work_.team.has_others())
+            team_checkpoint_.emplace(work_.team, checkpoint_.get());
+        if (checkpoint_->exists())
+            note(fmt::format("going on from {}",
+                             prt::CheckpointFile::folder_for(options_.output).string()));
     }
 
-    [[nodiscard]] std::function<void(double)> progress(Stage stage) const {
-        if (!options_.on_progress)
-            return {};
-        return [this, stage](double fraction) {
-            options_.on_progress(stage, fraction);
-        };
-    }
     void poll() const {
-        if (options_.stop.stop_requested())
+        if (work_.stop.stop_requested())
             throw Cancelled();
     }
     void warn(Warning kind, const std::string& message) const {
-        if (options_.on_warning)
-            options_.on_warning(kind, message);
+        if (work_.on_warning)
+            work_.on_warning(kind, message);
     }
     void note(const std::string& message) const {
-        if (options_.on_note)
-            options_.on_note(message);
+        if (work_.on_note)
+            work_.on_note(message);
     }
 
     const PrecomputeOptions& options_;
+    const PrecomputeWork& work_;
     bool is_plan_ = false;
     PrecomputeReport& report_;
     std::string prefix_;
-    MemoryLimit limit_;
-    Scene scene_;
-    prt::PrecomputeOptions clustering_;
+    prt::Plan plan_;
+    Scene& scene_ = plan_.scene;
     std::unique_ptr<prt::CheckpointFile> checkpoint_;
     std::optional<prt::TeamCheckpoint> team_checkpoint_;
-    /// Of this process, where others have theirs.
-    std::optional<prt::BounceSamples> own_bounces_;
-    double seconds_bounces_ = 0.0;
-    std::optional<prt::PlannedBounces> planned_bounces_;
 };
 
 } // namespace
 
-Scene precompute(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* report) {
+Scene precompute(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWork& work,
+                 PrecomputeReport* report) {
     PrecomputeReport local;
-    PrecomputeReport& facts = report != nullptr ? *report : local;
-    facts = {};
-    return Precompute(std::move(mesh), options, facts).run();
+    return Precompute(std::move(mesh), options, work, report != nullptr ? *report : local).run();
 }
 
-void plan(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* report) {
+void assist(const PrecomputeWork& work) {
+    prt::Plan plan;
+    prt::share_plan(work.team, plan);
+    const Engine engine = shared_engine(work.team, {});
+    prt::TeamCheckpoint checkpoint(work.team, nullptr);
+    PrecomputeReport report;
+    compute(plan, ray_scene(blocking_mesh(plan.scene), ""),
+            {.engine = engine, .checkpoint = &checkpoint}, work, report);
+}
+
+void plan(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWork& work,
+          PrecomputeReport* report) {
     PrecomputeReport local;
-    PrecomputeReport& facts = report != nullptr ? *report : local;
-    facts = {};
     if (options.output.empty())
         throw std::invalid_argument("expected a file for the plan, got none");
-    Precompute(std::move(mesh), options, facts).run_plan();
+    Precompute(std::move(mesh), options, work, report != nullptr ? *report : local).run_plan();
+}
+
+void precompute_part(const PartOptions& options, const PrecomputeWork& work,
+                     prt::PrecomputeStatistics* statistics) {
+    prt::Plan plan = prt::load_plan(options.plan);
+    prt::Alone part(options.part);
+    const PrecomputeWork of_part{.team = part, .stop = work.stop, .on_progress = work.on_progress};
+    PrecomputeReport report;
+    const prt::PartLight light = Stages(plan, of_part, report, {.engine = options.engine})
+                                     .run(ray_scene(blocking_mesh(plan.scene), ""));
+    prt::save_part(options.output, plan, options.part, light);
+    if (statistics != nullptr)
+        *statistics = report.clusters;
+}
+
+std::uint64_t join(std::span<const std::filesystem::path> parts,
+                   const std::filesystem::path& output) {
+    return prt::save_scene(output, prt::join_parts(parts));
 }
 
 prt::SurfaceOverride everywhere(const prt::Surface& surface) {

@@ -45,6 +45,17 @@ std::vector<bool> floor_receivers(const Scene& scene) {
     return result;
 }
 
+OptionTable options_of(SurfaceColors& o) {
+    return {row<ColorText>("--surface-albedo", o.albedo,
+                           "scenes with materials: albedo of all surfaces in place of the "
+                           "precompute's, a number or R,G,B",
+                           {.example = "0.25"}),
+            row<ColorText>("--surface-specular", o.specular,
+                           "scenes with highlights: their F0 (Ks) in place of the precompute's, a "
+                           "number or R,G,B",
+                           {.example = "0.25"})};
+}
+
 void set_colors(Scene& scene, const SurfaceColors& colors) {
     if (scene.receivers.surfaces.empty())
         throw std::invalid_argument("expected a scene with materials, got one without");

@@ -12,6 +12,7 @@
 #include "prt/transfer/transfer.h"
 #include "relight/pictures/framing.h"
 #include "relumine/mesh.h"
+#include "relumine/option_table.h"
 
 namespace relumine {
 
@@ -31,6 +32,11 @@ using relight::Camera;
 /// shadow rays. Environments cannot light it.
 [[nodiscard]] Scene unclustered_scene(Mesh mesh);
 
+/// False for unclustered_scene().
+[[nodiscard]] inline bool has_clusters(const Scene& scene) {
+    return scene.transfer.num_receivers() != 0;
+}
+
 /// Returns the RMS tolerance of the scene's clusters, 1/sr, whichever form it was given in.
 [[nodiscard]] float rms_tolerance(const Scene& scene);
 
@@ -48,6 +54,8 @@ struct SurfaceColors {
     /// F0, or Ks of Blinn-Phong
     std::optional<glm::vec3> specular = {};
 };
+
+[[nodiscard]] OptionTable options_of(SurfaceColors& colors);
 
 /// Colours are no part of the transfer, so they may change without a new precompute.
 ///

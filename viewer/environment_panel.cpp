@@ -34,9 +34,9 @@ void picture_tools(ViewState& state) {
     ImGui::TextUnformatted("Rotate");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(slider_width);
-    auto degrees = static_cast<float>(state.desk.editor().rotation());
+    auto degrees = static_cast<float>(state.desk.state().rotation_degrees);
     if (ImGui::SliderFloat("##rotate", &degrees, -180.0f, 180.0f, "%.0f\xc2\xb0"))
-        state.desk.set_rotation(degrees);
+        set_rotation(state.desk, degrees);
     if (ImGui::IsItemDeactivatedAfterEdit()) {
         state.desk.finish();
         state.heat_is_stale = true;
@@ -130,7 +130,7 @@ void draw_layers(const ViewState& state, const PixelRectangle& place) {
     for (std::size_t i = 0; i < state.desk.layers().size(); ++i) {
         const cubemap::LightLayer& layer = state.desk.layers()[i];
         const bool chosen = state.desk.selected() == i;
-        const cubemap::Region region = turned(layer.region, state.desk.editor().rotation());
+        const cubemap::Region region = turned(layer.region, state.desk.state().rotation_degrees);
         const std::vector<glm::dvec3> rim = outline(region);
         const ImU32 color = chosen     ? IM_COL32(255, 190, 60, 255)
                             : layer.on ? IM_COL32(240, 240, 240, 210)
@@ -148,7 +148,7 @@ void draw_layers(const ViewState& state, const PixelRectangle& place) {
 
 /// Draws the current outline, closed.
 void draw_lasso(const ViewState& state, const PixelRectangle& place) {
-    std::vector<glm::dvec3> line(state.desk.lasso().begin(), state.desk.lasso().end());
+    std::vector<glm::dvec3> line(state.hand.lasso().begin(), state.hand.lasso().end());
     if (line.size() < 2)
         return;
     line.push_back(line.front());
@@ -158,7 +158,7 @@ void draw_lasso(const ViewState& state, const PixelRectangle& place) {
 
 void end_lasso(ViewState& state) {
     try {
-        const bool added = state.desk.end_lasso(state.lasso);
+        const bool added = state.hand.end_lasso(state.lasso);
         state.message = added ? "" : "a lasso needs an outline: drag around what is to change";
         state.message_is_error = !added;
         if (added)
@@ -179,20 +179,19 @@ void point_and_drag(ViewState& state, const PixelRectangle& place) {
         state.lat_long.zoom_at(place, pixel, io.MouseWheel);
 
     const double tolerance = RimReach * 360.0 / (state.lat_long.zoom * std::max(place.width, 1));
-    const bool moves_layers = state.tool == Tool::Move && !state.desk.is_dragging();
-    const LightDesk::Held held = hovered && direction && moves_layers
-                                     ? state.desk.held_at(*direction, tolerance)
-                                     : LightDesk::Held{};
+    const bool moves_layers = state.tool == Tool::Move && !state.hand.is_dragging();
+    const Held held =
+        hovered && direction && moves_layers ? held_at(state.desk, *direction, tolerance) : Held{};
     if (held.grip != Grip::None)
         ImGui::SetMouseCursor(held.grip == Grip::Body ? ImGuiMouseCursor_Hand
                                                       : ImGuiMouseCursor_ResizeAll);
     if (hovered && direction && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
         if (state.tool == Tool::Paint)
-            state.desk.begin_stroke(state.brush, *direction);
+            state.hand.begin_stroke(state.brush, *direction);
         else if (state.tool == Tool::Lasso)
-            state.desk.begin_lasso(*direction);
+            state.hand.begin_lasso(*direction);
         else if (held.grip != Grip::None)
-            state.desk.begin_drag(held, *direction);
+            state.hand.begin_drag(held, *direction);
         else
             state.desk.select(std::nullopt);
     }
@@ -201,14 +200,10 @@ void point_and_drag(ViewState& state, const PixelRectangle& place) {
     const bool has_moved = io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f;
     if (!has_moved)
         return;
-    if (state.desk.is_dragging() && direction)
-        state.desk.drag_to(*direction);
-    else if (state.desk.is_painting() && direction)
-        state.desk.stroke_to(*direction);
-    else if (!state.desk.lasso().empty() && direction)
-        state.desk.lasso_to(*direction, 0.4 * tolerance);
-    else if (!state.desk.is_dragging() && !state.desk.is_painting() && state.desk.lasso().empty())
+    if (!state.hand.is_dragging() && !state.hand.is_painting() && state.hand.lasso().empty())
         state.lat_long.pan(place, {io.MouseDelta.x, io.MouseDelta.y});
+    else if (direction)
+        state.hand.move_to(*direction, 0.4 * tolerance);
 }
 
 } // namespace
@@ -225,12 +220,11 @@ void environment_panel(ViewState& state, const PanelLayout& layout) {
                                ImGuiButtonFlags_MouseButtonMiddle);
     point_and_drag(state, layout.environment);
     if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
-        (state.desk.is_dragging() || state.desk.is_painting())) {
-        state.desk.end_drag();
-        state.desk.end_stroke();
+        (state.hand.is_dragging() || state.hand.is_painting())) {
+        state.hand.end();
         state.heat_is_stale = true;
     }
-    if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !state.desk.lasso().empty())
+    if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !state.hand.lasso().empty())
         end_lasso(state);
     draw_layers(state, layout.environment);
     draw_lasso(state, layout.environment);

@@ -4,6 +4,8 @@
 
 #include <glm/gtc/type_ptr.hpp>
 
+#include "relight/pictures/tone_curve.h"
+
 namespace relumine::viewer {
 
 namespace {
@@ -100,43 +102,11 @@ void GlProgram::set(const char* name, const glm::mat4& value) const {
 }
 
 std::string shown_source() {
-    // relight/pictures/tone_curve.cpp says where the curves come from.
-    return R"(
+    return relight::on_screen_source() + R"(
 uniform float exposure; // factor
 uniform int tone; // relight::ToneCurve
-vec3 neutral(vec3 radiance) {
-    float least = min(radiance.r, min(radiance.g, radiance.b));
-    vec3 color = radiance - (least < 0.08 ? least - least * least / 0.16 : 0.04);
-    float peak = max(color.r, max(color.g, color.b));
-    if (peak <= 0.76)
-        return color;
-    float most = 1.0 - 0.0576 / (peak - 0.52);
-    return mix(vec3(most), color * (most / peak), 1.0 / (0.15 * (peak - most) + 1.0));
-}
-vec3 agx(vec3 radiance) {
-    vec3 wide = mat3(0.6274, 0.0691, 0.0164, 0.3293, 0.9195, 0.0880, 0.0433, 0.0113, 0.8956) * radiance;
-    vec3 inset = mat3(0.856627153, 0.137318973, 0.111898213, 0.0951212405, 0.761241991, 0.0767994186,
-                      0.0482516061, 0.101439036, 0.811302368) * wide;
-    vec3 x = clamp((log2(max(inset, 1e-10)) + 12.47393) / 16.5, 0.0, 1.0);
-    vec3 x2 = x * x;
-    vec3 x4 = x2 * x2;
-    vec3 contrast = 15.5 * x4 * x2 - 40.14 * x4 * x + 31.96 * x4 - 6.868 * x2 * x + 0.4298 * x2 +
-                    0.1191 * x - 0.00232;
-    vec3 outset = mat3(1.12710058, -0.141329763, -0.141329763, -0.110606643, 1.15782370, -0.110606643,
-                       -0.0164939387, -0.0164939387, 1.25193641) * contrast;
-    return mat3(1.6605, -0.1246, -0.0182, -0.5876, 1.1329, -0.1006, -0.0728, -0.0083, 1.1187) *
-           pow(max(outset, 0.0), vec3(2.2));
-}
-vec3 aces(vec3 radiance) {
-    vec3 v = mat3(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777) *
-             (radiance / 0.6);
-    v = (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081);
-    return mat3(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602) * v;
-}
 vec3 shown(vec3 radiance) {
-    vec3 x = clamp(radiance * exposure, 0.0, 1e8);
-    x = tone == 0 ? neutral(x) : tone == 1 ? agx(x) : tone == 2 ? aces(x) : x;
-    x = clamp(x, 0.0, 1.0);
+    vec3 x = on_screen(tone, radiance * exposure);
     return mix(12.92 * x, 1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, step(vec3(0.0031308), x));
 }
 )";

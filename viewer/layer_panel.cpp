@@ -26,7 +26,7 @@ namespace {
 cubemap::LightLayer new_layer(const ViewState& state, std::string name, cubemap::Region region,
                               cubemap::Effect effect) {
     const glm::dvec3 direction =
-        turned(direction_at(state.lat_long.center), -state.desk.editor().rotation());
+        turned(direction_at(state.lat_long.center), -state.desk.state().rotation_degrees);
     for (const cubemap::LayerField& field : fields(region))
         if (field.direction != nullptr)
             *field.direction = direction;
@@ -68,14 +68,14 @@ void add_buttons(ViewState& state) {
         if (has_direction(shape)) {
             const std::string name = capitalised(words(shape).label);
             if (ImGui::Button(("+ " + name).c_str()))
-                state.desk.add(new_layer(state, name, as_added(shape), cubemap::Emit{}));
+                add(state.desk, new_layer(state, name, as_added(shape), cubemap::Emit{}));
             hint(words(shape).hint);
             next("+ Soft box");
         }
     if (ImGui::Button("+ Gain"))
-        state.desk.add(new_layer(state, "Gain",
-                                 cubemap::Disc{.radius_degrees = 20.0, .softness = 0.5},
-                                 cubemap::Gain{.factor = 0.25f}));
+        add(state.desk,
+            new_layer(state, "Gain", cubemap::Disc{.radius_degrees = 20.0, .softness = 0.5},
+                      cubemap::Gain{.factor = 0.25f}));
     hint("a disc that dims or brightens what is there");
     next("+ Lasso");
     if (ImGui::Button("+ Lasso"))
@@ -90,14 +90,14 @@ void add_buttons(ViewState& state) {
         add_image(state, state.path);
     hint("the picture named below, .exr or .hdr, as a layer; or drop one on the window");
     next("Undo Redo ");
-    ImGui::BeginDisabled(!state.desk.editor().can_undo());
+    ImGui::BeginDisabled(!state.desk.history().can_undo());
     if (ImGui::Button("Undo"))
         later = [&state] {
             state.desk.undo();
         };
     ImGui::EndDisabled();
     ImGui::SameLine();
-    ImGui::BeginDisabled(!state.desk.editor().can_redo());
+    ImGui::BeginDisabled(!state.desk.history().can_redo());
     if (ImGui::Button("Redo"))
         later = [&state] {
             state.desk.redo();
@@ -144,7 +144,7 @@ public:
     }
     void apply() {
         if (changed_)
-            state_.desk.change(index_, layer_);
+            change(state_.desk, index_, layer_);
         if (finished_) {
             state_.desk.finish();
             state_.heat_is_stale = true;
@@ -191,7 +191,7 @@ std::function<void()> layer_row(ViewState& state, std::size_t index) {
         cubemap::LightLayer changed = layer;
         changed.on = on;
         later = [&state, index, changed] {
-            state.desk.change(index, changed);
+            change(state.desk, index, changed);
             state.desk.finish();
         };
     }
@@ -209,17 +209,17 @@ std::function<void()> layer_row(ViewState& state, std::size_t index) {
     const std::size_t top = state.desk.layers().size() - 1;
     if (ImGui::ArrowButton("##up", ImGuiDir_Up) && index < top)
         later = [&state, index] {
-            state.desk.reorder(index, index + 1);
+            reorder(state.desk, index, index + 1);
         };
     ImGui::SameLine(0.0f, 2.0f);
     if (ImGui::ArrowButton("##down", ImGuiDir_Down) && index > 0)
         later = [&state, index] {
-            state.desk.reorder(index, index - 1);
+            reorder(state.desk, index, index - 1);
         };
     ImGui::SameLine(0.0f, 2.0f);
     if (ImGui::Button("x"))
         later = [&state, index] {
-            state.desk.remove(index);
+            remove(state.desk, index);
         };
     ImGui::PopID();
     return later;
@@ -258,7 +258,7 @@ void layer_fields(ViewState& state, std::size_t index) {
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * 0.62f);
     std::string name = form.layer().name;
     const bool renamed = ImGui::InputText("Name", &name);
-    const std::optional<std::size_t> other = state.desk.find(name);
+    const std::optional<std::size_t> other = find(state.desk, name);
     if (renamed && !name.empty() && (!other || *other == index))
         form.layer().name = name;
     form.note(renamed);
@@ -340,14 +340,14 @@ void layer_panel(ViewState& state, const PanelLayout& layout) {
 
 void status_panel(const ViewState& state, const PanelLayout& layout) {
     begin_panel("status", layout.status);
-    const relight::LightEditor& editor = state.desk.editor();
+    const LitScene& lit = state.desk.lit();
     const EditCost& cost = state.desk.last_cost();
     ImGui::Text("frame %.1f ms", 1e3 * state.frame_seconds);
     ImGui::SameLine(0.0f, 22.0f);
     const std::string last = fmt::format(
         "last edit {:.2f} ms: {} of {} clusters, {} of {} receivers", 1e3 * cost.seconds,
-        cost.report.num_clusters, editor.relighter().transfer().num_clusters(),
-        cost.report.num_receivers, editor.radiance().size());
+        cost.report.num_clusters, lit.relighter().transfer().num_clusters(),
+        cost.report.num_receivers, lit.radiance().size());
     ImGui::TextUnformatted(last.c_str());
     ImGui::SameLine(0.0f, 22.0f);
     if (state.message_is_error)

@@ -48,7 +48,7 @@ struct Step {
     }
     /// The layer that the command names.
     [[nodiscard]] std::size_t layer() const {
-        const std::optional<std::size_t> found = state.desk.find(command.text);
+        const std::optional<std::size_t> found = find(state.desk, command.text);
         if (!found)
             fail(command, fmt::format("expected the name of a layer, got '{}'", command.text));
         return *found;
@@ -95,36 +95,36 @@ void click(Step& s) {
 }
 
 void add_disc(Step& s) {
-    s.state.desk.add(
+    add(s.state.desk,
         {.name = s.command.text,
          .region = cubemap::Disc{.direction = s.direction(), .radius_degrees = s.number(3)}});
 }
 
 void add_rectangle(Step& s) {
-    s.state.desk.add({.name = s.command.text,
-                      .region = cubemap::Rectangle{.direction = s.direction(),
-                                                   .width_degrees = s.number(3),
-                                                   .height_degrees = s.number(4)}});
+    add(s.state.desk, {.name = s.command.text,
+                       .region = cubemap::Rectangle{.direction = s.direction(),
+                                                    .width_degrees = s.number(3),
+                                                    .height_degrees = s.number(4)}});
 }
 
 void add_gain(Step& s) {
-    s.state.desk.add(
+    add(s.state.desk,
         {.name = s.command.text,
          .region = cubemap::Disc{.direction = s.direction(), .radius_degrees = s.number(3)},
          .effect = cubemap::Gain{.factor = static_cast<float>(s.number(4))}});
 }
 
 void drag_layer(Step& s) {
-    LightDesk& desk = s.state.desk;
+    const LightDesk& desk = s.state.desk;
     const std::size_t index = s.layer();
     if (s.is_first()) {
-        s.from = turned(middle(desk.layers()[index].region), desk.editor().rotation());
-        desk.begin_drag({.index = index, .grip = Grip::Body}, s.from);
+        s.from = turned(middle(desk.layers()[index].region), desk.state().rotation_degrees);
+        s.state.hand.begin_drag({.index = index, .grip = Grip::Body}, s.from);
     }
     const glm::dvec3 on_way = s.from + (s.direction() - s.from) * s.part_done();
-    desk.drag_to(glm::length(on_way) > 1e-6 ? on_way : s.direction());
+    s.state.hand.move_to(glm::length(on_way) > 1e-6 ? on_way : s.direction());
     if (s.is_last())
-        desk.end_drag();
+        s.state.hand.end();
 }
 
 /// The radius or the width; null for a lasso, which has neither.
@@ -148,7 +148,7 @@ void resize_layer(Step& s) {
             box->height_degrees *= degrees / box->width_degrees;
         *size = degrees;
     }
-    s.state.desk.change(index, layer);
+    change(s.state.desk, index, layer);
     if (s.is_last())
         s.state.desk.finish();
 }
@@ -157,12 +157,12 @@ void set_gain(Step& s) {
     const std::size_t index = s.layer();
     cubemap::LightLayer layer = s.state.desk.layers()[index];
     layer.gain_ev = s.number(0);
-    s.state.desk.change(index, layer);
+    change(s.state.desk, index, layer);
     s.state.desk.finish();
 }
 
 void rotate(Step& s) {
-    s.state.desk.set_rotation(s.number(0));
+    set_rotation(s.state.desk, s.number(0));
     s.state.desk.finish();
 }
 

@@ -8,7 +8,7 @@
 
 #include <imgui.h>
 
-#include "relight/contribution.h"
+#include "relumine/questions.h"
 #include "viewer/cube_texture.h"
 #include "viewer/environment_renderer.h"
 #include "viewer/multisample_target.h"
@@ -39,7 +39,6 @@ struct Scenery {
 
 Moment moment_of(const ViewState& state, const PixelRectangle& size) {
     const OrbitCamera& camera = state.camera;
-    const relight::Relighter& relighter = state.desk.editor().relighter();
     Moment moment{
         .camera = {.eye = camera.eye(), .target = camera.target, .fov_degrees = camera.fov_degrees},
         .width = static_cast<std::uint32_t>(std::max(size.width, 1)),
@@ -47,12 +46,11 @@ Moment moment_of(const ViewState& state, const PixelRectangle& size) {
         .radiance = {},
         .lights = {},
         .backdrop = {}};
-    if (const auto lights = relight::picture_lights(relighter); !lights.empty()) {
-        moment.radiance = relighter.soft_radiance();
-        moment.lights.assign(lights.begin(), lights.end());
-    } else {
-        moment.radiance.assign(relighter.radiance().begin(), relighter.radiance().end());
-    }
+    Lighting lighting = state.desk.lit().lighting();
+    moment.lights = std::move(lighting.lights);
+    moment.radiance = std::move(lighting.soft);
+    if (moment.lights.empty())
+        moment.radiance.assign(lighting.radiance.begin(), lighting.radiance.end());
     if (state.scene_look.background)
         moment.backdrop = backdrop_of(state);
     return moment;
@@ -63,25 +61,24 @@ class Pictures {
 public:
     explicit Pictures(const ViewState& state)
         : scene_(state.mesh, state.shading.floor),
-          environment_(state.desk.editor().relighter().transfer().quadtree),
+          environment_(state.desk.lit().relighter().transfer().quadtree),
           refiner_(state.mesh, state.rays, state.shading) {}
 
     /// Sends changes by edits to the graphics card.
     void update(ViewState& state) {
-        const relight::LightEditor& editor = state.desk.editor();
+        const LitScene& lit = state.desk.lit();
         if (const auto version = state.desk.version(); version != version_) {
             version_ = version;
-            std::vector<glm::vec3> colors(editor.radiance().begin(), editor.radiance().end());
+            std::vector<glm::vec3> colors(lit.radiance().begin(), lit.radiance().end());
             for (std::size_t i = 0; i < colors.size(); ++i)
                 colors[i] *= state.shading.albedo[i];
             scene_.upload_radiance(colors);
-            texture_.upload(editor.environment(), state.desk.take_changed_texels());
+            texture_.upload(environment_of(lit), state.desk.take_changed_texels());
         }
         // The heat map stays as it was while a layer is dragged: it costs as much as a relighting.
         if (state.heat_is_stale && state.receiver && state.environment_look.heat &&
-            !state.desk.is_dragging() && !state.desk.is_painting()) {
-            environment_.upload_heat(
-                relight::contribution_map(editor.relighter(), {&*state.receiver, 1}));
+            !state.hand.is_dragging() && !state.hand.is_painting()) {
+            environment_.upload_heat(contribution_map(lit, {&*state.receiver, 1}));
             state.heat_is_stale = false;
         }
     }
@@ -102,8 +99,8 @@ public:
         if (at_once) {
             scene_.upload_picture(refiner_.draw(moment_of(state, size)));
             is_refined_ = is_refining_ = true;
-        } else if (!is_refining_ && seconds_since(since_) > Pause && !state.desk.is_dragging() &&
-                   !state.desk.is_painting()) {
+        } else if (!is_refining_ && seconds_since(since_) > Pause && !state.hand.is_dragging() &&
+                   !state.hand.is_painting()) {
             refiner_.start(moment_of(state, size));
             is_refining_ = true;
         }
@@ -155,8 +152,8 @@ void handle(Shortcut shortcut, ViewState& state, const PanelLayout& layout) {
         state.heat_is_stale = true;
         break;
     case Shortcut::Delete:
-        if (state.desk.selected() && !state.desk.is_dragging() && !state.desk.is_painting())
-            state.desk.remove(*state.desk.selected());
+        if (state.desk.selected() && !state.hand.is_dragging() && !state.hand.is_painting())
+            remove(state.desk, *state.desk.selected());
         break;
     case Shortcut::FrameAll:
         state.camera = camera_on_all(state.mesh, layout.scene);
@@ -204,7 +201,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
             scripted = player.step(state);
             is_last = player.is_done();
         }
-        const bool is_busy = options.script || !state.desk.editor().is_settled();
+        const bool is_busy = options.script || !state.desk.lit().bounces().is_settled();
         window.begin_frame(is_busy ? 0.0 : idleness.wait_seconds(), scripted.pointer);
         const auto start = Clock::now();
         for (const std::filesystem::path& path : window.take_dropped_files())
@@ -223,9 +220,9 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
         const bool is_kept =
             !scripted.screenshot.empty() || (is_last && !options.screenshot.empty());
         if (is_kept)
-            state.desk.settle();
+            state.desk.bounce(true);
         else
-            state.desk.go_on();
+            state.desk.bounce();
         pictures.update(state);
         if (!options.script || is_kept)
             pictures.refine(state, window.in_framebuffer(layout.scene), is_kept);
@@ -244,7 +241,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
     }
     if (report.num_frames > 0)
         report.mean_frame_seconds = seconds / static_cast<double>(report.num_frames);
-    report.drag_seconds.assign(state.desk.drag_seconds().begin(), state.desk.drag_seconds().end());
+    report.drag_seconds.assign(state.hand.seconds().begin(), state.hand.seconds().end());
     return report;
 }
 

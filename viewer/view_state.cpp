@@ -34,7 +34,7 @@ bool reported(ViewState& state, Work work) {
 
 /// Sets the environment; this is not a step of undo yet.
 void set_environment(ViewState& state, const std::filesystem::path& path) {
-    set_base(state, state.load_environment(path), path);
+    set_base(state.desk, state.load_environment(path));
     state.heat_is_stale = true;
 }
 
@@ -42,7 +42,7 @@ std::string open_layers(ViewState& state, const std::filesystem::path& path) {
     cubemap::LightLayers file = cubemap::load_layers(path);
     if (file.base)
         if (const std::filesystem::path base = path.parent_path() / *file.base;
-            base.lexically_normal() != state.desk.base_path().lexically_normal())
+            base.lexically_normal() != state.desk.state().base->path().lexically_normal())
             set_environment(state, base);
     // Layers may be saved to another folder than the one they came from.
     for (cubemap::LightLayer& layer : file.layers)
@@ -50,8 +50,8 @@ std::string open_layers(ViewState& state, const std::filesystem::path& path) {
             patch->path =
                 std::filesystem::absolute(path.parent_path() / patch->path).lexically_normal();
     if (file.rotate_degrees)
-        state.desk.set_rotation(*file.rotate_degrees);
-    state.desk.replace(std::move(file.layers));
+        set_rotation(state.desk, *file.rotate_degrees);
+    replace(state.desk, std::move(file.layers));
     state.desk.select(std::nullopt);
     state.frames = std::move(file.frames);
     state.heat_is_stale = true;
@@ -60,34 +60,23 @@ std::string open_layers(ViewState& state, const std::filesystem::path& path) {
 
 } // namespace
 
-void set_base(ViewState& state, LoadedEnvironment environment, const std::filesystem::path& path) {
-    state.desk.set_base(std::move(environment.map), path);
-    std::erase_if(state.sharp, [](const auto& each) { return each.first.expired(); });
-    if (environment.sharp)
-        state.sharp.emplace_back(state.desk.editor().base(), std::move(environment.sharp));
-}
-
 relight::Backdrop backdrop_of(const ViewState& state) {
-    const relight::LightEditor& editor = state.desk.editor();
-    const double degrees = editor.rotation();
-    const auto known = std::find_if(state.sharp.begin(), state.sharp.end(), [&](const auto& each) {
-        return each.first.lock() == editor.base();
-    });
-    const relight::Backdrop pixels =
-        known == state.sharp.end() ? relight::Backdrop() : known->second;
-    if (pixels && state.desk.layers().empty())
-        return [sharp = pixels,
-                unturned = glm::dmat3(cubemap::turn_about_y(-degrees))](const glm::vec3& w) {
-            return sharp(glm::vec3(unturned * glm::dvec3(w)));
-        };
-    // A copy: the environment may change while the picture is drawn.
-    const auto now = std::make_shared<const cubemap::CubeMap>(editor.environment());
-    if (pixels && degrees == 0.0)
+    const LightState& light = state.desk.state();
+    const relight::Backdrop& pixels = light.base->backdrop();
+    if (pixels && light.layers.empty())
         return
-            [now, base = editor.base(),
-             edited = relight::edited_backdrop(pixels, *editor.base(), *now)](const glm::vec3& w) {
-                return edited(w);
+            [sharp = pixels, unturned = glm::dmat3(cubemap::turn_about_y(-light.rotation_degrees))](
+                const glm::vec3& w) {
+                return sharp(glm::vec3(unturned * glm::dvec3(w)));
             };
+    // A copy: the environment may change while the picture is drawn.
+    const auto now = std::make_shared<const cubemap::CubeMap>(environment_of(state.desk.lit()));
+    if (pixels && light.rotation_degrees == 0.0)
+        return [now, base = light.base,
+                edited = relight::edited_backdrop(pixels, *light.base->map(), *now)](
+                   const glm::vec3& w) {
+            return edited(w);
+        };
     return [now](const glm::vec3& w) {
         return cubemap::sample(*now, w);
     };
@@ -127,7 +116,7 @@ bool open(ViewState& state, const std::filesystem::path& path) {
         set_environment(state, path);
         state.desk.finish();
         return fmt::format("{}: {} texels a face", path.string(),
-                           state.desk.editor().environment().resolution);
+                           environment_of(state.desk.lit()).resolution);
     });
 }
 
@@ -158,10 +147,10 @@ bool add_image(ViewState& state, const std::filesystem::path& path) {
         const auto degrees = [&](double pixels) {
             return std::max(0.1, 2.0 * std::atan(half * pixels / longer) * DegreesPerRadian);
         };
-        state.desk.add(
+        add(state.desk,
             {.name = path.stem().string(),
              .region = cubemap::Rectangle{.direction = turned(direction_at(state.lat_long.center),
-                                                              -state.desk.editor().rotation()),
+                                                              -state.desk.state().rotation_degrees),
                                           .width_degrees = degrees(full.width),
                                           .height_degrees = degrees(full.height)},
              .effect = std::move(patch)});
@@ -172,24 +161,23 @@ bool add_image(ViewState& state, const std::filesystem::path& path) {
 
 bool save_layers(ViewState& state, const std::filesystem::path& path) {
     return reported(state, [&] {
-        cubemap::LightLayers file{
-            .rotate_degrees = state.desk.editor().rotation(),
-            .layers = {state.desk.layers().begin(), state.desk.layers().end()},
-            .frames = state.frames};
+        cubemap::LightLayers file{.rotate_degrees = state.desk.state().rotation_degrees,
+                                  .layers = state.desk.state().layers,
+                                  .frames = state.frames};
         const std::filesystem::path folder =
             std::filesystem::absolute(path).lexically_normal().parent_path();
         const auto from_folder = [&](const std::filesystem::path& named) {
             return std::filesystem::absolute(named).lexically_normal().lexically_proximate(folder);
         };
-        if (!state.desk.base_path().empty())
-            file.base = from_folder(state.desk.base_path());
+        if (!state.desk.state().base->path().empty())
+            file.base = from_folder(state.desk.state().base->path());
         for (cubemap::LightLayer& layer : file.layers)
             if (auto* patch = std::get_if<cubemap::ImagePatch>(&layer.effect))
                 patch->path = from_folder(patch->path);
         // Removes the key frames of layers that are gone.
         for (cubemap::KeyFrame& frame : file.frames)
             std::erase_if(frame.changes,
-                          [&](const auto& key) { return !state.desk.find(key.layer); });
+                          [&](const auto& key) { return !find(state.desk, key.layer); });
         std::erase_if(file.frames, [](const auto& frame) { return frame.changes.empty(); });
         cubemap::save_layers(path, file);
         return fmt::format("{}: saved {} layers", path.string(), file.layers.size());
@@ -198,8 +186,7 @@ bool save_layers(ViewState& state, const std::filesystem::path& path) {
 
 bool save_environment(ViewState& state, const std::filesystem::path& path) {
     return reported(state, [&] {
-        cubemap::save_environment(path, state.desk.editor().environment(),
-                                  cubemap::Layout::LatLong);
+        cubemap::save_environment(path, environment_of(state.desk.lit()), cubemap::Layout::LatLong);
         return fmt::format("{}: saved the environment with its layers", path.string());
     });
 }

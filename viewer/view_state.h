@@ -5,10 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cubemap/cube_map.h"
@@ -16,6 +14,7 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/visibility/ray_scene.h"
 #include "relight/pictures/picture_view.h"
+#include "viewer/gestures.h"
 #include "viewer/lat_long_view.h"
 #include "viewer/light_desk.h"
 #include "viewer/look.h"
@@ -26,22 +25,15 @@ namespace relumine::viewer {
 
 enum class Tool { Move, Paint, Lasso };
 
-/// An environment, and the pixels of its file.
-struct LoadedEnvironment {
-    cubemap::CubeMap map;
-    relight::Backdrop sharp;
-};
-
 struct ViewState {
     const mesh::TriangleMesh& mesh;
     const prt::RayScene& rays;
     LightDesk& desk;
     Shading shading;
     /// Reads an environment file as the command line's options say. Throws std::runtime_error.
-    std::function<LoadedEnvironment(const std::filesystem::path&)> load_environment;
-    /// The pixels of the files of bases that are still there, unturned.
-    std::vector<std::pair<std::weak_ptr<const cubemap::CubeMap>, relight::Backdrop>> sharp = {};
+    std::function<Environment(const std::filesystem::path&)> load_environment;
 
+    Gestures hand = Gestures(desk);
     OrbitCamera camera = {};
     LatLongView lat_long = {};
     SceneLook scene_look = {};
@@ -70,9 +62,6 @@ struct ViewState {
     bool message_is_error = false;
     double frame_seconds = 0.0;
 };
-
-/// Sets the base of the desk's editor, and remembers the pixels of its file.
-void set_base(ViewState& state, LoadedEnvironment environment, const std::filesystem::path& path);
 
 /// Returns what is seen behind the mesh now, for a Refiner. It does not change any more.
 [[nodiscard]] relight::Backdrop backdrop_of(const ViewState& state);

@@ -1,13 +1,12 @@
 #include "app/command_line/command_line.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <cstdlib>
+#include <cctype>
+#include <cstdint>
 #include <deque>
 #include <filesystem>
-#include <limits>
-#include <type_traits>
+#include <span>
+#include <stdexcept>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -21,11 +20,7 @@ namespace relumine::app {
 
 struct Option::Data {
     CLI::Option* option = nullptr;
-    OptionTable::Value value = OptionTable::Value::Text;
-    std::vector<std::string> choices = {};
-    std::string range = {};
-    /// Without what its checks say
-    std::string type = {};
+    OptionRow row = {};
 };
 
 struct Command::Data {
@@ -42,105 +37,6 @@ struct Command::Data {
 
 namespace {
 
-/// `long double`, so that a float is rounded once from the decimal number, as good as always.
-std::optional<long double> long_number(const std::string& text) {
-    char* end = nullptr;
-    const long double value = std::strtold(text.c_str(), &end);
-    if (text.empty() || end != text.c_str() + text.size())
-        return std::nullopt;
-    return value;
-}
-
-template<typename T>
-std::optional<T> whole_number(std::string_view text) {
-    T value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size())
-        return std::nullopt;
-    return value;
-}
-
-/// How the values of one type are read and shown. `check` returns what is wrong, or nothing.
-template<typename T>
-struct Value;
-
-template<>
-struct Value<std::string> {
-    static constexpr const char* TypeName = "TEXT";
-    static std::string check(const std::string& /*text*/) { return {}; }
-    static std::string read(const std::string& text) { return text; }
-    static std::string show(const std::string& value) { return value; }
-};
-
-template<typename T>
-requires std::is_unsigned_v<T>
-struct Value<T> {
-    static constexpr const char* TypeName = "UINT";
-    static std::string check(const std::string& text) {
-        return whole_number<T>(text) ? std::string()
-                                     : fmt::format("expected a whole number of 0 to {}, got '{}'",
-                                                   std::numeric_limits<T>::max(), text);
-    }
-    static T read(const std::string& text) { return whole_number<T>(text).value(); }
-    static std::string show(T value) { return fmt::format("{}", value); }
-};
-
-template<typename T>
-requires std::is_floating_point_v<T>
-struct Value<T> {
-    static constexpr const char* TypeName = "FLOAT";
-    static std::string check(const std::string& text) {
-        const std::optional<long double> number = long_number(text);
-        if (!number)
-            return fmt::format("expected a number, got '{}'", text);
-        if (!std::isfinite(static_cast<T>(*number)))
-            return fmt::format("expected a number within {}, got '{}'",
-                               std::numeric_limits<T>::max(), text);
-        return {};
-    }
-    static T read(const std::string& text) { return static_cast<T>(long_number(text).value()); }
-    static std::string show(T value) { return fmt::format("{}", value); }
-};
-
-template<typename T>
-struct Value<std::optional<T>> : Value<T> {
-    static std::string show(const std::optional<T>& value) {
-        return value ? Value<T>::show(*value) : std::string();
-    }
-};
-
-template<typename T>
-struct Value<std::vector<T>> : Value<T> {
-    static std::vector<T> read(const std::vector<std::string>& texts) {
-        std::vector<T> values;
-        values.reserve(texts.size());
-        for (const std::string& text : texts)
-            values.push_back(Value<T>::read(text));
-        return values;
-    }
-    static std::string show(const std::vector<T>& values) {
-        std::string text;
-        for (const T& value : values)
-            text += (text.empty() ? "" : ",") + Value<T>::show(value);
-        return text;
-    }
-};
-
-template<typename T>
-constexpr bool IsVector = false;
-template<typename T>
-constexpr bool IsVector<std::vector<T>> = true;
-
-std::string not_empty(const std::string& text) {
-    return text.empty() ? "expected a value, got ''" : "";
-}
-
-/// The CLI11 option that calls `read` with its texts; values are checked before.
-CLI::Option& add(CLI::App& app, const std::string& name, const std::string& description,
-                 CLI::callback_t read, std::function<std::string()> show = {}) {
-    return *app.add_option(name, std::move(read), description, false, std::move(show));
-}
-
 /// The command that the line named last: `convert` in `relumine env convert`.
 const CLI::App& last_command(const CLI::App& app) {
     const std::vector<CLI::App*> below = app.get_subcommands();
@@ -152,6 +48,19 @@ std::string full_name(const CLI::App& app) {
     return app.get_parent() == nullptr
                ? app.get_name()
                : fmt::format("{} {}", full_name(*app.get_parent()), app.get_name());
+}
+
+/// An option that may stand without its value takes the argument behind it for one.
+std::string hint(const OptionRow& row, const CLI::App& command, const std::string& text) {
+    const auto arguments =
+        command.get_options([](const CLI::Option* option) { return option->get_positional(); });
+    if (!row.bare || arguments.empty() || text.empty() || parse_number(text))
+        return {};
+    std::string name = arguments.front()->get_name(true);
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return fmt::format("; the {} goes first: {} {} {}", name, full_name(command), text,
+                       row.long_name());
 }
 
 std::vector<std::string> names_of_commands(const CLI::App& app) {
@@ -188,6 +97,33 @@ std::string pattern_of(const std::vector<std::string>& names) {
         stem.erase(end, stem.end());
     }
     return (first.parent_path() / fmt::format("{}*{}", stem, first.extension().string())).string();
+}
+
+/// The option of CLI11 with all that the row says. The row must stay where it is.
+CLI::Option* add_value(CLI::App& app, const OptionRow& row) {
+    const auto read = [&row, &app](const CLI::results_t& texts) {
+        try {
+            row.set(texts);
+        } catch (const OptionError& error) {
+            const std::string more = hint(row, app, texts.back());
+            if (more.empty())
+                throw;
+            throw OptionError(error.option, error.reason + more);
+        }
+        return true;
+    };
+    CLI::Option* option = app.add_option(row.name, read, row.help);
+    const std::string limits =
+        row.choices.empty() ? row.range() : fmt::format("{{{}}}", files::joined(row.choices, ","));
+    option->type_name(limits.empty() ? row.type : fmt::format("{}:{}", row.type, limits));
+    option->default_str(row.shown_default());
+    if (row.separator != 0)
+        option->delimiter(row.separator);
+    if (row.bare)
+        option->expected(0, 1);
+    else if (row.repeats)
+        option->expected(CLI::detail::expected_max_vector_size);
+    return option;
 }
 
 /// What is wrong with arguments that are more than the command takes. A pattern without quotes is
@@ -250,126 +186,42 @@ CommandTable Command::Data::table() const {
         const auto own = std::find_if(options.begin(), options.end(), [option](const auto& each) {
             return each->option == option;
         });
-        OptionTable row{.argument = option->get_positional() ? option->get_name(true) : "",
-                        .description = option->get_description(),
-                        .default_value = option->get_default_str(),
-                        .is_required = option->get_required(),
-                        .repeats = option->get_expected_max() > 1};
-        for (const std::string& name : option->get_snames())
-            row.names.push_back("-" + name);
-        for (const std::string& name : option->get_lnames())
-            row.names.push_back("--" + name);
         if (own != options.end()) {
-            row.value = (*own)->value;
-            row.choices = (*own)->choices;
-            row.range = (*own)->range;
+            table.options.push_back((*own)->row);
+            continue;
         }
-        if (row.value != OptionTable::Value::None) {
-            row.type = (*own)->type;
-            row.value_is_optional = option->get_expected_min() == 0;
-        }
-        table.options.push_back(std::move(row));
+        std::string names;
+        for (const std::string& name : option->get_snames())
+            names += "-" + name + ",";
+        for (const std::string& name : option->get_lnames())
+            names += "--" + name;
+        OptionRow made{{}, names, option->get_description()};
+        made.is_flag = true;
+        table.options.push_back(std::move(made));
     }
     for (const std::unique_ptr<Data>& command : commands)
         table.commands.push_back(command->table());
     return table;
 }
 
-UsageError::UsageError(const std::string& option, const std::string& message)
-    : std::runtime_error(fmt::format("{}: {}", option, message)) {}
-
 Option Option::required(bool is_required) {
+    data_->row.required = is_required;
     data_->option->required(is_required);
     return *this;
 }
 
-Option Option::show_default() {
-    data_->option->capture_default_str();
-    return *this;
-}
-
-Option Option::one_of(const std::vector<std::string>& choices) {
-    data_->option->check(CLI::Validator(
-        [choices](const std::string& text) {
-            return std::find(choices.begin(), choices.end(), text) != choices.end()
-                       ? std::string()
-                       : fmt::format("expected {}, got '{}'{}", one_of_text(choices), text,
-                                     files::did_you_mean(text, choices));
-        },
-        fmt::format("{{{}}}", files::joined(choices, ","))));
-    data_->value = OptionTable::Value::Choice;
-    data_->choices = choices;
-    return *this;
-}
-
-Option Option::between(double min, double max) {
-    data_->range = fmt::format("{} to {}", min, max);
-    data_->option->check(CLI::Validator(
-        [min, max](const std::string& text) {
-            const std::optional<double> value = parse_number(text);
-            return value && *value >= min && *value <= max
-                       ? std::string()
-                       : fmt::format("expected {} to {}, got '{}'", min, max, text);
-        },
-        data_->range));
-    return *this;
-}
-
-Option Option::type_name(const std::string& name) {
-    data_->type = name;
-    data_->option->type_name(name);
-    return *this;
-}
-
 Option Option::description(const std::string& text) {
+    data_->row.help = text;
     data_->option->description(text);
     return *this;
-}
-
-Option Option::file() {
-    data_->value = OptionTable::Value::File;
-    return type_name("FILE");
-}
-
-Option Option::folder() {
-    data_->value = OptionTable::Value::Folder;
-    return type_name("FOLDER");
-}
-
-Option Option::value_is_optional() {
-    data_->option->expected(0, 1);
-    return *this;
-}
-
-Option Option::separated_by(char delimiter) {
-    data_->option->delimiter(delimiter);
-    return *this;
-}
-
-Option Option::needs(const std::string& name) {
-    data_->option->needs(name);
-    return *this;
-}
-
-Option Option::excludes(const std::string& name) {
-    data_->option->excludes(name);
-    return *this;
-}
-
-std::vector<std::string> Command::given_options() const {
-    std::vector<std::string> names;
-    for (const auto& option : data_->options)
-        if (option->option->count() > 0)
-            names.push_back(option->option->get_name());
-    return names;
 }
 
 bool Option::is_given() const {
     return data_ != nullptr && data_->option->count() > 0;
 }
 
-std::string Option::name() const {
-    return data_->option->get_name();
+const OptionRow& Option::row() const {
+    return data_->row;
 }
 
 Command Command::add_command(const std::string& name, const std::string& description) {
@@ -380,85 +232,48 @@ Command Command::add_command(const std::string& name, const std::string& descrip
     return Command(*data_->commands.back());
 }
 
-template<typename T>
-Option Command::add_value(const std::string& name, T& value, const std::string& description) {
-    CLI::Option& option = add(
-        *data_->app, name, description,
-        [&value](const CLI::results_t& texts) {
-            if constexpr (IsVector<T>)
-                value = Value<T>::read(texts);
-            else
-                value = Value<T>::read(texts.back());
-            return true;
-        },
-        [&value] { return Value<T>::show(value); });
-    option.check(CLI::Validator(not_empty, ""));
-    option.check(CLI::Validator(Value<T>::check, ""));
-    if constexpr (IsVector<T>)
-        option.expected(CLI::detail::expected_max_vector_size);
-    data_->options.push_back(std::make_unique<Option::Data>(Option::Data{&option}));
-    return Option(*data_->options.back()).type_name(Value<T>::TypeName);
-}
-
-Option Command::add_option(const std::string& name, std::string& value,
-                           const std::string& description) {
-    return add_value(name, value, description);
-}
-
-Option Command::add_option(const std::string& name, std::uint32_t& value,
-                           const std::string& description) {
-    return add_value(name, value, description);
-}
-
-Option Command::add_option(const std::string& name, std::uint64_t& value,
-                           const std::string& description) {
-    return add_value(name, value, description);
-}
-
-Option Command::add_option(const std::string& name, float& value, const std::string& description) {
-    return add_value(name, value, description);
-}
-
-Option Command::add_option(const std::string& name, double& value, const std::string& description) {
-    return add_value(name, value, description);
-}
-
-Option Command::add_option(const std::string& name, std::optional<float>& value,
-                           const std::string& description) {
-    return add_value(name, value, description);
-}
-
-Option Command::add_option(const std::string& name, std::optional<double>& value,
-                           const std::string& description) {
-    return add_value(name, value, description);
-}
-
-Option Command::add_option(const std::string& name, std::vector<std::string>& values,
-                           const std::string& description) {
-    return add_value(name, values, description);
-}
-
-Option Command::add_option(const std::string& name, std::vector<std::uint64_t>& values,
-                           const std::string& description) {
-    return add_value(name, values, description);
-}
-
-Option Command::add_option(const std::string& name, std::function<void(const std::string&)> read,
-                           const std::string& description) {
-    CLI::Option& option =
-        add(*data_->app, name, description, [read = std::move(read)](const CLI::results_t& texts) {
-            read(texts.back());
-            return true;
-        });
-    data_->options.push_back(std::make_unique<Option::Data>(Option::Data{&option}));
+Option Command::add(OptionRow row) {
+    auto data = std::make_unique<Option::Data>();
+    data->row = std::move(row);
+    const OptionRow& own = data->row;
+    CLI::App& app = *data_->app;
+    if (own.is_flag) {
+        const auto read = [&own](std::int64_t count) {
+            own.set(count > 0 ? "true" : "false");
+        };
+        data->option = app.add_flag_function(own.name, read, own.help);
+    } else {
+        data->option = add_value(app, own);
+    }
+    data->option->required(own.required);
+    if (!own.needs.empty())
+        data->option->needs(own.needs);
+    if (!own.excludes.empty())
+        data->option->excludes(own.excludes);
+    data_->options.push_back(std::move(data));
     return Option(*data_->options.back());
 }
 
-Option Command::add_flag(const std::string& name, bool& value, const std::string& description) {
-    CLI::Option* option = data_->app->add_flag(name, value, description);
-    data_->options.push_back(
-        std::make_unique<Option::Data>(Option::Data{option, OptionTable::Value::None}));
-    return Option(*data_->options.back());
+std::vector<Option> Command::add_all(OptionTable table) {
+    std::vector<Option> options;
+    for (OptionRow& row : table)
+        options.push_back(add(std::move(row)));
+    return options;
+}
+
+std::vector<std::string> Command::given_options() const {
+    std::vector<std::string> names;
+    for (const auto& option : data_->options)
+        if (option->option->count() > 0)
+            names.push_back(option->row.long_name());
+    return names;
+}
+
+std::string Command::settings() const {
+    OptionTable table;
+    for (const auto& option : data_->options)
+        table.push_back(option->row);
+    return settings_of(table);
 }
 
 void Command::footer(const std::string& text) {
@@ -532,23 +347,6 @@ std::string CommandLine::help(const std::vector<std::string>& words) const {
 
 CommandTable CommandLine::table() const {
     return data_->table();
-}
-
-std::string one_of_text(const std::vector<std::string>& choices) {
-    if (choices.size() < 2)
-        return choices.empty() ? std::string() : choices.front();
-    return fmt::format("{} or {}",
-                       files::joined(std::span(choices).first(choices.size() - 1), ", "),
-                       choices.back());
-}
-
-std::optional<double> parse_number(const std::string& text) {
-    const std::optional<long double> number = long_number(text);
-    return number ? std::optional(static_cast<double>(*number)) : std::nullopt;
-}
-
-std::optional<std::uint32_t> parse_count(std::string_view text) {
-    return whole_number<std::uint32_t>(text);
 }
 
 } // namespace relumine::app

@@ -2,60 +2,35 @@
 // The parser behind it is CLI11, which only command_line.cpp sees: it takes seconds to compile.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
-#include <stdexcept>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
+
+#include "relumine/option_table.h"
 
 namespace relumine::app {
 
 struct CommandTable;
 
 /// Wrong usage, which the program answers with one line and exit code 2.
-class UsageError : public std::runtime_error {
-public:
-    using std::runtime_error::runtime_error;
-    /// "OPTION: message"
-    UsageError(const std::string& option, const std::string& message);
-};
+using UsageError = OptionError;
 
-/// A handle of one option of a command, valid as long as its CommandLine. Each setting returns the
-/// handle, so that settings can be chained.
+/// A handle of one option of a command, valid as long as its CommandLine.
 class Option {
 public:
     /// No option: was never given.
     Option() = default;
 
-    Option required(bool is_required = true);
-    /// Shows the variable's value of now in the help.
-    Option show_default();
-    /// Refuses all values but these.
-    Option one_of(const std::vector<std::string>& choices);
-    /// Refuses numbers outside and NaN.
-    Option between(double min, double max);
-    /// What the help calls the value: SIZE
-    Option type_name(const std::string& name);
+    Option required(bool is_required);
     Option description(const std::string& text);
-    /// The value names a file, or a folder: for the help and for completion.
-    Option file();
-    Option folder();
-    /// The option may stand without its value, which is then empty.
-    Option value_is_optional();
-    /// One argument may hold several values with this between them.
-    Option separated_by(char delimiter);
-    /// Refused unless the option of that name is given, too.
-    Option needs(const std::string& name);
-    /// Refused when the option of that name is given, too.
-    Option excludes(const std::string& name);
 
     /// Whether the line that was read has it.
     [[nodiscard]] bool is_given() const;
+    [[nodiscard]] const OptionRow& row() const;
     /// The long name where it has one: "--output"
-    [[nodiscard]] std::string name() const;
+    [[nodiscard]] std::string name() const { return row().long_name(); }
 
 private:
     friend class Command;
@@ -71,29 +46,11 @@ public:
     /// A command of its own below this one, which then asks for one of its commands.
     Command add_command(const std::string& name, const std::string& description);
 
-    /// An option "-o,--output" or an argument "MESH" that writes to a variable. It takes one value,
-    /// or any number of values where the variable is a vector. Empty values are refused: an unset
-    /// variable of a script must not read as 0 or as the current folder.
-    Option add_option(const std::string& name, std::string& value, const std::string& description);
-    Option add_option(const std::string& name, std::uint32_t& value,
-                      const std::string& description);
-    Option add_option(const std::string& name, std::uint64_t& value,
-                      const std::string& description);
-    Option add_option(const std::string& name, float& value, const std::string& description);
-    Option add_option(const std::string& name, double& value, const std::string& description);
-    Option add_option(const std::string& name, std::optional<float>& value,
-                      const std::string& description);
-    Option add_option(const std::string& name, std::optional<double>& value,
-                      const std::string& description);
-    Option add_option(const std::string& name, std::vector<std::string>& values,
-                      const std::string& description);
-    Option add_option(const std::string& name, std::vector<std::uint64_t>& values,
-                      const std::string& description);
-    /// An option with a value of its own kind: `read` throws UsageError for wrong text.
-    Option add_option(const std::string& name, std::function<void(const std::string&)> read,
-                      const std::string& description);
-    /// An option without a value.
-    Option add_flag(const std::string& name, bool& value, const std::string& description);
+    /// An option "-o,--output" or an argument "MESH". It takes one value, or any number of values
+    /// where it repeats. Empty values are refused: an unset variable of a script must not read as 0
+    /// or as the current folder.
+    Option add(OptionRow row);
+    std::vector<Option> add_all(OptionTable table);
 
     /// Text below the options in the help.
     void footer(const std::string& text);
@@ -102,6 +59,8 @@ public:
 
     /// The names of the options and arguments that the line that was read has: "--output", "MESH".
     [[nodiscard]] std::vector<std::string> given_options() const;
+    /// All options that shape frames, with their values, as one text.
+    [[nodiscard]] std::string settings() const;
 
     /// The command of that name below this one. Throws std::out_of_range where there is none.
     [[nodiscard]] Command command(const std::string& name) const;
@@ -110,8 +69,6 @@ private:
     friend class CommandLine;
     struct Data;
     explicit Command(Data& data) : data_(&data) {}
-    template<typename T>
-    Option add_value(const std::string& name, T& value, const std::string& description);
     Data* data_ = nullptr;
 };
 
@@ -146,14 +103,5 @@ public:
 private:
     std::unique_ptr<Command::Data> data_;
 };
-
-/// "fast, exact or slow"
-[[nodiscard]] std::string one_of_text(const std::vector<std::string>& choices);
-
-/// A number and nothing else, as options read it: "1.5", "-2e3". None for other text.
-[[nodiscard]] std::optional<double> parse_number(const std::string& text);
-
-/// Decimal digits and nothing else, not above 2^32 - 1. None for other text.
-[[nodiscard]] std::optional<std::uint32_t> parse_count(std::string_view text);
 
 } // namespace relumine::app

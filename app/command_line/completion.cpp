@@ -10,8 +10,6 @@ namespace relumine::app {
 
 namespace {
 
-using Value = OptionTable::Value;
-
 /// The text with every character of `special` behind a backslash.
 std::string escaped(std::string_view text, std::string_view special) {
     std::string result;
@@ -53,19 +51,10 @@ std::string function_name(const std::string& words) {
 // bash
 
 /// What bash offers for a value: an assignment to `kind` and `words`.
-std::string bash_value(const OptionTable& option) {
-    switch (option.value) {
-    case Value::Choice:
+std::string bash_value(const OptionRow& option) {
+    if (!option.choices.empty())
         return fmt::format("kind=words words={}", shell_quoted(files::joined(option.choices, " ")));
-    case Value::File:
-        return "kind=files";
-    case Value::Folder:
-        return "kind=folders";
-    case Value::None:
-    case Value::Text:
-        break;
-    }
-    return "kind=none";
+    return option.file ? "kind=files" : option.folder ? "kind=folders" : "kind=none";
 }
 
 /// The patterns of `case` that stand for commands below this one, "env convert".
@@ -82,13 +71,14 @@ void bash_branch(const CommandTable& command, const std::string& words, std::str
     std::vector<std::string> options;
     std::string values;
     std::string argument = "kind=none";
-    for (const OptionTable& option : command.options) {
-        options.insert(options.end(), option.names.begin(), option.names.end());
+    for (const OptionRow& option : command.options) {
+        const std::vector<std::string> names = option.names();
+        options.insert(options.end(), names.begin(), names.end());
         if (option.is_argument()) {
             if (argument == "kind=none")
                 argument = bash_value(option);
-        } else if (option.value != Value::None && !option.value_is_optional) {
-            values += fmt::format("        {}) {} ;;\n", files::joined(option.names, " | "),
+        } else if (!option.is_flag && !option.bare) {
+            values += fmt::format("        {}) {} ;;\n", files::joined(option.names(), " | "),
                                   bash_value(option));
         }
     }
@@ -106,22 +96,13 @@ void bash_branch(const CommandTable& command, const std::string& words, std::str
 // zsh
 
 /// What follows an option's name in a specification of `_arguments`: ":value:action".
-std::string zsh_value(const OptionTable& option) {
-    const std::string label =
-        escaped(option.is_argument() ? option.argument : option.type, "[]:\\");
-    switch (option.value) {
-    case Value::None:
+std::string zsh_value(const OptionRow& option) {
+    if (option.is_flag)
         return "";
-    case Value::Choice:
+    const std::string label = escaped(option.is_argument() ? option.name : option.type, "[]:\\");
+    if (!option.choices.empty())
         return fmt::format(":{}:({})", label, files::joined(option.choices, " "));
-    case Value::File:
-        return fmt::format(":{}:_files", label);
-    case Value::Folder:
-        return fmt::format(":{}:_files -/", label);
-    case Value::Text:
-        break;
-    }
-    return fmt::format(":{}: ", label);
+    return fmt::format(":{}:{}", label, option.file ? "_files" : option.folder ? "_files -/" : " ");
 }
 
 void zsh_function(const CommandTable& command, const std::string& words, std::string& script) {
@@ -130,28 +111,27 @@ void zsh_function(const CommandTable& command, const std::string& words, std::st
     script += fmt::format("{}() {{\n    local curcontext=\"$curcontext\" state line\n"
                           "    _arguments -C",
                           function_name(words));
-    for (const OptionTable& option : command.options) {
-        const std::string description = fmt::format("[{}]", escaped(option.description, "[]:\\"));
-        const std::string value =
-            fmt::format("{}{}", option.value_is_optional ? ":" : "", zsh_value(option));
+    for (const OptionRow& option : command.options) {
+        const std::string description = fmt::format("[{}]", escaped(option.help, "[]:\\"));
+        const std::string value = fmt::format("{}{}", option.bare ? ":" : "", zsh_value(option));
         // All names of one option exclude each other, unless it may be repeated.
         const std::string excluded =
-            option.repeats ? "*" : fmt::format("({})", files::joined(option.names, " "));
-        for (const std::string& name : option.names)
+            option.repeats ? "*" : fmt::format("({})", files::joined(option.names(), " "));
+        for (const std::string& name : option.names())
             script += fmt::format(
                 " \\\n        {}",
                 shell_quoted(fmt::format("{}{}{}{}", excluded, name, description, value)));
     }
     if (command.commands.empty()) {
         int position = 0;
-        for (const OptionTable& option : command.options)
+        for (const OptionRow& option : command.options)
             if (option.is_argument())
-                script += fmt::format(" \\\n        {}",
-                                      shell_quoted(option.repeats
-                                                       ? fmt::format("*{}", zsh_value(option))
-                                                       : fmt::format("{}{}{}", ++position,
-                                                                     option.is_required ? "" : ":",
-                                                                     zsh_value(option))));
+                script += fmt::format(
+                    " \\\n        {}",
+                    shell_quoted(option.repeats
+                                     ? fmt::format("*{}", zsh_value(option))
+                                     : fmt::format("{}{}{}", ++position, option.required ? "" : ":",
+                                                   zsh_value(option))));
         script += "\n}\n\n";
         return;
     }
@@ -174,20 +154,14 @@ std::string fish_quoted(std::string_view text) {
     return fmt::format("'{}'", escaped(text, "'\\"));
 }
 
-std::string fish_value(const OptionTable& option) {
-    switch (option.value) {
-    case Value::None:
+std::string fish_value(const OptionRow& option) {
+    if (option.is_flag)
         return "";
-    case Value::Choice:
+    if (!option.choices.empty())
         return fmt::format(" -xa {}", fish_quoted(files::joined(option.choices, " ")));
-    case Value::File:
-        return option.value_is_optional ? " -F" : " -rF";
-    case Value::Folder:
+    if (option.folder)
         return " -xa '(__fish_complete_directories)'";
-    case Value::Text:
-        break;
-    }
-    return option.value_is_optional ? "" : " -x";
+    return option.file ? (option.bare ? " -F" : " -rF") : (option.bare ? "" : " -x");
 }
 
 /// Lines that hold where the command's words have been typed.
@@ -211,16 +185,16 @@ void fish_lines(const CommandTable& command, const std::string& program, const s
     for (const CommandTable& below : command.commands)
         script +=
             fmt::format("{} -a {} -d {}\n", prefix, below.name, fish_quoted(below.description));
-    for (const OptionTable& option : command.options) {
+    for (const OptionRow& option : command.options) {
         if (option.is_argument()) {
             script += prefix + fish_value(option) + '\n';
             continue;
         }
         script += prefix;
-        for (const std::string& name : option.names)
+        for (const std::string& name : option.names())
             script += name.starts_with("--") ? fmt::format(" -l {}", name.substr(2))
                                              : fmt::format(" -s {}", name.substr(1));
-        script += fmt::format("{} -d {}\n", fish_value(option), fish_quoted(option.description));
+        script += fmt::format("{} -d {}\n", fish_value(option), fish_quoted(option.help));
     }
     for (const CommandTable& below : command.commands)
         fish_lines(below, program, words.empty() ? below.name : words + " " + below.name, script);

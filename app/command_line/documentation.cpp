@@ -52,10 +52,9 @@ void add_completion(CommandLine& program) {
     Command command = program.root().add_command(
         "completion", "print a shell script that completes commands, options and file names");
     auto options = std::make_shared<CompletionOptions>();
-    command.add_option("SHELL", options->shell, "the shell to make it for")
-        .one_of({"bash", "zsh", "fish"})
-        .required();
-    command.add_option("-o,--output", options->output, "write it to a file instead").file();
+    command.add(row("SHELL", options->shell, "the shell to make it for",
+                    {.required = true, .choices = {"bash", "zsh", "fish"}}));
+    command.add(row("-o,--output", options->output, "write it to a file instead", {.file = true}));
     command.footer("\n\nFor this bash: source <(relumine completion bash)\n"
                    "For every fish: relumine completion fish -o "
                    "~/.config/fish/completions/relumine.fish\n"
@@ -77,11 +76,9 @@ void add_man(CommandLine& program) {
     std::vector<std::string> names;
     for (const ManPage& page : man_pages(program.table(), ""))
         names.push_back(short_name(page, program.table().name));
-    command.add_option("PAGE", options->page, "a command, or relumine")
-        .one_of(names)
-        .show_default();
-    command.add_option("-o,--output", options->folder, "write all pages to a folder instead")
-        .folder();
+    command.add(row("PAGE", options->page, "a command, or relumine", {.choices = names}));
+    command.add(row("-o,--output", options->folder, "write all pages to a folder instead",
+                    {.folder = true}));
     command.on_run([options, &program] {
         const CommandTable table = program.table();
         const std::vector<ManPage> pages = man_pages(table, RELUMINE_VERSION);
@@ -98,7 +95,7 @@ void add_man(CommandLine& program) {
 void add_help(CommandLine& program) {
     Command command = program.root().add_command("help", "print the options of a command");
     auto words = std::make_shared<std::vector<std::string>>();
-    command.add_option("COMMAND", *words, "a command; none: the program's own help");
+    command.add(row("COMMAND", *words, "a command; none: the program's own help"));
     command.on_run([words, &program] { std::fputs(program.help(*words).c_str(), stdout); });
 }
 

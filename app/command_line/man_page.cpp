@@ -60,42 +60,42 @@ std::string synopsis(const CommandTable& command, const std::string& words) {
     if (!command.commands.empty())
         return result + " " + italic("COMMAND") + "\n";
     result += " [" + italic("OPTION") + "]...";
-    for (const OptionTable& option : command.options)
+    for (const OptionRow& option : command.options)
         if (option.is_argument()) {
-            const std::string name = italic(option.argument) + (option.repeats ? "..." : "");
-            result += option.is_required ? " " + name : " [" + name + "]";
+            const std::string name = italic(option.name) + (option.repeats ? "..." : "");
+            result += option.required ? " " + name : " [" + name + "]";
         }
     return result + "\n";
 }
 
 /// A paragraph with the option's names and value as its tag.
-std::string paragraph(const OptionTable& option) {
+std::string paragraph(const OptionRow& option) {
     std::string tag;
     if (option.is_argument()) {
-        tag = italic(option.argument);
+        tag = italic(option.name);
     } else {
-        for (const std::string& name : option.names)
+        for (const std::string& name : option.names())
             tag += (tag.empty() ? "" : ", ") + bold(name);
-        if (option.value != OptionTable::Value::None) {
+        if (!option.is_flag) {
             const std::string value = italic(option.type);
             tag += " " + value;
         }
     }
-    std::string text = sentence(option.description);
+    std::string text = sentence(option.help);
     if (!option.choices.empty())
         text += fmt::format(" One of: {}.", files::joined(option.choices, ", "));
-    if (!option.range.empty())
-        text += fmt::format(" From {}.", option.range);
-    if (!option.default_value.empty() && option.value != OptionTable::Value::None)
-        text += fmt::format(" Default: {}.", option.default_value);
-    if (option.is_required && !option.is_argument())
+    if (!option.range().empty())
+        text += fmt::format(" From {}.", option.range());
+    if (!option.shown_default().empty())
+        text += fmt::format(" Default: {}.", option.shown_default());
+    if (option.required && !option.is_argument())
         text += " Required.";
     return fmt::format(".TP\n{}\n{}\n", tag, literal(text));
 }
 
 std::string paragraphs(const std::string& title, const CommandTable& command, bool arguments) {
     std::string result;
-    for (const OptionTable& option : command.options)
+    for (const OptionRow& option : command.options)
         if (option.is_argument() == arguments)
             result += paragraph(option);
     return result.empty() ? result : fmt::format(".SH {}\n{}", title, result);

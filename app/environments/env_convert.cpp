@@ -10,7 +10,6 @@
 #include "app/environments/split_sun.h"
 #include "app/options/environment_options.h"
 #include "app/options/output_options.h"
-#include "app/options/size_text.h"
 #include "cubemap/doctor/statistics.h"
 #include "cubemap/image/convention.h"
 #include "cubemap/image/image_layout.h"
@@ -24,26 +23,29 @@ struct ConvertArguments {
     EnvironmentOptions input;
     std::string output;
     /// Empty: what `to` usually reads
-    std::string to_layout;
+    std::optional<cubemap::Layout> to_layout;
     std::string to = "openexr";
-    /// W or WxH
-    std::string size;
+    std::optional<cubemap::ImageSize> size;
     std::uint32_t face_resolution = 0;
     std::string samples = "auto";
     bool split_sun = false;
 };
 
-/// --size: W, or WxH.
-std::optional<cubemap::ImageSize> parse_size(const std::string& text) {
-    if (text.empty())
-        return std::nullopt;
-    if (const auto size = parse_size_text(text))
-        return cubemap::ImageSize{size->width, size->height};
-    const auto width = parse_count(text);
-    if (!width)
-        throw UsageError("--size", fmt::format("expected W or WxH, got '{}'", text));
-    return cubemap::ImageSize{*width, 0};
-}
+/// W, or WxH
+struct ImageSizeText {
+    static constexpr const char* Type = "TEXT";
+    static cubemap::ImageSize read(const std::string& text) {
+        if (const auto sides = parse_sides(text))
+            return {sides->first, sides->second};
+        const auto width = parse_count(text);
+        if (!width)
+            refuse_text("W or WxH", text);
+        return {*width, 0};
+    }
+    static std::string show(const cubemap::ImageSize& size) {
+        return fmt::format("{}x{}", size.width, size.height);
+    }
+};
 
 /// Throws what a layout cannot be.
 cubemap::ImageSize checked(const cubemap::ImageSize& size, cubemap::Layout layout) {
@@ -59,7 +61,7 @@ cubemap::ImageSize checked(const cubemap::ImageSize& size, cubemap::Layout layou
 
 cubemap::ImageSize target_size(const ConvertArguments& options,
                                const cubemap::EnvironmentImage& image, cubemap::Layout layout) {
-    const auto size = parse_size(options.size);
+    const std::optional<cubemap::ImageSize>& size = options.size;
     if (size && options.face_resolution != 0)
         throw UsageError("--size", "expected either --size or --face-resolution");
     if (size) {
@@ -92,8 +94,7 @@ cubemap::Layout target_layout(const ConvertArguments& options,
     cubemap::Layout layout = to.has_attribute ? image.layout : to.usual_layout;
     if (six_files)
         layout = cubemap::Layout::Cube;
-    if (!options.to_layout.empty())
-        layout = parse_layout(options.to_layout);
+    layout = options.to_layout.value_or(layout);
     if (!to.reads(layout))
         throw UsageError("--to-layout",
                          fmt::format("expected {} with --to {}, got {}", layouts_of(to), to.name,
@@ -118,7 +119,6 @@ Report described(const cubemap::Convention& convention, const cubemap::Environme
 /// sun stays.
 std::unique_ptr<SunFile> checked_outputs(const ConvertArguments& options) {
     require_environment_name("--output", options.output);
-    static_cast<void>(parse_size(options.size));
     std::vector<std::string> inputs;
     for (const auto& path : cubemap::environment_files(options.input.path))
         inputs.push_back(path.string());
@@ -143,14 +143,12 @@ void run(const ConvertArguments& options, Session& session) {
 
     const cubemap::Layout layout = target_layout(options, image, to);
     const cubemap::ImageSize size = target_size(options, image, layout);
-    cubemap::Sampling sampling = to.has_attribute
-                                     ? cubemap::default_sampling(options.output, layout)
-                                     : cubemap::Sampling::TexelCentres;
-    if (options.samples == "centres")
-        sampling = cubemap::Sampling::TexelCentres;
+    const cubemap::Sampling sampling = to.has_attribute && options.samples != "centres"
+                                           ? cubemap::default_sampling(options.output, layout)
+                                           : cubemap::Sampling::TexelCentres;
     Report result = {{"input", described(from, image, cubemap::statistics(image))}};
     watch.lap();
-    const glm::dmat3 world_from_image = options.input.world_from_image(image.layout);
+    const glm::dmat3 world_from_image = relumine::world_from_image(image.layout, options.input);
     SunFile::Split sun;
     if (sun_file)
         sun = sun_file->split(image, world_from_image, options.input.path);
@@ -170,11 +168,11 @@ void run(const ConvertArguments& options, Session& session) {
 
     session.say(fmt::format("{}: {} {} x {}, as {} reads it", options.output, cubemap::name(layout),
                             size.width, size.height, to.name));
-    if (sun_file)
+    if (sun_file) {
         session.say(fmt::format("{}: the sun, {:.2g} % of the light", sun_file->path(),
                                 100.0 * sun.share_of_power));
-    if (sun_file)
         result.set("sun", sun.report);
+    }
     result.set("output", described(to, converted, statistics));
     result.set("assumptions", image.assumptions);
     result.set("seconds_load", seconds_load);
@@ -186,48 +184,36 @@ void run(const ConvertArguments& options, Session& session) {
 void add_convert(Command& group, Session& session) {
     Command command = group.add_command("convert", "from one layout and program to another");
     auto options = std::make_shared<ConvertArguments>();
-    std::vector<std::string> names;
     std::string list =
         "\n\nCONVENTIONS (u to the right, v down, both in [0, 1]; docs/environments.md)\n";
-    for (const cubemap::Convention& convention : cubemap::conventions()) {
-        names.emplace_back(convention.name);
+    for (const cubemap::Convention& convention : cubemap::conventions())
         list += fmt::format("  {:8} {}\n", convention.name, convention.mathematics);
-    }
     command.footer(list);
-    command
-        .add_option("IN", options->input.path,
-                    "environment: .exr or .hdr; {face} in the name for px nx py ny pz nz")
-        .file()
-        .required();
-    command
-        .add_option("-o,--output", options->output, "what to write: .exr or .hdr; {face} as in IN")
-        .file()
-        .required();
-    options->input.add_reading_to(command);
-    command
-        .add_option("--to-layout", options->to_layout,
-                    "layout of OUT (IN's; with --to, what that program reads)")
-        .one_of(layout_names());
-    command.add_option("--to", options->to, "whose convention OUT follows")
-        .one_of(names)
-        .show_default();
-    command.add_option(
+    command.add(row("IN", options->input.path,
+                    "environment: .exr or .hdr; {face} in the name for px nx py ny pz nz",
+                    {.file = true, .required = true}));
+    command.add(row("-o,--output", options->output, "what to write: .exr or .hdr; {face} as in IN",
+                    {.file = true, .required = true}));
+    OptionTable reading = options_of(options->input);
+    reading.pop_back(); // --face-resolution, which is OUT's here
+    command.add_all(std::move(reading));
+    command.add(row<LayoutText>("--to-layout", options->to_layout,
+                                "layout of OUT (IN's; with --to, what that program reads)"));
+    command.add(row<ConventionText>("--to", options->to, "whose convention OUT follows"));
+    command.add(row<ImageSizeText>(
         "--size", options->size,
         "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face, from discs 512, to "
-        "octahedral 640; cube to cube as it is)");
-    command
-        .add_option("--face-resolution", options->face_resolution,
-                    "the same as a cube face: a lat-long gets 4R x 2R pixels")
-        .between(0, 16384);
-    command
-        .add_option("--samples", options->samples,
+        "octahedral 640; cube to cube as it is)"));
+    command.add(row("--face-resolution", options->face_resolution,
+                    "the same as a cube face: a lat-long gets 4R x 2R pixels",
+                    {.min = 0, .max = 16384, .shows_default = false}));
+    command.add(row("--samples", options->samples,
                     "centres: at texel centres and without the envmap attribute, even in OpenEXR's "
-                    "lat-long and cube")
-        .one_of({"auto", "centres"})
-        .show_default();
-    command.add_flag("--split-sun", options->split_sun,
-                     "OUT without its sun; OUT.sun.json (.exr or .hdr replaced) has the sun as a "
-                     "light, in world axes");
+                    "lat-long and cube",
+                    {.choices = {"auto", "centres"}}));
+    command.add(row("--split-sun", options->split_sun,
+                    "OUT without its sun; OUT.sun.json (.exr or .hdr replaced) has the sun as a "
+                    "light, in world axes"));
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

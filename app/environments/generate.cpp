@@ -104,27 +104,19 @@ void add_generate(Command& program, Session& session) {
     for (const data_gen::Sequence& sequence : data_gen::sequences())
         list += fmt::format("  {:12} {}\n", sequence.name, sequence.description);
     command.footer(list);
-    command.add_option("NAME", options->name, "what to make, see below")
-        .required()
-        .one_of(names)
-        .type_name("NAME");
+    command.add(row("NAME", options->name, "what to make, see below",
+                    {.required = true, .type = "NAME", .choices = names}));
     options->sequence.add_to(command);
-    command
-        .add_option("-o,--output", options->folder, "folder to write to; made where it is missing")
-        .folder()
-        .required();
-    command
-        .add_option("--vertices", options->num_vertices,
-                    "vertices of a scene, met within a few per cent")
-        .between(data_gen::MinSceneVertices, data_gen::MaxSceneVertices)
-        .show_default();
-    const Option resolution = command
-                                  .add_option("--face-resolution", options->face_resolution,
+    command.add(row("-o,--output", options->folder, "folder to write to; made where it is missing",
+                    {.folder = true, .required = true}));
+    command.add(row("--vertices", options->num_vertices,
+                    "vertices of a scene, met within a few per cent",
+                    {.min = data_gen::MinSceneVertices, .max = data_gen::MaxSceneVertices}));
+    const Option resolution = command.add(row("--face-resolution", options->face_resolution,
                                               "R of an environment: cube 6 x R x R, lat-long "
                                               "4R x 2R; of a sequence 128 when it is not "
-                                              "given, of `turn` that of its --env")
-                                  .between(1, 16384)
-                                  .show_default();
+                                              "given, of `turn` that of its --env",
+                                              {.min = 1, .max = 16384}));
     session.add_common_options(command);
     command.on_run(
         [options, resolution, &session] { run(*options, resolution.is_given(), session); });

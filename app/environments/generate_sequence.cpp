@@ -50,16 +50,14 @@ data_gen::SequenceOptions sequence_options(const GenerateSequenceOptions& option
 } // namespace
 
 void GenerateSequenceOptions::add_to(Command& command) {
-    command.add_option("KIND", kind, "after `sequence`: which one, see below").type_name("KIND");
-    command.add_option("--num-frames", num_frames, "frames of a sequence")
-        .between(1, 1000000)
-        .show_default();
-    command.add_option("--env", environment, "the environment that `sequence turn` turns").file();
-    command
-        .add_option("--layout", layout,
-                    "of a sequence's frames: cross (texels as they are), cube or latlong")
-        .one_of({"cross", "cube", "latlong"})
-        .show_default();
+    command.add(row("KIND", kind, "after `sequence`: which one, see below", {.type = "KIND"}));
+    command.add(
+        row("--num-frames", num_frames, "frames of a sequence", {.min = 1, .max = 1000000}));
+    command.add(
+        row("--env", environment, "the environment that `sequence turn` turns", {.file = true}));
+    command.add(row("--layout", layout,
+                    "of a sequence's frames: cross (texels as they are), cube or latlong",
+                    {.choices = {"cross", "cube", "latlong"}}));
 }
 
 void generate_sequence(const GenerateSequenceOptions& options, const std::string& folder,
@@ -70,7 +68,7 @@ void generate_sequence(const GenerateSequenceOptions& options, const std::string
     const std::string name =
         (std::filesystem::path(folder) / fmt::format("{}.%04d.exr", sequence.name)).string();
     const std::optional<cubemap::FramePattern> pattern = cubemap::FramePattern::parse(name);
-    const cubemap::Layout layout = parse_layout(options.layout);
+    const cubemap::Layout layout = LayoutText::read(options.layout);
     files::make_folder(folder);
     const auto progress = session.progress("frames");
     std::uint32_t resolution = 0;

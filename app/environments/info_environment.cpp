@@ -174,10 +174,8 @@ void describe_environment(const EnvironmentInfoOptions& options, const Session& 
         require_extension("--picture", options.picture, {".png"});
         check_output(options.picture, {options.path});
     }
-    cubemap::LoadOptions load_options{.fix_bad_pixels = true};
-    if (!options.layout.empty())
-        load_options.layout = parse_layout(options.layout);
-    const cubemap::EnvironmentImage image = cubemap::load_environment(options.path, load_options);
+    const cubemap::EnvironmentImage image =
+        cubemap::load_environment(options.path, {.layout = options.layout, .fix_bad_pixels = true});
     session.poll();
     Findings found{.statistics = cubemap::statistics(image),
                    .search = cubemap::find_sun(image),

@@ -1,16 +1,18 @@
 // `relumine info ENV`: the environment's doctor.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/session.h"
+#include "cubemap/image/environment.h"
 
 namespace relumine::app {
 
 struct EnvironmentInfoOptions {
     std::string path;
     /// Layout of the image. Empty: taken from the file.
-    std::string layout;
+    std::optional<cubemap::Layout> layout;
     /// The .png to draw. Empty: none.
     std::string picture;
 };

@@ -87,7 +87,7 @@ void check_outputs(const LightsArguments& options) {
 /// resolution, by way of a cube map.
 cubemap::EnvironmentImage load_lat_long(const EnvironmentOptions& options, Session& session) {
     cubemap::EnvironmentImage image = load_image(options, session);
-    const bool is_turned = options.world_from_image(image.layout) != glm::dmat3(1.0);
+    const bool is_turned = world_from_image(image.layout, options) != glm::dmat3(1.0);
     if (image.layout == cubemap::Layout::LatLong && options.face_resolution == 0 && !is_turned) {
         warn_about(options, image, cubemap::statistics(image).light_from_below, session);
         return image;
@@ -114,7 +114,7 @@ struct Lit {
         std::vector<std::uint32_t> all(receivers.size());
         std::iota(all.begin(), all.end(), 0u);
         const std::vector<glm::vec3> under_lights =
-            relight::radiance_under(list, receivers.normals, scene.shadow_rays());
+            relight::radiance_under(list, receivers.normals, scene.relighter().shadow_rays());
         const std::span<const glm::vec3> environment = scene.radiance();
         return relight::compare(all,
                                 std::vector<glm::dvec3>(environment.begin(), environment.end()),
@@ -257,43 +257,33 @@ void run(const LightsArguments& options, Session& session) {
 
 /// -o, --picture and -n.
 void add_output_options(Command& command, LightsArguments& options) {
-    command
-        .add_option(
-            "-o,--output", options.path,
-            "light list: .json .csv .pbrt (pbrt-v4) .xml (Mitsuba 3) .usda .py (Blender) .gltf")
-        .file();
-    command
-        .add_option("--picture", options.picture,
-                    "the environment with regions and lights drawn: .png or .exr")
-        .file();
-    command.add_option("-n,--number", options.number, "how many lights")
-        .between(1, 1e9)
-        .show_default();
+    command.add(
+        row("-o,--output", options.path,
+            "light list: .json .csv .pbrt (pbrt-v4) .xml (Mitsuba 3) .usda .py (Blender) .gltf",
+            {.file = true}));
+    command.add(row("--picture", options.picture,
+                    "the environment with regions and lights drawn: .png or .exr", {.file = true}));
+    command.add(row("-n,--number", options.number, "how many lights", {.min = 1, .max = 1e9}));
 }
 
 /// --scene, --method and --seed.
 void add_method_options(Command& command, LightsArguments& options) {
-    command
-        .add_option(
-            "--scene", options.scene,
-            "scene file: says how well the lights light it; --method transfer chooses for it")
-        .file();
+    command.add(
+        row("--scene", options.scene,
+            "scene file: says how well the lights light it; --method transfer chooses for it",
+            {.file = true}));
     std::vector<std::string> methods;
     methods.reserve(lights::AllMethods.size());
     for (const lights::Method method : lights::AllMethods)
         methods.emplace_back(lights::name(method));
     methods.emplace_back(TransferMethod);
-    command
-        .add_option(
-            "--method", options.method,
+    command.add(
+        row("--method", options.method,
             "median-cut: regions of equal energy (Debevec); variance: regions whose energy lies "
             "close together (Viriyothai and Debevec); importance: random directions, stratified; "
-            "transfer: those that light --scene most like the environment")
-        .one_of(methods)
-        .show_default();
-    command.add_option("--seed", options.seed, "of importance sampling")
-        .between(0, 0x1p53)
-        .show_default();
+            "transfer: those that light --scene most like the environment",
+            {.choices = methods}));
+    command.add(row("--seed", options.seed, "of importance sampling", {.min = 0, .max = 0x1p53}));
 }
 
 /// --format and the details of formats.
@@ -302,20 +292,17 @@ void add_format_options(Command& command, LightsArguments& options) {
     formats.reserve(lights::AllLightFormats.size());
     for (const lights::LightFormat format : lights::AllLightFormats)
         formats.emplace_back(lights::name(format));
-    command
-        .add_option("--format", options.format, "format of the light list, whatever its extension")
-        .one_of(formats);
-    command.add_flag(
-        "--soft", options.export_options.soft,
-        "lights as wide as the part of the sphere they stand for (USD, Blender; JSON and "
-        "CSV have the solid angle)");
-    command
-        .add_option("--lumens-per-watt", options.export_options.lumens_per_watt,
+    command.add(row("--format", options.format, "format of the light list, whatever its extension",
+                    {.choices = formats}));
+    command.add(
+        row("--soft", options.export_options.soft,
+            "lights as wide as the part of the sphere they stand for (USD, Blender; JSON and "
+            "CSV have the solid angle)"));
+    command.add(row("--lumens-per-watt", options.export_options.lumens_per_watt,
                     "glTF: intensity in lux is irradiance times this; 1 keeps the environment's "
                     "unit, 683 is "
-                    "photometric")
-        .between(1e-6, 1e6)
-        .show_default();
+                    "photometric",
+                    {.min = 1e-6, .max = 1e6}));
 }
 
 } // namespace

@@ -26,13 +26,11 @@ struct MeshFiles {
     std::optional<float> crease;
 
     void add_to(Command& command) {
-        command.add_option("MESH", input, "mesh: .obj, .gltf, .glb, .ply, .off or .stl")
-            .file()
-            .required();
-        command.add_option("-o,--output", output, "the mesh file to write, .ply, .glb or .obj")
-            .file()
-            .required();
-        add_crease_option(command, crease);
+        command.add(row("MESH", input, "mesh: .obj, .gltf, .glb, .ply, .off or .stl",
+                        {.file = true, .required = true}));
+        command.add(row("-o,--output", output, "the mesh file to write, .ply, .glb or .obj",
+                        {.file = true, .required = true}));
+        command.add(crease_row(crease));
     }
 
     void check() const {
@@ -103,12 +101,10 @@ void add_repair(Command& group, Session& session) {
         group.add_command("repair", "wind a mesh outwards, drop triangles that are void or double");
     auto work = std::make_shared<RepairCommand>();
     work->files.add_to(command);
-    command.add_flag("--weld", work->options.weld, "vertices at one place become one");
-    command
-        .add_option("--fill-holes", work->options.fill_holes,
-                    "close holes whose rims have at most so many edges")
-        .between(3, mesh::LongestRim)
-        .type_name("N");
+    command.add(row("--weld", work->options.weld, "vertices at one place become one"));
+    command.add(row("--fill-holes", work->options.fill_holes,
+                    "close holes whose rims have at most so many edges",
+                    {.min = 3, .max = mesh::LongestRim, .type = "N", .shows_default = false}));
     session.add_common_options(command);
     command.on_run([work, &session] { work->run(session); });
 }
@@ -154,10 +150,8 @@ void add_simplify(Command& group, Session& session) {
     Command command = group.add_command("simplify", "fewer vertices: those that shape the mesh");
     auto work = std::make_shared<SimplifyCommand>();
     work->files.add_to(command);
-    command.add_option("--vertices", work->num_vertices, "how many stay")
-        .between(4, 4294967294.0)
-        .type_name("N")
-        .required();
+    command.add(row("--vertices", work->num_vertices, "how many stay",
+                    {.required = true, .min = 4, .max = 4294967294.0, .type = "N"}));
     session.add_common_options(command);
     command.on_run([work, &session] { work->run(session); });
 }
@@ -179,15 +173,6 @@ Mesh simplified_to(Mesh mesh, std::uint32_t num_vertices, const Session& session
     session.add_to_report("simplified",
                           Report({{"vertices_before", num_before}, {"vertices", num_after}}));
     return result;
-}
-
-void add_crease_option(Command& command, std::optional<float>& degrees) {
-    command
-        .add_option("--crease", degrees,
-                    "normals from the faces: smooth over edges up to so many degrees, broken "
-                    "beyond")
-        .between(0.0, 180.0)
-        .type_name("DEGREES");
 }
 
 void add_mesh(Command& program, Session& session) {

@@ -13,9 +13,9 @@
 
 #include "app/commands.h"
 #include "app/movies/animate_options.h"
-#include "app/movies/frame_light.h"
 #include "app/movies/frame_record.h"
 #include "app/movies/movie.h"
+#include "app/options/lit_scene.h"
 #include "cubemap/doctor/upside_down.h"
 #include "cubemap/image/frame_sequence.h"
 #include "cubemap/image/read_ahead.h"
@@ -56,10 +56,10 @@ public:
     Animation(const AnimateOptions& options, const cubemap::FrameSequence& sequence,
               Session& session)
         : options_(options), sequence_(sequence), session_(session),
-          pattern_(options.output_pattern()), light_(options.scene, session.team),
-          binner_(scene().transfer, light_.sharp_tolerance()),
-          writer_(light_.lit(), options.output.for_scene(scene())) {
-        light_.set_bounces(options.bounces, options.output.for_scene(scene()), options.scene.path);
+          pattern_(options.output_pattern()), lit_(lit_scene(options.scene, session.team)),
+          binner_(relight::binner_of(lit_.relighter())),
+          writer_(lit_, options.output.for_scene(scene())) {
+        static_cast<void>(options.bounces.applies_to(scene(), options.scene.path));
     }
 
     void run() {
@@ -72,7 +72,7 @@ public:
             cluster_frames();
         meter_frames();
         std::optional<relight::NpyFrames> vertices;
-        if (!options_.vertices.empty() && light_.is_first())
+        if (!options_.vertices.empty() && session_.is_first())
             vertices.emplace(options_.vertices, sequence_.size(), scene().receivers.num_own());
         const auto progress = session_.progress("frames");
         cubemap::ReadAhead<PreparedFrame> ahead(
@@ -82,17 +82,16 @@ public:
             Stopwatch watch;
             PreparedFrame frame = ahead.get(i);
             totals_.seconds_wait += watch.lap();
-            const relight::Backdrop sharp = std::move(frame.sharp);
-            const cubemap::CubeMap background = light(std::move(frame));
-            light_.bounce();
+            count(frame, light(frame, options_.bound));
+            bounce();
             const double seconds_relight = watch.lap();
             totals_.seconds_relight += seconds_relight;
             seconds_relight_frames_.push_back(seconds_relight);
-            Lighting lighting = light_.lighting(is_drawn(todo_[i]));
+            Lighting lighting = lit_.lighting(is_drawn(todo_[i]));
             if (vertices)
                 vertices->append(writer_.values(lighting.radiance));
-            if (light_.is_first())
-                write(todo_[i], std::move(lighting), background, sharp);
+            if (session_.is_first())
+                write(todo_[i], std::move(lighting), frame);
             totals_.seconds_write += watch.lap();
             ++totals_.num_lit;
             if (!options_.output.path.empty())
@@ -103,7 +102,7 @@ public:
         session_.end_progress();
         if (vertices)
             vertices->commit();
-        if (!light_.is_first())
+        if (!session_.is_first())
             return;
         if (!options_.reference.empty())
             measure();
@@ -131,14 +130,14 @@ private:
         return paths;
     }
 
-    [[nodiscard]] const Scene& scene() const { return light_.lit().scene(); }
+    [[nodiscard]] const Scene& scene() const { return lit_.scene(); }
 
     /// Whether the frame is to be a picture.
     [[nodiscard]] bool is_drawn(std::size_t frame) const { return pattern_ && !is_there_[frame]; }
 
     /// Those that are not there yet; all of them where one file holds all.
     void choose_frames() {
-        if (pattern_ && light_.is_first())
+        if (pattern_ && session_.is_first())
             record_.emplace(fmt::format("{}.done", pattern_->name_of_all("all")),
                             options_.settings(sequence_), options_.resume);
         for (std::size_t frame = 0; frame < sequence_.size(); ++frame) {
@@ -147,7 +146,7 @@ private:
                                             output_path(frame));
             is_there_.push_back(is_there);
         }
-        is_there_ = light_.agreed(std::move(is_there_));
+        is_there_ = agreed(std::move(is_there_));
         for (std::size_t frame = 0; frame < sequence_.size(); ++frame) {
             const bool is_there = is_there_[frame];
             num_kept_ += static_cast<std::size_t>(is_there);
@@ -168,7 +167,7 @@ private:
             record_ ? record_->exposure_ev() : std::optional<double>();
         if (before)
             writer_.set_exposure_ev(*before);
-        if (light_.agreed({before.has_value()})[0])
+        if (agreed({before.has_value()})[0])
             return;
         constexpr std::size_t MostFrames = 9;
         const std::size_t last = sequence_.size() - 1;
@@ -176,26 +175,23 @@ private:
         for (std::size_t i = 0; i <= num_gaps; ++i) {
             session_.poll();
             PreparedFrame frame = prepare(num_gaps == 0 ? 0 : i * last / num_gaps);
-            if (options_.method == "prt")
-                light_.set_frame(std::move(frame.binned));
-            else
-                light_.set_lights(frame.lights);
-            light_.bounce();
-            const Lighting lighting = light_.lighting(true);
-            if (!light_.is_first())
+            static_cast<void>(light(frame, 0.0));
+            bounce();
+            const Lighting lighting = lit_.lighting();
+            if (!session_.is_first())
                 continue;
             writer_.meter(lighting);
             if (i == num_gaps)
                 record_->set_exposure_ev(writer_.choose_exposure_ev(lighting));
         }
         // The frames' differences must not depend on the exposure.
-        light_.restart();
+        lit_.light({});
     }
 
     /// A frame's image as it lights the scene: turned and of the resolution that was asked for.
     [[nodiscard]] cubemap::EnvironmentImage image_of(std::size_t frame) const {
         cubemap::EnvironmentImage image = sequence_.read(frame);
-        if (options_.environment.world_from_image(image.layout) == glm::dmat3(1.0) &&
+        if (world_from_image(image.layout, options_.environment) == glm::dmat3(1.0) &&
             options_.environment.face_resolution == 0)
             return image;
         return lights::lat_long_of(cube_map_of(image, options_.environment));
@@ -293,31 +289,53 @@ private:
         return result;
     }
 
-    /// Lights the scene; returns the background, where it is not the relighter's environment.
-    cubemap::CubeMap light(PreparedFrame frame) {
+    UpdateReport light(PreparedFrame& frame, double bound) {
+        if (options_.method != "prt")
+            return lit_.light(std::move(frame.lights));
+        Light light(std::move(frame.binned));
+        light.bound = bound;
+        return lit_.light(std::move(light));
+    }
+
+    /// Adds the bounces, where there are any.
+    void bounce() {
+        if (lit_.bounces().is_set())
+            lit_.bounce();
+        else
+            options_.bounces.bounce(lit_, options_.output.for_scene(scene()), options_.scene.path);
+    }
+
+    /// What the first process says.
+    [[nodiscard]] std::vector<bool> agreed(std::vector<bool> own) const {
+        if (session_.team == nullptr)
+            return own;
+        std::vector<std::byte> bytes(own.size());
+        std::transform(own.begin(), own.end(), bytes.begin(),
+                       [](bool flag) { return static_cast<std::byte>(flag ? 1 : 0); });
+        std::vector<bool> result;
+        for (const std::byte byte : session_.team->broadcast(std::move(bytes)))
+            result.push_back(byte != std::byte{0});
+        return result;
+    }
+
+    void count(const PreparedFrame& frame, const UpdateReport& update) {
         totals_.seconds_load += frame.seconds_load;
         totals_.seconds_resample += frame.seconds_resample;
         totals_.seconds_bin += frame.seconds_bin;
-        if (options_.method != "prt") {
-            totals_.seconds_trace += light_.set_lights(frame.lights).seconds_trace;
-            return std::move(frame.background);
-        }
-        const relight::UpdateReport update =
-            light_.set_frame(std::move(frame.binned), options_.bound);
         totals_.seconds_trace += update.seconds_trace;
+        if (options_.method != "prt")
+            return;
         totals_.num_clusters += update.num_clusters;
         totals_.num_resummed += static_cast<std::size_t>(update.resummed);
-        return {};
     }
 
-    void write(std::size_t frame, Lighting lighting, const cubemap::CubeMap& background,
-               const relight::Backdrop& sharp) {
+    void write(std::size_t frame, Lighting lighting, const PreparedFrame& prepared) {
         if (!is_drawn(frame))
             return;
         const std::string path = output_path(frame);
-        if (background.resolution != 0)
-            lighting.environment = &background;
-        lighting.sharp = sharp;
+        if (prepared.background.resolution != 0)
+            lighting.environment = &prepared.background;
+        lighting.sharp = prepared.sharp;
         writer_.save(path, lighting);
         record_->add(sequence_.number(frame), sequence_.path(frame), path);
         ++num_written_;
@@ -368,7 +386,7 @@ private:
     Session& session_;
     Stopwatch watch_;
     std::optional<cubemap::FramePattern> pattern_;
-    FrameLight light_;
+    LitScene lit_;
     relight::EnvironmentBinner binner_;
     Painter writer_;
     std::optional<FrameRecord> record_;
@@ -403,7 +421,7 @@ void run(const AnimateOptions& options, Session& session) {
                                               return load_image(environment, session);
                                           });
     // The first of several processes writes.
-    if (session.team == nullptr || session.team->part().index == 0)
+    if (session.is_first())
         options.check(sequence);
     Animation animation(options, sequence, session);
     try {

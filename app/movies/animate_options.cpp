@@ -17,66 +17,51 @@ namespace relumine::app {
 namespace fs = std::filesystem;
 
 void AnimateOptions::add_to(Command& command) {
+    command_ = command;
     scene.add_to(command);
-    command
-        .add_option(
-            "FRAMES", frames,
-            "environments: frames.%04d.exr, frames.####.exr or a glob in quotes, 'frames_*.hdr'")
-        .file()
-        .required();
-    command.add_option("--frames", range,
-                       "which of them: FIRST-LAST, or FIRST-LASTxSTEP for every STEP-th (all)");
-    environment.add_conversion_to(command);
-    command
-        .add_option("--method", method,
-                    "prt: clusters' transfer, exact; clusters: lights that live over many frames "
-                    "(Staton et al.); "
-                    "importance: a few lights chosen anew for every frame")
-        .one_of({"prt", "clusters", "importance"})
-        .show_default();
-    command
-        .add_option(
-            "--bound", bound,
-            "prt: update only clusters whose light changed by more than this part of it; 0: all "
-            "that changed")
-        .between(0.0, 1.0)
-        .show_default();
-    command.add_option("--lights", num_lights, "importance: lights in a frame")
-        .between(1, 1000000)
-        .show_default();
-    command.add_option("--clusters", num_clusters, "clusters: lights of all frames together")
-        .between(1, 1000000)
-        .show_default();
-    command.add_option("--samples", num_samples, "clusters: samples of a frame")
-        .between(1, 1000000)
-        .show_default();
-    command.add_option("--fade", fade, "clusters: frames over which lights come and go")
-        .between(0, 10000)
-        .show_default();
-    command.add_flag("--even", even,
-                     "clusters: lights are equally strong over all their frames, as in the paper");
-    command.add_option("--seed", seed, "of the random numbers").show_default();
+    command.add(
+        row("FRAMES", frames,
+            "environments: frames.%04d.exr, frames.####.exr or a glob in quotes, 'frames_*.hdr'",
+            {.file = true, .required = true, .shapes_frames = false}));
+    command.add(row("--frames", range,
+                    "which of them: FIRST-LAST, or FIRST-LASTxSTEP for every STEP-th (all)",
+                    {.shapes_frames = false}));
+    command.add_all(options_of(environment));
+    command.add_all(
+        {row("--method", method,
+             "prt: clusters' transfer, exact; clusters: lights that live over many frames (Staton "
+             "et al.); importance: a few lights chosen anew for every frame",
+             {.choices = {"prt", "clusters", "importance"}}),
+         row("--bound", bound,
+             "prt: update only clusters whose light changed by more than this part of it; 0: all "
+             "that changed",
+             {.min = 0, .max = 1}),
+         row("--lights", num_lights, "importance: lights in a frame", {.min = 1, .max = 1000000}),
+         row("--clusters", num_clusters, "clusters: lights of all frames together",
+             {.min = 1, .max = 1000000}),
+         row("--samples", num_samples, "clusters: samples of a frame", {.min = 1, .max = 1000000}),
+         row("--fade", fade, "clusters: frames over which lights come and go",
+             {.min = 0, .max = 10000}),
+         row("--even", even,
+             "clusters: lights are equally strong over all their frames, as in the paper"),
+         row("--seed", seed, "of the random numbers")});
     bounces.add_to(command);
     output.add_to(command).required(false).description(
         "what to write, the number's place in its name: lit.%04d.png, .exr (pictures), .npy "
         "(numbers), .ply, .glb");
-    command
-        .add_option("--vertices", vertices,
-                    "all frames in one .npy [frames x receivers x 3]: radiance times albedo")
-        .file();
-    command
-        .add_option("--measure", reference,
-                    "another --vertices file of the same frames: says how much this one flickers "
-                    "against it")
-        .file();
-    command.add_option("--plot", plot, "of --measure: flicker over frames, .svg").file();
-    command.add_option("--mp4", movie, "a movie of the .png frames, where ffmpeg is installed")
-        .file();
-    command.add_option("--fps", frames_per_second, "frames per second of the movie")
-        .between(0.01, 1000.0)
-        .show_default();
-    command.add_flag("--resume", resume,
-                     "keep frames that are there already, from the same inputs");
+    const auto file = [&](const char* name, std::string& where, const char* help) {
+        command.add(row(name, where, help, {.file = true, .shapes_frames = false}));
+    };
+    file("--vertices", vertices,
+         "all frames in one .npy [frames x receivers x 3]: radiance times albedo");
+    file("--measure", reference,
+         "another --vertices file of the same frames: says how much this one flickers against it");
+    file("--plot", plot, "of --measure: flicker over frames, .svg");
+    file("--mp4", movie, "a movie of the .png frames, where ffmpeg is installed");
+    command.add(row("--fps", frames_per_second, "frames per second of the movie",
+                    {.min = 0.01, .max = 1000, .shapes_frames = false}));
+    command.add(row("--resume", resume, "keep frames that are there already, from the same inputs",
+                    {.shapes_frames = false}));
 }
 
 std::optional<cubemap::FramePattern> AnimateOptions::output_pattern() const {
@@ -131,17 +116,12 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
 }
 
 std::string AnimateOptions::settings(const cubemap::FrameSequence& sequence) const {
-    std::string all = fmt::format(
-        "{} {} {}\n{}\n{} {} {} {}\n{}\n{}\n{}", RELUMINE_VERSION, FrameRecord::stamp(scene.path),
-        scene.clusters_only, environment.settings(), method, bound, num_lights, seed, output.path,
-        output.settings(),
-        bounces.limits().num_bounces ? fmt::format("{}", *bounces.limits().num_bounces) : "all");
-    if (method == "clusters") { // every frame depends on all
-        all += fmt::format("\n{} {} {} {}", num_clusters, num_samples, fade, even);
+    std::string all = fmt::format("{}\n{}\n{}", RELUMINE_VERSION, FrameRecord::stamp(scene.path),
+                                  command_->settings());
+    if (method == "clusters") // every frame depends on all
         for (const cubemap::FrameFile& frame : sequence.files())
             for (const fs::path& file : cubemap::environment_files(frame.path))
                 all += '\n' + FrameRecord::stamp(file);
-    }
     return all;
 }
 

@@ -60,6 +60,9 @@ struct AnimateOptions {
     [[nodiscard]] std::optional<cubemap::FramePattern> output_pattern() const;
     /// All that shapes every frame, for FrameRecord.
     [[nodiscard]] std::string settings(const cubemap::FrameSequence& sequence) const;
+
+private:
+    std::optional<Command> command_;
 };
 
 } // namespace relumine::app

@@ -19,6 +19,7 @@
 #include "files/descriptor.h"
 #include "files/output_file.h"
 #include "prt/precompute.h"
+#include "relumine/option_table.h"
 
 namespace relumine::app {
 
@@ -101,15 +102,14 @@ public:
 private:
     static std::vector<std::string> words_of(const fs::path& ffmpeg, const fs::path& output,
                                              double fps) {
-        std::vector<std::string> words = {ffmpeg.string()};
         // Players want even sides and 4:2:0.
-        std::istringstream options(
-            fmt::format("-y -loglevel error -f image2pipe -c:v png -framerate {} -i - "
-                        "-vf pad=ceil(iw/2)*2:ceil(ih/2)*2 -c:v libx264 -crf 17 -pix_fmt yuv420p "
-                        "-movflags +faststart -f mp4",
-                        fps));
-        for (std::string word; options >> word;)
-            words.push_back(word);
+        std::vector<std::string> words =
+            split(fmt::format("ffmpeg -y -loglevel error -f image2pipe -c:v png -framerate {} -i - "
+                              "-vf pad=ceil(iw/2)*2:ceil(ih/2)*2 -c:v libx264 -crf 17 -pix_fmt "
+                              "yuv420p -movflags +faststart -f mp4",
+                              fps),
+                  ' ');
+        words.front() = ffmpeg.string();
         words.push_back(output.string());
         return words;
     }

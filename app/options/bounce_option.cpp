@@ -7,9 +7,8 @@
 namespace relumine::app {
 
 void BounceOption::add_to(Command& command) {
-    command
-        .add_option(
-            "--bounces",
+    command.add(
+        row("--bounces",
             [this](const std::string& text) {
                 is_given_ = true;
                 if (text == "all") {
@@ -24,8 +23,8 @@ void BounceOption::add_to(Command& command) {
                 limits_.num_bounces = *count;
             },
             "how often light goes on from surface to surface: N, 0 for direct light "
-            "alone, or all [all where the scene was made with --bounces, otherwise 0]")
-        .type_name("N");
+            "alone, or all [all where the scene was made with --bounces, otherwise 0]",
+            {.type = "N"}));
 }
 
 bool BounceOption::applies_to(const Scene& scene, const std::string& path) const {
@@ -39,55 +38,16 @@ bool BounceOption::applies_to(const Scene& scene, const std::string& path) const
     return scene.bounces.has_value();
 }
 
-namespace {
-
-/// The path belongs to messages about the scene's albedo.
-template<typename Function>
-auto naming(const std::string& path, const Function& function) {
-    try {
-        return function();
-    } catch (const std::invalid_argument& error) {
-        throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
-    }
-}
-
-} // namespace
-
 std::optional<BounceReport> BounceOption::bounce(LitScene& lit,
                                                  const relumine::OutputOptions& output,
-                                                 const std::string& path,
-                                                 std::span<const glm::vec3> more) const {
+                                                 const std::string& path) const {
     if (!applies_to(lit.scene(), path))
         return std::nullopt;
-    return naming(path,
-                  [&] { return lit.bounce(bounce_albedo(lit.scene(), output), limits_, more); });
-}
-
-std::optional<BounceReport> BounceOption::bounce(SharedLight& light,
-                                                 const relumine::OutputOptions& output,
-                                                 const std::string& path,
-                                                 std::span<const glm::vec3> more) const {
-    if (!set(light, output, path))
-        return std::nullopt;
-    return light.bounce(more);
-}
-
-bool BounceOption::set(SharedLight& light, const relumine::OutputOptions& output,
-                       const std::string& path) const {
-    const Scene& scene = light.lit().scene();
-    if (!applies_to(scene, path))
-        return false;
-    naming(path,
-           [&] { light.set_bounces(bounces_of(scene, bounce_albedo(scene, output), limits_)); });
-    return true;
-}
-
-void BounceOption::set(relight::Relighter& relighter, const Scene& scene,
-                       const relumine::OutputOptions& output, const std::string& path) const {
-    if (applies_to(scene, path))
-        naming(path, [&] {
-            relighter.set_bounces(bounces_of(scene, bounce_albedo(scene, output), limits_));
-        });
+    try {
+        return lit.bounce({.albedo = bounce_albedo(lit.scene(), output), .limits = limits_});
+    } catch (const std::invalid_argument& error) { // about the scene's albedo
+        throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
+    }
 }
 
 std::string text_of(const std::optional<BounceReport>& bounces) {

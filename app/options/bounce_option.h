@@ -2,12 +2,10 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 
 #include "app/command_line/command_line.h"
 #include "relumine/relumine.h"
-#include "relumine/shared_light.h"
 
 namespace relumine::app {
 
@@ -21,23 +19,11 @@ public:
     /// Throws:  std::runtime_error where bounces were asked for and the scene has none.
     [[nodiscard]] bool applies_to(const Scene& scene, const std::string& path) const;
 
-    /// Adds bounces to the present light, and those of `more` light (LitScene::bounce()). None
-    /// where there is nothing to do.
-    std::optional<BounceReport> bounce(LitScene& lit, const relumine::OutputOptions& output,
-                                       const std::string& path,
-                                       std::span<const glm::vec3> more = {}) const;
-    /// The same for light that processes share.
-    std::optional<BounceReport> bounce(SharedLight& light, const relumine::OutputOptions& output,
-                                       const std::string& path,
-                                       std::span<const glm::vec3> more = {}) const;
-    /// Sets the bounces of light that processes share, where there is something to do.
-    bool set(SharedLight& light, const relumine::OutputOptions& output,
-             const std::string& path) const;
-    /// Lets the light of a Relighter of its own bounce.
+    /// Adds bounces to the present light; none where there is nothing to do.
     ///
-    /// Throws:  std::runtime_error for an albedo under which light grows for ever.
-    void set(relight::Relighter& relighter, const Scene& scene,
-             const relumine::OutputOptions& output, const std::string& path) const;
+    /// Throws:  also std::runtime_error for an albedo under which light grows for ever.
+    std::optional<BounceReport> bounce(LitScene& lit, const relumine::OutputOptions& output,
+                                       const std::string& path) const;
 
     [[nodiscard]] const BounceLimits& limits() const { return limits_; }
 

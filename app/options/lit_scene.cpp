@@ -11,20 +11,13 @@
 namespace relumine::app {
 
 void SceneOptions::add_to(Command& command) {
-    command
-        .add_option("SCENE", path,
+    command.add(row("SCENE", path,
                     mesh_too ? "scene file from `relumine precompute`; with --lights a mesh, too"
-                             : "scene file from `relumine precompute`")
-        .file()
-        .required();
-    command.add_flag("--clusters-only", clusters_only,
-                     "light the sun through its cluster too, without shadow rays of its own");
-    command.add_option("--surface-albedo", albedo,
-                       "scenes with materials: albedo of all surfaces in place of the "
-                       "precompute's, a number or R,G,B");
-    command.add_option(
-        "--surface-specular", specular,
-        "scenes with highlights: their F0 (Ks) in place of the precompute's, a number or R,G,B");
+                             : "scene file from `relumine precompute`",
+                    {.file = true, .required = true}));
+    command.add(row("--clusters-only", clusters_only,
+                    "light the sun through its cluster too, without shadow rays of its own"));
+    command.add_all(options_of(colors));
 }
 
 namespace {
@@ -39,11 +32,7 @@ Scene load(const SceneOptions& options) {
 }
 
 void recolour(Scene& scene, const SceneOptions& options) {
-    SurfaceColors colors;
-    if (!options.albedo.empty())
-        colors.albedo = parse_color("--surface-albedo", options.albedo);
-    if (!options.specular.empty())
-        colors.specular = parse_color("--surface-specular", options.specular);
+    const SurfaceColors& colors = options.colors;
     if (!colors.albedo && !colors.specular)
         return;
     if (scene.receivers.surfaces.empty())
@@ -67,19 +56,17 @@ auto naming_scene(const std::string& path, const Make& make) {
 
 } // namespace
 
-LitScene lit_scene(const SceneOptions& options) {
+LitScene lit_scene(const SceneOptions& options, prt::Team* team) {
+    const LightOptions light{
+        .clusters_only = options.clusters_only, .team = team, .path = options.path};
+    if (team != nullptr) {
+        prt::ScenePart part = prt::load_scene_part(options.path, team->part());
+        recolour(part.scene, options);
+        return LitScene(std::move(part), light);
+    }
     Scene scene = load(options);
     recolour(scene, options);
-    return naming_scene(options.path, [&] {
-        return LitScene(std::move(scene), {.clusters_only = options.clusters_only});
-    });
-}
-
-SharedLight shared_light(const SceneOptions& options, prt::Team& team) {
-    prt::ScenePart part = prt::load_scene_part(options.path, team.part());
-    recolour(part.scene, options);
-    return SharedLight(team, options.path, std::move(part),
-                       {.clusters_only = options.clusters_only});
+    return naming_scene(options.path, [&] { return LitScene(std::move(scene), light); });
 }
 
 } // namespace relumine::app

@@ -5,7 +5,6 @@
 
 #include "app/command_line/command_line.h"
 #include "relumine/lit_scene.h"
-#include "relumine/shared_light.h"
 
 namespace relumine::app {
 
@@ -15,19 +14,15 @@ struct SceneOptions {
     bool clusters_only = false;
     /// The argument may also be a mesh, which is lit without clusters.
     bool mesh_too = false;
-    /// Albedo of all surfaces. Empty: the albedo of the precompute.
-    std::string albedo = {};
-    /// F0 (Ks) of all highlights. Empty: the values of the precompute.
-    std::string specular = {};
+    /// Of all surfaces, in place of those of the precompute
+    SurfaceColors colors = {};
 
     void add_to(Command& command);
 };
 
-/// The scene, or the mesh, ready to be lit. Throws std::runtime_error for a file that cannot be
-/// read or has no use for the options, UsageError for their wrong text.
-[[nodiscard]] LitScene lit_scene(const SceneOptions& options);
-
-/// The same for the processes of a team, each with its part of a scene file.
-[[nodiscard]] SharedLight shared_light(const SceneOptions& options, prt::Team& team);
+/// The scene, or the mesh, ready to be lit; of a scene file that processes share, this one's part.
+/// Throws std::runtime_error for a file that cannot be read or has no use for the options,
+/// UsageError for their wrong text.
+[[nodiscard]] LitScene lit_scene(const SceneOptions& options, prt::Team* team = nullptr);
 
 } // namespace relumine::app

@@ -28,19 +28,15 @@ prt::Part parse_part(const std::string& text) {
 }
 
 void PlanOption::add_to(Command& command) {
-    command
-        .add_option("--plan", plan_, "do one part of a plan of `relumine plan` instead of a MESH")
-        .file();
-    command
-        .add_option(
-            "--part", [this](const std::string& text) { part_ = parse_part(text); },
-            "with --plan: part I of N, from 1/N to N/N; `relumine join` puts them together")
-        .needs("--plan")
-        .type_name("I/N");
+    command.add(row("--plan", plan_, "do one part of a plan of `relumine plan` instead of a MESH",
+                    {.file = true}));
+    command.add(row("--part", [this](const std::string& text) { part_ = parse_part(text); },
+                    "with --plan: part I of N, from 1/N to N/N; `relumine join` puts them together",
+                    {.type = "I/N", .needs = "--plan"}));
 }
 
 void PlanOption::run(const Command& command, const std::string& output, Engine engine,
-                     Session& session) const {
+                     const PrecomputeWork& work, Session& session) const {
     if (part_.count == 0)
         throw UsageError("--plan", "expected --part I/N with it");
     constexpr std::array<std::string_view, 8> Fitting = {
@@ -51,12 +47,7 @@ void PlanOption::run(const Command& command, const std::string& output, Engine e
     check_output(output, {plan_});
     Stopwatch watch;
     prt::PrecomputeStatistics statistics;
-    precompute_part({.plan = plan_,
-                     .part = part_,
-                     .output = output,
-                     .engine = engine,
-                     .stop = session.stop(),
-                     .on_progress = session.progress("precompute")},
+    precompute_part({.plan = plan_, .part = part_, .output = output, .engine = engine}, work,
                     &statistics);
     session.end_progress();
     const std::uintmax_t file_bytes = std::filesystem::file_size(output);
@@ -82,17 +73,13 @@ void add_join(Command& program, Session& session) {
     Command command = program.add_command(
         "join", "put parts together: of a planned precompute -> SCENE.prt, of light -> OUT.npy");
     auto options = std::make_shared<Options>();
-    command
-        .add_option("PART", options->parts,
+    command.add(row("PART", options->parts,
                     "all parts that `relumine precompute --plan` or `relumine relight --part` "
-                    "wrote, in any order")
-        .file()
-        .required();
-    command
-        .add_option("-o,--output", options->output,
-                    "the scene file to write, .prt; of light the numbers, .npy")
-        .file()
-        .required();
+                    "wrote, in any order",
+                    {.file = true, .required = true}));
+    command.add(row("-o,--output", options->output,
+                    "the scene file to write, .prt; of light the numbers, .npy",
+                    {.file = true, .required = true}));
     session.add_common_options(command);
     command.on_run([options, &session] {
         Stopwatch watch;

@@ -21,7 +21,7 @@ public:
     [[nodiscard]] bool is_given() const { return !plan_.empty() || part_.count != 0; }
     /// Does the part. All else that the line says must suit one: the plan knows the rest.
     void run(const Command& command, const std::string& output, Engine engine,
-             Session& session) const;
+             const PrecomputeWork& work, Session& session) const;
 
 private:
     std::string plan_;

@@ -1,33 +1,13 @@
-// What `relumine precompute` computes the transfer of: vertices, pixels of a view or texels of a
+// What a scene computes the transfer of, in words: vertices, pixels of a view, texels of a
 // lightmap.
 #pragma once
 
-#include <optional>
 #include <string>
-#include <variant>
 
 #include "app/session.h"
 #include "relumine/precompute.h"
 
 namespace relumine::app {
-
-/// --receivers and --view.
-class ReceiverOptions {
-public:
-    void add_to(Command& command);
-
-    /// Refuses wrong usage before any work is done.
-    void check() const;
-
-    /// What they say. Throws UsageError for wrong text.
-    [[nodiscard]] std::variant<Vertices, Pixels, Texels> receivers() const;
-    [[nodiscard]] std::optional<View> view() const;
-
-private:
-    std::string receivers_ = "vertices";
-    /// The text of --view. Empty: not given.
-    std::string view_;
-};
 
 /// The layout for people and for --json: size, camera, coverage. Empty for vertices.
 [[nodiscard]] Report layout_json(const prt::Scene& scene);

@@ -1,9 +1,9 @@
 // --refine and what belongs to it: more vertices where light changes.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/session.h"
 #include "relumine/mesh.h"
@@ -12,6 +12,8 @@ namespace relumine::app {
 
 class RefineOptionGroup {
 public:
+    RefineOptionGroup() { options_.error.reset(); }
+
     /// For `precompute`: --refine [ERROR] and limits, which need it.
     void add_to_precompute(Command& command);
     /// For `mesh refine`: --error and limits. Light is asked unless --max-edge alone is given.
@@ -26,16 +28,13 @@ public:
     [[nodiscard]] Mesh refined(Mesh mesh, std::optional<float> bias, Session& session) const;
 
 private:
-    void add_limits(Command& command);
+    void add(Command& command, OptionTable table);
 
-    /// Empty: not asked for.
-    std::optional<float> error_;
+    /// No error: not asked for
+    RefineOptions options_;
     bool is_command_ = false;
-    /// 0: no limit.
-    std::uint32_t max_vertices_ = 0;
-    std::optional<float> min_edge_;
-    std::optional<float> max_edge_;
-    bool curved_ = false;
+    /// --max-vertices, --min-edge, --curved, --refine-for
+    std::vector<Option> limits_;
     /// An environment's file. Empty: none
     std::string light_;
 };

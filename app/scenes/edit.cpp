@@ -22,7 +22,6 @@
 #include "cubemap/image/environment.h"
 #include "cubemap/layers/layer_file.h"
 #include "cubemap/resample/save_environment.h"
-#include "relight/light_editor.h"
 
 namespace relumine::app {
 
@@ -34,13 +33,13 @@ struct EditArguments {
     std::string layers;
     OutputOptions output;
     BounceOption bounces;
-    /// Direction of the quick edit, X,Y,Z. Empty: LAYERS are given.
-    std::string disc;
+    /// Direction of the quick edit. Empty: LAYERS are given.
+    std::optional<glm::vec3> disc;
     double radius_degrees = 10.0;
-    std::string gain = "2";
+    glm::vec3 gain{2.0f};
     std::string saved_environment;
-    /// --who: a position X,Y,Z. Empty: not asked for.
-    std::string who;
+    /// --who: a position. Empty: not asked for.
+    std::optional<glm::vec3> who;
     /// --lit-by: a layer's name, or a disc X,Y,Z,RADIUS. Empty: not asked for.
     std::string lit_by;
     bool watch = false;
@@ -57,18 +56,19 @@ void check_saved_environment(const EditArguments& options) {
 
 /// The quick edit without a layer file: one gain layer.
 cubemap::LightLayer disc_layer(const EditArguments& options) {
-    const glm::vec3 direction = parse_vec3("--disc", options.disc);
-    if (!(glm::length(direction) > 0.0f))
-        throw UsageError("--disc", fmt::format("expected a direction, got '{}'", options.disc));
+    if (!(glm::length(*options.disc) > 0.0f))
+        throw UsageError("--disc", fmt::format("expected a direction, got '{}'",
+                                               PointText::show(*options.disc)));
     cubemap::LightLayer layer;
     layer.name = "disc";
-    layer.region = cubemap::Disc{.direction = direction, .radius_degrees = options.radius_degrees};
-    layer.effect = cubemap::Gain{.tint = parse_color("--gain", options.gain)};
+    layer.region =
+        cubemap::Disc{.direction = *options.disc, .radius_degrees = options.radius_degrees};
+    layer.effect = cubemap::Gain{.tint = options.gain};
     return layer;
 }
 
 cubemap::LightLayers layers_of(const EditArguments& options) {
-    if (options.layers.empty() == options.disc.empty())
+    if (options.layers.empty() == !options.disc)
         throw UsageError("edit", "expected either LAYERS or --disc");
     if (!options.layers.empty())
         return cubemap::load_layers(options.layers);
@@ -80,11 +80,10 @@ cubemap::LightLayers layers_of(const EditArguments& options) {
 /// Refuses what cannot be written before any work is done.
 void check_outputs(const EditArguments& options, const cubemap::LightLayers& layers) {
     OutputOptions output = options.output;
-    if (options.who.empty() && options.lit_by.empty() && !layers.frames.empty())
+    if (!options.who && options.lit_by.empty() && !layers.frames.empty())
         output.path = frame_names(output.path).name(0);
-    if (!options.who.empty()) {
+    if (options.who) {
         require_extension("--output", output.path, {".exr", ".png"});
-        static_cast<void>(parse_vec3("--who", options.who));
     }
     if (!options.lit_by.empty())
         static_cast<void>(lit_by_region(options.lit_by, layers.layers));
@@ -97,20 +96,20 @@ class Edit {
 public:
     Edit(const EditArguments& options, cubemap::LightLayers layers, Session& session)
         : options_(options), session_(session), layers_(std::move(layers)),
-          lit_(lit_scene(options.scene)), editor_(lit_.editor()) {}
+          lit_(lit_scene(options.scene)) {}
 
     void run() {
         check_receivers();
         Environment environment = load_environment(options_.environment, session_);
-        RelightTimes full = lit_.light(std::move(environment));
+        UpdateReport full = lit_.light(std::move(environment));
         if (layers_.rotate_degrees)
-            full = editor_.set_rotation(*layers_.rotate_degrees);
-        seconds_full_ = full.seconds_bin + full.seconds_trace + full.seconds_relight;
+            full = set_rotation(lit_, *layers_.rotate_degrees);
+        seconds_full_ = full.seconds;
         apply_one_by_one();
         bounce();
         write_output();
         if (!options_.saved_environment.empty())
-            cubemap::save_environment(options_.saved_environment, editor_.environment());
+            cubemap::save_environment(options_.saved_environment, environment_of(lit_));
         if (options_.watch)
             watch();
         Report result = {{"clusters", lit_.scene().transfer.num_clusters()},
@@ -130,7 +129,7 @@ public:
 private:
     void check_receivers() {
         static_cast<void>(options_.bounces.applies_to(lit_.scene(), options_.scene.path));
-        if (!options_.who.empty()) // a map, whatever the receivers are
+        if (options_.who) // a map, whatever the receivers are
             return;
         painter_.emplace(lit_, options_.output.for_scene(lit_.scene()));
         OutputOptions output = options_.output;
@@ -140,7 +139,7 @@ private:
     }
 
     void write_output() {
-        if (!options_.who.empty())
+        if (options_.who)
             save_who();
         else if (!options_.lit_by.empty())
             save_lit_by();
@@ -179,7 +178,7 @@ private:
         std::vector<cubemap::LightLayer> layers;
         for (const cubemap::LightLayer& layer : layers_.layers) {
             layers.push_back(layer);
-            record(layer.name, editor_.set_layers(layers));
+            record(layer.name, set_layers(lit_, layers));
             session_.poll();
         }
     }
@@ -189,7 +188,7 @@ private:
         const int last = static_cast<int>(std::floor(layers_.frames.back().frame));
         for (int frame = first; frame <= last; ++frame) {
             record(fmt::format("frame {}", frame),
-                   editor_.set_layers(cubemap::layers_at(layers_, frame)));
+                   set_layers(lit_, cubemap::layers_at(layers_, frame)));
             bounce();
             painter_->save(frame_names(options_.output.path).name(frame), lit_.lighting());
             session_.poll();
@@ -198,11 +197,10 @@ private:
 
     /// The environment weighted by what it gives to the receiver nearest to the position.
     void save_who() const {
-        const glm::vec3 position = parse_vec3("--who", options_.who);
-        const std::uint32_t receiver = nearest_receiver(lit_.scene(), position);
+        const std::uint32_t receiver = nearest_receiver(lit_.scene(), *options_.who);
         const glm::vec3& nearest = lit_.scene().receivers.positions[receiver];
-        const cubemap::CubeMap map = lit_.contribution_map({&receiver, 1});
-        save_map(options_.output.path, map, options_.output.exposure_ev().value_or(0.0));
+        const cubemap::CubeMap map = contribution_map(lit_, {&receiver, 1});
+        save_map(options_.output.path, map, options_.output.picture.exposure_ev.value_or(0.0));
         session_.say(fmt::format("{}: what lights {} {} ({}, {}, {})", options_.output.path,
                                  prt::kind_of(lit_.scene().layout).one, receiver, nearest.x,
                                  nearest.y, nearest.z));
@@ -210,7 +208,7 @@ private:
 
     /// The scene as a region of the environment lights it, with that region behind it.
     void save_lit_by() {
-        const Share part = lit_.lit_by(lit_by_region(options_.lit_by, editor_.layers()));
+        const Share part = lit_by(lit_, lit_by_region(options_.lit_by, lit_.state().layers));
         painter_->save(options_.output.path, part.lighting());
         lit_by_share_ = part.share;
         session_.say(
@@ -227,7 +225,7 @@ private:
             try {
                 Environment environment = load_environment(options_.environment, session_);
                 const double seconds_load = environment.seconds_load + environment.seconds_resample;
-                const relight::UpdateReport report = lit_.update(std::move(environment));
+                const relight::UpdateReport report = update(lit_, std::move(environment));
                 const double since_saved =
                     std::chrono::duration<double>(Clock::now() - *saved).count();
                 Stopwatch output;
@@ -256,7 +254,6 @@ private:
     Session& session_;
     cubemap::LightLayers layers_;
     LitScene lit_;
-    relight::LightEditor& editor_;
     /// Not for --who.
     std::optional<Painter> painter_;
     double seconds_full_ = 0.0;
@@ -281,33 +278,30 @@ void add_edit(Command& program, Session& session) {
     auto options = std::make_shared<EditArguments>();
     options->scene.add_to(command);
     options->environment.add_to(command);
-    command.add_option("LAYERS", options->layers, "light layers, .json (docs/light-layers.md)")
-        .file();
+    command.add(row("LAYERS", options->layers, "light layers, .json (docs/light-layers.md)",
+                    {.file = true}));
     options->output.add_to(command);
     options->bounces.add_to(command);
-    command.add_option("--disc", options->disc,
+    command.add(
+        row<PointText>("--disc", options->disc,
                        "instead of LAYERS: multiply a disc around the direction X,Y,Z from the "
-                       "scene to the light");
-    command.add_option("--radius", options->radius_degrees, "angular radius of the disc in degrees")
-        .between(1e-6, 180.0)
-        .show_default();
-    command.add_option("--gain", options->gain, "factor on the disc's radiance: a number or R,G,B")
-        .show_default();
-    command
-        .add_option("--save-env", options->saved_environment,
-                    "write the edited environment: cube .exr or .hdr")
-        .file();
-    command.add_option(
+                       "scene to the light"));
+    command.add(row("--radius", options->radius_degrees, "angular radius of the disc in degrees",
+                    {.min = 1e-6, .max = 180.0}));
+    command.add(row<ColorText>("--gain", options->gain,
+                               "factor on the disc's radiance: a number or R,G,B"));
+    command.add(row("--save-env", options->saved_environment,
+                    "write the edited environment: cube .exr or .hdr", {.file = true}));
+    command.add(row<PointText>(
         "--who", options->who,
-        "write what lights the receiver nearest to X,Y,Z instead: a lat-long .exr or .png");
-    command
-        .add_option(
-            "--lit-by", options->lit_by,
+        "write what lights the receiver nearest to X,Y,Z instead: a lat-long .exr or .png"));
+    command.add(
+        row("--lit-by", options->lit_by,
             "write the scene as lit by a region of the environment alone: a layer's name, or "
-            "X,Y,Z,RADIUS for a disc")
-        .excludes("--who");
-    command.add_flag("--watch", options->watch,
-                     "go on: when another program saves ENV, update and write OUT again");
+            "X,Y,Z,RADIUS for a disc",
+            {.excludes = "--who"}));
+    command.add(row("--watch", options->watch,
+                    "go on: when another program saves ENV, update and write OUT again"));
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

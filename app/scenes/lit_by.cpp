@@ -35,8 +35,8 @@ cubemap::Region lit_by_region(const std::string& text,
         refuse("");
     cubemap::Disc disc;
     try {
-        disc.direction = parse_vec3("--lit-by", text.substr(0, last_comma));
-    } catch (const UsageError&) {
+        disc.direction = PointText::read(text.substr(0, last_comma));
+    } catch (const std::invalid_argument&) {
         refuse("");
     }
     const std::optional<double> radius = parse_number(text.substr(last_comma + 1));

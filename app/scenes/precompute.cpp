@@ -7,20 +7,20 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "app/commands.h"
-#include "app/options/checkpoint_options.h"
-#include "app/options/memory_option.h"
 #include "app/options/output_options.h"
 #include "app/options/plan_option.h"
 #include "app/options/receiver_options.h"
 #include "app/options/refine_options.h"
-#include "app/options/surface_options.h"
 #include "mesh/floor.h"
 #include "mesh/half_edge/winding.h"
+#include "relumine/precompute_table.h"
 
 namespace relumine::app {
 
@@ -29,10 +29,6 @@ namespace {
 struct PrecomputeArguments {
     std::string mesh;
     std::string output;
-    std::string normals = "file";
-    /// Of the mesh; empty: as is the custom of its format
-    std::string up;
-    std::string engine = "beam";
     /// `relumine plan`: choose the clusters and leave the rest to the parts.
     bool is_plan = false;
     PlanOption parts;
@@ -40,33 +36,27 @@ struct PrecomputeArguments {
     /// 0: all vertices stay
     std::uint32_t simplify = 0;
     RefineOptionGroup refine;
-    ReceiverOptions receivers;
-    SurfaceOptions surfaces;
-    CheckpointOptions checkpoint;
-    MemoryOption memory;
+    std::vector<SurfaceMaterial> materials;
     PrecomputeOptions precompute;
 };
 
-/// Everything that the command line says of the work.
+/// Everything that the command line says of the scene.
 PrecomputeOptions precompute_options(const PrecomputeArguments& options,
-                                     const mesh::TriangleMesh& mesh, Session& session) {
+                                     const mesh::TriangleMesh& mesh) {
     PrecomputeOptions result = options.precompute;
-    result.engine = options.engine == "beam" ? Engine::Beams : Engine::Embree;
-    result.receivers = options.receivers.receivers();
-    result.view = options.receivers.view();
-    result.surface = options.surfaces.surface(mesh);
-    result.floor_surface = options.surfaces.floor_surface();
-    result.glossy_tolerance = options.surfaces.glossy_tolerance();
-    result.max_memory = options.memory.max_bytes();
+    set_materials(result, options.materials, mesh);
     result.output = options.output;
-    result.team = session.team;
-    result.checkpoint_seconds = options.checkpoint.seconds();
-    result.resume = options.checkpoint.resume();
-    result.stop = session.stop();
-    result.on_progress = [&session, clusters = session.progress("precompute"),
-                          highlights = session.progress("highlights"),
-                          bounces = session.progress("bounces"),
-                          last = Stage::Clusters](Stage stage, double fraction) mutable {
+    return result;
+}
+
+/// What the session says of the work.
+PrecomputeWork precompute_work(Session& session) {
+    PrecomputeWork work{.team = session.team != nullptr ? *session.team : prt::alone(),
+                        .stop = session.stop()};
+    work.on_progress = [&session, clusters = session.progress("precompute"),
+                        highlights = session.progress("highlights"),
+                        bounces = session.progress("bounces"),
+                        last = Stage::Clusters](Stage stage, double fraction) mutable {
         if (std::exchange(last, stage) != stage)
             session.end_progress();
         if (const auto& show = stage == Stage::Clusters     ? clusters
@@ -74,13 +64,13 @@ PrecomputeOptions precompute_options(const PrecomputeArguments& options,
                                                             : bounces)
             show(fraction);
     };
-    result.on_warning = [&session](Warning kind, const std::string& message) {
+    work.on_warning = [&session](Warning kind, const std::string& message) {
         session.warn(kind == Warning::HighlightsWithoutView ? message + " (see --view)" : message);
     };
-    result.on_note = [&session](const std::string& message) {
+    work.on_note = [&session](const std::string& message) {
         session.detail(message);
     };
-    return result;
+    return work;
 }
 
 /// The option that helps where the memory does not suffice.
@@ -94,7 +84,9 @@ std::string advice(MemoryLimitExceeded::Part part) {
     return "";
 }
 
-Scene precomputed(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport& report) {
+Scene precomputed(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWork& work,
+                  PrecomputeReport& report) {
+    const Patience for_checkpoints;
     const auto with_checkpoint = [&](const std::string& message) {
         return report.checkpoint.empty()
                    ? message
@@ -102,7 +94,7 @@ Scene precomputed(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport&
                                  report.checkpoint.string());
     };
     try {
-        return precompute(std::move(mesh), options, &report);
+        return precompute(std::move(mesh), options, work, &report);
     } catch (const TooMuchWork& error) {
         throw UsageError(error.cause == TooMuchWork::Cause::MinLevel ? "--min-depth"
                          : options.epsilon                           ? "--epsilon"
@@ -253,15 +245,16 @@ void warn_of_winding(const mesh::TriangleMesh& mesh, const std::string& path,
 }
 
 /// What there is to say of a plan.
-void write_plan(Mesh mesh, const PrecomputeOptions& work, const Stopwatch& watch,
-                Session& session) {
+void write_plan(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWork& work,
+                const Stopwatch& watch, Session& session) {
     PrecomputeReport facts;
-    plan(std::move(mesh), work, &facts);
+    plan(std::move(mesh), options, work, &facts);
     session.end_progress();
     const double seconds = watch.total();
     session.say(fmt::format("{}: {} receivers, {} clusters in {:.1f} s, {:.1f} MB",
-                            work.output.string(), facts.num_receivers, facts.clusters.num_clusters,
-                            seconds, static_cast<double>(facts.file_bytes) * 1e-6));
+                            options.output.string(), facts.num_receivers,
+                            facts.clusters.num_clusters, seconds,
+                            static_cast<double>(facts.file_bytes) * 1e-6));
     session.report({{"vertices", facts.num_vertices},
                     {"receivers", facts.num_receivers},
                     {"triangles", facts.num_triangles},
@@ -273,43 +266,15 @@ void write_plan(Mesh mesh, const PrecomputeOptions& work, const Stopwatch& watch
                     {"seconds", seconds}});
 }
 
-void run(const PrecomputeArguments& options, const Command& command, Session& session) {
-    if (options.parts.is_given() && session.team != nullptr)
-        throw UsageError("--plan", "expected a mesh: parts of a plan share nothing, `relumine "
-                                   "precompute` does them without mpirun");
-    if (options.parts.is_given())
-        return options.parts.run(command, options.output,
-                                 options.engine == "beam" ? Engine::Beams : Engine::Embree,
-                                 session);
-    if (options.mesh.empty())
-        throw UsageError("MESH", "expected a mesh, got none");
-    if (session.team != nullptr && session.team->part().index != 0) {
-        const Patience for_checkpoints;
-        return assist(*session.team, session.stop());
-    }
-    Stopwatch watch;
-    // Found out now, not after a minute of work.
-    require_extension("--output", options.output, {options.is_plan ? ".plan" : ".prt"});
-    check_output(options.output, {options.mesh});
-    options.receivers.check();
-    options.surfaces.check();
-    options.refine.check();
-    if ((options.refine.is_wanted() || options.simplify != 0) &&
-        !std::holds_alternative<Vertices>(options.receivers.receivers()))
-        throw UsageError(options.simplify != 0 ? "--simplify" : "--refine",
-                         "expected vertices as receivers");
+/// Whether the mesh is turned up by the custom of its format, which has Z up.
+bool turns_by_custom(const PrecomputeArguments& options) {
+    return !options.mesh_options.up && mesh::customary_up(options.mesh) == mesh::UpAxis::Z;
+}
 
-    MeshOptions mesh_options = options.mesh_options;
-    mesh_options.normals =
-        options.normals == "smooth" ? mesh::NormalSource::Smooth : mesh::NormalSource::File;
-    if (!options.up.empty())
-        mesh_options.up = options.up == "x"   ? mesh::UpAxis::X
-                          : options.up == "z" ? mesh::UpAxis::Z
-                                              : mesh::UpAxis::Y;
-    Mesh mesh = load_mesh(options.mesh, mesh_options);
-    const bool turns_by_custom =
-        options.up.empty() && mesh::customary_up(options.mesh) == mesh::UpAxis::Z;
-    if (turns_by_custom)
+/// Loads the mesh, says what is odd about it, and gives it the vertices that are asked for.
+Mesh made_mesh(const PrecomputeArguments& options, Session& session) {
+    Mesh mesh = load_mesh(options.mesh, options.mesh_options);
+    if (turns_by_custom(options))
         session.say(fmt::format("{}: +Z is up, by the custom of .stl; --up y where it is not",
                                 options.mesh));
     for (const std::string& warning : mesh.geometry.warnings)
@@ -319,29 +284,23 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
     warn_of_winding(mesh.geometry, options.mesh, session);
     session.detail(fmt::format("{}: {} vertices, {} triangles", options.mesh,
                                mesh.geometry.num_vertices(), mesh.geometry.num_triangles()));
-
     if (options.simplify != 0)
         mesh = simplified_to(std::move(mesh), options.simplify, session);
     if (options.refine.is_wanted())
         mesh = options.refine.refined(std::move(mesh), options.precompute.bias, session);
+    return mesh;
+}
 
-    const PrecomputeOptions work = precompute_options(options, mesh.geometry, session);
-    if (options.is_plan)
-        return write_plan(std::move(mesh), work, watch, session);
-    PrecomputeReport facts;
-    const Scene scene = [&] {
-        const Patience for_checkpoints;
-        return precomputed(std::move(mesh), work, facts);
-    }();
-    session.end_progress();
-
+/// What there is to say of a scene.
+void write_report(const PrecomputeArguments& options, const PrecomputeOptions& work,
+                  const PrecomputeReport& facts, const Scene& scene, double seconds,
+                  Session& session) {
     Report report = report_of(work, facts, scene, session);
     const std::string others = prt::on_vertices(scene.layout)
                                    ? ""
                                    : fmt::format(", {} receivers ({})", scene.receivers.num_own(),
                                                  prt::description(scene.layout));
     const prt::PrecomputeStatistics& clusters = facts.clusters;
-    const double seconds = watch.total();
     session.say(fmt::format("{}: {} vertices, {} triangles{} -> {} clusters in {:.1f} s ({}; "
                             "{:.1f} M rays/s), {:.1f} MB",
                             options.output, facts.num_vertices, facts.num_triangles, others,
@@ -352,118 +311,61 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
         report.set("floor", floor_report(scene, session));
     if (facts.bounces)
         report.set("bounces", bounce_report(*facts.bounces, scene, session));
-    if (!facts.processes.empty())
+    if (session.team != nullptr)
         report.set("processes", process_report(facts.processes, session));
-    report.set("up", turns_by_custom ? "z" : options.up.empty() ? "y" : options.up);
+    report.set("up", turns_by_custom(options)
+                         ? "z"
+                         : ValueText<mesh::UpAxis>::show(
+                               options.mesh_options.up.value_or(mesh::UpAxis::Y)));
     report.set("seconds", seconds);
     session.report(report);
 }
 
-/// Everything that decides which light reaches what.
-void add_work_options(Command& command, const std::shared_ptr<PrecomputeArguments>& options) {
-    command
-        .add_option(
-            "--floor",
-            [options](const std::string& text) {
-                const std::optional<std::uint32_t> side =
-                    text.empty() ? std::optional<std::uint32_t>(193) : parse_count(text);
-                if (!side)
-                    throw UsageError(
-                        "--floor",
-                        fmt::format("expected a number of vertices, got '{0}'; the mesh goes "
-                                    "first: relumine precompute {0} --floor",
-                                    text));
-                if (*side < 2 || *side > 65535)
-                    throw UsageError("--floor",
-                                     fmt::format("expected 2 to 65535 vertices, got '{}'", text));
-                options->mesh_options.floor_vertices = side;
-            },
-            "add a floor of N x N vertices under the mesh; 193 when no N is given")
-        .value_is_optional()
-        .type_name("[N]");
-    command
-        .add_option("--floor-scale", options->mesh_options.floor_scale,
-                    "side of the floor over the mesh's width, or half its height if that is more")
-        .needs("--floor")
-        .between(1e-6, 1e6)
-        .show_default();
-    command
-        .add_option("--up", options->up,
-                    "the mesh's axis that points up (y; z for .stl, which comes from CAD)")
-        .one_of({"x", "y", "z"});
-    command
-        .add_option("--normals", options->normals,
-                    "vertex normals: the file's where it has them, or always smooth")
-        .one_of({"file", "smooth"})
-        .show_default();
-    add_crease_option(command, options->mesh_options.crease);
-    command
-        .add_option("--simplify", options->simplify,
-                    "light so many of the mesh's vertices, those that shape it; all of its "
-                    "triangles go on to throw shadows")
-        .between(4, 4294967294.0)
-        .type_name("N");
-    options->refine.add_to_precompute(command);
-    command
-        .add_option("--tolerance", options->precompute.tolerance,
-                    "RMS error of the transfer allowed within a cluster, 1/sr")
-        .between(0.0, 1e6)
-        .show_default();
-    command
-        .add_option("--epsilon", options->precompute.epsilon,
-                    "the paper's form of the tolerance: grows lax with the mesh's size")
-        .between(0.0, 1e6)
-        .excludes("--tolerance");
-    command
-        .add_option("--min-depth", options->precompute.min_level,
-                    "every cell is split at least this often")
-        .between(0, prt::MaxLevel)
-        .show_default();
-    command
-        .add_option("--face-resolution", options->precompute.face_resolution,
-                    "R: cells stop at single texels of a 6 x R x R environment")
-        .between(1, 1u << prt::MaxLevel)
-        .show_default();
-    command
-        .add_option("--bias", options->precompute.bias,
-                    "lift of the rays' origins off the surface, in the mesh's unit")
-        .between(0.0, LargestPosition);
-    command
-        .add_option("--engine", options->engine,
-                    "how visibility is traced: whole beams of rays, or each ray with Embree; the "
-                    "results are "
-                    "the same")
-        .one_of({"beam", "embree"})
-        .show_default();
-    options->receivers.add_to(command);
-    options->surfaces.add_to(command);
-    options->memory.add_to(command);
+void run(const PrecomputeArguments& options, const Command& command, Session& session) {
+    if (options.parts.is_given() && session.team != nullptr)
+        throw UsageError("--plan", "expected a mesh: parts of a plan share nothing, `relumine "
+                                   "precompute` does them without mpirun");
+    const PrecomputeWork work = precompute_work(session);
+    if (options.parts.is_given())
+        return options.parts.run(command, options.output, options.precompute.engine, work, session);
+    if (options.mesh.empty())
+        throw UsageError("MESH", "expected a mesh, got none");
+    if (!work.team.is_first()) {
+        const Patience for_checkpoints;
+        return assist(work);
+    }
+    const Stopwatch watch;
+    // Found out now, not after a minute of work.
+    require_extension("--output", options.output, {options.is_plan ? ".plan" : ".prt"});
+    check_output(options.output, {options.mesh});
+    check(options.precompute);
+    options.refine.check();
+    if ((options.refine.is_wanted() || options.simplify != 0) &&
+        !std::holds_alternative<Vertices>(options.precompute.receivers))
+        throw UsageError(options.simplify != 0 ? "--simplify" : "--refine",
+                         "expected vertices as receivers");
+    Mesh mesh = made_mesh(options, session);
+    const PrecomputeOptions asked = precompute_options(options, mesh.geometry);
+    if (options.is_plan)
+        return write_plan(std::move(mesh), asked, work, watch, session);
+    PrecomputeReport facts;
+    const Scene scene = precomputed(std::move(mesh), asked, work, facts);
+    session.end_progress();
+    write_report(options, asked, facts, scene, watch.total(), session);
 }
 
-void add_bounce_options(Command& command, const std::shared_ptr<PrecomputeArguments>& options) {
-    command
-        .add_option(
-            "--bounces",
-            [options](const std::string& text) {
-                const float standard = prt::BounceOptions{}.tolerance;
-                const std::optional<double> tolerance =
-                    text.empty() ? std::optional<double>(standard) : parse_number(text);
-                if (!tolerance || !(*tolerance >= 1e-4 && *tolerance <= 1.0))
-                    throw UsageError(
-                        "--bounces",
-                        fmt::format("expected a standard error of 0.0001 to 1, got '{0}'; the mesh "
-                                    "goes first: relumine precompute {0} --bounces",
-                                    text));
-                options->precompute.bounce_tolerance = static_cast<float>(*tolerance);
-            },
-            "light goes on from surface to surface; the standard error of one "
-            "bounce under a sun or a white sky of radiance 1, 0.01 when it is not given")
-        .value_is_optional()
-        .type_name("[ERROR]");
-    command
-        .add_flag("--two-sided", options->precompute.two_sided_bounces,
-                  "backs of surfaces send the bounced light that their fronts do")
-        .needs("--bounces");
+/// Everything that decides which light reaches what.
+void add_work_options(Command& command, PrecomputeArguments& options) {
+    command.add_all(options_of(options.mesh_options));
+    command.add(row("--simplify", options.simplify,
+                    "light so many of the mesh's vertices, those that shape it; all of its "
+                    "triangles go on to throw shadows",
+                    {.min = 4, .max = 4294967294.0, .type = "N", .shows_default = false}));
+    options.refine.add_to_precompute(command);
+    for (OptionRow& each : options_of(options.precompute))
+        if (!options.is_plan || (each.name != "--resume" && each.name != "--checkpoint-seconds"))
+            command.add(std::move(each));
+    command.add(material_row(options.materials));
 }
 
 } // namespace
@@ -472,16 +374,13 @@ void add_precompute(Command& program, Session& session) {
     Command command =
         program.add_command("precompute", "compute a mesh's light transfer: MESH -> SCENE.prt");
     auto options = std::make_shared<PrecomputeArguments>();
-    command.add_option("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl").file();
-    command
-        .add_option("-o,--output", options->output,
-                    "the scene file to write, .prt; with --plan the part")
-        .file()
-        .required();
+    command.add(
+        row("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl", {.file = true}));
+    command.add(row("-o,--output", options->output,
+                    "the scene file to write, .prt; with --plan the part",
+                    {.file = true, .required = true}));
     options->parts.add_to(command);
-    add_work_options(command, options);
-    add_bounce_options(command, options);
-    options->checkpoint.add_to(command);
+    add_work_options(command, *options);
     session.add_common_options(command);
     command.on_run([options, command, &session] { run(*options, command, session); });
 }
@@ -492,14 +391,11 @@ void add_plan(Command& program, Session& session) {
     auto options = std::make_shared<PrecomputeArguments>();
     options->is_plan = true;
     options->precompute.checkpoint_seconds = 0.0;
-    command.add_option("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl")
-        .file()
-        .required();
-    command.add_option("-o,--output", options->output, "the plan to write, .plan")
-        .file()
-        .required();
-    add_work_options(command, options);
-    add_bounce_options(command, options);
+    command.add(row("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl",
+                    {.file = true, .required = true}));
+    command.add(row("-o,--output", options->output, "the plan to write, .plan",
+                    {.file = true, .required = true}));
+    add_work_options(command, *options);
     session.add_common_options(command);
     command.on_run([options, command, &session] { run(*options, command, session); });
 }

@@ -48,19 +48,19 @@ void run(const VerifyArguments& options, Session& session) {
     lit.light(load_environment(options.environment, session));
     if (session.team != nullptr) {
         require_same(*session.team, options.scene.path);
-        require_same(*session.team, options.scene.path, &lit.environment());
+        require_same(*session.team, options.scene.path, &environment_of(lit));
     }
     const std::optional<BounceReport> bounces =
         options.bounces.bounce(lit, {.albedo = glm::vec3(options.albedo)}, options.scene.path);
 
     Stopwatch watch;
-    const Verification check = lit.verify({.num_samples = options.num_samples,
-                                           .seed = options.seed,
-                                           .num_surface_points = options.num_surface_points,
-                                           .num_paths = options.num_paths,
-                                           .reduction = session.team,
-                                           .stop = session.stop(),
-                                           .on_progress = session.progress("exact integration")});
+    const Verification check = verify(lit, {.num_samples = options.num_samples,
+                                            .seed = options.seed,
+                                            .num_surface_points = options.num_surface_points,
+                                            .num_paths = options.num_paths,
+                                            .team = session.team,
+                                            .stop = session.stop(),
+                                            .on_progress = session.progress("exact integration")});
     session.end_progress();
     const relight::ErrorReport& error = check.error;
     const double seconds = watch.lap();
@@ -69,7 +69,7 @@ void run(const VerifyArguments& options, Session& session) {
     const std::string name(prt::kind_of(lit.scene().layout).one);
     session.say(
         fmt::format("{} receivers, R = {}, exact integration of the file's pixels in {:.1f} s",
-                    check.receivers.size(), lit.environment().resolution, seconds));
+                    check.receivers.size(), environment_of(lit).resolution, seconds));
     session.say(fmt::format("relative L2 {:.5f}, mean error {:.3f} %, largest {:.2f} %, bias "
                             "{:+.3f} % of the mean radiance {:.4g}",
                             error.relative_l2, 100.0 * error.mean_abs, 100.0 * error.max_abs,
@@ -91,7 +91,7 @@ void run(const VerifyArguments& options, Session& session) {
                      {"mean_radiance", error.mean_radiance},
                      {name == "vertex" ? "worst_vertex" : "worst_receiver", error.worst_receiver},
                      {"worst_position", worst},
-                     {"face_resolution", lit.environment().resolution},
+                     {"face_resolution", environment_of(lit).resolution},
                      {"seconds", seconds}};
     if (check.surface)
         report.set("surface", surface_report(lit.scene().mesh, *check.surface, session));
@@ -107,22 +107,17 @@ void add_verify(Command& program, Session& session) {
     auto options = std::make_shared<VerifyArguments>();
     options->scene.add_to(command);
     options->environment.add_to(command);
-    command.add_option("--samples", options->num_samples, "receivers chosen at random, 0 for all")
-        .show_default();
-    command
-        .add_option("--surface", options->num_surface_points,
+    command.add(row("--samples", options->num_samples, "receivers chosen at random, 0 for all"));
+    command.add(row("--surface", options->num_surface_points,
                     "points of the surface chosen at random, where exact light is compared with "
-                    "what the vertices interpolate; 0 for none")
-        .type_name("N")
-        .show_default();
-    command.add_option("--seed", options->seed, "seed of the choice").show_default();
+                    "what the vertices interpolate; 0 for none",
+                    {.type = "N"}));
+    command.add(row("--seed", options->seed, "seed of the choice"));
     options->bounces.add_to(command);
-    command.add_option("--albedo", options->albedo, "of all surfaces, for bounces")
-        .between(0.0, 1.0)
-        .show_default();
-    command.add_option("--paths", options->num_paths, "paths per receiver that bounces are held to")
-        .between(1, 1u << 24)
-        .show_default();
+    command.add(
+        row("--albedo", options->albedo, "of all surfaces, for bounces", {.min = 0.0, .max = 1.0}));
+    command.add(row("--paths", options->num_paths, "paths per receiver that bounces are held to",
+                    {.min = 1, .max = 1u << 24}));
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

@@ -44,11 +44,9 @@ void add_serve(Command& program, Session& session) {
     Command command = program.add_command(
         "serve", "keep a scene loaded and answer requests: JSON lines in, JSON lines out");
     auto place = std::make_shared<std::string>();
-    command
-        .add_option("SOCKET", *place,
-                    "Unix socket to make, which only its owner may open; - for stdin and stdout")
-        .file()
-        .required();
+    command.add(row("SOCKET", *place,
+                    "Unix socket to make, which only its owner may open; - for stdin and stdout",
+                    {.file = true, .required = true}));
     session.add_common_options(command);
     command.footer("\n\nA request is one line: {\"do\": \"scene\", \"scene\": \"bunny.prt\"}. "
                    "{\"do\": \"help\"} lists all requests; docs/serve.md has an example.\n");

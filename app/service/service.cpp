@@ -1,7 +1,6 @@
 #include "app/service/service.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <list>
@@ -37,14 +36,6 @@ namespace {
 
 using files::JsonReader;
 
-/// How a member of a request is written as an argument of the command line.
-struct Argument {
-    /// "--exposure=1"; empty: a flag that is not set
-    std::string option;
-    /// The value of an argument without a name
-    std::optional<std::string> value;
-};
-
 /// "face-resolution" for "face_resolution": what is easier to write in other languages.
 std::string with_dashes(std::string name) {
     std::replace(name.begin(), name.end(), '_', '-');
@@ -52,14 +43,8 @@ std::string with_dashes(std::string name) {
 }
 
 /// The name of an option's member: "exposure" of --exposure, "scene" of SCENE.
-std::string member_of(const OptionTable& option) {
-    std::string name = option.argument;
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    for (const std::string& each : option.names)
-        if (each.starts_with("--"))
-            name = each.substr(2);
-    return name;
+std::string member_of(const OptionRow& option) {
+    return with_dashes(option.key());
 }
 
 std::string number_text(double number) {
@@ -87,17 +72,6 @@ Report id_of(double number) {
     return number == std::floor(number) && std::abs(number) <= LargestWhole
                ? Report(static_cast<std::int64_t>(number))
                : Report(number);
-}
-
-Argument argument_of(const JsonReader& json, const OptionTable& option, const Report& value) {
-    const std::string name = member_of(option);
-    if (option.value == OptionTable::Value::None)
-        return {.option = json.boolean(value, fmt::format("\"{}\"", name)) ? "--" + name : "",
-                .value = {}};
-    const std::string text = value_text(json, value, name);
-    if (option.names.empty())
-        return {.option = {}, .value = text};
-    return {.option = fmt::format("--{}={}", name, text), .value = {}};
 }
 
 } // namespace
@@ -213,7 +187,7 @@ void Service::Impl::set_environment(const EnvironmentOptions& options) {
         binned.splice(binned.begin(), binned, found);
     } else {
         Environment environment = load_environment(options, session);
-        binned.push_front({key, target.bin(std::move(environment.map)), environment.file});
+        binned.push_front({key, bin(target, std::move(environment.map)), environment.file});
         std::size_t bytes = 0;
         for (auto each = binned.begin(); each != binned.end();) {
             bytes += (each->environment.map->texels.size() + each->file.image->pixels.size()) *
@@ -222,17 +196,16 @@ void Service::Impl::set_environment(const EnvironmentOptions& options) {
                 bytes > MaxBytes && each != binned.begin() ? binned.erase(each) : std::next(each);
         }
     }
-    target.light(binned.front().environment, binned.front().file);
-    report = {{"face_resolution", target.environment().resolution}, {"was_kept", is_kept}};
+    target.light(Light(binned.front().environment, binned.front().file));
+    report = {{"face_resolution", environment_of(target).resolution}, {"was_kept", is_kept}};
     bounce();
 }
 
 void Service::Impl::declare_edit(Command& command) {
     auto path = std::make_shared<std::string>();
-    command
-        .add_option("--layers", *path,
-                    "a list of layers as in a layer file, or the path of a layer file")
-        .required();
+    command.add(row("--layers", *path,
+                    "a list of layers as in a layer file, or the path of a layer file",
+                    {.required = true}));
     command.on_run([this, path] { set_layers(*path); });
 }
 
@@ -244,7 +217,7 @@ void Service::Impl::set_layers(const std::string& path) {
     else
         list = cubemap::load_layers(path).layers;
     const std::size_t count = list.size();
-    const UpdateReport update = lit().set_layers(std::move(list));
+    const UpdateReport update = relumine::set_layers(lit(), std::move(list));
     report = {
         {"layers", count}, {"clusters", update.num_clusters}, {"receivers", update.num_receivers}};
     bounce();
@@ -274,9 +247,10 @@ void Service::Impl::declare_radiance(Command& command) {
         std::string shared_memory;
     };
     auto options = std::make_shared<Options>();
-    command.add_option("-o,--output", options->output, "an .npy file [receivers x 3]").file();
-    command.add_option("--shared-memory", options->shared_memory,
-                       "POSIX shared memory that the client has made: float32 [receivers x 3]");
+    command.add(
+        row("-o,--output", options->output, "an .npy file [receivers x 3]", {.file = true}));
+    command.add(row("--shared-memory", options->shared_memory,
+                    "POSIX shared memory that the client has made: float32 [receivers x 3]"));
     command.on_run([this, options] { write_radiance(options->output, options->shared_memory); });
 }
 
@@ -305,9 +279,9 @@ void Service::Impl::declare_help(Command& command) {
             (this->*request.declare)(below);
             Report members;
             const CommandTable table = line.table();
-            for (const OptionTable& option : table.commands.front().options)
+            for (const OptionRow& option : table.commands.front().options)
                 if (member_of(option) != "help")
-                    members.set(member_of(option), option.description);
+                    members.set(member_of(option), option.help);
             all.push_back(
                 {{"do", request.name}, {"description", request.description}, {"members", members}});
         }
@@ -332,9 +306,9 @@ void Service::Impl::perform(const JsonReader& reader, const Report& root) {
     Command command = line.root().add_command(request.name, request.description);
     (this->*request.declare)(command);
 
-    const std::vector<OptionTable> options = line.table().commands.front().options;
+    const OptionTable options = line.table().commands.front().options;
     std::vector<std::string> known = {"do", "id"};
-    for (const OptionTable& option : options)
+    for (const OptionRow& option : options)
         if (member_of(option) != "help")
             known.push_back(member_of(option));
     std::vector<std::string> words = {request.name};
@@ -348,19 +322,23 @@ void Service::Impl::perform(const JsonReader& reader, const Report& root) {
                                                 files::did_you_mean(member, known)));
         if (member == "do" || member == "id")
             continue;
-        const OptionTable& option =
+        const OptionRow& option =
             *std::find_if(options.begin(), options.end(),
-                          [&](const OptionTable& each) { return member_of(each) == member; });
+                          [&](const OptionRow& each) { return member_of(each) == member; });
         if (member == "layers" && value.type() == Report::Type::Array) {
             layers = &value;
             words.emplace_back("--layers=a list");
             continue;
         }
-        const Argument argument = argument_of(reader, option, value);
-        if (argument.value)
-            values.push_back(*argument.value);
-        else if (!argument.option.empty())
-            words.push_back(argument.option);
+        if (option.is_flag) {
+            if (reader.boolean(value, fmt::format("\"{}\"", member)))
+                words.push_back("--" + member);
+        } else if (const std::string text = value_text(reader, value, member);
+                   option.is_argument()) {
+            values.push_back(text);
+        } else {
+            words.push_back(fmt::format("--{}={}", member, text));
+        }
     }
     if (!values.empty()) {
         words.emplace_back("--");

@@ -41,7 +41,7 @@ def run_doxygen():
     settings = f"""
         INPUT = {ROOT}/relumine
         FILE_PATTERNS = *.h
-        EXCLUDE = {ROOT}/relumine/memory_limit.h
+        EXCLUDE = {ROOT}/relumine/stages.h
         OUTPUT_DIRECTORY = {BUILD}
         GENERATE_HTML = NO
         GENERATE_LATEX = NO

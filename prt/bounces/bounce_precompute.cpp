@@ -1,10 +1,7 @@
 #include "prt/bounces/bounce_precompute.h"
 
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <cmath>
-#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -16,48 +13,59 @@
 #include "files/parallel.h"
 #include "prt/bounces/bounce_sampler.h"
 #include "prt/clusters/dealt_tiles.h"
-#include "prt/precompute.h"
+#include "prt/steps.h"
 
 namespace relumine::prt {
 
 namespace {
+
+/// Writes what a receiver's rays met for a checkpoint.
+void add(files::ByteWriter& writer, const RayHits& hits) {
+    writer.add(hits.num_directions);
+    writer.add(hits.sum_inverse_distances);
+    for (const std::vector<std::uint32_t>& half : hits.halves) {
+        writer.add<std::uint64_t>(half.size());
+        writer.add_all(std::span(half));
+    }
+}
+
+RayHits next_hits(files::ByteReader& reader) {
+    RayHits hits;
+    hits.num_directions = reader.next<std::uint32_t>();
+    hits.sum_inverse_distances = reader.next<double>();
+    for (std::vector<std::uint32_t>& half : hits.halves) {
+        const auto size = reader.next<std::uint64_t>();
+        half = reader.next_all<std::uint32_t>(static_cast<std::size_t>(size));
+    }
+    return hits;
+}
 
 /// Finds what the rays of a part's receivers meet, block by block, in two passes: the first finds
 /// how far away surfaces are and how different the hits, the second adds rays where those of
 /// similar receivers together are too few. A checkpoint has the blocks of each pass.
 class BouncePrecompute {
 public:
+    /// `is_planned`: parts know nothing of each other.
     BouncePrecompute(const Receivers& receivers, const Transfer& transfer,
-                     const BounceSampler& sampler, const BounceOptions& options)
+                     const BounceSampler& sampler, const BounceOptions& options, const Work& work,
+                     bool is_planned)
         : receivers_(receivers), transfer_(transfer), sampler_(sampler), options_(options),
-          reduction_(options.reduction != nullptr ? *options.reduction : alone_),
-          places_(places_of(reduction_.part(), transfer.num_receivers())), hits_(places_.size()),
-          blocks_(transfer.counts.num_blocks()) {
-        const std::size_t most =
-            places_of({0, reduction_.part().count}, transfer.num_receivers()).size();
-        most_blocks_ = (most + BlockSize - 1) / BlockSize;
-    }
+          work_(work), is_planned_(is_planned), progress_(work),
+          places_(places_of(work.team.part(), transfer.num_receivers())), hits_(places_.size()),
+          blocks_(transfer.counts.num_blocks()) {}
 
     BounceSamples run() {
-        run_pass("bounces", 0.0, [this](std::size_t block) {
-            for (std::size_t i = begin_of(block); i < begin_of(block + 1); ++i)
-                blocks_[block].num_rays +=
-                    sampler_.look(receiver(i), options_.min_directions, hits_[i]);
-        });
+        look("bounces", 0.0, std::vector<std::uint32_t>(hits_.size(), 1));
         BounceSamples result;
         for (const RayHits& hits : hits_)
             result.distances.push_back(hits.num_hits() == 0 ? 0.0f : hits.distance());
-        if (!options_.is_planned)
+        if (!is_planned_)
             result.averaged = lists_of_similar(result.distances);
         std::vector<std::uint32_t> factors(hits_.size());
         choose_factors(result.averaged ? *result.averaged : lists_in_tiles(result.distances),
                        factors);
         require_memory(factors);
-        run_pass("more_bounces", 0.5, [&](std::size_t block) {
-            for (std::size_t i = begin_of(block); i < begin_of(block + 1); ++i)
-                blocks_[block].num_rays +=
-                    sampler_.look(receiver(i), factors[i] * options_.min_directions, hits_[i]);
-        });
+        look("more_bounces", 0.5, factors);
         collect(result);
         return result;
     }
@@ -77,101 +85,32 @@ private:
         return std::min(block * BlockSize, hits_.size());
     }
 
-    /// Calls work(block) for every block that a checkpoint does not have. Processes that share the
-    /// work take as many steps as the one with the most blocks.
-    template<typename Work>
-    void run_pass(const std::string& part, double progress_before, const Work& work) {
-        // Work of all processes between two looks at the checkpoint: about a tenth of a second.
-        const std::size_t blocks_per_step =
-            std::max<std::size_t>(256 / reduction_.part().count, 16);
-        std::size_t num_saved = options_.checkpoint != nullptr ? take_up(part) : 0;
-        std::size_t num_done = num_saved;
-        std::mutex mutex;
-        std::size_t num_reported = std::min(num_done, blocks_.size());
-        const auto save = [&] {
-            if (options_.checkpoint->save(part, record(num_saved, num_done), {}))
-                num_saved = num_done;
+    /// A pass: all receivers look into so many times the first directions.
+    void look(const std::string& part, double progress_before,
+              std::span<const std::uint32_t> factors) {
+        BlockWork blocks{.part = part,
+                         .num_blocks = blocks_.size(),
+                         .most_blocks = most_blocks(work_.team.part(), transfer_.num_receivers()),
+                         // Of all processes: about a tenth of a second.
+                         .blocks_per_step =
+                             std::max<std::size_t>(256 / work_.team.part().count, 16)};
+        blocks.work = [&](std::size_t block) {
+            for (std::size_t i = begin_of(block); i < begin_of(block + 1); ++i)
+                blocks_[block].num_rays +=
+                    sampler_.look(receiver(i), factors[i] * options_.min_directions, hits_[i]);
         };
-        while (num_done < most_blocks_) {
-            const std::size_t end = std::min(num_done + blocks_per_step, most_blocks_);
-            files::parallel_for(std::min(num_done, blocks_.size()), std::min(end, blocks_.size()),
-                                [&](std::size_t block) {
-                                    if (options_.stop.stop_requested())
-                                        return;
-                                    work(block);
-                                    const std::scoped_lock lock(mutex);
-                                    ++num_reported;
-                                    if (options_.on_progress && num_reported % 64 == 0)
-                                        options_.on_progress(
-                                            progress_before +
-                                            0.5 * static_cast<double>(num_reported) /
-                                                static_cast<double>(blocks_.size()));
-                                });
-            const bool is_stopped = any_is_stopped();
-            if (is_stopped && options_.checkpoint != nullptr && num_saved != num_done &&
-                options_.checkpoint->is_worthwhile())
-                save();
-            if (is_stopped)
-                throw Cancelled();
-            num_done = end;
-            if (options_.checkpoint != nullptr && options_.checkpoint->is_due())
-                save();
-        }
-    }
-
-    /// Whether any of the processes was asked to stop.
-    [[nodiscard]] bool any_is_stopped() {
-        std::array<std::int64_t, 1> is_stopped = {options_.stop.stop_requested() ? 1 : 0};
-        reduction_.max(is_stopped);
-        return is_stopped[0] != 0;
-    }
-
-    /// Writes all that is known of some blocks.
-    [[nodiscard]] std::vector<std::byte> record(std::size_t first, std::size_t last) const {
-        return files::pack(1, [&](std::size_t) {
-            files::ByteWriter writer;
-            for (std::size_t block = first; block < std::min(last, blocks_.size()); ++block) {
-                writer.add(blocks_[block].num_rays);
-                for (std::size_t i = begin_of(block); i < begin_of(block + 1); ++i) {
-                    const RayHits& hits = hits_[i];
-                    writer.add(hits.num_directions);
-                    writer.add(hits.sum_inverse_distances);
-                    for (const std::vector<std::uint32_t>& half : hits.halves) {
-                        writer.add<std::uint64_t>(half.size());
-                        writer.add_all(std::span(half));
-                    }
-                }
-            }
-            return writer.take();
-        });
-    }
-
-    /// Takes up the blocks of an earlier run; returns how many the process with the most has.
-    std::size_t take_up(const std::string& part) {
-        std::size_t block = 0;
-        for (const std::vector<std::byte>& record : options_.checkpoint->load(part, false).records)
-            files::unpack(record, [&](std::span<const std::byte> bytes) {
-                for (files::ByteReader reader(bytes); !reader.at_end(); ++block) {
-                    if (block == blocks_.size())
-                        throw std::runtime_error("checkpoint: expected fewer blocks");
-                    blocks_[block].num_rays = reader.next<std::uint64_t>();
-                    for (std::size_t i = begin_of(block); i < begin_of(block + 1); ++i) {
-                        RayHits& hits = hits_[i];
-                        hits.num_directions = reader.next<std::uint32_t>();
-                        hits.sum_inverse_distances = reader.next<double>();
-                        for (std::vector<std::uint32_t>& half : hits.halves) {
-                            const auto size = reader.next<std::uint64_t>();
-                            half = reader.next_all<std::uint32_t>(static_cast<std::size_t>(size));
-                        }
-                    }
-                }
-            });
-        std::array<std::int64_t, 1> most = {static_cast<std::int64_t>(block)};
-        reduction_.max(most);
-        const auto num_done = static_cast<std::size_t>(most[0]);
-        if (block != std::min(num_done, blocks_.size()))
-            throw std::runtime_error("checkpoint: expected as many blocks of all processes");
-        return num_done;
+        blocks.write = [this](std::size_t block, files::ByteWriter& writer) {
+            writer.add(blocks_[block].num_rays);
+            for (std::size_t i = begin_of(block); i < begin_of(block + 1); ++i)
+                add(writer, hits_[i]);
+        };
+        blocks.read = [this](std::size_t block, files::ByteReader& reader) {
+            blocks_[block].num_rays = reader.next<std::uint64_t>();
+            for (std::size_t i = begin_of(block); i < begin_of(block + 1); ++i)
+                hits_[i] = next_hits(reader);
+        };
+        progress_.start_stage(progress_before, progress_before + 0.5);
+        do_blocks(work_, blocks, progress_);
     }
 
     /// Who shares samples with the part's receivers, of all there are.
@@ -179,7 +118,7 @@ private:
         std::vector<float> distances(transfer_.num_receivers());
         for (std::size_t i = 0; i < places_.size(); ++i)
             distances[places_[i]] = own_distances[i];
-        share_by_place(reduction_, std::span(distances));
+        share_by_place(work_.team, std::span(distances));
         return shared_samples(receivers_, transfer_, 0, distances.size(), distances, places_);
     }
 
@@ -231,7 +170,7 @@ private:
         for (std::size_t i = 0; i < hits_.size(); ++i)
             num_hits += factors[i] * hits_[i].num_hits();
         if (num_hits * BytesPerHit > options_.max_bytes)
-            throw TooManyHits(num_hits);
+            throw TooLarge("hits of bounces", num_hits, num_hits * BytesPerHit);
     }
 
     /// Makes the rows of the hits, and frees these.
@@ -255,15 +194,14 @@ private:
     const Transfer& transfer_;
     const BounceSampler& sampler_;
     const BounceOptions& options_;
-    Alone alone_;
-    Team& reduction_;
+    const Work& work_;
+    bool is_planned_;
+    Progress progress_;
     /// [receivers of the part]
     std::vector<std::uint32_t> places_;
     std::vector<RayHits> hits_;
     /// Of the part, by their order in it.
     std::vector<Block> blocks_;
-    /// Of the part with the most.
-    std::size_t most_blocks_ = 0;
 };
 
 void require_options(const mesh::TriangleMesh& mesh, const Receivers& receivers,
@@ -287,36 +225,16 @@ void require_options(const mesh::TriangleMesh& mesh, const Receivers& receivers,
 
 } // namespace
 
-TooManyHits::TooManyHits(std::uint64_t hits)
-    : std::runtime_error(fmt::format("too many hits of bounces: {}", hits)), num_hits(hits) {}
-
 BounceSamples sample_bounces(const mesh::TriangleMesh& mesh, const Receivers& receivers,
                              const Transfer& transfer, const BounceProbes& probes,
-                             const RayScene& rays, const BounceOptions& options) {
+                             const RayScene& rays, const BounceOptions& options, const Work& work) {
     require_options(mesh, receivers, transfer, probes, options);
     const BounceSampler sampler(mesh, receivers, transfer, probes, rays, options);
-    BounceSamples samples = BouncePrecompute(receivers, transfer, sampler, options).run();
+    const bool is_planned = !probes.index.empty();
+    BounceSamples samples =
+        BouncePrecompute(receivers, transfer, sampler, options, work, is_planned).run();
     samples.open_parts.assign(probes.open_parts.begin(), probes.open_parts.end());
     return samples;
-}
-
-BounceMatrix precompute_bounces(const mesh::TriangleMesh& mesh, const Receivers& receivers,
-                                const Transfer& transfer, std::span<const ProbeRadiance> probes,
-                                const RayScene& rays, const BounceOptions& options,
-                                BounceStatistics* statistics) {
-    const auto start = std::chrono::steady_clock::now();
-    std::vector<float> open_parts;
-    for (const ProbeRadiance& probe : probes)
-        open_parts.push_back(probe[0]);
-    std::vector<BounceSamples> samples;
-    samples.push_back(sample_bounces(mesh, receivers, transfer,
-                                     {.open_parts = open_parts, .values = probes, .index = {}},
-                                     rays, options));
-    BounceMatrix result = join_bounces(receivers, transfer, std::move(samples), statistics);
-    if (statistics != nullptr)
-        statistics->seconds =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return result;
 }
 
 } // namespace relumine::prt

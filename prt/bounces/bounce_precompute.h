@@ -3,20 +3,16 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <span>
-#include <stdexcept>
-#include <stop_token>
 
 #include "mesh/triangle_mesh.h"
 #include "prt/bounces/bounce_matrix.h"
 #include "prt/bounces/bounce_samples.h"
-#include "prt/checkpoint.h"
 #include "prt/receivers/receivers.h"
-#include "prt/team.h"
 #include "prt/transfer/transfer.h"
 #include "prt/visibility/ray_scene.h"
+#include "prt/work.h"
 
 namespace relumine::prt {
 
@@ -27,6 +23,8 @@ struct BounceProbes {
     /// Of all receivers by place, or of a sample of them.
     std::span<const ProbeRadiance> values;
     /// [num_receivers] by place: which of `values` stands for each receiver. Empty: all are there.
+    /// Otherwise the part knows nothing of others: how many rays a receiver needs follows from the
+    /// receivers in its own tile.
     std::span<const std::uint32_t> index;
 
     [[nodiscard]] const ProbeRadiance& at(std::uint32_t place) const {
@@ -47,31 +45,13 @@ struct BounceOptions {
     bool two_sided = false;
     /// Lift of the rays' origins, as in PrecomputeOptions.
     float bias = 0.0f;
-    /// Rows that take more are refused, as soon as a first look tells.
+    /// Rows that take more are refused, as soon as a first look tells: TooLarge is thrown.
     std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
-    /// Where processes share the work: each has its part of the receivers. Null: this process does
-    /// it all. max_bytes is for each.
-    Team* reduction = nullptr;
-    /// Parts of a plan know nothing of each other: how many rays a receiver needs follows from the
-    /// receivers in its own tile.
-    bool is_planned = false;
-    /// Gets the finished blocks now and then, and gives back those of an earlier run. May be null.
-    Checkpoint* checkpoint = nullptr;
-    /// Polled a few times a second or more often.
-    std::stop_token stop = {};
-    /// Receives the fraction done in [0, 1]; one call at a time.
-    std::function<void(double)> on_progress = {};
 };
 
 /// Memory for each hit of a ray: in its receiver's samples, in the matrix, and in the file that is
 /// written.
 inline constexpr std::uint64_t BytesPerHit = 12;
-
-/// Thrown by precompute_bounces() when the rows would take more than max_bytes.
-struct TooManyHits : std::runtime_error {
-    explicit TooManyHits(std::uint64_t hits);
-    std::uint64_t num_hits;
-};
 
 /// Finds the emitters of each receiver, a vertex, or a pixel or texel before added vertices:
 /// cosine-distributed directions, without those in clusters that it sees whole, are traced to the
@@ -80,27 +60,17 @@ struct TooManyHits : std::runtime_error {
 /// A row's sum is the closed part of the hemisphere, exact to the transfer's tolerance: 1 - B under
 /// a white sky.
 ///
-/// Shape:   `probes` is [num_receivers] by place.
-/// Memory:  4 bytes per emitter and per similar receiver, some 100 to 400 bytes per receiver.
-/// Threads: parallel over blocks (TBB). A row depends on the receivers around it, not on threads,
-///          nor on a checkpoint that is taken up.
-/// Throws:  std::invalid_argument where sizes differ, there are no vertices of the mesh among the
-///          receivers, or options are out of range; TooManyHits; Cancelled.
-[[nodiscard]] BounceMatrix precompute_bounces(const mesh::TriangleMesh& mesh,
-                                              const Receivers& receivers, const Transfer& transfer,
-                                              std::span<const ProbeRadiance> probes,
-                                              const RayScene& rays, const BounceOptions& options,
-                                              BounceStatistics* statistics = nullptr);
-
-/// Traces the rays of a part's receivers, those of options.reduction. join_bounces() makes the
-/// matrix of all parts.
+/// Where processes share the work, `transfer` has the counts of the process's receivers, and order
+/// and normals of all. join_bounces() makes the matrix of all samples.
 ///
-/// transfer: has the counts of the part's receivers; order and normals are those of all.
-/// Result:   the same for any number of processes, and with is_planned for any number of parts.
-/// Throws:   as precompute_bounces().
+/// Memory:  4 bytes per emitter and per similar receiver, some 100 to 400 bytes per receiver.
+/// Threads: parallel over blocks (TBB). A row depends on the receivers around it, not on threads or
+///          on the number of processes or parts, nor on a checkpoint that is taken up.
+/// Throws:  std::invalid_argument where sizes differ, there are no vertices of the mesh among the
+///          receivers, or options are out of range; TooLarge; Cancelled.
 [[nodiscard]] BounceSamples sample_bounces(const mesh::TriangleMesh& mesh,
                                            const Receivers& receivers, const Transfer& transfer,
                                            const BounceProbes& probes, const RayScene& rays,
-                                           const BounceOptions& options);
+                                           const BounceOptions& options, const Work& work = {});
 
 } // namespace relumine::prt

@@ -17,6 +17,7 @@
 #include "prt/clusters/lattice.h"
 #include "prt/free_memory.h"
 #include "prt/receivers/receiver_order.h"
+#include "prt/transfer/cell_index.h"
 
 namespace relumine::prt {
 
@@ -61,52 +62,22 @@ std::uint64_t bytes_of(const LeafColumn& column, double scale) {
     return OverheadOfCluster + static_cast<std::uint64_t>(scale * static_cast<double>(bytes));
 }
 
-/// Returns a key for the depth-first order of cells of any level: by face, then along the Z curve.
-std::uint64_t depth_first_key(const Cell& cell) {
-    std::uint64_t key = static_cast<std::uint64_t>(cell.face);
-    for (std::uint32_t level = 0; level < MaxLevel; ++level) {
-        std::uint64_t child = 0;
-        if (level < cell.level) {
-            const std::uint32_t shift = cell.level - 1u - level;
-            child = (cell.x >> shift & 1u) | (cell.y >> shift & 1u) << 1u;
-        }
-        key = key << 2u | child;
-    }
-    return key;
-}
-
-Quadtree quadtree_of(const std::vector<Cell>& leaves) {
-    std::vector<bool> flags;
-    std::size_t next = 0;
-    const auto visit = [&](const auto& self, const Cell& cell) -> void {
-        const bool is_leaf = leaves[next] == cell;
-        flags.push_back(!is_leaf);
-        if (is_leaf)
-            ++next;
-        else
-            for (std::uint32_t i = 0; i < 4; ++i)
-                self(self, cell.child(i));
-    };
-    for (const cubemap::Face face : cubemap::AllFaces)
-        visit(visit, Cell{.face = face});
-    return Quadtree(flags);
-}
-
 } // namespace
 
 Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
-                       const PrecomputeOptions& options, const PrecomputeContext& context)
-    : options_(options), context_(context),
-      reduction_(options.reduction != nullptr ? *options.reduction : alone_),
-      order_(context.plan != nullptr ? context.plan->order : spatial_order(receivers)),
-      // One process must not leave the others waiting: look_up() asks all of them.
-      progress_(reduction_.has_others() ? std::stop_token() : options.stop, options.on_progress),
+                       const PrecomputeOptions& options, const Work& work,
+                       const PrecomputeContext& context)
+    : options_(options), context_(context), work_(work),
+      order_(context.given != nullptr ? context.given->order : spatial_order(receivers)),
+      progress_(work), steps_(
+                           work, CheckpointPart, [this] { return content(); },
+                           [this] { num_saved_ = clusters_.size(); }),
       max_level_(texel_level(options.face_resolution)),
       allowed_(allowed_squared_distance(options, receivers.size())), estimate_(max_level_) {
     ordered_normals_.reserve(order_.size());
     for (const std::uint32_t receiver : order_)
         ordered_normals_.push_back(receivers.normals[receiver]);
-    const std::vector<std::uint32_t> places = places_of(reduction_.part(), order_.size());
+    const std::vector<std::uint32_t> places = places_of(work.team.part(), order_.size());
     std::vector<glm::vec3> normals;
     normals.reserve(places.size());
     origins_.reserve(places.size());
@@ -121,26 +92,16 @@ Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
         static_cast<std::size_t>(options.plane_bytes / (num_words * sizeof(std::uint64_t)));
     planes_.emplace(origins_, normals_, blockers);
     columns_.emplace(origins_.size());
-    if (context.plan != nullptr)
-        for (const Cell& cell : context.plan->quadtree.leaves())
-            given_keys_.push_back(depth_first_key(cell));
 }
 
-/// Pushes all cells of the first level to be tested, depth first, so that siblings follow each
-/// other.
+/// Pushes the cells to begin with, depth first, so that siblings follow each other.
 void Clustering::start() {
-    std::uint32_t first_level = std::min(options_.min_level, max_level_);
-    if (context_.plan != nullptr)
-        for (const Cell& cell : context_.plan->quadtree.leaves())
-            first_level = std::min<std::uint32_t>(first_level, cell.level);
-    const auto push = [&](const auto& self, const Cell& cell) -> void {
-        if (cell.level == first_level)
-            return pending_.push(cell);
-        for (std::uint32_t i = 0; i < 4; ++i)
-            self(self, cell.child(i));
-    };
-    for (const cubemap::Face face : cubemap::AllFaces)
-        push(push, Cell{.face = face});
+    const std::uint32_t level = std::min(options_.min_level, max_level_);
+    const Quadtree first = context_.has_clusters
+                               ? context_.given->quadtree
+                               : Quadtree::of([=](const Cell& cell) { return cell.level < level; });
+    for (const Cell& cell : first.leaves())
+        pending_.push(cell);
 }
 
 void Clustering::resume(const Checkpoint::Saved& saved) {
@@ -156,10 +117,10 @@ void Clustering::resume(const Checkpoint::Saved& saved) {
     cells.insert(cells.end(), batch_.begin(), batch_.end());
     cells.insert(cells.end(), clusters_.begin(), clusters_.end());
     std::sort(cells.begin(), cells.end(),
-              [](const Cell& a, const Cell& b) { return depth_first_key(a) < depth_first_key(b); });
+              [](const Cell& a, const Cell& b) { return z_curve_key(a) < z_curve_key(b); });
     std::uint64_t next_key = 0;
     for (const Cell& cell : cells) {
-        if (cell.level > max_level_ || depth_first_key(cell) != next_key)
+        if (cell.level > max_level_ || z_curve_key(cell) != next_key)
             throw std::runtime_error("checkpoint: expected cells that cover the sphere");
         next_key += std::uint64_t{1} << (2 * (MaxLevel - cell.level));
     }
@@ -207,11 +168,11 @@ void Clustering::take_batch() {
 
 /// Returns the patches of a step on this process's receivers.
 std::uint64_t Clustering::patches_per_step() const {
-    if (context_.samples_per_step)
-        return *context_.samples_per_step / (order_.size() * DirectionPatch::Size);
+    if (work_.step_size)
+        return *work_.step_size / (order_.size() * DirectionPatch::Size);
     const std::size_t num_receivers =
-        std::max<std::size_t>(order_.size() / reduction_.part().count, 1);
-    return (reduction_.has_others() ? SharedSamplesPerThreadAndStep : SamplesPerThreadAndStep) *
+        std::max<std::size_t>(order_.size() / work_.team.part().count, 1);
+    return (work_.team.has_others() ? SharedSamplesPerThreadAndStep : SamplesPerThreadAndStep) *
            files::num_threads() / (num_receivers * DirectionPatch::Size);
 }
 
@@ -231,12 +192,10 @@ void Clustering::start_progress() {
 void Clustering::trace_batch() {
     start_progress();
     TraceSteps steps;
-    if (options_.checkpoint != nullptr || reduction_.has_others()) {
-        steps.patches_per_step = patches_per_step_;
-        steps.between = [this] {
-            look_up();
-        };
-    }
+    if (work_.has_steps())
+        steps = {.patches_per_step = patches_per_step_, .between = [this] {
+                     steps_.look_up();
+                 }};
     // A patch is at most four cells wide: the new points of four splits of siblings reach as far.
     const double patch_width = 4 * 2.0 * batch_.front().size();
     planes_->trace(
@@ -244,25 +203,12 @@ void Clustering::trace_batch() {
     most_planes_ = std::max(most_planes_, planes_->num_planes());
 }
 
-/// Whether the cell is one of the given clusters.
-bool Clustering::is_given(const Cell& cell) const {
-    const auto found =
-        std::lower_bound(given_keys_.begin(), given_keys_.end(), depth_first_key(cell));
-    return found != given_keys_.end() &&
-           context_.plan->quadtree
-                   .leaves()[static_cast<std::size_t>(found - given_keys_.begin())] == cell;
-}
-
 /// Returns for each cell how many levels of cells are expected below it: none if it is a cluster;
 /// the others are to be split.
 std::vector<std::uint8_t> Clustering::levels_below(std::span<const Cell> cells) {
     std::vector<std::uint8_t> levels(cells.size());
-    if (context_.plan != nullptr) {
-        std::transform(cells.begin(), cells.end(), levels.begin(), [this](const Cell& cell) {
-            return static_cast<std::uint8_t>(is_given(cell) ? 0 : 1);
-        });
+    if (context_.has_clusters)
         return levels;
-    }
     std::vector<std::int64_t> sums(cells.size() * SamplesPerCell);
     files::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
         progress_.poll();
@@ -271,7 +217,7 @@ std::vector<std::uint8_t> Clustering::levels_below(std::span<const Cell> cells) 
         const auto of_cell = squared_distances(normals_, planes_->samples_of(cells[i], false));
         std::copy(of_cell.begin(), of_cell.end(), sums.begin() + index_of(i * SamplesPerCell));
     });
-    reduction_.sum(sums);
+    work_.team.sum(sums);
     for (std::size_t i = 0; i < cells.size(); ++i) {
         if (is_single_texel(cells[i]))
             continue;
@@ -321,9 +267,10 @@ void Clustering::decide_batch() {
         const std::size_t num_waiting =
             batch_.size() - slice.size() + pending_.size() + 4 * (slice.size() - num_found);
         num_bytes += num_waiting * min_bytes;
-        num_bytes = largest_of_all(num_bytes > options_.max_column_bytes ? num_bytes : 0);
+        num_bytes =
+            largest_of_all(work_.team, num_bytes > options_.max_column_bytes ? num_bytes : 0);
         if (num_bytes != 0)
-            throw TooManyClusters(clusters_.size() + num_found + num_waiting, num_bytes);
+            throw TooLarge("clusters", clusters_.size() + num_found + num_waiting, num_bytes);
         for (std::size_t i = 0; i < slice.size(); ++i) {
             if (levels[i] == 0) {
                 add_cluster({slice[i], std::exchange(columns[i], {})});
@@ -334,35 +281,16 @@ void Clustering::decide_batch() {
         }
         batch_.erase(batch_.begin(), batch_.begin() + index_of(slice.size()));
         if (!batch_.empty())
-            look_up();
+            steps_.look_up();
     }
     planes_->keep_only(needed_points(pending_.cells()));
 }
 
-/// Returns the largest value of all processes.
-std::uint64_t Clustering::largest_of_all(std::uint64_t value) {
-    std::array<std::int64_t, 1> values = {static_cast<std::int64_t>(value)};
-    reduction_.max(values);
-    return static_cast<std::uint64_t>(values[0]);
-}
-
-/// Between two steps of the work: whether any process is to stop, and whether a checkpoint is due.
-void Clustering::look_up() {
-    if (largest_of_all(options_.stop.stop_requested() ? 1 : 0) != 0)
-        throw Cancelled();
-    if (options_.checkpoint != nullptr && options_.checkpoint->is_due())
-        save_checkpoint();
-}
-
-void Clustering::save_checkpoint() {
-    const auto start = std::chrono::steady_clock::now();
-    const std::vector<std::byte> record = num_saved_ == clusters_.size()
-                                              ? std::vector<std::byte>()
-                                              : clusters_record(clusters_, *columns_, num_saved_);
-    if (options_.checkpoint->save(CheckpointPart, record, work_state(batch_, pending_, *planes_)))
-        num_saved_ = clusters_.size();
-    seconds_saving_ +=
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+Steps::Content Clustering::content() const {
+    return {.record = num_saved_ == clusters_.size()
+                          ? std::vector<std::byte>()
+                          : clusters_record(clusters_, *columns_, num_saved_),
+            .state = work_state(batch_, pending_, *planes_)};
 }
 
 void Clustering::work() {
@@ -377,44 +305,28 @@ void Clustering::work() {
         estimate_.add(
             level, depths_,
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-        look_up();
+        steps_.look_up();
     }
 }
 
 Transfer Clustering::run(PrecomputeStatistics& statistics) {
-    Checkpoint* const checkpoint = options_.checkpoint;
-    Checkpoint::Saved saved;
-    if (checkpoint != nullptr)
-        saved = checkpoint->load(CheckpointPart, true);
+    Checkpoint::Saved saved = steps_.load(true);
     if (saved.state.empty())
         start();
     else
         resume(saved);
     saved = {};
-    patches_per_step_ = largest_of_all(patches_per_step());
-    try {
-        work();
-    } catch (const TooManyClusters&) {
-        if (checkpoint != nullptr)
-            save_checkpoint();
-        throw;
-    } catch (const Cancelled&) {
-        if (checkpoint != nullptr && checkpoint->is_worthwhile())
-            save_checkpoint();
-        throw;
-    }
-    if (checkpoint != nullptr && context_.more_follows && num_saved_ != clusters_.size() &&
-        checkpoint->is_worthwhile())
-        save_checkpoint();
+    patches_per_step_ = largest_of_all(work_.team, patches_per_step());
+    steps_.run([this] { work(); });
     std::array<std::int64_t, 1> num_rays = {static_cast<std::int64_t>(planes_->num_rays())};
-    reduction_.sum(num_rays);
+    work_.team.sum(num_rays);
     statistics.num_directions = planes_->num_directions();
     statistics.num_rays = static_cast<std::uint64_t>(num_rays[0]);
     statistics.num_own_rays = planes_->num_rays();
     statistics.column_bytes = column_bytes_;
     statistics.plane_bytes = most_planes_ * planes_->num_words() * sizeof(std::uint64_t);
     statistics.deepest_level = deepest_;
-    statistics.seconds_checkpoints = seconds_saving_;
+    statistics.seconds_checkpoints = steps_.seconds_saving();
     return result();
 }
 
@@ -424,12 +336,16 @@ Transfer Clustering::result() {
     std::vector<std::uint32_t> order(clusters_.size());
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) {
-        return depth_first_key(clusters_[a]) < depth_first_key(clusters_[b]);
+        return z_curve_key(clusters_[a]) < z_curve_key(clusters_[b]);
     });
     std::vector<Cell> leaves(order.size());
     std::transform(order.begin(), order.end(), leaves.begin(),
                    [this](std::uint32_t cluster) { return clusters_[cluster]; });
-    return {.quadtree = quadtree_of(leaves),
+    auto next = leaves.begin();
+    const auto is_split = [&](const Cell& cell) {
+        return *next == cell ? (++next, false) : true;
+    };
+    return {.quadtree = Quadtree::of(is_split),
             .order = std::move(order_),
             .normals = std::move(ordered_normals_),
             .counts = columns_->take(order)};

@@ -19,7 +19,7 @@
 #include "prt/clusters/work_estimate.h"
 #include "prt/precompute_context.h"
 #include "prt/precompute_options.h"
-#include "prt/progress.h"
+#include "prt/steps.h"
 
 namespace relumine::prt {
 
@@ -38,7 +38,8 @@ class Clustering {
 public:
     /// The arguments must outlive this object; precompute() has checked them.
     Clustering(const Receivers& receivers, const Blockers& blockers,
-               const PrecomputeOptions& options, const PrecomputeContext& context);
+               const PrecomputeOptions& options, const Work& work,
+               const PrecomputeContext& context);
 
     /// Does the work; call it once. Leaves the counts of the work in `statistics`.
     [[nodiscard]] Transfer run(PrecomputeStatistics& statistics);
@@ -51,14 +52,11 @@ private:
     void start_progress();
     void trace_batch();
     void decide_batch();
-    [[nodiscard]] std::uint64_t largest_of_all(std::uint64_t value);
-    void look_up();
-    void save_checkpoint();
+    [[nodiscard]] Steps::Content content() const;
     void add_cluster(const Cluster& cluster);
 
     [[nodiscard]] std::vector<LatticePoint> needed_points(const std::vector<Cell>& cells) const;
     [[nodiscard]] std::vector<std::uint8_t> levels_below(std::span<const Cell> cells);
-    [[nodiscard]] bool is_given(const Cell& cell) const;
     [[nodiscard]] LeafColumn column(const Cell& cell) const;
     [[nodiscard]] std::uint64_t patches_per_step() const;
     [[nodiscard]] bool is_single_texel(const Cell& cell) const { return cell.level == max_level_; }
@@ -66,17 +64,15 @@ private:
 
     const PrecomputeOptions& options_;
     const PrecomputeContext context_;
-    Alone alone_;
-    Team& reduction_;
+    const Work& work_;
     /// Of all receivers, as are the normals
     std::vector<std::uint32_t> order_;
     std::vector<glm::vec3> ordered_normals_;
-    /// depth_first_key() of the given clusters, ascending
-    std::vector<std::uint64_t> given_keys_;
     /// Of this process's receivers, as are the normals in arrays
     std::vector<glm::vec3> origins_;
     NormalArrays normals_;
     Progress progress_;
+    Steps steps_;
     /// The level whose cells are texels of a 6 x R x R environment.
     std::uint32_t max_level_;
     /// The limit on ||T_C - T_l||^2 for a cluster, T times pi.
@@ -97,7 +93,6 @@ private:
     /// Clusters in the checkpoint.
     std::size_t num_saved_ = 0;
     std::uint64_t column_bytes_ = 0;
-    double seconds_saving_ = 0.0;
     std::size_t most_planes_ = 0;
     /// The deepest level of any cluster.
     std::uint32_t deepest_ = 0;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "files/packed_parts.h"
+#include "prt/transfer/cell_index.h"
 
 namespace relumine::prt {
 
@@ -17,34 +18,23 @@ namespace {
 constexpr std::size_t ColumnsPerPart = 16;
 constexpr std::size_t PlanesPerPart = 16;
 
-/// Packs face, level, x and y into 3, 4, 14 and 14 bits.
-std::uint64_t number_of(const Cell& cell) {
-    return static_cast<std::uint64_t>(cell.face) << 32u |
-           static_cast<std::uint64_t>(cell.level) << 28u |
-           static_cast<std::uint64_t>(cell.x) << 14u | cell.y;
-}
-
-Cell cell_of(std::uint64_t number) {
-    const Cell cell{.face = static_cast<cubemap::Face>(number >> 32u),
-                    .level = static_cast<std::uint8_t>(number >> 28u & 15u),
-                    .x = static_cast<std::uint32_t>(number >> 14u & 0x3fffu),
-                    .y = static_cast<std::uint32_t>(number & 0x3fffu)};
-    if (number >> 32u >= cubemap::NumFaces || cell.level > MaxLevel || cell.x >> cell.level != 0 ||
-        cell.y >> cell.level != 0)
+Cell next_cell(files::ByteReader& reader) {
+    const auto index = reader.next<std::uint32_t>();
+    if (index >= num_cells_above(MaxLevel + 1))
         throw std::runtime_error("expected a cell of the cube");
-    return cell;
+    return cell_of_index(index);
 }
 
 void add_cells(files::ByteWriter& writer, const std::vector<Cell>& cells) {
     writer.add<std::uint64_t>(cells.size());
     for (const Cell& cell : cells)
-        writer.add(number_of(cell));
+        writer.add(cell_index(cell));
 }
 
 std::vector<Cell> next_cells(files::ByteReader& reader) {
     std::vector<Cell> cells;
-    for (const std::uint64_t number : reader.next_all<std::uint64_t>(reader.next<std::uint64_t>()))
-        cells.push_back(cell_of(number));
+    for (auto count = reader.next<std::uint64_t>(); count > 0; --count)
+        cells.push_back(next_cell(reader));
     return cells;
 }
 
@@ -58,7 +48,7 @@ std::vector<std::byte> clusters_record(std::span<const Cell> cells, const Column
         files::ByteWriter writer;
         for (std::size_t i = begin; i < std::min(begin + ColumnsPerPart, cells.size()); ++i) {
             const LeafColumn column = columns.column(i);
-            writer.add(number_of(cells[i]));
+            writer.add(cell_index(cells[i]));
             writer.add_all(std::span(column.visible));
             writer.add_all(std::span(column.mixed));
             writer.add_all(std::span(column.counts));
@@ -74,7 +64,7 @@ void read_clusters(std::span<const std::byte> record, std::size_t num_receivers,
     files::unpack(record, [&](std::span<const std::byte> part) {
         files::ByteReader reader(part);
         while (!reader.at_end()) {
-            Cluster cluster{.cell = cell_of(reader.next<std::uint64_t>()), .column = {}};
+            Cluster cluster{.cell = next_cell(reader), .column = {}};
             LeafColumn& column = cluster.column;
             column.visible = reader.next_all<std::uint64_t>(num_words);
             column.mixed = reader.next_all<std::uint64_t>(num_words);

@@ -8,7 +8,6 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <mutex>
 #include <numbers>
 #include <span>
 #include <stdexcept>
@@ -19,18 +18,16 @@
 
 #include "files/packed_parts.h"
 #include "files/parallel.h"
+#include "prt/clusters/dealt_tiles.h"
 #include "prt/free_memory.h"
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/lobe_refinement.h"
-#include "prt/precompute_options.h"
+#include "prt/steps.h"
 #include "prt/transfer/cell_index.h"
 
 namespace relumine::prt {
 
 namespace {
-
-/// Name of this part in a checkpoint.
-constexpr const char* GlossyPart = "highlights";
 
 /// Work between two looks at the checkpoint: about a second. A block takes some milliseconds.
 constexpr std::size_t BlocksPerThreadAndStep = 256;
@@ -39,17 +36,10 @@ constexpr std::size_t BlocksPerThreadAndStep = 256;
 /// good to some percent.
 constexpr std::size_t TrialBlocks = 256;
 
-/// One block's entries of one lobe.
-struct BlockEntries {
-    std::vector<std::uint32_t> cells;
-    std::vector<float> scales;
-    std::vector<std::uint8_t> values;
-};
-
 /// Quantises a lobe. Bytes hold the square root: so a highlight's foot, shared by many directions,
 /// keeps its digits beside the peak.
-BlockEntries quantised(const LobeCut& cut) {
-    BlockEntries entries;
+LobeCuts quantised(const LobeCut& cut) {
+    LobeCuts entries;
     entries.cells.reserve(cut.cells.size());
     entries.scales.reserve(cut.cells.size());
     entries.values.reserve(cut.cells.size() * BlockSize);
@@ -61,41 +51,52 @@ BlockEntries quantised(const LobeCut& cut) {
             entries.values.push_back(
                 static_cast<std::uint8_t>(std::lround(255.0f * std::sqrt(mean / largest))));
     }
+    entries.begin.push_back(entries.cells.size());
     return entries;
 }
 
 /// Writes one block for a checkpoint.
-void add(files::ByteWriter& writer, const BlockEntries& block) {
+void add(files::ByteWriter& writer, const LobeCuts& block) {
     writer.add<std::uint64_t>(block.cells.size());
     writer.add_all(std::span(block.cells));
     writer.add_all(std::span(block.scales));
     writer.add_all(std::span(block.values));
 }
 
-BlockEntries next_entries(files::ByteReader& reader) {
+LobeCuts next_entries(files::ByteReader& reader) {
     const auto count = static_cast<std::size_t>(reader.next<std::uint64_t>());
-    BlockEntries block;
+    LobeCuts block{.begin = {0, count}};
     block.cells = reader.next_all<std::uint32_t>(count);
     block.scales = reader.next_all<float>(count);
     block.values = reader.next_all<std::uint8_t>(count * BlockSize);
     return block;
 }
 
-/// Joins the blocks. Frees each block's arrays on the way.
-LobeCuts joined(std::vector<BlockEntries>&& blocks) {
-    LobeCuts cuts;
-    cuts.begin.push_back(0);
-    for (const BlockEntries& block : blocks)
-        cuts.begin.push_back(cuts.begin.back() + block.cells.size());
-    cuts.cells.reserve(cuts.begin.back());
-    cuts.scales.reserve(cuts.begin.back());
-    cuts.values.reserve(cuts.begin.back() * BlockSize);
-    for (BlockEntries& block : blocks) {
-        const BlockEntries moved = std::move(block);
-        cuts.cells.insert(cuts.cells.end(), moved.cells.begin(), moved.cells.end());
-        cuts.scales.insert(cuts.scales.end(), moved.scales.begin(), moved.scales.end());
-        cuts.values.insert(cuts.values.end(), moved.values.begin(), moved.values.end());
+/// A block's entries of all lobes, and what they took.
+struct FinishedBlock {
+    std::array<LobeCuts, NumGlossyLobes> lobes;
+    std::uint64_t num_rays = 0;
+
+    [[nodiscard]] std::uint64_t num_entries() const {
+        std::uint64_t count = 0;
+        for (const LobeCuts& of_lobe : lobes)
+            count += of_lobe.num_entries();
+        return count;
     }
+};
+
+/// Joins the blocks' entries of a lobe. Frees each block's arrays on the way.
+LobeCuts joined(std::span<FinishedBlock> blocks, std::size_t lobe) {
+    std::size_t num_entries = 0;
+    for (const FinishedBlock& block : blocks)
+        num_entries += block.lobes[lobe].num_entries();
+    LobeCuts cuts;
+    cuts.begin.reserve(blocks.size() + 1);
+    cuts.cells.reserve(num_entries);
+    cuts.scales.reserve(num_entries);
+    cuts.values.reserve(num_entries * BlockSize);
+    for (FinishedBlock& block : blocks)
+        cuts.append(std::exchange(block.lobes[lobe], {}), 0, 1);
     return cuts;
 }
 
@@ -119,51 +120,39 @@ std::uint32_t deepest_level(std::uint32_t face_resolution) {
 class GlossyPrecompute {
 public:
     GlossyPrecompute(const Receivers& receivers, const Blockers& blockers, const Transfer& transfer,
-                     const GlossyOptions& options)
+                     const GlossyOptions& options, const Work& work)
         : receivers_(receivers), blockers_(blockers), transfer_(transfer), options_(options),
-          reduction_(options.reduction != nullptr ? *options.reduction : alone_) {}
+          work_(work), places_(places_of(work.team.part(), transfer.num_receivers())),
+          blocks_(transfer.counts.num_blocks()) {}
 
-    /// `blocks_per_step`: work between two looks at the checkpoint.
-    GlossyTransfer run(std::size_t blocks_per_step, GlossyStatistics& statistics);
+    GlossyTransfer run(GlossyStatistics& statistics);
     std::uint64_t estimate();
 
 private:
-    using EntriesOfBlock = std::array<BlockEntries, NumGlossyLobes>;
-
     BlockToRefine block_at(std::size_t block, std::vector<glm::vec3>& origins) const;
-    EntriesOfBlock refine(std::size_t block);
-    void keep(EntriesOfBlock&& block);
-    void take_up();
-    void save_checkpoint();
-    bool something_is_left();
-    void work(std::size_t blocks_per_step);
+    FinishedBlock refine(std::size_t block) const;
+    void do_all_blocks();
 
     const Receivers& receivers_;
     const Blockers& blockers_;
     const Transfer& transfer_;
     const GlossyOptions& options_;
-    Alone alone_;
-    Team& reduction_;
-    /// Finished blocks, from the first on.
-    std::vector<EntriesOfBlock> blocks_;
-    /// Entries of the finished blocks.
-    std::uint64_t num_entries_ = 0;
-    /// Finished blocks in the checkpoint.
-    std::size_t num_saved_ = 0;
-    std::uint64_t rays_saved_ = 0;
-    std::atomic<std::uint64_t> num_rays_ = 0;
+    const Work& work_;
+    /// [receivers of the part]
+    std::vector<std::uint32_t> places_;
+    std::vector<FinishedBlock> blocks_;
 };
 
 BlockToRefine GlossyPrecompute::block_at(std::size_t block, std::vector<glm::vec3>& origins) const {
     BlockToRefine result{.block = block};
     const std::size_t begin = block * BlockSize;
-    const std::size_t end = std::min(begin + BlockSize, transfer_.num_receivers());
-    for (std::size_t place = begin; place < end; ++place) {
-        const std::uint32_t receiver = transfer_.order[place];
+    const std::size_t end = std::min(begin + BlockSize, places_.size());
+    for (std::size_t i = begin; i < end; ++i) {
+        const std::uint32_t receiver = transfer_.order[places_[i]];
         const glm::vec3& normal = receivers_.normals[receiver];
         const glm::vec3& to_eye = receivers_.to_eye[receiver];
         const Surface& surface = receivers_.surfaces[receiver];
-        const std::size_t lane = place - begin;
+        const std::size_t lane = i - begin;
         result.surfaces.set(lane, surface, normal, to_eye);
         result.mirror[lane] = 2.0f * result.surfaces.normal_dot_eye[lane] * normal - to_eye;
         result.narrowness[lane] =
@@ -174,16 +163,19 @@ BlockToRefine GlossyPrecompute::block_at(std::size_t block, std::vector<glm::vec
     return result;
 }
 
-GlossyPrecompute::EntriesOfBlock GlossyPrecompute::refine(std::size_t block) {
+FinishedBlock GlossyPrecompute::refine(std::size_t block) const {
     std::vector<glm::vec3> origins;
     const BlockToRefine to_refine = block_at(block, origins);
-    EntriesOfBlock entries;
+    FinishedBlock finished;
     RefinementLimits limits{.tolerance = tightened(options_.tolerance, to_refine),
                             .max_level = deepest_level(options_.face_resolution)};
     for (const GlossyLobe lobe :
          {GlossyLobe::Specular, GlossyLobe::SpecularGrazing, GlossyLobe::DiffuseGrazing}) {
-        if (!to_refine.surfaces.has(lobe))
+        LobeCuts& entries = finished.lobes[static_cast<std::size_t>(lobe)];
+        if (!to_refine.surfaces.has(lobe)) {
+            entries.begin.push_back(0);
             continue;
+        }
         // The integral of (n.w / pi)^2 over the hemisphere is 2 / (3 pi).
         if (lobe == GlossyLobe::DiffuseGrazing)
             limits.reference_power =
@@ -192,153 +184,70 @@ GlossyPrecompute::EntriesOfBlock GlossyPrecompute::refine(std::size_t block) {
         const LobeCut cut = refine_lobe(to_refine, lobe, transfer_, blockers_, limits);
         if (lobe == GlossyLobe::Specular)
             limits.reference_power = cut.power;
-        entries[static_cast<std::size_t>(lobe)] = quantised(cut);
-        num_rays_ += cut.num_rays;
+        entries = quantised(cut);
+        finished.num_rays += cut.num_rays;
     }
-    return entries;
+    return finished;
 }
 
-std::uint64_t num_entries(const std::array<BlockEntries, NumGlossyLobes>& block) {
-    std::uint64_t count = 0;
-    for (const BlockEntries& of_lobe : block)
-        count += of_lobe.cells.size();
-    return count;
+void GlossyPrecompute::do_all_blocks() {
+    std::atomic<std::uint64_t> num_entries = 0;
+    BlockWork blocks{.part = "highlights",
+                     .num_blocks = blocks_.size(),
+                     .most_blocks = most_blocks(work_.team.part(), transfer_.num_receivers()),
+                     .blocks_per_step = BlocksPerThreadAndStep * files::num_threads()};
+    blocks.work = [&](std::size_t block) {
+        blocks_[block] = refine(block);
+        num_entries += blocks_[block].num_entries();
+    };
+    blocks.write = [this](std::size_t block, files::ByteWriter& writer) {
+        writer.add(blocks_[block].num_rays);
+        for (const LobeCuts& of_lobe : blocks_[block].lobes)
+            add(writer, of_lobe);
+    };
+    blocks.read = [&](std::size_t block, files::ByteReader& reader) {
+        blocks_[block].num_rays = reader.next<std::uint64_t>();
+        for (LobeCuts& of_lobe : blocks_[block].lobes)
+            of_lobe = next_entries(reader);
+        num_entries += blocks_[block].num_entries();
+    };
+    blocks.check = [&] {
+        const std::uint64_t found = num_entries;
+        const bool is_too_much = found * BytesPerEntry > options_.max_bytes;
+        if (const auto most = largest_of_all(work_.team, is_too_much ? found : 0); most != 0)
+            throw TooLarge("cells of highlights", most, most * BytesPerEntry);
+    };
+    Progress progress(work_);
+    progress.start_stage(0.0, 1.0);
+    do_blocks(work_, blocks, progress);
 }
 
-void GlossyPrecompute::keep(EntriesOfBlock&& block) {
-    num_entries_ += num_entries(block);
-    blocks_.push_back(std::move(block));
-}
-
-/// Takes up the blocks of an earlier run. A record has the number of its blocks' rays, then the
-/// blocks.
-void GlossyPrecompute::take_up() {
-    for (const std::vector<std::byte>& record :
-         options_.checkpoint->load(GlossyPart, false).records)
-        files::unpack(record, [this](std::span<const std::byte> part) {
-            files::ByteReader reader(part);
-            num_rays_ += reader.next<std::uint64_t>();
-            while (!reader.at_end()) {
-                EntriesOfBlock block;
-                for (BlockEntries& of_lobe : block)
-                    of_lobe = next_entries(reader);
-                keep(std::move(block));
-            }
-        });
-    if (blocks_.size() > transfer_.counts.num_blocks())
-        throw std::runtime_error("checkpoint: expected fewer blocks");
-    num_saved_ = blocks_.size();
-    rays_saved_ = num_rays_;
-}
-
-void GlossyPrecompute::save_checkpoint() {
-    const std::vector<std::byte> record = files::pack(1, [this](std::size_t) {
-        files::ByteWriter writer;
-        writer.add<std::uint64_t>(num_rays_ - rays_saved_);
-        for (std::size_t i = num_saved_; i < blocks_.size(); ++i)
-            for (const BlockEntries& of_lobe : blocks_[i])
-                add(writer, of_lobe);
-        return writer.take();
-    });
-    if (!options_.checkpoint->save(GlossyPart, record, {}))
-        return;
-    num_saved_ = blocks_.size();
-    rays_saved_ = num_rays_;
-}
-
-/// Whether a process has blocks left. Throws where a process must stop or has too many entries.
-bool GlossyPrecompute::something_is_left() {
-    const bool is_too_much = num_entries_ * BytesPerEntry > options_.max_bytes;
-    std::array<std::int64_t, 3> largest = {
-        static_cast<std::int64_t>(transfer_.counts.num_blocks() - blocks_.size()),
-        static_cast<std::int64_t>(is_too_much ? num_entries_ : 0),
-        options_.stop.stop_requested() ? 1 : 0};
-    reduction_.max(largest);
-    if (largest[1] != 0)
-        throw TooManyEntries(static_cast<std::uint64_t>(largest[1]));
-    if (largest[0] != 0 && largest[2] != 0)
-        throw Cancelled();
-    return largest[0] != 0;
-}
-
-void GlossyPrecompute::work(std::size_t blocks_per_step) {
-    const std::size_t num_blocks = transfer_.counts.num_blocks();
-    std::mutex mutex;
-    std::size_t num_done = blocks_.size();
-    while (something_is_left()) {
-        const std::size_t begin = blocks_.size();
-        std::vector<EntriesOfBlock> step(std::min(blocks_per_step, num_blocks - begin));
-        const std::uint64_t rays_before = num_rays_;
-        try {
-            files::parallel_for(std::size_t{0}, step.size(), [&](std::size_t i) {
-                // One process must not leave the others waiting.
-                if (!reduction_.has_others() && options_.stop.stop_requested())
-                    throw Cancelled();
-                step[i] = refine(begin + i);
-                const std::scoped_lock lock(mutex);
-                ++num_done;
-                if (options_.on_progress)
-                    options_.on_progress(static_cast<double>(num_done) /
-                                         static_cast<double>(num_blocks));
-            });
-        } catch (...) {
-            num_rays_ = rays_before;
-            throw;
-        }
-        for (EntriesOfBlock& block : step)
-            keep(std::move(block));
-        if (options_.checkpoint != nullptr && options_.checkpoint->is_due())
-            save_checkpoint();
-    }
-}
-
-GlossyTransfer GlossyPrecompute::run(std::size_t blocks_per_step, GlossyStatistics& statistics) {
-    const std::size_t num_blocks = transfer_.counts.num_blocks();
-    if (options_.checkpoint != nullptr)
-        take_up();
-    try {
-        work(blocks_per_step);
-    } catch (const TooManyEntries&) {
-        if (options_.checkpoint != nullptr)
-            save_checkpoint();
-        throw;
-    } catch (const Cancelled&) {
-        if (options_.checkpoint != nullptr && options_.checkpoint->is_worthwhile() &&
-            (reduction_.has_others() || num_saved_ != blocks_.size()))
-            save_checkpoint();
-        throw;
-    }
-    std::array<std::vector<BlockEntries>, NumGlossyLobes> entries;
+GlossyTransfer GlossyPrecompute::run(GlossyStatistics& statistics) {
+    do_all_blocks();
+    GlossyTransfer glossy;
+    std::array<std::int64_t, 2> sums{};
+    for (const FinishedBlock& block : blocks_)
+        sums[0] += static_cast<std::int64_t>(block.num_rays);
     for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {
-        entries[lobe].resize(num_blocks);
-        for (std::size_t block = 0; block < num_blocks; ++block)
-            entries[lobe][block] = std::move(blocks_[block][lobe]);
+        glossy.lobes[lobe] = joined(blocks_, lobe);
+        sums[1] += static_cast<std::int64_t>(glossy.lobes[lobe].num_entries());
     }
     blocks_ = {};
-
-    GlossyTransfer glossy;
-    for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {
-        glossy.lobes[lobe] = joined(std::move(entries[lobe]));
-        statistics.num_entries += glossy.lobes[lobe].num_entries();
-    }
-    entries = {};
     return_free_memory();
-    std::array<std::int64_t, 2> sums = {static_cast<std::int64_t>(num_rays_.load()),
-                                        static_cast<std::int64_t>(statistics.num_entries)};
-    reduction_.sum(sums);
+    work_.team.sum(sums);
     statistics.num_rays = static_cast<std::uint64_t>(sums[0]);
     statistics.num_entries = static_cast<std::uint64_t>(sums[1]);
     return glossy;
 }
 
 std::uint64_t GlossyPrecompute::estimate() {
-    const std::size_t num_blocks = transfer_.counts.num_blocks();
+    const std::size_t num_blocks = blocks_.size();
     const std::size_t num_trials = std::min(num_blocks, TrialBlocks);
     std::atomic<std::uint64_t> count = 0;
     files::parallel_for(std::size_t{0}, num_trials, [&](std::size_t i) {
-        if (options_.stop.stop_requested())
+        if (work_.stop.stop_requested())
             throw Cancelled();
-        count += num_entries(refine((2 * i + 1) * num_blocks / (2 * num_trials)));
+        count += refine((2 * i + 1) * num_blocks / (2 * num_trials)).num_entries();
     });
     return static_cast<std::uint64_t>(static_cast<double>(count) * static_cast<double>(num_blocks) /
                                       static_cast<double>(num_trials));
@@ -372,38 +281,25 @@ float narrowest_roughness(std::uint32_t face_resolution) {
     return std::sqrt(std::max(cell, ggx_alpha(0.0f)));
 }
 
-TooManyEntries::TooManyEntries(std::uint64_t entries)
-    : std::runtime_error(fmt::format("too many cells of highlights: {}", entries)),
-      num_entries(entries) {}
-
 std::uint64_t estimate_glossy_entries(const Receivers& receivers, const Blockers& blockers,
-                                      const Transfer& transfer, const GlossyOptions& options) {
+                                      const Transfer& transfer, const GlossyOptions& options,
+                                      const Work& work) {
     check(receivers, transfer, options);
-    return GlossyPrecompute(receivers, blockers, transfer, options).estimate();
+    return GlossyPrecompute(receivers, blockers, transfer, options, work).estimate();
 }
 
 GlossyTransfer precompute_glossy(const Receivers& receivers, const Blockers& blockers,
                                  const Transfer& transfer, const GlossyOptions& options,
-                                 GlossyStatistics* statistics) {
+                                 const Work& work, GlossyStatistics* statistics) {
     check(receivers, transfer, options);
     const auto start = std::chrono::steady_clock::now();
     GlossyStatistics local;
-    const std::size_t blocks_per_step = BlocksPerThreadAndStep * files::num_threads();
     GlossyTransfer glossy =
-        GlossyPrecompute(receivers, blockers, transfer, options).run(blocks_per_step, local);
+        GlossyPrecompute(receivers, blockers, transfer, options, work).run(local);
     local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (statistics != nullptr)
         *statistics = local;
     return glossy;
-}
-
-GlossyTransfer precompute_glossy_in_steps(const Receivers& receivers, const Blockers& blockers,
-                                          const Transfer& transfer, const GlossyOptions& options,
-                                          std::size_t blocks_per_step) {
-    check(receivers, transfer, options);
-    GlossyStatistics statistics;
-    return GlossyPrecompute(receivers, blockers, transfer, options)
-        .run(blocks_per_step, statistics);
 }
 
 } // namespace relumine::prt

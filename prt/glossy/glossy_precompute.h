@@ -4,16 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
-#include <stdexcept>
-#include <stop_token>
 
-#include "prt/checkpoint.h"
 #include "prt/receivers/receivers.h"
-#include "prt/team.h"
+#include "prt/transfer/glossy_transfer.h"
 #include "prt/transfer/transfer.h"
 #include "prt/visibility/blockers.h"
+#include "prt/work.h"
 
 namespace relumine::prt {
 
@@ -30,18 +27,9 @@ struct GlossyOptions {
     std::uint32_t face_resolution = 1024;
     /// As in PrecomputeOptions.
     float bias = 0.0f;
-    /// The limit on all blocks' entries, BytesPerEntry each. Beyond it TooManyEntries is thrown.
+    /// The limit on all blocks' entries, BytesPerEntry each. Beyond it TooLarge is thrown. For
+    /// each of the processes that share the work.
     std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
-    /// Where processes share the work, each gives its own receivers and their transfer: blocks
-    /// depend on nothing else. What stops one stops all, and checkpoints are saved together. May be
-    /// null.
-    Team* reduction = nullptr;
-    /// Stores finished blocks now and then, and gives back the blocks of an earlier run. May be
-    /// null.
-    Checkpoint* checkpoint = nullptr;
-    std::stop_token stop = {};
-    /// Receives the fraction done, in [0, 1]; one call at a time.
-    std::function<void(double)> on_progress = {};
 };
 
 /// A cell's index, its scale and 16 values.
@@ -55,13 +43,6 @@ struct GlossyStatistics {
     double seconds = 0.0;
 };
 
-/// Thrown by precompute_glossy() when the entries take more than max_bytes. It leaves a checkpoint.
-struct TooManyEntries : std::runtime_error {
-    explicit TooManyEntries(std::uint64_t entries);
-    /// A lower bound.
-    std::uint64_t num_entries;
-};
-
 /// Whether there is a glossy part to compute: directions to the eye, and a receiver with a
 /// highlight.
 [[nodiscard]] bool has_highlights(const Receivers& receivers);
@@ -72,7 +53,9 @@ struct TooManyEntries : std::runtime_error {
 [[nodiscard]] float narrowest_roughness(std::uint32_t face_resolution);
 
 /// Returns the cuts of all blocks, for receivers with to_eye and surfaces. set_surfaces() then
-/// gives the transfer what relighting needs of the receivers.
+/// gives the transfer what relighting needs of the receivers. Where processes share the work,
+/// `transfer` has the counts of the process's receivers, order and normals of all, and the result
+/// is for the process's receivers.
 ///
 /// Each block refines the cell with the largest error first, nine samples to a cell [JN, Section
 /// 4.1], T with the BRDF [JN, Eq. 3]. Where the transfer's counts say that a receiver sees all of a
@@ -81,10 +64,11 @@ struct TooManyEntries : std::runtime_error {
 /// Threads: parallel over blocks (TBB). The same bits for any number of threads, with or without a
 ///          checkpoint taken up.
 /// Throws:  std::invalid_argument for options out of range or receivers that do not fit the
-///          transfer; Cancelled when stopped; TooManyEntries.
+///          transfer; Cancelled when stopped; TooLarge.
 [[nodiscard]] GlossyTransfer precompute_glossy(const Receivers& receivers, const Blockers& blockers,
                                                const Transfer& transfer,
                                                const GlossyOptions& options = {},
+                                               const Work& work = {},
                                                GlossyStatistics* statistics = nullptr);
 
 /// Estimates the number of entries from some hundred blocks.
@@ -93,14 +77,7 @@ struct TooManyEntries : std::runtime_error {
 [[nodiscard]] std::uint64_t estimate_glossy_entries(const Receivers& receivers,
                                                     const Blockers& blockers,
                                                     const Transfer& transfer,
-                                                    const GlossyOptions& options);
-
-/// Does what precompute_glossy() does, and looks at the checkpoint after every `blocks_per_step`
-/// blocks. For tests.
-[[nodiscard]] GlossyTransfer precompute_glossy_in_steps(const Receivers& receivers,
-                                                        const Blockers& blockers,
-                                                        const Transfer& transfer,
-                                                        const GlossyOptions& options,
-                                                        std::size_t blocks_per_step);
+                                                    const GlossyOptions& options,
+                                                    const Work& work = {});
 
 } // namespace relumine::prt

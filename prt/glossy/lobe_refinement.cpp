@@ -72,10 +72,6 @@ struct Node {
     Floats mean{};
 };
 
-std::uint64_t z_curve_key(const Cell& cell) {
-    return std::uint64_t{place_in_level(cell)} << 2u * (MaxLevel - cell.level);
-}
-
 class LobeRefiner {
 public:
     LobeRefiner(const BlockToRefine& block, GlossyLobe lobe, const Transfer& transfer,

@@ -1,7 +1,7 @@
 #include "prt/parts/part_file.h"
 
+#include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -13,6 +13,7 @@
 #include "files/hash.h"
 #include "files/json.h"
 #include "prt/arithmetic.h"
+#include "prt/clusters/dealt_tiles.h"
 #include "prt/parts/part_list.h"
 #include "prt/scene/bounce_sections.h"
 #include "prt/scene/count_sections.h"
@@ -33,10 +34,7 @@ std::vector<std::byte> text_section(const files::Json& json) {
 /// A part as its file has it.
 struct StoredPart {
     SectionReader reader;
-    Part part = {};
-    /// The hash of the plan
-    std::string whole = {};
-    std::uint32_t num_receivers = 0;
+    PartHead head = {};
 };
 
 StoredPart read_part(const std::filesystem::path& path) {
@@ -44,22 +42,12 @@ StoredPart read_part(const std::filesystem::path& path) {
     if (!stored.reader.has("part"))
         throw std::runtime_error(fmt::format("{}: expected a part, got {}", path.string(),
                                              stored.reader.has("plan") ? "a plan" : "a scene"));
-    const files::Json json = stored.reader.json("part");
-    try {
-        stored.part = {.index = natural(json.at("index")), .count = natural(json.at("count"))};
-        stored.whole = json.at("plan").string();
-        stored.num_receivers = natural(json.at("receivers"));
-        if (stored.part.index >= stored.part.count || stored.part.count > MaxParts)
-            throw std::out_of_range("expected an index below the count");
-    } catch (const std::exception&) {
-        stored.reader.fail("part", "JSON with the place of the part");
-    }
+    stored.head = read_head(stored.reader, "part", "plan");
     return stored;
 }
 
 /// Parts of other processors would make a scene that none of them makes alone.
-void check_processor(const SectionReader& reader) {
-    const files::Json json = reader.json("plan");
+void check_processor(const SectionReader& reader, const files::Json& json) {
     std::string planned;
     try {
         planned = json.at("processor").string();
@@ -72,10 +60,10 @@ void check_processor(const SectionReader& reader) {
             reader.path().string(), arithmetic(), planned));
 }
 
-/// Of a plan: the JSON has the tolerance.
-std::optional<PlannedBounces> planned_bounces(const SectionReader& reader) {
-    const files::Json json = reader.json("plan");
-    if (!json.find("bounce_tolerance"))
+/// The JSON of a plan has the tolerance of its bounces.
+std::optional<PlannedBounces> planned_bounces(const SectionReader& reader,
+                                              const files::Json& json) {
+    if (json.find("bounce_tolerance") == nullptr)
         return std::nullopt;
     PlannedBounces bounces;
     try {
@@ -93,34 +81,68 @@ std::optional<PlannedBounces> planned_bounces(const SectionReader& reader) {
     return bounces;
 }
 
-PartLight light_of(const StoredPart& stored, std::size_t num_leaves, std::size_t num_receivers) {
-    const SectionReader& reader = stored.reader;
+/// `path` is for messages.
+NewSections sections_of(const std::filesystem::path& path, const Plan& plan) {
+    if (plan.scene.transfer.glossy || plan.scene.bounces)
+        throw std::invalid_argument(
+            fmt::format("{}: expected a scene without light", path.string()));
+    NewSections sections = sections_without_light(path, plan.scene);
+    files::Json json = files::Json::Object{};
+    json.set("processor", arithmetic());
+    if (plan.has_clusters)
+        json.set("clusters", plan.scene.transfer.num_clusters());
+    if (plan.bounces) {
+        json.set("bounce_tolerance", plan.bounces->tolerance);
+        sections["plan_probes"] = SectionContent::view(plan.bounces->probes);
+    }
+    sections["plan"] = text_section(json);
+    return sections;
+}
+
+Plan plan_from(const std::filesystem::path& path, Sections&& sections) {
+    Sections own = {{"plan", sections["plan"]}};
+    if (const auto probes = sections.find("plan_probes"); probes != sections.end())
+        own.insert(sections.extract(probes));
+    const SectionReader reader(path, std::move(own));
+    const files::Json json = reader.json("plan");
+    check_processor(reader, json);
+    Plan plan{.scene = plan_of(path, std::move(sections)),
+              .bounces = planned_bounces(reader, json),
+              .has_clusters = json.find("clusters") != nullptr};
+    if (plan.bounces && plan.has_clusters &&
+        plan.bounces->probes.size() != num_sampled_receivers(plan.scene.transfer.num_receivers()))
+        reader.fail("plan_probes", "the light of a sample of the receivers");
+    return plan;
+}
+
+void add_light(NewSections& sections, const PartLight& light) {
+    add_counts(sections, light.counts);
+    if (light.glossy)
+        add_glossy_sections(sections, *light.glossy);
+    if (light.bounces)
+        add_bounce_samples(sections, *light.bounces);
+}
+
+PartLight light_of(const SectionReader& reader, std::size_t num_own, const Transfer& transfer) {
     PartLight light;
     VisibleCounts& counts = light.counts;
-    counts.num_receivers = stored.num_receivers;
-    counts.num_leaves = num_leaves;
+    counts.num_receivers = num_own;
+    counts.num_leaves = transfer.num_clusters();
     read_counts(reader, counts);
     if (has_glossy(reader))
         light.glossy = read_glossy(reader, counts.num_blocks());
-    light.bounces = read_bounce_samples(reader, counts.num_receivers, num_receivers);
+    light.bounces = read_bounce_samples(reader, num_own, transfer.num_receivers());
     return light;
 }
 
+/// What concerns the colours of a mesh. They are in the receivers' surfaces already.
+constexpr std::array<const char*, 6> ColorSections = {"colors", "uvs",         "materials",
+                                                      "images", "t_materials", "corner_uvs"};
+
 } // namespace
 
-std::uint64_t save_plan(const std::filesystem::path& path, const Scene& scene,
-                        const std::optional<PlannedBounces>& bounces) {
-    if (scene.transfer.glossy || scene.bounces)
-        throw std::invalid_argument(
-            fmt::format("{}: expected a scene without light", path.string()));
-    NewSections sections = sections_without_light(path, scene);
-    files::Json json = {{"clusters", scene.transfer.num_clusters()}, {"processor", arithmetic()}};
-    if (bounces) {
-        json.set("bounce_tolerance", bounces->tolerance);
-        sections["plan_probes"] = SectionContent::view(bounces->probes);
-    }
-    sections["plan"] = text_section(json);
-    return write_sections(path, sections);
+std::uint64_t save_plan(const std::filesystem::path& path, const Plan& plan) {
+    return write_sections(path, sections_of(path, plan));
 }
 
 Plan load_plan(const std::filesystem::path& path) {
@@ -129,19 +151,26 @@ Plan load_plan(const std::filesystem::path& path) {
         throw std::runtime_error(
             fmt::format("{}: expected a plan, got {}", path.string(),
                         sections.contains("part") ? "a part of a scene" : "a scene"));
-    Sections own = {{"plan", sections["plan"]}};
-    if (const auto probes = sections.find("plan_probes"); probes != sections.end())
-        own.insert(sections.extract(probes));
-    const SectionReader reader(path, std::move(own));
-    check_processor(reader);
-    std::optional<PlannedBounces> bounces = planned_bounces(reader);
-    Plan plan{.scene = plan_of(path, std::move(sections)),
-              .bounces = std::move(bounces),
-              .hash = files::file_hash(path)};
-    if (plan.bounces &&
-        plan.bounces->probes.size() != num_sampled_receivers(plan.scene.transfer.num_receivers()))
-        reader.fail("plan_probes", "the light of a sample of the receivers");
+    Plan plan = plan_from(path, std::move(sections));
+    if (!plan.has_clusters)
+        throw std::runtime_error(fmt::format("{}: expected a plan with clusters", path.string()));
+    plan.hash = files::file_hash(path);
     return plan;
+}
+
+void share_plan(Team& team, Plan& plan) {
+    if (!team.has_others())
+        return;
+    std::vector<std::byte> bytes;
+    if (team.is_first()) {
+        NewSections sections = sections_of("plan", plan);
+        for (const char* name : ColorSections)
+            sections.erase(name);
+        bytes = packed_sections(sections);
+    }
+    bytes = team.broadcast(std::move(bytes));
+    if (!team.is_first())
+        plan = plan_from("plan", unpacked_sections(bytes));
 }
 
 std::uint64_t save_part(const std::filesystem::path& path, const Plan& plan, const Part& part,
@@ -149,17 +178,12 @@ std::uint64_t save_part(const std::filesystem::path& path, const Plan& plan, con
     NewSections sections;
     if (part.index == 0)
         sections = sections_without_light(path, plan.scene);
-    sections["part"] = text_section({{"index", part.index},
-                                     {"count", part.count},
-                                     {"plan", fmt::format("{:016x}", plan.hash)},
-                                     {"receivers", light.counts.num_receivers}});
+    const PartHead head{part, fmt::format("{:016x}", plan.hash),
+                        static_cast<std::uint32_t>(light.counts.num_receivers)};
+    sections["part"] = text_section(json_of(head, "plan"));
     // A scene's reader says what it is.
     sections["plan"] = text_section(files::Json::Object{});
-    add_counts(sections, light.counts);
-    if (light.glossy)
-        add_glossy_sections(sections, *light.glossy);
-    if (light.bounces)
-        add_bounce_samples(sections, *light.bounces);
+    add_light(sections, light);
     return write_sections(path, sections);
 }
 
@@ -169,18 +193,37 @@ Scene join_parts(std::span<const std::filesystem::path> paths) {
     Scene scene = plan_of(first, read_sections(first));
     std::vector<PartLight> light;
     for (std::optional<StoredPart>& part : parts) {
-        light.push_back(
-            light_of(*part, scene.transfer.num_clusters(), scene.transfer.num_receivers()));
+        light.push_back(light_of(part->reader, part->head.num_receivers, scene.transfer));
         part.reset();
     }
     try {
-        join_light(scene.transfer, light);
-        scene.bounces = join_bounces_of(scene.receivers, scene.transfer, light);
+        join_light(scene, light);
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(fmt::format("{}: {}", first.string(), error.what()));
     }
-    set_surfaces(scene.transfer, scene.receivers);
     return scene;
+}
+
+std::vector<PartLight> gather_light(Team& team, const Scene& scene, PartLight&& own) {
+    std::vector<PartLight> lights;
+    lights.push_back(std::move(own));
+    if (!team.has_others())
+        return lights;
+    NewSections sections;
+    if (!team.is_first())
+        add_light(sections, lights[0]);
+    std::vector<std::vector<std::byte>> of_all =
+        team.gather(team.is_first() ? std::vector<std::byte>() : packed_sections(sections));
+    if (!team.is_first())
+        return {};
+    for (std::uint32_t i = 1; i < of_all.size(); ++i) {
+        const std::vector<std::byte> bytes = std::move(of_all[i]);
+        const SectionReader reader("part", unpacked_sections(bytes));
+        const Part part{i, team.part().count};
+        lights.push_back(light_of(reader, places_of(part, scene.transfer.num_receivers()).size(),
+                                  scene.transfer));
+    }
+    return lights;
 }
 
 } // namespace relumine::prt

@@ -65,7 +65,10 @@ Receivers sample_of(const Receivers& receivers, std::span<const std::uint32_t> o
 }
 
 /// Puts the counts of all parts together, tile by tile.
-VisibleCounts joined_counts(const Transfer& plan, std::span<const PartLight> parts) {
+VisibleCounts joined_counts(const Transfer& plan, std::span<PartLight> parts) {
+    if (parts.size() == 1 && parts[0].counts.num_receivers == plan.num_receivers() &&
+        parts[0].counts.num_leaves == plan.num_clusters())
+        return std::move(parts[0].counts);
     VisibleCounts whole{.num_receivers = plan.num_receivers(), .num_leaves = plan.num_clusters()};
     const std::size_t num_words = whole.num_blocks() * whole.words_per_block();
     whole.visible.reserve(num_words);
@@ -100,27 +103,17 @@ VisibleCounts joined_counts(const Transfer& plan, std::span<const PartLight> par
 }
 
 /// Puts the blocks of a lobe together, likewise.
-LobeCuts joined_cuts(const VisibleCounts& whole, std::span<const PartLight> parts,
-                     std::size_t lobe) {
+LobeCuts joined_cuts(const VisibleCounts& whole, std::span<PartLight> parts, std::size_t lobe) {
+    if (parts.size() == 1)
+        return std::move(parts[0].glossy->lobes[lobe]);
     LobeCuts cuts;
-    cuts.begin.push_back(0);
     for (std::size_t tile = 0; tile < whole.num_tiles(); ++tile) {
         const LobeCuts& part = parts[tile % parts.size()].glossy->lobes[lobe];
         const std::size_t first = tile / parts.size() * VisibleCounts::TileBlocks;
         const std::size_t num_blocks = whole.tile_begin(tile + 1) - whole.tile_begin(tile);
         if (first + num_blocks >= part.begin.size())
             throw std::invalid_argument("expected the highlights of all tiles");
-        const std::uint64_t begin = part.begin[first];
-        const std::uint64_t end = part.begin[first + num_blocks];
-        for (std::size_t block = first; block < first + num_blocks; ++block)
-            cuts.begin.push_back(cuts.begin.back() + part.begin[block + 1] - part.begin[block]);
-        const auto append = [&](auto& to, const auto& from, std::size_t width) {
-            to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(begin * width),
-                      from.begin() + static_cast<std::ptrdiff_t>(end * width));
-        };
-        append(cuts.cells, part.cells, 1);
-        append(cuts.scales, part.scales, 1);
-        append(cuts.values, part.values, BlockSize);
+        cuts.append(part, first, num_blocks);
     }
     return cuts;
 }
@@ -128,8 +121,8 @@ LobeCuts joined_cuts(const VisibleCounts& whole, std::span<const PartLight> part
 } // namespace
 
 Transfer plan_clusters(const Receivers& receivers, const Blockers& blockers,
-                       const PrecomputeOptions& options, PrecomputeStatistics* statistics,
-                       Transfer* of_sample) {
+                       const PrecomputeOptions& options, const Work& work,
+                       PrecomputeStatistics* statistics, Transfer* of_sample) {
     Transfer plan;
     plan.order = spatial_order(receivers);
     PrecomputeOptions for_sample = options;
@@ -137,7 +130,7 @@ Transfer plan_clusters(const Receivers& receivers, const Blockers& blockers,
     for_sample.epsilon = {};
     for_sample.tolerance = rms_tolerance(options.tolerance, options.epsilon, receivers.size());
     Transfer sampled =
-        precompute(sample_of(receivers, plan.order), blockers, for_sample, statistics);
+        precompute(sample_of(receivers, plan.order), blockers, for_sample, work, statistics);
     plan.quadtree = sampled.quadtree;
     for (const std::uint32_t receiver : plan.order)
         plan.normals.push_back(receivers.normals[receiver]);
@@ -174,68 +167,45 @@ std::vector<std::uint32_t> sampled_receivers(const Transfer& plan) {
 
 VisibleCounts part_counts(const Receivers& receivers, const Transfer& plan,
                           const Blockers& blockers, const PrecomputeOptions& options,
-                          const Part& part, PrecomputeStatistics* statistics) {
+                          const Work& work, PrecomputeStatistics* statistics) {
+    const Part part = work.team.part();
     if (part.index >= part.count || part.count > MaxParts)
         throw std::invalid_argument(fmt::format("expected a part among {} at most, got {} of {}",
                                                 MaxParts, std::uint64_t{part.index} + 1,
                                                 part.count));
-    Alone alone(part);
     PrecomputeOptions of_part = options;
-    of_part.reduction = &alone;
     const std::size_t plane_bytes = (receivers.size() + 63) / 64 * 8;
     of_part.plane_bytes = std::max(of_part.plane_bytes, LeastPlanes * plane_bytes);
-    return precompute(receivers, blockers, of_part, {.plan = &plan}, statistics).counts;
+    return precompute(receivers, blockers, of_part, work, {.given = &plan, .has_clusters = true},
+                      statistics)
+        .counts;
 }
 
-GlossyTransfer part_highlights(const Receivers& receivers, Transfer& shared,
-                               const Blockers& blockers, const GlossyOptions& options,
-                               const Part& part, GlossyStatistics* statistics) {
-    // The part's receivers by themselves, already in spatial order.
-    Receivers own;
-    Transfer transfer{.quadtree = shared.quadtree,
-                      .order = {},
-                      .normals = {},
-                      .counts = std::exchange(shared.counts, {})};
-    for (const std::uint32_t place : places_of(part, shared.num_receivers())) {
-        const std::uint32_t receiver = shared.order[place];
-        transfer.order.push_back(static_cast<std::uint32_t>(transfer.order.size()));
-        own.positions.push_back(receivers.positions[receiver]);
-        own.normals.push_back(receivers.normals[receiver]);
-        own.to_eye.push_back(receivers.to_eye[receiver]);
-        own.surfaces.push_back(receivers.surfaces[receiver]);
-    }
-    transfer.normals = own.normals;
-    GlossyTransfer glossy = precompute_glossy(own, blockers, transfer, options, statistics);
-    shared.counts = std::move(transfer.counts);
-    return glossy;
-}
-
-void join_light(Transfer& plan, std::span<const PartLight> parts) {
+void join_light(Scene& scene, std::span<PartLight> parts, BounceStatistics* statistics) {
     if (parts.empty())
         throw std::invalid_argument("expected parts, got none");
+    const bool has_highlights = parts.front().glossy.has_value();
+    const bool has_bounces = parts.front().bounces.has_value();
     for (const PartLight& part : parts)
-        if (part.glossy.has_value() != parts.front().glossy.has_value())
-            throw std::invalid_argument("expected highlights in all parts or in none");
-    plan.counts = joined_counts(plan, parts);
-    if (!parts.front().glossy)
-        return;
-    plan.glossy.emplace();
-    for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe)
-        plan.glossy->lobes[lobe] = joined_cuts(plan.counts, parts, lobe);
-}
-
-std::optional<BounceMatrix> join_bounces_of(const Receivers& receivers, const Transfer& plan,
-                                            std::span<PartLight> parts,
-                                            BounceStatistics* statistics) {
+        if (part.glossy.has_value() != has_highlights || part.bounces.has_value() != has_bounces)
+            throw std::invalid_argument("expected the same light in all parts");
+    Transfer& transfer = scene.transfer;
+    transfer.counts = joined_counts(transfer, parts);
+    if (has_highlights) {
+        GlossyTransfer& glossy = transfer.glossy.emplace();
+        for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe)
+            glossy.lobes[lobe] = joined_cuts(transfer.counts, parts, lobe);
+    }
     std::vector<BounceSamples> samples;
-    for (PartLight& part : parts)
-        if (part.bounces)
+    for (PartLight& part : parts) {
+        part.counts = {};
+        part.glossy.reset();
+        if (has_bounces)
             samples.push_back(std::exchange(part.bounces, {}).value());
-    if (samples.empty())
-        return std::nullopt;
-    if (samples.size() != parts.size())
-        throw std::invalid_argument("expected bounces in all parts or in none");
-    return join_bounces(receivers, plan, std::move(samples), statistics);
+    }
+    if (has_bounces)
+        scene.bounces = join_bounces(scene.receivers, transfer, std::move(samples), statistics);
+    set_surfaces(transfer, scene.receivers);
 }
 
 } // namespace relumine::prt

@@ -8,11 +8,13 @@
 #include <vector>
 
 #include "prt/bounces/bounce_samples.h"
-#include "prt/glossy/glossy_precompute.h"
 #include "prt/precompute.h"
 #include "prt/receivers/receivers.h"
+#include "prt/scene/scene_file.h"
 #include "prt/team.h"
+#include "prt/transfer/glossy_transfer.h"
 #include "prt/transfer/transfer.h"
+#include "prt/transfer/visible_counts.h"
 #include "prt/visibility/blockers.h"
 
 namespace relumine::prt {
@@ -27,7 +29,7 @@ namespace relumine::prt {
 /// Cost:    1/n of a precompute.
 /// Throws:  as precompute() does.
 [[nodiscard]] Transfer plan_clusters(const Receivers& receivers, const Blockers& blockers,
-                                     const PrecomputeOptions& options,
+                                     const PrecomputeOptions& options, const Work& work = {},
                                      PrecomputeStatistics* statistics = nullptr,
                                      Transfer* of_sample = nullptr);
 
@@ -40,8 +42,8 @@ namespace relumine::prt {
 /// Returns how many receivers the sample of so many has.
 [[nodiscard]] std::size_t num_sampled_receivers(std::size_t num_receivers);
 
-/// Counts a part's receivers for the clusters of a plan. The receivers of the result are those of
-/// the part's tiles, in their order; it is empty for a part without tiles.
+/// Counts a part's receivers for the clusters of a plan: those of work.team.part(), in their order.
+/// The result is empty for a part without tiles.
 ///
 /// Options: those that the plan was made with. Joined counts are the same bit by bit for any number
 ///          of parts.
@@ -51,18 +53,8 @@ namespace relumine::prt {
 ///          MaxParts; as precompute() does.
 [[nodiscard]] VisibleCounts part_counts(const Receivers& receivers, const Transfer& plan,
                                         const Blockers& blockers, const PrecomputeOptions& options,
-                                        const Part& part,
+                                        const Work& work,
                                         PrecomputeStatistics* statistics = nullptr);
-
-/// Computes the highlights of a part's receivers, as precompute_glossy() does for all. `shared` has
-/// the counts of the part, and the order and the normals of all receivers. Afterwards it is as
-/// before.
-///
-/// Throws:  as precompute_glossy() does; `shared` has no counts then.
-[[nodiscard]] GlossyTransfer part_highlights(const Receivers& receivers, Transfer& shared,
-                                             const Blockers& blockers, const GlossyOptions& options,
-                                             const Part& part,
-                                             GlossyStatistics* statistics = nullptr);
 
 /// What a part computes.
 struct PartLight {
@@ -73,19 +65,11 @@ struct PartLight {
     std::optional<BounceSamples> bounces = {};
 };
 
-/// Gives a plan the counts and highlights of all parts; set_surfaces() then completes it.
+/// Gives a scene without light the counts, highlights and bounces of all parts. Frees what the
+/// parts have.
 ///
 /// parts:   in the order of their indices.
-/// Throws:  std::invalid_argument for parts that do not fit the plan.
-void join_light(Transfer& plan, std::span<const PartLight> parts);
-
-/// Makes the matrix of the bounces of all parts; none where light does not bounce. `plan` has order
-/// and normals. Frees what the parts have.
-///
-/// Throws:  as join_light().
-[[nodiscard]] std::optional<BounceMatrix> join_bounces_of(const Receivers& receivers,
-                                                          const Transfer& plan,
-                                                          std::span<PartLight> parts,
-                                                          BounceStatistics* statistics = nullptr);
+/// Throws:  std::invalid_argument for parts that do not fit the scene.
+void join_light(Scene& scene, std::span<PartLight> parts, BounceStatistics* statistics = nullptr);
 
 } // namespace relumine::prt

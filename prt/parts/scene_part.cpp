@@ -16,8 +16,8 @@
 #include "prt/scene/glossy_sections.h"
 #include "prt/scene/json_members.h"
 #include "prt/scene/scene_check.h"
-#include "prt/scene/section_group.h"
 #include "prt/scene/section_file.h"
+#include "prt/scene/section_group.h"
 #include "prt/scene/section_reader.h"
 
 namespace relumine::prt {
@@ -37,9 +37,7 @@ Sections taken(Sections& sections, std::string_view prefix) {
 
 /// A part as its file has it.
 struct StoredLight {
-    Part part;
-    std::string whole;
-    std::uint32_t num_receivers = 0;
+    PartHead head;
     std::vector<std::uint32_t> receivers;
     std::vector<glm::vec3> radiance;
 };
@@ -50,17 +48,7 @@ StoredLight read_lit_part(const std::filesystem::path& path) {
         throw std::runtime_error(fmt::format(
             "{}: expected a part that `relumine relight --part` wrote, got another file",
             path.string()));
-    const files::Json json = reader.json("lit");
-    StoredLight stored;
-    try {
-        stored.part = {.index = natural(json.at("index")), .count = natural(json.at("count"))};
-        stored.whole = json.at("light").string();
-        stored.num_receivers = natural(json.at("receivers"));
-        if (stored.part.index >= stored.part.count || stored.part.count > MaxParts)
-            throw std::out_of_range("expected an index below the count");
-    } catch (const std::exception&) {
-        reader.fail("lit", "JSON with the place of the part");
-    }
+    StoredLight stored{.head = read_head(reader, "lit", "light"), .receivers = {}, .radiance = {}};
     stored.receivers = reader.elements<std::uint32_t>("lit_receivers");
     stored.radiance = reader.elements<glm::vec3>("lit_radiance", stored.receivers.size());
     return stored;
@@ -129,12 +117,9 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
 }
 
 std::uint64_t save_lit_part(const std::filesystem::path& path, const LitPart& part) {
-    const files::Json json = {{"index", part.part.index},
-                              {"count", part.part.count},
-                              {"receivers", part.num_receivers},
-                              {"light", part.light}};
     NewSections sections;
-    sections["lit"] = bytes_of(json.text(2));
+    sections["lit"] =
+        bytes_of(json_of({part.part, part.light, part.num_receivers}, "light").text(2));
     sections["lit_receivers"] = SectionContent::view(part.receivers);
     sections["lit_radiance"] = SectionContent::view(part.radiance);
     // A scene's reader says what it is.
@@ -145,7 +130,7 @@ std::uint64_t save_lit_part(const std::filesystem::path& path, const LitPart& pa
 
 std::vector<glm::vec3> join_lit_parts(std::span<const std::filesystem::path> paths) {
     const auto parts = all_parts_of("light", paths, read_lit_part);
-    const std::size_t num_receivers = parts.front()->num_receivers;
+    const std::size_t num_receivers = parts.front()->head.num_receivers;
     std::vector<glm::vec3> radiance(num_receivers);
     std::vector<bool> is_known(num_receivers);
     std::size_t num_known = 0;

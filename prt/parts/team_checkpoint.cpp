@@ -1,11 +1,11 @@
 #include "prt/parts/team_checkpoint.h"
 
-#include <array>
 #include <cstdint>
 #include <stdexcept>
 #include <utility>
 
 #include "files/packed_parts.h"
+#include "prt/work.h"
 
 namespace relumine::prt {
 
@@ -33,40 +33,27 @@ Bytes together(const std::vector<Bytes>& of_processes) {
     return is_empty ? Bytes() : writer.take();
 }
 
-std::vector<Bytes> apart(std::span<const std::byte> bytes, std::size_t count) {
-    std::vector<Bytes> of_processes(count);
-    if (bytes.empty())
-        return of_processes;
-    files::ByteReader reader(bytes);
-    for (Bytes& of_process : of_processes)
-        of_process = next_bytes(reader);
-    if (!reader.at_end())
-        throw std::runtime_error("checkpoint: expected one of as many processes");
-    return of_processes;
-}
-
 } // namespace
 
 bool TeamCheckpoint::first_says(bool answer) {
-    std::array<std::int64_t, 1> values = {store_ != nullptr && answer ? 1 : 0};
-    team_.max(values);
-    return values[0] != 0;
+    return largest_of_all(team_, store_ != nullptr && answer ? 1 : 0) != 0;
 }
 
 Checkpoint::Saved TeamCheckpoint::load(const std::string& part, bool with_state) {
-    const std::size_t count = team_.part().count;
     std::vector<Bytes> to_each;
     if (store_ != nullptr) {
-        const Saved saved = store_->load(part, with_state);
-        std::vector<files::ByteWriter> writers(count);
-        const auto add = [&](std::span<const std::byte> bytes) {
-            const std::vector<Bytes> of_processes = apart(bytes, count);
-            for (std::size_t i = 0; i < count; ++i)
-                add_bytes(writers[i], of_processes[i]);
+        std::vector<files::ByteWriter> writers(team_.part().count);
+        const auto deal = [&writers](std::span<const std::byte> bytes) {
+            files::ByteReader reader(bytes);
+            for (files::ByteWriter& writer : writers)
+                add_bytes(writer, bytes.empty() ? Bytes() : next_bytes(reader));
+            if (!reader.at_end())
+                throw std::runtime_error("checkpoint: expected one of as many processes");
         };
-        add(saved.state);
+        const Saved saved = store_->load(part, with_state);
+        deal(saved.state);
         for (const Bytes& record : saved.records)
-            add(record);
+            deal(record);
         for (files::ByteWriter& writer : writers)
             to_each.push_back(writer.take());
     }

@@ -49,8 +49,9 @@ const Camera* own_camera(const ReceiverLayout& layout) {
 void check_size(const ReceiverLayout& layout) {
     const auto [width, height, n] = grid_of(layout);
     const Camera* camera = own_camera(layout);
+    const Camera any{.eye = {0.0f, 0.0f, 1.0f}, .target = {0.0f, 0.0f, 0.0f}};
     // Throws for sizes out of bounds, and for a camera without a direction.
-    static_cast<void>(PictureRays(camera == nullptr ? Camera() : *camera, width, height, n));
+    static_cast<void>(PictureRays(camera == nullptr ? any : *camera, width, height, n));
     if (num_places(layout) > MaxLayoutPlaces)
         throw std::invalid_argument(
             fmt::format("expected at most {} places, got {}", MaxLayoutPlaces, num_places(layout)));

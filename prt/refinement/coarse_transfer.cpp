@@ -95,11 +95,11 @@ bool CoarseDirections::add_bright_patch(const cubemap::CubeMap& light,
     const cubemap::Face face = cubemap::AllFaces[texel / PerFace];
     const auto y = static_cast<std::uint32_t>(texel % PerFace / Resolution);
     const auto x = static_cast<std::uint32_t>(texel % Resolution);
-    struct Part {
+    struct Share {
         double sum;
         std::uint32_t x, y;
     };
-    std::vector<Part> parts;
+    std::vector<Share> parts;
     double sum = 0.0;
     const auto first = [&](std::uint32_t place) {
         return place * light.resolution / Resolution;

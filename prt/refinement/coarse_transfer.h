@@ -10,8 +10,8 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "prt/progress.h"
 #include "prt/receivers/receivers.h"
+#include "prt/steps.h"
 #include "prt/visibility/blockers.h"
 
 namespace relumine::prt {

@@ -53,10 +53,9 @@ constexpr float LargestPartOfWay = 0.25f;
 class Refinement {
 public:
     Refinement(const mesh::TriangleMesh& mesh, const Blockers& blockers,
-               const RefineOptions& options, RefineReport& report)
+               const RefineOptions& options, const Work& work, RefineReport& report)
         : base_(mesh), blockers_(blockers), options_(options), report_(report), split_(mesh),
-          progress_(options.stop, options.on_progress), step_(automatic_bias(mesh)),
-          bias_(options.bias.value_or(step_)),
+          progress_(work), step_(automatic_bias(mesh)), bias_(options.bias.value_or(step_)),
           directions_(options.light ? &*options.light : nullptr),
           large_(LargeTriangle * mesh::bounds(mesh).diagonal()),
           fine_(FineEdge * mesh::bounds(mesh).diagonal()),
@@ -432,11 +431,11 @@ void check(const mesh::TriangleMesh& mesh, const RefineOptions& options) {
 } // namespace
 
 mesh::TriangleMesh refine(const mesh::TriangleMesh& mesh, const Blockers& blockers,
-                          const RefineOptions& options, RefineReport* report) {
+                          const RefineOptions& options, const Work& work, RefineReport* report) {
     check(mesh, options);
     const auto start = std::chrono::steady_clock::now();
     RefineReport local;
-    mesh::TriangleMesh result = Refinement(mesh, blockers, options, local).run();
+    mesh::TriangleMesh result = Refinement(mesh, blockers, options, work, local).run();
     local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (report != nullptr)
         *report = local;

@@ -3,14 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <optional>
-#include <stop_token>
 
 #include "cubemap/cube_map.h"
 #include "mesh/triangle_mesh.h"
 #include "prt/visibility/blockers.h"
+#include "prt/work.h"
 
 namespace relumine::prt {
 
@@ -37,10 +36,6 @@ struct RefineOptions {
     /// Lift of the rays' origins along the normal, as in PrecomputeOptions. Empty:
     /// automatic_bias().
     std::optional<float> bias = {};
-    /// Polled a few times a second.
-    std::stop_token stop = {};
-    /// Receives an estimate of the fraction done, in [0, 1], which never falls; one call at a time.
-    std::function<void(double)> on_progress = {};
 };
 
 struct RefineReport {
@@ -69,7 +64,7 @@ struct RefineReport {
 /// Throws:  std::invalid_argument for options out of range or against each other, for a mesh
 ///          without a triangle of positive area, and for a light without texels; Cancelled.
 [[nodiscard]] mesh::TriangleMesh refine(const mesh::TriangleMesh& mesh, const Blockers& blockers,
-                                        const RefineOptions& options = {},
+                                        const RefineOptions& options = {}, const Work& work = {},
                                         RefineReport* report = nullptr);
 
 } // namespace relumine::prt

@@ -21,7 +21,7 @@ const std::string Radius = "bounce_radius", Weights = "bounce_weights",
                   EmitterSizes = "bounce_hits_size", Emitters = EmitterSection,
                   AveragedSizes = "bounce_near_size", Averaged = "bounce_near",
                   OpenParts = "bounce_open", Distances = "bounce_distance",
-                  HitCounts = "bounce_rays_hit";
+                  HitCounts = "bounce_rays_hit", Rays = "bounce_rays", Errors = "bounce_errors";
 
 void add_lists(NewSections& sections, const std::string& size_name, const std::string& name,
                const PlaceLists& lists) {
@@ -167,7 +167,11 @@ void add_bounce_samples(NewSections& sections, const BounceSamples& samples) {
     sections[OpenParts] = SectionContent::view(samples.open_parts);
     sections[Distances] = SectionContent::view(samples.distances);
     sections[HitCounts] = SectionContent::view(samples.num_hits);
+    sections[Rays] = bytes_of(std::vector{samples.num_rays});
+    sections[Errors] = bytes_of(std::vector{samples.squared_errors});
     add_lists(sections, EmitterSizes, Emitters, samples.emitters);
+    if (samples.averaged)
+        add_lists(sections, AveragedSizes, Averaged, *samples.averaged);
 }
 
 std::optional<BounceSamples> read_bounce_samples(const SectionReader& reader, std::size_t num_own,
@@ -178,7 +182,11 @@ std::optional<BounceSamples> read_bounce_samples(const SectionReader& reader, st
     samples.open_parts = reader.elements<float>(OpenParts, num_own);
     samples.distances = reader.elements<float>(Distances, num_own);
     samples.num_hits = reader.elements<std::uint32_t>(HitCounts, num_own);
+    samples.num_rays = reader.elements<std::uint64_t>(Rays, 1).front();
+    samples.squared_errors = reader.elements<double>(Errors, 1).front();
     samples.emitters = read_lists(reader, EmitterSizes, Emitters, num_own, num_receivers);
+    if (reader.has(Averaged))
+        samples.averaged = read_lists(reader, AveragedSizes, Averaged, num_own, num_receivers);
     for (std::size_t i = 0; i < num_own; ++i)
         if (!(samples.distances[i] >= 0.0f && std::isfinite(samples.open_parts[i])) ||
             samples.emitters[i].size() > samples.num_hits[i])

@@ -14,7 +14,7 @@ namespace {
 
 /// Version of the algorithm and of a checkpoint's content. Raise it when a change of either makes
 /// old checkpoints worthless.
-constexpr int FingerprintVersion = 2;
+constexpr int FingerprintVersion = 3;
 
 class Hash {
 public:
@@ -42,27 +42,30 @@ std::vector<float> numbers_of(const std::vector<Surface>& surfaces) {
 
 } // namespace
 
-Fingerprint fingerprint(const mesh::TriangleMesh& blockers, const Receivers& receivers,
-                        const PrecomputeOptions& options, const LaterWork& later) {
+Fingerprint fingerprint(const Scene& scene, std::optional<float> bounce_tolerance) {
+    const SceneSettings& settings = scene.settings;
+    const mesh::TriangleMesh& blockers = scene.blockers ? *scene.blockers : scene.mesh;
+    const Receivers& receivers = scene.receivers;
+    const auto text = [](auto number) {
+        return fmt::format("{}", number);
+    };
     Fingerprint result = {
-        {"version", fmt::format("{}", FingerprintVersion)},
+        {"version", text(FingerprintVersion)},
         {"mesh", Hash().add(blockers.positions).add(blockers.triangles).text()},
         {"receivers", Hash().add(receivers.positions).add(receivers.normals).text()},
-        {"number of receivers", fmt::format("{}", receivers.size())},
-        options.epsilon
-            ? std::pair<std::string, std::string>("epsilon", fmt::format("{}", *options.epsilon))
-            : std::pair<std::string, std::string>("tolerance",
-                                                  fmt::format("{}", options.tolerance)),
-        {"min depth", fmt::format("{}", options.min_level)},
-        {"face resolution", fmt::format("{}", options.face_resolution)},
-        {"bias", fmt::format("{}", options.bias)},
+        {"number of receivers", text(receivers.size())},
+        {settings.epsilon ? "epsilon" : "tolerance",
+         text(settings.epsilon.value_or(settings.tolerance))},
+        {"min depth", text(settings.min_level)},
+        {"face resolution", text(settings.face_resolution)},
+        {"bias", text(settings.bias)},
         {"processor", arithmetic()}};
-    if (later.bounce_tolerance) {
-        result.emplace_back("bounces", fmt::format("{}", *later.bounce_tolerance));
-        result.emplace_back("two-sided", later.two_sided_bounces ? "yes" : "no");
+    if (bounce_tolerance) {
+        result.emplace_back("bounces", text(*bounce_tolerance));
+        result.emplace_back("two-sided", settings.two_sided_bounces ? "yes" : "no");
     }
-    if (later.glossy_tolerance) {
-        result.emplace_back("glossy tolerance", fmt::format("{}", *later.glossy_tolerance));
+    if (settings.glossy_tolerance) {
+        result.emplace_back("glossy tolerance", text(*settings.glossy_tolerance));
         result.emplace_back(
             "surfaces or eye",
             Hash().add(numbers_of(receivers.surfaces)).add(receivers.to_eye).text());

@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/triangle_mesh.h"
-#include "prt/precompute.h"
+#include "prt/scene/scene_file.h"
 
 namespace relumine::prt {
 
@@ -16,18 +15,8 @@ namespace relumine::prt {
 /// memory limits are left out.
 using Fingerprint = std::vector<std::pair<std::string, std::string>>;
 
-/// What follows the clusters.
-struct LaterWork {
-    /// Given only where highlights follow.
-    std::optional<float> glossy_tolerance = {};
-    /// Given only where bounces follow.
-    std::optional<float> bounce_tolerance = {};
-    bool two_sided_bounces = false;
-};
-
-/// Returns the fingerprint of a run.
-[[nodiscard]] Fingerprint fingerprint(const mesh::TriangleMesh& blockers,
-                                      const Receivers& receivers, const PrecomputeOptions& options,
-                                      const LaterWork& later = {});
+/// Returns the fingerprint of the work on a scene that has no light yet. Light bounces where a
+/// tolerance is given.
+[[nodiscard]] Fingerprint fingerprint(const Scene& scene, std::optional<float> bounce_tolerance);
 
 } // namespace relumine::prt

@@ -157,7 +157,6 @@ LobeCuts read_lobe_part(const SectionReader& reader, std::size_t lobe, std::size
     const std::vector<std::uint64_t> begin = read_begin(reader, lobe, num_blocks);
     const std::uint64_t num_entries = begin.back();
     LobeCuts cuts;
-    cuts.begin.push_back(0);
     std::vector<SectionPicker::Range> entries;
     for (const BlockRange& range : blocks) {
         entries.push_back({begin[range.begin], begin[range.end]});

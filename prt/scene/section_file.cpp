@@ -34,6 +34,9 @@ constexpr std::uint32_t MaxSections = 64;
 // cores. Level 10 saves 1 % more and takes half as long again.
 constexpr int CompressionLevel = 8;
 
+/// Of sections that are sent, not kept.
+constexpr int FastCompressionLevel = 1;
+
 // A section is cut into frames of this many bytes, the last one shorter, so that all processors
 // pack and unpack. The counts of the Stanford bunny are 0.5 % larger for it.
 constexpr std::size_t FrameSize = std::size_t{1} << 21;
@@ -74,7 +77,8 @@ std::uint64_t table_checksum(const Header& header, std::span<const SectionEntry>
 
 class Reader {
 public:
-    explicit Reader(const std::filesystem::path& path) : path_(path), bytes_(files::read(path)) {}
+    Reader(const std::filesystem::path& path, std::span<const std::byte> bytes)
+        : path_(path), bytes_(bytes) {}
 
     Sections sections(std::span<const std::string> left_out) {
         std::vector<SectionEntry> table = checked_table(checked_header());
@@ -260,16 +264,17 @@ private:
     }
 
     const std::filesystem::path& path_;
-    std::vector<std::byte> bytes_;
+    std::span<const std::byte> bytes_;
 };
 
 /// Writes sections frame by frame: a batch of frames is packed in parallel, written and forgotten.
 class Writer {
 public:
-    Writer(const std::filesystem::path& path, const NewSections& sections)
-        : table_(checked_table(sections)), file_(path) {
+    /// `file`: null keeps the bytes in memory.
+    Writer(files::OutputFile* file, const NewSections& sections, int compression_level)
+        : table_(checked_table(sections)), file_(file), compression_level_(compression_level) {
         // The table comes first in the file and is known last.
-        file_.append(std::vector<std::byte>(sizeof(Header) + table_.size() * sizeof(SectionEntry)));
+        append(std::vector<std::byte>(sizeof(Header) + table_.size() * sizeof(SectionEntry)));
         size_ = sizeof(Header) + table_.size() * sizeof(SectionEntry);
     }
 
@@ -293,9 +298,10 @@ public:
         }
         write_batch();
         write_table();
-        file_.commit();
         return size_;
     }
+
+    [[nodiscard]] std::vector<std::byte> take_bytes() { return std::move(bytes_); }
 
 private:
     /// Enough for all processors, and 32 MiB.
@@ -331,7 +337,7 @@ private:
             Frame& frame = batch_[i];
             std::vector<std::byte> made;
             frame.stored = files::compressed(frame.content->bytes(frame.begin, frame.size, made),
-                                             CompressionLevel);
+                                             compression_level_);
         });
         for (const Frame& frame : batch_) {
             num_packed_ += frame.size;
@@ -341,9 +347,9 @@ private:
         const auto num_bytes = static_cast<double>(std::accumulate(
             table_.begin(), table_.end(), std::uint64_t{0},
             [](std::uint64_t sum, const SectionEntry& entry) { return sum + entry.size; }));
-        if (num_packed_ > 0)
-            file_.expect(static_cast<std::uint64_t>(static_cast<double>(num_stored_) * num_bytes /
-                                                    static_cast<double>(num_packed_)));
+        if (num_packed_ > 0 && file_ != nullptr)
+            file_->expect(static_cast<std::uint64_t>(static_cast<double>(num_stored_) * num_bytes /
+                                                     static_cast<double>(num_packed_)));
         for (const Frame& frame : batch_) {
             SectionEntry& entry = table_[frame.section];
             if (entry.stored_size == 0) {
@@ -351,7 +357,7 @@ private:
                 XXH64_reset(hash_.get(), 0);
             }
             XXH64_update(hash_.get(), frame.stored.data(), frame.stored.size());
-            file_.append(frame.stored);
+            append(frame.stored);
             size_ += frame.stored.size();
             entry.stored_size += frame.stored.size();
             if (frame.is_last)
@@ -369,12 +375,26 @@ private:
                       .reserved = 0,
                       .checksum = 0};
         header.checksum = table_checksum(header, table_);
-        file_.replace(0, std::as_bytes(std::span(&header, 1)));
-        file_.replace(sizeof header, std::as_bytes(std::span(table_)));
+        replace(0, std::as_bytes(std::span(&header, 1)));
+        replace(sizeof header, std::as_bytes(std::span(table_)));
+    }
+
+    void append(std::span<const std::byte> bytes) {
+        if (file_ != nullptr)
+            return file_->append(bytes);
+        bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    }
+
+    void replace(std::uint64_t offset, std::span<const std::byte> bytes) {
+        if (file_ != nullptr)
+            return file_->replace(offset, bytes);
+        std::copy(bytes.begin(), bytes.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(offset));
     }
 
     std::vector<SectionEntry> table_;
-    files::OutputFile file_;
+    files::OutputFile* file_;
+    std::vector<std::byte> bytes_;
+    int compression_level_;
     std::uint64_t size_ = 0;
     std::uint64_t num_packed_ = 0;
     std::uint64_t num_stored_ = 0;
@@ -414,17 +434,32 @@ NewSections to_write(Sections sections) {
 }
 
 std::uint64_t write_sections(const std::filesystem::path& path, const NewSections& sections) {
-    return Writer(path, sections).write(sections);
+    files::OutputFile file(path);
+    const std::uint64_t size = Writer(&file, sections, CompressionLevel).write(sections);
+    file.commit();
+    return size;
+}
+
+std::vector<std::byte> packed_sections(const NewSections& sections) {
+    Writer writer(nullptr, sections, FastCompressionLevel);
+    static_cast<void>(writer.write(sections));
+    return writer.take_bytes();
+}
+
+Sections unpacked_sections(std::span<const std::byte> bytes) {
+    return Reader("bytes of a process", bytes).sections({});
 }
 
 Sections read_sections(const std::filesystem::path& path, std::span<const std::string> left_out) {
-    return Reader(path).sections(left_out);
+    const std::vector<std::byte> bytes = files::read(path);
+    return Reader(path, bytes).sections(left_out);
 }
 
 void stream_section(const std::filesystem::path& path, const std::string& name,
                     std::optional<std::uint64_t> size,
                     const std::function<void(std::span<const std::byte>)>& on_piece) {
-    Reader(path).stream(name, size, on_piece);
+    const std::vector<std::byte> bytes = files::read(path);
+    Reader(path, bytes).stream(name, size, on_piece);
 }
 
 } // namespace relumine::prt

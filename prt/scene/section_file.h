@@ -80,6 +80,13 @@ std::uint64_t write_sections(const std::filesystem::path& path, const NewSection
 [[nodiscard]] Sections read_sections(const std::filesystem::path& path,
                                      std::span<const std::string> left_out = {});
 
+/// Returns the bytes of a file of sections, to send them to another process.
+[[nodiscard]] std::vector<std::byte> packed_sections(const NewSections& sections);
+/// Reads them.
+///
+/// Throws:  std::runtime_error for damaged bytes.
+[[nodiscard]] Sections unpacked_sections(std::span<const std::byte> bytes);
+
 /// Bytes of a piece that stream_section() gives; the last one may have fewer.
 inline constexpr std::size_t SectionPiece = std::size_t{1} << 20;
 

@@ -27,12 +27,31 @@ namespace relumine::prt {
     return num_cells_above(cell.level) + place_in_level(cell);
 }
 
+/// Returns where a cell begins on the Z curve of the deepest level: cells of any level in
+/// depth-first order.
+[[nodiscard]] constexpr std::uint64_t z_curve_key(const Cell& cell) {
+    return std::uint64_t{place_in_level(cell)} << 2u * (MaxLevel - cell.level);
+}
+
 /// Returns the level of the cell with this number.
 [[nodiscard]] constexpr std::uint32_t level_of_index(std::uint32_t index) {
     std::uint32_t level = 0;
     while (level < MaxLevel && index >= num_cells_above(level + 1))
         ++level;
     return level;
+}
+
+/// Returns the cell with a number below num_cells_above(MaxLevel + 1).
+[[nodiscard]] constexpr Cell cell_of_index(std::uint32_t index) {
+    const std::uint32_t level = level_of_index(index);
+    const std::uint32_t place = index - num_cells_above(level);
+    Cell cell{.face = static_cast<cubemap::Face>(place >> 2u * level),
+              .level = static_cast<std::uint8_t>(level)};
+    for (std::uint32_t bit = 0; bit < level; ++bit) {
+        cell.x |= (place >> 2u * bit & 1u) << bit;
+        cell.y |= (place >> (2u * bit + 1u) & 1u) << bit;
+    }
+    return cell;
 }
 
 } // namespace relumine::prt

@@ -6,6 +6,21 @@
 
 namespace relumine::prt {
 
+void LobeCuts::append(const LobeCuts& from, std::size_t first_block, std::size_t num_blocks) {
+    const std::uint64_t first = from.begin[first_block];
+    const std::uint64_t last = from.begin[first_block + num_blocks];
+    const std::uint64_t before = num_entries();
+    for (std::size_t block = first_block; block < first_block + num_blocks; ++block)
+        begin.push_back(before + from.begin[block + 1] - first);
+    const auto add = [&](auto& to, const auto& elements, std::size_t width) {
+        to.insert(to.end(), elements.begin() + static_cast<std::ptrdiff_t>(first * width),
+                  elements.begin() + static_cast<std::ptrdiff_t>(last * width));
+    };
+    add(cells, from.cells, 1);
+    add(scales, from.scales, 1);
+    add(values, from.values, BlockSize);
+}
+
 std::uint32_t GlossyTransfer::deepest_level() const {
     std::uint32_t largest = 0;
     for (const LobeCuts& lobe : lobes)

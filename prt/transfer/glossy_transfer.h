@@ -33,15 +33,17 @@ inline constexpr std::uint32_t MaxGlossyLevel = 10;
 /// receivers.
 struct LobeCuts {
     /// [num_blocks + 1] first entry of each block.
-    std::vector<std::uint64_t> begin;
+    std::vector<std::uint64_t> begin = {0};
     /// [num_entries] cell_index(); within a block along the Z curve.
-    std::vector<std::uint32_t> cells;
+    std::vector<std::uint32_t> cells = {};
     /// [num_entries] the transfer of byte 1, 1/sr.
-    std::vector<float> scales;
+    std::vector<float> scales = {};
     /// [num_entries * 16] byte q of each receiver: the mean transfer is q^2 times the scale.
-    std::vector<std::uint8_t> values;
+    std::vector<std::uint8_t> values = {};
 
     [[nodiscard]] std::size_t num_entries() const { return cells.size(); }
+    /// Adds blocks of other cuts behind the last one.
+    void append(const LobeCuts& from, std::size_t first_block, std::size_t num_blocks);
 };
 
 /// The glossy part of a transfer. Arrays are by place in spatial order, as in Transfer.

@@ -32,6 +32,19 @@ void Quadtree::build(std::uint32_t node, const Cell& cell, const std::vector<boo
         build(first_child + i, cell.child(i), split_flags, next_flag);
 }
 
+Quadtree Quadtree::of(const std::function<bool(const Cell&)>& is_split) {
+    std::vector<bool> flags;
+    const auto visit = [&](const auto& self, const Cell& cell) -> void {
+        const bool has_children = is_split(cell);
+        flags.push_back(has_children);
+        for (std::uint32_t i = 0; has_children && i < 4; ++i)
+            self(self, cell.child(i));
+    };
+    for (const cubemap::Face face : cubemap::AllFaces)
+        visit(visit, Cell{.face = face});
+    return Quadtree(flags);
+}
+
 std::vector<bool> Quadtree::split_flags() const {
     std::vector<bool> flags;
     flags.reserve(nodes_.size());

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -59,6 +60,8 @@ public:
     /// Throws:  std::invalid_argument when the flags end early, go on after the last leaf or go
     ///          deeper than MaxLevel.
     explicit Quadtree(const std::vector<bool>& split_flags);
+    /// Builds the tree whose cells are split where `is_split` says so. It is asked depth first.
+    [[nodiscard]] static Quadtree of(const std::function<bool(const Cell&)>& is_split);
 
     [[nodiscard]] std::size_t num_leaves() const { return leaves_.size(); }
     [[nodiscard]] std::span<const Cell> leaves() const { return leaves_; }

@@ -31,66 +31,64 @@ using Path = std::filesystem::path;
 using ImagePointer = std::shared_ptr<const cubemap::EnvironmentImage>;
 using EnvironmentPointer = std::shared_ptr<EnvironmentHandle>;
 
-EnvironmentPointer made_of(ImagePointer image, const TurnedOptions& turned) {
+EnvironmentPointer made_of(ImagePointer image, const EnvironmentOptions& options) {
     auto result = std::make_shared<EnvironmentHandle>();
-    result->made = environment_of(std::move(image), turned.get());
-    result->from = turned.from;
-    result->options = turned.options;
+    result->made = environment_of(std::move(image), options);
+    result->options = options;
     return result;
 }
 
 EnvironmentPointer loaded_environment(const Path& path, const py::dict& given) {
-    return in_background(py::none(), [path, turned = TurnedOptions(Options(given))](const Reins&) {
-        return made_of(std::make_shared<const cubemap::EnvironmentImage>(
-                           load_environment_image(path, turned.get())),
-                       turned);
-    });
+    return in_background(py::none(),
+                         [path, options = options_from<EnvironmentOptions>(given)](const Reins&) {
+                             return made_of(std::make_shared<const cubemap::EnvironmentImage>(
+                                                load_environment_image(path, options)),
+                                            options);
+                         });
 }
 
 /// `pixels` is [height, width, 3].
 EnvironmentPointer from_pixels(const py::buffer& pixels, std::uint32_t width, std::uint32_t height,
                                const py::dict& given) {
     cubemap::Picture picture{.width = width, .height = height, .pixels = vec3s(pixels)};
-    return in_background(
-        py::none(), [picture = std::move(picture),
-                     turned = TurnedOptions(Options(given))](const Reins&) mutable {
-            try {
-                return made_of(std::make_shared<const cubemap::EnvironmentImage>(
-                                   environment_image(std::move(picture), turned.get())),
-                               turned);
-            } catch (const std::runtime_error& error) { // no file is at fault
-                throw std::invalid_argument(error.what());
-            }
-        });
+    return in_background(py::none(),
+                         [picture = std::move(picture),
+                          options = options_from<EnvironmentOptions>(given)](const Reins&) mutable {
+                             try {
+                                 return made_of(std::make_shared<const cubemap::EnvironmentImage>(
+                                                    environment_image(std::move(picture), options)),
+                                                options);
+                             } catch (const std::runtime_error& error) { // no file is at fault
+                                 throw std::invalid_argument(error.what());
+                             }
+                         });
 }
 
 /// The same image, turned by other angles.
 EnvironmentPointer turned_anew(const EnvironmentHandle& own, const py::dict& given) {
-    TurnedOptions turned{Options(given)};
-    turned.from = own.from;
-    turned.options.layout = own.options.layout;
-    turned.options.fix_bad_pixels = own.options.fix_bad_pixels;
-    return in_background(py::none(),
-                         [image = own.made.file.image, resampled = own.resampled,
-                          is_same = turned.options.face_resolution == own.made.map.resolution,
-                          turned](const Reins&) {
-                             if (!is_same)
-                                 return made_of(image, turned);
-                             std::shared_ptr<const cubemap::CubeMap> map;
-                             {
-                                 const std::lock_guard lock(resampled->mutex);
-                                 if (!resampled->map)
-                                     resampled->map = std::make_shared<const cubemap::CubeMap>(
-                                         unturned_cube_map_of(*image, turned.get()));
-                                 map = resampled->map;
-                             }
-                             auto result = std::make_shared<EnvironmentHandle>();
-                             result->made = environment_of(image, *map, turned.get());
-                             result->resampled = resampled;
-                             result->from = turned.from;
-                             result->options = turned.options;
-                             return result;
-                         });
+    auto options = options_from<EnvironmentOptions>(given);
+    options.from = own.options.from;
+    options.layout = own.options.layout;
+    options.fix_bad_pixels = own.options.fix_bad_pixels;
+    return in_background(py::none(), [image = own.made.file.image, resampled = own.resampled,
+                                      is_same = options.face_resolution == own.made.map.resolution,
+                                      options](const Reins&) {
+        if (!is_same)
+            return made_of(image, options);
+        std::shared_ptr<const cubemap::CubeMap> map;
+        {
+            const std::lock_guard lock(resampled->mutex);
+            if (!resampled->map)
+                resampled->map =
+                    std::make_shared<const cubemap::CubeMap>(unturned_cube_map_of(*image, options));
+            map = resampled->map;
+        }
+        auto result = std::make_shared<EnvironmentHandle>();
+        result->made = environment_of(image, *map, options);
+        result->resampled = resampled;
+        result->options = options;
+        return result;
+    });
 }
 
 /// `env convert`.
@@ -112,41 +110,38 @@ cubemap::EnvironmentImage converted(const cubemap::EnvironmentImage& image,
     return result;
 }
 
-/// Options of a conversion: to, to_layout, size, face_resolution.
+/// Options of a conversion.
 struct Target {
     const cubemap::Convention* to = nullptr;
     cubemap::Layout layout = cubemap::Layout::LatLong;
     cubemap::ImageSize size = {};
 
-    Target(const Options& given, const cubemap::EnvironmentImage& image, bool six_files) {
-        const std::string name = given.find<std::string>("to").value_or("openexr");
+    Target(const py::dict& given, const cubemap::EnvironmentImage& image, bool six_files) {
+        std::string name = "openexr";
+        std::optional<cubemap::Layout> asked;
+        std::optional<std::uint32_t> resolution;
+        take({row<ConventionText>("--to", name, ""), row<LayoutText>("--layout", asked, ""),
+              size_row(size.width, size.height, ""), row("--face-resolution", resolution, "")},
+             given);
         to = cubemap::find_convention(name);
-        if (to == nullptr)
-            Options::refuse("to", "a known convention", py::str(name));
         layout = six_files           ? cubemap::Layout::Cube
                  : to->has_attribute ? image.layout
                                      : to->usual_layout;
-        if (const auto asked = given.find<std::string>("layout"))
-            layout = layout_named("layout", *asked);
+        layout = asked.value_or(layout);
         if (!to->reads(layout) || (six_files && layout != cubemap::Layout::Cube))
-            Options::refuse("layout", "a layout that fits the file and " + name,
-                            py::str(cubemap::option_name(layout)));
-        if (given.has("size")) {
-            const auto [width, height] =
-                given.find<std::pair<std::uint32_t, std::uint32_t>>("size").value();
-            size = {width, height};
-        } else if (const auto resolution = given.find<std::uint32_t>("face_resolution")) {
+            throw OptionError("--layout", "expected a layout that fits the file and " + name +
+                                              ", got '" + LayoutText::show(layout) + "'");
+        if (resolution && size.width == 0)
             size = cubemap::natural_size(layout, *resolution);
-        }
         if (std::uint64_t{size.width} * size.height > std::uint64_t{1} << 28)
-            Options::refuse("size", "at most 2^28 pixels", given.given("size"));
+            throw OptionError("--size", "expected at most 2^28 pixels");
     }
 };
 
 /// Returns the pixels and the layout's name.
 py::tuple convert_to_array(const EnvironmentHandle& own, const py::dict& given) {
     const cubemap::EnvironmentFile file = own.made.file;
-    const Target target(Options(given), *file.image, false);
+    const Target target(given, *file.image, false);
     cubemap::EnvironmentImage image = in_background(py::none(), [file, target](const Reins&) {
         return converted(*file.image, file.turn, *target.to, target.layout,
                          cubemap::Sampling::TexelCentres, target.size);
@@ -159,7 +154,7 @@ py::tuple convert_to_array(const EnvironmentHandle& own, const py::dict& given) 
 void convert_to_file(const Path& path, const EnvironmentHandle& own, const py::dict& given) {
     cubemap::check_environment_name(path);
     const cubemap::EnvironmentFile file = own.made.file;
-    const Target target(Options(given), *file.image, cubemap::environment_files(path).size() > 1);
+    const Target target(given, *file.image, cubemap::environment_files(path).size() > 1);
     in_background(py::none(), [path, file, target](const Reins&) {
         const cubemap::Sampling sampling = target.to->has_attribute
                                                ? cubemap::default_sampling(path, target.layout)
@@ -194,6 +189,15 @@ py::dict described(const cubemap::Sun& sun) {
     return result;
 }
 
+py::dict irradiance_of(const cubemap::CubeMap& map) {
+    constexpr std::array<const char*, 6> Axes = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
+    py::dict result;
+    for (std::size_t axis = 0; axis < Axes.size(); ++axis)
+        result[Axes[axis]] = tuple_of(
+            cubemap::irradiance(map, cubemap::cube_point(cubemap::AllFaces[axis], 0.5, 0.5)));
+    return result;
+}
+
 /// `info ENV --json`, in the world's axes.
 py::dict findings(const EnvironmentHandle& own) {
     struct Found {
@@ -213,19 +217,10 @@ py::dict findings(const EnvironmentHandle& own) {
         return result;
     });
     const cubemap::EnvironmentStatistics& s = found.statistics;
-    py::dict irradiance;
-    constexpr std::array<const char*, 6> Axes = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
-    for (std::size_t axis = 0; axis < Axes.size(); ++axis)
-        irradiance[Axes[axis]] = tuple_of(cubemap::irradiance(
-            own.made.map, cubemap::cube_point(cubemap::AllFaces[axis], 0.5, 0.5)));
     py::list faults;
-    for (const cubemap::SeamFault& fault : found.faults) {
-        py::dict item;
-        item["where"] = fault.where;
-        item["step_ev"] = fault.step_ev;
-        item["usual_step_ev"] = fault.usual_step_ev;
-        faults.append(std::move(item));
-    }
+    for (const cubemap::SeamFault& fault : found.faults)
+        faults.append(py::dict(py::arg("where") = fault.where, py::arg("step_ev") = fault.step_ev,
+                               py::arg("usual_step_ev") = fault.usual_step_ev));
     py::dict result;
     result["mean_radiance"] = tuple_of(s.mean_radiance);
     result["mean_luminance"] = s.mean_luminance;
@@ -233,7 +228,7 @@ py::dict findings(const EnvironmentHandle& own) {
     result["min_positive_luminance"] = s.min_positive_luminance;
     result["dynamic_range_ev"] = s.dynamic_range_ev;
     result["brightest_direction"] = tuple_of(turn * s.brightest_direction);
-    result["irradiance"] = std::move(irradiance);
+    result["irradiance"] = irradiance_of(own.made.map);
     const double from_below = cubemap::light_from_below(own.made.map);
     result["light_from_below"] = from_below;
     result["upside_down"] = cubemap::upside_down(from_below).has_value();
@@ -261,29 +256,27 @@ py::dict findings(const EnvironmentHandle& own) {
 /// Returns (the environment without its sun, direction, irradiance, solid angle), or the reason why
 /// there is none.
 py::object without_sun(const EnvironmentHandle& own) {
-    TurnedOptions turned{Options(py::dict())};
-    turned.from = own.from;
-    turned.options = own.options;
     struct Split {
         lights::DistantLight sun;
         EnvironmentPointer rest;
         std::string why_none;
     };
-    const Split split = in_background(py::none(), [file = own.made.file, turned](const Reins&) {
-        Split result;
-        const cubemap::SunSearch search = cubemap::find_sun(*file.image);
-        if (!search.sun) {
-            result.why_none = search.why_none;
+    const Split split =
+        in_background(py::none(), [file = own.made.file, options = own.options](const Reins&) {
+            Split result;
+            const cubemap::SunSearch search = cubemap::find_sun(*file.image);
+            if (!search.sun) {
+                result.why_none = search.why_none;
+                return result;
+            }
+            cubemap::EnvironmentImage image = *file.image;
+            lights::remove_sun(image, *search.sun);
+            result.sun = lights::sun_light(*search.sun);
+            result.sun.direction = file.turn * result.sun.direction;
+            result.rest = made_of(
+                std::make_shared<const cubemap::EnvironmentImage>(std::move(image)), options);
             return result;
-        }
-        cubemap::EnvironmentImage image = *file.image;
-        lights::remove_sun(image, *search.sun);
-        result.sun = lights::sun_light(*search.sun);
-        result.sun.direction = file.turn * result.sun.direction;
-        result.rest =
-            made_of(std::make_shared<const cubemap::EnvironmentImage>(std::move(image)), turned);
-        return result;
-    });
+        });
     if (!split.rest)
         return py::str(split.why_none);
     return py::make_tuple(split.rest, tuple_of(split.sun.direction), tuple_of(split.sun.irradiance),
@@ -294,12 +287,12 @@ py::object without_sun(const EnvironmentHandle& own) {
 class Frames {
 public:
     Frames(const std::string& name, const std::optional<std::string>& range, const py::dict& given)
-        : turned_(Options(given)),
+        : options_(options_from<EnvironmentOptions>(given)),
           sequence_(
               cubemap::find_frames(name, range ? std::optional(cubemap::FrameRange::parse(*range))
                                                : std::nullopt),
-              [turned = turned_](const Path& path) {
-                  return load_environment_image(path, turned.get());
+              [options = options_](const Path& path) {
+                  return load_environment_image(path, options);
               }) {}
 
     [[nodiscard]] std::size_t size() const { return sequence_.size(); }
@@ -308,11 +301,11 @@ public:
 
     EnvironmentPointer load(std::size_t frame) {
         return made_of(std::make_shared<const cubemap::EnvironmentImage>(sequence_.load(frame)),
-                       turned_);
+                       options_);
     }
 
 private:
-    TurnedOptions turned_;
+    EnvironmentOptions options_;
     cubemap::FrameSequence sequence_;
 };
 

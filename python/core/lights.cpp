@@ -47,7 +47,8 @@ LightArrays place(const EnvironmentHandle& own, std::size_t number, const std::s
                   std::uint64_t seed) {
     const auto known = lights::method_named(method);
     if (!known)
-        Options::refuse("method", "median-cut, variance or importance", py::str(method));
+        throw OptionError("--method",
+                          "expected median-cut, variance or importance, got '" + method + "'");
     const Environment& made = own.made;
     const bool is_plain = made.file.image->layout == cubemap::Layout::LatLong &&
                           made.file.turn == glm::dmat3(1.0) && own.options.face_resolution == 0;

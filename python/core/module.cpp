@@ -1,11 +1,13 @@
 // relumine._core, the compiled part of the Python package. Its users are the Python sources beside
 // it, which check arguments and say what everything means.
 #include <optional>
+#include <string>
 
 #include <pybind11/pybind11.h>
 
 #include "arrays.h"
 #include "files/parallel.h"
+#include "options.h"
 #include "relumine/relumine.h"
 #include "run.h"
 #include "scene.h"
@@ -35,10 +37,15 @@ PYBIND11_MODULE(_core, module) {
             std::rethrow_exception(error);
         } catch (const relumine::MemoryLimitExceeded& limit) {
             PyErr_SetString(PyExc_MemoryError, limit.what());
+        } catch (const relumine::OptionError& wrong) { // floor_fade for --floor-fade
+            const std::string name = relumine::OptionRow{{}, wrong.option}.key();
+            const std::string text = name.empty() ? wrong.what() : name + ": " + wrong.reason;
+            PyErr_SetString(PyExc_ValueError, text.c_str());
         }
     });
     bind_arrays(module);
     bind_run(module);
+    bind_options(module);
     bind_scenes(module);
     bind_environments(module);
     bind_lights(module);

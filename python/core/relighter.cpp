@@ -45,7 +45,7 @@ public:
         const auto result = work(lit_);
         const std::span<const glm::vec3> radiance = lit_.radiance();
         std::copy(radiance.begin(), radiance.end(), radiance_.begin());
-        is_lit_ = true;
+        is_lit_ = !radiance.empty();
         return result;
     }
     /// A progress function that calls back would wait for itself.
@@ -56,14 +56,6 @@ public:
     [[nodiscard]] bool is_lit() const { return is_lit_; }
     [[nodiscard]] std::span<const glm::vec3> radiance() const { return radiance_; }
     [[nodiscard]] const Scene& scene() const { return lit_.scene(); }
-    /// Only an environment has layers and a history. Questions about them must not make an editor,
-    /// which would take the light of a list away.
-    [[nodiscard]] bool has_environment() const { return has_environment_; }
-    [[nodiscard]] bool has_editor() const { return has_editor_; }
-    void set_kind(bool has_environment, bool has_editor) {
-        has_environment_ = has_environment;
-        has_editor_ = has_editor;
-    }
 
     /// Marks the thread that waits for a job.
     class Caller {
@@ -85,8 +77,6 @@ private:
     LitScene lit_;
     std::vector<glm::vec3> radiance_;
     std::atomic<bool> is_lit_ = false;
-    std::atomic<bool> has_environment_ = false;
-    std::atomic<bool> has_editor_ = false;
     std::atomic<std::thread::id> caller_ = std::thread::id();
 };
 
@@ -116,12 +106,12 @@ auto slowly(const LitPointer& own, const py::object& progress, Work work) {
     });
 }
 
-py::tuple tuple_of(const UpdateReport& report) {
+py::tuple update_of(const UpdateReport& report) {
     return py::make_tuple(report.num_clusters, report.num_receivers, report.num_sharp_lights,
                           report.seconds, report.seconds_trace, report.resummed);
 }
 
-py::tuple tuple_of(const RelightTimes& times) {
+py::tuple times_of(const UpdateReport& times) {
     return py::make_tuple(times.seconds_bin, times.seconds_relight, times.seconds_trace,
                           times.num_sharp_lights);
 }
@@ -144,10 +134,8 @@ std::vector<cubemap::LightLayer> checked_layers(const std::string& json) {
 
 py::tuple set_lights(Lit& own, const py::buffer& directions, const py::buffer& irradiances,
                      const py::buffer& solid_angles) {
-    const auto list = lights_of(directions, irradiances, solid_angles);
-    const RelightTimes times = change(own, [&](LitScene& lit) { return lit.light(list); });
-    own.set_kind(false, false);
-    return tuple_of(times);
+    auto list = lights_of(directions, irradiances, solid_angles);
+    return times_of(change(own, [&](LitScene& lit) { return lit.light(std::move(list)); }));
 }
 
 py::tuple update_region(Lit& own, unsigned face, std::uint32_t x, std::uint32_t y,
@@ -157,21 +145,20 @@ py::tuple update_region(Lit& own, unsigned face, std::uint32_t x, std::uint32_t 
     const std::vector<glm::vec3> values = vec3s(radiance);
     const cubemap::TexelRectangle rectangle{static_cast<cubemap::Face>(face), x, y, x + width,
                                             y + height};
-    return tuple_of(
+    return update_of(
         change(own, [&](LitScene& lit) { return lit.update_region(rectangle, values); }));
 }
 
 py::tuple set_layers(Lit& own, const std::string& json) {
-    const UpdateReport report =
-        change(own, [&](LitScene& lit) { return lit.set_layers(checked_layers(json)); });
-    own.set_kind(true, true);
-    return tuple_of(report);
+    return update_of(change(
+        own, [&](LitScene& lit) { return relumine::set_layers(lit, checked_layers(json)); }));
 }
 
 /// `json`: a list with one layer.
 py::tuple set_layer(Lit& own, std::size_t index, const std::string& json) {
-    return tuple_of(change(
-        own, [&](LitScene& lit) { return lit.set_layer(index, checked_layers(json).at(0)); }));
+    return update_of(change(own, [&](LitScene& lit) {
+        return relumine::set_layer(lit, index, checked_layers(json).at(0));
+    }));
 }
 
 /// The shapes of layers: name, what they are, and of each field the name, what it holds, and the
@@ -197,11 +184,17 @@ py::list layer_shapes() {
 }
 
 std::string layers_text(Lit& own) {
-    if (!own.has_editor())
-        return R"({"layers": []})";
-    return quickly(own, [](LitScene& lit) {
-        const auto layers = lit.editor().layers();
-        return cubemap::json_text({.layers = {layers.begin(), layers.end()}});
+    return quickly(
+        own, [](LitScene& lit) { return cubemap::json_text({.layers = lit.state().layers}); });
+}
+
+void mark(Lit& own) {
+    // A mark sums the light anew, so the last bits of it may change.
+    change(own, [](LitScene& lit) {
+        if (!has_environment(lit))
+            throw std::invalid_argument("mark: expected an environment, got none");
+        relumine::mark(lit);
+        return true;
     });
 }
 
@@ -210,34 +203,12 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
         .def("set_layers", &set_layers)
         .def("set_layer", &set_layer)
         .def("layers", &layers_text)
-        .def("mark",
-             [](Lit& own) {
-                 if (!own.has_environment())
-                     throw py::value_error("mark: expected an environment, got none");
-                 own.set_kind(true, true);
-                 // A mark sums the light anew, so the last bits of it may change.
-                 change(own, [](LitScene& lit) {
-                     lit.editor().mark();
-                     return true;
-                 });
-             })
-        .def("undo",
-             [](Lit& own) {
-                 if (!own.has_editor())
-                     return tuple_of(UpdateReport{});
-                 return tuple_of(change(own, [](LitScene& lit) { return lit.editor().undo(); }));
-             })
-        .def("redo",
-             [](Lit& own) {
-                 if (!own.has_editor())
-                     return tuple_of(UpdateReport{});
-                 return tuple_of(change(own, [](LitScene& lit) { return lit.editor().redo(); }));
-             })
+        .def("mark", &mark)
+        .def("undo", [](Lit& own) { return update_of(change(own, &relumine::undo)); })
+        .def("redo", [](Lit& own) { return update_of(change(own, &relumine::redo)); })
         .def("history", [](Lit& own) {
-            if (!own.has_editor())
-                return std::pair(false, false);
             return quickly(own, [](LitScene& lit) {
-                return std::pair(lit.editor().can_undo(), lit.editor().can_redo());
+                return std::pair(lit.history().can_undo(), lit.history().can_redo());
             });
         });
 }
@@ -245,11 +216,11 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
 py::dict verify(const LitPointer& own, std::size_t samples, std::uint64_t seed, std::uint32_t paths,
                 const py::object& progress) {
     Verification found = slowly(own, progress, [=](LitScene& lit, const Reins& reins) {
-        return lit.verify({.num_samples = samples,
-                           .seed = seed,
-                           .num_paths = paths,
-                           .stop = reins.stop,
-                           .on_progress = reins.on_progress});
+        return relumine::verify(lit, {.num_samples = samples,
+                                      .seed = seed,
+                                      .num_paths = paths,
+                                      .stop = reins.stop,
+                                      .on_progress = reins.on_progress});
     });
     py::dict result;
     result["relative_l2"] = found.error.relative_l2;
@@ -268,7 +239,7 @@ py::tuple lit_by(const LitPointer& own, const std::string& json) {
     const std::vector<cubemap::LightLayer> layers = checked_layers(json);
     Share share =
         slowly(own, py::none(), [region = layers.at(0).region](LitScene& lit, const Reins&) {
-            return lit.lit_by(region);
+            return relumine::lit_by(lit, region);
         });
     const auto r = static_cast<py::ssize_t>(share.environment.resolution);
     return py::make_tuple(owned(std::move(share.radiance)),
@@ -278,7 +249,7 @@ py::tuple lit_by(const LitPointer& own, const std::string& json) {
 Array contribution_map(const LitPointer& own, const py::buffer& receivers) {
     cubemap::CubeMap map =
         slowly(own, py::none(), [chosen = uint32s(receivers)](LitScene& lit, const Reins&) {
-            return lit.contribution_map(chosen);
+            return relumine::contribution_map(lit, chosen);
         });
     const auto r = static_cast<py::ssize_t>(map.resolution);
     return owned(std::move(map.texels), {6, r, r});
@@ -300,7 +271,7 @@ void bind_questions(py::class_<Lit, LitPointer>& type) {
 
 /// Returns [height, width, 3 or 4] and the exposure that suits it.
 py::tuple draw(const LitPointer& own, const py::dict& given) {
-    const OutputOptions options = output_options(Options(given), own->scene());
+    const OutputOptions options = options_from<OutputOptions>(given);
     auto [picture, exposure] = slowly(own, py::none(), [options](LitScene& lit, const Reins&) {
         Painter painter(lit, options);
         const Lighting lighting = lit.lighting();
@@ -320,9 +291,8 @@ py::tuple draw(const LitPointer& own, const py::dict& given) {
 
 void save_lit(const LitPointer& own, const Path& path, const py::dict& given) {
     slowly(own, py::none(),
-           [path, options = output_options(Options(given), own->scene())](LitScene& lit,
-                                                                          const Reins&) {
-               lit.save(path, options);
+           [path, options = options_from<OutputOptions>(given)](LitScene& lit, const Reins&) {
+               save(lit, path, options);
                return true;
            });
 }
@@ -342,10 +312,9 @@ relight::Picture picture_of(const py::buffer& pixels, std::uint32_t width, std::
 }
 
 relight::Development development(double exposure, const std::string& tone) {
-    const auto curve = relight::tone_curve(tone);
-    if (!curve)
-        Options::refuse("tone_map", "neutral, agx, aces or none", py::str(tone));
-    return {.exposure_ev = exposure, .tone = *curve};
+    relight::Development result{.exposure_ev = exposure};
+    row("--tone-map", result.tone, "").set(tone);
+    return result;
 }
 
 void bind_pictures(py::module_& module, py::class_<Lit, LitPointer>& type) {
@@ -373,9 +342,10 @@ void bind_pictures(py::module_& module, py::class_<Lit, LitPointer>& type) {
 }
 
 py::tuple bounce(Lit& own, const std::optional<std::uint32_t>& bounces, const py::dict& given) {
-    const OutputOptions options = output_options(Options(given), own.scene());
+    const OutputOptions options = options_from<OutputOptions>(given);
     const BounceReport report = change(own, [&](LitScene& lit) {
-        return lit.bounce(bounce_albedo(lit.scene(), options), {.num_bounces = bounces});
+        const std::vector<glm::vec3> albedo = bounce_albedo(lit.scene(), options);
+        return lit.bounce({.albedo = albedo, .limits = {.num_bounces = bounces}});
     });
     return py::make_tuple(report.num_bounces, report.error, report.seconds);
 }
@@ -394,37 +364,31 @@ void bind_relighters(py::module_& module) {
                                [](const LitPointer& own) { return view(own, own->radiance()); })
         .def("set_environment",
              [](Lit& own, const EnvironmentHandle& environment) {
-                 const RelightTimes times =
-                     change(own, [&](LitScene& lit) { return lit.light(environment.made); });
-                 own.set_kind(true, own.has_editor());
-                 return tuple_of(times);
+                 return times_of(
+                     change(own, [&](LitScene& lit) { return lit.light(environment.made); }));
              })
         .def("update_environment",
              [](Lit& own, const EnvironmentHandle& environment) {
-                 const UpdateReport report =
-                     change(own, [&](LitScene& lit) { return lit.update(environment.made); });
-                 own.set_kind(true, true);
-                 return tuple_of(report);
+                 return update_of(
+                     change(own, [&](LitScene& lit) { return update(lit, environment.made); }));
              })
         .def("set_frame",
              [](Lit& own, const EnvironmentHandle& environment) {
                  change(own, [&](LitScene& lit) {
-                     lit.light(lit.bin(environment.made.map), environment.made.file);
-                     return true;
+                     return lit.light(Light(bin(lit, environment.made.map), environment.made.file));
                  });
-                 own.set_kind(true, own.has_editor());
              })
         .def("set_lights", &set_lights)
         .def("bounce", &bounce)
         .def("bounced",
              [](Lit& own) {
                  return owned(quickly(own, [](LitScene& lit) {
-                     const std::span<const glm::vec3> bounced = lit.bounced();
+                     const std::span<const glm::vec3> bounced = lit.bounces().bounced();
                      return std::vector<glm::vec3>(bounced.begin(), bounced.end());
                  }));
              })
         .def("environment", [](Lit& own) {
-            cubemap::CubeMap map = quickly(own, [](LitScene& lit) { return lit.environment(); });
+            cubemap::CubeMap map = quickly(own, [](LitScene& lit) { return environment_of(lit); });
             const auto r = static_cast<py::ssize_t>(map.resolution);
             return owned(std::move(map.texels), {6, r, r});
         });

@@ -11,7 +11,6 @@
 #include "mesh/floor.h"
 #include "mesh/normals.h"
 #include "options.h"
-#include "prt/glossy/lobe_list.h"
 #include "run.h"
 
 namespace relumine::python {
@@ -34,7 +33,7 @@ MeshPointer make_mesh(const py::buffer& vertices, const py::buffer& triangle_ind
         geometry.colors = vec3s(colors.cast<py::buffer>());
     if (!uvs.is_none())
         geometry.uvs = vec2s(uvs.cast<py::buffer>());
-    const MeshOptions options = mesh_options(Options(given));
+    const MeshOptions options = options_from<MeshOptions>(given);
     const Release release;
     if (geometry.normals.empty())
         geometry.normals = mesh::smooth_normals(geometry);
@@ -48,20 +47,25 @@ MeshPointer make_mesh(const py::buffer& vertices, const py::buffer& triangle_ind
 }
 
 MeshPointer loaded_mesh(const Path& path, const py::dict& given) {
-    return in_background(py::none(), [path, options = mesh_options(Options(given))](const Reins&) {
-        return MeshPointer(std::make_shared<Mesh>(load_mesh(path, options)));
-    });
+    return in_background(py::none(),
+                         [path, options = options_from<MeshOptions>(given)](const Reins&) {
+                             return MeshPointer(std::make_shared<Mesh>(load_mesh(path, options)));
+                         });
 }
 
 /// Returns the mesh and figures.
 py::tuple refined_mesh(const MeshPointer& mesh, const py::dict& given, const py::object& progress) {
     using Result = std::pair<MeshPointer, RefineReport>;
-    const Result result = in_background(
-        progress, [mesh, options = refine_options(Options(given))](const Reins& reins) mutable {
-            options.stop = reins.stop;
-            options.on_progress = reins.on_progress;
+    RefineOptions chosen;
+    OptionTable table = options_of(chosen);
+    table.push_back(row("--bias", chosen.bias, ""));
+    take(table, given);
+    const Result result =
+        in_background(progress, [mesh, options = std::move(chosen)](const Reins& reins) {
             Result found;
-            found.first = std::make_shared<Mesh>(refined(*mesh, options, &found.second));
+            found.first = std::make_shared<Mesh>(
+                refined(*mesh, options, {.stop = reins.stop, .on_progress = reins.on_progress},
+                        &found.second));
             return found;
         });
     py::dict report;
@@ -118,17 +122,16 @@ std::function<void(Stage, double)> joined(const std::function<void(double)>& on_
 
 /// The options of a precompute with the surfaces of a mesh.
 PrecomputeOptions work_options(const Mesh& mesh, const py::dict& given) {
-    const Options options_given(given);
-    PrecomputeOptions options = precompute_options(options_given);
-    std::vector<SurfaceMaterial> of_mesh;
-    for (const SurfaceMaterial& material : materials_of(options_given)) {
-        if (material.group == "floor")
-            options.floor_surface = material.applied_to({});
-        else
-            of_mesh.push_back(material);
-    }
-    if (!of_mesh.empty())
-        options.surface = surface_override(of_mesh, mesh.geometry);
+    PrecomputeOptions options;
+    std::vector<SurfaceMaterial> materials;
+    std::string output;
+    OptionTable table = options_of(options);
+    table.push_back(material_row(materials));
+    table.push_back(row("--output", output, "the .prt file to write"));
+    take(table, given);
+    check(options);
+    options.output = output;
+    set_materials(options, materials, mesh.geometry);
     return options;
 }
 
@@ -139,57 +142,59 @@ struct Precomputed {
     std::vector<std::string> warnings;
 };
 
-/// Calls `work(options, found)` in the background. Names the option that asks for too much.
-template<typename Work>
-Precomputed worked(const py::object& progress, PrecomputeOptions options, Work work) {
-    return in_background(
-        progress, [options = std::move(options), work](const Reins& reins) mutable {
-            Precomputed found;
-            options.stop = reins.stop;
-            options.on_progress = joined(reins.on_progress, options);
-            options.on_warning = [&](Warning, const std::string& text) {
-                found.warnings.push_back(text);
-            };
-            try {
-                work(options, found);
-            } catch (const TooMuchWork& error) {
-                throw std::invalid_argument(
-                    (error.cause == TooMuchWork::Cause::MinLevel ? "min_depth: " : "tolerance: ") +
-                    std::string(error.what()));
-            }
-            return found;
-        });
+/// Calls `compute(options, work, found)` in the background. Names the option that asks for too
+/// much.
+template<typename Compute>
+Precomputed worked(const py::object& progress, PrecomputeOptions options, Compute compute) {
+    return in_background(progress, [options = std::move(options), compute](const Reins& reins) {
+        Precomputed found;
+        const PrecomputeWork work{.stop = reins.stop,
+                                  .on_progress = joined(reins.on_progress, options),
+                                  .on_warning = [&](Warning, const std::string& text) {
+                                      found.warnings.push_back(text);
+                                  }};
+        try {
+            compute(options, work, found);
+        } catch (const TooMuchWork& error) {
+            throw std::invalid_argument(
+                (error.cause == TooMuchWork::Cause::MinLevel ? "min_depth: " : "tolerance: ") +
+                std::string(error.what()));
+        }
+        return found;
+    });
 }
 
 /// Returns the scene, figures and warnings.
 py::tuple precomputed(const MeshPointer& mesh, const py::dict& given, const py::object& progress) {
-    const Precomputed result =
-        worked(progress, work_options(*mesh, given),
-               [mesh](const PrecomputeOptions& options, Precomputed& found) {
-                   found.scene = std::make_shared<Scene>(precompute(*mesh, options, &found.report));
-               });
+    const Precomputed result = worked(
+        progress, work_options(*mesh, given),
+        [mesh](const PrecomputeOptions& options, const PrecomputeWork& work, Precomputed& found) {
+            found.scene = std::make_shared<Scene>(precompute(*mesh, options, work, &found.report));
+        });
     return py::make_tuple(result.scene, report_of(result.report), result.warnings);
 }
 
 /// Returns figures and warnings.
 py::tuple planned(const MeshPointer& mesh, const py::dict& given, const py::object& progress) {
-    const Precomputed result = worked(progress, work_options(*mesh, given),
-                                      [mesh](const PrecomputeOptions& options, Precomputed& found) {
-                                          plan(*mesh, options, &found.report);
-                                      });
+    const Precomputed result =
+        worked(progress, work_options(*mesh, given),
+               [mesh](const PrecomputeOptions& options, const PrecomputeWork& work,
+                      Precomputed& found) { plan(*mesh, options, work, &found.report); });
     return py::make_tuple(report_of(result.report), result.warnings);
 }
 
 void do_part(const Path& plan_path, std::uint32_t index, std::uint32_t count, const Path& output,
              const py::dict& given, const py::object& progress) {
-    PartOptions options{.plan = plan_path,
-                        .part = {.index = index, .count = count},
-                        .output = output,
-                        .engine = precompute_options(Options(given)).engine};
-    in_background(progress, [options](const Reins& reins) mutable {
-        options.stop = reins.stop;
-        options.on_progress = reins.on_progress;
-        precompute_part(options);
+    const PartOptions options{.plan = plan_path,
+                              .part = {.index = index, .count = count},
+                              .output = output,
+                              .engine = options_from<PrecomputeOptions>(given).engine};
+    in_background(progress, [options](const Reins& reins) {
+        precompute_part(options,
+                        {.stop = reins.stop, .on_progress = [&reins](Stage stage, double fraction) {
+                             if (stage == Stage::Clusters)
+                                 reins.on_progress(fraction);
+                         }});
         return true;
     });
 }
@@ -201,9 +206,7 @@ std::shared_ptr<Scene> load_prt(const Path& path) {
 }
 
 std::shared_ptr<Scene> recoloured(const std::shared_ptr<Scene>& scene, const py::dict& given) {
-    const Options options(given);
-    const SurfaceColors colors{.albedo = options.color("surface_albedo"),
-                               .specular = options.color("surface_specular")};
+    const auto colors = options_from<SurfaceColors>(given);
     const Release release;
     auto result = std::make_shared<Scene>(*scene);
     set_colors(*result, colors);
@@ -273,19 +276,6 @@ void bind_scenes(py::module_& module) {
             return nearest_receiver(scene, {p[0], p[1], p[2]});
         });
 
-    // By number: name, what it is, the names of its colours and its shape, the largest shape, and
-    // whether the specular colour must be given.
-    module.def("lobes", [] {
-        py::list result;
-        for (std::size_t i = 0; i < prt::NumHighlights; ++i) {
-            const prt::LobeFacts& lobe = prt::facts_of(static_cast<prt::Highlight>(i));
-            result.append(py::make_tuple(std::string(lobe.name), std::string(lobe.about),
-                                         std::string(lobe.albedo), std::string(lobe.specular),
-                                         std::string(lobe.shape), lobe.largest_shape,
-                                         lobe.needs_specular));
-        }
-        return result;
-    });
     module.def("make_mesh", &make_mesh);
     module.def("load_mesh", &loaded_mesh);
     module.def("refined", &refined_mesh);

@@ -22,8 +22,6 @@ struct EnvironmentHandle {
     Environment made;
     /// Shared with all turns of one resolution.
     std::shared_ptr<Resampled> resampled = std::make_shared<Resampled>();
-    /// As the image had it, for turns anew.
-    std::string from;
     EnvironmentOptions options;
 };
 

@@ -253,7 +253,7 @@ def _options(
 ) -> Dict[str, Any]:
     return {
         "layout": layout,
-        "convention": convention,
+        "from": convention,
         "face_resolution": face_resolution,
         "fix_env": fix_env,
         "flip": flip,

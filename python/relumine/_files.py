@@ -42,7 +42,8 @@ def _file_error(text: str, path: str) -> OSError:
 
 
 def in_python(text: str) -> str:
-    """Names options as Python does: --fix-env is fix_env."""
+    """Names options as Python does: --fix-env is fix_env, --from is convention."""
+    text = re.sub(r"^from(?=: )|--from\b", "convention", text)
     return re.sub(r"--([a-z]+(?:-[a-z]+)*)", lambda match: match[1].replace("-", "_"), text)
 
 

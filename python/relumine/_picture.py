@@ -2,15 +2,33 @@
 
 from __future__ import annotations
 
+import inspect
 import os
-from typing import Any, Optional, Tuple
+from typing import Any, Callable, Optional, Tuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
 from ._arrays import Floats, floats
-from ._files import Path, errors
+from ._files import Path, errors, in_python
+
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+def with_picture_options(function: _Function) -> _Function:
+    """Gives a function of **options the signature and the help of the options of pictures."""
+    blur = ("blur", None, "degrees: background 'blur=DEGREES'", 5.0)
+    rows = [*_core.picture_options(), blur]
+    own = inspect.signature(function)
+    parameters = [each for each in own.parameters.values() if each.kind is not each.VAR_KEYWORD]
+    for name, default, _, _ in rows:
+        parameters.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default))
+    setattr(function, "__signature__", own.replace(parameters=parameters))
+    told = "\n".join(f"{name:12} {in_python(help)}" for name, _, help, _ in rows)
+    function.__doc__ = f"{inspect.getdoc(function)}\n\nAll options:\n\n{told}\n"
+    return function
 
 
 class Picture(np.ndarray[Any, np.dtype[np.float32]]):
@@ -53,11 +71,12 @@ class Picture(np.ndarray[Any, np.dtype[np.float32]]):
         >>> picture.png()[1:4]
         b'PNG'
         """
-        return _core.picture_png(
-            *self._parts(),
-            self.exposure if exposure is None else exposure,
-            self.tone_map if tone_map is None else tone_map,
-        )
+        with errors():
+            return _core.picture_png(
+                *self._parts(),
+                self.exposure if exposure is None else exposure,
+                self.tone_map if tone_map is None else tone_map,
+            )
 
     def save(
         self, path: Path, *, exposure: Optional[float] = None, tone_map: Optional[str] = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,7 +15,7 @@ from ._files import Path, errors
 from ._layers import Layer, Region, naming_layers, parsed, region_text, text_of
 from ._lights import LightList
 from ._mesh import warn
-from ._picture import Picture
+from ._picture import Picture, with_picture_options
 from ._scene import Color, Progress, Scene
 
 #: Names of the cube's faces, in the order of `Environment.cube`.
@@ -213,7 +213,8 @@ class Relighter:
         Raises ValueError for a scene that was made without `bounces`.
         """
         options = {"albedo": albedo, "floor_albedo": floor_albedo}
-        return Bounces(*self._core.bounce(bounces, options))
+        with errors():
+            return Bounces(*self._core.bounce(bounces, options))
 
     @property
     def bounced(self) -> Floats:
@@ -327,75 +328,33 @@ class Relighter:
 
     # Outputs
 
-    def picture(
-        self,
-        *,
-        size: Tuple[int, int] = (1024, 768),
-        albedo: Union[Color, str, None] = None,
-        floor_albedo: Optional[Color] = None,
-        floor_fade: float = 0.6,
-        exposure: Optional[float] = None,
-        tone_map: str = "neutral",
-        camera: Optional[Sequence[float]] = None,
-        front: Optional[str] = None,
-        eye: Optional[Sequence[float]] = None,
-        target: Optional[Sequence[float]] = None,
-        fov: Optional[float] = None,
-        background: Union[Color, str] = "sharp",
-        blur: Optional[float] = None,
-        sun: str = "pixel",
-        gutter: int = 16,
-    ) -> Picture:
+    @with_picture_options
+    def picture(self, **options: Any) -> Picture:
         """The lit scene as an array of linear radiance, which notebooks show.
 
         size        (width, height); scenes of pixels and texels have their own
         albedo      a number, (r, g, b) or "mesh"; by default the mesh's own, else 0.5
         exposure    stops that png() and save() apply; by default what suits what is seen
-        camera      (azimuth, elevation[, distance]) in degrees; or eye and target (x, y, z)
-        fov         vertical, degrees (35)
+        camera      (azimuth, elevation[, distance[, fov]]) in degrees; or eye and target (x, y, z)
         background  "sharp" (the environment), "none" (alpha), a number or (r, g, b)
         blur        the environment out of focus, by so many degrees
-
-        The other options are those of `relumine relight`.
         """
-        options = _output(
-            albedo, floor_albedo, floor_fade, exposure, tone_map, camera, front, eye, target, fov,
-            size, background, blur, sun, gutter,
-        )  # fmt: skip
-        pixels, suitable = self._core.draw(options)
-        chosen = suitable if exposure is None else exposure
-        return Picture(view(pixels), exposure=chosen, tone_map=tone_map)
+        with errors():
+            pixels, suitable = self._core.draw(_output(options))
+        exposure = options.get("exposure")
+        chosen = suitable if exposure in (None, "auto") else float(exposure)
+        return Picture(
+            view(pixels), exposure=chosen, tone_map=options.get("tone_map") or "neutral"
+        )
 
-    def save(
-        self,
-        path: Path,
-        *,
-        size: Tuple[int, int] = (1024, 768),
-        albedo: Union[Color, str, None] = None,
-        floor_albedo: Optional[Color] = None,
-        floor_fade: float = 0.6,
-        exposure: Optional[float] = None,
-        tone_map: str = "neutral",
-        camera: Optional[Sequence[float]] = None,
-        front: Optional[str] = None,
-        eye: Optional[Sequence[float]] = None,
-        target: Optional[Sequence[float]] = None,
-        fov: Optional[float] = None,
-        background: Union[Color, str] = "sharp",
-        blur: Optional[float] = None,
-        sun: str = "pixel",
-        gutter: int = 16,
-    ) -> None:
+    @with_picture_options
+    def save(self, path: Path, **options: Any) -> None:
         """Writes the lit scene, whole or not at all, with the options of picture().
 
         .png and .exr: a picture. .ply and .glb: the mesh with vertex colours. .npy: numbers.
         """
-        options = _output(
-            albedo, floor_albedo, floor_fade, exposure, tone_map, camera, front, eye, target, fov,
-            size, background, blur, sun, gutter,
-        )  # fmt: skip
         with errors(path):
-            self._core.save(os.fspath(path), options)
+            self._core.save(os.fspath(path), _output(options))
 
     def _repr_png_(self) -> Optional[bytes]:
         return self.picture(size=(640, 480)).png() if self._core.is_lit else None
@@ -443,21 +402,9 @@ class Relighter:
         )
 
 
-def _output(
-    albedo: Union[Color, str, None],
-    floor_albedo: Optional[Color],
-    floor_fade: float,
-    exposure: Optional[float],
-    tone_map: str,
-    camera: Optional[Sequence[float]],
-    front: Optional[str],
-    eye: Optional[Sequence[float]],
-    target: Optional[Sequence[float]],
-    fov: Optional[float],
-    size: Tuple[int, int],
-    background: Union[Color, str],
-    blur: Optional[float],
-    sun: str,
-    gutter: int,
-) -> Dict[str, Any]:
-    return dict(locals())
+def _output(options: Dict[str, Any]) -> Dict[str, Any]:
+    """The options as the compiled part has them: `blur` is a background there."""
+    others = {name: value for name, value in options.items() if name != "blur"}
+    if options.get("blur") is not None:
+        others["background"] = f"blur={options['blur']}"
+    return others

@@ -3,21 +3,9 @@
 from __future__ import annotations
 
 import os
-import re
-from collections import namedtuple
-from typing import (
-    TYPE_CHECKING,
-    Any,
-    Callable,
-    Dict,
-    List,
-    Mapping,
-    Optional,
-    Sequence,
-    Tuple,
-    Union,
-)
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
@@ -30,68 +18,49 @@ Color = Union[float, Sequence[float]]
 Progress = Callable[[float], object]
 
 
-def _lobes() -> List[Any]:
-    """The classes of materials by their numbers: Lambert, Ggx, Blinn. None: the mesh's colours."""
-    result: List[Any] = []
-    for name, about, albedo, specular, shape, largest, needs_specular in _core.lobes():
-        required = [shape] * bool(shape) + [specular] * needs_specular
-        optional = [albedo] + [specular] * bool(specular and not needs_specular)
-        lobe: Any = namedtuple(  # type: ignore[misc]
-            name.capitalize(), required + optional, defaults=[None] * len(optional)
-        )
-        lobe.__doc__ = about
-        lobe._facts = (albedo, specular, shape, largest)
-        result.append(lobe)
-    return result
+class Ggx(NamedTuple):
+    """A metallic-roughness surface, as in glTF. Colours that are None stay the mesh's."""
+
+    roughness: float
+    albedo: Optional[Color] = None
+    f0: Optional[Color] = None
 
 
-LOBES = {lobe.__name__: lobe for lobe in _lobes()}
-globals().update(LOBES)
-if TYPE_CHECKING:
+class Blinn(NamedTuple):
+    """A normalised Blinn-Phong surface."""
 
-    def __getattr__(name: str) -> Any: ...
-
-
-Material = Any
+    exponent: float
+    ks: Color
+    kd: Optional[Color] = None
 
 
-def _materials(material: Union[Material, Mapping[str, Material], None]) -> List[Tuple[Any, ...]]:
+class Lambert(NamedTuple):
+    """A matt surface."""
+
+    albedo: Optional[Color] = None
+
+
+Material = Union[Ggx, Blinn, Lambert]
+
+
+def _materials(material: Union[Material, Mapping[str, Material], None]) -> List[str]:
+    """Materials as --material has them."""
     if material is None:
         return []
-    lobes = list(LOBES.values())
-    if isinstance(material, tuple(lobes)):
+    if isinstance(material, (Ggx, Blinn, Lambert)):
         material = {"": material}
-    result: List[Tuple[Any, ...]] = []
+    result: List[str] = []
     for group, surface in material.items():
-        if not isinstance(surface, tuple(lobes)):
-            *names, last = [*list(LOBES)[1:], list(LOBES)[0]]
-            raise ValueError(f"material: expected {', '.join(names)} or {last}, got {surface!r}")
-        albedo, specular, shape, largest = surface._facts
-        width = getattr(surface, shape) if shape else 0.0
-        if not 0.0 <= width <= largest:
-            article = "an" if shape[0] in "aeiou" else "a"
-            most = f"{largest:g}".replace("e+0", "e")
-            raise ValueError(f"material: expected {article} {shape} of 0 to {most}, got {surface}")
-        colors = [getattr(surface, name) if name else None for name in (albedo, specular)]
-        result.append((group, lobes.index(type(surface)), width, *colors))
+        if not isinstance(surface, (Ggx, Blinn, Lambert)):
+            raise ValueError(f"material: expected Ggx, Blinn or Lambert, got {surface!r}")
+        values = ",".join(
+            f"{name}={','.join(repr(float(each)) for each in np.atleast_1d(value))}"
+            for name, value in surface._asdict().items()
+            if value is not None
+        )
+        model = type(surface).__name__.lower() + (f":{values}" if values else "")
+        result.append(f"{group}={model}" if group else model)
     return result
-
-
-def _receivers(text: str) -> Tuple[str, int, int, int]:
-    match = re.fullmatch(r"(pixels|texels):(\d+)x(\d+)(?::(\d+))?", text)
-    if text == "vertices":
-        return ("vertices", 0, 0, 0)
-    if match is None or (match[1] == "texels" and match[4]):
-        raise ValueError(
-            f"receivers: expected vertices, pixels:WxH, pixels:WxH:N or texels:WxH, got {text!r}"
-        )
-    size = (int(match[2]), int(match[3]))
-    samples = int(match[4] or 1)
-    if not all(1 <= side <= 16384 for side in size) or not 1 <= samples <= 64:
-        raise ValueError(
-            f"receivers: expected 1 to 16384 a side and 1 to 64 samples, got {text!r}"
-        )
-    return (match[1], *size, samples)
 
 
 def precompute(
@@ -144,8 +113,6 @@ def precompute(
         mesh = Mesh(mesh, triangles)
     elif triangles is not None:
         raise ValueError("triangles: expected none beside a Mesh, got an array")
-    if tolerance is not None and epsilon is not None:
-        raise ValueError("epsilon: expected either tolerance or epsilon, got both")
     options: Dict[str, Any] = {
         "tolerance": tolerance,
         "epsilon": epsilon,
@@ -153,13 +120,13 @@ def precompute(
         "face_resolution": face_resolution,
         "bias": bias,
         "engine": engine,
-        "receivers": _receivers(receivers),
+        "receivers": receivers,
         "view": view,
         "material": _materials(material),
         "glossy_tolerance": glossy_tolerance,
         "bounces": bounces,
         "two_sided": two_sided,
-        "max_memory": max_memory,
+        "max_memory": f"{max_memory}B" if isinstance(max_memory, int) else max_memory,
         "output": None if output is None else os.fspath(output),
         "checkpoint_seconds": checkpoint_seconds,
         "resume": resume,
@@ -203,7 +170,7 @@ def plan(
         "min_depth": min_depth,
         "face_resolution": face_resolution,
         "bias": bias,
-        "receivers": _receivers(receivers),
+        "receivers": receivers,
         "view": view,
         "output": os.fspath(output),
     }
@@ -339,7 +306,8 @@ class Scene:
         Raises ValueError for a scene without materials.
         """
         colors = {"surface_albedo": surface_albedo, "surface_specular": surface_specular}
-        return Scene._of(_core.recoloured(self._core, colors))
+        with errors():
+            return Scene._of(_core.recoloured(self._core, colors))
 
     def __repr__(self) -> str:
         return (

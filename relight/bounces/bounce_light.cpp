@@ -496,8 +496,6 @@ private:
     std::vector<glm::vec3> published_;
 };
 
-BounceLight::BounceLight(const prt::BounceMatrix& matrix, const prt::Transfer& transfer)
-    : BounceLight(matrix, transfer, SharedRows()) {}
 BounceLight::BounceLight(const prt::BounceMatrix& matrix, const prt::Transfer& transfer,
                          const SharedRows& shared)
     : impl_(std::make_unique<Impl>(matrix, transfer, shared)) {}

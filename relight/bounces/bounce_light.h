@@ -65,11 +65,11 @@ public:
     ///
     /// Memory:  some 100 bytes per receiver.
     /// Throws:  std::invalid_argument for a matrix of other receivers.
-    BounceLight(const prt::BounceMatrix& matrix, const prt::Transfer& transfer);
+    ///
     /// Where processes share the rows, all call the same functions in the same order, with the same
     /// light of all receivers, and get the same result. They exchange what each product finds.
     BounceLight(const prt::BounceMatrix& matrix, const prt::Transfer& transfer,
-                const SharedRows& shared);
+                const SharedRows& shared = {});
     ~BounceLight();
     BounceLight(BounceLight&&) noexcept;
     BounceLight& operator=(BounceLight&&) noexcept;

@@ -15,6 +15,7 @@
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
 #include "tests/bench/times.h"
+#include "tests/prt/all_bounces.h"
 
 using namespace relumine;
 
@@ -38,8 +39,8 @@ void run(const Settings& settings, const bench::Inputs& inputs) {
         bench::seconds_of([&] { probes = relight::probe_radiance(scene.transfer); });
     prt::BounceStatistics found;
     const prt::BounceMatrix matrix = prt::precompute_bounces(
-        scene.mesh, scene.receivers, scene.transfer, probes, lit.rays(),
-        {.tolerance = settings.tolerance, .bias = scene.settings.bias}, &found);
+        scene.mesh, scene.receivers, scene.transfer, probes, lit.rays().of_mesh(),
+        {.tolerance = settings.tolerance, .bias = scene.settings.bias}, {}, &found);
     fmt::print(
         "{} vertices: probe lights {:.2f} s, bounces {:.2f} s, {:.2f} M rays, {:.2f} M hits, "
         "{:.2f} M emitters ({:.1f} a vertex, shared by {:.1f}), closure {:.3f}, standard error "
@@ -68,10 +69,11 @@ void run(const Settings& settings, const bench::Inputs& inputs) {
         for (int i = 0; i < 7; ++i)
             one.push_back(bench::seconds_of([&] { bounces.step(direct); }));
 
-        const auto exact = relight::exact_radiance(
-            scene.receivers, sample, lit.rays(), lit.environment(), {.bias = scene.settings.bias});
+        const auto exact =
+            relight::exact_radiance(scene.receivers, sample, lit.rays().of_mesh(),
+                                    environment_of(lit), {.bias = scene.settings.bias});
         const auto traced = relight::trace_bounces(
-            scene.mesh, albedo, scene.receivers, sample, lit.rays(), lit.environment(),
+            scene.mesh, albedo, scene.receivers, sample, lit.rays().of_mesh(), environment_of(lit),
             {.num_paths = settings.paths, .bias = scene.settings.bias});
         double squares = 0.0, noise = 0.0, error = 0.0, direct_error = 0.0, indirect_error = 0.0;
         double mean = 0.0, mean_relit = 0.0, missing = 0.0;

@@ -41,7 +41,8 @@ Figures steps(LitScene& lit, const LayersAt& layers_at) {
         for (std::size_t i = 0; i < layers.size();
              ++i) { // one disc is one edit, as an artist would drag it
             relight::UpdateReport report;
-            const double seconds = bench::seconds_of([&] { report = lit.set_layer(i, layers[i]); });
+            const double seconds =
+                bench::seconds_of([&] { report = set_layer(lit, i, layers[i]); });
             figures.average += seconds / (2 * NumSteps);
             figures.worst = std::max(figures.worst, seconds);
             figures.clusters += static_cast<double>(report.num_clusters) / (2 * NumSteps);
@@ -60,12 +61,12 @@ void run(const Settings& settings, const bench::Inputs& inputs) {
     LitScene lit(inputs.bunny());
     std::vector<double> full;
     for (int i = 0; i < 7; ++i) {
-        const RelightTimes times = lit.light(base);
+        const UpdateReport times = lit.light(base);
         full.push_back(times.seconds_bin + times.seconds_trace + times.seconds_relight);
     }
     const glm::dvec3 front(0.15, 0.35, 1.0);
     const glm::dvec3 side(1.0, 0.35, 0.15);
-    lit.set_layers({bench::disc(front, 0.05, 0.0), bench::disc(side, 0.10, 0.0)});
+    set_layers(lit, {bench::disc(front, 0.05, 0.0), bench::disc(side, 0.10, 0.0)});
     const Figures rising = steps(lit, [&](double t) {
         return std::vector{bench::disc(front, 0.05, 10.0 * t), bench::disc(side, 0.10, 5.0 * t)};
     });

@@ -32,7 +32,8 @@ void measure_sequence(const data_gen::Sequence& sequence, const Settings& settin
     if (sequence.needs_probe)
         options.probe = inputs.environment(settings.probe, settings.resolution);
     const data_gen::FrameMaker make = sequence.make(options);
-    relight::EnvironmentBinner binner(lit.scene().transfer, lit.shadow_rays().tolerance);
+    relight::EnvironmentBinner binner(lit.scene().transfer,
+                                      lit.relighter().shadow_rays().tolerance);
     std::vector<relight::BinnedEnvironment> frames;
     std::vector<double> bin;
     for (std::size_t i = 0; i < settings.num_frames; ++i) {
@@ -41,7 +42,7 @@ void measure_sequence(const data_gen::Sequence& sequence, const Settings& settin
         frames.push_back(binner.bin(std::move(map)));
         bin.push_back(1e3 * watch.seconds());
     }
-    relight::Relighter relighter(lit.scene().transfer, lit.shadow_rays());
+    relight::Relighter relighter(lit.scene().transfer, lit.relighter().shadow_rays());
     relighter.set_frame(frames.back());
     std::vector<double> relight;
     std::vector<double> trace;

@@ -93,7 +93,7 @@ Scene shiny_scene(const Mesh& mesh, const Settings& settings, float roughness,
                               .glossy_tolerance = settings.glossy_tolerance};
     if (settings.pixels)
         options.receivers = Pixels{.width = 512, .height = 512};
-    return precompute(mesh, options, &report);
+    return precompute(mesh, options, {}, &report);
 }
 
 void print_row(float roughness, const Settings& settings, const Mesh& mesh,
@@ -107,14 +107,14 @@ void print_row(float roughness, const Settings& settings, const Mesh& mesh,
     std::string errors;
     for (const Environment& environment : maps) {
         for (int i = 0; i < 3; ++i) {
-            const RelightTimes times = lit.light(environment.map);
+            const UpdateReport times = lit.light(environment.map);
             seconds.push_back(times.seconds_relight);
             if (&environment == &maps.front())
                 seconds_frame.push_back(times.seconds_bin + times.seconds_trace +
                                         times.seconds_relight);
         }
-        const Verification check = lit.verify(
-            {.num_samples = settings.num_samples, .num_surface_points = settings.num_samples});
+        const Verification check = verify(
+            lit, {.num_samples = settings.num_samples, .num_surface_points = settings.num_samples});
         errors += fmt::format(
             " {:.4f}{} |", check.error.relative_l2,
             check.surface ? fmt::format(", {:.4f}", check.surface->error.relative_l2) : "");

@@ -1,6 +1,7 @@
 // Times of the steps that run when an environment changes, on a generated scene. See `./dev bench
 // kernels --help`.
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -13,8 +14,8 @@
 #include "data_gen/scenes.h"
 #include "lights/light_clusters.h"
 #include "lights/place_lights.h"
-#include "relight/light_editor.h"
 #include "relight/relighter.h"
+#include "relumine/lit_scene.h"
 #include "relumine/precompute.h"
 
 namespace {
@@ -26,9 +27,9 @@ bool is_tiny = false;
 
 /// A boulder of 20,000 vertices, precomputed once for all benchmarks.
 struct Fixture {
-    Scene scene =
-        precompute(data_gen::blob(is_tiny ? 1000 : 20000), {.tolerance = is_tiny ? 0.1f : 0.02f});
-    const prt::Transfer& transfer = scene.transfer;
+    std::shared_ptr<const Scene> scene = std::make_shared<const Scene>(
+        precompute(data_gen::blob(is_tiny ? 1000 : 20000), {.tolerance = is_tiny ? 0.1f : 0.02f}));
+    const prt::Transfer& transfer = scene->transfer;
 
     static const Fixture& instance() {
         static const Fixture Instance;
@@ -65,7 +66,7 @@ void BM_Edit(benchmark::State& state) {
     const std::vector<glm::vec3> radiance(13 * 13, glm::vec3(2.0f));
     for (auto _ : state)
         benchmark::DoNotOptimize(
-            relighter.update_region({cubemap::Face::PositiveZ, 100, 60, 113, 73}, radiance));
+            update_region(relighter, {cubemap::Face::PositiveZ, 100, 60, 113, 73}, radiance));
 }
 void BM_CubeFromLatLong(benchmark::State& state) {
     cubemap::EnvironmentImage image;
@@ -147,13 +148,13 @@ BENCHMARK(BM_Touched)->Unit(benchmark::kMillisecond)->UseRealTime();
 /// A whole drag event: two degrees there and back.
 template<cubemap::Region (*Shape)(double)>
 void BM_Drag(benchmark::State& state) {
-    relight::LightEditor editor(Fixture::instance().transfer);
-    editor.set_base(cubemap::CubeMap(1024, glm::vec3(1.0f)));
-    editor.set_layers({painted(Shape(0.0))});
+    LitScene editor(Fixture::instance().scene, {.clusters_only = true});
+    editor.light(cubemap::CubeMap(1024, glm::vec3(1.0f)));
+    set_layers(editor, {painted(Shape(0.0))});
     bool there = false;
     for (auto _ : state) {
         there = !there;
-        editor.set_layer(0, painted(Shape(there ? 0.035 : 0.0)));
+        set_layer(editor, 0, painted(Shape(there ? 0.035 : 0.0)));
     }
 }
 BENCHMARK(BM_Drag<stroke>)->Unit(benchmark::kMillisecond)->UseRealTime();
@@ -161,16 +162,16 @@ BENCHMARK(BM_Drag<lasso>)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 /// A brush that paints on: one more point of the stroke.
 void BM_Paint(benchmark::State& state) {
-    relight::LightEditor editor(Fixture::instance().transfer);
-    editor.set_base(cubemap::CubeMap(1024, glm::vec3(1.0f)));
+    LitScene editor(Fixture::instance().scene, {.clusters_only = true});
+    editor.light(cubemap::CubeMap(1024, glm::vec3(1.0f)));
     const cubemap::LightLayer whole = painted(stroke());
     cubemap::LightLayer shorter = whole;
     std::get<cubemap::Stroke>(shorter.region).points.pop_back();
-    editor.set_layers({whole});
+    set_layers(editor, {whole});
     bool longer = true;
     for (auto _ : state) {
         longer = !longer;
-        editor.set_layer(0, longer ? whole : shorter);
+        set_layer(editor, 0, longer ? whole : shorter);
     }
 }
 BENCHMARK(BM_Paint)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -117,14 +117,16 @@ void print(const std::string& name, double seconds, double cpu, std::size_t num_
 }
 
 void measure(const std::string& name, const prt::Receivers& receivers,
-             const prt::Blockers& blockers, prt::PrecomputeOptions options) {
+             const prt::Blockers& blockers, const prt::PrecomputeOptions& options) {
     LongestGap gap;
-    options.on_progress = [&](double) {
-        gap.call();
-    };
     prt::PrecomputeStatistics statistics;
     const double before = bench::cpu_seconds();
-    const prt::Transfer transfer = prt::precompute(receivers, blockers, options, &statistics);
+    const prt::Transfer transfer = prt::precompute(receivers, blockers, options,
+                                                   {.on_progress =
+                                                        [&](double) {
+                                                            gap.call();
+                                                        }},
+                                                   &statistics);
     print(name, statistics.seconds, bench::cpu_seconds() - before, transfer.num_clusters());
     fmt::print("  {:.0f} M rays  longest without progress {:.0f} ms  peak {:.0f} MB\n",
                static_cast<double>(statistics.num_rays) * 1e-6, gap.seconds() * 1e3,
@@ -133,11 +135,10 @@ void measure(const std::string& name, const prt::Receivers& receivers,
 
 /// Time from the wish to stop to the end of the work, at moments spread over it.
 void measure_cancel(const prt::Receivers& receivers, const prt::Blockers& blockers,
-                    prt::PrecomputeOptions options, std::chrono::milliseconds step) {
+                    const prt::PrecomputeOptions& options, std::chrono::milliseconds step) {
     double longest = 0.0;
     for (int i = 1; i <= 8; ++i) {
         std::stop_source stop;
-        options.stop = stop.get_token();
         bench::Stopwatch since_asked;
         const std::jthread canceller([&, i] {
             std::this_thread::sleep_for(i * step);
@@ -145,7 +146,8 @@ void measure_cancel(const prt::Receivers& receivers, const prt::Blockers& blocke
             stop.request_stop();
         });
         try {
-            static_cast<void>(prt::precompute(receivers, blockers, options));
+            static_cast<void>(
+                prt::precompute(receivers, blockers, options, {.stop = stop.get_token()}));
         } catch (const prt::Cancelled&) {
             longest = std::max(longest, since_asked.seconds());
         }

@@ -291,7 +291,7 @@ void print_growth(const Settings& settings, const bench::Inputs& inputs) {
         const double start = bench::cpu_seconds();
         const std::size_t most = 2 * mesh.geometry.num_vertices();
         const std::size_t before = mesh.geometry.num_vertices();
-        mesh = refined(std::move(mesh), {.error = 0.0f, .min_edge = 0.0f, .max_vertices = most},
+        mesh = refined(std::move(mesh), {.error = 0.0f, .min_edge = 0.0f, .max_vertices = most}, {},
                        &report);
         const double seconds = bench::cpu_seconds() - start;
         const auto after = static_cast<double>(mesh.geometry.num_vertices());

@@ -48,12 +48,12 @@ private:
 /// Median time of an edit that changes a disc's brightness.
 double edit_seconds(LitScene& lit, double part_of_face) {
     const glm::dvec3 direction(0.15, 0.35, 1.0);
-    lit.set_layers({bench::disc(direction, part_of_face, 0.0)});
+    set_layers(lit, {bench::disc(direction, part_of_face, 0.0)});
     constexpr int NumEdits = 200;
     std::vector<double> seconds;
     for (int i = 1; i <= NumEdits; ++i)
         seconds.push_back(bench::seconds_of(
-            [&] { lit.set_layer(0, bench::disc(direction, part_of_face, 0.05 * i)); }));
+            [&] { set_layer(lit, 0, bench::disc(direction, part_of_face, 0.05 * i)); }));
     return bench::median(seconds);
 }
 
@@ -130,7 +130,7 @@ void measure_files(const Scene& scene, Report& report) {
 void measure_errors(const Settings& settings, const bench::Inputs& inputs, LitScene& lit,
                     Report& report) {
     constexpr std::uint32_t Resolution = 256;
-    lit.set_layers({});
+    set_layers(lit, {});
     std::size_t num_samples = 0;
     std::vector<double> seconds;
     std::string errors, errors_between;
@@ -138,19 +138,19 @@ void measure_errors(const Settings& settings, const bench::Inputs& inputs, LitSc
         lit.light(inputs.environment(name + "_cross.hdr", Resolution));
         Verification check;
         seconds.push_back(bench::seconds_of([&] {
-            check = lit.verify({.num_samples = settings.num_samples, .num_surface_points = 0});
+            check = verify(lit, {.num_samples = settings.num_samples, .num_surface_points = 0});
         }));
         num_samples = check.receivers.size();
         errors += fmt::format(" {} {:.5f}", name, check.error.relative_l2);
         report.add_value("error_" + name, check.error.relative_l2);
         const Verification between =
-            lit.verify({.num_samples = 1, .num_surface_points = settings.num_samples});
+            verify(lit, {.num_samples = 1, .num_surface_points = settings.num_samples});
         errors_between += fmt::format(" {} {:.5f}", name, between.surface->error.relative_l2);
         report.add_value("surface_error_" + name, between.surface->error.relative_l2);
     }
     report.add("verify",
                fmt::format("exact radiance of {} receivers, R = {}", num_samples,
-                           lit.environment().resolution),
+                           environment_of(lit).resolution),
                1e3 * bench::median(seconds),
                "relative L2 of relighting:" + errors + "; between the vertices:" + errors_between);
 }

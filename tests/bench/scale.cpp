@@ -43,7 +43,8 @@ struct Costs {
 };
 
 Costs measured(std::size_t num_vertices, float tolerance, const fs::path& folder) {
-    prt::Scene scene;
+    prt::Plan made{.has_clusters = true};
+    prt::Scene& scene = made.scene;
     scene.mesh = data_gen::knot(num_vertices);
     scene.receivers = prt::vertex_receivers(scene.mesh);
     const prt::PrecomputeOptions options{.tolerance = tolerance,
@@ -63,7 +64,7 @@ Costs measured(std::size_t num_vertices, float tolerance, const fs::path& folder
         return before - start;
     };
     prt::PrecomputeStatistics of_plan;
-    scene.transfer = prt::plan_clusters(scene.receivers, beams, options, &of_plan);
+    scene.transfer = prt::plan_clusters(scene.receivers, beams, options, {}, &of_plan);
     const double plan_seconds = lap();
     costs.clusters = static_cast<double>(scene.transfer.num_clusters());
     const double pairs = receivers * costs.clusters;
@@ -72,18 +73,18 @@ Costs measured(std::size_t num_vertices, float tolerance, const fs::path& folder
     costs.plan_seconds_per_pair = plan_seconds / sampled;
 
     const fs::path plan_file = folder / "scale.plan";
-    costs.plan_bytes = static_cast<double>(prt::save_plan(plan_file, scene)) / receivers;
+    costs.plan_bytes = static_cast<double>(prt::save_plan(plan_file, made)) / receivers;
     lap();
     prt::Plan plan = prt::load_plan(plan_file);
     costs.load_seconds = lap() / receivers;
-    const std::vector<prt::PartLight> light = {
+    std::vector<prt::PartLight> light = {
         {prt::part_counts(plan.scene.receivers, plan.scene.transfer, beams, options, {})}};
     costs.seconds_per_pair = lap() / pairs;
     const prt::VisibleCounts& counts = light[0].counts;
     costs.light_bytes =
         static_cast<double>(8 * 3 * counts.visible.size() + counts.counts.size()) / pairs;
     lap();
-    prt::join_light(plan.scene.transfer, light);
+    prt::join_light(plan.scene, light);
     const std::uint64_t scene_bytes = prt::save_scene(folder / "scale.prt", plan.scene);
     costs.join_seconds = lap() / pairs;
     costs.file_bytes = static_cast<double>(scene_bytes) / pairs;

@@ -134,7 +134,7 @@ void run(const Settings& settings) {
     const auto edit = [&] {
         std::vector<cubemap::LightLayer> list;
         list.push_back(layers.next());
-        lit.set_layers(std::move(list));
+        set_layers(lit, std::move(list));
     };
     const auto change_environment = [&](std::size_t i) {
         cubemap::CubeMap next = base;
@@ -144,8 +144,8 @@ void run(const Settings& settings) {
         lit.light(std::move(next));
     };
     const auto drift_now = [&] {
-        return difference(lit.radiance(),
-                          relight::relight(transfer, lit.environment(), lit.shadow_rays()));
+        return difference(lit.radiance(), relight::relight(transfer, environment_of(lit),
+                                                           lit.relighter().shadow_rays()));
     };
     // A tenth of the work first: caches and pools have their size then.
     for (std::size_t i = 0; i < settings.num_environments / 10; ++i)

@@ -59,7 +59,7 @@ float epsilon(const bench::Inputs& inputs) {
 /// The experiment of Section 6: a disc added to the beach map, its intensity rising over 60 steps.
 /// `radius` is a part of the map's width.
 double seconds_per_edit(LitScene& lit, const glm::dvec3& axis, double radius) {
-    const std::uint32_t r = lit.environment().resolution;
+    const std::uint32_t r = environment_of(lit).resolution;
     const double min_cosine =
         std::cos(radius * std::numbers::pi / 2.0); // a face is a right angle wide
     const cubemap::FacePoint centre = cubemap::face_point(axis);
@@ -80,7 +80,7 @@ double seconds_per_edit(LitScene& lit, const glm::dvec3& axis, double radius) {
                 const bool inside =
                     glm::dot(cubemap::texel_direction(box.face, x, y, r), axis) >= min_cosine;
                 radiance.push_back(inside ? glm::vec3(0.2f * static_cast<float>(step + 1))
-                                          : lit.environment().at(box.face, x, y));
+                                          : environment_of(lit).at(box.face, x, y));
             }
         seconds.push_back(lit.update_region(box, radiance).seconds);
     }
@@ -98,7 +98,7 @@ std::uint64_t saved_bytes(const Scene& scene, const char* name) {
 /// A scene under the crosses.
 struct UnderCrosses {
     /// Five of each cross
-    std::vector<relight::RelightTimes> times;
+    std::vector<relight::UpdateReport> times;
     /// Relative L2 against exact integration, by cross: at vertices, and between them
     nlohmann::json errors, surface_errors;
     std::size_t num_samples = 0;
@@ -114,8 +114,8 @@ UnderCrosses under_crosses(LitScene& lit, const Settings& settings, const bench:
             inputs.environment(fmt::format("{}_cross.hdr", name), resolution);
         for (int i = 0; i < 5; ++i)
             result.times.push_back(lit.light(map));
-        const Verification check = lit.verify(
-            {.num_samples = settings.num_samples, .num_surface_points = settings.num_samples});
+        const Verification check = verify(
+            lit, {.num_samples = settings.num_samples, .num_surface_points = settings.num_samples});
         result.num_samples = check.receivers.size();
         result.errors[name] = check.error.relative_l2;
         result.surface_errors[name] = check.surface.value().error.relative_l2;
@@ -128,12 +128,12 @@ nlohmann::json measure(const PaperRow& paper, const Settings& settings,
     const Mesh mesh = inputs.mesh(paper.mesh);
     PrecomputeReport report;
     fmt::print(stderr, "{}: precompute at R = 1024\n", paper.name);
-    LitScene lit(precompute(mesh, {.epsilon = epsilon(inputs)}, &report));
+    LitScene lit(precompute(mesh, {.epsilon = epsilon(inputs)}, {}, &report));
     const std::uint64_t file_bytes = saved_bytes(lit.scene(), paper.name);
 
     const UnderCrosses verified = under_crosses(lit, settings, inputs);
     std::vector<double> relight_seconds;
-    for (const RelightTimes& times : verified.times)
+    for (const UpdateReport& times : verified.times)
         relight_seconds.push_back(times.seconds_trace + times.seconds_relight);
 
     // The light sources of the experiment stand in front of the model and at its side.
@@ -177,14 +177,14 @@ nlohmann::json measure_buddha(const Settings& settings, const bench::Inputs& inp
                                                      .specular = glm::vec3(0.5f),
                                                      .highlight = prt::Highlight::Ggx,
                                                      .roughness_or_exponent = Roughness})},
-                             &report);
+                             {}, &report);
     const double seconds = watch.seconds();
     const std::uint64_t file_bytes = saved_bytes(scene, PaperBuddha.name);
 
     LitScene lit(std::move(scene));
     const UnderCrosses verified = under_crosses(lit, settings, inputs, 256);
     std::vector<double> relight_seconds;
-    for (const RelightTimes& times : verified.times)
+    for (const UpdateReport& times : verified.times)
         relight_seconds.push_back(times.seconds_relight);
     return {{"scene", PaperBuddha.name},
             {"vertices", report.num_vertices},

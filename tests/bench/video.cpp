@@ -24,6 +24,7 @@
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
 #include "tests/bench/times.h"
+#include "tests/lights/importance_lights.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;
@@ -204,12 +205,13 @@ private:
             fmt::print(stderr, "\r{}: exact integration of frame {} of {} ", sequence.name,
                        frame + 1, settings_.num_frames);
             const cubemap::CubeMap map = sequence.map(frame);
-            exact_.push_back(relight::exact_radiance(lit_.scene().receivers, sample_, lit_.rays(),
-                                                     map, {.bias = lit_.scene().settings.bias}));
+            exact_.push_back(relight::exact_radiance(lit_.scene().receivers, sample_,
+                                                     lit_.rays().of_mesh(), map,
+                                                     {.bias = lit_.scene().settings.bias}));
             images_.push_back(lights::lat_long_of(map));
             for (const glm::dvec3& value : exact_.back())
                 luminance += lights::luminance(value);
-            const RelightTimes times = lit_.light(map);
+            const UpdateReport times = lit_.light(map);
             seconds.push_back(times.seconds_bin + times.seconds_relight + times.seconds_trace);
             relit.emplace_back();
             for (const std::uint32_t receiver : sample_)
@@ -247,7 +249,7 @@ private:
         for (std::size_t frame = 0; frame < frames.num_frames(); ++frame) {
             meter.add_frame(relight::radiance_under(frames.at(frame),
                                                     lit_.scene().receivers.normals, sample_,
-                                                    lit_.shadow_rays()),
+                                                    lit_.relighter().shadow_rays()),
                             exact_[frame]);
             row.lights += static_cast<double>(frames.at(frame).size()) /
                           static_cast<double>(frames.num_frames());
@@ -260,7 +262,9 @@ private:
         std::vector<double> seconds;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t frame = i * (frames.num_frames() - 1) / 2;
-            const RelightTimes times = lit_.light(frames.at(frame));
+            const std::span<const lights::DistantLight> list = frames.at(frame);
+            const UpdateReport times =
+                lit_.light(std::vector<lights::DistantLight>(list.begin(), list.end()));
             seconds.push_back(times.seconds_bin + times.seconds_relight + times.seconds_trace);
         }
         row.seconds_light = bench::median(seconds);

@@ -131,26 +131,26 @@ const std::array<const char*, 12> Places = {
     "0-{}",         "ggx:roughness={}"};
 
 /// Options with a value that is no file.
-std::vector<app::OptionTable> numeric_options(const app::CommandLine& program, const Words& line) {
+OptionTable numeric_options(const app::CommandLine& program, const Words& line) {
     app::CommandTable table = program.table();
     for (std::size_t i = 0; i < line.size() && !table.commands.empty(); ++i)
         for (const app::CommandTable& command : std::vector(table.commands))
             if (command.name == line[i])
                 table = command;
-    std::vector<app::OptionTable> result;
-    for (const app::OptionTable& option : table.options)
-        if (!option.names.empty() && option.value == app::OptionTable::Value::Text)
+    OptionTable result;
+    for (const OptionRow& option : table.options)
+        if (!option.is_argument() && !option.is_flag && !option.file && !option.folder &&
+            option.choices.empty())
             result.push_back(option);
     return result;
 }
 
-void set(Words& line, const app::OptionTable& option, const std::string& value) {
-    for (const std::string& name : option.names)
+void set(Words& line, const OptionRow& option, const std::string& value) {
+    for (const std::string& name : option.names())
         if (const auto at = std::find(line.begin(), line.end(), name); at != line.end())
             line.erase(at, at + 2);
-    line.push_back(fmt::format("{}={}", option.names.back(), value));
-    if (option.names.back() ==
-        "--refine") // a mesh as fine as an error of 0 asks for takes too long
+    line.push_back(fmt::format("{}={}", option.long_name(), value));
+    if (option.long_name() == "--refine") // a mesh as fine as an error of 0 asks for takes too long
         line.emplace_back("--max-vertices=40");
 }
 
@@ -176,7 +176,7 @@ void run_at_edges(std::span<const std::uint8_t> draws) {
     app::CommandLine program("relumine", "", "");
     app::add_commands(program, fresh_session());
     Words line = working_lines()[draws[0] % working_lines().size()];
-    const std::vector<app::OptionTable> options = numeric_options(program, line);
+    const OptionTable options = numeric_options(program, line);
     for (std::size_t i = 1; i + 3 <= draws.size() && i < 7; i += 3)
         set(line, options[draws[i] % options.size()],
             fmt::format(fmt::runtime(Places[draws[i + 2] % Places.size()]),
@@ -201,8 +201,7 @@ std::size_t run_all_edges(std::size_t command) {
     std::size_t count = 0;
     app::CommandLine program("relumine", "", "");
     app::add_commands(program, fresh_session());
-    const std::vector<app::OptionTable> options =
-        numeric_options(program, working_lines()[command]);
+    const OptionTable options = numeric_options(program, working_lines()[command]);
     for (std::size_t option = 0; option < options.size(); ++option) {
         const bool is_number = options[option].type == "UINT" || options[option].type == "FLOAT";
         // In text, the fuzzer tries the other numbers.

@@ -5,6 +5,7 @@
 
 #include "cubemap/cube_map.h"
 #include "prt/transfer/quadtree.h"
+#include "relight/bounces/bounce_light.h"
 #include "relight/relighter.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -49,17 +50,17 @@ void require_sound(const prt::Scene& scene) {
     require(relighter.radiance().size() == num_receivers, "every receiver has a radiance");
     require_moderate(relighter.radiance());
     const std::vector<glm::vec3> red(4, glm::vec3(1.0f, 0.0f, 0.0f));
-    relighter.update_region({.face = cubemap::Face::PositiveY, .x0 = 1, .y0 = 1, .x1 = 3, .y1 = 3},
-                            red);
+    update_region(relighter, {.face = cubemap::Face::PositiveY, .x0 = 1, .y0 = 1, .x1 = 3, .y1 = 3},
+                  red);
     require_moderate(relighter.radiance());
     if (!scene.bounces)
         return;
-    relighter.set_bounces(
-        {.matrix = &*scene.bounces, .albedo = std::vector(num_receivers, glm::vec3(0.5f))});
-    relighter.bounce();
-    require_moderate(relighter.radiance());
-    relighter.step();
-    require_moderate(relighter.radiance());
+    relight::BounceLight light(*scene.bounces, transfer);
+    light.set_albedo(std::vector(num_receivers, glm::vec3(0.5f)));
+    light.solve(relighter.diffuse_radiance());
+    require_moderate(light.indirect());
+    light.step(relighter.diffuse_radiance());
+    require_moderate(light.indirect());
 }
 
 } // namespace relumine::fuzz

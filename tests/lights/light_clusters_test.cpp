@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/lights/importance_lights.h"
 #include "tests/lights/test_maps.h"
 
 namespace relumine::lights {

@@ -58,7 +58,7 @@ struct MemoryScene {
 TEST(MemoryEstimate, ATrialForetellsTheClusters) {
     const MemoryScene scene;
     PrecomputeStatistics statistics;
-    static_cast<void>(precompute(scene.receivers, scene.rays, scene.options, &statistics));
+    static_cast<void>(precompute(scene.receivers, scene.rays, scene.options, {}, &statistics));
     const MemoryEstimate estimate = estimate_memory(scene.sizes, scene.receivers, scene.rays,
                                                     scene.options, std::uint64_t{1} << 40);
     EXPECT_FALSE(estimate.is_at_least);
@@ -84,23 +84,24 @@ TEST(MemoryEstimate, ATrialStopsWhenTheLimitIsReached) {
 TEST(MemoryEstimate, ARunStopsAtItsLimitAndLeavesACheckpoint) {
     const MemoryScene scene;
     PrecomputeStatistics statistics;
-    const Transfer expected = precompute(scene.receivers, scene.rays, scene.options, &statistics);
+    const Transfer expected =
+        precompute(scene.receivers, scene.rays, scene.options, {}, &statistics);
     MemoryCheckpoint checkpoint;
     PrecomputeOptions options = scene.options;
-    options.checkpoint = &checkpoint;
     options.max_column_bytes = statistics.column_bytes;
-    EXPECT_NO_THROW(static_cast<void>(precompute(scene.receivers, scene.rays, options)));
+    EXPECT_NO_THROW(static_cast<void>(
+        precompute(scene.receivers, scene.rays, options, {.checkpoint = &checkpoint})));
     MemoryCheckpoint half;
-    options.checkpoint = &half;
     options.max_column_bytes = statistics.column_bytes / 2;
     try {
-        static_cast<void>(precompute(scene.receivers, scene.rays, options));
+        static_cast<void>(precompute(scene.receivers, scene.rays, options, {.checkpoint = &half}));
         FAIL() << "it did not stop";
-    } catch (const TooManyClusters& error) {
-        EXPECT_GT(error.column_bytes, options.max_column_bytes);
+    } catch (const TooLarge& error) {
+        EXPECT_GT(error.bytes, options.max_column_bytes);
     }
     options.max_column_bytes = statistics.column_bytes;
-    const Transfer resumed = precompute(scene.receivers, scene.rays, options);
+    const Transfer resumed =
+        precompute(scene.receivers, scene.rays, options, {.checkpoint = &half});
     EXPECT_EQ(resumed.counts.counts, expected.counts.counts);
     EXPECT_EQ(resumed.counts.visible, expected.counts.visible);
 }

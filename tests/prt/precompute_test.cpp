@@ -74,7 +74,9 @@ struct SmallScene {
     PrecomputeOptions options{
         .tolerance = 0.02f, .face_resolution = 64, .bias = automatic_bias(mesh)};
 
-    [[nodiscard]] Transfer transfer() const { return precompute(receivers, rays, options); }
+    [[nodiscard]] Transfer transfer(const Work& work = {}) const {
+        return precompute(receivers, rays, options, work);
+    }
 };
 
 TEST(Precompute, WhiteFurnace) {
@@ -284,7 +286,7 @@ TEST(Precompute, TracesEveryDirectionOnceForEveryReceiver) {
     }
     const scenes::CountingBlockers counting(scene.rays);
     PrecomputeStatistics statistics;
-    const Transfer transfer = precompute(receivers, counting, scene.options, &statistics);
+    const Transfer transfer = precompute(receivers, counting, scene.options, {}, &statistics);
     std::size_t num_repeated = 0;
     for (const auto& [ray, count] : counting.rays())
         num_repeated += count == 1 ? 0 : 1;
@@ -403,11 +405,9 @@ TEST(Precompute, BiasLiftsTheRaysOffTheSurface) {
 }
 
 TEST(Precompute, StopsBeforeItBegins) {
-    SmallScene scene;
     std::stop_source stop;
     stop.request_stop();
-    scene.options.stop = stop.get_token();
-    EXPECT_THROW(static_cast<void>(scene.transfer()), Cancelled);
+    EXPECT_THROW(static_cast<void>(SmallScene().transfer({.stop = stop.get_token()})), Cancelled);
 }
 
 TEST(Precompute, StopsSoon) {
@@ -432,22 +432,20 @@ TEST(Precompute, StopsSoon) {
             std::stop_source& source_;
             std::atomic<std::size_t>& packets_;
         };
-        PrecomputeOptions options{.tolerance = 0.0f, .min_level = 8, .face_resolution = 256};
-        options.stop = stop.get_token();
-        EXPECT_THROW(static_cast<void>(precompute(random_receivers(num_receivers, 3),
-                                                  Watched(stop, num_packets), options)),
+        EXPECT_THROW(static_cast<void>(
+                         precompute(random_receivers(num_receivers, 3), Watched(stop, num_packets),
+                                    {.tolerance = 0.0f, .min_level = 8, .face_resolution = 256},
+                                    {.stop = stop.get_token()})),
                      Cancelled);
         EXPECT_LT(num_packets, 400000u) << num_receivers << " receivers";
     }
 }
 
 TEST(Precompute, ProgressNeverFallsAndEndsByOne) {
-    SmallScene scene;
     std::vector<double> fractions;
-    scene.options.on_progress = [&](double fraction) {
+    static_cast<void>(SmallScene().transfer({.on_progress = [&](double fraction) {
         fractions.push_back(fraction);
-    };
-    static_cast<void>(scene.transfer());
+    }}));
     ASSERT_GE(fractions.size(), 3u);
     EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
     EXPECT_GE(fractions.front(), 0.0);
@@ -456,11 +454,10 @@ TEST(Precompute, ProgressNeverFallsAndEndsByOne) {
 }
 
 TEST(Precompute, WhatTheProgressCallThrowsComesOut) {
-    SmallScene scene;
-    scene.options.on_progress = [](double) {
+    const Work work{.on_progress = [](double) {
         throw std::runtime_error("enough");
-    };
-    EXPECT_THROW(static_cast<void>(scene.transfer()), std::runtime_error);
+    }};
+    EXPECT_THROW(static_cast<void>(SmallScene().transfer(work)), std::runtime_error);
 }
 
 TEST(Precompute, RefusesOptionsOutOfRangeInOneLine) {

@@ -1,9 +1,12 @@
 """From arrays to radiance and pictures, held to closed forms and to the command line."""
 
+import inspect
+
 import numpy as np
 import pytest
 
 import relumine
+from relumine import _core
 
 
 def test_white_furnace():
@@ -101,7 +104,7 @@ def test_materials(arrays, sky):
         *arrays, tolerance=0.1, material=relumine.Ggx(0.4, f0=0.5), view=((0, 1, 5), (0, 0, 0), 40)
     )
     assert relumine.Relighter(shiny).set_environment(sky).seconds_relight > 0
-    with pytest.raises(ValueError, match="^material: expected a roughness"):
+    with pytest.raises(ValueError, match="^material: expected numbers of 0 to 1 as roughness"):
         relumine.precompute(*arrays, material=relumine.Ggx(2.0))
     with pytest.raises(ValueError, match="group"):
         relumine.precompute(*arrays, material={"hat": relumine.Lambert()})
@@ -125,6 +128,32 @@ def test_pictures(relighter):
         relighter.picture(background="sharpish")
     with pytest.raises(ValueError, match="^camera: expected"):
         relighter.picture(camera=(1,))
+    with pytest.raises(TypeError, match="no option expossure; did you mean exposure"):
+        relighter.picture(expossure=1)
+
+
+def test_every_option_of_pictures_is_a_keyword(relighter, command_line, folder):
+    """The table of the library is the signature, and each value is read as the program reads it."""
+    rows = {name: (default, example) for name, default, _, example in _core.picture_options()}
+    for function in (relumine.Relighter.picture, relumine.Relighter.save):
+        keywords = inspect.signature(function).parameters
+        for name, (default, _) in rows.items():
+            assert keywords[name].default == default, name
+            assert f"\n{name} " in function.__doc__, name
+    for name, (default, example) in rows.items():
+        relighter.picture(**{"size": (8, 6), name: default})
+        relighter.picture(**{"size": (8, 6), name: example})
+        if isinstance(default, (int, float)) and not isinstance(default, bool):
+            with pytest.raises(ValueError, match=f"^{name}: expected"):
+                relighter.picture(**{name: 1e30})
+
+
+def test_a_camera_has_a_field_of_view(relighter):
+    both = relighter.picture(size=(40, 30), camera=(30, 25, None, 60))
+    assert (both == relighter.picture(size=(40, 30), camera=(30, 25), fov=60)).all()
+    assert (both == relighter.picture(size=(40, 30), camera="30,25,,60")).all()
+    with pytest.raises(ValueError, match="^camera: expected either a field of view here or fov"):
+        relighter.picture(camera=(30, 25, 5, 60), fov=50)
 
 
 def test_equals_the_command_line(relighter, sky, folder, command_line):

@@ -79,25 +79,5 @@ TEST(ContributionMap, RefusesNoReceiversAndWrongOnes) {
     EXPECT_THROW(static_cast<void>(contribution_map(relighter, beyond)), std::invalid_argument);
 }
 
-TEST(RelitByPart, PartsAddUpToTheWhole) {
-    Relighter relighter(relit_scene().transfer);
-    relighter.set_environment(scenes::random_environment(16, 6));
-    std::vector<float> weights(relighter.environment().texels.size(), 0.0f);
-    for (std::size_t i = 0; i < weights.size(); i += 3)
-        weights[i] = 1.0f;
-    const Relighter some = relit_by_part(relighter, weights);
-    const auto part = some.radiance();
-    for (float& weight : weights)
-        weight = 1.0f - weight;
-    const Relighter others = relit_by_part(relighter, weights);
-    const auto rest = others.radiance();
-    for (std::size_t i = 0; i < part.size(); ++i)
-        // max(n.E, 0) is linear but for clusters on the receiver's horizon.
-        EXPECT_NEAR(glm::length(part[i] + rest[i] - relighter.radiance()[i]), 0.0,
-                    0.01 * static_cast<double>(glm::length(relighter.radiance()[i])) + 1e-6);
-    EXPECT_THROW(static_cast<void>(relit_by_part(relighter, std::vector<float>(5))),
-                 std::invalid_argument);
-}
-
 } // namespace
 } // namespace relumine::relight

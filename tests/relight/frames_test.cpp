@@ -151,8 +151,8 @@ TEST_F(TracedFrames, LightListsAndRegionUpdatesMayComeBetween) {
 
     const std::vector<glm::vec3> patch(4, glm::vec3(5.0f));
     cubemap::CubeMap map = spot_map(1);
-    relighter_.update_region(
-        {.face = cubemap::Face::PositiveX, .x0 = 8, .y0 = 8, .x1 = 10, .y1 = 10}, patch);
+    update_region(relighter_,
+                  {.face = cubemap::Face::PositiveX, .x0 = 8, .y0 = 8, .x1 = 10, .y1 = 10}, patch);
     show(spot_map(1)); // takes it away again
     scenes::expect_close(relighter_.radiance(), afresh(map), 1e-5);
 }
@@ -165,8 +165,9 @@ TEST_F(Frames, AnUpdateLeavesTheFrameThatOthersKeep) {
     const std::vector<glm::vec3> before = copy(relighter_.radiance());
     const std::vector<glm::vec3> patch(4, glm::vec3(50.0f));
     for (const std::uint32_t x : {2u, 8u})
-        relighter_.update_region(
-            {.face = cubemap::Face::PositiveX, .x0 = x, .y0 = 8, .x1 = x + 2, .y1 = 10}, patch);
+        update_region(relighter_,
+                      {.face = cubemap::Face::PositiveX, .x0 = x, .y0 = 8, .x1 = x + 2, .y1 = 10},
+                      patch);
     EXPECT_EQ(kept.map->texels, map.texels);
     EXPECT_EQ(relighter_.environment().at(cubemap::Face::PositiveX, 2, 8), patch[0]);
     EXPECT_EQ(relighter_.environment().at(cubemap::Face::PositiveX, 8, 8), patch[0]);

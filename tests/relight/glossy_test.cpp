@@ -184,7 +184,7 @@ TEST(GlossyRelighting, ASharpSunIsTracedWithItsHighlight) {
     map.at(cubemap::Face::PositiveY, 40, 20) = glm::vec3(30000.0f);
     const scenes::GlossyScene& scene = glossy_scene();
     Relighter relighter(scene.transfer, scene.shadow_rays());
-    const RelightTimes times = relighter.set_environment(map);
+    const UpdateReport times = relighter.set_environment(map);
     EXPECT_GT(times.num_sharp_lights, 0u);
     EXPECT_LT(relative_l2(scene, relighter), 0.005);
 }
@@ -212,7 +212,7 @@ TEST(GlossyRelighting, UpdatesEqualAFullRelighting) {
     const TexelRectangle rectangle{
         .face = cubemap::Face::PositiveY, .x0 = 10, .y0 = 20, .x1 = 17, .y1 = 31};
     const std::vector<glm::vec3> patch(7 * 11, glm::vec3(3.0f, 2.0f, 0.5f));
-    relighter.update_region(rectangle, patch);
+    update_region(relighter, rectangle, patch);
     Relighter full(scene.transfer, scene.shadow_rays());
     full.set_environment(relighter.environment());
     expect_close(relighter.radiance(), full.radiance(), 1e-5);

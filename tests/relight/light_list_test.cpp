@@ -102,7 +102,7 @@ TEST(RelighterLights, WithShadowRaysEqualTracing) {
     const scenes::RelitScene& scene = relit_scene();
     const std::vector<DistantLight> lights = random_lights(random, 50);
     Relighter relighter(scene.transfer, scene.shadow_rays());
-    const RelightTimes times = relighter.set_lights(lights);
+    const UpdateReport times = relighter.set_lights(lights);
     EXPECT_EQ(times.num_sharp_lights, 50u);
     EXPECT_LT(relative_l2(radiance_under(lights, scene.receivers.normals, all_receivers(),
                                          scene.shadow_rays()),
@@ -153,7 +153,7 @@ TEST(RelighterLights, RefusesWhatIsNoLight) {
     relighter.set_lights({});
     for (const glm::vec3& radiance : relighter.radiance())
         EXPECT_EQ(radiance, glm::vec3(0.0f));
-    EXPECT_THROW(relighter.update_region({.x1 = 1, .y1 = 1}, std::vector{glm::vec3(1.0f)}),
+    EXPECT_THROW(update_region(relighter, {.x1 = 1, .y1 = 1}, std::vector{glm::vec3(1.0f)}),
                  std::invalid_argument);
 }
 

@@ -15,7 +15,6 @@
 
 #include "files/parallel.h"
 #include "relight/kernels/block_kernels.h"
-#include "relight/light_editor.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"
 #include "tests/relight/arrays.h"
@@ -30,7 +29,6 @@ static_assert(std::is_constructible_v<Relighter, const prt::Transfer&>);
 static_assert(!std::is_constructible_v<Relighter, prt::Transfer>);
 static_assert(!std::is_constructible_v<Relighter, const prt::Transfer>);
 static_assert(!std::is_constructible_v<Relighter, prt::Transfer, ShadowRays>);
-static_assert(!std::is_constructible_v<LightEditor, prt::Transfer>);
 static_assert(!std::is_constructible_v<EnvironmentBinner, prt::Transfer, float>);
 
 using scenes::expect_close;
@@ -268,8 +266,8 @@ struct Edit {
 void restore(Relighter& relighter, const cubemap::CubeMap& environment) {
     const std::uint32_t r = environment.resolution;
     for (const cubemap::Face face : cubemap::AllFaces)
-        relighter.update_region({.face = face, .x1 = r, .y1 = r},
-                                std::span(&environment.at(face, 0, 0), std::size_t{r} * r));
+        update_region(relighter, {.face = face, .x1 = r, .y1 = r},
+                      std::span(&environment.at(face, 0, 0), std::size_t{r} * r));
 }
 
 void expect_a_thousand_edits_without_drift(const ShadowRays& rays, std::uint32_t r) {
@@ -282,7 +280,7 @@ void expect_a_thousand_edits_without_drift(const ShadowRays& rays, std::uint32_t
     std::mt19937 random(9);
     for (int i = 1; i <= 1000; ++i) {
         const Edit edit(random, r);
-        relighter.update_region(edit.rectangle, edit.radiance);
+        update_region(relighter, edit.rectangle, edit.radiance);
         edit.apply(environment);
         if (i % 100 == 0 || i <= 10) {
             ASSERT_EQ(relighter.environment().texels, environment.texels);
@@ -316,7 +314,7 @@ TEST(RelighterUpdate, OnEveryTarget) {
         std::mt19937 random(11);
         for (int i = 0; i < 30; ++i) {
             const Edit edit(random, 16);
-            relighter.update_region(edit.rectangle, edit.radiance);
+            update_region(relighter, edit.rectangle, edit.radiance);
             edit.apply(environment);
         }
         expect_close(relighter.radiance(), relight(transfer, environment), 1e-5);
@@ -332,9 +330,9 @@ TEST(RelighterUpdate, ASunThatIsGoneLeavesNotEvenItsRounding) {
     for (const float sun : {1e6f, 1e10f, 1e20f}) {
         const TexelRectangle texel{
             .face = cubemap::Face::PositiveY, .x0 = 9, .y0 = 20, .x1 = 10, .y1 = 21};
-        relighter.update_region(texel, std::vector<glm::vec3>{glm::vec3(sun)});
+        update_region(relighter, texel, std::vector<glm::vec3>{glm::vec3(sun)});
         EXPECT_NE(copy(relighter.radiance()), before);
-        relighter.update_region(texel, std::vector<glm::vec3>{dim.at(texel.face, 9, 20)});
+        update_region(relighter, texel, std::vector<glm::vec3>{dim.at(texel.face, 9, 20)});
         expect_close(relighter.radiance(), before, 1e-7);
     }
 }
@@ -349,7 +347,7 @@ TEST(RelighterUpdate, ASunThatWasThereFromTheStartLeavesNotEvenItsRounding) {
         relighter.set_environment(bright);
         const TexelRectangle texel{
             .face = cubemap::Face::PositiveY, .x0 = 9, .y0 = 20, .x1 = 10, .y1 = 21};
-        relighter.update_region(texel, std::vector<glm::vec3>{dim.at(texel.face, 9, 20)});
+        update_region(relighter, texel, std::vector<glm::vec3>{dim.at(texel.face, 9, 20)});
         expect_close(relighter.radiance(), relight(transfer, dim), 1e-5);
     }
 }
@@ -363,7 +361,7 @@ TEST(RelighterUpdate, ReportsWhatItTouched) {
     std::vector<std::uint32_t> leaves;
     scene.transfer.quadtree.find_leaves({rectangle.face, 0.25, 0.125, 0.5, 0.375}, leaves);
     const UpdateReport report =
-        relighter.update_region(rectangle, std::vector<glm::vec3>(256, glm::vec3(2.0f)));
+        update_region(relighter, rectangle, std::vector<glm::vec3>(256, glm::vec3(2.0f)));
     EXPECT_EQ(report.num_clusters, leaves.size());
     EXPECT_GT(report.num_receivers, 0u);
     EXPECT_LE(report.num_receivers, scene.transfer.num_receivers());
@@ -380,7 +378,7 @@ TEST(RelighterUpdate, EditsThatNothingSeesChangeNothing) {
     for (const TexelRectangle& below :
          {TexelRectangle{.face = cubemap::Face::NegativeY, .x1 = 32, .y1 = 16},
           TexelRectangle{.face = cubemap::Face::PositiveX, .y0 = 16, .x1 = 32, .y1 = 32}}) {
-        EXPECT_EQ(relighter.update_region(below, sun).num_receivers, 0u);
+        EXPECT_EQ(update_region(relighter, below, sun).num_receivers, 0u);
         EXPECT_EQ(copy(relighter.radiance()), before);
     }
 }
@@ -389,13 +387,13 @@ TEST(RelighterUpdate, RefusesWhatDoesNotFitAndChangesNothing) {
     const prt::Transfer& transfer = relit_scene().transfer;
     Relighter relighter(transfer);
     const std::vector<glm::vec3> four(4, glm::vec3(1.0f));
-    EXPECT_THROW(relighter.update_region({.x1 = 2, .y1 = 2}, four), std::invalid_argument)
+    EXPECT_THROW(update_region(relighter, {.x1 = 2, .y1 = 2}, four), std::invalid_argument)
         << "no environment";
     const cubemap::CubeMap environment = scenes::random_environment(16, 14);
     relighter.set_environment(environment);
     const auto before = copy(relighter.radiance());
     const auto refused = [&](const TexelRectangle& rectangle, std::span<const glm::vec3> radiance) {
-        EXPECT_THROW(relighter.update_region(rectangle, radiance), std::invalid_argument);
+        EXPECT_THROW(update_region(relighter, rectangle, radiance), std::invalid_argument);
         EXPECT_EQ(relighter.environment().texels, environment.texels);
         EXPECT_EQ(copy(relighter.radiance()), before);
     };
@@ -413,7 +411,7 @@ TEST(RelighterUpdate, RefusesWhatDoesNotFitAndChangesNothing) {
         radiance.back().g = bad;
         refused({.x1 = 2, .y1 = 2}, radiance);
     }
-    relighter.update_region({.x1 = 2, .y1 = 2}, four); // and still works
+    update_region(relighter, {.x1 = 2, .y1 = 2}, four); // and still works
     EXPECT_NE(copy(relighter.radiance()), before);
 }
 
@@ -428,7 +426,7 @@ TEST(RelighterUpdate, AnyNumberOfThreadsGivesTheSameBits) {
             std::mt19937 random(16);
             for (int i = 0; i < 20; ++i) {
                 const Edit edit(random, 32);
-                relighter.update_region(edit.rectangle, edit.radiance);
+                update_region(relighter, edit.rectangle, edit.radiance);
             }
             result.insert(result.end(), relighter.radiance().begin(), relighter.radiance().end());
             results.push_back(std::move(result));

@@ -30,8 +30,8 @@ cubemap::CubeMap sun_and_sky() {
 
 std::vector<glm::vec3> bounced(LitScene& lit) {
     lit.light(sun_and_sky());
-    lit.bounce(bounce_albedo(lit.scene()));
-    return {lit.bounced().begin(), lit.bounced().end()};
+    lit.bounce({.albedo = bounce_albedo(lit.scene())});
+    return {lit.bounces().bounced().begin(), lit.bounces().bounced().end()};
 }
 
 /// How far pixels or texels are from the light that the vertices of the same mesh interpolate.
@@ -62,11 +62,11 @@ TEST(Bounces, OfPixelsAndTexelsComeFromTheVertices) {
         EXPECT_LT(difference_to_vertices(lit, light, of_vertices), 0.04);
         // The wall's red is on the floor.
         EXPECT_GT(light[own.num_own() + 3].r, 1.5f * light[own.num_own() + 3].g);
-        const Verification check = lit.verify({.num_samples = 200, .num_paths = 600});
+        const Verification check = verify(lit, {.num_samples = 200, .num_paths = 600});
         EXPECT_LT(check.error.relative_l2, 0.03 + check.noise);
         for (const std::uint32_t receiver : check.receivers)
             EXPECT_LT(receiver, own.num_own());
-        const Picture picture = lit.draw();
+        const Picture picture = draw(lit);
         EXPECT_EQ(picture.pixels.size(), std::holds_alternative<Pixels>(receivers) ? 1200u : 2048u);
     }
 }
@@ -124,12 +124,12 @@ TEST(Bounces, OfBacksAreVerifiedAsTheyWereMade) {
         how.two_sided_bounces = two_sided;
         LitScene lit(precompute(floor_under_a_roof(), how));
         lit.light(cubemap::CubeMap(16, glm::vec3(1.0f)));
-        lit.bounce(std::vector(lit.scene().receivers.size(), glm::vec3(0.8f)));
+        lit.bounce({.albedo = std::vector(lit.scene().receivers.size(), glm::vec3(0.8f))});
         float largest = 0.0f;
-        for (const glm::vec3& light : lit.bounced())
+        for (const glm::vec3& light : lit.bounces().bounced())
             largest = std::max(largest, light.g);
         EXPECT_EQ(largest > 0.1f, two_sided);
-        const Verification check = lit.verify({.num_samples = 200, .num_paths = 400});
+        const Verification check = verify(lit, {.num_samples = 200, .num_paths = 400});
         EXPECT_LT(check.error.relative_l2, 0.02 + check.noise) << two_sided;
     }
 }
@@ -151,10 +151,10 @@ TEST(Bounces, GlossyReceiversGainTheDiffusePart) {
         EXPECT_EQ(lit.scene().transfer.glossy.has_value(), surface == glossy);
         lit.light(sun_and_sky());
         const std::vector<glm::vec3> direct(lit.radiance().begin(), lit.radiance().end());
-        lit.bounce(bounce_albedo(lit.scene()));
+        lit.bounce({.albedo = bounce_albedo(lit.scene())});
         for (std::size_t i = 0; i < direct.size(); ++i)
-            ASSERT_EQ(lit.radiance()[i], direct[i] + lit.bounced()[i]);
-        lights.emplace_back(lit.bounced().begin(), lit.bounced().end());
+            ASSERT_EQ(lit.radiance()[i], direct[i] + lit.bounces().bounced()[i]);
+        lights.emplace_back(lit.bounces().bounced().begin(), lit.bounces().bounced().end());
     }
     // The bounced light is that of a Lambert surface.
     for (std::size_t i = 0; i < lights[0].size(); ++i)
@@ -176,7 +176,7 @@ TEST(Bounces, OfGlossyPixelsComeFromMattVertices) {
     EXPECT_EQ(surfaces.back().highlight, prt::Highlight::None);
     const std::vector<glm::vec3> light = bounced(lit);
     EXPECT_GT(light.front().g, 0.0f);
-    EXPECT_EQ(lit.draw().pixels.size(), 320u);
+    EXPECT_EQ(draw(lit).pixels.size(), 320u);
 }
 
 } // namespace

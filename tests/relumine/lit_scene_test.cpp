@@ -10,6 +10,9 @@
 
 #include "cubemap/layers/layer_composite.h"
 #include "relight/sharp/shadow_rays.h"
+#include "relumine/output.h"
+#include "relumine/questions.h"
+#include "tests/relight/arrays.h"
 #include "tests/relight/environments.h"
 #include "tests/relumine/small_scenes.h"
 
@@ -21,10 +24,7 @@ const Scene& boulder_scene() {
     return Boulder;
 }
 
-template<typename T>
-std::vector<T> copy(std::span<const T> values) {
-    return {values.begin(), values.end()};
-}
+using relight::copy;
 
 std::vector<glm::vec3> lit(const cubemap::CubeMap& map) {
     LitScene scene(boulder_scene());
@@ -44,10 +44,10 @@ TEST(LitScene, LightsAsTheRelighterDoes) {
     EXPECT_TRUE(scene.radiance().empty());
     scene.light(map);
     EXPECT_EQ(copy(scene.radiance()),
-              relight::relight(scene.scene().transfer, map, scene.shadow_rays()));
-    EXPECT_EQ(scene.environment().texels, map.texels);
-    EXPECT_EQ(scene.shadow_rays().bias, boulder_scene().settings.bias);
-    EXPECT_EQ(scene.shadow_rays().tolerance, scenes::Tolerance);
+              relight::relight(scene.scene().transfer, map, scene.relighter().shadow_rays()));
+    EXPECT_EQ(environment_of(scene).texels, map.texels);
+    EXPECT_EQ(scene.relighter().shadow_rays().bias, boulder_scene().settings.bias);
+    EXPECT_EQ(scene.relighter().shadow_rays().tolerance, scenes::Tolerance);
 }
 
 TEST(LitScene, MayBeMovedWhileLit) {
@@ -58,11 +58,11 @@ TEST(LitScene, MayBeMovedWhileLit) {
     LitScene second = std::move(*first);
     first.reset();
     const Picture picture = painter.draw(second.lighting());
-    EXPECT_EQ(picture.pixels, second.draw({.width = 8, .height = 6}).pixels);
-    second.set_layers({disc({1, 1, 0}, 3.0f)});
+    EXPECT_EQ(picture.pixels, draw(second, {.width = 8, .height = 6}).pixels);
+    set_layers(second, {disc({1, 1, 0}, 3.0f)});
     LitScene third(boulder_scene());
     third = std::move(second);
-    third.set_layers({});
+    set_layers(third, {});
     scenes::expect_close(third.radiance(), lit(map), 1e-5);
 }
 
@@ -78,18 +78,18 @@ TEST(LitScene, UpdatesARegionUnderLayersOrWithout) {
     LitScene scene(boulder_scene());
     scene.light(map);
     EXPECT_GT(scene.update_region(rectangle, bright).num_clusters, 0u);
-    EXPECT_EQ(scene.environment().texels, changed.texels);
+    EXPECT_EQ(environment_of(scene).texels, changed.texels);
     scenes::expect_close(scene.radiance(), lit(changed), 1e-5);
 
     const std::vector<cubemap::LightLayer> layers = {disc({0, 1, 1}, 2.0f)};
     LitScene layered(boulder_scene());
     layered.light(map);
-    layered.set_layers(layers);
+    set_layers(layered, layers);
     layered.update_region(rectangle, bright);
     LitScene expected(boulder_scene());
     expected.light(changed);
-    expected.set_layers(layers);
-    EXPECT_EQ(layered.environment().texels, expected.environment().texels);
+    set_layers(expected, layers);
+    EXPECT_EQ(environment_of(layered).texels, environment_of(expected).texels);
     scenes::expect_close(layered.radiance(), expected.radiance(), 1e-5);
 }
 
@@ -105,7 +105,7 @@ TEST(LitScene, RefusesARegionThatDoesNotFit) {
         EXPECT_THROW(scene.update_region({cubemap::Face::PositiveY, 2, 0, 2, 2}, {}),
                      std::invalid_argument);
         EXPECT_THROW(scene.update_region(inside, std::span(four).first(3)), std::invalid_argument);
-        scene.set_layers({disc({1, 0, 0}, 1.0f)});
+        set_layers(scene, {disc({1, 0, 0}, 1.0f)});
     }
 }
 
@@ -114,26 +114,26 @@ TEST(LitScene, KeepsItsLayersUnderANewEnvironment) {
     const cubemap::CubeMap second = scenes::random_environment(16, 5);
     const std::vector<cubemap::LightLayer> layers = {disc({0, 1, 0}, 5.0f), disc({1, 0, 1}, 7.0f)};
     LitScene scene(boulder_scene());
-    EXPECT_THROW(scene.set_layers(layers), std::invalid_argument); // no environment yet
+    EXPECT_THROW(set_layers(scene, layers), std::invalid_argument); // no environment yet
     scene.light(first);
-    scene.set_layers({layers[0], disc({1, 0, 1}, 1.0f)});
-    scene.set_layer(1, layers[1]);
-    EXPECT_EQ(copy(scene.editor().layers()), layers);
+    set_layers(scene, {layers[0], disc({1, 0, 1}, 1.0f)});
+    set_layer(scene, 1, layers[1]);
+    EXPECT_EQ(scene.state().layers, layers);
     scene.light(second);
-    EXPECT_EQ(scene.environment().texels, cubemap::composite(second, layers).texels);
-    EXPECT_EQ(copy(scene.radiance()), lit(scene.environment()));
-    EXPECT_THROW(scene.set_layer(2, layers[0]), std::out_of_range);
+    EXPECT_EQ(environment_of(scene).texels, cubemap::composite(second, layers).texels);
+    EXPECT_EQ(copy(scene.radiance()), lit(environment_of(scene)));
+    EXPECT_THROW(set_layer(scene, 2, layers[0]), std::out_of_range);
 }
 
-TEST(LitScene, UndoesThroughItsEditor) {
+TEST(LitScene, UndoesToAMark) {
     LitScene scene(boulder_scene());
     scene.light(scenes::random_environment(16, 6));
     const std::vector<glm::vec3> plain = copy(scene.radiance());
-    scene.editor().mark();
-    scene.set_layers({disc({0, 1, 0}, 5.0f)});
-    scene.editor().mark();
+    mark(scene);
+    set_layers(scene, {disc({0, 1, 0}, 5.0f)});
+    mark(scene);
     EXPECT_NE(copy(scene.radiance()), plain);
-    scene.editor().undo();
+    undo(scene);
     EXPECT_EQ(copy(scene.radiance()), plain);
 }
 
@@ -143,23 +143,24 @@ TEST(LitScene, TakesLightLists) {
         {.direction = {0.6, 0.8, 0}, .irradiance = {1.0, 0.5, 0.25}}};
     LitScene scene(boulder_scene());
     scene.light(scenes::random_environment(8, 7));
-    scene.set_layers({disc({0, 1, 0}, 5.0f)});
+    set_layers(scene, {disc({0, 1, 0}, 5.0f)});
     scene.light(list);
-    const std::vector<glm::vec3> expected =
-        relight::radiance_under(list, scene.scene().receivers.normals, scene.shadow_rays());
+    const std::vector<glm::vec3> expected = relight::radiance_under(
+        list, scene.scene().receivers.normals, scene.relighter().shadow_rays());
     scenes::expect_close(scene.radiance(), expected, 1e-6);
-    EXPECT_EQ(cubemap::total_power(scene.environment()), glm::dvec3(0.0));
-    EXPECT_THROW(scene.set_layers({}), std::invalid_argument);
-    EXPECT_THROW(static_cast<void>(scene.verify()), std::logic_error);
+    EXPECT_EQ(cubemap::total_power(environment_of(scene)), glm::dvec3(0.0));
+    EXPECT_THROW(set_layers(scene, {}), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(verify(scene)), std::logic_error);
 
     // A mesh without clusters gives the same.
     LitScene mesh(unclustered_scene(scenes::boulder()));
-    EXPECT_FALSE(mesh.has_clusters());
+    EXPECT_FALSE(has_clusters(mesh.scene()));
     mesh.light(list);
     EXPECT_EQ(copy(mesh.radiance()), expected);
-    EXPECT_EQ(mesh.draw({.width = 8, .height = 6}).pixels.size(), 48u);
+    EXPECT_EQ(draw(mesh, {.width = 8, .height = 6}).pixels.size(), 48u);
     EXPECT_THROW(mesh.light(cubemap::CubeMap(4)), std::invalid_argument);
-    EXPECT_THROW(static_cast<void>(mesh.editor()), std::invalid_argument);
+    EXPECT_THROW(set_layers(mesh, {}), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(mesh.relighter()), std::invalid_argument);
 }
 
 TEST(LitScene, LightsThroughClustersOnlyWhenAsked) {
@@ -182,54 +183,54 @@ TEST(LitScene, RefusesATransferOfOtherReceivers) {
 
 TEST(LitScene, SaysWhatItNeedsBeforeItIsLit) {
     const LitScene scene(boulder_scene());
-    EXPECT_THROW(static_cast<void>(scene.relighter()), std::logic_error);
-    EXPECT_THROW(static_cast<void>(scene.draw()), std::logic_error);
-    EXPECT_THROW(scene.save("absent.png"), std::logic_error);
-    EXPECT_THROW(static_cast<void>(scene.verify()), std::logic_error);
-    EXPECT_THROW(static_cast<void>(scene.lit_by(cubemap::Disc{})), std::logic_error);
-    EXPECT_EQ(scene.environment().resolution, 0u);
+    EXPECT_THROW(static_cast<void>(scene.lighting()), std::logic_error);
+    EXPECT_THROW(static_cast<void>(draw(scene)), std::logic_error);
+    EXPECT_THROW(save(scene, "absent.png"), std::logic_error);
+    EXPECT_THROW(static_cast<void>(verify(scene)), std::logic_error);
+    EXPECT_THROW(static_cast<void>(lit_by(scene, cubemap::Disc{})), std::logic_error);
+    EXPECT_EQ(environment_of(scene).resolution, 0u);
 }
 
 TEST(LitScene, IsVerifiedByExactIntegration) {
     LitScene scene(boulder_scene());
     scene.light(scenes::smooth_environment(16));
-    const Verification some = scene.verify({.num_samples = 40, .seed = 3});
+    const Verification some = verify(scene, {.num_samples = 40, .seed = 3});
     EXPECT_EQ(some.receivers, relight::random_receivers(scene.scene().transfer, 40, 3));
     EXPECT_GT(some.error.relative_l2, 0.0);
     EXPECT_LT(some.error.relative_l2, 0.05);
-    EXPECT_EQ(scene.verify({.num_samples = 0}).receivers.size(), scene.radiance().size());
+    EXPECT_EQ(verify(scene, {.num_samples = 0}).receivers.size(), scene.radiance().size());
 
     std::stop_source stop;
     stop.request_stop();
-    EXPECT_THROW(static_cast<void>(scene.verify({.stop = stop.get_token()})), Cancelled);
+    EXPECT_THROW(static_cast<void>(verify(scene, {.stop = stop.get_token()})), Cancelled);
 }
 
 TEST(LitScene, BouncesUntilTheLightChanges) {
     LitScene scene(
         precompute(scenes::boulder(), {.tolerance = scenes::Tolerance, .bounce_tolerance = 0.05f}));
     const std::vector<glm::vec3> albedo(scene.scene().receivers.size(), glm::vec3(0.5f));
-    EXPECT_THROW(scene.bounce(albedo), std::logic_error);
+    EXPECT_THROW(scene.bounce({.albedo = albedo}), std::logic_error);
     const cubemap::CubeMap white(8, glm::vec3(1.0f));
     scene.light(white);
     const std::vector<glm::vec3> direct(scene.radiance().begin(), scene.radiance().end());
-    EXPECT_TRUE(scene.bounced().empty());
-    scene.bounce(albedo);
+    EXPECT_TRUE(scene.bounces().bounced().empty());
+    scene.bounce({.albedo = albedo});
     const std::vector<glm::vec3> all(scene.radiance().begin(), scene.radiance().end());
     for (std::size_t i = 0; i < all.size(); ++i)
-        ASSERT_EQ(all[i], direct[i] + scene.bounced()[i]);
+        ASSERT_EQ(all[i], direct[i] + scene.bounces().bounced()[i]);
     EXPECT_GT(std::accumulate(all.begin(), all.end(), glm::vec3(0.0f)).g,
               1.01f * std::accumulate(direct.begin(), direct.end(), glm::vec3(0.0f)).g);
     scene.light(white);
     EXPECT_TRUE(std::equal(direct.begin(), direct.end(), scene.radiance().begin()));
-    scene.bounce(albedo);
+    scene.bounce({.albedo = albedo});
     EXPECT_TRUE(std::equal(all.begin(), all.end(), scene.radiance().begin()));
 
-    const Verification check = scene.verify({.num_samples = 50, .num_paths = 64});
+    const Verification check = verify(scene, {.num_samples = 50, .num_paths = 64});
     EXPECT_GT(check.noise, 0.0);
     EXPECT_LT(check.error.relative_l2, 0.1);
     LitScene without(boulder_scene());
     without.light(white);
-    EXPECT_THROW(without.bounce(albedo), std::invalid_argument);
+    EXPECT_THROW(without.bounce({.albedo = albedo}), std::invalid_argument);
 }
 
 TEST(LitScene, KnowsWhatLightsIt) {
@@ -237,17 +238,18 @@ TEST(LitScene, KnowsWhatLightsIt) {
     scene.light(scenes::smooth_environment(16));
     const std::array<std::uint32_t, 1> receiver = {
         nearest_receiver(scene.scene(), {0.0f, 10.0f, 0.0f})};
-    const glm::dvec3 power = cubemap::total_power(scene.contribution_map(receiver));
+    const glm::dvec3 power = cubemap::total_power(contribution_map(scene, receiver));
     EXPECT_NEAR(power.g, static_cast<double>(scene.radiance()[receiver[0]].g), 1e-3 * power.g);
 
     // Two half spheres together are all of the light.
-    const Share above = scene.lit_by(cubemap::Disc{.direction = {0, 1, 0}, .radius_degrees = 90.0});
+    const Share above =
+        lit_by(scene, cubemap::Disc{.direction = {0, 1, 0}, .radius_degrees = 90.0});
     const Share below =
-        scene.lit_by(cubemap::Disc{.direction = {0, -1, 0}, .radius_degrees = 90.0});
+        lit_by(scene, cubemap::Disc{.direction = {0, -1, 0}, .radius_degrees = 90.0});
     EXPECT_GT(above.share, below.share);
     EXPECT_NEAR(above.share + below.share, 1.0, 1e-3);
     EXPECT_EQ(above.radiance.size(), scene.radiance().size());
-    EXPECT_THROW(static_cast<void>(scene.lit_by(cubemap::Disc{.radius_degrees = -1.0})),
+    EXPECT_THROW(static_cast<void>(lit_by(scene, cubemap::Disc{.radius_degrees = -1.0})),
                  std::invalid_argument);
 }
 
@@ -256,7 +258,8 @@ TEST(LitScene, ASunsPartIsDrawnAsSharpAsTheSun) {
     sun.at(cubemap::Face::PositiveY, 100, 90) = glm::vec3(1e5f);
     LitScene scene(boulder_scene());
     scene.light(sun);
-    const Share above = scene.lit_by(cubemap::Disc{.direction = {0, 1, 0}, .radius_degrees = 90.0});
+    const Share above =
+        lit_by(scene, cubemap::Disc{.direction = {0, 1, 0}, .radius_degrees = 90.0});
     ASSERT_FALSE(above.lights.empty());
     Painter painter(scene, {.width = 40, .height = 30});
     const Picture whole = painter.draw(scene.lighting());

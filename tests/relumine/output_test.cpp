@@ -43,54 +43,55 @@ TEST_F(Output, OfManyFramesIsThatOfOne) {
     for (std::uint32_t seed = 1; seed < 4; ++seed) {
         scene.light(scenes::random_environment(8, seed));
         EXPECT_EQ(painter.draw(scene.lighting()).pixels,
-                  scene.draw({.width = 20, .height = 10, .samples_per_axis = 2}).pixels);
+                  draw(scene, {.width = 20, .height = 10, .samples_per_axis = 2}).pixels);
     }
 }
 
 TEST_F(Output, LooksThroughTheCameraThatIsGiven) {
     const LitScene scene = lit();
     const Camera away{.eye = {0, 5, 0}, .target = {0, 10, 0}};
-    const Picture sky = scene.draw({.width = 4, .height = 4, .camera = away});
+    const Picture sky = draw(scene, {.width = 4, .height = 4, .camera = away});
     for (std::uint32_t y = 0; y < 4; ++y)
         EXPECT_GT(sky.pixels[y * 4].g, 0.0f);
-    EXPECT_NE(sky.pixels, scene.draw({.width = 4, .height = 4}).pixels);
+    EXPECT_NE(sky.pixels, draw(scene, {.width = 4, .height = 4}).pixels);
 }
 
 TEST_F(Output, IsWrittenByExtension) {
     const LitScene scene = lit();
-    scene.save(file("bright.exr"), {.exposure_ev = 1.0, .width = 8, .height = 4});
-    const Picture picture = scene.draw({.width = 8, .height = 4});
+    save(scene, file("bright.exr"), {.exposure_ev = 1.0, .width = 8, .height = 4});
+    const Picture picture = draw(scene, {.width = 8, .height = 4});
     const cubemap::EnvironmentImage written =
         cubemap::load_environment(file("bright.exr"), {.layout = cubemap::Layout::LatLong});
     ASSERT_EQ(written.pixels.size(), picture.pixels.size());
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
         EXPECT_EQ(written.pixels[i], 2.0f * picture.pixels[i]);
 
-    scene.save(file("lit.ply"), {.albedo = glm::vec3(0.5f), .exposure_ev = 0.0});
+    save(scene, file("lit.ply"), {.albedo = glm::vec3(0.5f), .exposure_ev = 0.0});
     EXPECT_EQ(mesh::load(file("lit.ply")).colors,
               colors_of(scene.scene(), scene.radiance(), glm::vec3(0.5f)));
     for (const char* name : {"lit.png", "lit.glb", "lit.npy"}) {
-        scene.save(file(name), {.width = 8, .height = 4});
+        save(scene, file(name), {.width = 8, .height = 4});
         EXPECT_GT(std::filesystem::file_size(file(name)), 50u) << name;
     }
-    EXPECT_THROW(scene.save(file("lit.jpg")), std::invalid_argument);
-    EXPECT_THROW(scene.save(file("absent/lit.png"), {.width = 8, .height = 4}), std::runtime_error);
+    EXPECT_THROW(save(scene, file("lit.jpg")), std::invalid_argument);
+    EXPECT_THROW(save(scene, file("absent/lit.png"), {.width = 8, .height = 4}),
+                 std::runtime_error);
 }
 
 TEST_F(Output, OfPixelsIsTheirPicture) {
     const LitScene scene = lit({.tolerance = 0.2f, .receivers = Pixels{.width = 9, .height = 5}});
-    const Picture opaque = scene.draw();
+    const Picture opaque = draw(scene);
     EXPECT_EQ(opaque.width, 9u);
     EXPECT_TRUE(opaque.alpha.empty());
-    EXPECT_EQ(scene.draw({.background = NothingBehind{}}).alpha.size(), 45u);
-    EXPECT_THROW(scene.save(file("pixels.ply")), std::invalid_argument);
+    EXPECT_EQ(draw(scene, {.background = NothingBehind{}}).alpha.size(), 45u);
+    EXPECT_THROW(save(scene, file("pixels.ply")), std::invalid_argument);
     EXPECT_FALSE(is_output_of("pixels.GLB", scene.scene()));
     EXPECT_TRUE(is_output_of("pixels.PNG", scene.scene()));
 }
 
 TEST_F(Output, OfTexelsIsTheirLightmap) {
     const LitScene scene = lit({.tolerance = 0.2f, .receivers = Texels{.width = 8, .height = 4}});
-    const Picture lightmap = scene.draw({.albedo = glm::vec3(2.0f)});
+    const Picture lightmap = draw(scene, {.albedo = glm::vec3(2.0f)});
     EXPECT_EQ(lightmap.pixels.size(), 32u);
     EXPECT_EQ(lightmap.pixels.front(), 2.0f * scene.radiance().front());
 }

@@ -20,7 +20,7 @@ class PrecomputeFile : public scenes::InFolder {};
 TEST(Precompute, IsItsStepsInOneCall) {
     const mesh::TriangleMesh mesh = boulder();
     PrecomputeReport report;
-    const Scene scene = precompute(mesh, {.tolerance = Tolerance}, &report);
+    const Scene scene = precompute(mesh, {.tolerance = Tolerance}, {}, &report);
 
     const prt::RayScene rays(mesh);
     const float bias = prt::automatic_bias(mesh);
@@ -72,7 +72,7 @@ TEST(Precompute, LightsTexelsOfALightmap) {
     mesh::TriangleMesh mesh = two_squares();
     PrecomputeReport report;
     const Scene scene = precompute(
-        mesh, {.tolerance = 0.2f, .receivers = Texels{.width = 8, .height = 4}}, &report);
+        mesh, {.tolerance = 0.2f, .receivers = Texels{.width = 8, .height = 4}}, {}, &report);
     const prt::TexelReceivers expected = prt::texel_receivers(mesh, {.width = 8, .height = 4});
     EXPECT_EQ(std::get<prt::TexelLayout>(scene.layout), expected.layout);
     ASSERT_TRUE(report.atlas);
@@ -83,12 +83,12 @@ TEST(Precompute, LightsTexelsOfALightmap) {
     for (std::size_t vertex = 4; vertex < 8; ++vertex)
         mesh.uvs[vertex].x -= 0.5f;
     std::vector<std::string> warnings;
-    static_cast<void>(precompute(mesh, {.tolerance = 0.2f,
-                                        .receivers = Texels{.width = 8, .height = 4},
-                                        .on_warning = [&](Warning kind, const std::string& text) {
-                                            EXPECT_EQ(kind, Warning::ChartsOverlap);
-                                            warnings.push_back(text);
-                                        }}));
+    static_cast<void>(precompute(mesh,
+                                 {.tolerance = 0.2f, .receivers = Texels{.width = 8, .height = 4}},
+                                 {.on_warning = [&](Warning kind, const std::string& text) {
+                                     EXPECT_EQ(kind, Warning::ChartsOverlap);
+                                     warnings.push_back(text);
+                                 }}));
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_EQ(warnings[0], "12 texels lie in several triangles, the first at column 0, row 0: "
                            "charts overlap, the first triangle of the mesh wins");
@@ -114,7 +114,7 @@ TEST(Precompute, HighlightsNeedAView) {
                                                            .highlight = prt::Highlight::Ggx,
                                                            .roughness_or_exponent = 0.6f})};
     PrecomputeReport report;
-    const Scene diffuse = precompute(boulder(), options, &report);
+    const Scene diffuse = precompute(boulder(), options, {}, &report);
     EXPECT_FALSE(diffuse.transfer.glossy);
     EXPECT_EQ(report.num_highlights_left_out, diffuse.receivers.size());
     EXPECT_FALSE(diffuse.settings.glossy_tolerance);
@@ -123,7 +123,8 @@ TEST(Precompute, HighlightsNeedAView) {
     seen.view = View{};
     double last = 0.0;
     std::vector<Stage> stages;
-    seen.on_progress = [&](Stage stage, double fraction) {
+    PrecomputeWork work;
+    work.on_progress = [&](Stage stage, double fraction) {
         if (stages.empty() || stages.back() != stage) {
             stages.push_back(stage);
             last = 0.0;
@@ -132,7 +133,7 @@ TEST(Precompute, HighlightsNeedAView) {
         EXPECT_LE(fraction, 1.0);
         last = fraction;
     };
-    const Scene shiny = precompute(boulder(), seen, &report);
+    const Scene shiny = precompute(boulder(), seen, work, &report);
     EXPECT_TRUE(shiny.transfer.glossy);
     EXPECT_EQ(shiny.settings.view, relight::framed(shiny.mesh));
     EXPECT_EQ(shiny.settings.glossy_tolerance, seen.glossy_tolerance);
@@ -174,7 +175,7 @@ TEST(Precompute, KeepsWithinAMemoryLimit) {
 
     PrecomputeReport report;
     const Scene limited =
-        precompute(boulder(), {.tolerance = Tolerance, .max_memory = 200 * MiB}, &report);
+        precompute(boulder(), {.tolerance = Tolerance, .max_memory = 200 * MiB}, {}, &report);
     prt::expect_same(limited.transfer, precompute(boulder(), {.tolerance = Tolerance}).transfer);
     ASSERT_TRUE(report.memory);
     EXPECT_LT(report.memory->peak_bytes, 200 * MiB);
@@ -184,7 +185,8 @@ TEST_F(PrecomputeFile, IsWrittenAndItsCheckpointGoes) {
     PrecomputeReport report;
     const Scene scene = precompute(
         boulder(),
-        {.tolerance = Tolerance, .output = file("scene.prt"), .checkpoint_seconds = 1e-9}, &report);
+        {.tolerance = Tolerance, .output = file("scene.prt"), .checkpoint_seconds = 1e-9}, {},
+        &report);
     EXPECT_EQ(report.file_bytes, std::filesystem::file_size(file("scene.prt")));
     EXPECT_FALSE(std::filesystem::exists(file("scene.prt.checkpoint")));
     save_scene(file("again.prt"), scene);
@@ -200,24 +202,26 @@ TEST_F(PrecomputeFile, StoppedIsResumedToTheSameBytes) {
     static_cast<void>(precompute(boulder(), options("whole.prt")));
 
     std::stop_source stop;
-    PrecomputeOptions first = options("scene.prt");
-    first.stop = stop.get_token();
+    PrecomputeWork first{.stop = stop.get_token()};
     first.on_progress = [&](Stage, double fraction) {
         if (fraction > 0.3)
             stop.request_stop();
     };
     PrecomputeReport report;
-    EXPECT_THROW(static_cast<void>(precompute(boulder(), first, &report)), Cancelled);
+    EXPECT_THROW(static_cast<void>(precompute(boulder(), options("scene.prt"), first, &report)),
+                 Cancelled);
     EXPECT_EQ(report.checkpoint, file("scene.prt.checkpoint"));
     EXPECT_FALSE(std::filesystem::exists(file("scene.prt")));
 
     PrecomputeOptions second = options("scene.prt");
     second.resume = true;
     std::vector<std::string> notes;
-    second.on_note = [&](const std::string& text) {
-        notes.push_back(text);
-    };
-    static_cast<void>(precompute(boulder(), second, &report));
+    static_cast<void>(precompute(boulder(), second,
+                                 {.on_note =
+                                      [&](const std::string& text) {
+                                          notes.push_back(text);
+                                      }},
+                                 &report));
     EXPECT_EQ(notes, std::vector{"going on from " + file("scene.prt.checkpoint").string()});
     EXPECT_TRUE(report.checkpoint.empty());
     EXPECT_EQ(read("scene.prt"), read("whole.prt"));

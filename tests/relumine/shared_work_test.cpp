@@ -7,7 +7,9 @@
 
 #include "prt/parts/scene_part.h"
 #include "relumine/lit_part.h"
-#include "relumine/shared_light.h"
+#include "relumine/lit_scene.h"
+#include "relumine/output.h"
+#include "relumine/questions.h"
 #include "tests/prt/thread_team.h"
 #include "tests/relumine/small_scenes.h"
 
@@ -47,8 +49,8 @@ protected:
     template<typename Work>
     void share(std::uint32_t count, const Work& work) const {
         prt::ThreadTeam::run(count, [&](prt::Team& team, std::uint32_t index) {
-            SharedLight light(team, file("scene.prt"),
-                              prt::load_scene_part(file("scene.prt"), team.part()));
+            LitScene light(prt::load_scene_part(file("scene.prt"), team.part()),
+                           {.team = &team, .path = file("scene.prt")});
             work(light, index == 0);
         });
     }
@@ -74,10 +76,8 @@ TEST_F(SharedWork, ProcessesFindTheBouncesOfOne) {
         for (const std::uint32_t count : Counts) {
             prt::ThreadTeam::run(count, [&](prt::Team& team, std::uint32_t index) {
                 if (index != 0)
-                    return assist(team);
-                PrecomputeOptions work = options(receivers, file("shared.prt"));
-                work.team = &team;
-                (void)precompute(mesh(), work);
+                    return assist({.team = team});
+                (void)precompute(mesh(), options(receivers, file("shared.prt")), {.team = team});
             });
             EXPECT_EQ(read("whole.prt"), read("shared.prt")) << count << " processes";
         }
@@ -89,13 +89,15 @@ double difference_of_bounces(const std::filesystem::path& a, const std::filesyst
     LitScene lit(load_scene(a)), other(load_scene(b));
     for (LitScene* each : {&lit, &other}) {
         each->light(sun_and_sky(60.0f));
-        each->bounce(bounce_albedo(each->scene()));
+        each->bounce({.albedo = bounce_albedo(each->scene())});
     }
     double difference = 0.0, all = 0.0;
-    for (std::size_t i = 0; i < lit.bounced().size(); ++i) {
-        const glm::dvec3 d = glm::dvec3(lit.bounced()[i]) - glm::dvec3(other.bounced()[i]);
+    for (std::size_t i = 0; i < lit.bounces().bounced().size(); ++i) {
+        const glm::dvec3 d =
+            glm::dvec3(lit.bounces().bounced()[i]) - glm::dvec3(other.bounces().bounced()[i]);
         difference += glm::dot(d, d);
-        all += glm::dot(glm::dvec3(lit.bounced()[i]), glm::dvec3(lit.bounced()[i]));
+        all += glm::dot(glm::dvec3(lit.bounces().bounced()[i]),
+                        glm::dvec3(lit.bounces().bounced()[i]));
     }
     return std::sqrt(difference / all);
 }
@@ -127,14 +129,13 @@ TEST_F(SharedWork, ProcessesFindTheLightOfOne) {
     LitScene whole(load_scene(file("scene.prt")));
     const std::vector<glm::vec3> albedo = bounce_albedo(whole.scene());
     whole.light(sun_and_sky(60.0f));
-    whole.bounce(albedo, {.num_bounces = 2});
+    whole.bounce({.albedo = albedo, .limits = {.num_bounces = 2}});
     const Lighting light = whole.lighting();
     ASSERT_FALSE(light.lights.empty());
     for (const std::uint32_t count : Counts)
-        share(count, [&](SharedLight& shared, bool is_first) {
+        share(count, [&](LitScene& shared, bool is_first) {
             shared.light(sun_and_sky(60.0f));
-            shared.set_bounces(bounces_of(shared.lit().scene(), albedo, {.num_bounces = 2}));
-            shared.bounce();
+            shared.bounce({.albedo = albedo, .limits = {.num_bounces = 2}});
             const Lighting own = shared.lighting();
             EXPECT_EQ(own.radiance.empty(), !is_first);
             if (is_first)
@@ -163,7 +164,7 @@ TEST_F(SharedWork, ProcessesAndPartsFindTheHighlightsOfOne) {
                              0.4f * whole.relighter().diffuse_radiance()[i].g);
     ASSERT_GT(*std::max_element(highlights.begin(), highlights.end()), 0.05f);
     for (const std::uint32_t count : Counts) {
-        share(count, [&](SharedLight& shared, bool is_first) {
+        share(count, [&](LitScene& shared, bool is_first) {
             shared.light(sun_and_sky(60.0f));
             const Lighting own = shared.lighting();
             if (is_first)
@@ -176,7 +177,7 @@ TEST_F(SharedWork, ProcessesAndPartsFindTheHighlightsOfOne) {
                        sun_and_sky(60.0f));
         }
         join_light(parts, file("joined.npy"));
-        whole.save(file("whole.npy"));
+        save(whole, file("whole.npy"));
         EXPECT_EQ(read("joined.npy"), read("whole.npy")) << count << " parts";
     }
 }
@@ -187,20 +188,15 @@ TEST_F(SharedWork, LightsOfAListBounceWithTheEnvironment) {
     const std::vector<glm::vec3> albedo = bounce_albedo(whole.scene());
     const std::vector<lights::DistantLight> list = {
         {.direction = glm::dvec3(0.6, 0.8, 0), .irradiance = glm::dvec3(2.0, 1.0, 0.5)}};
-    whole.light(list);
-    const std::span<const glm::vec3> direct = whole.relighter().diffuse_radiance();
-    const std::vector<glm::vec3> of_list(direct.begin(), direct.end());
-    whole.light(sun_and_sky(3.0f));
-    whole.bounce(albedo, {}, of_list);
+    Light light_of_both(sun_and_sky(60.0f));
+    light_of_both.lights = list;
+    whole.light(light_of_both);
+    whole.bounce({.albedo = albedo});
     const Lighting light = whole.lighting();
     for (const std::uint32_t count : {2u, 5u})
-        share(count, [&](SharedLight& shared, bool is_first) {
-            shared.set_bounces(bounces_of(shared.lit().scene(), albedo));
-            shared.set_lights(list);
-            const std::vector<glm::vec3> of_shared_list = shared.diffuse_radiance();
-            EXPECT_EQ(of_shared_list, of_list);
-            shared.light(sun_and_sky(3.0f));
-            shared.bounce(of_shared_list);
+        share(count, [&](LitScene& shared, bool is_first) {
+            shared.light(light_of_both);
+            shared.bounce({.albedo = albedo});
             const Lighting own = shared.lighting();
             if (is_first)
                 expect_same_light(light, own);
@@ -215,27 +211,25 @@ TEST_F(SharedWork, ProcessesFindTheFramesOfOne) {
         {.direction = glm::dvec3(0, 1, 0), .irradiance = glm::dvec3(2.0)}};
     const std::vector<float> suns = {0.0f, 60.0f, 61.0f, 2.0f};
     for (const std::uint32_t count : {2u, 8u}) {
-        relight::Relighter relighter(lit.scene().transfer, lit.shadow_rays());
-        relighter.set_bounces(bounces_of(lit.scene(), bounce_albedo(lit.scene())));
+        LitScene whole{Scene(scene)};
+        const std::vector<glm::vec3> albedo = bounce_albedo(scene);
         // All frames, then a list of lights.
         std::vector<std::vector<glm::vec3>> expected;
         const auto keep = [&] {
-            relighter.bounce();
-            expected.emplace_back(relighter.radiance().begin(), relighter.radiance().end());
+            whole.bounce({.albedo = albedo});
+            expected.emplace_back(whole.radiance().begin(), whole.radiance().end());
         };
         for (const float sun : suns) {
-            relighter.set_frame(lit.bin(sun_and_sky(sun)));
+            whole.light(bin(lit, sun_and_sky(sun)));
             keep();
         }
-        relighter.set_lights(list);
+        whole.light(list);
         keep();
-        share(count, [&](SharedLight& shared, bool is_first) {
-            const Scene& own = shared.lit().scene();
-            shared.set_bounces(bounces_of(own, bounce_albedo(own)));
+        share(count, [&](LitScene& shared, bool is_first) {
             std::size_t frame = 0;
             const auto compare = [&] {
-                shared.bounce();
-                const Lighting light = shared.lighting();
+                shared.bounce({.albedo = albedo});
+                const Lighting light = shared.lighting(false);
                 if (is_first) {
                     EXPECT_TRUE(std::equal(light.radiance.begin(), light.radiance.end(),
                                            expected[frame].begin(), expected[frame].end()));
@@ -243,10 +237,10 @@ TEST_F(SharedWork, ProcessesFindTheFramesOfOne) {
                 ++frame;
             };
             for (const float sun : suns) {
-                shared.set_frame(lit.bin(sun_and_sky(sun)));
+                shared.light(bin(lit, sun_and_sky(sun)));
                 compare();
             }
-            shared.set_lights(list);
+            shared.light(list);
             compare();
         });
     }
@@ -255,12 +249,12 @@ TEST_F(SharedWork, ProcessesFindTheFramesOfOne) {
 TEST_F(SharedWork, ProcessesFindTheErrorOfOne) {
     make_scene();
     const auto scene = std::make_shared<const Scene>(load_scene(file("scene.prt")));
-    const auto verified = [&](prt::Team* reduction) {
+    const auto verified = [&](prt::Team* team) {
         LitScene lit(scene);
         lit.light(sun_and_sky(60.0f));
-        lit.bounce(bounce_albedo(*scene));
-        return lit.verify(
-            {.num_samples = 70, .num_surface_points = 30, .num_paths = 8, .reduction = reduction});
+        lit.bounce({.albedo = bounce_albedo(*scene)});
+        return verify(lit,
+                      {.num_samples = 70, .num_surface_points = 30, .num_paths = 8, .team = team});
     };
     const Verification whole = verified(nullptr);
     ASSERT_TRUE(whole.surface);

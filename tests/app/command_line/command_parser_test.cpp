@@ -17,20 +17,19 @@ protected:
     CommandParser() : line_("tool", "Does things.", "1.2") {
         Command root = line_.root();
         Command run = root.add_command("run", "do it");
-        run.add_option("IN", text_, "what to read").file().required();
-        run.add_option("-n,--number", number_, "how many").between(0, 1000).show_default();
-        run.add_option("--seed", seed_, "of chance");
-        run.add_option("--scale", scale_, "how large").show_default();
-        run.add_option("--bias", bias_, "how far");
-        run.add_option("--list", list_, "several").separated_by(',');
-        run.add_option("--mode", mode_, "how").one_of({"fast", "exact"}).show_default();
-        run.add_option(
-               "--size", [this](const std::string& text) { size_ = text; }, "how big")
-            .type_name("SIZE")
-            .value_is_optional();
-        quiet_option_ = run.add_flag("-q,--quiet", quiet_, "say nothing");
-        run.add_option("--volume", volume_, "how loud").excludes("--quiet");
-        run.add_option("--echo", echo_, "how long").needs("--volume");
+        run.add(row("IN", text_, "what to read", {.file = true, .required = true}));
+        run.add(row("-n,--number", number_, "how many", {.min = 0, .max = 1000}));
+        run.add(row("--seed", seed_, "of chance", {.shows_default = false}));
+        run.add(row("--scale", scale_, "how large"));
+        run.add(row("--bias", bias_, "how far"));
+        run.add(row("--list", list_, "several", {.separator = ','}));
+        run.add(row("--mode", mode_, "how", {.choices = {"fast", "exact"}}));
+        run.add(row("--size", [this](const std::string& text) { size_ = text; }, "how big",
+                    {.type = "SIZE", .bare = ""}));
+        quiet_option_ = run.add(row("-q,--quiet", quiet_, "say nothing"));
+        run.add(
+            row("--volume", volume_, "how loud", {.excludes = "--quiet", .shows_default = false}));
+        run.add(row("--echo", echo_, "how long", {.needs = "--volume", .shows_default = false}));
         run.on_run([this] { ++num_runs_; });
         Command group = root.add_command("group", "more of them");
         group.add_command("inner", "below").on_run([this] { ++num_inner_; });
@@ -160,25 +159,26 @@ TEST_F(CommandParser, TableHasEverything) {
     const CommandTable& run = table.commands[0];
     EXPECT_EQ(run.name, "run");
     EXPECT_EQ(run.description, "do it");
-    const auto row = [&run](const std::string& name) {
-        for (const OptionTable& option : run.options)
-            if (option.argument == name ||
-                std::find(option.names.begin(), option.names.end(), name) != option.names.end())
+    const auto of = [&run](const std::string& name) {
+        for (const OptionRow& option : run.options) {
+            const std::vector<std::string> names = option.names();
+            if (option.name == name || std::find(names.begin(), names.end(), name) != names.end())
                 return option;
+        }
         ADD_FAILURE() << "no " << name;
-        return OptionTable{};
+        return OptionRow{};
     };
-    EXPECT_TRUE(row("IN").is_required);
-    EXPECT_EQ(row("IN").value, OptionTable::Value::File);
-    EXPECT_THAT(row("-n").names, ElementsAre("-n", "--number"));
-    EXPECT_EQ(row("-n").type, "UINT");
-    EXPECT_EQ(row("-n").range, "0 to 1000");
-    EXPECT_EQ(row("-n").default_value, "7");
-    EXPECT_TRUE(row("--list").repeats);
-    EXPECT_THAT(row("--mode").choices, ElementsAre("fast", "exact"));
-    EXPECT_TRUE(row("--size").value_is_optional);
-    EXPECT_EQ(row("--quiet").value, OptionTable::Value::None);
-    EXPECT_EQ(row("--help").value, OptionTable::Value::None);
+    EXPECT_TRUE(of("IN").required);
+    EXPECT_TRUE(of("IN").file);
+    EXPECT_THAT(of("-n").names(), ElementsAre("-n", "--number"));
+    EXPECT_EQ(of("-n").type, "UINT");
+    EXPECT_EQ(of("-n").range(), "0 to 1000");
+    EXPECT_EQ(of("-n").shown_default(), "7");
+    EXPECT_TRUE(of("--list").repeats);
+    EXPECT_THAT(of("--mode").choices, ElementsAre("fast", "exact"));
+    EXPECT_TRUE(of("--size").bare);
+    EXPECT_TRUE(of("--quiet").is_flag);
+    EXPECT_TRUE(of("--help").is_flag);
 }
 
 TEST(Numbers, AreTheWholeText) {

@@ -134,7 +134,7 @@ TEST_F(Precompute, WorkThatWouldTakeHoursIsRefused) {
 
 TEST_F(Precompute, OptionsThatAreOftenMistaken) {
     misuse({"precompute", "--floor", "mesh.obj", "-o", "new.prt"},
-           "--floor: expected a number of vertices, got 'mesh.obj'; the mesh goes first: relumine "
+           "--floor: expected a whole number of 0 to 4294967295, got 'mesh.obj'; the mesh goes first: relumine "
            "precompute mesh.obj --floor");
     misuse(command({"--max-memory", "50"}),
            "--max-memory: expected a unit after the number, as in 50M or 50G, got '50'");
@@ -142,7 +142,7 @@ TEST_F(Precompute, OptionsThatAreOftenMistaken) {
 
 TEST_F(Precompute, BadFloorsAreRefused) {
     for (const char* n : {"0", "1", "100000", "4294967295"})
-        misuse(command({"--floor", n}), "--floor: expected 2 to 65535 vertices");
+        misuse(command({"--floor", n}), "--floor: expected 2 to 65535");
     misuse(command({"--floor", "-3"}), "--floor");
     misuse(command({"--floor", "tiles"}), "--floor");
     for (const char* scale : {"0", "-1", "nan", "inf", "1e38"})

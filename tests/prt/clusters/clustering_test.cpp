@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "prt/precompute_context.h"
+#include "prt/precompute.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/prt/memory_checkpoint.h"
 #include "tests/prt/same_transfer.h"
@@ -19,17 +19,13 @@ namespace {
 
 class ClusteringTest : public testing::Test {
 protected:
-    [[nodiscard]] Transfer transfer(const PrecomputeOptions& options,
+    [[nodiscard]] Transfer transfer(const Work& work = {},
                                     PrecomputeStatistics* statistics = nullptr) const {
-        return precompute(receivers_, rays_, options,
-                          options.checkpoint != nullptr ? context_ : PrecomputeContext{},
-                          statistics);
+        return precompute(receivers_, rays_, options_, work, statistics);
     }
-    /// A work with checkpoints; of many small steps, as context_ has it.
-    [[nodiscard]] PrecomputeOptions in_steps(MemoryCheckpoint& checkpoint) const {
-        PrecomputeOptions options = options_;
-        options.checkpoint = &checkpoint;
-        return options;
+    /// A work with checkpoints, of many small steps.
+    [[nodiscard]] Work in_steps(Checkpoint& checkpoint) const {
+        return {.checkpoint = &checkpoint, .step_size = 64 * 4 * receivers_.size()};
     }
 
     mesh::TriangleMesh mesh_ = scenes::sphere_and_box_on_floor();
@@ -37,18 +33,16 @@ protected:
     RayScene rays_{mesh_};
     PrecomputeOptions options_{
         .tolerance = 0.028f, .face_resolution = 64, .bias = automatic_bias(mesh_)};
-    PrecomputeContext context_{.samples_per_step = 64 * 4 * receivers_.size()};
 };
 
 TEST_F(ClusteringTest, AnyRoomForPlanesGivesTheSameBits) {
     PrecomputeStatistics plain;
-    const Transfer expected = transfer(options_, &plain);
+    const Transfer expected = transfer({}, &plain);
     const std::uint64_t plane = (receivers_.size() + 63) / 64 * 8;
     for (const std::uint64_t num_planes : {0u, 1u, 100u, 300u, 1000u, 3000u, 100000u}) {
-        PrecomputeOptions options = options_;
-        options.plane_bytes = num_planes * plane;
+        options_.plane_bytes = num_planes * plane;
         PrecomputeStatistics statistics;
-        expect_same(transfer(options, &statistics), expected);
+        expect_same(transfer({}, &statistics), expected);
         EXPECT_GE(statistics.num_directions, plain.num_directions) << num_planes;
         EXPECT_EQ(statistics.deepest_level, plain.deepest_level);
     }
@@ -56,7 +50,7 @@ TEST_F(ClusteringTest, AnyRoomForPlanesGivesTheSameBits) {
 
 TEST_F(ClusteringTest, GoesOnFromEveryCheckpoint) {
     PrecomputeStatistics plain;
-    const Transfer expected = transfer(options_, &plain);
+    const Transfer expected = transfer({}, &plain);
     MemoryCheckpoint whole;
     expect_same(transfer(in_steps(whole)), expected);
     ASSERT_GT(whole.num_saves, 15u);
@@ -107,28 +101,25 @@ private:
 // No more is lost than what a checkpoint's interval and one step hold.
 TEST_F(ClusteringTest, LooksAtTheCheckpointAfterEveryStep) {
     Lookout lookout(rays_);
-    MemoryCheckpoint unused;
-    PrecomputeOptions options = in_steps(unused);
-    options.checkpoint = &lookout;
+    const Work work = in_steps(lookout);
     PrecomputeStatistics statistics;
-    static_cast<void>(precompute(receivers_, lookout, options, context_, &statistics));
+    static_cast<void>(precompute(receivers_, lookout, options_, work, &statistics));
     EXPECT_GT(lookout.num_looks, 15u);
-    EXPECT_GT(statistics.num_rays, 4 * *context_.samples_per_step);
-    EXPECT_LE(lookout.num_rays, *context_.samples_per_step);
+    EXPECT_GT(statistics.num_rays, 4 * *work.step_size);
+    EXPECT_LE(lookout.num_rays, *work.step_size);
 }
 
 TEST_F(ClusteringTest, GoesOnAgainAndAgainWithLittleRoom) {
-    const Transfer expected = transfer(options_);
+    const Transfer expected = transfer();
     MemoryCheckpoint checkpoint;
     std::mt19937 random(1);
     std::size_t num_kills = 0;
+    options_.plane_bytes = 400 * ((receivers_.size() + 63) / 64 * 8);
     for (bool done = false; !done;) {
-        PrecomputeOptions options = in_steps(checkpoint);
-        options.plane_bytes = 400 * ((receivers_.size() + 63) / 64 * 8);
         checkpoint.saves_to_live = checkpoint.num_saves + 1 + random() % 6;
         checkpoint.every = 1 + random() % 3;
         try {
-            expect_same(transfer(options), expected);
+            expect_same(transfer(in_steps(checkpoint)), expected);
             done = true;
         } catch (const Killed&) {
             ++num_kills;
@@ -138,39 +129,39 @@ TEST_F(ClusteringTest, GoesOnAgainAndAgainWithLittleRoom) {
 }
 
 TEST_F(ClusteringTest, ASaveThatFailsIsMadeUpForByTheNext) {
-    const Transfer expected = transfer(options_);
+    const Transfer expected = transfer();
     MemoryCheckpoint checkpoint;
     checkpoint.is_failing = true;
     expect_same(transfer(in_steps(checkpoint)), expected); // a full disk stops no one
     checkpoint.num_saves = 0;
-    PrecomputeOptions options = in_steps(checkpoint);
+    Work work = in_steps(checkpoint);
     // Every other save fails; stopped near the end.
     std::atomic<int> num_calls = 0;
-    options.on_progress = [&](double fraction) {
+    work.on_progress = [&](double fraction) {
         checkpoint.is_failing = ++num_calls % 2 == 0;
         if (fraction > 0.8)
             throw Killed();
     };
-    EXPECT_THROW(static_cast<void>(transfer(options)), Killed);
+    EXPECT_THROW(static_cast<void>(transfer(work)), Killed);
     ASSERT_FALSE(checkpoint.parts["clusters"].records.empty());
     checkpoint.is_failing = false;
     expect_same(transfer(in_steps(checkpoint)), expected);
 }
 
 TEST_F(ClusteringTest, LeavesACheckpointWhenItIsStopped) {
-    const Transfer expected = transfer(options_);
+    const Transfer expected = transfer();
     for (const bool worth_it : {true, false}) {
         MemoryCheckpoint checkpoint;
         checkpoint.every = 1000000; // never due
         checkpoint.is_worth_it = worth_it;
-        PrecomputeOptions options = in_steps(checkpoint);
+        Work work = in_steps(checkpoint);
         std::stop_source stop;
-        options.stop = stop.get_token();
-        options.on_progress = [&](double fraction) {
+        work.stop = stop.get_token();
+        work.on_progress = [&](double fraction) {
             if (fraction > 0.5)
                 stop.request_stop();
         };
-        EXPECT_THROW(static_cast<void>(transfer(options)), Cancelled);
+        EXPECT_THROW(static_cast<void>(transfer(work)), Cancelled);
         EXPECT_EQ(checkpoint.num_saves, worth_it ? 1u : 0u);
         expect_same(transfer(in_steps(checkpoint)), expected);
     }
@@ -179,14 +170,14 @@ TEST_F(ClusteringTest, LeavesACheckpointWhenItIsStopped) {
 TEST_F(ClusteringTest, LeavesItsResultWhereMoreFollows) {
     MemoryCheckpoint checkpoint;
     checkpoint.every = 1000000;
-    PrecomputeOptions options = in_steps(checkpoint);
-    static_cast<void>(transfer(options));
+    Work work = in_steps(checkpoint);
+    static_cast<void>(transfer(work));
     EXPECT_EQ(checkpoint.num_saves, 0u);
-    context_.more_follows = true;
-    const Transfer expected = transfer(options);
+    work.more_follows = true;
+    const Transfer expected = transfer(work);
     EXPECT_EQ(checkpoint.num_saves, 1u);
     PrecomputeStatistics statistics;
-    expect_same(transfer(options, &statistics), expected);
+    expect_same(transfer(work, &statistics), expected);
     EXPECT_EQ(checkpoint.num_saves, 1u) << "all of it was there";
 }
 

@@ -9,7 +9,7 @@
 
 #include "files/parallel.h"
 #include "prt/glossy/brdf.h"
-#include "prt/precompute_context.h"
+#include "prt/precompute.h"
 #include "prt/transfer/cell_index.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/memory_checkpoint.h"
@@ -38,9 +38,9 @@ Transfer with_glossy(const Receivers& receivers, const Blockers& blockers, float
                      GlossyStatistics* statistics = nullptr) {
     Transfer transfer =
         precompute(receivers, blockers, {.tolerance = 0.01f, .face_resolution = FaceResolution});
-    transfer.glossy =
-        precompute_glossy(receivers, blockers, transfer,
-                          {.tolerance = tolerance, .face_resolution = FaceResolution}, statistics);
+    transfer.glossy = precompute_glossy(receivers, blockers, transfer,
+                                        {.tolerance = tolerance, .face_resolution = FaceResolution},
+                                        {}, statistics);
     return transfer;
 }
 
@@ -196,20 +196,20 @@ TEST(GlossyPrecompute, TheSameBitsForAnyNumberOfThreads) {
 TEST(GlossyPrecompute, GoesOnFromEveryCheckpoint) {
     const scenes::GlossyScene& scene = scenes::glossy_scene();
     GlossyStatistics plain;
-    GlossyOptions options = scene.options;
-    static_cast<void>(
-        precompute_glossy(scene.receivers, scene.diffuse.rays, scene.transfer, options, &plain));
+    static_cast<void>(precompute_glossy(scene.receivers, scene.diffuse.rays, scene.transfer,
+                                        scene.options, {}, &plain));
     for (const std::size_t saves : {0u, 1u, 2u, 3u}) {
         MemoryCheckpoint checkpoint;
-        options.checkpoint = &checkpoint;
         checkpoint.saves_to_live = saves;
-        EXPECT_THROW(static_cast<void>(precompute_glossy_in_steps(
-                         scene.receivers, scene.diffuse.rays, scene.transfer, options, 5)),
+        EXPECT_THROW(static_cast<void>(precompute_glossy(
+                         scene.receivers, scene.diffuse.rays, scene.transfer, scene.options,
+                         {.checkpoint = &checkpoint, .step_size = 5})),
                      Killed);
         checkpoint.saves_to_live = static_cast<std::size_t>(-1);
         GlossyStatistics statistics;
-        const GlossyTransfer again = precompute_glossy(scene.receivers, scene.diffuse.rays,
-                                                       scene.transfer, options, &statistics);
+        const GlossyTransfer again =
+            precompute_glossy(scene.receivers, scene.diffuse.rays, scene.transfer, scene.options,
+                              {.checkpoint = &checkpoint}, &statistics);
         EXPECT_EQ(statistics.num_rays, plain.num_rays);
         for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {
             EXPECT_EQ(again.lobes[lobe].begin, scene.transfer.glossy->lobes[lobe].begin);
@@ -239,13 +239,11 @@ TEST(GlossyPrecompute, CellsOfABlockNeverOverlap) {
 TEST(GlossyPrecompute, StopsWhenAsked) {
     const scenes::GlossyScene& scene = scenes::glossy_scene();
     std::stop_source stop;
-    GlossyOptions options = scene.options;
-    options.stop = stop.get_token();
-    options.on_progress = [&](double) {
-        stop.request_stop();
-    };
+    const Work work{.stop = stop.get_token(), .on_progress = [&](double) {
+                        stop.request_stop();
+                    }};
     EXPECT_THROW(static_cast<void>(precompute_glossy(scene.receivers, scene.diffuse.rays,
-                                                     scene.transfer, options)),
+                                                     scene.transfer, scene.options, work)),
                  Cancelled);
 }
 
@@ -256,16 +254,17 @@ TEST(GlossyPrecompute, StopsAtItsLimitAndLeavesACheckpoint) {
         num_entries += cuts.num_entries();
     GlossyOptions options = scene.options;
     options.max_bytes = num_entries * BytesPerEntry;
+    Work work{.step_size = 5};
     const auto run = [&] {
-        return precompute_glossy_in_steps(scene.receivers, scene.diffuse.rays, scene.transfer,
-                                          options, 5);
+        return precompute_glossy(scene.receivers, scene.diffuse.rays, scene.transfer, options,
+                                 work);
     };
     EXPECT_NO_THROW(static_cast<void>(run()));
     MemoryCheckpoint checkpoint;
-    options.checkpoint = &checkpoint;
+    work.checkpoint = &checkpoint;
     options.max_bytes = num_entries * BytesPerEntry / 2;
-    EXPECT_THROW(static_cast<void>(run()), TooManyEntries);
-    EXPECT_THROW(static_cast<void>(run()), TooManyEntries); // and does not forget
+    EXPECT_THROW(static_cast<void>(run()), TooLarge);
+    EXPECT_THROW(static_cast<void>(run()), TooLarge); // and does not forget
     options.max_bytes *= 3;
     EXPECT_EQ(run().lobes[0].values, scene.transfer.glossy->lobes[0].values);
 }

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "files/output_file.h"
+#include "prt/glossy/glossy_precompute.h"
 #include "prt/parts/part_file.h"
 #include "prt/parts/team_checkpoint.h"
 #include "prt/visibility/beam_scene.h"
@@ -42,9 +43,20 @@ std::vector<PartLight> all_parts(const Receivers& receivers, const Transfer& pla
                                  const Blockers& blockers, const PrecomputeOptions& options,
                                  std::uint32_t count) {
     std::vector<PartLight> parts;
-    for (std::uint32_t i = 0; i < count; ++i)
-        parts.push_back({part_counts(receivers, plan, blockers, options, {i, count})});
+    for (std::uint32_t i = 0; i < count; ++i) {
+        Alone part({i, count});
+        parts.push_back({part_counts(receivers, plan, blockers, options, {.team = part})});
+    }
     return parts;
+}
+
+/// Gives a transfer the light of all parts.
+void join(Transfer& transfer, const Receivers& receivers, std::vector<PartLight> parts) {
+    Scene scene;
+    scene.receivers = receivers;
+    scene.transfer = std::move(transfer);
+    join_light(scene, parts);
+    transfer = std::move(scene.transfer);
 }
 
 TEST(Parts, CountsAreThoseOfAPrecomputeWithTheSameClusters) {
@@ -57,14 +69,14 @@ TEST(Parts, CountsAreThoseOfAPrecomputeWithTheSameClusters) {
     ASSERT_GT(whole.counts.num_tiles(), 3u);
     for (const std::uint32_t count : {1u, 2u, 3u, 7u}) {
         Transfer joined = whole;
-        join_light(joined, all_parts(receivers, whole, beams, options, count));
+        join(joined, receivers, all_parts(receivers, whole, beams, options, count));
         expect_same(whole, joined);
     }
     // The other engine, and room for few planes at a time.
     PrecomputeOptions tight = options;
     tight.plane_bytes = 1 << 16;
     Transfer joined = whole;
-    join_light(joined, all_parts(receivers, whole, rays, tight, 2));
+    join(joined, receivers, all_parts(receivers, whole, rays, tight, 2));
     expect_same(whole, joined);
 }
 
@@ -76,17 +88,16 @@ TEST(Parts, ProcessesThatShareTheWorkFindTheSame) {
     const Receivers receivers = vertex_receivers(mesh);
     PrecomputeOptions options = options_for(mesh);
     PrecomputeStatistics of_whole;
-    const Transfer whole = precompute(receivers, beams, options, &of_whole);
+    const Transfer whole = precompute(receivers, beams, options, {}, &of_whole);
     for (const bool is_tight : {false, true}) {
         options.plane_bytes = is_tight ? 1 << 16 : PrecomputeOptions{}.plane_bytes;
         for (const std::uint32_t count : {1u, 2u, 3u, 5u, 8u}) {
             std::vector<PartLight> parts(count);
             Transfer joined;
-            ThreadTeam::run(count, [&](Team& reduction, std::uint32_t index) {
-                PrecomputeOptions of_part = options;
-                of_part.reduction = &reduction;
+            ThreadTeam::run(count, [&](Team& team, std::uint32_t index) {
                 PrecomputeStatistics statistics;
-                Transfer transfer = precompute(receivers, beams, of_part, &statistics);
+                Transfer transfer =
+                    precompute(receivers, beams, options, {.team = team}, &statistics);
                 parts[index].counts = std::move(transfer.counts);
                 EXPECT_GE(statistics.num_rays, of_whole.num_rays);
                 if (!is_tight) {
@@ -95,7 +106,7 @@ TEST(Parts, ProcessesThatShareTheWorkFindTheSame) {
                 if (index == 0)
                     joined = std::move(transfer);
             });
-            join_light(joined, parts);
+            join(joined, receivers, parts);
             expect_same(whole, joined);
         }
     }
@@ -106,27 +117,24 @@ TEST(Parts, ProcessesThatShareTheWorkStopTogether) {
     const RayScene rays(mesh);
     const Receivers receivers = vertex_receivers(mesh);
     std::atomic<int> num_cancelled = 0, num_refused = 0;
-    ThreadTeam::run(3, [&](Team& reduction, std::uint32_t index) {
+    ThreadTeam::run(3, [&](Team& team, std::uint32_t index) {
         // One is told to stop, the others are not.
         PrecomputeOptions options = options_for(mesh);
-        options.reduction = &reduction;
         std::stop_source stop;
         if (index == 1)
             stop.request_stop();
-        options.stop = stop.get_token();
         try {
-            (void)precompute(receivers, rays, options);
+            (void)precompute(receivers, rays, options, {.team = team, .stop = stop.get_token()});
         } catch (const Cancelled&) {
             ++num_cancelled;
         }
         // One has too little room.
-        options.stop = {};
         options.max_column_bytes = index == 2 ? 1000 : options.max_column_bytes;
         if (index != 2)
             options.max_column_bytes = 1u << 30;
         try {
-            (void)precompute(receivers, rays, options);
-        } catch (const TooManyClusters&) {
+            (void)precompute(receivers, rays, options, {.team = team});
+        } catch (const TooLarge&) {
             ++num_refused;
         }
     });
@@ -167,15 +175,16 @@ TEST(Parts, HighlightsAreThoseOfAllReceivers) {
         Transfer joined = whole;
         std::vector<PartLight> parts = all_parts(receivers, whole, rays, options, count);
         for (std::uint32_t i = 0; i < count; ++i) {
+            Alone part({i, count});
             joined.counts = parts[i].counts;
-            parts[i].glossy = part_highlights(receivers, joined, rays, glossy, {i, count});
+            parts[i].glossy = precompute_glossy(receivers, rays, joined, glossy, {.team = part});
         }
-        join_light(joined, parts);
+        join(joined, receivers, parts);
         expect_same(whole, joined);
         expect_same_highlights(whole, joined);
         parts[0].glossy.reset();
         if (count > 1) {
-            EXPECT_THROW(join_light(joined, parts), std::invalid_argument);
+            EXPECT_THROW(join(joined, receivers, parts), std::invalid_argument);
         }
     }
 }
@@ -197,22 +206,16 @@ TEST(Parts, ProcessesGoOnFromTheCheckpointOfAll) {
         std::vector<PartLight> parts(Count);
         ThreadTeam::run(Count, [&](Team& team, std::uint32_t index) {
             TeamCheckpoint checkpoint(team, index == 0 ? &store : nullptr);
-            PrecomputeOptions of_part = options;
-            of_part.reduction = &team;
-            of_part.checkpoint = &checkpoint;
+            const Work work{.team = team, .checkpoint = &checkpoint};
             PrecomputeStatistics statistics;
-            Transfer transfer = precompute(receivers, rays, of_part, &statistics);
+            Transfer transfer = precompute(receivers, rays, options, work, &statistics);
             if (index == 0)
                 *num_rays = statistics.num_rays;
-            GlossyOptions of_glossy = glossy;
-            of_glossy.reduction = &team;
-            of_glossy.checkpoint = &checkpoint;
-            parts[index].glossy =
-                part_highlights(receivers, transfer, rays, of_glossy, team.part());
+            parts[index].glossy = precompute_glossy(receivers, rays, transfer, glossy, work);
             parts[index].counts = std::move(transfer.counts);
         });
         Transfer joined = whole;
-        join_light(joined, parts);
+        join(joined, receivers, parts);
         expect_same(whole, joined);
         expect_same_highlights(whole, joined);
     };
@@ -238,7 +241,7 @@ TEST(Parts, SingleTexelsCountByTheirCentre) {
     const Transfer whole = precompute(receivers, rays, options);
     ASSERT_EQ(whole.num_clusters(), 6u * 8 * 8);
     Transfer joined = whole;
-    join_light(joined, all_parts(receivers, whole, rays, options, 3));
+    join(joined, receivers, all_parts(receivers, whole, rays, options, 3));
     expect_same(whole, joined);
 }
 
@@ -250,7 +253,7 @@ TEST(Parts, AFewReceiversArePlannedByAllOfThem) {
     const Transfer whole = precompute(receivers, rays, options);
     Transfer plan = plan_clusters(receivers, rays, options);
     EXPECT_EQ(plan.counts.counts.size(), 0u);
-    join_light(plan, all_parts(receivers, plan, rays, options, 1));
+    join(plan, receivers, all_parts(receivers, plan, rays, options, 1));
     expect_same(whole, plan);
 }
 
@@ -263,8 +266,8 @@ TEST(Parts, ASampleChoosesAboutAsManyClusters) {
     const Receivers receivers = vertex_receivers(mesh);
     const PrecomputeOptions options = options_for(mesh);
     PrecomputeStatistics of_plan, of_whole;
-    const Transfer plan = plan_clusters(receivers, beams, options, &of_plan);
-    const Transfer whole = precompute(receivers, beams, options, &of_whole);
+    const Transfer plan = plan_clusters(receivers, beams, options, {}, &of_plan);
+    const Transfer whole = precompute(receivers, beams, options, {}, &of_whole);
     EXPECT_NEAR(static_cast<double>(plan.num_clusters()), static_cast<double>(whole.num_clusters()),
                 0.1 * static_cast<double>(whole.num_clusters()));
     EXPECT_LT(of_plan.num_rays, 0.6 * static_cast<double>(of_whole.num_rays));
@@ -277,14 +280,15 @@ TEST(Parts, RefusesPartsThatAreNone) {
     const Receivers receivers = vertex_receivers(mesh);
     const PrecomputeOptions options = options_for(mesh);
     const Transfer plan = plan_clusters(receivers, rays, options);
-    const auto work = [&](const Part& part) {
-        (void)part_counts(receivers, plan, rays, options, part);
+    const auto counts = [&](const Part& part) {
+        Alone alone(part);
+        return part_counts(receivers, plan, rays, options, {.team = alone});
     };
-    EXPECT_THROW(work({4, 4}), std::invalid_argument);
-    EXPECT_THROW(work({0, 0}), std::invalid_argument);
-    EXPECT_THROW(work({0, MaxParts + 1}), std::invalid_argument);
+    EXPECT_THROW((void)counts({4, 4}), std::invalid_argument);
+    EXPECT_THROW((void)counts({0, 0}), std::invalid_argument);
+    EXPECT_THROW((void)counts({0, MaxParts + 1}), std::invalid_argument);
     // A part without tiles is no fault.
-    EXPECT_EQ(part_counts(receivers, plan, rays, options, {1, 2}).num_receivers, 0u);
+    EXPECT_EQ(counts({1, 2}).num_receivers, 0u);
 }
 
 class PartFiles : public testing::Test {
@@ -303,19 +307,20 @@ protected:
                            .min_level = options.min_level,
                            .face_resolution = options.face_resolution,
                            .bias = options.bias};
-        save_plan(folder_ / "scene.plan", scene_);
+        save_plan(folder_ / "scene.plan", {.scene = scene_, .has_clusters = true});
     }
     void TearDown() override { fs::remove_all(folder_); }
 
     fs::path part(std::uint32_t index, std::uint32_t count, const std::string& name,
                   const std::string& of = "scene.plan") const {
         const Plan plan = load_plan(folder_ / of);
+        Alone alone({index, count});
         const VisibleCounts counts =
             part_counts(plan.scene.receivers, plan.scene.transfer, *rays_,
                         {.min_level = plan.scene.settings.min_level,
                          .face_resolution = plan.scene.settings.face_resolution,
                          .bias = plan.scene.settings.bias},
-                        {index, count});
+                        {.team = alone});
         save_part(folder_ / name, plan, {index, count}, {counts});
         return folder_ / name;
     }
@@ -374,7 +379,7 @@ TEST_F(PartFiles, NameWhatIsWrong) {
     expect_refusal([&] { (void)load_plan(first); }, "first: expected a plan, got a part");
 
     scene_.settings.source = "other";
-    save_plan(folder_ / "other.plan", scene_);
+    save_plan(folder_ / "other.plan", {.scene = scene_, .has_clusters = true});
     const fs::path foreign = part(1, 2, "foreign", "other.plan");
     expect_refusal(
         [&] {

@@ -29,7 +29,7 @@ mesh::TriangleMesh box_on_floor() {
 
 mesh::TriangleMesh refined(const mesh::TriangleMesh& mesh, const RefineOptions& options,
                            RefineReport* report = nullptr) {
-    return refine(mesh, RayScene(mesh), options, report);
+    return refine(mesh, RayScene(mesh), options, {}, report);
 }
 
 /// A wall without end at x = 0: nothing from x > 0 reaches points left of it, below a height.
@@ -49,7 +49,7 @@ TEST(CoarseDirections, WhatReachesAPointOverAnEmptyFloor) {
     const CoarseDirections directions;
     const mesh::TriangleMesh floor = scenes::floor_grid(2, 1.0f);
     const RayScene rays(floor);
-    const Progress progress({}, {});
+    const Progress progress{Work()};
     const auto bits = directions.trace(vertex_receivers(floor), rays, 1e-4f, progress);
     ASSERT_EQ(bits.size(), 4u);
     std::size_t count = 0;
@@ -67,7 +67,7 @@ struct BesideTheWall {
     explicit BesideTheWall(const CoarseDirections& directions) {
         points.positions = {{-1, 0, 0}, {1, 0, 0}, {0.5f, 0, 0}};
         points.normals.assign(3, glm::vec3(0, 1, 0));
-        bits = directions.trace(points, Wall(), 0.0f, Progress({}, {}));
+        bits = directions.trace(points, Wall(), 0.0f, Progress(Work()));
         for (std::size_t i = 0; i < ends.size(); ++i)
             ends[i] = {points.normals[i], &bits[i]};
     }
@@ -169,7 +169,7 @@ TEST(CoarseDirections, MiddlesOfFineEdgesHaveTheErrorOfThePlainWay) {
     const BeamScene beams(shaded, rays);
     const CountingBlockers counted(rays);
     const CoarseDirections directions;
-    const Progress progress({}, {});
+    const Progress progress{Work()};
     const float bias = automatic_bias(shaded);
     const auto at_vertices = directions.trace(vertex_receivers(mesh), beams, bias, progress);
     Receivers middles;
@@ -390,7 +390,8 @@ TEST(Refine, OptionsOutOfRangeAreRefused) {
     refuse(flat, {});
     std::stop_source stop;
     stop.request_stop();
-    EXPECT_THROW(static_cast<void>(refined(mesh, {.stop = stop.get_token()})), Cancelled);
+    EXPECT_THROW(static_cast<void>(refine(mesh, RayScene(mesh), {}, {.stop = stop.get_token()})),
+                 Cancelled);
 }
 
 } // namespace

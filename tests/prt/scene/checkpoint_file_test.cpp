@@ -190,30 +190,34 @@ TEST_F(CheckpointFileTest, LeavesFilesOfOthersAlone) {
 }
 
 TEST(Fingerprint, ChangesWithAllThatTheResultDependsOn) {
-    const mesh::TriangleMesh mesh = scenes::sphere_and_box_on_floor();
-    const Receivers receivers = vertex_receivers(mesh);
-    const PrecomputeOptions options;
-    const Fingerprint plain = fingerprint(mesh, receivers, options, {});
-    EXPECT_EQ(fingerprint(mesh, receivers, {.plane_bytes = 1}, {}), plain);
-    EXPECT_NE(fingerprint(mesh, receivers, options, {.glossy_tolerance = 0.1f}), plain);
-    EXPECT_NE(fingerprint(mesh, receivers, options, {.bounce_tolerance = 0.1f}), plain);
-    EXPECT_NE(fingerprint(mesh, receivers, options,
-                          {.bounce_tolerance = 0.1f, .two_sided_bounces = true}),
-              fingerprint(mesh, receivers, options, {.bounce_tolerance = 0.1f}));
-    EXPECT_NE(fingerprint(mesh, receivers, {.tolerance = 0.1f}, {}), plain);
-    EXPECT_NE(fingerprint(mesh, receivers, {.epsilon = 0.1f}, {}), plain);
-    EXPECT_NE(fingerprint(mesh, receivers, {.min_level = 1}, {}), plain);
-    EXPECT_NE(fingerprint(mesh, receivers, {.face_resolution = 1}, {}), plain);
-    EXPECT_NE(fingerprint(mesh, receivers, {.bias = 1.0f}, {}), plain);
-    mesh::TriangleMesh other = mesh;
-    other.positions[3].x += 1e-6f;
-    EXPECT_NE(fingerprint(other, receivers, options, {}), plain);
-    other = mesh;
-    std::swap(other.triangles[0][0], other.triangles[0][1]);
-    EXPECT_NE(fingerprint(other, receivers, options, {}), plain);
-    Receivers others = receivers;
-    others.normals[5].y += 1e-6f;
-    EXPECT_NE(fingerprint(mesh, others, options, {}), plain);
+    Scene scene;
+    scene.mesh = scenes::sphere_and_box_on_floor();
+    scene.receivers = vertex_receivers(scene.mesh);
+    const Fingerprint plain = fingerprint(scene, {});
+    const auto of_settings = [&](const SceneSettings& settings,
+                                 std::optional<float> bounce_tolerance = {}) {
+        Scene other = scene;
+        other.settings = settings;
+        return fingerprint(other, bounce_tolerance);
+    };
+    EXPECT_EQ(of_settings({.source = "other.ply"}), plain);
+    EXPECT_NE(of_settings({.glossy_tolerance = 0.1f}), plain);
+    EXPECT_NE(of_settings({}, 0.1f), plain);
+    EXPECT_NE(of_settings({.two_sided_bounces = true}, 0.1f), of_settings({}, 0.1f));
+    EXPECT_NE(of_settings({.tolerance = 0.1f}), plain);
+    EXPECT_NE(of_settings({.epsilon = 0.1f}), plain);
+    EXPECT_NE(of_settings({.min_level = 1}), plain);
+    EXPECT_NE(of_settings({.face_resolution = 1}), plain);
+    EXPECT_NE(of_settings({.bias = 1.0f}), plain);
+    Scene other = scene;
+    other.mesh.positions[3].x += 1e-6f;
+    EXPECT_NE(fingerprint(other, {}), plain);
+    other = scene;
+    std::swap(other.mesh.triangles[0][0], other.mesh.triangles[0][1]);
+    EXPECT_NE(fingerprint(other, {}), plain);
+    other = scene;
+    other.receivers.normals[5].y += 1e-6f;
+    EXPECT_NE(fingerprint(other, {}), plain);
 }
 
 } // namespace

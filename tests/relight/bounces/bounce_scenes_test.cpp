@@ -273,11 +273,10 @@ TEST(BounceScenes, AKilledRunThatIsTakenUpFindsTheSameRows) {
     const BouncingScene scene(mesh, 0.005f, 0.1f);
     const auto probes = probe_radiance(scene.transfer);
     prt::BounceStatistics found;
-    const auto rows = [&](prt::Checkpoint& checkpoint, const std::stop_token& stop = {}) {
-        return prt::precompute_bounces(
-            scene.mesh, scene.receivers, scene.transfer, probes, scene.rays,
-            {.tolerance = 0.005f, .bias = scene.bias, .checkpoint = &checkpoint, .stop = stop},
-            &found);
+    const auto rows = [&](prt::Checkpoint& checkpoint) {
+        return prt::precompute_bounces(scene.mesh, scene.receivers, scene.transfer, probes,
+                                       scene.rays, {.tolerance = 0.005f, .bias = scene.bias},
+                                       {.checkpoint = &checkpoint}, &found);
     };
     std::size_t num_saves = 0;
     for (;; ++num_saves) {
@@ -302,17 +301,14 @@ TEST(BounceScenes, AKilledRunThatIsTakenUpFindsTheSameRows) {
     prt::MemoryCheckpoint checkpoint;
     checkpoint.every = 2;
     std::stop_source stop;
-    EXPECT_THROW(static_cast<void>(prt::precompute_bounces(scene.mesh, scene.receivers,
-                                                           scene.transfer, probes, scene.rays,
-                                                           {.tolerance = 0.005f,
-                                                            .bias = scene.bias,
-                                                            .checkpoint = &checkpoint,
-                                                            .stop = stop.get_token(),
-                                                            .on_progress =
-                                                                [&](double done) {
-                                                                    if (done > 0.8)
-                                                                        stop.request_stop();
-                                                                }})),
+    const prt::Work work{
+        .checkpoint = &checkpoint, .stop = stop.get_token(), .on_progress = [&](double done) {
+            if (done > 0.8)
+                stop.request_stop();
+        }};
+    EXPECT_THROW(static_cast<void>(prt::precompute_bounces(
+                     scene.mesh, scene.receivers, scene.transfer, probes, scene.rays,
+                     {.tolerance = 0.005f, .bias = scene.bias}, work)),
                  prt::Cancelled);
     EXPECT_GT(checkpoint.parts.at("more_bounces").records.size(), 0u);
     EXPECT_EQ(rows(checkpoint), scene.matrix);
@@ -330,7 +326,7 @@ TEST(BounceScenes, RowsThatTakeTooMuchMemoryAreRefused) {
     };
     EXPECT_EQ(within(2 * prt::BytesPerHit * scene.statistics.num_hits), scene.matrix);
     EXPECT_THROW(static_cast<void>(within(prt::BytesPerHit * scene.statistics.num_hits / 2)),
-                 prt::TooManyHits);
+                 prt::TooLarge);
 }
 
 TEST(BounceScenes, RowsAreTheSameOnAnyNumberOfThreads) {
@@ -353,7 +349,7 @@ TEST(BounceScenes, ASmallerToleranceTakesMoreRaysAndErrsLess) {
     prt::BounceStatistics fine;
     static_cast<void>(prt::precompute_bounces(coarse.mesh, coarse.receivers, coarse.transfer,
                                               probe_radiance(coarse.transfer), coarse.rays,
-                                              {.tolerance = 0.004f, .bias = coarse.bias}, &fine));
+                                              {.tolerance = 0.004f, .bias = coarse.bias}, {}, &fine));
     EXPECT_LT(2 * coarse.statistics.num_rays, fine.num_rays);
     EXPECT_LT(2.0 * fine.rms_error, coarse.statistics.rms_error);
     EXPECT_LE(fine.rms_error, 0.0045);
@@ -378,10 +374,10 @@ TEST(BounceScenes, RefusesWhatDoesNotFit) {
                  std::invalid_argument);
     std::stop_source stop;
     stop.request_stop();
-    EXPECT_THROW(
-        static_cast<void>(prt::precompute_bounces(scene.mesh, scene.receivers, scene.transfer,
-                                                  probes, scene.rays, {.stop = stop.get_token()})),
-        prt::Cancelled);
+    EXPECT_THROW(static_cast<void>(prt::precompute_bounces(scene.mesh, scene.receivers,
+                                                           scene.transfer, probes, scene.rays, {},
+                                                           {.stop = stop.get_token()})),
+                 prt::Cancelled);
 }
 
 } // namespace

@@ -13,6 +13,7 @@
 #include "prt/visibility/ray_scene.h"
 #include "relight/bounces/bounce_light.h"
 #include "relight/probe_lights.h"
+#include "tests/prt/all_bounces.h"
 
 namespace relumine::relight {
 
@@ -26,7 +27,8 @@ struct BouncingScene {
               receivers, prt::BeamScene(mesh, rays),
               {.tolerance = transfer_tolerance, .face_resolution = 256, .bias = bias})),
           matrix(prt::precompute_bounces(mesh, receivers, transfer, probe_radiance(transfer), rays,
-                                         {.tolerance = tolerance, .bias = bias}, &statistics)) {}
+                                         {.tolerance = tolerance, .bias = bias}, {}, &statistics)) {
+    }
 
     /// Returns one bounce of the emitters' radiance, [num_vertices].
     [[nodiscard]] std::vector<float> bounce(const std::vector<float>& radiance) const {

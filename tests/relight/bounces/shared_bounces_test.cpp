@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -33,24 +34,23 @@ const BouncingScene& scene() {
 prt::Transfer counts_of_part(const prt::Part& part) {
     prt::Transfer result = scene().transfer;
     prt::Transfer plan = scene().transfer;
-    result.counts = prt::part_counts(scene().receivers, plan, scene().rays,
-                                     {.face_resolution = 256, .bias = scene().bias}, part);
+    prt::Alone alone(part);
+    result.counts =
+        prt::part_counts(scene().receivers, plan, scene().rays,
+                         {.face_resolution = 256, .bias = scene().bias}, {.team = alone});
     return result;
 }
 
-/// Samples of a part.
-prt::BounceSamples samples(const prt::Part& part, const prt::BounceOptions& options) {
+/// Samples of a part. `index`: given where it knows nothing of others.
+prt::BounceSamples samples(const prt::Work& work, std::span<const std::uint32_t> index = {}) {
+    const prt::Part part = work.team.part();
     const std::vector<prt::ProbeRadiance> probes = probe_radiance(scene().transfer);
     std::vector<float> open_parts;
     for (const std::uint32_t place : prt::places_of(part, probes.size()))
         open_parts.push_back(probes[place][0]);
     return prt::sample_bounces(scene().mesh, scene().receivers, counts_of_part(part),
-                               {.open_parts = open_parts, .values = probes, .index = {}},
-                               scene().rays, options);
-}
-
-prt::BounceOptions options() {
-    return {.tolerance = 0.02f, .bias = scene().bias};
+                               {.open_parts = open_parts, .values = probes, .index = index},
+                               scene().rays, {.tolerance = 0.02f, .bias = scene().bias}, work);
 }
 
 TEST(SharedBounces, SamplesOfProcessesMakeTheMatrixOfOne) {
@@ -58,9 +58,7 @@ TEST(SharedBounces, SamplesOfProcessesMakeTheMatrixOfOne) {
     for (const std::uint32_t count : {1u, 2u, 3u, 8u}) {
         std::vector<prt::BounceSamples> parts(count);
         prt::ThreadTeam::run(count, [&](prt::Team& team, std::uint32_t index) {
-            prt::BounceOptions shared = options();
-            shared.reduction = &team;
-            parts[index] = samples(team.part(), shared);
+            parts[index] = samples({.team = team});
         });
         EXPECT_EQ(prt::join_bounces(scene().receivers, scene().transfer, std::move(parts)),
                   scene().matrix)
@@ -70,15 +68,14 @@ TEST(SharedBounces, SamplesOfProcessesMakeTheMatrixOfOne) {
 
 /// The tiles alone say how many rays a receiver needs; who shares them is found when all are there.
 TEST(SharedBounces, PartsThatKnowNothingOfEachOtherMakeOneMatrix) {
+    std::vector<std::uint32_t> all(scene().transfer.num_receivers());
+    std::iota(all.begin(), all.end(), 0u);
     std::optional<prt::BounceMatrix> one;
     for (const std::uint32_t count : {1u, 3u, 7u}) {
         std::vector<prt::BounceSamples> parts;
         for (std::uint32_t index = 0; index < count; ++index) {
             prt::Alone alone({index, count});
-            prt::BounceOptions planned = options();
-            planned.reduction = &alone;
-            planned.is_planned = true;
-            parts.push_back(samples({index, count}, planned));
+            parts.push_back(samples({.team = alone}, all));
         }
         const prt::BounceMatrix matrix =
             prt::join_bounces(scene().receivers, scene().transfer, std::move(parts));
@@ -93,10 +90,7 @@ TEST(SharedBounces, PartsThatKnowNothingOfEachOtherMakeOneMatrix) {
 }
 
 TEST(SharedBounces, PartsOfDifferentKindsAreRefused) {
-    prt::Alone alone;
-    prt::BounceOptions whole = options();
-    whole.reduction = &alone;
-    const prt::BounceSamples all = samples({}, whole);
+    const prt::BounceSamples all = samples({});
     const auto refuses = [&](std::vector<prt::BounceSamples> parts) {
         EXPECT_THROW((void)prt::join_bounces(scene().receivers, scene().transfer, std::move(parts)),
                      std::invalid_argument);
@@ -116,10 +110,7 @@ TEST(SharedBounces, ProcessesGoOnFromTheCheckpointOfAll) {
         std::vector<prt::BounceSamples> parts(Count);
         prt::ThreadTeam::run(Count, [&](prt::Team& team, std::uint32_t index) {
             prt::TeamCheckpoint checkpoint(team, index == 0 ? &store : nullptr);
-            prt::BounceOptions shared = options();
-            shared.reduction = &team;
-            shared.checkpoint = &checkpoint;
-            parts[index] = samples(team.part(), shared);
+            parts[index] = samples({.team = team, .checkpoint = &checkpoint});
         });
         EXPECT_EQ(prt::join_bounces(scene().receivers, scene().transfer, std::move(parts)),
                   scene().matrix);

@@ -15,6 +15,7 @@
 #include "relight/pictures/array_file.h"
 #include "relight/relighter.h"
 #include "relight/sharp/shadow_rays.h"
+#include "tests/lights/importance_lights.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"
 

@@ -1,0 +1,146 @@
+#include "prt/steps.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "files/packed_parts.h"
+#include "files/parallel.h"
+
+namespace relumine::prt {
+
+TooLarge::TooLarge(const std::string& what, std::uint64_t number, std::uint64_t size)
+    : std::runtime_error(fmt::format("too many {}: {} take {} bytes", what, number, size)),
+      count(number), bytes(size) {}
+
+std::uint64_t largest_of_all(Team& team, std::uint64_t value) {
+    std::array<std::int64_t, 1> values = {static_cast<std::int64_t>(value)};
+    team.max(values);
+    return static_cast<std::uint64_t>(values[0]);
+}
+
+void Progress::start_stage(double begin, double end) {
+    begin_ = std::max(begin, last_);
+    const double scale = begin < 1.0 ? (1.0 - begin_) / (1.0 - begin) : 0.0;
+    end_ = begin_ + scale * (end - begin);
+}
+
+void Progress::report(double part) {
+    poll();
+    if (!on_progress_)
+        return;
+    const std::scoped_lock lock(mutex_);
+    const double fraction = begin_ + (end_ - begin_) * part;
+    if (fraction > last_)
+        on_progress_(last_ = fraction);
+}
+
+void Progress::poll() const {
+    if (stop_.stop_requested())
+        throw Cancelled();
+}
+
+Steps::Steps(const Work& work, std::string part, std::function<Content()> content,
+             std::function<void()> on_saved)
+    : work_(work), part_(std::move(part)), content_(std::move(content)),
+      on_saved_(std::move(on_saved)) {}
+
+Checkpoint::Saved Steps::load(bool with_state) const {
+    return work_.checkpoint != nullptr ? work_.checkpoint->load(part_, with_state)
+                                       : Checkpoint::Saved();
+}
+
+void Steps::save() {
+    const auto start = std::chrono::steady_clock::now();
+    const Content content = content_();
+    if (work_.checkpoint->save(part_, content.record, content.state)) {
+        on_saved_();
+        has_news_ = false;
+    }
+    seconds_saving_ +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void Steps::look_up() {
+    has_news_ = true;
+    if (largest_of_all(work_.team, work_.stop.stop_requested() ? 1 : 0) != 0)
+        throw Cancelled();
+    if (work_.checkpoint != nullptr && work_.checkpoint->is_due())
+        save();
+}
+
+void Steps::run(const std::function<void()>& work) {
+    const auto save_if_worthwhile = [this] {
+        if (work_.checkpoint != nullptr && has_news_ && work_.checkpoint->is_worthwhile())
+            save();
+    };
+    try {
+        work();
+    } catch (const TooLarge&) {
+        if (work_.checkpoint != nullptr)
+            save();
+        throw;
+    } catch (const Cancelled&) {
+        save_if_worthwhile();
+        throw;
+    }
+    if (work_.more_follows)
+        save_if_worthwhile();
+}
+
+void do_blocks(const Work& work, const BlockWork& blocks, Progress& progress) {
+    std::size_t num_done = 0, num_saved = 0;
+    // Blocks of this process below a number of blocks of all.
+    const auto own = [&](std::size_t block) {
+        return std::min(block, blocks.num_blocks);
+    };
+    const auto content = [&] {
+        return Steps::Content{.record = files::pack(1, [&](std::size_t) {
+                                  files::ByteWriter writer;
+                                  for (std::size_t block = own(num_saved); block < own(num_done);
+                                       ++block)
+                                      blocks.write(block, writer);
+                                  return writer.take();
+                              })};
+    };
+    Steps steps(work, blocks.part, content, [&] { num_saved = num_done; });
+    std::size_t num_loaded = 0;
+    for (const std::vector<std::byte>& record : steps.load(false).records)
+        files::unpack(record, [&](std::span<const std::byte> bytes) {
+            for (files::ByteReader reader(bytes); !reader.at_end(); ++num_loaded) {
+                if (num_loaded == blocks.num_blocks)
+                    throw std::runtime_error("checkpoint: expected fewer blocks");
+                blocks.read(num_loaded, reader);
+            }
+        });
+    num_done = num_saved = static_cast<std::size_t>(largest_of_all(work.team, num_loaded));
+    if (num_loaded != own(num_done))
+        throw std::runtime_error("checkpoint: expected as many blocks of all processes");
+    std::atomic<std::size_t> num_reported = num_loaded;
+    const auto check = [&] {
+        if (blocks.check)
+            blocks.check();
+    };
+    const auto blocks_per_step =
+        static_cast<std::size_t>(work.step_size.value_or(blocks.blocks_per_step));
+    steps.run([&] {
+        for (check(); num_done < blocks.most_blocks; check()) {
+            const std::size_t end = std::min(num_done + blocks_per_step, blocks.most_blocks);
+            files::parallel_for(own(num_done), own(end), [&](std::size_t block) {
+                blocks.work(block);
+                progress.report(static_cast<double>(++num_reported) /
+                                static_cast<double>(blocks.num_blocks));
+            });
+            num_done = end;
+            steps.look_up();
+        }
+    });
+}
+
+} // namespace relumine::prt

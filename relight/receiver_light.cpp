@@ -1,0 +1,180 @@
+// Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment Lights" [JN],
+// Section 5.
+#include "relight/receiver_light.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <stdexcept>
+#include <utility>
+
+#include "files/parallel.h"
+
+namespace relumine::relight {
+
+/// Returns the light of a cluster: all light of its cell minus the sharp lights in it.
+VectorIrradiance ClusterSums::without_sharp(std::size_t cluster) const {
+    VectorIrradiance rest = all[cluster];
+    const auto first =
+        std::lower_bound(sharp.begin(), sharp.end(), cluster,
+                         [](const SharpLight& light, std::size_t c) { return light.cluster < c; });
+    for (auto light = first; light != sharp.end() && light->cluster == cluster; ++light)
+        rest -= light->irradiance;
+    return rest;
+}
+
+ReceiverLight::ReceiverLight(const prt::Transfer& transfer, const ShadowRays& rays)
+    : transfer_(transfer), traced_(transfer, rays), normals_(block_normals(transfer.normals)),
+      words_(tile_words(transfer, normals_)), light_(transfer.counts.num_blocks()),
+      lights_(transfer.num_clusters()), radiance_(transfer.num_receivers()),
+      diffuse_(transfer.surfaces.size()) {
+    if ((!transfer.surfaces.empty() || transfer.glossy) &&
+        transfer.surfaces.size() != transfer.num_receivers())
+        throw std::invalid_argument(
+            "expected one surface per receiver, or none without a glossy part");
+    if (transfer.glossy && transfer.glossy->to_eye.size() != transfer.num_receivers())
+        throw std::invalid_argument(
+            "expected a direction to the eye per receiver, see prt::set_surfaces()");
+    if (transfer.glossy) {
+        pyramid_.emplace(transfer.glossy->deepest_level());
+        glossy_.resize(transfer.counts.num_blocks());
+    }
+}
+
+void ReceiverLight::sum(const ClusterSums& sums) {
+    files::parallel_for(files::IndexRange<std::size_t>(0, lights_.spread.size()),
+                        [&](const auto& words) {
+                            const std::size_t end = std::min(words.end() * 64, sums.all.size());
+                            for (std::size_t cluster = words.begin() * 64; cluster < end; ++cluster)
+                                lights_.set(cluster, sums.without_sharp(cluster));
+                        });
+    lights_.sum_prefix();
+    const BlockScene scene = block_scene();
+    files::parallel_for(std::size_t{0}, transfer_.counts.num_tiles(), [&](std::size_t tile) {
+        light_tile(scene, tile, lights_, light_);
+        for (std::size_t block = transfer_.counts.tile_begin(tile);
+             block < transfer_.counts.tile_begin(tile + 1); ++block) {
+            light_glossy(block);
+            light_[block].set_summed(write_radiance(block));
+        }
+    });
+}
+
+std::size_t ReceiverLight::update(const ClusterSums& sums, std::span<const std::uint32_t> changed,
+                                  bool sharp_changed) {
+    changes_.clear();
+    for (const std::uint32_t cluster : changed)
+        changes_.set(lights_, cluster, sums.without_sharp(cluster));
+    const BlockScene scene = block_scene();
+    const std::size_t num_tiles = transfer_.counts.num_tiles();
+    // Calls visit(block, bit) for blocks of a tile, each one's number in the scene and its bit.
+    const auto for_blocks = [&](std::size_t tile, std::uint64_t blocks, const auto& visit) {
+        for (; blocks != 0; blocks &= blocks - 1) {
+            const auto bit = static_cast<std::size_t>(std::countr_zero(blocks));
+            visit(transfer_.counts.tile_begin(tile) + bit, std::uint64_t{1} << bit);
+        }
+    };
+    dimmed_.assign(num_tiles, 0);
+    std::atomic<std::size_t> num_blocks = 0;
+    files::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
+        std::uint64_t touched = update_tile(scene, tile, changes_, light_);
+        if (sharp_changed || transfer_.glossy)
+            touched = transfer_.counts.tile_blocks(tile);
+        for_blocks(tile, touched, [&](std::size_t block, std::uint64_t bit) {
+            light_glossy(block);
+            if (light_[block].has_dimmed_to(write_radiance(block)))
+                dimmed_[tile] |= bit;
+        });
+        num_blocks += static_cast<std::size_t>(std::popcount(touched));
+    });
+    const auto any = [](std::uint64_t blocks) {
+        return blocks != 0;
+    };
+    if (std::any_of(dimmed_.begin(), dimmed_.end(), any)) {
+        lights_.sum_prefix();
+        files::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
+            if (dimmed_[tile] == 0)
+                return;
+            light_tile(scene, tile, lights_, light_, dimmed_[tile]);
+            for_blocks(tile, dimmed_[tile], [&](std::size_t block, std::uint64_t) {
+                light_[block].set_summed(write_radiance(block));
+            });
+        });
+    }
+    return std::min(num_blocks * prt::BlockSize, radiance_.size());
+}
+
+glm::dvec3 ReceiverLight::from_cluster(std::size_t place, std::size_t cluster) const {
+    const prt::VisibleCounts& counts = transfer_.counts;
+    const double count = counts.count(place, cluster);
+    if (count == 0.0)
+        return glm::dvec3(0.0);
+    const std::size_t block = place / prt::BlockSize, w = cluster / 64;
+    const std::size_t tile = block / prt::VisibleCounts::TileBlocks;
+    const std::uint64_t whole = counts.visible[counts.word(block, w)] &
+                                ~words_.across_of(words_.words[tile * counts.words_per_block() + w],
+                                                  block % prt::VisibleCounts::TileBlocks);
+    const glm::vec3& normal = transfer_.normals[place];
+    return count * ((whole >> (cluster % 64) & 1u) != 0 ? lights_.of_vectors(cluster, normal)
+                                                        : lights_.of_directional(cluster, normal));
+}
+
+void ReceiverLight::light_glossy(std::size_t block) {
+    if (!pyramid_)
+        return;
+    for (std::size_t lobe = 0; lobe < prt::NumGlossyLobes; ++lobe)
+        light_block(transfer_.glossy->lobes[lobe], block, pyramid_->light(), glossy_[block][lobe]);
+}
+
+/// Returns the radiance that a receiver with a surface sends on. `diffuse` is its radiance for
+/// albedo 1.
+glm::vec3 ReceiverLight::through_surface(std::size_t place, const glm::vec3& diffuse,
+                                         bool with_sharp_lights) const {
+    prt::Lobes<glm::vec3> lobes =
+        with_sharp_lights ? traced_.highlights(place) : prt::Lobes<glm::vec3>();
+    lobes.diffuse = diffuse;
+    if (!glossy_.empty()) {
+        const GlossyLight& light = glossy_[place / prt::BlockSize];
+        const auto through = [&](prt::GlossyLobe lobe) {
+            return light[static_cast<std::size_t>(lobe)].of(place % prt::BlockSize);
+        };
+        lobes.specular += through(prt::GlossyLobe::Specular);
+        lobes.specular_grazing += through(prt::GlossyLobe::SpecularGrazing);
+        lobes.diffuse_grazing += through(prt::GlossyLobe::DiffuseGrazing);
+    }
+    return prt::reflect(transfer_.surfaces[place], lobes);
+}
+
+double ReceiverLight::write_radiance(std::size_t block) {
+    return write_radiance(block, true, radiance_, diffuse_);
+}
+
+double ReceiverLight::write_radiance(std::size_t block, bool with_sharp_lights,
+                                     std::span<glm::vec3> radiance,
+                                     std::span<glm::vec3> diffuse) const {
+    BlockRadiance sums;
+    const double brightness = block_radiance(
+        normals_[block], light_[block], with_sharp_lights ? traced_.diffuse(block) : nullptr, sums);
+    const std::size_t begin = block * prt::BlockSize;
+    const auto receivers = std::span(transfer_.order)
+                               .subspan(begin, std::min(prt::BlockSize, radiance.size() - begin));
+    if (!diffuse.empty())
+        for (std::size_t i = 0; i < receivers.size(); ++i)
+            diffuse[receivers[i]] = sums.of(i);
+    if (transfer_.surfaces.empty())
+        for (std::size_t i = 0; i < receivers.size(); ++i)
+            radiance[receivers[i]] = sums.of(i);
+    else
+        for (std::size_t i = 0; i < receivers.size(); ++i)
+            radiance[receivers[i]] = through_surface(begin + i, sums.of(i), with_sharp_lights);
+    return brightness;
+}
+
+std::vector<glm::vec3> ReceiverLight::soft_radiance() const {
+    std::vector<glm::vec3> radiance(radiance_.size());
+    files::parallel_for(std::size_t{0}, light_.size(),
+                        [&](std::size_t block) { write_radiance(block, false, radiance, {}); });
+    return radiance;
+}
+
+} // namespace relumine::relight

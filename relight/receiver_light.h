@@ -1,0 +1,97 @@
+// The light of receivers under the light of clusters, traced lights and the cells of highlights.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "prt/transfer/transfer.h"
+#include "relight/kernels/block_kernels.h"
+#include "relight/kernels/block_normals.h"
+#include "relight/kernels/cluster_lights.h"
+#include "relight/kernels/glossy_kernels.h"
+#include "relight/kernels/kernel_lights.h"
+#include "relight/kernels/tile_words.h"
+#include "relight/light_pyramid.h"
+#include "relight/sharp/shadow_rays.h"
+#include "relight/sharp/sharp_lights.h"
+#include "relight/sharp/traced_light.h"
+
+namespace relumine::relight {
+
+/// The light of an environment or a list, by clusters.
+struct ClusterSums {
+    /// [num_clusters] all light of each cluster.
+    std::span<const VectorIrradiance> all;
+    /// The part of it that is traced, clusters ascending.
+    std::span<const SharpLight> sharp;
+
+    [[nodiscard]] VectorIrradiance without_sharp(std::size_t cluster) const;
+};
+
+/// Keeps the radiance of a Relighter's receivers, and what it is summed from.
+class ReceiverLight {
+public:
+    /// Arguments and errors as Relighter.
+    ReceiverLight(const prt::Transfer& transfer, const ShadowRays& rays);
+
+    /// As TracedLight::trace(). sum() or update() put the result into the radiance.
+    std::size_t trace(std::span<const SharpLight> lights) { return traced_.trace(lights); }
+    /// The light of highlights; null where there are none.
+    [[nodiscard]] LightPyramid* pyramid() { return pyramid_ ? &*pyramid_ : nullptr; }
+
+    /// Sums all clusters [JN, Eq. 8].
+    void sum(const ClusterSums& sums);
+    /// Updates the radiance for the clusters in `changed`, which ascend and whose sums are new.
+    /// Returns the number of receivers that see any of them.
+    std::size_t update(const ClusterSums& sums, std::span<const std::uint32_t> changed,
+                       bool sharp_changed);
+
+    // As those of Relighter.
+    [[nodiscard]] std::span<const glm::vec3> radiance() const { return radiance_; }
+    [[nodiscard]] std::span<const glm::vec3> diffuse_radiance() const {
+        return diffuse_.empty() ? radiance_ : diffuse_;
+    }
+    [[nodiscard]] std::vector<glm::vec3> soft_radiance() const;
+    [[nodiscard]] glm::dvec3 from_cluster(std::size_t place, std::size_t cluster) const;
+
+private:
+    [[nodiscard]] BlockScene block_scene() const {
+        return {.counts = transfer_.counts, .words = words_, .normals = normals_};
+    }
+    void light_glossy(std::size_t block);
+    /// Returns the block's brightness.
+    double write_radiance(std::size_t block);
+    /// Of radiance for albedo 1 in `diffuse`, too, unless that is empty.
+    double write_radiance(std::size_t block, bool with_sharp_lights, std::span<glm::vec3> radiance,
+                          std::span<glm::vec3> diffuse) const;
+    [[nodiscard]] glm::vec3 through_surface(std::size_t place, const glm::vec3& diffuse,
+                                            bool with_sharp_lights) const;
+
+    const prt::Transfer& transfer_;
+    TracedLight traced_;
+    /// Set where the transfer has a glossy part.
+    std::optional<LightPyramid> pyramid_;
+    /// [num_blocks]; empty without a glossy part.
+    std::vector<GlossyLight> glossy_;
+    /// [num_blocks]
+    std::vector<BlockNormals> normals_;
+    /// From tile_words().
+    TileWords words_;
+    /// [num_blocks]
+    std::vector<BlockLight> light_;
+    ClusterLights lights_;
+    std::vector<glm::vec3> radiance_;
+    /// For albedo 1; empty without surfaces.
+    std::vector<glm::vec3> diffuse_;
+    /// Scratch: how clusters change.
+    LightChanges changes_;
+    /// Scratch, [num_tiles]: blocks that are summed anew after a change.
+    std::vector<std::uint64_t> dimmed_;
+};
+
+} // namespace relumine::relight

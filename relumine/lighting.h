@@ -1,0 +1,32 @@
+// The light of a scene's receivers, as pictures need it.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "cubemap/cube_map.h"
+#include "relight/pictures/backdrop.h"
+#include "relight/sharp/sharp_lights.h"
+
+namespace relumine {
+
+/// What a picture is drawn of.
+struct Lighting {
+    /// [num_receivers], as LitScene::radiance().
+    std::span<const glm::vec3> radiance;
+    /// Must outlive this object. Null: there is nothing behind the mesh but black.
+    const cubemap::CubeMap* environment = nullptr;
+    /// The environment from its own pixels. Empty: from the cube map.
+    relight::Backdrop sharp = {};
+    /// The lights that are traced one by one, and [num_receivers] radiance without them. Empty:
+    /// radiance has all light.
+    std::vector<relight::SharpLight> lights = {};
+    std::vector<glm::vec3> soft = {};
+    /// What `radiance` points to, where it was gathered from several processes.
+    std::shared_ptr<const std::vector<glm::vec3>> gathered = {};
+};
+
+} // namespace relumine

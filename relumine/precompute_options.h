@@ -1,0 +1,227 @@
+// What a precompute is asked for, what stands around it, what it found, and how it may be refused.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <stop_token>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "prt/bounces/bounce_precompute.h"
+#include "prt/glossy/glossy_precompute.h"
+#include "prt/glossy/surface_sampling.h"
+#include "prt/memory_estimate.h"
+#include "prt/precompute_options.h"
+#include "prt/receivers/camera.h"
+#include "prt/receivers/texel_receivers.h"
+#include "prt/work.h"
+
+namespace relumine {
+
+/// Thrown when a stop token asked for the end.
+using prt::Cancelled;
+
+/// The mesh's vertices are lit: pictures from any view, meshes with vertex colours.
+struct Vertices {};
+
+/// The pixels of one view are lit: a picture as sharp as its pixels, from that view alone.
+struct Pixels {
+    std::uint32_t width = 1024;
+    std::uint32_t height = 768;
+    /// n x n samples a pixel
+    std::uint32_t samples_per_axis = 1;
+};
+
+/// The texels of a lightmap on the mesh's uvs are lit.
+struct Texels {
+    std::uint32_t width = 1024;
+    std::uint32_t height = 1024;
+};
+
+/// A view of the scene.
+struct View {
+    /// Empty: a camera that shows the whole mesh.
+    std::optional<prt::Camera> camera = {};
+};
+
+/// How rays are traced. Both engines give the same results, bit by bit.
+enum class Engine {
+    /// Whole beams of rays at once: the fast one
+    Beams,
+    /// Each ray with Embree: less memory, no beam tree
+    Embree,
+};
+
+/// Parts of a precompute that take time.
+enum class Stage {
+    /// Visibility and clusters
+    Clusters,
+    /// The view-dependent part; only where there are highlights and an eye
+    Highlights,
+    /// Light from surface to surface; only where it is asked for
+    Bounces,
+};
+
+/// What on_warning() is told of.
+enum class Warning {
+    /// Charts of the lightmap overlap
+    ChartsOverlap,
+    /// Uvs lie outside of 0 to 1
+    UvsOutside,
+    /// Highlights are left out, as there is no view
+    HighlightsWithoutView,
+    /// Surfaces are smoother than the finest cells can hold
+    TooSmooth,
+    /// A checkpoint cannot be written; the work goes on
+    Checkpoint,
+};
+
+struct PrecomputeOptions {
+    /// RMS error of the transfer allowed within a cluster, 1/sr; smaller is finer
+    float tolerance = prt::PrecomputeOptions{}.tolerance;
+    /// Replaces `tolerance` if given: the paper's form, which allows larger meshes a larger error.
+    std::optional<float> epsilon = {};
+    /// Every cell is split at least this often
+    std::uint32_t min_level = prt::PrecomputeOptions{}.min_level;
+    /// R: cells stop at single texels of a 6 x R x R environment
+    std::uint32_t face_resolution = prt::PrecomputeOptions{}.face_resolution;
+    /// Lift of the rays' origins off the surface, in the mesh's unit; automatic unless given
+    std::optional<float> bias = {};
+    Engine engine = Engine::Beams;
+
+    /// What is lit
+    std::variant<Vertices, Pixels, Texels> receivers = Vertices{};
+    /// The camera of pixels, and the eye that highlights are for. Without one, pixels take the
+    /// automatic camera; vertices and texels are seen from anywhere and have no highlights.
+    std::optional<View> view = {};
+    /// Replaces the mesh's materials; everywhere() makes one surface for the whole mesh. Empty: the
+    /// materials stay.
+    prt::SurfaceOverride surface = {};
+    /// The added floor's own surface; `surface` is not asked for it. A white Lambert one takes its
+    /// albedo from the options of each picture.
+    prt::Surface floor_surface = {};
+    /// Relative error of a highlight under a small light anywhere
+    float glossy_tolerance = prt::GlossyOptions{}.tolerance;
+
+    /// Light bounces from surface to surface; prt::BounceOptions::tolerance. Empty: direct light
+    /// alone. Surfaces send what their vertices have, so pixels and texels get the mesh's vertices
+    /// as receivers behind them (prt::Receivers::num_added).
+    std::optional<float> bounce_tolerance = {};
+    /// Backs of surfaces send the bounced light that their fronts do; otherwise they are black.
+    bool two_sided_bounces = false;
+
+    /// Bytes. Work that is estimated to take more is refused before it begins. Work that turns out
+    /// to take more is stopped. Empty: no limit.
+    std::optional<std::uint64_t> max_memory = {};
+
+    /// The .prt file to write as soon as the scene is ready; empty: none
+    std::filesystem::path output = {};
+    /// Time between two checkpoints in the folder OUTPUT.checkpoint; 0: none. Without an output
+    /// there are none. The folder goes away when the scene is written.
+    double checkpoint_seconds = 20.0;
+    /// Continues from a checkpoint of the same work if there is one.
+    bool resume = false;
+};
+
+/// What stands around a precompute. Nothing of it changes the scene.
+struct PrecomputeWork {
+    /// Processes that share the work: precompute() runs in the first one, assist() in the others.
+    /// There must be no limit of memory.
+    prt::Team& team = prt::alone();
+    /// Polled a few times a second. A stop request makes precompute() throw Cancelled.
+    std::stop_token stop = {};
+    /// Estimated fraction of a stage in [0, 1], never falling; one call at a time
+    std::function<void(Stage, double)> on_progress = {};
+    /// Gets a sentence that the user should read at once. One call at a time.
+    std::function<void(Warning, const std::string&)> on_warning = {};
+    /// Gets a sentence that helps to understand a run. One call at a time.
+    std::function<void(const std::string&)> on_note = {};
+};
+
+/// What one of the processes that share a precompute did.
+struct ProcessFigures {
+    /// Rays of the clusters
+    std::uint64_t num_rays = 0;
+    /// From the moment when it got the work to its result
+    double seconds = 0.0;
+    /// Of these, waiting for the others and sending
+    double seconds_waiting = 0.0;
+    /// Processor time of all threads
+    double seconds_of_processors = 0.0;
+    /// Most bytes of planes of visibility at once
+    std::uint64_t plane_bytes = 0;
+    /// The process's counts, as bytes of finished clusters
+    std::uint64_t column_bytes = 0;
+};
+
+/// What a precompute found and took.
+struct PrecomputeReport {
+    std::size_t num_vertices = 0;
+    std::size_t num_triangles = 0;
+    std::size_t num_receivers = 0;
+    /// As used, in the mesh's unit
+    float bias = 0.0f;
+    prt::PrecomputeStatistics clusters = {};
+    /// Only of texels: how the uvs fit the atlas
+    std::optional<prt::AtlasReport> atlas = {};
+    /// Only with a memory limit
+    std::optional<prt::MemoryEstimate> memory = {};
+
+    /// Only with highlights
+    std::optional<prt::GlossyStatistics> highlights = {};
+    /// Entries, from a trial; only with highlights and a memory limit
+    std::optional<std::uint64_t> highlights_estimate = {};
+    /// Receivers whose highlights were left out, as no view was given
+    std::size_t num_highlights_left_out = 0;
+    /// Receivers smoother than narrowest_roughness: their highlights come out wider
+    std::size_t num_too_smooth = 0;
+
+    /// Only with bounces
+    std::optional<prt::BounceStatistics> bounces = {};
+
+    /// By index
+    std::vector<ProcessFigures> processes = {};
+
+    /// Of the scene file, 0 without one
+    std::uint64_t file_bytes = 0;
+    /// The checkpoint folder if an exception left one, for `resume`; or empty.
+    std::filesystem::path checkpoint = {};
+};
+
+/// Thrown when a tolerance or a depth asks for so many clusters that the work would take hours. The
+/// message says what it would take.
+struct TooMuchWork : std::invalid_argument {
+    /// What asks for them.
+    enum class Cause { Tolerance, MinLevel };
+    TooMuchWork(Cause why, const std::string& message)
+        : std::invalid_argument(message), cause(why) {}
+    Cause cause;
+};
+
+/// Thrown when the work would take more memory than max_memory, or takes more. The message is
+/// "SOURCE: expected X, got Y".
+struct MemoryLimitExceeded : std::runtime_error {
+    /// What is too large. This tells what would help.
+    enum class Part {
+        /// The mesh and its receivers. Only a smaller mesh or fewer receivers help.
+        Scene,
+        /// The clusters, as estimated beforehand. A larger tolerance helps.
+        Clusters,
+        /// The clusters, as found while clustering. A checkpoint is left if there were checkpoints.
+        ClustersFound,
+        /// The highlights. A larger glossy_tolerance helps.
+        Highlights,
+        /// The bounces. A larger bounce_tolerance helps.
+        Bounces,
+    };
+    MemoryLimitExceeded(Part what, const std::string& message)
+        : std::runtime_error(message), part(what) {}
+    Part part;
+};
+
+} // namespace relumine

@@ -1,0 +1,193 @@
+#include "relumine/questions.h"
+
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "cubemap/layers/layer_composite.h"
+#include "relight/contribution.h"
+#include "relight/reference/path_tracer.h"
+
+namespace relumine {
+
+namespace {
+
+void require_environment(const LitScene& lit) {
+    if (!has_environment(lit))
+        throw std::logic_error("expected a scene lit by an environment");
+}
+
+/// Returns compute(indices): a value for each index. Where processes share the work, each computes
+/// a slice of neighbours, and all get all values. Null: this process does it all.
+template<typename Value, typename Compute>
+std::vector<Value> in_slices(prt::Team* team, std::span<const std::uint32_t> indices,
+                             const Compute& compute) {
+    if (team == nullptr)
+        return compute(indices);
+    const auto begin_of = [&](std::size_t process) {
+        return indices.size() * process / team->part().count;
+    };
+    const std::size_t begin = begin_of(team->part().index);
+    const std::vector<Value> own =
+        compute(indices.subspan(begin, begin_of(team->part().index + 1) - begin));
+    std::vector<std::byte> bytes;
+    for (const std::vector<std::byte>& slice : team->all_gather(prt::to_send(std::span(own))))
+        bytes.insert(bytes.end(), slice.begin(), slice.end());
+    std::vector<Value> values(indices.size());
+    if (bytes.size() != values.size() * sizeof(Value))
+        throw std::runtime_error("expected a value of each index");
+    if (!bytes.empty())
+        std::memcpy(values.data(), bytes.data(), bytes.size());
+    return values;
+}
+
+/// What the environment was made from, while nothing has changed it; null otherwise.
+const cubemap::EnvironmentFile* file_of(const LitScene& lit) {
+    const LightBase* base = lit.state().base.get();
+    return base != nullptr && !base->map() && base->file().image ? &base->file() : nullptr;
+}
+
+/// Integrates the light of receivers exactly; `options` has the processes that share the work.
+std::vector<glm::dvec3> exact_radiance(const LitScene& lit, const prt::Receivers& receivers,
+                                       std::span<const std::uint32_t> indices,
+                                       const VerifyOptions& options,
+                                       const relight::ExactOptions& exact_options) {
+    return in_slices<glm::dvec3>(options.team, indices, [&](std::span<const std::uint32_t> slice) {
+        const cubemap::EnvironmentFile* file = file_of(lit);
+        return file != nullptr
+                   ? relight::exact_radiance(receivers, slice, lit.rays().blockers(), *file,
+                                             exact_options)
+                   : relight::exact_radiance(receivers, slice, lit.rays().blockers(),
+                                             lit.relighter().environment(), exact_options);
+    });
+}
+
+/// Adds the bounces of a path tracer to exact direct light. Returns the standard error of the
+/// sum, relative to it, L2 over the receivers.
+double add_traced(const LitScene& lit, std::span<const std::uint32_t> receivers,
+                  const VerifyOptions& options, std::vector<glm::dvec3>& exact) {
+    const Scene& scene = lit.scene();
+    const std::vector<glm::vec3> albedo_of_vertices =
+        prt::vertex_values(scene.mesh, scene.receivers, lit.bounces().surfaces().albedo);
+    const auto traced = in_slices<relight::TracedBounces>(
+        options.team, receivers, [&](std::span<const std::uint32_t> slice) {
+            return relight::trace_bounces(scene.mesh, albedo_of_vertices, scene.receivers, slice,
+                                          lit.rays().of_mesh(), lit.relighter().environment(),
+                                          {.num_paths = options.num_paths,
+                                           .seed = options.seed,
+                                           .two_sided = scene.settings.two_sided_bounces,
+                                           .bias = scene.settings.bias,
+                                           .stop = options.stop,
+                                           .on_progress = options.on_progress});
+        });
+    double errors = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+        const glm::dvec3 albedo = scene.receivers.surfaces.empty()
+                                      ? glm::dvec3(1.0)
+                                      : glm::dvec3(scene.receivers.surfaces[receivers[i]].albedo);
+        const glm::dvec3 error = albedo * traced[i].standard_error;
+        exact[i] += albedo * traced[i].radiance;
+        errors += glm::dot(error, error);
+        all += glm::dot(exact[i], exact[i]);
+    }
+    return all > 0.0 ? std::sqrt(errors / all) : 0.0;
+}
+
+/// What the vertices interpolate against exact integration, at random points between them.
+std::optional<Verification::Surface> verify_surface(const LitScene& lit,
+                                                    const VerifyOptions& options) {
+    const Scene& scene = lit.scene();
+    Verification::Surface result{
+        .points = prt::random_points(scene.mesh, options.num_surface_points, options.seed),
+        .error = {}};
+    if (result.points.empty())
+        return std::nullopt;
+    const std::span<const glm::vec3> at_vertices = lit.relighter().diffuse_radiance();
+    prt::Receivers receivers;
+    std::vector<std::uint32_t> indices;
+    std::vector<glm::vec3> interpolated;
+    for (const prt::MeshPoint& point : result.points) {
+        indices.push_back(static_cast<std::uint32_t>(indices.size()));
+        receivers.positions.push_back(prt::smooth_position(scene.mesh, point));
+        receivers.normals.push_back(prt::shading_normal(scene.mesh, point));
+        interpolated.push_back(prt::value_at(scene.mesh, at_vertices, point));
+    }
+    const relight::ExactOptions exact_options{.bias = scene.settings.bias, .stop = options.stop};
+    const auto exact = exact_radiance(lit, receivers, indices, options, exact_options);
+    result.error = relight::compare(indices, exact, interpolated);
+    return result;
+}
+
+double sum_of(std::span<const glm::vec3> radiance) {
+    double sum = 0.0;
+    for (const glm::vec3& value : radiance)
+        sum += static_cast<double>(value.r) + static_cast<double>(value.g) +
+               static_cast<double>(value.b);
+    return sum;
+}
+
+} // namespace
+
+Verification verify(const LitScene& lit, const VerifyOptions& options) {
+    require_environment(lit);
+    const Scene& scene = lit.scene();
+    Verification result;
+    result.receivers = relight::random_receivers(scene.transfer, options.num_samples, options.seed,
+                                                 scene.receivers.num_own());
+    const relight::ExactOptions exact_options{
+        .bias = scene.settings.bias, .stop = options.stop, .on_progress = options.on_progress};
+    result.of_file = file_of(lit) != nullptr;
+    std::vector<glm::dvec3> exact =
+        exact_radiance(lit, scene.receivers, result.receivers, options, exact_options);
+    if (!lit.bounces().bounced().empty())
+        result.noise = add_traced(lit, result.receivers, options, exact);
+    result.error = relight::compare(result.receivers, exact, lit.radiance());
+    if (options.num_surface_points != 0 && prt::on_vertices(scene.layout))
+        result.surface = verify_surface(lit, options);
+    return result;
+}
+
+cubemap::CubeMap contribution_map(const LitScene& lit, std::span<const std::uint32_t> receivers) {
+    require_environment(lit);
+    return relight::contribution_map(lit.relighter(), receivers,
+                                     lit.bounces().bounced().empty() ? nullptr
+                                                                     : &lit.bounces().surfaces());
+}
+
+Share lit_by(const LitScene& lit, const cubemap::Region& region) {
+    require_environment(lit);
+    cubemap::validate(region);
+    const relight::Relighter& relighter = lit.relighter();
+    Share result{.radiance = {}, .environment = relighter.environment()};
+    const std::vector<float> weights = cubemap::coverage_map(region, result.environment.resolution);
+    for (std::size_t texel = 0; texel < weights.size(); ++texel)
+        result.environment.texels[texel] *= weights[texel];
+
+    relight::Relighter part(relighter.transfer(), relighter.shadow_rays());
+    part.set_environment(result.environment);
+    result.radiance.assign(part.radiance().begin(), part.radiance().end());
+    if (const auto lights = relight::picture_lights(part); !lights.empty()) {
+        result.lights.assign(lights.begin(), lights.end());
+        result.soft = part.soft_radiance();
+    }
+    if (!lit.bounces().bounced().empty()) {
+        SceneBounces bounces;
+        bounces.set(lit.scene(), lit.bounces().surfaces());
+        bounces.find(part.diffuse_radiance());
+        for (std::vector<glm::vec3>* values : {&result.radiance, &result.soft})
+            for (std::size_t i = 0; i < values->size(); ++i)
+                (*values)[i] += bounces.bounced()[i];
+    }
+    const double all = sum_of(lit.radiance());
+    result.share = all > 0.0 ? sum_of(result.radiance) / all : 0.0;
+    return result;
+}
+
+Lighting Share::lighting() const {
+    return {.radiance = radiance, .environment = &environment, .lights = lights, .soft = soft};
+}
+
+} // namespace relumine

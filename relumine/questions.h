@@ -1,0 +1,101 @@
+// Questions about the light of a scene: how right it is, and where it comes from.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "cubemap/cube_map.h"
+#include "cubemap/layers/light_layer.h"
+#include "prt/receivers/mesh_point.h"
+#include "prt/team.h"
+#include "relight/reference/exact.h"
+#include "relight/sharp/sharp_lights.h"
+#include "relumine/lighting.h"
+#include "relumine/lit_scene.h"
+
+namespace relumine {
+
+struct VerifyOptions {
+    /// Receivers chosen at random, 0 for all
+    std::size_t num_samples = 2000;
+    std::uint64_t seed = 1;
+    /// Points of the surface chosen at random, evenly by area, where the light is compared that a
+    /// renderer would interpolate from the vertices; 0 for none. Only for vertices.
+    std::size_t num_surface_points = 500;
+    /// Paths of each receiver that bounces are compared with; only after bounce()
+    std::uint32_t num_paths = 256;
+    /// Processes that share the work, each with the whole scene in the same light: each integrates
+    /// some of the points, and all get the same result. Null: this one does it all.
+    prt::Team* team = nullptr;
+    /// Polled a few times a second; Cancelled is thrown
+    std::stop_token stop = {};
+    /// Fraction in [0, 1]; one call at a time
+    std::function<void(double)> on_progress = {};
+};
+
+/// How far the radiance is from exact integration.
+struct Verification {
+    /// The receivers that were looked at
+    std::vector<std::uint32_t> receivers;
+    relight::ErrorReport error;
+    /// Between the vertices: the diffuse light of albedo 1 that they interpolate, without bounces,
+    /// against exact integration at points of the surface. Its worst_receiver is one of `points`.
+    /// Only for vertices.
+    struct Surface {
+        std::vector<prt::MeshPoint> points;
+        relight::ErrorReport error;
+    };
+    std::optional<Surface> surface = {};
+    /// Standard error of the paths that bounces were compared with, relative to the radiance, L2
+    /// over the receivers; it is a part of error.relative_l2. 0 without bounces.
+    double noise = 0.0;
+    /// Whether the pixels of the environment's file were integrated, not the texels of the map
+    bool of_file = false;
+};
+
+/// What a part of the environment gives to a scene.
+struct Share {
+    /// [num_receivers], albedo 1
+    std::vector<glm::vec3> radiance;
+    /// The environment times the region's coverage: black outside of the region.
+    cubemap::CubeMap environment;
+    /// The part of the scene's reflected light that comes from the region, 0 to 1.
+    double share = 0.0;
+    /// As those of Lighting.
+    std::vector<relight::SharpLight> lights = {};
+    std::vector<glm::vec3> soft = {};
+
+    /// Returns what a picture is drawn of. It points into this object.
+    [[nodiscard]] Lighting lighting() const;
+};
+
+/// Compares the radiance with exact integration, every shadow ray traced. Under an Environment from
+/// a file, its own pixels are integrated, each as a small area: so the error includes that of
+/// resampling. Under a map, or when edits changed the environment, the map's texels are. After
+/// bounce() its light is compared with a path tracer, which shares nothing but the rays.
+///
+/// Throws:  std::logic_error unless an environment lights the scene; Cancelled.
+/// Cost:    half a million rays for each receiver, or 6 R^2: seconds for 2000 of them.
+[[nodiscard]] Verification verify(const LitScene& lit, const VerifyOptions& options = {});
+
+/// What lights these receivers: the environment, each texel weighted by how much of it they
+/// reflect, in radiance per sr.
+///
+/// Throws:  std::invalid_argument for no receivers or an index out of range; std::logic_error
+///          unless an environment lights the scene.
+[[nodiscard]] cubemap::CubeMap contribution_map(const LitScene& lit,
+                                                std::span<const std::uint32_t> receivers);
+
+/// Returns what a region gives to the scene, as if the rest of the environment were black.
+///
+/// Throws:  std::invalid_argument for a region that is not valid; std::logic_error as above.
+[[nodiscard]] Share lit_by(const LitScene& lit, const cubemap::Region& region);
+
+} // namespace relumine
