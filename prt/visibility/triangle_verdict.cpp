@@ -51,9 +51,9 @@ Verdict judge(const TriangleTree::Leaf& leaf, std::size_t lane, const glm::vec3&
     return (side > 0.0 ? num_positive : num_negative) == 3 ? Verdict::Hit : Verdict::Doubt;
 }
 
-/// As judge(). Where a ray hits, each corner is at most l from its line. So rows V1 to V3 are 16 l
-/// d
-/// + 4 l d + 4 l^2 together.
+/// As judge(), without roots. Where a ray hits, each corner is at most l from its line, and l <= 2
+/// d. So rows V1 to V3 are 28 l d together, V4 and V5 are 30 l d^2. Squares of sums are at most
+/// twice the sums of squares.
 bool hits_for_certain(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& w) {
     const auto& [a, b, c] = corners;
     const glm::dvec3 ab = b - a, bc = c - b, ca = a - c;
@@ -64,9 +64,11 @@ bool hits_for_certain(const std::array<glm::dvec3, 3>& corners, const glm::dvec3
                   sign * glm::dot(glm::cross(c, a), w)});
     const double ll = std::max({glm::dot(ab, ab), glm::dot(bc, bc), glm::dot(ca, ca)});
     const double dd = std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(c, c)});
-    const double l = std::sqrt(ll), d = std::sqrt(dd);
-    return least > Roundings * (20.0 * l * d + 4.0 * ll) + Tiny &&
-           sign * side > Roundings * (6.0 * l * dd + 12.0 * ll * d) + Tiny;
+    const auto exceeds = [](double value, double coefficient, double square) {
+        const double lost = coefficient * Roundings;
+        return value * value > 2.0 * (lost * lost * square + Tiny * Tiny);
+    };
+    return least > 0.0 && exceeds(least, 28.0, ll * dd) && exceeds(side, 30.0, ll * dd * dd);
 }
 
 } // namespace relumine::prt
