@@ -19,8 +19,8 @@ namespace {
 /// A material as text. Values are read as they are met.
 struct Parser {
     const std::string& text;
-    const prt::LobeFacts* model = nullptr;
     prt::Highlight highlight = prt::Highlight::None;
+    const prt::LobeFacts* model = nullptr;
     std::size_t start_of_model = 0;
     std::map<std::string_view, std::vector<float>> values = {};
 
@@ -28,13 +28,14 @@ struct Parser {
     /// name follows.
     void find_model() {
         for (std::size_t start = text.size() + 1; start-- > 0;) {
-            const std::string tail = text.substr(std::min(start, text.size()));
+            if (start > 0 && text[start - 1] != '=')
+                continue;
+            const std::string name = split(text.substr(std::min(start, text.size())), ':').front();
             for (std::size_t i = 0; i < prt::NumHighlights; ++i) {
                 highlight = static_cast<prt::Highlight>(i);
                 model = &prt::facts_of(highlight);
                 start_of_model = start;
-                if ((start == 0 || text[start - 1] == '=') &&
-                    split(tail, ':').front() == model->name)
+                if (model->name == name)
                     return;
             }
         }
@@ -43,16 +44,13 @@ struct Parser {
             forms.push_back(fmt::format(
                 "[GROUP=]{}:...",
                 prt::facts_of(static_cast<prt::Highlight>(i % prt::NumHighlights)).name));
-        const std::string last = std::exchange(forms.back(), "");
-        forms.pop_back();
-        refuse_text(files::joined(forms, ", ") + " or " + last, text);
+        refuse_text(one_of_text(forms), text);
     }
 
     /// key=number,number,number,key=number: words without = belong to the key before them.
     void read_values(const std::string& list) {
-        const std::array<std::string_view, 3> all = {model->albedo, model->specular, model->shape};
-        const auto keys = std::span(all).first(
-            static_cast<std::size_t>(std::find(all.begin(), all.end(), "") - all.begin()));
+        std::vector<std::string_view> keys = {model->albedo, model->specular, model->shape};
+        std::erase(keys, "");
         auto current = values.end();
         for (const std::string& word : split(list, ',')) {
             const std::size_t equals = word.find('=');
@@ -193,10 +191,10 @@ std::uint64_t MemoryText::read(const std::string& text) {
             ? std::string_view::npos
             : Units.find(static_cast<char>(std::toupper(static_cast<unsigned char>(unit.front()))));
     const bool is_unit =
-        unit.size() == 1 || (power != 0 && (unit.substr(1) == "B" || unit.substr(1) == "iB"));
-    const double bytes = number && power != std::string_view::npos && is_unit
-                             ? *number * std::exp2(10.0 * static_cast<double>(power))
-                             : 0.0;
+        power != std::string_view::npos &&
+        (unit.size() == 1 || (power != 0 && (unit.substr(1) == "B" || unit.substr(1) == "iB")));
+    const double bytes =
+        number && is_unit ? *number * std::exp2(10.0 * static_cast<double>(power)) : 0.0;
     if (!(bytes >= 1.0 && bytes < 1e18))
         refuse_text("a size like 500M or 4G", text);
     return static_cast<std::uint64_t>(bytes);
@@ -207,16 +205,15 @@ SurfaceMaterial MaterialText::read(const std::string& text) {
 }
 
 std::string MaterialText::show(const SurfaceMaterial& material) {
-    const prt::LobeFacts* model = &prt::facts_of(material.highlight);
+    const prt::LobeFacts& model = prt::facts_of(material.highlight);
     std::vector<std::string> values;
     if (material.albedo)
-        values.push_back(fmt::format("{}={}", model->albedo, ColorText::show(*material.albedo)));
+        values.push_back(fmt::format("{}={}", model.albedo, ColorText::show(*material.albedo)));
     if (material.specular)
-        values.push_back(
-            fmt::format("{}={}", model->specular, ColorText::show(*material.specular)));
-    if (!model->shape.empty())
-        values.push_back(fmt::format("{}={}", model->shape, material.roughness_or_exponent));
-    return fmt::format("{}{}{}{}{}", material.group, material.group.empty() ? "" : "=", model->name,
+        values.push_back(fmt::format("{}={}", model.specular, ColorText::show(*material.specular)));
+    if (!model.shape.empty())
+        values.push_back(fmt::format("{}={}", model.shape, material.roughness_or_exponent));
+    return fmt::format("{}{}{}{}{}", material.group, material.group.empty() ? "" : "=", model.name,
                        values.empty() ? "" : ":", files::joined(values, ","));
 }
 

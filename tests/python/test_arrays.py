@@ -95,7 +95,7 @@ def test_wrong_arrays_are_named():
     wrong("triangles: expected at least one row", triangles=np.zeros((0, 3), dtype=int))
     wrong("normals: expected shape (4, 3), got (3, 3)", normals=np.ones((3, 3)))
     wrong("uvs: expected shape (4, 2), got (4, 3)", uvs=np.ones((4, 3)))
-    wrong("up: expected x, y, z, got 'q'", up="q")
+    wrong("up: expected x, y or z, got 'q'", up="q")
 
 
 def test_triangles_alone_are_refused():

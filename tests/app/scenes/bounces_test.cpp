@@ -140,7 +140,7 @@ TEST_F(Bounces, WrongUseIsOneLine) {
     misuse({"relight", "direct.prt", "white.hdr", "-o", "x.png", "--bounces", "many"},
            "--bounces: expected a number of bounces or 'all', got 'many'");
     misuse({"precompute", "colonnade.ply", "-o", "x.prt", "--bounces", "0"},
-           "--bounces: expected a standard error of 0.0001 to 1, got '0'");
+           "--bounces: expected 0.0001 to 1, got '0'");
     misuse({"precompute", "--bounces", "colonnade.ply", "-o", "x.prt"}, "the mesh goes first");
     misuse({"verify", "direct.prt", "white.hdr", "--albedo", "nan"}, "--albedo");
     misuse({"relight", "direct.prt", "white.hdr", "-o", "x.png", "--albedo", "nan"}, "--albedo");
