@@ -41,7 +41,7 @@ bool TeamCheckpoint::first_says(bool answer) {
 
 Checkpoint::Saved TeamCheckpoint::load(const std::string& part, bool with_state) {
     std::vector<Bytes> to_each;
-    if (store_ != nullptr) {
+    if (team_.is_first()) { // it may have no store
         std::vector<files::ByteWriter> writers(team_.part().count);
         const auto deal = [&writers](std::span<const std::byte> bytes) {
             files::ByteReader reader(bytes);
@@ -50,7 +50,7 @@ Checkpoint::Saved TeamCheckpoint::load(const std::string& part, bool with_state)
             if (!reader.at_end())
                 throw std::runtime_error("checkpoint: expected one of as many processes");
         };
-        const Saved saved = store_->load(part, with_state);
+        const Saved saved = store_ != nullptr ? store_->load(part, with_state) : Saved();
         deal(saved.state);
         for (const Bytes& record : saved.records)
             deal(record);
