@@ -29,7 +29,6 @@ namespace relumine::prt {
 struct BlinnPhongLobe {
     static constexpr Highlight Kind = Highlight::BlinnPhong;
     static constexpr LobeFacts Facts{.name = "blinn",
-                                     .about = "A normalised Blinn-Phong surface.",
                                      .albedo = "kd",
                                      .specular = "ks",
                                      .shape = "exponent",

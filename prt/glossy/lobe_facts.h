@@ -9,10 +9,8 @@ namespace relumine::prt {
 
 /// How a lobe is called, and what its numbers may be.
 struct LobeFacts {
-    /// In --material. Python's class has the same name with a capital letter.
+    /// In --material.
     std::string_view name;
-    /// Of Python's class.
-    std::string_view about;
     /// Names of Surface::albedo, specular and roughness_or_exponent; empty: not used.
     std::string_view albedo;
     std::string_view specular = "";

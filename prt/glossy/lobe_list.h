@@ -15,8 +15,7 @@ namespace relumine::prt {
 /// No highlight.
 struct MattLobe {
     static constexpr Highlight Kind = Highlight::None;
-    static constexpr LobeFacts Facts{
-        .name = "lambert", .about = "A matt surface.", .albedo = "albedo"};
+    static constexpr LobeFacts Facts{.name = "lambert", .albedo = "albedo"};
     static float narrowness(float) { return 0.0f; }
     static float specular(float, const LobeGeometry&) { return 0.0f; }
     static std::array<float, 2> parameters(float) { return {}; }

@@ -11,7 +11,6 @@
 #include "mesh/floor.h"
 #include "mesh/normals.h"
 #include "options.h"
-#include "prt/glossy/lobe_list.h"
 #include "run.h"
 
 namespace relumine::python {
@@ -277,19 +276,6 @@ void bind_scenes(py::module_& module) {
             return nearest_receiver(scene, {p[0], p[1], p[2]});
         });
 
-    // By number: name, what it is, the names of its colours and its shape, the largest shape, and
-    // whether the specular colour must be given.
-    module.def("lobes", [] {
-        py::list result;
-        for (std::size_t i = 0; i < prt::NumHighlights; ++i) {
-            const prt::LobeFacts& lobe = prt::facts_of(static_cast<prt::Highlight>(i));
-            result.append(py::make_tuple(std::string(lobe.name), std::string(lobe.about),
-                                         std::string(lobe.albedo), std::string(lobe.specular),
-                                         std::string(lobe.shape), lobe.largest_shape,
-                                         lobe.needs_specular));
-        }
-        return result;
-    });
     module.def("make_mesh", &make_mesh);
     module.def("load_mesh", &loaded_mesh);
     module.def("refined", &refined_mesh);
