@@ -37,23 +37,21 @@ from ._relighter import (
     Update,
     Verification,
 )
-from ._scene import LOBES as _LOBES
-from ._scene import Scene, join, plan, precompute, precompute_part
+from ._scene import Blinn, Ggx, Lambert, Scene, join, plan, precompute, precompute_part
 
 __version__: str = _core.__version__
 __all__ = [
-    "FACES", "Bounces", "Emit", "Environment", "FileError", "Frame", "Gain",
-    "Image", "Layer", "LightList", "Mesh", "Picture",
+    "FACES", "Blinn", "Bounces", "Emit", "Environment", "FileError", "Frame", "Gain", "Ggx",
+    "Image", "Lambert", "Layer", "LightList", "Mesh", "Picture",
     "RelightTimes", "Relighter", "RelumineWarning", "Scene", "Share", "Update",
     "Verification", "join", "load_layers", "plan", "precompute", "precompute_part", "save_layers",
-    "set_threads", *_SHAPES, *_LOBES,
+    "set_threads", *_SHAPES,
 ]  # fmt: skip
-# Regions of layers (Disc, Rectangle, ...) and materials (Ggx, Blinn, Lambert).
-globals().update({**_SHAPES, **_LOBES})
+# Regions of layers: Disc, Rectangle, ...
+globals().update(_SHAPES)
 if _TYPE_CHECKING:
 
     def __getattr__(name: str) -> _Any: ...
-
 
 
 def set_threads(count: int) -> None:

@@ -3,18 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections import namedtuple
-from typing import (
-    TYPE_CHECKING,
-    Any,
-    Callable,
-    Dict,
-    List,
-    Mapping,
-    Optional,
-    Sequence,
-    Union,
-)
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,42 +18,41 @@ Color = Union[float, Sequence[float]]
 Progress = Callable[[float], object]
 
 
-def _lobes() -> List[Any]:
-    """The classes of materials by their numbers: Lambert, Ggx, Blinn. None: the mesh's colours."""
-    result: List[Any] = []
-    for name, about, albedo, specular, shape, _, needs_specular in _core.lobes():
-        required = [shape] * bool(shape) + [specular] * needs_specular
-        optional = [albedo] + [specular] * bool(specular and not needs_specular)
-        lobe: Any = namedtuple(  # type: ignore[misc]
-            name.capitalize(), required + optional, defaults=[None] * len(optional)
-        )
-        lobe.__doc__ = about
-        result.append(lobe)
-    return result
+class Ggx(NamedTuple):
+    """A metallic-roughness surface, as in glTF. Colours that are None stay the mesh's."""
+
+    roughness: float
+    albedo: Optional[Color] = None
+    f0: Optional[Color] = None
 
 
-LOBES = {lobe.__name__: lobe for lobe in _lobes()}
-globals().update(LOBES)
-if TYPE_CHECKING:
+class Blinn(NamedTuple):
+    """A normalised Blinn-Phong surface."""
 
-    def __getattr__(name: str) -> Any: ...
+    exponent: float
+    ks: Color
+    kd: Optional[Color] = None
 
 
-Material = Any
+class Lambert(NamedTuple):
+    """A matt surface."""
+
+    albedo: Optional[Color] = None
+
+
+Material = Union[Ggx, Blinn, Lambert]
 
 
 def _materials(material: Union[Material, Mapping[str, Material], None]) -> List[str]:
     """Materials as --material has them."""
     if material is None:
         return []
-    lobes = list(LOBES.values())
-    if isinstance(material, tuple(lobes)):
+    if isinstance(material, (Ggx, Blinn, Lambert)):
         material = {"": material}
     result: List[str] = []
     for group, surface in material.items():
-        if not isinstance(surface, tuple(lobes)):
-            *names, last = [*list(LOBES)[1:], list(LOBES)[0]]
-            raise ValueError(f"material: expected {', '.join(names)} or {last}, got {surface!r}")
+        if not isinstance(surface, (Ggx, Blinn, Lambert)):
+            raise ValueError(f"material: expected Ggx, Blinn or Lambert, got {surface!r}")
         values = ",".join(
             f"{name}={','.join(repr(float(each)) for each in np.atleast_1d(value))}"
             for name, value in surface._asdict().items()
