@@ -342,7 +342,7 @@ class Relighter:
         with errors():
             pixels, suitable = self._core.draw(_output(options))
         exposure = options.get("exposure")
-        chosen = suitable if exposure in (None, "auto") else float(exposure)
+        chosen = suitable if exposure is None or exposure == "auto" else float(exposure)
         return Picture(
             view(pixels), exposure=chosen, tone_map=options.get("tone_map") or "neutral"
         )

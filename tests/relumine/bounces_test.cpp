@@ -35,11 +35,15 @@ std::vector<glm::vec3> bounced(LitScene& lit) {
 }
 
 /// How far pixels or texels are from the light that the vertices of the same mesh interpolate.
+/// Those on the line where floor and wall meet are left out: the last bit of their position says on
+/// which side of the other square they are.
 double difference_to_vertices(const LitScene& lit, std::span<const glm::vec3> light,
                               std::span<const glm::vec3> of_vertices) {
     const prt::Receivers& receivers = lit.scene().receivers;
     double difference = 0.0, all = 0.0;
     for (std::size_t i = 0; i < receivers.num_own(); ++i) {
+        if (receivers.positions[i].y < 1e-6f && receivers.positions[i].z < 1e-6f)
+            continue;
         const glm::vec3 expected =
             prt::value_at(lit.scene().mesh, of_vertices, receivers.points[i]);
         const glm::dvec3 d = glm::dvec3(light[i]) - glm::dvec3(expected);
@@ -59,7 +63,7 @@ TEST(Bounces, OfPixelsAndTexelsComeFromTheVertices) {
         const prt::Receivers& own = lit.scene().receivers;
         EXPECT_EQ(own.num_added, mesh.num_vertices());
         const std::vector<glm::vec3> light = bounced(lit);
-        EXPECT_LT(difference_to_vertices(lit, light, of_vertices), 0.04);
+        EXPECT_LT(difference_to_vertices(lit, light, of_vertices), 0.03);
         // The wall's red is on the floor.
         EXPECT_GT(light[own.num_own() + 3].r, 1.5f * light[own.num_own() + 3].g);
         const Verification check = verify(lit, {.num_samples = 200, .num_paths = 600});
