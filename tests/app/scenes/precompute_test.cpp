@@ -134,7 +134,8 @@ TEST_F(Precompute, WorkThatWouldTakeHoursIsRefused) {
 
 TEST_F(Precompute, OptionsThatAreOftenMistaken) {
     misuse({"precompute", "--floor", "mesh.obj", "-o", "new.prt"},
-           "--floor: expected a whole number of 0 to 4294967295, got 'mesh.obj'; the mesh goes first: relumine "
+           "--floor: expected a whole number of 0 to 4294967295, got 'mesh.obj'; the mesh goes "
+           "first: relumine "
            "precompute mesh.obj --floor");
     misuse(command({"--max-memory", "50"}),
            "--max-memory: expected a unit after the number, as in 50M or 50G, got '50'");

@@ -347,9 +347,9 @@ TEST(BounceScenes, RowsAreTheSameOnAnyNumberOfThreads) {
 TEST(BounceScenes, ASmallerToleranceTakesMoreRaysAndErrsLess) {
     const BouncingScene coarse(bowl(3), 0.1f);
     prt::BounceStatistics fine;
-    static_cast<void>(prt::precompute_bounces(coarse.mesh, coarse.receivers, coarse.transfer,
-                                              probe_radiance(coarse.transfer), coarse.rays,
-                                              {.tolerance = 0.004f, .bias = coarse.bias}, {}, &fine));
+    static_cast<void>(prt::precompute_bounces(
+        coarse.mesh, coarse.receivers, coarse.transfer, probe_radiance(coarse.transfer),
+        coarse.rays, {.tolerance = 0.004f, .bias = coarse.bias}, {}, &fine));
     EXPECT_LT(2 * coarse.statistics.num_rays, fine.num_rays);
     EXPECT_LT(2.0 * fine.rms_error, coarse.statistics.rms_error);
     EXPECT_LE(fine.rms_error, 0.0045);
