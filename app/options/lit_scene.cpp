@@ -59,7 +59,7 @@ auto naming_scene(const std::string& path, const Make& make) {
 LitScene lit_scene(const SceneOptions& options, prt::Team* team) {
     const LightOptions light{
         .clusters_only = options.clusters_only, .team = team, .path = options.path};
-    if (team != nullptr) {
+    if (team != nullptr && team->has_others()) {
         prt::ScenePart part = prt::load_scene_part(options.path, team->part());
         recolour(part.scene, options);
         return LitScene(std::move(part), light);
