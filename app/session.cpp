@@ -114,8 +114,12 @@ Patience::~Patience() {
     --shared().num_patient;
 }
 
+prt::Team& Session::processes() const {
+    return team != nullptr ? *team : prt::alone();
+}
+
 bool Session::is_first() const {
-    return team == nullptr || team->is_first();
+    return processes().is_first();
 }
 
 void Session::add_common_options(Command& command) {

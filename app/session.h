@@ -31,6 +31,8 @@ public:
 
     Session();
 
+    /// The team, or this process alone.
+    [[nodiscard]] prt::Team& processes() const;
     /// Whether this process writes the outputs.
     [[nodiscard]] bool is_first() const;
 

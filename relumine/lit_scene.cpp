@@ -66,8 +66,8 @@ LitScene::LitScene(prt::ScenePart part, const LightOptions& options)
 LitScene::LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::ScenePart> part,
                    const LightOptions& options)
     : scene_(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(scene)),
-      rays_(std::make_unique<const SceneRays>(*scene_)), alone_(std::make_unique<prt::Alone>()),
-      team_(part && options.team != nullptr ? options.team : alone_.get()), path_(options.path) {
+      rays_(std::make_unique<const SceneRays>(*scene_)),
+      team_(part && options.team != nullptr ? options.team : &prt::alone()), path_(options.path) {
     const bool has_clusters = relumine::has_clusters(*scene_);
     if (has_clusters && scene_->receivers.size() != scene_->transfer.num_receivers())
         throw std::invalid_argument(fmt::format("expected the transfer of {} receivers, got {}",
@@ -304,7 +304,7 @@ BounceReport LitScene::bounce(const Bouncing& how) {
     if (surfaces)
         bounces_.set(*scene_, std::move(*surfaces),
                      part_ && part_->bounces
-                         ? relight::SharedRows{.reduction = team_,
+                         ? relight::SharedRows{.team = team_,
                                                .first = part_->bounces->first,
                                                .num_emitters = part_->bounces->num_emitters}
                          : relight::SharedRows{});

@@ -174,8 +174,6 @@ private:
     std::unique_ptr<const SceneRays> rays_;
     /// Without its scene. Null: this process has all receivers.
     std::unique_ptr<const prt::ScenePart> part_;
-    /// Where no team was given.
-    std::unique_ptr<prt::Team> alone_;
     /// Never null.
     prt::Team* team_;
     std::filesystem::path path_;

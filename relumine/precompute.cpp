@@ -148,7 +148,7 @@ private:
         report_.num_triangles = scene_.mesh.num_triangles();
         report_.bias = scene_.settings.bias;
         stages().check_scene();
-        prt::RayScene rays = ray_scene(blocking_mesh(scene_), prefix_);
+        prt::RayScene rays = ray_scene(scene_.blocking_mesh(), prefix_);
         place_receivers(rays);
         require_few_clusters();
         report_.num_receivers = scene_.receivers.size();
@@ -441,7 +441,7 @@ void assist(const PrecomputeWork& work) {
     const Engine engine = shared_engine(work.team, {});
     prt::TeamCheckpoint checkpoint(work.team, nullptr);
     PrecomputeReport report;
-    compute(plan, ray_scene(blocking_mesh(plan.scene), ""),
+    compute(plan, ray_scene(plan.scene.blocking_mesh(), ""),
             {.engine = engine, .checkpoint = &checkpoint}, work, report);
 }
 
@@ -460,7 +460,7 @@ void precompute_part(const PartOptions& options, const PrecomputeWork& work,
     const PrecomputeWork of_part{.team = part, .stop = work.stop, .on_progress = work.on_progress};
     PrecomputeReport report;
     const prt::PartLight light = Stages(plan, of_part, report, {.engine = options.engine})
-                                     .run(ray_scene(blocking_mesh(plan.scene), ""));
+                                     .run(ray_scene(plan.scene.blocking_mesh(), ""));
     prt::save_part(options.output, plan, options.part, light);
     if (statistics != nullptr)
         *statistics = report.clusters;

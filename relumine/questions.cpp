@@ -21,20 +21,18 @@ void require_environment(const LitScene& lit) {
 }
 
 /// Returns compute(indices): a value for each index. Where processes share the work, each computes
-/// a slice of neighbours, and all get all values. Null: this process does it all.
+/// a slice of neighbours, and all get all values.
 template<typename Value, typename Compute>
-std::vector<Value> in_slices(prt::Team* team, std::span<const std::uint32_t> indices,
+std::vector<Value> in_slices(prt::Team& team, std::span<const std::uint32_t> indices,
                              const Compute& compute) {
-    if (team == nullptr)
-        return compute(indices);
     const auto begin_of = [&](std::size_t process) {
-        return indices.size() * process / team->part().count;
+        return indices.size() * process / team.part().count;
     };
-    const std::size_t begin = begin_of(team->part().index);
+    const std::size_t begin = begin_of(team.part().index);
     const std::vector<Value> own =
-        compute(indices.subspan(begin, begin_of(team->part().index + 1) - begin));
+        compute(indices.subspan(begin, begin_of(team.part().index + 1) - begin));
     std::vector<std::byte> bytes;
-    for (const std::vector<std::byte>& slice : team->all_gather(prt::to_send(std::span(own))))
+    for (const std::vector<std::byte>& slice : team.all_gather(prt::to_send(std::span(own))))
         bytes.insert(bytes.end(), slice.begin(), slice.end());
     std::vector<Value> values(indices.size());
     if (bytes.size() != values.size() * sizeof(Value))

@@ -32,8 +32,8 @@ struct VerifyOptions {
     /// Paths of each receiver that bounces are compared with; only after bounce()
     std::uint32_t num_paths = 256;
     /// Processes that share the work, each with the whole scene in the same light: each integrates
-    /// some of the points, and all get the same result. Null: this one does it all.
-    prt::Team* team = nullptr;
+    /// some of the points, and all get the same result.
+    prt::Team& team = prt::alone();
     /// Polled a few times a second; Cancelled is thrown
     std::stop_token stop = {};
     /// Fraction in [0, 1]; one call at a time

@@ -17,7 +17,7 @@ public:
         : of_mesh_(scene.mesh),
           others_(scene.blockers ? std::make_unique<const prt::RayScene>(*scene.blockers)
                                  : nullptr),
-          moving_(scene.blockers ? *scene.blockers : scene.mesh, blockers()) {}
+          moving_(scene.blocking_mesh(), blockers()) {}
     SceneRays(const SceneRays&) = delete;
     SceneRays& operator=(const SceneRays&) = delete;
 

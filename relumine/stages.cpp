@@ -124,7 +124,7 @@ template<typename Find>
 void Stages::find_clusters(const prt::RayScene& rays, const Find& find) {
     std::optional<prt::BeamScene> beams;
     if (options_.engine == Engine::Beams)
-        beams.emplace(blocking_mesh(scene_), rays);
+        beams.emplace(scene_.blocking_mesh(), rays);
     const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
     const bool more_follows = scene_.settings.glossy_tolerance || plan_.bounces;
     try {

@@ -17,11 +17,6 @@ namespace relumine {
 /// Returns what answers ray queries about a mesh. `prefix` begins messages.
 [[nodiscard]] prt::RayScene ray_scene(const mesh::TriangleMesh& mesh, const std::string& prefix);
 
-/// Returns what blocks light in a scene.
-[[nodiscard]] inline const mesh::TriangleMesh& blocking_mesh(const prt::Scene& scene) {
-    return scene.blockers ? *scene.blockers : scene.mesh;
-}
-
 /// Clusters, highlights and bounces of the receivers that this process or part has.
 class Stages {
 public:

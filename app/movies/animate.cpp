@@ -307,13 +307,11 @@ private:
 
     /// What the first process says.
     [[nodiscard]] std::vector<bool> agreed(std::vector<bool> own) const {
-        if (session_.team == nullptr)
-            return own;
         std::vector<std::byte> bytes(own.size());
         std::transform(own.begin(), own.end(), bytes.begin(),
                        [](bool flag) { return static_cast<std::byte>(flag ? 1 : 0); });
         std::vector<bool> result;
-        for (const std::byte byte : session_.team->broadcast(std::move(bytes)))
+        for (const std::byte byte : session_.processes().broadcast(std::move(bytes)))
             result.push_back(byte != std::byte{0});
         return result;
     }

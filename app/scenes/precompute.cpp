@@ -51,8 +51,7 @@ PrecomputeOptions precompute_options(const PrecomputeArguments& options,
 
 /// What the session says of the work.
 PrecomputeWork precompute_work(Session& session) {
-    PrecomputeWork work{.team = session.team != nullptr ? *session.team : prt::alone(),
-                        .stop = session.stop()};
+    PrecomputeWork work{.team = session.processes(), .stop = session.stop()};
     work.on_progress = [&session, clusters = session.progress("precompute"),
                         highlights = session.progress("highlights"),
                         bounces = session.progress("bounces"),

@@ -58,7 +58,7 @@ void run(const VerifyArguments& options, Session& session) {
                                             .seed = options.seed,
                                             .num_surface_points = options.num_surface_points,
                                             .num_paths = options.num_paths,
-                                            .team = session.team,
+                                            .team = session.processes(),
                                             .stop = session.stop(),
                                             .on_progress = session.progress("exact integration")});
     session.end_progress();

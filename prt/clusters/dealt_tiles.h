@@ -35,17 +35,17 @@ struct OwnPlace {
 /// Shape:   `values` is [num_receivers] by place, the same number in all processes.
 /// Throws:  as Team::sum().
 template<typename Value>
-void share_by_place(Team& reduction, std::span<Value> values) {
+void share_by_place(Team& team, std::span<Value> values) {
     static_assert(std::is_trivially_copyable_v<Value>);
-    if (!reduction.has_others())
+    if (!team.has_others())
         return;
     std::vector<Value> own;
-    for (const std::uint32_t place : places_of(reduction.part(), values.size()))
+    for (const std::uint32_t place : places_of(team.part(), values.size()))
         own.push_back(values[place]);
-    const auto of_all = reduction.all_gather(to_send(std::span(own)));
+    const auto of_all = team.all_gather(to_send(std::span(own)));
     for (std::uint32_t index = 0; index < of_all.size(); ++index) {
         const std::vector<std::uint32_t> places =
-            places_of({index, reduction.part().count}, values.size());
+            places_of({index, team.part().count}, values.size());
         if (of_all[index].size() != places.size() * sizeof(Value))
             throw std::runtime_error("expected the values of all receivers from all processes");
         for (std::size_t i = 0; i < places.size(); ++i)

@@ -44,7 +44,7 @@ std::vector<float> numbers_of(const std::vector<Surface>& surfaces) {
 
 Fingerprint fingerprint(const Scene& scene, std::optional<float> bounce_tolerance) {
     const SceneSettings& settings = scene.settings;
-    const mesh::TriangleMesh& blockers = scene.blockers ? *scene.blockers : scene.mesh;
+    const mesh::TriangleMesh& blockers = scene.blocking_mesh();
     const Receivers& receivers = scene.receivers;
     const auto text = [](auto number) {
         return fmt::format("{}", number);

@@ -57,6 +57,10 @@ struct Scene {
     /// Light from surface to surface. It comes from vertices, so pixels and texels have the mesh's
     /// vertices behind them: Receivers::num_added.
     std::optional<BounceMatrix> bounces = {};
+
+    [[nodiscard]] const mesh::TriangleMesh& blocking_mesh() const {
+        return blockers ? *blockers : mesh;
+    }
 };
 
 /// Writes the scene, whole or not at all. Returns the file's size in bytes. Positions and normals

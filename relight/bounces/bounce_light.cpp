@@ -155,7 +155,7 @@ private:
     using ColorSums = std::array<double, 3>;
 
     [[nodiscard]] bool has_emitters() const {
-        if (shared_.reduction == nullptr)
+        if (shared_.team == nullptr)
             return !matrix_.emitters.places.empty();
         return std::any_of(shared_.num_emitters.begin(), shared_.num_emitters.end(),
                            [](std::uint32_t number) { return number != 0; });
@@ -166,7 +166,7 @@ private:
         if (matrix.num_rows() != size)
             throw std::invalid_argument(
                 fmt::format("expected bounces of {} receivers, got {}", size, matrix.num_rows()));
-        return shared.reduction != nullptr ? shared.first : prt::first_emitter(matrix);
+        return shared.team != nullptr ? shared.first : prt::first_emitter(matrix);
     }
 
     void forget_steps() {
@@ -246,15 +246,14 @@ private:
 
     /// Whether this process has the run of rows that begins there.
     [[nodiscard]] bool is_own(std::size_t begin) const {
-        return shared_.reduction == nullptr ||
-               prt::has_row(shared_.reduction->part(), begin, first_);
+        return shared_.team == nullptr || prt::has_row(shared_.team->part(), begin, first_);
     }
 
     /// Gives all processes what each has gathered for its rows.
     void share_gathered(std::size_t first, std::size_t last) {
-        if (shared_.reduction == nullptr)
+        if (shared_.team == nullptr)
             return;
-        const prt::Part part = shared_.reduction->part();
+        const prt::Part part = shared_.team->part();
         const auto for_runs = [&](std::uint32_t process, const auto& visit) {
             for (std::size_t begin = first; begin < last; begin += RowsPerTask)
                 if (prt::has_row({process, part.count}, begin, first_))
@@ -265,7 +264,7 @@ private:
             own.insert(own.end(), run.begin(), run.end());
         });
         const auto bytes = std::as_bytes(std::span(own));
-        const auto of_all = shared_.reduction->all_gather({bytes.begin(), bytes.end()});
+        const auto of_all = shared_.team->all_gather({bytes.begin(), bytes.end()});
         for (std::uint32_t process = 0; process < of_all.size(); ++process) {
             std::size_t at = 0;
             for_runs(process, [&](std::span<PaddedRgb> run) {

@@ -27,7 +27,7 @@ struct BounceLimits {
 /// others are empty.
 struct SharedRows {
     /// Null: this process has all rows.
-    prt::Team* reduction = nullptr;
+    prt::Team* team = nullptr;
     /// prt::first_emitter() of all rows
     std::size_t first = 0;
     /// [num_rows] emitters of all rows

@@ -59,7 +59,7 @@ private:
 
 /// Whether this process has the group that begins with a row.
 bool has_group(const SharedRows& shared, std::size_t first_row) {
-    return shared.reduction == nullptr || prt::has_row(shared.reduction->part(), first_row, 0);
+    return shared.team == nullptr || prt::has_row(shared.team->part(), first_row, 0);
 }
 
 } // namespace
@@ -94,8 +94,8 @@ CoarseBounces::Rows CoarseBounces::rows_of_groups(std::size_t num_rows, std::siz
 
 /// Gives all processes the groups of each. Groups lie within runs of rows, so each is in one
 /// process.
-void CoarseBounces::share(Rows& rows, std::size_t group_size, prt::Team& reduction) {
-    const prt::Part part = reduction.part();
+void CoarseBounces::share(Rows& rows, std::size_t group_size, prt::Team& team) {
+    const prt::Part part = team.part();
     const auto has_group = [&](std::uint32_t process, std::size_t group) {
         return prt::has_row({process, part.count}, group * group_size, 0);
     };
@@ -105,7 +105,7 @@ void CoarseBounces::share(Rows& rows, std::size_t group_size, prt::Team& reducti
             writer.add<std::uint64_t>(rows[group].size());
             writer.add_all(std::span<const Entry>(rows[group]));
         }
-    const auto of_all = reduction.all_gather(writer.take());
+    const auto of_all = team.all_gather(writer.take());
     for (std::uint32_t process = 0; process < of_all.size(); ++process) {
         files::ByteReader reader(of_all[process]);
         for (std::size_t group = 0; group < rows.size(); ++group)
@@ -151,8 +151,8 @@ std::size_t CoarseBounces::size_of_groups(const prt::BounceMatrix& matrix, std::
             entries_and_emitters[0] += static_cast<std::int64_t>(sums.groups().size());
             sums.clear();
         }
-        if (shared.reduction != nullptr)
-            shared.reduction->sum(entries_and_emitters);
+        if (shared.team != nullptr)
+            shared.team->sum(entries_and_emitters);
         if (LeastSaving * entries_and_emitters[0] <= entries_and_emitters[1])
             break;
     }
@@ -163,8 +163,8 @@ CoarseBounces::CoarseBounces(const prt::BounceMatrix& matrix, std::size_t first,
                              const SharedRows& shared) {
     const std::size_t num_rows = matrix.num_rows() - first;
     const auto emitters_of = [&](std::size_t place) {
-        return static_cast<double>(shared.reduction != nullptr ? shared.num_emitters[place]
-                                                               : matrix.emitters[place].size());
+        return static_cast<double>(shared.team != nullptr ? shared.num_emitters[place]
+                                                          : matrix.emitters[place].size());
     };
     // Each receiver's own emitters stand for those of all that it is averaged with.
     const auto own_weight = [&](std::size_t place) {
@@ -186,8 +186,8 @@ CoarseBounces::CoarseBounces(const prt::BounceMatrix& matrix, std::size_t first,
             for (const std::uint32_t emitter : matrix.emitters[first + row])
                 sums.add((emitter - first) / group_size, weight);
     });
-    if (shared.reduction != nullptr)
-        share(rows, group_size, *shared.reduction);
+    if (shared.team != nullptr)
+        share(rows, group_size, *shared.team);
     levels_.push_back(level_of(rows, group_size));
     while (levels_.back().num_groups() > FewGroups) {
         const Level& fine = levels_.back();

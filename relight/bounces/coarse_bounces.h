@@ -63,7 +63,7 @@ private:
     template<typename HasGroup, typename AddRow>
     static Rows rows_of_groups(std::size_t num_rows, std::size_t group_size,
                                const HasGroup& has_group, const AddRow& add_row);
-    static void share(Rows& rows, std::size_t group_size, prt::Team& reduction);
+    static void share(Rows& rows, std::size_t group_size, prt::Team& team);
     static Level level_of(const Rows& rows, std::size_t group_size);
     std::span<const PaddedRgb> sum_of_bounces(std::size_t level, std::span<const PaddedRgb> sent);
     std::span<const PaddedRgb> sum_of_last_level(std::span<const PaddedRgb> sent);

@@ -93,7 +93,7 @@ private:
 
 void run(const Settings& settings, const bench::Inputs& inputs) {
     const Scene scene = inputs.bunny();
-    const prt::RayScene rays(scene.blockers ? *scene.blockers : scene.mesh);
+    const prt::RayScene rays(scene.blocking_mesh());
     for (const std::string& name : settings.environments) {
         const std::uint32_t resolution = settings.resolution == 0 ? 256 : settings.resolution;
         const Comparison comparison(settings, scene, rays,

@@ -249,18 +249,18 @@ TEST_F(SharedWork, ProcessesFindTheFramesOfOne) {
 TEST_F(SharedWork, ProcessesFindTheErrorOfOne) {
     make_scene();
     const auto scene = std::make_shared<const Scene>(load_scene(file("scene.prt")));
-    const auto verified = [&](prt::Team* team) {
+    const auto verified = [&](prt::Team& team) {
         LitScene lit(scene);
         lit.light(sun_and_sky(60.0f));
         lit.bounce({.albedo = bounce_albedo(*scene)});
         return verify(lit,
                       {.num_samples = 70, .num_surface_points = 30, .num_paths = 8, .team = team});
     };
-    const Verification whole = verified(nullptr);
+    const Verification whole = verified(prt::alone());
     ASSERT_TRUE(whole.surface);
     for (const std::uint32_t count : Counts)
         prt::ThreadTeam::run(count, [&](prt::Team& team, std::uint32_t) {
-            const Verification shared = verified(&team);
+            const Verification shared = verified(team);
             EXPECT_EQ(whole.receivers, shared.receivers);
             EXPECT_EQ(whole.error.relative_l2, shared.error.relative_l2);
             EXPECT_EQ(whole.error.worst_receiver, shared.error.worst_receiver);

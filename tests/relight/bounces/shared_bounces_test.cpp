@@ -167,7 +167,7 @@ TEST(SharedBounces, LightOfRowsInProcessesIsThatOfOne) {
         prt::ThreadTeam::run(count, [&](prt::Team& team, std::uint32_t) {
             const prt::BounceMatrix own = rows_of(matrix, team.part(), first);
             BounceLight shared(own, scene().transfer,
-                               {.reduction = &team, .first = first, .num_emitters = num_emitters});
+                               {.team = &team, .first = first, .num_emitters = num_emitters});
             EXPECT_EQ(results(shared), expected) << count << " processes";
         });
 }
