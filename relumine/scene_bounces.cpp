@@ -1,5 +1,6 @@
 #include "relumine/scene_bounces.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -27,20 +28,32 @@ void SceneBounces::set(const Scene& scene, relight::SurfaceBounces surfaces,
     } else if (surfaces.albedo != surfaces_.albedo) {
         light_->set_albedo(surfaces.albedo);
     }
+    const bool is_same = scene_ == &scene && surfaces_.matrix == surfaces.matrix &&
+                         surfaces_.albedo == surfaces.albedo && surfaces_.limits == surfaces.limits;
     scene_ = &scene;
     surfaces_ = std::move(surfaces);
+    if (!is_same)
+        found_of_.clear();
     forget();
 }
 
 BounceReport SceneBounces::find(std::span<const glm::vec3> direct) {
     is_settled_ = true;
-    return take(light_->solve(direct, surfaces_.limits));
+    if (!found_of_.empty() &&
+        std::equal(direct.begin(), direct.end(), found_of_.begin(), found_of_.end())) {
+        found_.seconds = 0.0;
+        return take(found_);
+    }
+    found_ = light_->solve(direct, surfaces_.limits);
+    found_of_.assign(direct.begin(), direct.end());
+    return take(found_);
 }
 
 BounceReport SceneBounces::step(std::span<const glm::vec3> direct) {
     if (surfaces_.limits.num_bounces)
         return find(direct);
     const BounceReport report = light_->step(direct);
+    found_of_.clear();
     constexpr double Visible = 1e-4;
     is_settled_ = report.error < Visible;
     return take(report);

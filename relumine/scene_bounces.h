@@ -35,7 +35,8 @@ public:
     [[nodiscard]] bool is_set() const { return light_.has_value(); }
     [[nodiscard]] const relight::SurfaceBounces& surfaces() const { return surfaces_; }
 
-    /// Finds the bounces of direct light from nothing, so that equal light gives equal bits.
+    /// Finds the bounces of direct light from nothing, so that equal light gives equal bits. For
+    /// the light of the call before, they are there already.
     ///
     /// Shape:   `direct` is [num_receivers], for albedo 1.
     BounceReport find(std::span<const glm::vec3> direct);
@@ -62,6 +63,9 @@ private:
     std::optional<relight::BounceLight> light_;
     bool is_settled_ = false;
     std::vector<glm::vec3> bounced_;
+    /// The direct light whose bounces are in light_; empty where they are not.
+    std::vector<glm::vec3> found_of_;
+    BounceReport found_;
 };
 
 } // namespace relumine

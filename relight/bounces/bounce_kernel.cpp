@@ -1,6 +1,5 @@
 #include "relight/bounces/bounce_kernel.h"
 
-#include <algorithm>
 #include <cstdint>
 
 namespace relumine::relight {
@@ -23,20 +22,6 @@ void sum_lists(const prt::PlaceLists& lists, std::span<const PaddedRgb> values, 
         for (std::size_t c = 0; c < 4; ++c)
             sums[place].rgb[c] =
                 (parts[0].rgb[c] + parts[1].rgb[c]) + (parts[2].rgb[c] + parts[3].rgb[c]);
-    }
-}
-
-void means_of_groups(std::span<const PaddedRgb> values, std::size_t group_size,
-                     std::span<PaddedRgb> means) {
-    for (std::size_t group = 0; group < means.size(); ++group) {
-        const std::size_t begin = group * group_size;
-        const std::size_t end = std::min(begin + group_size, values.size());
-        PaddedRgb sum;
-        for (std::size_t i = begin; i < end; ++i)
-            for (std::size_t c = 0; c < 4; ++c)
-                sum.rgb[c] += values[i].rgb[c];
-        for (std::size_t c = 0; c < 4; ++c)
-            means[group].rgb[c] = sum.rgb[c] / static_cast<float>(end - begin);
     }
 }
 

@@ -24,9 +24,4 @@ struct alignas(16) PaddedRgb {
 void sum_lists(const prt::PlaceLists& lists, std::span<const PaddedRgb> values, std::size_t begin,
                std::size_t end, std::span<PaddedRgb> sums);
 
-/// Writes the means of groups of `group_size` values that follow each other; the last group may be
-/// smaller.
-void means_of_groups(std::span<const PaddedRgb> values, std::size_t group_size,
-                     std::span<PaddedRgb> means);
-
 } // namespace relumine::relight

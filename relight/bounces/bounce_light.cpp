@@ -4,8 +4,8 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -14,8 +14,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "files/parallel.h"
-#include "relight/bounces/bounce_kernel.h"
+#include "relight/bounces/bounce_product.h"
 #include "relight/bounces/coarse_bounces.h"
 
 namespace relumine::relight {
@@ -28,12 +27,13 @@ constexpr std::size_t AndersonDepth = 2;
 /// More products than any scene needs whose light does not grow for ever.
 constexpr std::uint32_t MaxBounces = 1000;
 
-/// Rows that one task handles; sums over them are added in order, so that threads do not matter.
-constexpr std::size_t RowsPerTask = prt::RowsPerRun;
+/// Steps are assumed to shrink by no more than this, whatever the last ones did; where light stays
+/// long, by no more than the second.
+constexpr double LeastRatio = 0.5, LeastRatioOfRooms = 0.75;
 
-/// Steps are assumed to shrink by no more than this, whatever the last ones did: light in narrow
-/// gaps is found late. The light that is left is then at least as large as the last step.
-constexpr double LeastRatio = 0.5;
+/// Receivers with less direct light than this part of the mean are not waited for: light in gaps
+/// that are nearly closed is found late.
+constexpr double LeastDirect = 1e-3;
 
 using AndersonMatrix = Eigen::Matrix<double, AndersonDepth, AndersonDepth>;
 using AndersonVector = Eigen::Matrix<double, AndersonDepth, 1>;
@@ -61,10 +61,9 @@ AndersonVector least_squares(AndersonMatrix matrix, AndersonVector right) {
 class BounceLight::Impl {
 public:
     Impl(const prt::BounceMatrix& matrix, const prt::Transfer& transfer, const SharedRows& shared)
-        : matrix_(matrix), transfer_(transfer), shared_(shared), size_(transfer.num_receivers()),
-          first_(checked(matrix, shared, size_)), coarse_(matrix, first_, shared),
-          coarse_sent_(coarse_.num_groups()), albedo_(size_), direct_(size_), sent_(size_),
-          gathered_(size_), indirect_(size_), next_(size_), published_(size_, glm::vec3(0.0f)) {}
+        : matrix_(matrix), transfer_(transfer), size_(transfer.num_receivers()),
+          product_(matrix, size_, shared), first_(product_.first()), albedo_(size_), direct_(size_),
+          sent_(size_), indirect_(size_), next_(size_), published_(size_, glm::vec3(0.0f)) {}
 
     void set_albedo(std::span<const glm::vec3> albedo) {
         if (albedo.size() != size_)
@@ -88,10 +87,11 @@ public:
                             "got {}",
                             safe, largest));
         contraction_ = static_cast<double>(largest) * static_cast<double>(matrix_.spectral_radius);
-        sends_ = largest > 0.0f && has_emitters();
+        sends_ = largest > 0.0f && product_.has_emitters();
         for (std::size_t place = 0; place < size_; ++place)
             albedo_[place] = padded(albedo[transfer_.order[place]]);
-        coarse_.set_albedo(std::span(albedo_).subspan(first_));
+        if (sends_)
+            coarse_.emplace(product_, albedo_);
     }
 
     BounceReport solve(std::span<const glm::vec3> direct, const BounceLimits& limits) {
@@ -109,7 +109,7 @@ public:
                 light_the_rest();
         } else if (sends_) {
             forget_steps();
-            start_from_groups();
+            send();
             for (;;) {
                 bounce(first_, size_);
                 ++report.num_bounces;
@@ -154,25 +154,10 @@ private:
     /// Sums for each colour.
     using ColorSums = std::array<double, 3>;
 
-    [[nodiscard]] bool has_emitters() const {
-        if (shared_.team == nullptr)
-            return !matrix_.emitters.places.empty();
-        return std::any_of(shared_.num_emitters.begin(), shared_.num_emitters.end(),
-                           [](std::uint32_t number) { return number != 0; });
-    }
-
-    static std::size_t checked(const prt::BounceMatrix& matrix, const SharedRows& shared,
-                               std::size_t size) {
-        if (matrix.num_rows() != size)
-            throw std::invalid_argument(
-                fmt::format("expected bounces of {} receivers, got {}", size, matrix.num_rows()));
-        return shared.team != nullptr ? shared.first : prt::first_emitter(matrix);
-    }
-
     void forget_steps() {
         num_before_ = 0;
         last_step_ = 0.0;
-        largest_ratio_ = 0.0;
+        last_ratio_ = 0.0;
         for (Step& step : history_) {
             step.change.resize(size_);
             step.result.resize(size_);
@@ -193,30 +178,19 @@ private:
         if (direct.size() != size_)
             throw std::invalid_argument(fmt::format(
                 "expected the direct light of {} receivers, got {}", size_, direct.size()));
+        std::vector<PaddedRgb> sums((size_ + RowsPerTask - 1) / RowsPerTask);
         for_rows(0, size_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t place = begin; place < end; ++place)
+            for (std::size_t place = begin; place < end; ++place) {
                 direct_[place] = padded(direct[transfer_.order[place]]);
+                for (std::size_t c = 0; c < 3; ++c)
+                    sums[begin / RowsPerTask].rgb[c] += direct_[place].rgb[c];
+            }
         });
-    }
-
-    /// Tasks begin at whole groups.
-    template<typename Function>
-    static void for_rows(std::size_t first, std::size_t last, const Function& function) {
-        files::parallel_for(std::size_t{0}, (last - first + RowsPerTask - 1) / RowsPerTask,
-                            [&](std::size_t task) {
-                                const std::size_t begin = first + task * RowsPerTask;
-                                function(begin, std::min(last, begin + RowsPerTask));
-                            });
-    }
-
-    /// Calls function(row, group) for the rows begin .. end - 1.
-    template<typename Function>
-    void for_rows_in_groups(std::size_t begin, std::size_t end, const Function& function) const {
-        const std::size_t group_size = coarse_.group_size();
-        for (std::size_t group = (begin - first_) / group_size; begin < end; ++group) {
-            const std::size_t end_of_group = std::min(end, first_ + (group + 1) * group_size);
-            for (; begin < end_of_group; ++begin)
-                function(begin, group);
+        for (std::size_t c = 0; c < 3; ++c) {
+            double sum = 0.0;
+            for (const PaddedRgb& part : sums)
+                sum += static_cast<double>(part.rgb[c]);
+            least_direct_[c] = static_cast<float>(LeastDirect * sum / static_cast<double>(size_));
         }
     }
 
@@ -231,86 +205,21 @@ private:
 
     /// next_ = A sent_ for some rows.
     void bounce(std::size_t first, std::size_t last) {
-        for_rows(first, last, [&](std::size_t begin, std::size_t end) {
-            if (is_own(begin))
-                sum_lists(matrix_.emitters, sent_, begin, end, gathered_);
-        });
-        share_gathered(first, last);
-        for_rows(first, last, [&](std::size_t begin, std::size_t end) {
-            sum_lists(matrix_.averaged, gathered_, begin, end, next_);
-            for (std::size_t i = begin; i < end; ++i)
-                for (std::size_t c = 0; c < 4; ++c)
-                    next_[i].rgb[c] *= matrix_.weights[i];
-        });
+        product_.multiply(sent_, first, last, next_);
     }
 
-    /// Whether this process has the run of rows that begins there.
-    [[nodiscard]] bool is_own(std::size_t begin) const {
-        return shared_.team == nullptr || prt::has_row(shared_.team->part(), begin, first_);
-    }
-
-    /// Gives all processes what each has gathered for its rows.
-    void share_gathered(std::size_t first, std::size_t last) {
-        if (shared_.team == nullptr)
-            return;
-        const prt::Part part = shared_.team->part();
-        const auto for_runs = [&](std::uint32_t process, const auto& visit) {
-            for (std::size_t begin = first; begin < last; begin += RowsPerTask)
-                if (prt::has_row({process, part.count}, begin, first_))
-                    visit(std::span(gathered_).subspan(begin, std::min(RowsPerTask, last - begin)));
-        };
-        std::vector<PaddedRgb> own;
-        for_runs(part.index, [&](std::span<const PaddedRgb> run) {
-            own.insert(own.end(), run.begin(), run.end());
-        });
-        const auto bytes = std::as_bytes(std::span(own));
-        const auto of_all = shared_.team->all_gather({bytes.begin(), bytes.end()});
-        for (std::uint32_t process = 0; process < of_all.size(); ++process) {
-            std::size_t at = 0;
-            for_runs(process, [&](std::span<PaddedRgb> run) {
-                if (of_all[process].size() < at + run.size_bytes())
-                    throw std::runtime_error("expected the bounces of all processes");
-                std::memcpy(run.data(), of_all[process].data() + at, run.size_bytes());
-                at += run.size_bytes();
-            });
-        }
-    }
-
-    /// Returns all bounces of what sent_by(row) gives for each row, as groups of receivers tell.
-    template<typename SentBy>
-    std::span<const PaddedRgb> bounces_of_groups(const SentBy& sent_by) {
+    /// Returns all further bounces of the change next_ - indirect_, as groups of receivers tell.
+    std::span<const PaddedRgb> bounces_of_change() {
+        of_groups_.assign(coarse_->num_groups(), {});
         for_rows(first_, size_, [&](std::size_t begin, std::size_t end) {
-            const std::size_t group_size = coarse_.group_size();
-            for (std::size_t i = begin; i < end;) {
-                const std::size_t group = (i - first_) / group_size;
-                const std::size_t end_of_group = std::min(end, i + group_size);
-                const auto size = static_cast<float>(end_of_group - i);
-                PaddedRgb sum;
-                for (; i < end_of_group; ++i) {
-                    const PaddedRgb sent = sent_by(i);
-                    for (std::size_t c = 0; c < 4; ++c)
-                        sum.rgb[c] += sent.rgb[c];
-                }
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::uint32_t group = coarse_->group_of()[i - first_];
                 for (std::size_t c = 0; c < 4; ++c)
-                    coarse_sent_[group].rgb[c] = sum.rgb[c] / size;
+                    of_groups_[group].rgb[c] +=
+                        coarse_->shares()[group] * (next_[i].rgb[c] - indirect_[i].rgb[c]);
             }
         });
-        return coarse_.sum_of_bounces(coarse_sent_);
-    }
-
-    /// The first guess: the bounces between the groups of receivers.
-    void start_from_groups() {
-        send();
-        const std::span<const PaddedRgb> all =
-            bounces_of_groups([this](std::size_t i) { return sent_[i]; });
-        for_rows(first_, size_, [&](std::size_t begin, std::size_t end) {
-            for_rows_in_groups(begin, end, [&](std::size_t i, std::size_t group) {
-                for (std::size_t c = 0; c < 4; ++c) {
-                    indirect_[i].rgb[c] = matrix_.weights[i] > 0.0f ? all[group].rgb[c] : 0.0f;
-                    sent_[i].rgb[c] = albedo_[i].rgb[c] * (direct_[i].rgb[c] + indirect_[i].rgb[c]);
-                }
-            });
-        });
+        return coarse_->sum_of_bounces(of_groups_);
     }
 
     /// Makes a step of next_: adds what the change next_ - indirect_ becomes in all further
@@ -318,34 +227,34 @@ private:
     /// group they are in. Returns the size of the step, relative to all light.
     double correct() {
         newest_ = (newest_ + 1) % history_.size();
-        const std::span<const PaddedRgb> more = bounces_of_groups([this](std::size_t i) {
-            PaddedRgb sent;
-            for (std::size_t c = 0; c < 4; ++c)
-                sent.rgb[c] = albedo_[i].rgb[c] * (next_[i].rgb[c] - indirect_[i].rgb[c]);
-            return sent;
-        });
+        const std::span<const PaddedRgb> more = bounces_of_change();
         Step& now = newest();
-        // Of each colour: products of the change with itself and with those before; all light.
-        constexpr std::size_t NumSums = AndersonDepth + 2;
+        // Of each colour: products of the change with itself and with those before; what is waited
+        // for of the change; all light.
+        constexpr std::size_t WaitedFor = AndersonDepth + 1, AllLight = AndersonDepth + 2;
+        constexpr std::size_t NumSums = AndersonDepth + 3;
         std::vector<std::array<ColorSums, NumSums>> parts((size_ - first_ + RowsPerTask - 1) /
                                                           RowsPerTask);
         for_rows(first_, size_, [&](std::size_t begin, std::size_t end) {
             std::array<PaddedRgb, NumSums> sums{};
-            for_rows_in_groups(begin, end, [&](std::size_t i, std::size_t group) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const PaddedRgb& of_group = more[coarse_->group_of()[i - first_]];
                 for (std::size_t c = 0; c < 4; ++c) {
                     const float plain = next_[i].rgb[c];
-                    const float result = plain + (plain > 0.0f ? more[group].rgb[c] : 0.0f);
+                    const float result = plain + (plain > 0.0f ? of_group.rgb[c] : 0.0f);
                     const float change = result - indirect_[i].rgb[c];
                     const float light = result + direct_[i].rgb[c];
                     now.result[i].rgb[c] = result;
                     now.change[i].rgb[c] = change;
-                    sums[AndersonDepth + 1].rgb[c] += light * light;
                     sums[0].rgb[c] += change * change;
+                    sums[AllLight].rgb[c] += light * light;
+                    if (direct_[i].rgb[c] > least_direct_[c])
+                        sums[WaitedFor].rgb[c] += change * change;
                 }
                 for (std::size_t age = 1; age <= num_before_; ++age)
                     for (std::size_t c = 0; c < 4; ++c)
                         sums[age].rgb[c] += now.change[i].rgb[c] * before(age).change[i].rgb[c];
-            });
+            }
             for (std::size_t k = 0; k < NumSums; ++k)
                 for (std::size_t c = 0; c < 3; ++c)
                     parts[(begin - first_) / RowsPerTask][k][c] =
@@ -362,18 +271,20 @@ private:
         const auto sum_of = [](const ColorSums& sums) {
             return sums[0] + sums[1] + sums[2];
         };
-        const double light = sum_of(all[AndersonDepth + 1]);
-        return light > 0.0 ? std::sqrt(sum_of(all[0]) / light) : 0.0;
+        const double light = sum_of(all[AllLight]);
+        return light > 0.0 ? std::sqrt(sum_of(all[WaitedFor]) / light) : 0.0;
     }
 
-    /// Estimates the error after a step: steps become smaller by the largest ratio that was seen.
-    /// After the first one the factor of the matrix itself is all that is known; light that never
-    /// comes back has none.
+    /// Estimates the error after a step: steps go on becoming smaller by the larger one of the last
+    /// two ratios. After the first one the factor of the matrix itself is all that is known; light
+    /// that never comes back has none.
     double error_after(double step) {
         double ratio = std::max(contraction_, LeastRatio);
         if (last_step_ > 0.0) {
-            largest_ratio_ = std::max({largest_ratio_, step / last_step_, LeastRatio});
-            ratio = largest_ratio_;
+            const double newest = step / last_step_;
+            ratio = std::max(
+                {last_ratio_, newest, std::clamp(contraction_, LeastRatio, LeastRatioOfRooms)});
+            last_ratio_ = newest;
         }
         last_step_ = step;
         ratio = std::min(ratio, MaxContraction);
@@ -464,22 +375,23 @@ private:
 
     const prt::BounceMatrix& matrix_;
     const prt::Transfer& transfer_;
-    SharedRows shared_;
     std::size_t size_;
+    BounceProduct product_;
     /// Receivers before this place send nothing to others.
     std::size_t first_;
     /// Whether any receiver sends light to another.
     bool sends_ = false;
     /// Upper bound of the factor from one bounce to the next, after many.
     double contraction_ = 0.0;
-    CoarseBounces coarse_;
-    /// [num_groups]
-    std::vector<PaddedRgb> coarse_sent_;
+    /// Of the albedo; where any receiver sends light.
+    std::optional<CoarseBounces> coarse_;
+    std::vector<PaddedRgb> of_groups_;
+    /// Of each colour; receivers with more direct light are waited for.
+    std::array<float, 4> least_direct_{};
     /// All by place.
     std::vector<PaddedRgb> albedo_;
     std::vector<PaddedRgb> direct_;
     std::vector<PaddedRgb> sent_;
-    std::vector<PaddedRgb> gathered_;
     std::vector<PaddedRgb> indirect_;
     std::vector<PaddedRgb> next_;
     std::array<Step, AndersonDepth + 1> history_;
@@ -490,7 +402,7 @@ private:
     std::size_t num_before_ = 0;
     /// Relative to all light; of this iteration.
     double last_step_ = 0.0;
-    double largest_ratio_ = 0.0;
+    double last_ratio_ = 0.0;
     /// [num_receivers] in the receivers' order.
     std::vector<glm::vec3> published_;
 };

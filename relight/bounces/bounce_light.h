@@ -19,8 +19,11 @@ namespace relumine::relight {
 struct BounceLimits {
     /// Exactly so many bounces; empty: as many as `tolerance` asks for.
     std::optional<std::uint32_t> num_bounces = {};
-    /// Relative error of the sum of all bounces, L2 over the receivers.
+    /// Relative error of the sum of all bounces, L2 over the receivers that have direct light:
+    /// light that fills a white box through a crack is not waited for.
     double tolerance = 1e-3;
+
+    bool operator==(const BounceLimits&) const = default;
 };
 
 /// The rows of a matrix that processes share. Each has its own in the matrix (prt::has_row()); the
@@ -76,6 +79,7 @@ public:
 
     /// Sets the diffuse reflectance, [num_receivers] in the receivers' order.
     ///
+    /// Cost:    some ten products with the matrix: the groups of receivers are made for it.
     /// Throws:  std::invalid_argument for another number of albedos, one that is negative or not
     ///          finite, or so large that light would grow for ever. The message names the largest
     ///          albedo that is safe. Nothing has changed then.

@@ -1,72 +1,55 @@
 // Bounces between groups of receivers: what many bounces add up to, nearly.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "prt/bounces/bounce_matrix.h"
 #include "relight/bounces/bounce_kernel.h"
-#include "relight/bounces/bounce_light.h"
+#include "relight/bounces/bounce_product.h"
 
 namespace relumine::relight {
 
-/// The matrix of bounces for light that is even within groups of receivers with neighbouring
-/// places, then for groups of groups, and so on. Light that goes round for long is even, and small
-/// matrices know it; the matrix itself decides about the rest [multigrid method of the second kind:
-/// Hackbusch 1985, "Multi-Grid Methods and Applications", chapter 16].
+/// The matrix of bounces for light that is even within groups of receivers, then for groups of
+/// groups, and so on. Light that goes round for long is even within groups that are well chosen,
+/// and small matrices know it; the matrix itself decides about the rest [multigrid method of the
+/// second kind: Hackbusch 1985, "Multi-Grid Methods and Applications", chapter 16].
+///
+/// A group has receivers with neighbouring places in which the same light comes together: some
+/// bounces of random light leave them alike, in each of four draws. So a group does not reach
+/// through a wall, and a box has groups of its own [adaptive aggregation: Brezina et al. 2006,
+/// "Adaptive Algebraic Multigrid"].
 class CoarseBounces {
 public:
-    /// Leaves the rows before `first` out, from which no other row gets light. Where processes
-    /// share the rows, each makes the groups of its own, and all get all groups.
+    /// Leaves the rows before product.first() out, from which no other row gets light. Where
+    /// processes share the rows, each makes the groups' rows of its own, and all get all.
     ///
-    /// Cost:    a pass over the emitters.
-    CoarseBounces(const prt::BounceMatrix& matrix, std::size_t first,
-                  const SharedRows& shared = {});
+    /// Shape:   `albedo` is [rows] by place.
+    /// Cost:    some ten products with the matrix.
+    CoarseBounces(BounceProduct& product, std::span<const PaddedRgb> albedo);
+    ~CoarseBounces();
+    CoarseBounces(CoarseBounces&&) noexcept;
+    CoarseBounces& operator=(CoarseBounces&&) noexcept;
 
-    /// `albedo` is [num_rows - first] by place.
-    void set_albedo(std::span<const PaddedRgb> albedo);
+    [[nodiscard]] std::size_t num_groups() const;
+    /// [rows - first] the group of each row. Groups lie within tasks of RowsPerTask rows.
+    [[nodiscard]] std::span<const std::uint32_t> group_of() const;
+    /// [num_groups] one over the receivers of each.
+    [[nodiscard]] std::span<const float> shares() const;
 
-    [[nodiscard]] std::size_t group_size() const { return levels_.front().group_size; }
-    [[nodiscard]] std::size_t num_groups() const { return levels_.front().num_groups(); }
-
-    /// Sums all further bounces of light that is sent once: A sent + A rho A sent + ...
+    /// Sums all further bounces of light that arrives: A rho light + A rho A rho light + ...
     ///
-    /// Shape:   `sent` is [num_groups], means over the receivers of a group; the result is
+    /// Shape:   `light` is [num_groups], means over the receivers of a group; the result is
     ///          [num_groups] and good until the next call.
     /// Error:   a few per cent: more would be wasted on light that is not even.
-    std::span<const PaddedRgb> sum_of_bounces(std::span<const PaddedRgb> sent) {
-        return sum_of_bounces(0, sent);
-    }
+    std::span<const PaddedRgb> sum_of_bounces(std::span<const PaddedRgb> light);
 
 private:
-    struct Entry {
-        std::uint32_t group = 0;
-        float weight = 0.0f;
-    };
-    struct Level {
-        /// Rows of the finer level, or receivers, in a group.
-        std::size_t group_size = 1;
-        std::vector<std::uint64_t> row_begin = {0};
-        std::vector<Entry> entries = {};
-        // All [num_groups].
-        std::vector<PaddedRgb> albedo = {}, sent = {}, sum = {}, next = {}, given = {};
-
-        [[nodiscard]] std::size_t num_groups() const { return row_begin.size() - 1; }
-        /// Writes A (given + albedo sum) to `next`.
-        void multiply();
-    };
-    static std::size_t size_of_groups(const prt::BounceMatrix& matrix, std::size_t first,
-                                      const SharedRows& shared);
-    using Rows = std::vector<std::vector<Entry>>;
-    template<typename HasGroup, typename AddRow>
-    static Rows rows_of_groups(std::size_t num_rows, std::size_t group_size,
-                               const HasGroup& has_group, const AddRow& add_row);
-    static void share(Rows& rows, std::size_t group_size, prt::Team& team);
-    static Level level_of(const Rows& rows, std::size_t group_size);
-    std::span<const PaddedRgb> sum_of_bounces(std::size_t level, std::span<const PaddedRgb> sent);
-    std::span<const PaddedRgb> sum_of_last_level(std::span<const PaddedRgb> sent);
+    struct Level;
+    std::span<const PaddedRgb> sum_of_bounces(std::size_t level, std::span<const PaddedRgb> light);
 
     std::vector<Level> levels_;
 };

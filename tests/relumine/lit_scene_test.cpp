@@ -222,8 +222,11 @@ TEST(LitScene, BouncesUntilTheLightChanges) {
               1.01f * std::accumulate(direct.begin(), direct.end(), glm::vec3(0.0f)).g);
     scene.light(white);
     EXPECT_TRUE(std::equal(direct.begin(), direct.end(), scene.radiance().begin()));
-    scene.bounce({.albedo = albedo});
+    // The bounces of this light are there already.
+    EXPECT_EQ(scene.bounce({.albedo = albedo}).seconds, 0.0);
     EXPECT_TRUE(std::equal(all.begin(), all.end(), scene.radiance().begin()));
+    EXPECT_GT(scene.bounce({.albedo = std::vector(albedo.size(), glm::vec3(0.4f))}).seconds, 0.0);
+    EXPECT_GT(scene.bounce({.albedo = albedo}).seconds, 0.0);
 
     const Verification check = verify(scene, {.num_samples = 50, .num_paths = 64});
     EXPECT_GT(check.noise, 0.0);

@@ -1,5 +1,7 @@
 #include "relight/bounces/bounce_light.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -139,6 +141,44 @@ TEST(BounceLight, FewerProductsThanBouncesWhereLightStaysLong) {
     const auto direct = random_colors(Size, 1.0f);
     // 0.9^n < 1e-3 takes n = 66 bounces.
     EXPECT_LT(light.solve(direct).num_bounces, 20u);
+}
+
+// White boxes whose walls see each other, and the room but for a crack. The places of a box and of
+// the room alternate, as on both sides of a thin wall.
+TEST(BounceLight, BoxesOfAWhiteRoomNeedFewProducts) {
+    constexpr std::size_t NumBoxes = 12, NumSamples = 200;
+    const prt::Transfer transfer = transfer_of(Size);
+    prt::BounceMatrix matrix;
+    std::mt19937 random(3);
+    std::vector<std::vector<std::uint32_t>> boxes(1 + NumBoxes);
+    const auto box_of = [](std::size_t place) {
+        return place % 2 == 0 ? std::size_t{0} : 1 + place * NumBoxes / Size;
+    };
+    for (std::uint32_t place = 0; place < Size; ++place)
+        boxes[box_of(place)].push_back(place);
+    for (std::uint32_t place = 0; place < Size; ++place) {
+        std::vector<std::uint32_t> emitters;
+        for (std::size_t i = 0; i < NumSamples; ++i) {
+            const std::vector<std::uint32_t>& box =
+                boxes[random() % 50 == 0 ? random() % boxes.size() : box_of(place)];
+            emitters.push_back(box[random() % box.size()]);
+        }
+        std::sort(emitters.begin(), emitters.end());
+        matrix.emitters.append(emitters);
+        matrix.averaged.append(std::array{place});
+        matrix.weights.push_back(0.995f / NumSamples);
+    }
+    matrix.spectral_radius = prt::spectral_radius(matrix);
+    const std::vector albedo(Size, glm::vec3(1.0f));
+    std::vector<glm::vec3> direct(Size, glm::vec3(0.0f));
+    for (std::uint32_t place = 0; place < Size; place += 2)
+        direct[transfer.order[place]] = glm::vec3(1.0f + 0.5f * std::sin(0.01f * float(place)));
+    BounceLight light(matrix, transfer);
+    light.set_albedo(albedo);
+    EXPECT_LE(light.solve(direct).num_bounces, 8u);
+    EXPECT_LT(relative_difference(light.indirect(),
+                                  plain_bounces(matrix, transfer, albedo, direct, 4000)),
+              2e-3);
 }
 
 // X = 1 + 0.5 X has the solution 2: a closed room of albedo 0.5 whose walls send on 1 by
