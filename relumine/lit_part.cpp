@@ -19,10 +19,10 @@ namespace {
 prt::LitPart lit(const LitPartOptions& options, cubemap::CubeMap environment,
                  UpdateReport& report) {
     prt::ScenePart part = prt::load_scene_part(options.scene, options.part);
-    if (part.bounces)
+    if (part.bounces && !options.is_direct)
         throw std::runtime_error(fmt::format(
             "{}: expected a scene without bounces for parts that know nothing of each other, got "
-            "one with",
+            "one with; its direct light alone may be lit in parts (--bounces 0)",
             options.scene.string()));
     const std::size_t num_receivers = part.scene.receivers.size();
     prt::LitPart lit{.part = options.part,

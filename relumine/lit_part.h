@@ -20,10 +20,12 @@ struct LitPartOptions {
     std::filesystem::path output = {};
     /// Lights the sun through its cluster too, without shadow rays of its own
     bool clusters_only = false;
+    /// Leaves the bounces of the scene out, which parts cannot have. Otherwise it must have none.
+    bool is_direct = false;
 };
 
 /// Lights a part of a scene's receivers and writes their radiance. The environment may have any
-/// resolution. The scene has no bounces. `num_receivers` receives how many the part has.
+/// resolution. `num_receivers` receives how many the part has.
 ///
 /// Memory:  the mesh, all receivers, and the part's share of the counts: docs/scale.md.
 /// Throws:  std::runtime_error "path: expected X, got Y"; std::invalid_argument as

@@ -125,8 +125,8 @@ public:
 
 private:
     void check_options() const {
-        if (options_.bounce_tolerance && !(*options_.bounce_tolerance > 0.0f))
-            throw std::invalid_argument(fmt::format("expected a tolerance of bounces > 0, got {}",
+        if (options_.bounce_tolerance && !(*options_.bounce_tolerance >= 0.0f))
+            throw std::invalid_argument(fmt::format("expected a tolerance of bounces >= 0, got {}",
                                                     *options_.bounce_tolerance));
         const char* const extension = is_plan_ ? ".plan" : ".prt";
         if (!options_.output.empty() && options_.output.extension() != extension)
@@ -158,11 +158,24 @@ private:
             scene_.settings.glossy_tolerance = options_.glossy_tolerance;
             warn_of_smooth_surfaces();
         }
-        if (options_.bounce_tolerance) {
+        if (const float tolerance = bounce_tolerance(rays); tolerance > 0.0f) {
             scene_.settings.two_sided_bounces = options_.two_sided_bounces;
-            plan_.bounces = {.tolerance = *options_.bounce_tolerance};
+            plan_.bounces = {.tolerance = tolerance,
+                             .is_automatic = !options_.bounce_tolerance.has_value()};
         }
         return rays;
+    }
+
+    /// What was asked for. Where nothing was, vertices bounce light if surfaces are before them.
+    [[nodiscard]] float bounce_tolerance(const prt::RayScene& rays) const {
+        constexpr double LeastClosure = 0.01;
+        if (options_.bounce_tolerance)
+            return *options_.bounce_tolerance;
+        return prt::on_vertices(scene_.layout) &&
+                       prt::estimated_closure(scene_.receivers, rays, scene_.settings.bias) >
+                           LeastClosure
+                   ? prt::BounceOptions{}.tolerance
+                   : 0.0f;
     }
 
     /// The rays and all they are made of go before the scene is written, which needs memory of its
@@ -246,7 +259,8 @@ private:
                 scene_.settings.view = own ? *own : relight::framed(scene_.mesh);
                 prt::look_from(scene_.receivers, scene_.settings.view->eye);
             }
-            if (options_.bounce_tolerance && !scene_.receivers.points.empty()) {
+            if (options_.bounce_tolerance.value_or(0.0f) > 0.0f &&
+                !scene_.receivers.points.empty()) {
                 prt::add_vertices(scene_.receivers, scene_.mesh);
                 note(fmt::format("and {} vertices, from which light bounces",
                                  scene_.receivers.num_added));
@@ -387,7 +401,8 @@ private:
             if (std::exchange(last, message) != message)
                 warn(Warning::Checkpoint, message);
         };
-        prt::Fingerprint fingerprint = prt::fingerprint(scene_, options_.bounce_tolerance);
+        prt::Fingerprint fingerprint = prt::fingerprint(
+            scene_, plan_.bounces ? std::optional(plan_.bounces->tolerance) : std::nullopt);
         fingerprint.emplace_back("number of processes", fmt::format("{}", work_.team.part().count));
         checkpoint_ = std::make_unique<prt::CheckpointFile>(
             options_.output, std::move(fingerprint),

@@ -258,8 +258,9 @@ OptionTable options_of(PrecomputeOptions& o) {
                             {.example = "4G"}),
             row("--bounces", o.bounce_tolerance,
                 "light goes on from surface to surface; the standard error of one bounce under a "
-                "sun or a white sky of radiance 1, 0.01 when it is not given",
-                {.min = 1e-4,
+                "sun or a white sky of radiance 1, 0.01 when it is not given; 0: direct light "
+                "alone. Without the option vertices bounce light where they see other surfaces",
+                {.min = 0,
                  .max = 1,
                  .type = "[ERROR]",
                  .bare = fmt::format("{}", prt::BounceOptions{}.tolerance)}),

@@ -26,5 +26,6 @@
 #include "relumine/precompute_table.h"
 #include "relumine/questions.h"
 #include "relumine/scene.h"
+#include "relumine/scene_cache.h"
 #include "relumine/shared_radiance.h"
 // IWYU pragma: end_exports

@@ -170,8 +170,16 @@ prt::PartLight Stages::run(const prt::RayScene& rays) {
     if (scene_.settings.glossy_tolerance)
         add_highlights(rays);
     prt::PartLight light;
-    if (plan_.bounces)
-        light.bounces = bounces(rays);
+    if (plan_.bounces) {
+        try {
+            light.bounces = bounces(rays);
+        } catch (const MemoryLimitExceeded& error) {
+            if (!plan_.bounces->is_automatic)
+                throw;
+            if (work_.on_note)
+                work_.on_note(fmt::format("bounces are left out: {}", error.what()));
+        }
+    }
     light.counts = std::exchange(transfer.counts, {});
     light.glossy = std::exchange(transfer.glossy, {});
     return light;

@@ -6,7 +6,8 @@
 
 namespace relumine::app {
 
-void BounceOption::add_to(Command& command) {
+void BounceOption::add_to(Command& command, bool by_default) {
+    by_default_ = by_default;
     command.add(
         row("--bounces",
             [this](const std::string& text) {
@@ -22,13 +23,14 @@ void BounceOption::add_to(Command& command) {
                         fmt::format("expected a number of bounces or 'all', got '{}'", text));
                 limits_.num_bounces = *count;
             },
-            "how often light goes on from surface to surface: N, 0 for direct light "
-            "alone, or all [all where the scene was made with --bounces, otherwise 0]",
+            fmt::format("how often light goes on from surface to surface: N, 0 for direct light "
+                        "alone, or all [{}]",
+                        by_default ? "all where the scene has bounces, otherwise 0" : "0"),
             {.type = "N"}));
 }
 
 bool BounceOption::applies_to(const Scene& scene, const std::string& path) const {
-    if (limits_.num_bounces && *limits_.num_bounces == 0)
+    if ((limits_.num_bounces && *limits_.num_bounces == 0) || (!is_given_ && !by_default_))
         return false;
     if (!scene.bounces && is_given_)
         throw std::runtime_error(fmt::format(

@@ -11,7 +11,8 @@ namespace relumine::app {
 
 class BounceOption {
 public:
-    void add_to(Command& command);
+    /// `by_default`: light bounces where nothing is said and the scene was made for it.
+    void add_to(Command& command, bool by_default = true);
 
     /// Returns whether light is to bounce: as often as was asked for, or where nothing was said and
     /// the scene has bounces. `path` is the scene's, for messages.
@@ -28,7 +29,7 @@ public:
     [[nodiscard]] const BounceLimits& limits() const { return limits_; }
 
 private:
-    bool is_given_ = false;
+    bool is_given_ = false, by_default_ = true;
     BounceLimits limits_;
 };
 

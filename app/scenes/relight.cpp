@@ -49,16 +49,18 @@ void keep_bounces(Lighting& lighting, std::span<const glm::vec3> bounced, const 
 
 /// Parts are numbers alone: what shapes a picture does not suit them.
 void require_numbers(const RelightArguments& options, const Command& command) {
-    constexpr std::array<std::string_view, 16> Fitting = {
-        "SCENE",    "ENV",      "--output",  "--part",  "--clusters-only",
-        "--layout", "--from",   "--fix-env", "--flip",  "--face-resolution",
-        "--tilt",   "--rotate", "--json",    "--quiet", "--verbose",
-        "--threads"};
+    constexpr std::array<std::string_view, 17> Fitting = {
+        "SCENE",     "ENV",      "--output",  "--part",  "--clusters-only",
+        "--layout",  "--from",   "--fix-env", "--flip",  "--face-resolution",
+        "--tilt",    "--rotate", "--json",    "--quiet", "--verbose",
+        "--threads", "--bounces"};
     for (const std::string& name : command.given_options())
         if (std::find(Fitting.begin(), Fitting.end(), name) == Fitting.end())
             throw UsageError(name, "expected no such option with --part");
     if (options.environment.path.empty())
         throw UsageError("ENV", "expected an environment with --part");
+    if (options.bounces.limits().num_bounces.value_or(0) != 0)
+        throw UsageError("--bounces", "expected 0 with --part");
 }
 
 /// What is to light the scene, and what is known of it before.
@@ -172,7 +174,8 @@ void light_one_part(const RelightArguments& options, const Command& command, Ses
     const UpdateReport times = light_part({.scene = options.scene.path,
                                            .part = options.part,
                                            .output = options.output.path,
-                                           .clusters_only = options.scene.clusters_only},
+                                           .clusters_only = options.scene.clusters_only,
+                                           .is_direct = options.bounces.limits().num_bounces == 0},
                                           std::move(environment.map), &num_receivers);
     const double seconds = watch.total();
     session.say(fmt::format("{}: part {} of {}, {} receivers under {} in {:.2f} s",

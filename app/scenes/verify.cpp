@@ -113,7 +113,7 @@ void add_verify(Command& program, Session& session) {
                     "what the vertices interpolate; 0 for none",
                     {.type = "N"}));
     command.add(row("--seed", options->seed, "seed of the choice"));
-    options->bounces.add_to(command);
+    options->bounces.add_to(command, false);
     command.add(
         row("--albedo", options->albedo, "of all surfaces, for bounces", {.min = 0.0, .max = 1.0}));
     command.add(row("--paths", options->num_paths, "paths per receiver that bounces are held to",

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/vector_relational.hpp>
 
 #include "files/packed_parts.h"
 #include "files/parallel.h"
@@ -235,6 +237,37 @@ BounceSamples sample_bounces(const mesh::TriangleMesh& mesh, const Receivers& re
         BouncePrecompute(receivers, transfer, sampler, options, work, is_planned).run();
     samples.open_parts.assign(probes.open_parts.begin(), probes.open_parts.end());
     return samples;
+}
+
+double estimated_closure(const Receivers& receivers, const Blockers& blockers, float bias) {
+    constexpr std::size_t NumReceivers = 512;
+    DirectionPatch sphere;
+    for (std::size_t i = 0; i < DirectionPatch::Size; ++i) {
+        // A spiral: equal areas, each next point a golden angle further.
+        const double height = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / DirectionPatch::Size;
+        const double angle = std::numbers::pi * (3.0 - std::sqrt(5.0)) * static_cast<double>(i);
+        const double radius = std::sqrt(1.0 - height * height);
+        sphere.add({radius * std::cos(angle), height, radius * std::sin(angle)});
+    }
+    double blocked = 0.0, all = 0.0;
+    const std::size_t step = (receivers.size() + NumReceivers - 1) / NumReceivers;
+    for (std::size_t i = 0; i < receivers.size(); i += step) {
+        const glm::vec3& normal = receivers.normals[i];
+        const glm::vec3 origin = ray_origin(receivers.positions[i], normal, bias);
+        // precompute() will refuse it.
+        if (!glm::all(glm::lessThan(glm::abs(origin), glm::vec3(LargestCoordinate))))
+            return 0.0;
+        for (const DirectionPacket& packet : sphere.packets) {
+            const std::uint32_t lit = lit_lanes(blockers, origin, normal, packet, 0xffff);
+            for (std::size_t lane = 0; lane < PacketSize; ++lane) {
+                const glm::vec3 direction = packet.direction(lane);
+                const double cosine = std::max(double{glm::dot(normal, direction)}, 0.0);
+                all += cosine;
+                blocked += (lit >> lane & 1u) != 0 ? 0.0 : cosine;
+            }
+        }
+    }
+    return all > 0.0 ? blocked / all : 0.0;
 }
 
 } // namespace relumine::prt

@@ -73,4 +73,9 @@ inline constexpr std::uint64_t BytesPerHit = 12;
                                            const BounceProbes& probes, const RayScene& rays,
                                            const BounceOptions& options, const Work& work = {});
 
+/// Returns the mean part of all light, seen from the receivers, that ends at other surfaces, from
+/// 64 directions and 512 receivers at most.
+[[nodiscard]] double estimated_closure(const Receivers& receivers, const Blockers& blockers,
+                                       float bias);
+
 } // namespace relumine::prt

@@ -19,6 +19,8 @@ namespace relumine::prt {
 struct PlannedBounces {
     /// BounceOptions::tolerance
     float tolerance = 0.0f;
+    /// Nobody asked for them: they are left out where there is too little memory.
+    bool is_automatic = false;
     /// Of the sample: sampled_receivers() says which of them stands for a receiver. Empty where
     /// processes choose the clusters together.
     std::vector<ProbeRadiance> probes = {};

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "files/hash.h"
 #include "files/output_file.h"
 #include "prt/scene/section_group.h"
 
@@ -63,6 +64,18 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
     NewSections sections = sections_without_light(path, scene);
     add_sections(sections, scene, true);
     return write_sections(path, sections);
+}
+
+std::uint64_t hash_without_light(const Scene& scene) {
+    NewSections sections;
+    add_sections(sections, scene, false);
+    std::uint64_t hash = 0;
+    for (const auto& [name, content] : sections) {
+        std::vector<std::byte> made;
+        hash = files::hash_of(std::as_bytes(std::span(name)), hash + content.size());
+        hash = files::hash_of(content.bytes(0, content.size(), made), hash);
+    }
+    return hash;
 }
 
 Scene load_scene(const std::filesystem::path& path) {

@@ -63,6 +63,9 @@ struct Scene {
     }
 };
 
+/// Returns a hash of mesh, materials, receivers and settings: of all that a file has but the light.
+[[nodiscard]] std::uint64_t hash_without_light(const Scene& scene);
+
 /// Writes the scene, whole or not at all. Returns the file's size in bytes. Positions and normals
 /// of receivers on vertices are taken from the mesh.
 ///

@@ -111,7 +111,7 @@ std::function<void(Stage, double)> joined(const std::function<void(double)>& on_
                                           const PrecomputeOptions& options) {
     const bool has_highlights = options.view.has_value();
     const int num_stages = 1 + static_cast<int>(has_highlights) +
-                           static_cast<int>(options.bounce_tolerance.has_value());
+                           static_cast<int>(options.bounce_tolerance.value_or(1.0f) > 0.0f);
     return [=](Stage stage, double fraction) {
         const int before = stage == Stage::Clusters     ? 0
                            : stage == Stage::Highlights ? 1
@@ -155,6 +155,8 @@ Precomputed worked(const py::object& progress, PrecomputeOptions options, Comput
                                   }};
         try {
             compute(options, work, found);
+            if (reins.on_progress)
+                reins.on_progress(1.0);
         } catch (const TooMuchWork& error) {
             throw std::invalid_argument(
                 (error.cause == TooMuchWork::Cause::MinLevel ? "min_depth: " : "tolerance: ") +

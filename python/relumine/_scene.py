@@ -95,7 +95,8 @@ def precompute(
                (eye, target, fov)
     material   Ggx, Blinn or Lambert in place of the mesh's materials, or {group: material};
                "floor" is the added floor
-    bounces    light goes on from surface to surface: True, or its standard error
+    bounces    light goes on from surface to surface: True, or its standard error; False: direct
+               light alone; None: where vertices see other surfaces
     max_memory bytes; work that would take more is refused with MemoryError
     output     the .prt file to write as soon as the scene is ready, with checkpoints on the way
                that `resume` goes on from
@@ -124,7 +125,7 @@ def precompute(
         "view": view,
         "material": _materials(material),
         "glossy_tolerance": glossy_tolerance,
-        "bounces": bounces,
+        "bounces": 0.0 if bounces is False else bounces,
         "two_sided": two_sided,
         "max_memory": f"{max_memory}B" if isinstance(max_memory, int) else max_memory,
         "output": None if output is None else os.fspath(output),

@@ -13,6 +13,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include "relight/bounces/bounce_product.h"
 #include "relight/bounces/coarse_bounces.h"
@@ -81,15 +82,16 @@ public:
             }
         }
         const float safe = largest_safe_albedo();
-        if (largest > safe)
+        if (largest > safe && largest > 1.0f)
             throw std::invalid_argument(
                 fmt::format("expected an albedo up to {:.4g}, beyond which bounces grow for ever, "
                             "got {}",
                             safe, largest));
+        largest = std::min(largest, safe);
         contraction_ = static_cast<double>(largest) * static_cast<double>(matrix_.spectral_radius);
         sends_ = largest > 0.0f && product_.has_emitters();
         for (std::size_t place = 0; place < size_; ++place)
-            albedo_[place] = padded(albedo[transfer_.order[place]]);
+            albedo_[place] = padded(glm::min(albedo[transfer_.order[place]], glm::vec3(safe)));
         if (sends_)
             coarse_.emplace(product_, albedo_);
     }

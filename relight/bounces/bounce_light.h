@@ -81,8 +81,9 @@ public:
     ///
     /// Cost:    some ten products with the matrix: the groups of receivers are made for it.
     /// Throws:  std::invalid_argument for another number of albedos, one that is negative or not
-    ///          finite, or so large that light would grow for ever. The message names the largest
-    ///          albedo that is safe. Nothing has changed then.
+    ///          finite, or above 1 and so large that light would grow for ever. The message names
+    ///          the largest albedo that is safe. Nothing has changed then. In a closed white room
+    ///          light would stay for ever; 0.1 % of it is lost there at each bounce.
     void set_albedo(std::span<const glm::vec3> albedo);
 
     /// Finds the bounces from nothing, so that equal light gives equal bits whatever came before.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "mesh/floor.h"
 #include "prt/tolerance.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/relumine/small_scenes.h"

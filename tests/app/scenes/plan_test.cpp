@@ -119,21 +119,24 @@ TEST_F(PlanTest, LightOfPartsIsTheLightOfTheScene) {
     write("sky.hdr", lamp_hdr(40));
     succeed({"generate", "sun_sky", "-o", ".", "--face-resolution", "32", "-q"});
     for (const std::string sky : {"sky.hdr", "sun_sky.exr"}) {
-        succeed({"relight", "scene.prt", sky, "-o", "whole.npy", "--rotate", "20", "-q"});
+        succeed({"relight", "scene.prt", sky, "-o", "whole.npy", "--rotate", "20", "--bounces", "0",
+                 "-q"});
         for (const int count : {1, 3, 8}) {
             std::vector<std::string> join = {"join", "-o", "joined.npy", "-q"};
             for (int i = count; i >= 1; --i) {
                 join.push_back("lit." + std::to_string(i));
                 succeed({"relight", "scene.prt", sky, "--part",
                          std::to_string(i) + "/" + std::to_string(count), "-o", join.back(),
-                         "--rotate", "20", "-q"});
+                         "--rotate", "20", "--bounces", "0", "-q"});
             }
             succeed(join);
             EXPECT_EQ(read("whole.npy"), read("joined.npy")) << sky << " in " << count;
         }
     }
-    succeed({"relight", "scene.prt", "sky.hdr", "--part", "1/2", "-o", "first", "-q"});
-    succeed({"relight", "scene.prt", "sun_sky.exr", "--part", "2/2", "-o", "other", "-q"});
+    succeed({"relight", "scene.prt", "sky.hdr", "--part", "1/2", "-o", "first", "--bounces", "0",
+             "-q"});
+    succeed({"relight", "scene.prt", "sun_sky.exr", "--part", "2/2", "-o", "other", "--bounces",
+             "0", "-q"});
     const auto join = [](std::vector<std::string> parts) {
         parts.insert(parts.begin(), "join");
         parts.insert(parts.end(), {"-o", "out.npy"});
