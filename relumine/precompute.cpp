@@ -84,6 +84,8 @@ public:
                PrecomputeReport& report)
         : options_(options), work_(work), report_(report),
           prefix_(mesh.source.empty() ? "" : mesh.source + ": ") {
+        report_ = {};
+        mesh = with_vertices(std::move(mesh));
         scene_.blockers = std::move(mesh.blockers);
         scene_.mesh = std::move(mesh.geometry);
         scene_.settings = {.tolerance = options.tolerance,
@@ -95,7 +97,6 @@ public:
                            .source = std::filesystem::path(mesh.source).filename().string(),
                            .floor_added = mesh.floor_added,
                            .source_hash = mesh.source_hash};
-        report_ = {};
     }
 
     /// Chooses the clusters and leaves the counts to the parts.
@@ -124,6 +125,25 @@ public:
     }
 
 private:
+    /// The mesh with the vertices that are lit: its own, and more where it is coarse.
+    Mesh with_vertices(Mesh mesh) {
+        if (!std::holds_alternative<Vertices>(options_.receivers) && !options_.bounce_tolerance)
+            return mesh;
+        mesh.is_open = mesh.is_open && !options_.no_refine;
+        prt::RefineReport found;
+        mesh = refined_by_itself(std::move(mesh), options_.bias,
+                                 {.stop = work_.stop,
+                                  .on_progress =
+                                      [this](double fraction) {
+                                          if (work_.on_progress)
+                                              work_.on_progress(Stage::Refinement, fraction);
+                                      }},
+                                 &found);
+        if (found.num_points != 0)
+            report_.refined = found;
+        return mesh;
+    }
+
     void check_options() const {
         if (options_.bounce_tolerance && !(*options_.bounce_tolerance > 0.0f))
             throw std::invalid_argument(fmt::format("expected a tolerance of bounces > 0, got {}",

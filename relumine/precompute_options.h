@@ -19,6 +19,7 @@
 #include "prt/precompute_options.h"
 #include "prt/receivers/camera.h"
 #include "prt/receivers/texel_receivers.h"
+#include "prt/refinement/refine.h"
 #include "prt/work.h"
 
 namespace relumine {
@@ -59,6 +60,8 @@ enum class Engine {
 
 /// Parts of a precompute that take time.
 enum class Stage {
+    /// More vertices for a coarse mesh
+    Refinement,
     /// Visibility and clusters
     Clusters,
     /// The view-dependent part; only where there are highlights and an eye
@@ -96,6 +99,9 @@ struct PrecomputeOptions {
 
     /// What is lit
     std::variant<Vertices, Pixels, Texels> receivers = Vertices{};
+    /// The mesh keeps its vertices. Otherwise vertices, those behind bounces included, become more
+    /// where the mesh is coarse: refined_by_itself().
+    bool no_refine = false;
     /// The camera of pixels, and the eye that highlights are for. Without one, pixels take the
     /// automatic camera; vertices and texels are seen from anywhere and have no highlights.
     std::optional<View> view = {};
@@ -164,6 +170,8 @@ struct PrecomputeReport {
     std::size_t num_vertices = 0;
     std::size_t num_triangles = 0;
     std::size_t num_receivers = 0;
+    /// Only of a mesh that was refined by itself; num_vertices counts the new ones.
+    std::optional<prt::RefineReport> refined = {};
     /// As used, in the mesh's unit
     float bias = 0.0f;
     prt::PrecomputeStatistics clusters = {};

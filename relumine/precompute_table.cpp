@@ -245,6 +245,9 @@ OptionTable options_of(PrecomputeOptions& o) {
                                "what is lit: vertices, pixels:WxH[:N] (of --view, N x N samples "
                                "each) or texels:WxH (a lightmap on the mesh's uvs)",
                                {.example = "texels:64x32"}),
+            row("--no-refine", o.no_refine,
+                "keep the mesh's vertices; otherwise a coarse mesh gets more where its light needs "
+                "them"),
             row<ViewText>("--view", o.view,
                           "the camera of pixels, and the eye that highlights are for: "
                           "EX,EY,EZ,TX,TY,TZ[,FOV] (eye, target, vertical degrees: 35) or auto",
