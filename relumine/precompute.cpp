@@ -88,15 +88,17 @@ public:
         mesh = with_vertices(std::move(mesh));
         scene_.blockers = std::move(mesh.blockers);
         scene_.mesh = std::move(mesh.geometry);
-        scene_.settings = {.tolerance = options.tolerance,
-                           .epsilon = options.epsilon,
-                           .min_level = options.min_level,
-                           .face_resolution = options.face_resolution,
-                           .bias = options.bias.value_or(prt::automatic_bias(scene_.mesh)),
-                           .floor_vertices = mesh.floor_vertices,
-                           .source = std::filesystem::path(mesh.source).filename().string(),
-                           .floor_added = mesh.floor_added,
-                           .source_hash = mesh.source_hash};
+        scene_.settings = {
+            .tolerance = options.tolerance.value_or(
+                report_.refined ? ToleranceOfRefined : prt::PrecomputeOptions{}.tolerance),
+            .epsilon = options.epsilon,
+            .min_level = options.min_level,
+            .face_resolution = options.face_resolution,
+            .bias = options.bias.value_or(prt::automatic_bias(scene_.mesh)),
+            .floor_vertices = mesh.floor_vertices,
+            .source = std::filesystem::path(mesh.source).filename().string(),
+            .floor_added = mesh.floor_added,
+            .source_hash = mesh.source_hash};
     }
 
     /// Chooses the clusters and leaves the counts to the parts.
@@ -226,7 +228,7 @@ private:
         const auto num_receivers = static_cast<double>(scene_.receivers.size());
         const double tolerance = options_.epsilon
                                      ? double{*options_.epsilon} * std::sqrt(num_receivers)
-                                     : double{options_.tolerance};
+                                     : double{scene_.settings.tolerance};
         const double all = 6.0 * options_.face_resolution * options_.face_resolution;
         const double least = std::min(all, 6.0 * std::exp2(2.0 * options_.min_level));
         const bool is_fine = tolerance < FinestTolerance;

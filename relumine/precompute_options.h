@@ -84,9 +84,15 @@ enum class Warning {
     Checkpoint,
 };
 
+/// PrecomputeOptions::tolerance where refined_by_itself() added vertices: they stand where shadows
+/// are, so clusters have to be finer for the same root mean square. Measured: with this one the
+/// light of the vertices is right to 0.3 %, and what they interpolate to 1 % to 2 %.
+inline constexpr float ToleranceOfRefined = 0.02f;
+
 struct PrecomputeOptions {
-    /// RMS error of the transfer allowed within a cluster, 1/sr; smaller is finer
-    float tolerance = prt::PrecomputeOptions{}.tolerance;
+    /// RMS error of the transfer allowed within a cluster, 1/sr; smaller is finer. Empty: that of
+    /// prt::PrecomputeOptions, or ToleranceOfRefined.
+    std::optional<float> tolerance = {};
     /// Replaces `tolerance` if given: the paper's form, which allows larger meshes a larger error.
     std::optional<float> epsilon = {};
     /// Every cell is split at least this often

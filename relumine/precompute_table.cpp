@@ -227,7 +227,10 @@ OptionRow material_row(std::vector<SurfaceMaterial>& materials) {
 
 OptionTable options_of(PrecomputeOptions& o) {
     return {row("--tolerance", o.tolerance,
-                "RMS error of the transfer allowed within a cluster, 1/sr", {.min = 0, .max = 1e6}),
+                fmt::format("RMS error of the transfer allowed within a cluster, 1/sr ({}; {} where "
+                            "the mesh or its floor is refined by itself)",
+                            prt::PrecomputeOptions{}.tolerance, ToleranceOfRefined),
+                {.min = 0, .max = 1e6}),
             row("--epsilon", o.epsilon,
                 "the paper's form of the tolerance: grows lax with the mesh's size",
                 {.min = 0, .max = 1e6, .excludes = "--tolerance"}),

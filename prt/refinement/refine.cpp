@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -50,6 +54,9 @@ constexpr std::size_t FewestOfRound = 32, PartsOfWhole = 64;
 
 /// Bounds of edges give way to errors until so small a part of the first edges has bounds only.
 constexpr std::size_t PartsWithBounds = 16;
+
+/// A vertex that fewer of the 1,536 directions reach is hidden, in another solid or under one.
+constexpr int FewestDirections = 16;
 
 /// As vertex_receivers() does it: a part of the way to the triangle's centre, or the bias.
 constexpr float LargestPartOfWay = 0.25f;
@@ -99,9 +106,12 @@ public:
             }
         }
         report_.num_added = num_vertices() - base_.num_vertices();
-        if (!options_.curved)
+        if (options_.curved)
+            return bent();
+        if (!options_.error)
             return split_.take();
-        return bent();
+        const std::vector<Way> ways = ways_out();
+        return moved_out(split_.take(), ways);
     }
 
 private:
@@ -171,6 +181,177 @@ private:
         const std::vector<Bits> bits = trace(added, ends);
         for (std::size_t i = 0; i < vertices.size(); ++i)
             vertex_bits_[vertices[i]] = bits[i];
+        find_movable();
+    }
+
+    /// A new vertex may move where the surface around it is flat and goes on to all sides.
+    void find_movable() {
+        constexpr float LeastCosine = 0.99999f;
+        constexpr double LargestGap = 1e-3;
+        const mesh::TriangleMesh& mesh = split_.mesh();
+        std::vector<double> angles(mesh.num_vertices(), 0.0);
+        std::vector<glm::vec3> faces(mesh.num_vertices(), glm::vec3(0.0f));
+        is_movable_.resize(mesh.num_vertices());
+        for (const std::uint32_t triangle : split_.changed_triangles()) {
+            const glm::vec3 face = face_normal(mesh, triangle);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t vertex = mesh.triangles[triangle][k];
+                const glm::dvec3 at(mesh.positions[vertex]);
+                const auto way = [&](std::size_t other) {
+                    return glm::normalize(
+                        glm::dvec3(mesh.positions[mesh.triangles[triangle][other % 3]]) - at);
+                };
+                angles[vertex] +=
+                    std::acos(std::clamp(glm::dot(way(k + 1), way(k + 2)), -1.0, 1.0));
+                if (faces[vertex] == glm::vec3(0.0f))
+                    faces[vertex] = face;
+                else if (!(glm::dot(faces[vertex], face) > LeastCosine))
+                    angles[vertex] = std::numeric_limits<double>::infinity();
+            }
+        }
+        for (const SplitMesh::Middle& middle : split_.new_vertices())
+            is_movable_[middle.vertex] =
+                std::abs(angles[middle.vertex] - 2.0 * std::numbers::pi) < LargestGap;
+    }
+
+    [[nodiscard]] static int num_lit(const Bits& bits) {
+        int result = 0;
+        for (const std::uint64_t word : bits)
+            result += std::popcount(word);
+        return result;
+    }
+    [[nodiscard]] bool is_hidden(std::uint32_t vertex) const {
+        return num_lit(vertex_bits_[vertex]) < FewestDirections;
+    }
+    [[nodiscard]] bool moves_to(std::uint32_t hidden, std::uint32_t lit) const {
+        return is_movable_[hidden] && is_hidden(hidden) && !is_hidden(lit);
+    }
+
+    /// Whether one end of a short edge will move towards the other. There is no need to split it.
+    [[nodiscard]] bool is_left_to_move(std::uint32_t edge) {
+        if (split_.length(edge) >= 4.0f * min_edge_ || options_.curved)
+            return false;
+        ends_.clear();
+        split_.append_ends(edge, ends_);
+        return ends_.size() == 1 &&
+               (moves_to(ends_[0].low, ends_[0].high) || moves_to(ends_[0].high, ends_[0].low));
+    }
+
+    /// From a vertex that is hidden in another solid, along an edge to the first place that light
+    /// reaches.
+    struct Way {
+        std::uint32_t vertex, towards;
+        /// The last part of the way that is known to be hidden, and the first that is not.
+        float hidden = 0.0f, lit = 1.0f;
+    };
+
+    /// Returns the ways along which hidden vertices may leave, by bisection.
+    std::vector<Way> ways_out() {
+        constexpr int Bisections = 6;
+        const mesh::TriangleMesh& mesh = split_.mesh();
+        is_movable_.resize(mesh.num_vertices());
+        is_traced_.resize(mesh.num_vertices());
+        std::vector<Way> ways;
+        for (const mesh::Triangle& triangle : mesh.triangles)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t a = triangle[k], b = triangle[(k + 1) % 3];
+                // Around a vertex that may move, each edge leaves in one triangle.
+                if (is_movable_[a] && is_traced_[a] && is_traced_[b] && moves_to(a, b))
+                    ways.push_back({a, b});
+            }
+        for (int i = 0; i < Bisections; ++i) {
+            Receivers receivers;
+            for (const Way& way : ways) {
+                const float part = 0.5f * (way.hidden + way.lit);
+                add_mean(std::array{way.vertex, way.towards}, std::array{1.0f - part, part},
+                         receivers);
+            }
+            const std::vector<Bits> bits = trace(receivers);
+            for (std::size_t j = 0; j < ways.size(); ++j) {
+                // Beside a solid half of the light is left. Gaps between solids let in little.
+                const int least =
+                    std::max(FewestDirections, num_lit(vertex_bits_[ways[j].towards]) / 4);
+                (num_lit(bits[j]) < least ? ways[j].hidden : ways[j].lit) =
+                    0.5f * (ways[j].hidden + ways[j].lit);
+            }
+        }
+        return ways;
+    }
+
+    /// Moves vertices out of other solids, each by the shortest way that turns no triangle over:
+    /// their darkness would spread over the triangles beside them.
+    static mesh::TriangleMesh moved_out(mesh::TriangleMesh mesh, std::vector<Way> ways) {
+        const auto length = [&](const Way& way) {
+            return way.lit * glm::distance(mesh.positions[way.vertex], mesh.positions[way.towards]);
+        };
+        std::vector<std::pair<float, Way>> sorted;
+        for (const Way& way : ways)
+            sorted.emplace_back(length(way), way);
+        std::stable_sort(sorted.begin(), sorted.end(),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+        std::vector<std::vector<std::uint32_t>> around(ways.empty() ? 0 : mesh.num_vertices());
+        std::vector<bool> is_done(around.size());
+        for (const Way& way : ways)
+            is_done[way.vertex] = true;
+        if (!ways.empty())
+            for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i)
+                for (const std::uint32_t vertex : mesh.triangles[i])
+                    if (is_done[vertex])
+                        around[vertex].push_back(i);
+        is_done.assign(around.size(), false);
+        for (const auto& [distance, way] : sorted)
+            if (!is_done[way.vertex])
+                is_done[way.vertex] = move(mesh, way, around[way.vertex]);
+        return mesh;
+    }
+
+    /// Moves a vertex of a flat surface, with all that it carries. Returns false where a triangle
+    /// would turn over.
+    static bool move(mesh::TriangleMesh& mesh, const Way& way,
+                     std::span<const std::uint32_t> triangles) {
+        const glm::vec3 before = mesh.positions[way.vertex];
+        const glm::vec3 after = before + way.lit * (mesh.positions[way.towards] - before);
+        const auto cross = [&](std::uint32_t triangle, const glm::vec3& at) {
+            std::array<glm::dvec3, 3> corners{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t vertex = mesh.triangles[triangle][k];
+                corners[k] = glm::dvec3(vertex == way.vertex ? at : mesh.positions[vertex]);
+            }
+            return glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+        };
+        constexpr double LeastPart = 1e-3;
+        for (const std::uint32_t triangle : triangles) {
+            const glm::dvec3 old = cross(triangle, before);
+            if (!(glm::dot(cross(triangle, after), old) > LeastPart * glm::dot(old, old)))
+                return false;
+        }
+        // A triangle's uvs go on evenly beyond its corner.
+        if (!mesh.corner_uvs.empty())
+            for (const std::uint32_t triangle : triangles) {
+                const mesh::Triangle corners = mesh.triangles[triangle];
+                const auto k = static_cast<std::size_t>(
+                    std::find(corners.begin(), corners.end(), way.vertex) - corners.begin());
+                const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
+                const glm::dvec3 normal = cross(triangle, before);
+                const glm::dvec3 origin(before), to(after);
+                const glm::dvec3 u = glm::dvec3(mesh.positions[corners[next]]) - origin;
+                const glm::dvec3 v = glm::dvec3(mesh.positions[corners[last]]) - origin;
+                const double square = glm::dot(normal, normal);
+                const auto part_u =
+                    static_cast<float>(glm::dot(glm::cross(to - origin, v), normal) / square);
+                const auto part_v =
+                    static_cast<float>(glm::dot(glm::cross(u, to - origin), normal) / square);
+                auto& uvs = mesh.corner_uvs[triangle];
+                uvs[k] += part_u * (uvs[next] - uvs[k]) + part_v * (uvs[last] - uvs[k]);
+            }
+        const auto follow = [&](auto& values) {
+            if (!values.empty())
+                values[way.vertex] += way.lit * (values[way.towards] - values[way.vertex]);
+        };
+        follow(mesh.uvs);
+        follow(mesh.colors);
+        mesh.positions[way.vertex] = after;
+        return true;
     }
 
     std::vector<Bits> trace(const Receivers& receivers,
@@ -234,8 +415,8 @@ private:
             ends_.clear();
             split_.append_ends(edge, ends_);
             is_candidate_[edge] =
-                !split_.is_split(edge) && split_.length(edge) >= 2.0f * min_edge_ &&
-                split_.length(edge) > 0.0f &&
+                !is_left_to_move(edge) && !split_.is_split(edge) &&
+                split_.length(edge) >= 2.0f * min_edge_ && split_.length(edge) > 0.0f &&
                 std::all_of(ends_.begin(), ends_.end(), [this](const SplitMesh::Ends& ends) {
                     return is_traced_[ends.low] && is_traced_[ends.high];
                 });
@@ -476,7 +657,7 @@ private:
     std::vector<bool> is_refined_;
     /// [num_vertices]. Only vertices of triangles that are refined are traced.
     std::vector<Bits> vertex_bits_;
-    std::vector<bool> is_traced_;
+    std::vector<bool> is_traced_, is_movable_;
     /// [num_edges]. Of edges that were not asked, a bound.
     std::vector<float> errors_;
     std::vector<bool> is_asked_, is_candidate_;
