@@ -246,10 +246,11 @@ namespace {
 /// they are wider than some twenty pixels of a picture that the mesh fills. Edges of twice the
 /// least length are split.
 constexpr float CoarseEdge = 1.0f / 40.0f, LeastEdge = 1.0f / 320.0f,
-                LeastEdgeOfFloor = 1.0f / 96.0f;
+                LeastEdgeOfFloor = 1.0f / 160.0f;
 
-/// RefineOptions::error: twice what --refine asks for leaves a third of the vertices.
-constexpr float ErrorOfMesh = 0.02f, ErrorOfFloor = 0.02f;
+/// RefineOptions::error. Twice what --refine asks for leaves a third of the vertices. Shadows on an
+/// even floor show every triangle, and its light hardly changes elsewhere.
+constexpr float ErrorOfMesh = 0.02f, ErrorOfFloor = 0.005f;
 
 /// Where refined_by_itself() finds things: the scene, and what it adds to.
 struct Refining {
@@ -289,13 +290,14 @@ Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& wo
         mesh.is_open && size > 0.0f && prt::has_edge_longer_than(own, CoarseEdge * size);
     if (!is_coarse && !mesh.is_floor_open)
         return mesh;
-    if (!mesh.blockers)
-        mesh.blockers = blockers_of(mesh.geometry);
+    mesh::TriangleMesh before =
+        mesh.blockers ? std::move(*mesh.blockers) : blockers_of(mesh.geometry);
+    const bool has_blockers = std::exchange(mesh.blockers, {}).has_value();
     mesh::TriangleMesh floor = part_of(mesh.geometry, first_of_floor, mesh.geometry.num_vertices());
     RefineReport local;
     try {
-        const prt::RayScene rays(*mesh.blockers, prt::RayScene::Packets::Wide);
-        const prt::BeamScene beams(*mesh.blockers, rays);
+        const prt::RayScene rays(before, prt::RayScene::Packets::Wide);
+        const prt::BeamScene beams(before, rays);
         const Refining with{beams, bias.value_or(prt::automatic_bias(mesh.geometry)), work,
                             report != nullptr ? *report : local};
         mesh.geometry = is_coarse ? refined_part(own,
@@ -314,6 +316,8 @@ Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& wo
     }
     mesh.floor_added = static_cast<std::uint32_t>(floor.num_vertices() - n * n);
     mesh.is_open = mesh.is_floor_open = false;
+    if (has_blockers || mesh.geometry.num_vertices() != before.num_vertices())
+        mesh.blockers = std::move(before);
     return mesh;
 }
 

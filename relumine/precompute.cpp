@@ -141,7 +141,7 @@ private:
                                               work_.on_progress(Stage::Refinement, fraction);
                                       }},
                                  &found);
-        if (found.num_points != 0)
+        if (found.num_added != 0)
             report_.refined = found;
         return mesh;
     }

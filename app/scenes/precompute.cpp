@@ -229,11 +229,18 @@ Report floor_report(const Scene& scene, const Session& session) {
     const mesh::FloorPlace place =
         mesh::floor_place(std::span(scene.mesh.positions).subspan(*first_floor_vertex(scene)),
                           scene.settings.floor_vertices);
-    session.say(fmt::format(
-        "floor: {0} x {0} vertices over {1:.4g} x {1:.4g}; one spans {2:.3g} under the mesh and "
-        "{3:.3g} at the edge",
-        n, 2.0f * place.half_side, place.spacing_inside, place.spacing_outside));
+    if (scene.settings.floor_added != 0)
+        session.say(
+            fmt::format("floor: {0} vertices over {1:.4g} x {1:.4g}, closer where shadows fall",
+                        n * n + scene.settings.floor_added, 2.0f * place.half_side));
+    else
+        session.say(fmt::format("floor: {0} x {0} vertices over {1:.4g} x {1:.4g}; one spans "
+                                "{2:.3g} under the mesh and "
+                                "{3:.3g} at the edge",
+                                n, 2.0f * place.half_side, place.spacing_inside,
+                                place.spacing_outside));
     return {{"vertices", n},
+            {"added", scene.settings.floor_added},
             {"side", 2.0f * place.half_side},
             {"spacing_inside", place.spacing_inside},
             {"spacing_outside", place.spacing_outside}};
