@@ -179,7 +179,7 @@ TEST(RefinedByItself, AWallWhoseCornersAreHiddenIsLit) {
     const Mesh wall(wall_behind_posts());
     PrecomputeReport report;
     LitScene lit(precompute(wall, small_work(), {}, &report));
-    lit.light(Environment(cubemap::CubeMap(16, glm::vec3(1.0f))));
+    lit.light(cubemap::CubeMap(16, glm::vec3(1.0f)));
     ASSERT_TRUE(report.refined);
     EXPECT_EQ(report.num_vertices, wall.geometry.num_vertices() + report.refined->num_added);
     EXPECT_LE(report.refined->num_added, BudgetOfMesh);
@@ -198,7 +198,7 @@ TEST(RefinedByItself, AWallWhoseCornersAreHiddenIsLit) {
     PrecomputeOptions as_it_is = small_work();
     as_it_is.no_refine = true;
     LitScene dark(precompute(wall, as_it_is, {}, &report));
-    dark.light(Environment(cubemap::CubeMap(16, glm::vec3(1.0f))));
+    dark.light(cubemap::CubeMap(16, glm::vec3(1.0f)));
     EXPECT_FALSE(report.refined);
     EXPECT_EQ(dark.scene().mesh.positions, wall.geometry.positions);
     EXPECT_LT(light_in_the_middle(dark), 0.1f);
