@@ -57,9 +57,12 @@ void describe_scene(const InfoArguments& options, const Session& session) {
                                  : fmt::format("tolerance           {} 1/sr", settings.tolerance));
     session.say(fmt::format("depth, resolution   at least {}, up to R = {}", settings.min_level,
                             settings.face_resolution));
-    session.say(fmt::format(
-        "bias, floor         {}, {}", settings.bias,
-        settings.floor_vertices == 0 ? "none" : fmt::format("{0} x {0}", settings.floor_vertices)));
+    session.say(fmt::format("bias, floor         {}, {}", settings.bias,
+                            settings.floor_vertices == 0 ? "none"
+                            : settings.floor_added == 0
+                                ? fmt::format("{0} x {0}", settings.floor_vertices)
+                                : fmt::format("{0} x {0} and {1} more", settings.floor_vertices,
+                                              settings.floor_added)));
     session.say(fmt::format("partly seen         {} of {} (block, cluster) pairs",
                             counts.num_mixed(), counts.num_blocks() * counts.num_leaves));
     session.say(fmt::format("file                {:.1f} MB{}",

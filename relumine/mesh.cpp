@@ -131,9 +131,11 @@ OptionRow crease_row(std::optional<float>& degrees) {
 
 OptionTable options_of(MeshOptions& o) {
     return {
-        row("--floor", o.floor_vertices,
-            "add a floor of N x N vertices under the mesh; 193 when no N is given",
-            {.min = 2, .max = 65535, .type = "[N]", .bare = "193"}),
+        row<FloorText>(
+            "--floor", o.floor_vertices,
+            "add a floor under the mesh: a grid of N x N vertices, or auto, when no N is "
+            "given: as many vertices as its shadows need",
+            {.type = "[N]", .bare = "auto", .example = "193"}),
         row("--floor-scale", o.floor_scale,
             "side of the floor over the mesh's width, or half its height if that is more",
             {.min = 1e-6, .max = 1e6, .needs = "--floor"}),
@@ -167,11 +169,31 @@ Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
     if (options.crease)
         mesh.geometry = mesh::with_creases(mesh.geometry, *options.crease);
     mesh::turn_up(mesh.geometry, options.up.value_or(mesh::customary_up(path)));
-    if (options.floor_vertices) {
-        mesh::append_floor(mesh.geometry, *options.floor_vertices, options.floor_scale);
-        mesh.floor_vertices = *options.floor_vertices;
-    }
+    add_floor(mesh, options);
     return mesh;
+}
+
+std::uint32_t FloorText::read(const std::string& text) {
+    if (text == "auto")
+        return AutomaticFloor;
+    const std::optional<std::uint32_t> n = parse_count(text);
+    if (!n || *n < 2 || *n > 65535)
+        refuse_text("auto or a number from 2 to 65535", text);
+    return *n;
+}
+
+std::string FloorText::show(std::uint32_t n) {
+    return n == AutomaticFloor ? "auto" : fmt::format("{}", n);
+}
+
+void add_floor(Mesh& mesh, const MeshOptions& options) {
+    // Coarse, but fine enough to begin with: half of a row is narrower than what stands on it.
+    constexpr std::uint32_t NumToBegin = 25;
+    if (!options.floor_vertices)
+        return;
+    mesh.is_floor_open = *options.floor_vertices == AutomaticFloor;
+    mesh.floor_vertices = mesh.is_floor_open ? NumToBegin : *options.floor_vertices;
+    mesh::append_floor(mesh.geometry, mesh.floor_vertices, options.floor_scale);
 }
 
 namespace {
@@ -199,6 +221,7 @@ Mesh refined(Mesh mesh, const RefineOptions& options, const prt::Work& work, Ref
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(prefix_of(mesh) + error.what());
     }
+    mesh.is_open = mesh.is_floor_open = false;
     if (options.curved)
         mesh.blockers.reset();
     else if (!mesh.blockers)
@@ -217,7 +240,89 @@ Mesh refined(Mesh mesh, const RefineOptions& options, const prt::Work& work, Ref
     return mesh;
 }
 
+namespace {
+
+/// Parts of the diagonal of the mesh without its floor. Triangles with longer sides are coarse:
+/// they are wider than some twenty pixels of a picture that the mesh fills. Edges of twice the
+/// least length are split.
+constexpr float CoarseEdge = 1.0f / 40.0f, LeastEdge = 1.0f / 320.0f,
+                LeastEdgeOfFloor = 1.0f / 160.0f;
+
+/// RefineOptions::error. Twice what --refine asks for leaves a third of the vertices. Shadows on an
+/// even floor show every triangle, and its light hardly changes elsewhere.
+constexpr float ErrorOfMesh = 0.02f, ErrorOfFloor = 0.005f;
+
+/// Where refined_by_itself() finds things: the scene, and what it adds to.
+struct Refining {
+    const prt::Blockers& blockers;
+    float bias;
+    const prt::Work& work;
+    RefineReport& report;
+};
+
+mesh::TriangleMesh refined_part(const mesh::TriangleMesh& part, RefineOptions options,
+                                std::size_t budget, const Refining& with) {
+    options.bias = with.bias;
+    options.max_vertices =
+        std::min<std::size_t>(part.num_vertices() + budget, RefineOptions{}.max_vertices);
+    RefineReport found;
+    mesh::TriangleMesh result = prt::refine(part, with.blockers, options, with.work, &found);
+    RefineReport& sum = with.report;
+    sum.num_rounds = std::max(sum.num_rounds, found.num_rounds);
+    sum.num_points += found.num_points;
+    sum.num_added += found.num_added;
+    sum.largest_error = std::max(sum.largest_error, found.largest_error);
+    sum.is_at_limit = sum.is_at_limit || found.is_at_limit;
+    sum.seconds += found.seconds;
+    return result;
+}
+
+} // namespace
+
+Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& work,
+                       RefineReport* report) {
+    const std::size_t n = mesh.floor_vertices;
+    const std::size_t first_of_floor =
+        mesh.geometry.num_vertices() - (n == 0 ? 0 : n * n + mesh.floor_added);
+    const mesh::TriangleMesh own = part_of(mesh.geometry, 0, first_of_floor);
+    const float size = mesh::bounds(own).diagonal();
+    const bool is_coarse =
+        mesh.is_open && size > 0.0f && prt::has_edge_longer_than(own, CoarseEdge * size);
+    if (!is_coarse && !mesh.is_floor_open)
+        return mesh;
+    mesh::TriangleMesh before =
+        mesh.blockers ? std::move(*mesh.blockers) : blockers_of(mesh.geometry);
+    const bool has_blockers = std::exchange(mesh.blockers, {}).has_value();
+    mesh::TriangleMesh floor = part_of(mesh.geometry, first_of_floor, mesh.geometry.num_vertices());
+    RefineReport local;
+    try {
+        const prt::RayScene rays(before, prt::RayScene::Packets::Wide);
+        const prt::BeamScene beams(before, rays);
+        const Refining with{beams, bias.value_or(prt::automatic_bias(mesh.geometry)), work,
+                            report != nullptr ? *report : local};
+        mesh.geometry = is_coarse ? refined_part(own,
+                                                 {.error = ErrorOfMesh,
+                                                  .coarse_edge = CoarseEdge * size,
+                                                  .min_edge = LeastEdge * size},
+                                                 BudgetOfMesh, with)
+                                  : own;
+        if (mesh.is_floor_open)
+            floor =
+                refined_part(floor, {.error = ErrorOfFloor, .min_edge = LeastEdgeOfFloor * size},
+                             BudgetOfFloor, with);
+        append(mesh.geometry, floor);
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(prefix_of(mesh) + error.what());
+    }
+    mesh.floor_added = static_cast<std::uint32_t>(floor.num_vertices() - n * n);
+    mesh.is_open = mesh.is_floor_open = false;
+    if (has_blockers || mesh.geometry.num_vertices() != before.num_vertices())
+        mesh.blockers = std::move(before);
+    return mesh;
+}
+
 Mesh simplified(Mesh mesh, std::size_t num_vertices) {
+    mesh.is_open = false;
     if (!mesh.blockers)
         mesh.blockers = blockers_of(mesh.geometry);
     const std::size_t n = mesh.floor_vertices;

@@ -36,12 +36,25 @@ struct Mesh {
     /// its end. 0: there is no floor.
     std::uint32_t floor_vertices = 0;
     std::uint32_t floor_added = 0;
+    /// Whether refined_by_itself() may give the floor, or the rest, more vertices. Whoever chose
+    /// the vertices wants these.
+    bool is_floor_open = false, is_open = true;
     /// The triangles that block light, where they are not those of `geometry`.
     std::optional<mesh::TriangleMesh> blockers = {};
 
     Mesh() = default;
     // NOLINTNEXTLINE(google-explicit-constructor): a mesh made in code is a mesh
     Mesh(mesh::TriangleMesh triangles) : geometry(std::move(triangles)) {}
+};
+
+/// In place of a floor's n.
+inline constexpr std::uint32_t AutomaticFloor = 0;
+
+/// "auto" or n of n x n vertices.
+struct FloorText {
+    static constexpr const char* Type = "N";
+    static std::uint32_t read(const std::string& text);
+    static std::string show(std::uint32_t n);
 };
 
 struct MeshOptions {
@@ -51,7 +64,8 @@ struct MeshOptions {
     mesh::NormalSource normals = mesh::NormalSource::File;
     /// Replaces them by mesh::with_creases() of so many degrees.
     std::optional<float> crease = {};
-    /// n: adds a floor of n x n vertices under the mesh; 193 gives the scenes of [JN]
+    /// n: adds a floor of n x n vertices under the mesh; 193 gives the scenes of [JN].
+    /// AutomaticFloor: a coarse one, which precompute() refines where shadows fall.
     std::optional<std::uint32_t> floor_vertices = {};
     /// Side of the floor over the mesh's width, or half its height if that is more.
     float floor_scale = 4.0f;
@@ -84,6 +98,22 @@ using prt::RefineReport;
 ///          Cancelled.
 [[nodiscard]] Mesh refined(Mesh mesh, const RefineOptions& options = {}, const prt::Work& work = {},
                            RefineReport* report = nullptr);
+
+/// Adds the floor of the options, if there is one.
+void add_floor(Mesh& mesh, const MeshOptions& options);
+
+/// What refined_by_itself() may add to a mesh, and to its floor.
+inline constexpr std::size_t BudgetOfMesh = 24000, BudgetOfFloor = 7000;
+
+/// Returns the mesh with more vertices where it is coarse, its triangles large in the scene, and
+/// light changes between them; so is an automatic floor. At most BudgetOfMesh and BudgetOfFloor
+/// vertices are added. A fine mesh, and one whose vertices were chosen by refined() or
+/// simplified(), stays as it is. This is what precompute() does unless it is told not to.
+///
+/// Report:  gets the sums of mesh and floor; it stays as it is where nothing is asked.
+/// Throws:  as refined() does.
+[[nodiscard]] Mesh refined_by_itself(Mesh mesh, std::optional<float> bias = {},
+                                     const prt::Work& work = {}, RefineReport* report = nullptr);
 
 /// Returns the mesh with so many vertices, its floor not counted: mesh::simplified(). The original
 /// triangles remain what blocks light.

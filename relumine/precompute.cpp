@@ -84,18 +84,21 @@ public:
                PrecomputeReport& report)
         : options_(options), work_(work), report_(report),
           prefix_(mesh.source.empty() ? "" : mesh.source + ": ") {
+        report_ = {};
+        mesh = with_vertices(std::move(mesh));
         scene_.blockers = std::move(mesh.blockers);
         scene_.mesh = std::move(mesh.geometry);
-        scene_.settings = {.tolerance = options.tolerance,
-                           .epsilon = options.epsilon,
-                           .min_level = options.min_level,
-                           .face_resolution = options.face_resolution,
-                           .bias = options.bias.value_or(prt::automatic_bias(scene_.mesh)),
-                           .floor_vertices = mesh.floor_vertices,
-                           .source = std::filesystem::path(mesh.source).filename().string(),
-                           .floor_added = mesh.floor_added,
-                           .source_hash = mesh.source_hash};
-        report_ = {};
+        scene_.settings = {
+            .tolerance = options.tolerance.value_or(
+                report_.refined ? ToleranceOfRefined : prt::PrecomputeOptions{}.tolerance),
+            .epsilon = options.epsilon,
+            .min_level = options.min_level,
+            .face_resolution = options.face_resolution,
+            .bias = options.bias.value_or(prt::automatic_bias(scene_.mesh)),
+            .floor_vertices = mesh.floor_vertices,
+            .source = std::filesystem::path(mesh.source).filename().string(),
+            .floor_added = mesh.floor_added,
+            .source_hash = mesh.source_hash};
     }
 
     /// Chooses the clusters and leaves the counts to the parts.
@@ -124,6 +127,25 @@ public:
     }
 
 private:
+    /// The mesh with the vertices that are lit: its own, and more where it is coarse.
+    Mesh with_vertices(Mesh mesh) {
+        if (!std::holds_alternative<Vertices>(options_.receivers) && !options_.bounce_tolerance)
+            return mesh;
+        mesh.is_open = mesh.is_open && !options_.no_refine;
+        prt::RefineReport found;
+        mesh = refined_by_itself(std::move(mesh), options_.bias,
+                                 {.stop = work_.stop,
+                                  .on_progress =
+                                      [this](double fraction) {
+                                          if (work_.on_progress)
+                                              work_.on_progress(Stage::Refinement, fraction);
+                                      }},
+                                 &found);
+        if (found.num_added != 0)
+            report_.refined = found;
+        return mesh;
+    }
+
     void check_options() const {
         if (options_.bounce_tolerance && !(*options_.bounce_tolerance >= 0.0f))
             throw std::invalid_argument(fmt::format("expected a tolerance of bounces >= 0, got {}",
@@ -219,7 +241,7 @@ private:
         const auto num_receivers = static_cast<double>(scene_.receivers.size());
         const double tolerance = options_.epsilon
                                      ? double{*options_.epsilon} * std::sqrt(num_receivers)
-                                     : double{options_.tolerance};
+                                     : double{scene_.settings.tolerance};
         const double all = 6.0 * options_.face_resolution * options_.face_resolution;
         const double least = std::min(all, 6.0 * std::exp2(2.0 * options_.min_level));
         const bool is_fine = tolerance < FinestTolerance;

@@ -19,6 +19,7 @@
 #include "prt/precompute_options.h"
 #include "prt/receivers/camera.h"
 #include "prt/receivers/texel_receivers.h"
+#include "prt/refinement/refine.h"
 #include "prt/work.h"
 
 namespace relumine {
@@ -59,6 +60,8 @@ enum class Engine {
 
 /// Parts of a precompute that take time.
 enum class Stage {
+    /// More vertices for a coarse mesh
+    Refinement,
     /// Visibility and clusters
     Clusters,
     /// The view-dependent part; only where there are highlights and an eye
@@ -81,9 +84,15 @@ enum class Warning {
     Checkpoint,
 };
 
+/// PrecomputeOptions::tolerance where refined_by_itself() added vertices: they stand where shadows
+/// are, so clusters have to be finer for the same root mean square. Measured: with this one the
+/// light of the vertices is right to 0.3 %, and what they interpolate to 1 % to 2 %.
+inline constexpr float ToleranceOfRefined = 0.02f;
+
 struct PrecomputeOptions {
-    /// RMS error of the transfer allowed within a cluster, 1/sr; smaller is finer
-    float tolerance = prt::PrecomputeOptions{}.tolerance;
+    /// RMS error of the transfer allowed within a cluster, 1/sr; smaller is finer. Empty: that of
+    /// prt::PrecomputeOptions, or ToleranceOfRefined.
+    std::optional<float> tolerance = {};
     /// Replaces `tolerance` if given: the paper's form, which allows larger meshes a larger error.
     std::optional<float> epsilon = {};
     /// Every cell is split at least this often
@@ -96,6 +105,9 @@ struct PrecomputeOptions {
 
     /// What is lit
     std::variant<Vertices, Pixels, Texels> receivers = Vertices{};
+    /// The mesh keeps its vertices. Otherwise vertices, those behind bounces included, become more
+    /// where the mesh is coarse: refined_by_itself().
+    bool no_refine = false;
     /// The camera of pixels, and the eye that highlights are for. Without one, pixels take the
     /// automatic camera; vertices and texels are seen from anywhere and have no highlights.
     std::optional<View> view = {};
@@ -165,6 +177,8 @@ struct PrecomputeReport {
     std::size_t num_vertices = 0;
     std::size_t num_triangles = 0;
     std::size_t num_receivers = 0;
+    /// Only of a mesh that was refined by itself; num_vertices counts the new ones.
+    std::optional<prt::RefineReport> refined = {};
     /// As used, in the mesh's unit
     float bias = 0.0f;
     prt::PrecomputeStatistics clusters = {};

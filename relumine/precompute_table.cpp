@@ -227,7 +227,10 @@ OptionRow material_row(std::vector<SurfaceMaterial>& materials) {
 
 OptionTable options_of(PrecomputeOptions& o) {
     return {row("--tolerance", o.tolerance,
-                "RMS error of the transfer allowed within a cluster, 1/sr", {.min = 0, .max = 1e6}),
+                fmt::format("RMS error of the transfer allowed within a cluster, 1/sr ({}; {} where "
+                            "the mesh or its floor is refined by itself)",
+                            prt::PrecomputeOptions{}.tolerance, ToleranceOfRefined),
+                {.min = 0, .max = 1e6}),
             row("--epsilon", o.epsilon,
                 "the paper's form of the tolerance: grows lax with the mesh's size",
                 {.min = 0, .max = 1e6, .excludes = "--tolerance"}),
@@ -245,6 +248,9 @@ OptionTable options_of(PrecomputeOptions& o) {
                                "what is lit: vertices, pixels:WxH[:N] (of --view, N x N samples "
                                "each) or texels:WxH (a lightmap on the mesh's uvs)",
                                {.example = "texels:64x32"}),
+            row("--no-refine", o.no_refine,
+                "keep the mesh's vertices; otherwise a coarse mesh gets more where its light needs "
+                "them"),
             row<ViewText>("--view", o.view,
                           "the camera of pixels, and the eye that highlights are for: "
                           "EX,EY,EZ,TX,TY,TZ[,FOV] (eye, target, vertical degrees: 35) or auto",

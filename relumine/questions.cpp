@@ -1,5 +1,6 @@
 #include "relumine/questions.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -8,8 +9,11 @@
 #include <glm/geometric.hpp>
 
 #include "cubemap/layers/layer_composite.h"
+#include "prt/receivers/pixel_receivers.h"
 #include "relight/contribution.h"
+#include "relight/pictures/framing.h"
 #include "relight/reference/path_tracer.h"
+#include "relight/sharp/light_packets.h"
 
 namespace relumine {
 
@@ -94,29 +98,69 @@ double add_traced(const LitScene& lit, std::span<const std::uint32_t> receivers,
     return all > 0.0 ? std::sqrt(errors / all) : 0.0;
 }
 
-/// What the vertices interpolate against exact integration, at random points between them.
-std::optional<Verification::Surface> verify_surface(const LitScene& lit,
-                                                    const VerifyOptions& options) {
-    const Scene& scene = lit.scene();
-    Verification::Surface result{
-        .points = prt::random_points(scene.mesh, options.num_surface_points, options.seed),
-        .error = {}};
-    if (result.points.empty())
+/// What a picture shows of points of the surface against exact integration: what the vertices
+/// interpolate, and lights that are traced at every point.
+std::optional<Verification::Surface> verify_points(const LitScene& lit,
+                                                   std::vector<prt::MeshPoint> points,
+                                                   std::span<const glm::vec3> at_vertices,
+                                                   std::span<const relight::SharpLight> lights,
+                                                   const VerifyOptions& options) {
+    if (points.empty())
         return std::nullopt;
-    const std::span<const glm::vec3> at_vertices = lit.relighter().diffuse_radiance();
+    const Scene& scene = lit.scene();
+    const relight::LightPackets packets(lights);
+    const relight::ShadowRays rays{.blockers = &lit.rays().of_mesh(), .bias = scene.settings.bias};
     prt::Receivers receivers;
     std::vector<std::uint32_t> indices;
-    std::vector<glm::vec3> interpolated;
-    for (const prt::MeshPoint& point : result.points) {
+    std::vector<glm::vec3> shown;
+    for (const prt::MeshPoint& point : points) {
         indices.push_back(static_cast<std::uint32_t>(indices.size()));
-        receivers.positions.push_back(prt::smooth_position(scene.mesh, point));
-        receivers.normals.push_back(prt::shading_normal(scene.mesh, point));
-        interpolated.push_back(prt::value_at(scene.mesh, at_vertices, point));
+        const glm::vec3 position = prt::smooth_position(scene.mesh, point);
+        const glm::vec3 normal = prt::shading_normal(scene.mesh, point);
+        receivers.positions.push_back(position);
+        receivers.normals.push_back(normal);
+        shown.push_back(prt::value_at(scene.mesh, at_vertices, point) +
+                        glm::vec3(packets.radiance(position, normal, rays)));
     }
     const relight::ExactOptions exact_options{.bias = scene.settings.bias, .stop = options.stop};
     const auto exact = exact_radiance(lit, receivers, indices, options, exact_options);
-    result.error = relight::compare(indices, exact, interpolated);
+    Verification::Surface result{.points = std::move(points), .error = {}};
+    result.error = relight::compare(indices, exact, shown);
     return result;
+}
+
+/// Points of fronts that a picture of the whole mesh shows, spread evenly over it.
+std::vector<prt::MeshPoint> points_of_picture(const LitScene& lit, std::size_t most) {
+    constexpr std::uint32_t Width = 64, Height = 48;
+    const Scene& scene = lit.scene();
+    if (most == 0)
+        return {};
+    const prt::Receivers seen =
+        prt::pixel_receivers(
+            scene.mesh, lit.rays().of_mesh(),
+            {.camera = relight::framed(scene.mesh), .width = Width, .height = Height})
+            .receivers;
+    std::vector<prt::MeshPoint> fronts;
+    for (std::size_t i = 0; i < seen.size(); ++i)
+        if (glm::dot(seen.normals[i], prt::shading_normal(scene.mesh, seen.points[i])) > 0.0f)
+            fronts.push_back(seen.points[i]);
+    std::vector<prt::MeshPoint> result;
+    const std::size_t count = std::min(most, fronts.size());
+    for (std::size_t i = 0; i < count; ++i)
+        result.push_back(fronts[i * fronts.size() / count]);
+    return result;
+}
+
+/// Pictures trace sharp lights by themselves, unless the scene has highlights, whose part of them
+/// is not diffuse.
+std::optional<Verification::Surface> verify_picture(const LitScene& lit,
+                                                    const VerifyOptions& options) {
+    const relight::Relighter& relighter = lit.relighter();
+    std::vector<prt::MeshPoint> points = points_of_picture(lit, options.num_surface_points);
+    const auto lights = relight::picture_lights(relighter);
+    if (lights.empty() || lit.scene().transfer.glossy)
+        return verify_points(lit, std::move(points), relighter.diffuse_radiance(), {}, options);
+    return verify_points(lit, std::move(points), relighter.soft_radiance(), lights, options);
 }
 
 double sum_of(std::span<const glm::vec3> radiance) {
@@ -143,8 +187,21 @@ Verification verify(const LitScene& lit, const VerifyOptions& options) {
     if (!lit.bounces().bounced().empty())
         result.noise = add_traced(lit, result.receivers, options, exact);
     result.error = relight::compare(result.receivers, exact, lit.radiance());
-    if (options.num_surface_points != 0 && prt::on_vertices(scene.layout))
-        result.surface = verify_surface(lit, options);
+    if (options.num_surface_points == 0 || !prt::on_vertices(scene.layout))
+        return result;
+    result.surface =
+        verify_points(lit, prt::random_points(scene.mesh, options.num_surface_points, options.seed),
+                      lit.relighter().diffuse_radiance(), {}, options);
+    result.picture = verify_picture(lit, options);
+    return result;
+}
+
+WorstError worst_of(const Verification& verification) {
+    WorstError result{.relative_l2 = verification.error.relative_l2};
+    const std::array parts = {&verification.surface, &verification.picture};
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (*parts[i] && (*parts[i])->error.relative_l2 > result.relative_l2)
+            result = {(*parts[i])->error.relative_l2, VerifiedPlaces[i + 1]};
     return result;
 }
 

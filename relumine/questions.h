@@ -1,12 +1,14 @@
 // Questions about the light of a scene: how right it is, and where it comes from.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -53,12 +55,26 @@ struct Verification {
         relight::ErrorReport error;
     };
     std::optional<Surface> surface = {};
+    /// The same at points that a picture of the whole mesh shows, and as it shows them: lights that
+    /// it traces pixel by pixel are traced. At most num_surface_points. Only for vertices.
+    std::optional<Surface> picture = {};
     /// Standard error of the paths that bounces were compared with, relative to the radiance, L2
     /// over the receivers; it is a part of error.relative_l2. 0 without bounces.
     double noise = 0.0;
     /// Whether the pixels of the environment's file were integrated, not the texels of the map
     bool of_file = false;
 };
+
+/// The parts of a verification, as people say them.
+inline constexpr std::array<std::string_view, 3> VerifiedPlaces = {
+    "at the vertices", "between the vertices", "in a picture of the whole mesh"};
+
+/// The largest relative L2 error of the parts.
+struct WorstError {
+    double relative_l2 = 0.0;
+    std::string_view place = VerifiedPlaces[0];
+};
+[[nodiscard]] WorstError worst_of(const Verification& verification);
 
 /// What a part of the environment gives to a scene.
 struct Share {

@@ -52,13 +52,15 @@ PrecomputeOptions precompute_options(const PrecomputeArguments& options,
 /// What the session says of the work.
 PrecomputeWork precompute_work(Session& session) {
     PrecomputeWork work{.team = session.processes(), .stop = session.stop()};
-    work.on_progress = [&session, clusters = session.progress("precompute"),
+    work.on_progress = [&session, refinement = session.progress("refine"),
+                        clusters = session.progress("precompute"),
                         highlights = session.progress("highlights"),
                         bounces = session.progress("bounces"),
                         last = Stage::Clusters](Stage stage, double fraction) mutable {
         if (std::exchange(last, stage) != stage)
             session.end_progress();
-        if (const auto& show = stage == Stage::Clusters     ? clusters
+        if (const auto& show = stage == Stage::Refinement   ? refinement
+                               : stage == Stage::Clusters   ? clusters
                                : stage == Stage::Highlights ? highlights
                                                             : bounces)
             show(fraction);
@@ -198,17 +200,47 @@ Report process_report(const std::vector<ProcessFigures>& processes, const Sessio
     return report;
 }
 
+/// What was done to a coarse mesh.
+void report_refinement(const PrecomputeReport& facts, Session& session) {
+    if (!facts.refined)
+        return;
+    const prt::RefineReport& found = *facts.refined;
+    session.say(fmt::format(
+        "refined: {} vertices became {} in {:.1f} s, at most {} more for the mesh and {} for its "
+        "floor{}",
+        facts.num_vertices - found.num_added, facts.num_vertices, found.seconds, BudgetOfMesh,
+        BudgetOfFloor,
+        found.is_at_limit ? fmt::format("; errors up to {:.3f} are left, --refine has no limit",
+                                        found.largest_error)
+                          : ""));
+    session.add_to_report("refine",
+                          Report({{"vertices_before", facts.num_vertices - found.num_added},
+                                  {"vertices", facts.num_vertices},
+                                  {"rounds", found.num_rounds},
+                                  {"points", found.num_points},
+                                  {"at_limit", found.is_at_limit},
+                                  {"largest_error", found.largest_error},
+                                  {"seconds", found.seconds}}));
+}
+
 /// How fine the floor's shadows are: what one of its vertices spans.
 Report floor_report(const Scene& scene, const Session& session) {
     const std::size_t n = scene.settings.floor_vertices;
     const mesh::FloorPlace place =
         mesh::floor_place(std::span(scene.mesh.positions).subspan(*first_floor_vertex(scene)),
                           scene.settings.floor_vertices);
-    session.say(fmt::format(
-        "floor: {0} x {0} vertices over {1:.4g} x {1:.4g}; one spans {2:.3g} under the mesh and "
-        "{3:.3g} at the edge",
-        n, 2.0f * place.half_side, place.spacing_inside, place.spacing_outside));
+    if (scene.settings.floor_added != 0)
+        session.say(
+            fmt::format("floor: {0} vertices over {1:.4g} x {1:.4g}, closer where shadows fall",
+                        n * n + scene.settings.floor_added, 2.0f * place.half_side));
+    else
+        session.say(fmt::format("floor: {0} x {0} vertices over {1:.4g} x {1:.4g}; one spans "
+                                "{2:.3g} under the mesh and "
+                                "{3:.3g} at the edge",
+                                n, 2.0f * place.half_side, place.spacing_inside,
+                                place.spacing_outside));
     return {{"vertices", n},
+            {"added", scene.settings.floor_added},
             {"side", 2.0f * place.half_side},
             {"spacing_inside", place.spacing_inside},
             {"spacing_outside", place.spacing_outside}};
@@ -249,6 +281,7 @@ void write_plan(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWor
     PrecomputeReport facts;
     plan(std::move(mesh), options, work, &facts);
     session.end_progress();
+    report_refinement(facts, session);
     const double seconds = watch.total();
     session.say(fmt::format("{}: {} receivers, {} clusters in {:.1f} s, {:.1f} MB",
                             options.output.string(), facts.num_receivers,
@@ -294,6 +327,7 @@ Mesh made_mesh(const PrecomputeArguments& options, Session& session) {
 void write_report(const PrecomputeArguments& options, const PrecomputeOptions& work,
                   const PrecomputeReport& facts, const Scene& scene, double seconds,
                   Session& session) {
+    report_refinement(facts, session);
     Report report = report_of(work, facts, scene, session);
     const std::string others = prt::on_vertices(scene.layout)
                                    ? ""

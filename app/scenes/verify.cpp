@@ -24,15 +24,29 @@ struct VerifyArguments {
     std::uint32_t num_paths = VerifyOptions{}.num_paths;
 };
 
-/// The error between the vertices, for people and for --json.
-Report surface_report(const mesh::TriangleMesh& mesh, const Verification::Surface& surface,
-                      const Session& session) {
+/// One sentence that says what a picture has to expect.
+std::string headline(const Verification& check) {
+    const WorstError worst = worst_of(check);
+    const bool is_coarse = check.surface && worst.place != VerifiedPlaces[0] &&
+                           worst.relative_l2 > 2.0 * check.error.relative_l2;
+    constexpr double Large = 0.05;
+    return fmt::format(
+        "the light is off by {:.3g} % where it is worst: {}{}", 100.0 * worst.relative_l2,
+        worst.place,
+        worst.relative_l2 <= Large ? ""
+        : is_coarse ? "; the triangles are too large for what the vertices see, --refine adds more"
+                    : "; a smaller --tolerance makes it better");
+}
+
+/// The error at points of the surface, for people and for --json.
+Report surface_report(std::string_view place, const mesh::TriangleMesh& mesh,
+                      const Verification::Surface& surface, const Session& session) {
     const relight::ErrorReport& error = surface.error;
     const glm::vec3 worst =
         prt::value_at(mesh, mesh.positions, surface.points[error.worst_receiver]);
-    session.say(fmt::format("between the vertices, {} points of the surface: relative L2 {:.5f}, "
+    session.say(fmt::format("{}, {} points of the surface: relative L2 {:.5f}, "
                             "mean error {:.3f} %, largest {:.2f} % at ({}, {}, {})",
-                            surface.points.size(), error.relative_l2, 100.0 * error.mean_abs,
+                            place, surface.points.size(), error.relative_l2, 100.0 * error.mean_abs,
                             100.0 * error.max_abs, worst.x, worst.y, worst.z));
     return {{"points", surface.points.size()},
             {"relative_l2", error.relative_l2},
@@ -67,6 +81,7 @@ void run(const VerifyArguments& options, Session& session) {
 
     const glm::vec3& worst = lit.scene().receivers.positions[error.worst_receiver];
     const std::string name(prt::kind_of(lit.scene().layout).one);
+    session.say(headline(check));
     session.say(
         fmt::format("{} receivers, R = {}, exact integration of the file's pixels in {:.1f} s",
                     check.receivers.size(), environment_of(lit).resolution, seconds));
@@ -94,7 +109,14 @@ void run(const VerifyArguments& options, Session& session) {
                      {"face_resolution", environment_of(lit).resolution},
                      {"seconds", seconds}};
     if (check.surface)
-        report.set("surface", surface_report(lit.scene().mesh, *check.surface, session));
+        report.set("surface",
+                   surface_report(VerifiedPlaces[1], lit.scene().mesh, *check.surface, session));
+    if (check.picture)
+        report.set("picture",
+                   surface_report(VerifiedPlaces[2], lit.scene().mesh, *check.picture, session));
+    const WorstError all = worst_of(check);
+    report.set("worst",
+               Report({{"relative_l2", all.relative_l2}, {"place", std::string(all.place)}}));
     session.report(report);
 }
 

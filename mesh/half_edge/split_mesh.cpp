@@ -18,12 +18,11 @@ Value half_way(const Value& a, const Value& b) {
     return 0.5f * a + 0.5f * b;
 }
 
-glm::vec3 normal_between(const glm::vec3& a, const glm::vec3& b) {
-    const glm::dvec3 sum = glm::dvec3(a) + glm::dvec3(b);
-    const double length = glm::length(sum);
+glm::vec3 vector_between(const glm::vec3& a, const glm::vec3& b) {
+    const glm::vec3 middle = half_way(a, b);
     // A shorter sum is the rounding of normals that cancel.
-    constexpr double Shortest = 1e-4;
-    return length > Shortest ? glm::vec3(sum / length) : a;
+    constexpr float Shortest = 1e-4f;
+    return glm::length(middle) > Shortest ? middle : a;
 }
 
 /// Mixes the bits of a key (the end of SplitMix64).
@@ -71,7 +70,7 @@ std::uint32_t& SplitMesh::Table::slot(std::uint32_t low, std::uint32_t high) {
 }
 
 SplitMesh::SplitMesh(TriangleMesh mesh)
-    : mesh_(std::move(mesh)), places_(first_at_place(mesh_.positions)),
+    : mesh_(std::move(mesh)), vectors_(mesh_.normals), places_(first_at_place(mesh_.positions)),
       triangle_edges_(mesh_.num_triangles()), next_side_(3 * mesh_.num_triangles(), None) {
     origins_.reserve(mesh_.num_triangles());
     for (std::uint32_t i = 0; i < mesh_.num_triangles(); ++i) {
@@ -202,9 +201,11 @@ void SplitMesh::add_middles(std::uint32_t edge) {
         add(mesh_.positions);
         add(mesh_.colors);
         add(mesh_.uvs);
-        if (!mesh_.normals.empty())
-            mesh_.normals.push_back(
-                normal_between(mesh_.normals[pair.low], mesh_.normals[pair.high]));
+        if (!mesh_.normals.empty()) {
+            vectors_.push_back(vector_between(vectors_[pair.low], vectors_[pair.high]));
+            const float length = glm::length(vectors_.back());
+            mesh_.normals.push_back(length > 0.0f ? vectors_.back() / length : vectors_.back());
+        }
         places_.push_back(place);
         middles_.push_back({pair.low, pair.high, vertex, edges_[edge].first_middle});
         edges_[edge].first_middle = static_cast<std::uint32_t>(middles_.size() - 1);

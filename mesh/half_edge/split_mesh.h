@@ -23,7 +23,7 @@ namespace relumine::mesh {
 /// the longest is, and angles do not get ever smaller.
 ///
 /// New vertices lie in the middle of the old edge, with the mean of its colours and uvs and the
-/// direction between its normals.
+/// normal that the triangle of the beginning has there: what it looks like does not change.
 class SplitMesh {
 public:
     static constexpr std::uint32_t None = 0xffffffff;
@@ -118,6 +118,9 @@ private:
     std::uint32_t cut_in_two(std::uint32_t triangle, std::uint32_t side);
 
     TriangleMesh mesh_;
+    /// [num_vertices], with normals: linear over the triangles of the beginning. Normals are these at
+    /// length 1.
+    std::vector<glm::vec3> vectors_;
     /// [num_vertices] the first vertex at the position.
     std::vector<std::uint32_t> places_;
     std::vector<Edge> edges_;

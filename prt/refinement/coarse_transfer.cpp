@@ -179,7 +179,7 @@ CoarseDirections::trace(const Receivers& receivers, const Blockers& blockers, fl
     return result;
 }
 
-float CoarseDirections::difference(const Point& point, std::span<const Point> others, float weight,
+float CoarseDirections::difference(const Point& point, std::span<const Point> others,
                                    Signs signs) const {
     const bool is_flat = std::all_of(others.begin(), others.end(), [&](const Point& other) {
         return other.normal == point.normal;
@@ -202,7 +202,7 @@ float CoarseDirections::difference(const Point& point, std::span<const Point> ot
             };
             float difference = transfer(point);
             for (const Point& other : others)
-                difference -= weight * transfer(other);
+                difference -= other.weight * transfer(other);
             if (signs == Signs::Dropped)
                 difference = std::abs(difference);
             const float share = shares_[p * DirectionPatch::Size + j];

@@ -45,24 +45,26 @@ public:
                                           float bias, const Progress& progress,
                                           std::span<const Neighbours> neighbours = {}) const;
 
-    /// A point with a normal and what reaches it.
+    /// A point with a normal and what reaches it. `weight` is its part of what stands between
+    /// points.
     struct Point {
         glm::vec3 normal{0.0f};
         const Bits* lit = nullptr;
+        float weight = 1.0f;
     };
 
     /// Whether what some directions lose may make up for what others gain.
     enum class Signs { Kept, Dropped };
 
-    /// Returns how much D = T - weight (T_1 + T_2 + ...) matters, where T is V max(n.w, 0) / pi, in
-    /// 1/sr: the root of
+    /// Returns how much D = T - (w_1 T_1 + w_2 T_2 + ...) matters, where T is V max(n.w, 0) / pi
+    /// and w_i the weights of the others, in 1/sr: the root of
     ///
     ///     mean of D^2                       the error under a small light, wherever it is,
     ///     + 20 (mean of D)^2                under even light from all sides,
     ///     + 4 (mean of D, by light)^2       under the environment, if there is one,
     ///
     /// over all directions of the sphere. Without signs the means are those of |D|.
-    [[nodiscard]] float difference(const Point& point, std::span<const Point> others, float weight,
+    [[nodiscard]] float difference(const Point& point, std::span<const Point> others,
                                    Signs signs = Signs::Kept) const;
 
     [[nodiscard]] std::span<const DirectionPatch> patches() const { return patches_; }

@@ -1,9 +1,14 @@
 #include "prt/refinement/refine.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -26,8 +31,11 @@ using Neighbours = CoarseDirections::Neighbours;
 /// Middles that are traced together: 50 MB.
 constexpr std::size_t PointsPerStep = std::size_t{1} << 18;
 
-/// Triangles with a side longer than this part of the scene's diagonal are asked for their centre.
-constexpr float LargeTriangle = 1.0f / 16.0f;
+/// Of the mesh's diagonal. Edges longer than this are asked at once, and triangles with such a side
+/// at points inside that are about as far from each other. What hides between the points is small.
+constexpr float LargeTriangle = 1.0f / 24.0f;
+/// So many parts of a side at most.
+constexpr std::uint32_t MostParts = 24;
 
 /// Parts of the mesh's diagonal. What is narrower than an edge may hide between its ends, so
 /// middles of edges are asked in all directions. Along edges shorter than this, whose ends face
@@ -47,8 +55,26 @@ constexpr std::size_t FewestOfRound = 32, PartsOfWhole = 64;
 /// Bounds of edges give way to errors until so small a part of the first edges has bounds only.
 constexpr std::size_t PartsWithBounds = 16;
 
+/// A vertex that fewer of the 1,536 directions reach is hidden, in another solid or under one.
+constexpr int FewestDirections = 16;
+
 /// As vertex_receivers() does it: a part of the way to the triangle's centre, or the bias.
 constexpr float LargestPartOfWay = 0.25f;
+
+float longest_side(const mesh::TriangleMesh& mesh, const mesh::Triangle& triangle) {
+    const auto& [a, b, c] = triangle;
+    const std::vector<glm::vec3>& at = mesh.positions;
+    return std::max(
+        {glm::distance(at[a], at[b]), glm::distance(at[b], at[c]), glm::distance(at[c], at[a])});
+}
+
+/// Returns which triangles have a side longer than an edge, if there is one; all otherwise.
+std::vector<bool> triangles_to_refine(const mesh::TriangleMesh& mesh, std::optional<float> edge) {
+    std::vector<bool> result;
+    for (const mesh::Triangle& triangle : mesh.triangles)
+        result.push_back(!edge || longest_side(mesh, triangle) > *edge);
+    return result;
+}
 
 class Refinement {
 public:
@@ -59,7 +85,8 @@ public:
           directions_(options.light ? &*options.light : nullptr),
           large_(LargeTriangle * mesh::bounds(mesh).diagonal()),
           fine_(FineEdge * mesh::bounds(mesh).diagonal()),
-          min_edge_(options.min_edge.value_or(ShortestEdge * mesh::bounds(mesh).diagonal())) {}
+          min_edge_(options.min_edge.value_or(ShortestEdge * mesh::bounds(mesh).diagonal())),
+          is_refined_(triangles_to_refine(mesh, options.coarse_edge)) {}
 
     mesh::TriangleMesh run() {
         progress_.start_stage(0.0, 1.0);
@@ -78,9 +105,13 @@ public:
                 report_progress();
             }
         }
-        if (!options_.curved)
+        report_.num_added = num_vertices() - base_.num_vertices();
+        if (options_.curved)
+            return bent();
+        if (!options_.error)
             return split_.take();
-        return bent();
+        const std::vector<Way> ways = ways_out();
+        return moved_out(split_.take(), ways);
     }
 
 private:
@@ -123,17 +154,204 @@ private:
         return true;
     }
 
+    /// Finds what reaches the vertices that are not known yet, of triangles that are refined.
     void trace_vertices() {
         const Receivers all = vertex_receivers(split_.mesh());
-        const auto first = static_cast<std::ptrdiff_t>(vertex_bits_.size());
-        Receivers added{.positions = {all.positions.begin() + first, all.positions.end()},
-                        .normals = {all.normals.begin() + first, all.normals.end()}};
+        is_traced_.resize(all.size());
+        vertex_bits_.resize(all.size());
+        std::vector<Neighbours> ends_of(all.size());
+        for (const SplitMesh::Middle& middle : split_.new_vertices())
+            if (is_traced_[middle.low] && is_traced_[middle.high])
+                ends_of[middle.vertex] = neighbours(middle.low, middle.high);
+        std::vector<std::uint32_t> vertices;
+        for (const std::uint32_t triangle : split_.changed_triangles())
+            if (is_refined_[split_.origin(triangle).triangle])
+                for (const std::uint32_t vertex : split_.mesh().triangles[triangle])
+                    if (!is_traced_[vertex]) {
+                        is_traced_[vertex] = true;
+                        vertices.push_back(vertex);
+                    }
+        Receivers added;
         std::vector<Neighbours> ends;
-        if (first != 0)
-            for (const SplitMesh::Middle& middle : split_.new_vertices())
-                ends.push_back(neighbours(middle.low, middle.high));
+        for (const std::uint32_t vertex : vertices) {
+            added.positions.push_back(all.positions[vertex]);
+            added.normals.push_back(all.normals[vertex]);
+            ends.push_back(ends_of[vertex]);
+        }
         const std::vector<Bits> bits = trace(added, ends);
-        vertex_bits_.insert(vertex_bits_.end(), bits.begin(), bits.end());
+        for (std::size_t i = 0; i < vertices.size(); ++i)
+            vertex_bits_[vertices[i]] = bits[i];
+        find_movable();
+    }
+
+    /// A new vertex may move where the surface around it is flat and goes on to all sides.
+    void find_movable() {
+        constexpr float LeastCosine = 0.99999f;
+        constexpr double LargestGap = 1e-3;
+        const mesh::TriangleMesh& mesh = split_.mesh();
+        std::vector<double> angles(mesh.num_vertices(), 0.0);
+        std::vector<glm::vec3> faces(mesh.num_vertices(), glm::vec3(0.0f));
+        is_movable_.resize(mesh.num_vertices());
+        for (const std::uint32_t triangle : split_.changed_triangles()) {
+            const glm::vec3 face = face_normal(mesh, triangle);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t vertex = mesh.triangles[triangle][k];
+                const glm::dvec3 at(mesh.positions[vertex]);
+                const auto way = [&](std::size_t other) {
+                    return glm::normalize(
+                        glm::dvec3(mesh.positions[mesh.triangles[triangle][other % 3]]) - at);
+                };
+                angles[vertex] +=
+                    std::acos(std::clamp(glm::dot(way(k + 1), way(k + 2)), -1.0, 1.0));
+                if (faces[vertex] == glm::vec3(0.0f))
+                    faces[vertex] = face;
+                else if (!(glm::dot(faces[vertex], face) > LeastCosine))
+                    angles[vertex] = std::numeric_limits<double>::infinity();
+            }
+        }
+        for (const SplitMesh::Middle& middle : split_.new_vertices())
+            is_movable_[middle.vertex] =
+                std::abs(angles[middle.vertex] - 2.0 * std::numbers::pi) < LargestGap;
+    }
+
+    [[nodiscard]] static int num_lit(const Bits& bits) {
+        int result = 0;
+        for (const std::uint64_t word : bits)
+            result += std::popcount(word);
+        return result;
+    }
+    [[nodiscard]] bool is_hidden(std::uint32_t vertex) const {
+        return num_lit(vertex_bits_[vertex]) < FewestDirections;
+    }
+    [[nodiscard]] bool moves_to(std::uint32_t hidden, std::uint32_t lit) const {
+        return is_movable_[hidden] && is_hidden(hidden) && !is_hidden(lit);
+    }
+
+    /// Whether one end of a short edge will move towards the other. There is no need to split it.
+    [[nodiscard]] bool is_left_to_move(std::uint32_t edge) {
+        if (split_.length(edge) >= 4.0f * min_edge_ || options_.curved)
+            return false;
+        ends_.clear();
+        split_.append_ends(edge, ends_);
+        return ends_.size() == 1 &&
+               (moves_to(ends_[0].low, ends_[0].high) || moves_to(ends_[0].high, ends_[0].low));
+    }
+
+    /// From a vertex that is hidden in another solid, along an edge to the first place that light
+    /// reaches.
+    struct Way {
+        std::uint32_t vertex, towards;
+        /// The last part of the way that is known to be hidden, and the first that is not.
+        float hidden = 0.0f, lit = 1.0f;
+    };
+
+    /// Returns the ways along which hidden vertices may leave, by bisection.
+    std::vector<Way> ways_out() {
+        constexpr int Bisections = 6;
+        const mesh::TriangleMesh& mesh = split_.mesh();
+        is_movable_.resize(mesh.num_vertices());
+        is_traced_.resize(mesh.num_vertices());
+        std::vector<Way> ways;
+        for (const mesh::Triangle& triangle : mesh.triangles)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t a = triangle[k], b = triangle[(k + 1) % 3];
+                // Around a vertex that may move, each edge leaves in one triangle.
+                if (is_movable_[a] && is_traced_[a] && is_traced_[b] && moves_to(a, b))
+                    ways.push_back({a, b});
+            }
+        for (int i = 0; i < Bisections; ++i) {
+            Receivers receivers;
+            for (const Way& way : ways) {
+                const float part = 0.5f * (way.hidden + way.lit);
+                add_mean(std::array{way.vertex, way.towards}, std::array{1.0f - part, part},
+                         receivers);
+            }
+            const std::vector<Bits> bits = trace(receivers);
+            for (std::size_t j = 0; j < ways.size(); ++j) {
+                // Beside a solid half of the light is left. Gaps between solids let in little.
+                const int least =
+                    std::max(FewestDirections, num_lit(vertex_bits_[ways[j].towards]) / 4);
+                (num_lit(bits[j]) < least ? ways[j].hidden : ways[j].lit) =
+                    0.5f * (ways[j].hidden + ways[j].lit);
+            }
+        }
+        return ways;
+    }
+
+    /// Moves vertices out of other solids, each by the shortest way that turns no triangle over:
+    /// their darkness would spread over the triangles beside them.
+    static mesh::TriangleMesh moved_out(mesh::TriangleMesh mesh, std::vector<Way> ways) {
+        const auto length = [&](const Way& way) {
+            return way.lit * glm::distance(mesh.positions[way.vertex], mesh.positions[way.towards]);
+        };
+        std::vector<std::pair<float, Way>> sorted;
+        for (const Way& way : ways)
+            sorted.emplace_back(length(way), way);
+        std::stable_sort(sorted.begin(), sorted.end(),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+        std::vector<std::vector<std::uint32_t>> around(ways.empty() ? 0 : mesh.num_vertices());
+        std::vector<bool> is_done(around.size());
+        for (const Way& way : ways)
+            is_done[way.vertex] = true;
+        if (!ways.empty())
+            for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i)
+                for (const std::uint32_t vertex : mesh.triangles[i])
+                    if (is_done[vertex])
+                        around[vertex].push_back(i);
+        is_done.assign(around.size(), false);
+        for (const auto& [distance, way] : sorted)
+            if (!is_done[way.vertex])
+                is_done[way.vertex] = move(mesh, way, around[way.vertex]);
+        return mesh;
+    }
+
+    /// Moves a vertex of a flat surface, with all that it carries. Returns false where a triangle
+    /// would turn over.
+    static bool move(mesh::TriangleMesh& mesh, const Way& way,
+                     std::span<const std::uint32_t> triangles) {
+        const glm::vec3 before = mesh.positions[way.vertex];
+        const glm::vec3 after = before + way.lit * (mesh.positions[way.towards] - before);
+        const auto cross = [&](std::uint32_t triangle, const glm::vec3& at) {
+            std::array<glm::dvec3, 3> corners{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t vertex = mesh.triangles[triangle][k];
+                corners[k] = glm::dvec3(vertex == way.vertex ? at : mesh.positions[vertex]);
+            }
+            return glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+        };
+        constexpr double LeastPart = 1e-3;
+        for (const std::uint32_t triangle : triangles) {
+            const glm::dvec3 old = cross(triangle, before);
+            if (!(glm::dot(cross(triangle, after), old) > LeastPart * glm::dot(old, old)))
+                return false;
+        }
+        // A triangle's uvs go on evenly beyond its corner.
+        if (!mesh.corner_uvs.empty())
+            for (const std::uint32_t triangle : triangles) {
+                const mesh::Triangle corners = mesh.triangles[triangle];
+                const auto k = static_cast<std::size_t>(
+                    std::find(corners.begin(), corners.end(), way.vertex) - corners.begin());
+                const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
+                const glm::dvec3 normal = cross(triangle, before);
+                const glm::dvec3 origin(before), to(after);
+                const glm::dvec3 u = glm::dvec3(mesh.positions[corners[next]]) - origin;
+                const glm::dvec3 v = glm::dvec3(mesh.positions[corners[last]]) - origin;
+                const double square = glm::dot(normal, normal);
+                const auto part_u =
+                    static_cast<float>(glm::dot(glm::cross(to - origin, v), normal) / square);
+                const auto part_v =
+                    static_cast<float>(glm::dot(glm::cross(u, to - origin), normal) / square);
+                auto& uvs = mesh.corner_uvs[triangle];
+                uvs[k] += part_u * (uvs[next] - uvs[k]) + part_v * (uvs[last] - uvs[k]);
+            }
+        const auto follow = [&](auto& values) {
+            if (!values.empty())
+                values[way.vertex] += way.lit * (values[way.towards] - values[way.vertex]);
+        };
+        follow(mesh.uvs);
+        follow(mesh.colors);
+        mesh.positions[way.vertex] = after;
+        return true;
     }
 
     std::vector<Bits> trace(const Receivers& receivers,
@@ -151,28 +369,29 @@ private:
         return {&vertex_bits_[low], &vertex_bits_[high]};
     }
 
-    [[nodiscard]] CoarseDirections::Point vertex(std::uint32_t index) const {
-        return {split_.mesh().normals[index], &vertex_bits_[index]};
+    [[nodiscard]] CoarseDirections::Point vertex(std::uint32_t index, float weight = 1.0f) const {
+        return {split_.mesh().normals[index], &vertex_bits_[index], weight};
     }
 
-    /// A point with the mean of vertices' positions and normals.
-    void add_mean(std::initializer_list<std::uint32_t> vertices, Receivers& receivers) const {
+    /// A point with the weighted mean of vertices' positions and normals.
+    void add_mean(std::span<const std::uint32_t> vertices, std::span<const float> weights,
+                  Receivers& receivers) const {
         const mesh::TriangleMesh& mesh = split_.mesh();
         glm::dvec3 position(0.0), normal(0.0);
-        for (const std::uint32_t vertex : vertices) {
-            position += glm::dvec3(mesh.positions[vertex]) / static_cast<double>(vertices.size());
-            normal += glm::dvec3(mesh.normals[vertex]);
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            const double weight = double{weights[i]};
+            position += weight * glm::dvec3(mesh.positions[vertices[i]]);
+            normal += weight * glm::dvec3(mesh.normals[vertices[i]]);
         }
         const double length = glm::length(normal);
         constexpr double Shortest = 1e-4;
         receivers.positions.emplace_back(position);
         receivers.normals.push_back(length > Shortest ? glm::vec3(normal / length)
-                                                      : mesh.normals[*vertices.begin()]);
+                                                      : mesh.normals[vertices.front()]);
     }
 
     [[nodiscard]] bool may_split(std::uint32_t edge) const {
-        return !split_.is_split(edge) && split_.length(edge) >= 2.0f * min_edge_ &&
-               split_.length(edge) > 0.0f;
+        return is_candidate_[edge] && !split_.is_split(edge);
     }
 
     /// The pairs of vertices of some edges.
@@ -188,9 +407,19 @@ private:
         const auto first = static_cast<std::uint32_t>(errors_.size());
         errors_.resize(split_.num_edges(), 0.0f);
         is_asked_.resize(split_.num_edges(), true);
+        is_candidate_.resize(split_.num_edges());
         std::vector<Pair> pairs;
         std::vector<std::uint32_t> long_edges;
         for (std::uint32_t edge = first; edge < split_.num_edges(); ++edge) {
+            // An edge that a triangle which stays has on its other side is a candidate, too.
+            ends_.clear();
+            split_.append_ends(edge, ends_);
+            is_candidate_[edge] =
+                !is_left_to_move(edge) && !split_.is_split(edge) &&
+                split_.length(edge) >= 2.0f * min_edge_ && split_.length(edge) > 0.0f &&
+                std::all_of(ends_.begin(), ends_.end(), [this](const SplitMesh::Ends& ends) {
+                    return is_traced_[ends.low] && is_traced_[ends.high];
+                });
             if (!may_split(edge))
                 continue;
             if (split_.length(edge) > large_) {
@@ -203,7 +432,7 @@ private:
         std::vector<float> bounds(pairs.size());
         files::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
             const CoarseDirections::Point high = vertex(pairs[i].ends.high);
-            bounds[i] = directions_.difference(vertex(pairs[i].ends.low), {&high, 1}, 1.0f,
+            bounds[i] = directions_.difference(vertex(pairs[i].ends.low), {&high, 1},
                                                CoarseDirections::Signs::Dropped) /
                         2.0f;
         });
@@ -235,7 +464,8 @@ private:
             }
             std::vector<Neighbours> ends;
             for (const Pair& pair : pairs) {
-                add_mean({pair.ends.low, pair.ends.high}, receivers);
+                add_mean(std::array{pair.ends.low, pair.ends.high}, std::array{0.5f, 0.5f},
+                         receivers);
                 ends.push_back(neighbours(pair.ends.low, pair.ends.high));
                 if (pair.ends.is_rim)
                     move_inside(pair.ends.triangle, receivers.positions.back());
@@ -243,10 +473,9 @@ private:
             const std::vector<Bits> bits = trace(receivers, ends);
             std::vector<float> errors(pairs.size());
             files::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
-                const std::array<CoarseDirections::Point, 2> both = {vertex(pairs[i].ends.low),
-                                                                     vertex(pairs[i].ends.high)};
-                errors[i] =
-                    directions_.difference({receivers.normals[i], &bits[i]}, both, 1.0f / 2.0f);
+                const std::array both = {vertex(pairs[i].ends.low, 0.5f),
+                                         vertex(pairs[i].ends.high, 0.5f)};
+                errors[i] = directions_.difference({receivers.normals[i], &bits[i]}, both);
             });
             set_errors(pairs, errors);
         }
@@ -262,26 +491,60 @@ private:
             position += std::min(step_ / length, LargestPartOfWay) * way;
     }
 
-    /// What lies in the middle of a large triangle may throw no shadow on its edges.
+    /// A point inside of a triangle, by the weights of its corners.
+    struct Inside {
+        std::uint32_t triangle;
+        std::array<float, 3> weights;
+    };
+
+    /// The centres of the k x k triangles that parallels to the sides cut a triangle into.
+    static void append_points(std::uint32_t triangle, std::uint32_t k, std::vector<Inside>& all) {
+        const auto add = [&](std::uint32_t i, std::uint32_t j, float part) {
+            const float b = (static_cast<float>(i) + part) / static_cast<float>(k);
+            const float c = (static_cast<float>(j) + part) / static_cast<float>(k);
+            all.push_back({triangle, {1.0f - b - c, b, c}});
+        };
+        for (std::uint32_t i = 0; i < k; ++i)
+            for (std::uint32_t j = 0; i + j < k; ++j) {
+                add(i, j, 1.0f / 3.0f);
+                if (i + j + 1 < k)
+                    add(i, j, 2.0f / 3.0f);
+            }
+    }
+
+    /// What lies in the middle of a large triangle may throw no shadow on its edges, and light may
+    /// fall there where its edges are hidden.
     void ask_large_triangles() {
-        std::vector<std::uint32_t> triangles;
-        Receivers receivers;
+        std::vector<Inside> points;
         for (const std::uint32_t triangle : split_.changed_triangles()) {
             const std::uint32_t edge = split_.longest_edge(triangle);
-            if (split_.length(edge) <= large_ || !may_split(edge))
-                continue;
-            const auto& [a, b, c] = split_.mesh().triangles[triangle];
-            triangles.push_back(triangle);
-            add_mean({a, b, c}, receivers);
+            if (split_.length(edge) > large_ && may_split(edge))
+                append_points(triangle,
+                              std::min(MostParts, static_cast<std::uint32_t>(
+                                                      std::ceil(split_.length(edge) / large_))),
+                              points);
         }
+        for (std::size_t first = 0; first < points.size(); first += PointsPerStep)
+            ask_inside(
+                std::span(points).subspan(first, std::min(PointsPerStep, points.size() - first)));
+    }
+
+    void ask_inside(std::span<const Inside> points) {
+        Receivers receivers;
+        for (const Inside& point : points)
+            add_mean(split_.mesh().triangles[point.triangle], point.weights, receivers);
         const std::vector<Bits> bits = trace(receivers);
-        for (std::size_t i = 0; i < triangles.size(); ++i) {
-            const auto& [a, b, c] = split_.mesh().triangles[triangles[i]];
-            const std::array<CoarseDirections::Point, 3> corners = {vertex(a), vertex(b),
-                                                                    vertex(c)};
-            float& error = errors_[split_.longest_edge(triangles[i])];
-            error = std::max(error, directions_.difference({receivers.normals[i], &bits[i]},
-                                                           corners, 1.0f / 3.0f));
+        std::vector<float> errors(points.size());
+        files::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+            const auto& [a, b, c] = split_.mesh().triangles[points[i].triangle];
+            const std::array<float, 3>& weights = points[i].weights;
+            const std::array corners = {vertex(a, weights[0]), vertex(b, weights[1]),
+                                        vertex(c, weights[2])};
+            errors[i] = directions_.difference({receivers.normals[i], &bits[i]}, corners);
+        });
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            float& error = errors_[split_.longest_edge(points[i].triangle)];
+            error = std::max(error, errors[i]);
         }
     }
 
@@ -390,11 +653,14 @@ private:
     CoarseDirections directions_;
     float large_, fine_;
     float min_edge_;
-    /// [num_vertices].
+    /// [num_triangles of the beginning].
+    std::vector<bool> is_refined_;
+    /// [num_vertices]. Only vertices of triangles that are refined are traced.
     std::vector<Bits> vertex_bits_;
+    std::vector<bool> is_traced_, is_movable_;
     /// [num_edges]. Of edges that were not asked, a bound.
     std::vector<float> errors_;
-    std::vector<bool> is_asked_;
+    std::vector<bool> is_asked_, is_candidate_;
     /// Scratch of append_pairs().
     std::vector<SplitMesh::Ends> ends_;
 };
@@ -440,6 +706,12 @@ mesh::TriangleMesh refine(const mesh::TriangleMesh& mesh, const Blockers& blocke
     if (report != nullptr)
         *report = local;
     return result;
+}
+
+bool has_edge_longer_than(const mesh::TriangleMesh& mesh, float length) {
+    return std::any_of(
+        mesh.triangles.begin(), mesh.triangles.end(),
+        [&](const mesh::Triangle& triangle) { return longest_side(mesh, triangle) > length; });
 }
 
 } // namespace relumine::prt

@@ -21,6 +21,9 @@ struct RefineOptions {
     std::optional<float> error = 0.01f;
     /// Longer edges are split in any case. Empty: none.
     std::optional<float> max_edge = {};
+    /// Triangles of the mesh without a side longer than this are left as they are, but for sides
+    /// that they share with others, and cost nothing. Empty: all triangles are refined.
+    std::optional<float> coarse_edge = {};
     /// Edges shorter than twice this are not split, in the mesh's unit. Empty: 1/1000 of the mesh's
     /// diagonal.
     std::optional<float> min_edge = {};
@@ -42,6 +45,7 @@ struct RefineReport {
     std::size_t num_rounds = 0;
     /// Points whose transfer was asked for: vertices, and middles of edges.
     std::size_t num_points = 0;
+    std::size_t num_added = 0;
     /// The largest error found of an edge that may be split and is not. Above RefineOptions::error
     /// only at the limit of vertices.
     float largest_error = 0.0f;
@@ -52,9 +56,10 @@ struct RefineReport {
 /// Splits the edges of a mesh where light changes between their ends, whatever the environment will
 /// be: mesh::SplitMesh says how. Transfer is found in 1,536 directions, horizons included, first at
 /// the vertices, then at new ones, round by round. Middles of edges are asked where the ends differ
-/// enough, or the edge is long in the scene. Triangles that are large in the scene are asked for
-/// their centre, too. Along edges that are short in the scene, middles and new vertices are traced
-/// only in directions on which the ends do not agree.
+/// enough, or the edge is long in the scene. Triangles that are large in the scene are asked at
+/// points inside, too, so close to each other that nothing of some size is missed. Along edges that
+/// are short in the scene, middles and new vertices are traced only in directions on which the ends
+/// do not agree.
 ///
 /// Vertices of the mesh keep index and position; its triangles come first, too, each cut down.
 ///
@@ -66,5 +71,8 @@ struct RefineReport {
 [[nodiscard]] mesh::TriangleMesh refine(const mesh::TriangleMesh& mesh, const Blockers& blockers,
                                         const RefineOptions& options = {}, const Work& work = {},
                                         RefineReport* report = nullptr);
+
+/// Whether a triangle has a side longer than this.
+[[nodiscard]] bool has_edge_longer_than(const mesh::TriangleMesh& mesh, float length);
 
 } // namespace relumine::prt

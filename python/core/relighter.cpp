@@ -231,6 +231,9 @@ py::dict verify(const LitPointer& own, std::size_t samples, std::uint64_t seed, 
     result["worst_receiver"] = found.error.worst_receiver;
     result["noise"] = found.noise;
     result["of_file"] = found.of_file;
+    const WorstError worst = worst_of(found);
+    result["worst"] = worst.relative_l2;
+    result["worst_place"] = std::string(worst.place);
     result["receivers"] = owned(std::move(found.receivers));
     return result;
 }

@@ -8,7 +8,6 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "arrays.h"
-#include "mesh/floor.h"
 #include "mesh/normals.h"
 #include "options.h"
 #include "run.h"
@@ -39,10 +38,7 @@ MeshPointer make_mesh(const py::buffer& vertices, const py::buffer& triangle_ind
         geometry.normals = mesh::smooth_normals(geometry);
     mesh::turn_up(geometry, options.up.value_or(mesh::UpAxis::Y));
     auto result = std::make_shared<Mesh>(std::move(geometry));
-    if (options.floor_vertices) {
-        mesh::append_floor(result->geometry, *options.floor_vertices, options.floor_scale);
-        result->floor_vertices = *options.floor_vertices;
-    }
+    add_floor(*result, options);
     return result;
 }
 
@@ -113,6 +109,9 @@ std::function<void(Stage, double)> joined(const std::function<void(double)>& on_
     const int num_stages = 1 + static_cast<int>(has_highlights) +
                            static_cast<int>(options.bounce_tolerance.value_or(1.0f) > 0.0f);
     return [=](Stage stage, double fraction) {
+        // A small part of the whole.
+        if (stage == Stage::Refinement)
+            return;
         const int before = stage == Stage::Clusters     ? 0
                            : stage == Stage::Highlights ? 1
                                                         : num_stages - 1;

@@ -1,6 +1,6 @@
 """Relumine relights 3D meshes under measured light.
 
-    scene = relumine.precompute(relumine.Mesh.load("bunny.ply", floor=193))
+    scene = relumine.precompute(relumine.Mesh.load("bunny.ply", floor="auto"))
     relighter = relumine.Relighter(scene)
     relighter.set_environment(relumine.Environment.load("studio.exr"))
     relighter.picture().save("bunny.png")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import Any, Callable, Dict, List, Optional
+from typing import Any, Callable, Dict, List, Optional, Union
 
 from numpy.typing import ArrayLike
 
@@ -32,7 +32,8 @@ class Mesh:
     colors     (N, 3) linear RGB
     uvs        (N, 2), for lightmaps
     up         "x", "y" or "z": the axis of the arrays that points up
-    floor      n: adds a floor of n x n vertices under the mesh, after its own vertices
+    floor      n: adds a floor of n x n vertices under the mesh, after its own vertices; "auto": a
+               coarse one, which precompute() refines where shadows fall
     floor_scale  side of the floor over the mesh's width, or half its height if that is more
 
     Arrays may have any numeric type, order and byte order; they are converted once. Raises
@@ -56,7 +57,7 @@ class Mesh:
         colors: Optional[ArrayLike] = None,
         uvs: Optional[ArrayLike] = None,
         up: str = "y",
-        floor: Optional[int] = None,
+        floor: Union[int, str, None] = None,
         floor_scale: float = 4.0,
     ) -> None:
         self.report = {}
@@ -80,7 +81,7 @@ class Mesh:
         up: Optional[str] = None,
         normals: str = "file",
         crease: Optional[float] = None,
-        floor: Optional[int] = None,
+        floor: Union[int, str, None] = None,
         floor_scale: float = 4.0,
     ) -> "Mesh":
         """Reads an .obj, .gltf, .glb, .ply, .off or .stl file.

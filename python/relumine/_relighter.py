@@ -64,6 +64,9 @@ class Verification(NamedTuple):
     noise: float
     #: The file's pixels were integrated, not the cube map's texels.
     of_file: bool
+    #: The largest relative_l2: at the vertices, between them, or in a picture of the whole mesh.
+    worst: float
+    worst_place: str
     #: The receivers that were looked at.
     receivers: Indices
 

@@ -74,6 +74,7 @@ def precompute(
     bias: Optional[float] = None,
     engine: str = "beam",
     receivers: str = "vertices",
+    refine: bool = True,
     view: Any = None,
     material: Union[Material, Mapping[str, Material], None] = None,
     glossy_tolerance: Optional[float] = None,
@@ -88,9 +89,12 @@ def precompute(
     """Finds how much light from every direction reaches every receiver: once per mesh.
 
     mesh       a Mesh, or an array of vertices (N, 3) with `triangles` (M, 3)
-    tolerance  RMS error of the transfer allowed within a cluster, in 1/sr (0.0135)
+    tolerance  RMS error of the transfer allowed within a cluster, in 1/sr (0.0135; 0.02 where
+               vertices were added)
     epsilon    the paper's form of it; excludes `tolerance`
     receivers  "vertices"; "pixels:WxH[:N]", what a fixed camera sees; "texels:WxH", a lightmap
+    refine     a coarse mesh gets more vertices where its light needs them, behind its own; False
+               keeps it as it is
     view       the eye of highlights and the camera of pixels: "auto", (eye, target) or
                (eye, target, fov)
     material   Ggx, Blinn or Lambert in place of the mesh's materials, or {group: material};
@@ -122,6 +126,7 @@ def precompute(
         "bias": bias,
         "engine": engine,
         "receivers": receivers,
+        "no_refine": not refine,
         "view": view,
         "material": _materials(material),
         "glossy_tolerance": glossy_tolerance,
@@ -150,6 +155,7 @@ def plan(
     face_resolution: Optional[int] = None,
     bias: Optional[float] = None,
     receivers: str = "vertices",
+    refine: bool = True,
     view: Any = None,
     progress: Optional[Progress] = None,
 ) -> Dict[str, Any]:
@@ -172,6 +178,7 @@ def plan(
         "face_resolution": face_resolution,
         "bias": bias,
         "receivers": receivers,
+        "no_refine": not refine,
         "view": view,
         "output": os.fspath(output),
     }

@@ -122,5 +122,145 @@ TEST(RefinedMesh, TheFloorSinksUnderACurvedMesh) {
     EXPECT_EQ(curved.geometry.positions[3], octahedron.positions[3]);
 }
 
+/// A wall of two triangles whose corners are under posts.
+mesh::TriangleMesh wall_behind_posts() {
+    mesh::TriangleMesh mesh;
+    mesh.positions = {{-2, 0, 0}, {2, 0, 0}, {2, 2, 0}, {-2, 2, 0}};
+    mesh.normals.assign(4, {0, 0, 1});
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    for (const glm::vec3 corner :
+         {glm::vec3(-2, 0, 0), glm::vec3(2, 0, 0), glm::vec3(2, 2, 0), glm::vec3(-2, 2, 0)}) {
+        const auto first = static_cast<std::uint32_t>(mesh.num_vertices());
+        for (std::uint32_t i = 0; i < 8; ++i) {
+            const glm::vec3 way((i & 1u) != 0 ? 1 : -1, (i & 2u) != 0 ? 1 : -1,
+                                (i & 4u) != 0 ? 1 : -1);
+            mesh.positions.push_back(corner + 0.15f * way);
+            mesh.normals.push_back(glm::normalize(way));
+        }
+        for (const mesh::Triangle& t : {mesh::Triangle{0, 2, 1},
+                                        {1, 2, 3},
+                                        {4, 5, 6},
+                                        {5, 7, 6},
+                                        {0, 1, 4},
+                                        {1, 5, 4},
+                                        {2, 6, 3},
+                                        {3, 6, 7},
+                                        {0, 4, 2},
+                                        {2, 4, 6},
+                                        {1, 3, 5},
+                                        {3, 7, 5}})
+            mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    return mesh;
+}
+
+PrecomputeOptions small_work() {
+    return {.face_resolution = 32};
+}
+
+/// The light of the first triangle's centre under a white sky, and of the whole mesh.
+float light_in_the_middle(const LitScene& lit) {
+    const mesh::TriangleMesh& mesh = lit.scene().mesh;
+    for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i) {
+        const auto& [a, b, c] = mesh.triangles[i];
+        const glm::vec3 &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
+        if (p.z != 0.0f || q.z != 0.0f || r.z != 0.0f)
+            continue;
+        const glm::vec2 u(q - p), v(r - p), w(glm::vec2(0.01f, 1.02f) - glm::vec2(p));
+        const float all = u.x * v.y - u.y * v.x;
+        const glm::vec2 place((w.x * v.y - w.y * v.x) / all, (u.x * w.y - u.y * w.x) / all);
+        if (place.x >= 0.0f && place.y >= 0.0f && place.x + place.y <= 1.0f)
+            return prt::value_at(mesh, lit.radiance(), {i, place}).g;
+    }
+    return -1.0f;
+}
+
+TEST(RefinedByItself, AWallWhoseCornersAreHiddenIsLit) {
+    const Mesh wall(wall_behind_posts());
+    PrecomputeReport report;
+    LitScene lit(precompute(wall, small_work(), {}, &report));
+    lit.light(cubemap::CubeMap(16, glm::vec3(1.0f)));
+    ASSERT_TRUE(report.refined);
+    EXPECT_EQ(report.num_vertices, wall.geometry.num_vertices() + report.refined->num_added);
+    EXPECT_LE(report.refined->num_added, BudgetOfMesh);
+    EXPECT_GT(light_in_the_middle(lit), 0.9f);
+    EXPECT_TRUE(std::equal(wall.geometry.positions.begin(), wall.geometry.positions.end(),
+                           lit.scene().mesh.positions.begin()));
+    EXPECT_EQ(lit.scene().settings.tolerance, ToleranceOfRefined);
+    // What is worst is said: the light of the vertices and of the points between them.
+    const Verification check = verify(lit, {.num_samples = 50, .num_surface_points = 50});
+    ASSERT_TRUE(check.surface && check.picture);
+    EXPECT_EQ(worst_of(check).relative_l2,
+              std::max({check.error.relative_l2, check.surface->error.relative_l2,
+                        check.picture->error.relative_l2}));
+
+    // The vertices as they are know nothing of the light between them.
+    PrecomputeOptions as_it_is = small_work();
+    as_it_is.no_refine = true;
+    LitScene dark(precompute(wall, as_it_is, {}, &report));
+    dark.light(cubemap::CubeMap(16, glm::vec3(1.0f)));
+    EXPECT_FALSE(report.refined);
+    EXPECT_EQ(dark.scene().mesh.positions, wall.geometry.positions);
+    EXPECT_LT(light_in_the_middle(dark), 0.1f);
+    const Verification bad = verify(dark, {.num_samples = 0, .num_surface_points = 100});
+    EXPECT_LT(bad.error.relative_l2, 0.05);
+    EXPECT_GT(worst_of(bad).relative_l2, 0.2);
+    EXPECT_NE(worst_of(bad).place, VerifiedPlaces[0]);
+}
+
+TEST(RefinedByItself, AFineMeshAndChosenVerticesStay) {
+    const Mesh fine(scenes::corner(64));
+    EXPECT_EQ(refined_by_itself(fine).geometry.positions, fine.geometry.positions);
+    EXPECT_FALSE(refined_by_itself(fine).blockers);
+    const Mesh chosen = refined(Mesh(wall_behind_posts()), {.error = {}, .max_edge = 1.0f});
+    EXPECT_EQ(refined_by_itself(chosen).geometry.positions, chosen.geometry.positions);
+    // Pixels need no vertices.
+    PrecomputeReport report;
+    PrecomputeOptions pixels = small_work();
+    pixels.receivers = Pixels{.width = 8, .height = 6};
+    pixels.view = View{};
+    EXPECT_EQ(precompute(Mesh(wall_behind_posts()), pixels, {}, &report).mesh.num_vertices(),
+              wall_behind_posts().num_vertices());
+}
+
+TEST(RefinedByItself, AnAutomaticFloorGetsVerticesWhereShadowsFall) {
+    Mesh mesh(wall_behind_posts());
+    add_floor(mesh, {.floor_vertices = AutomaticFloor});
+    const std::uint32_t n = mesh.floor_vertices;
+    const std::size_t first = mesh.geometry.num_vertices() - std::size_t{n} * n;
+    const Mesh fine = refined_by_itself(mesh);
+    ASSERT_GT(fine.floor_added, 100u);
+    EXPECT_LE(fine.floor_added, BudgetOfFloor);
+    EXPECT_EQ(fine.floor_vertices, n);
+    const std::size_t first_after =
+        fine.geometry.num_vertices() - std::size_t{n} * n - fine.floor_added;
+    const auto before = mesh::floor_place(std::span(mesh.geometry.positions).subspan(first), n);
+    const auto after =
+        mesh::floor_place(std::span(fine.geometry.positions).subspan(first_after), n);
+    EXPECT_EQ(after.center, before.center);
+    EXPECT_EQ(after.half_side, before.half_side);
+    const float height = mesh.geometry.positions[first].y;
+    std::size_t num_near = 0;
+    for (std::size_t i = first_after + std::size_t{n} * n; i < fine.geometry.num_vertices(); ++i) {
+        EXPECT_EQ(fine.geometry.positions[i].y, height);
+        num_near +=
+            glm::distance(glm::vec2(fine.geometry.positions[i].x, fine.geometry.positions[i].z),
+                          before.center) < 0.5f * before.half_side
+                ? 1
+                : 0;
+    }
+    EXPECT_GT(num_near, fine.floor_added / 2) << "a quarter of the area, most of the shadow";
+    // A floor of a chosen size stays.
+    Mesh chosen(wall_behind_posts());
+    add_floor(chosen, {.floor_vertices = 5});
+    EXPECT_EQ(refined_by_itself(chosen).floor_added, 0u);
+    // The floor is not the file's.
+    PrecomputeOptions as_it_is = small_work();
+    as_it_is.no_refine = true;
+    const Scene scene = precompute(mesh, as_it_is);
+    EXPECT_GT(scene.settings.floor_added, 100u);
+    EXPECT_EQ(first_floor_vertex(scene), first);
+}
+
 } // namespace
 } // namespace relumine

@@ -19,7 +19,8 @@ protected:
     }
     /// The command line for new.prt, at R = 16 unless the options say otherwise.
     [[nodiscard]] static std::vector<std::string> command(const std::vector<std::string>& options) {
-        std::vector<std::string> arguments = {"precompute", "mesh.obj", "-o", "new.prt"};
+        std::vector<std::string> arguments = {"precompute", "mesh.obj", "-o", "new.prt",
+                                              "--no-refine"};
         if (options.empty() || options[0] != "--face-resolution")
             arguments.insert(arguments.end(), {"--face-resolution", "16"});
         arguments.insert(arguments.end(), options.begin(), options.end());
@@ -57,9 +58,29 @@ TEST_F(Precompute, TheFloorHasTheVerticesAskedFor) {
               std::string::npos);
     EXPECT_EQ(succeed({"info", "new.prt", "--json"}).json()["floor"], 5);
     // Without a number, last on the line or before another option.
-    EXPECT_EQ(made({"--min-depth", "1", "--tolerance", "0.2", "--floor"})["vertices"],
-              6 + 193 * 193);
+    const nlohmann::json automatic = made({"--min-depth", "1", "--tolerance", "0.2", "--floor"});
+    EXPECT_EQ(automatic["floor"]["vertices"], 25);
+    EXPECT_GT(automatic["floor"]["added"], 50);
+    EXPECT_EQ(automatic["vertices"], 6 + 25 * 25 + automatic["floor"]["added"].get<int>());
+    EXPECT_NEAR(automatic["floor"]["side"].get<double>(), 8.0, 1e-5);
     EXPECT_EQ(made({"--floor", "3", "--floor-scale", "8"})["vertices"], 6 + 9);
+}
+
+TEST_F(Precompute, ACoarseMeshGetsVerticesUnlessItMustNot) {
+    const auto said = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> line = {"precompute",    "mesh.obj",          "-o",
+                                         "by_itself.prt", "--face-resolution", "16"};
+        line.insert(line.end(), more.begin(), more.end());
+        return succeed(line).out;
+    };
+    const std::string refined = said({});
+    EXPECT_NE(refined.find("refined: 6 vertices became "), std::string::npos) << refined;
+    EXPECT_NE(refined.find("at most 24000 more for the mesh"), std::string::npos) << refined;
+    EXPECT_GT(succeed({"info", "by_itself.prt", "--json"}).json()["vertices"], 100);
+    EXPECT_EQ(said({"--no-refine"}).find("refined"), std::string::npos);
+    EXPECT_EQ(succeed({"info", "by_itself.prt", "--json"}).json()["vertices"], 6);
+    // Who says how wants it so.
+    EXPECT_EQ(said({"--max-edge", "100"}).find("at most"), std::string::npos);
 }
 
 TEST_F(Precompute, ToleranceAndDepthChangeTheClusters) {
@@ -134,7 +155,7 @@ TEST_F(Precompute, WorkThatWouldTakeHoursIsRefused) {
 
 TEST_F(Precompute, OptionsThatAreOftenMistaken) {
     misuse({"precompute", "--floor", "mesh.obj", "-o", "new.prt"},
-           "--floor: expected a whole number of 0 to 4294967295, got 'mesh.obj'; the mesh goes "
+           "--floor: expected auto or a number from 2 to 65535, got 'mesh.obj'; the mesh goes "
            "first: relumine "
            "precompute mesh.obj --floor");
     misuse(command({"--max-memory", "50"}),
@@ -143,7 +164,7 @@ TEST_F(Precompute, OptionsThatAreOftenMistaken) {
 
 TEST_F(Precompute, BadFloorsAreRefused) {
     for (const char* n : {"0", "1", "100000", "4294967295"})
-        misuse(command({"--floor", n}), "--floor: expected 2 to 65535");
+        misuse(command({"--floor", n}), "--floor: expected auto or a number from 2 to 65535");
     misuse(command({"--floor", "-3"}), "--floor");
     misuse(command({"--floor", "tiles"}), "--floor");
     for (const char* scale : {"0", "-1", "nan", "inf", "1e38"})

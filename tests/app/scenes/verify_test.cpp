@@ -1,5 +1,8 @@
 // `relumine verify`: its figures and options.
+#include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
 
 #include "tests/app/command.h"
 #include "tests/app/small_files.h"
@@ -12,7 +15,8 @@ protected:
     Verify() {
         write("mesh.obj", octahedron_obj());
         write("white.hdr", white_hdr());
-        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "32", "-q"});
+        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "32",
+                 "--no-refine", "-q"});
     }
 };
 
@@ -26,6 +30,19 @@ TEST_F(Verify, AllKeysOfTheReport) {
     EXPECT_LT(report["relative_l2"], 0.01);
     EXPECT_NEAR(report["mean_radiance"].get<double>(), 1.0, 2e-3);
     EXPECT_LT(report["worst_vertex"], 6);
+}
+
+TEST_F(Verify, TheWorstIsSaidFirst) {
+    const auto run = succeed({"verify", "scene.prt", "white.hdr"});
+    const nlohmann::json report = succeed({"verify", "scene.prt", "white.hdr", "--json"}).json();
+    const double worst = report["worst"]["relative_l2"];
+    EXPECT_EQ(worst, std::max({report["relative_l2"].get<double>(),
+                               report["surface"]["relative_l2"].get<double>(),
+                               report["picture"]["relative_l2"].get<double>()}));
+    EXPECT_EQ(run.out.find(fmt::format("the light is off by {:.3g} % where it is worst: {}",
+                                       100.0 * worst, report["worst"]["place"].get<std::string>())),
+              0u)
+        << run.out;
 }
 
 TEST_F(Verify, SamplesAreChosenBySeed) {
