@@ -130,6 +130,10 @@ public:
     /// Shape:   [num_receivers] in the receivers' own order.
     [[nodiscard]] std::span<const glm::vec3> diffuse_radiance() const;
 
+    /// Returns the radiance (albedo 1) of a surface that nothing shades: all light of each cluster,
+    /// the sharp lights' included.
+    [[nodiscard]] glm::dvec3 open_radiance(const glm::vec3& normal) const;
+
     /// Without texels under set_lights() and before the first light.
     [[nodiscard]] const cubemap::CubeMap& environment() const { return *environment_; }
 

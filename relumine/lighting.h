@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct Lighting {
     /// radiance has all light.
     std::vector<relight::SharpLight> lights = {};
     std::vector<glm::vec3> soft = {};
+    /// The radiance, for albedo 1, of a level floor that nothing shades. Empty: unknown, and floors
+    /// catch no shadows.
+    std::optional<glm::vec3> open_floor = {};
     /// What `radiance` points to, where it was gathered from several processes.
     std::shared_ptr<const std::vector<glm::vec3>> gathered = {};
 };

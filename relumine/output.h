@@ -10,6 +10,7 @@
 
 #include "cubemap/cube_map.h"
 #include "relight/pictures/backdrop.h"
+#include "relight/pictures/ground.h"
 #include "relight/pictures/picture.h"
 #include "relight/pictures/picture_view.h"
 #include "relumine/lighting.h"
@@ -45,6 +46,16 @@ using relight::Picture;
 /// Returns how pictures fade the added floor out.
 [[nodiscard]] relight::FadingFloor picture_floor(const Scene& scene,
                                                  const OutputOptions& options = {});
+
+/// Returns the ground that the environment is projected to, under an added floor.
+///
+/// Throws:  std::invalid_argument for a scene without a floor.
+[[nodiscard]] relight::Ground picture_ground(const Scene& scene, const OutputOptions& options = {});
+
+/// Returns how pictures show the added floor in a light; never FloorLook::Automatic. A floor with a
+/// surface of its own is Grey, and so is one whose light is unknown.
+[[nodiscard]] FloorLook floor_look(const Scene& scene, const Lighting& lighting,
+                                   const OutputOptions& options = {});
 
 /// Draws and writes many pictures of one scene from one camera. What the camera sees is found once,
 /// and one exposure is chosen for all. draw() and save() of a LitScene are the short forms for one

@@ -45,6 +45,7 @@ void keep_bounces(Lighting& lighting, std::span<const glm::vec3> bounced, const 
     lighting.radiance = bounced;
     lighting.soft.clear();
     lighting.lights.clear();
+    lighting.open_floor.reset();
 }
 
 /// Parts are numbers alone: what shapes a picture does not suit them.

@@ -23,6 +23,11 @@ constexpr std::uint32_t TileSize = 32;
 
 using Lanes = std::vector<std::uint16_t>;
 
+/// Alpha knows no colours.
+float opacity_of(const glm::vec3& passed) {
+    return std::clamp(1.0f - (passed.r + passed.g + passed.b) / 3.0f, 0.0f, 1.0f);
+}
+
 } // namespace
 
 float FadingFloor::opacity(const glm::vec3& position) const {
@@ -33,6 +38,14 @@ float FadingFloor::opacity(const glm::vec3& position) const {
         return 0.0f;
     const float t = (end_radius - radius) / (end_radius - opaque_radius);
     return t * t * (3.0f - 2.0f * t);
+}
+
+glm::vec3 caught(const glm::vec3& radiance, const glm::vec3& open, float opacity) {
+    glm::vec3 result(1.0f);
+    for (int channel = 0; channel < 3; ++channel)
+        if (open[channel] > 0.0f)
+            result[channel] += opacity * (radiance[channel] / open[channel] - 1.0f);
+    return result;
 }
 
 PictureView::PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
@@ -156,7 +169,7 @@ public:
                 picture.pixels[pixel] = color;
                 if (backdrop == nullptr)
                     picture.alpha[pixel] = alpha;
-                else if (alpha < 1.0f)
+                else if (alpha < 1.0f || light_.open_floor)
                     picture.pixels[pixel] += behind(x, y, *backdrop);
             }
     }
@@ -225,34 +238,49 @@ private:
                                                  [](std::uint16_t lanes) { return lanes == 0; });
         glm::vec3 sum(0.0f);
         float alpha = 0.0f;
-        for (const Sample& sample : samples) {
+        passed_.assign(samples.size(), glm::vec3(1.0f));
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const Sample& sample = samples[i];
             const float opacity = view_.opacity(sample);
             if (opacity == 0.0f)
                 continue;
+            const bool is_caught = catches(sample);
             glm::vec3 radiance = has_texture(sample)
                                      ? light_.textures->radiance(light_.radiance, point(sample))
                                      : prt::value_at(mesh_, light_.radiance, point(sample));
             if (traces && !is_dark) {
                 if (!even)
                     look(sample, lanes_);
-                radiance += traced(sample);
+                radiance += is_caught ? traced_white(sample) : traced(sample);
             }
-            sum += opacity * radiance;
-            alpha += opacity;
+            passed_[i] = is_caught ? caught(radiance, *light_.open_floor, opacity)
+                                   : glm::vec3(1.0f - opacity);
+            if (!is_caught)
+                sum += opacity * radiance;
+            alpha += is_caught ? opacity_of(passed_[i]) : opacity;
         }
         const auto count = static_cast<float>(samples.size());
         return {.color = sum / count, .alpha = alpha / count};
     }
 
-    /// Returns what a pixel shows of a backdrop.
+    /// Returns what the pixel that was just drawn shows of a backdrop.
     [[nodiscard]] glm::vec3 behind(std::uint32_t x, std::uint32_t y,
                                    const Backdrop& backdrop) const {
-        const std::span<const Sample> samples = rows_[y - top_].pixel(x);
         glm::vec3 sum(0.0f);
-        for (std::uint32_t i = 0; i < samples.size(); ++i)
-            if (const float opacity = view_.opacity(samples[i]); opacity < 1.0f)
-                sum += (1.0f - opacity) * backdrop(view_.grid_.direction(x, y, i));
-        return sum / static_cast<float>(samples.size());
+        for (std::uint32_t i = 0; i < passed_.size(); ++i)
+            if (passed_[i] != glm::vec3(0.0f))
+                sum += passed_[i] * backdrop(view_.grid_.direction(x, y, i));
+        return sum / static_cast<float>(passed_.size());
+    }
+
+    /// Whether a sample lies on a floor that catches shadows.
+    [[nodiscard]] bool catches(const Sample& sample) const {
+        return light_.open_floor && view_.floor_.has(mesh_.triangles[sample.triangle]);
+    }
+
+    /// Returns what the lights in lanes_ give to a white Lambert surface.
+    [[nodiscard]] glm::vec3 traced_white(const Sample& sample) const {
+        return glm::vec3(packets_.radiance(prt::shading_normal(mesh_, point(sample)), lanes_));
     }
 
     /// Returns what a sample sends on of the lights in lanes_.
@@ -319,6 +347,8 @@ private:
     Lanes middles_;
     /// Scratch: [packets]
     Lanes lanes_;
+    /// [samples of a pixel] what passes of the light behind.
+    std::vector<glm::vec3> passed_;
 };
 
 Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) const {
