@@ -274,6 +274,9 @@ std::span<const glm::vec3> Relighter::radiance() const {
 std::vector<glm::vec3> Relighter::soft_radiance() const {
     return light_->soft_radiance();
 }
+std::vector<prt::Lobes<glm::vec3>> Relighter::lobes(bool with_sharp_lights) const {
+    return light_->lobes(with_sharp_lights);
+}
 std::span<const glm::vec3> Relighter::diffuse_radiance() const {
     return light_->diffuse_radiance();
 }

@@ -378,6 +378,8 @@ Lighting LitScene::lighting(bool is_drawn) const {
         }
         result.lights.insert(result.lights.end(), added_.lights.begin(), added_.lights.end());
     }
+    if (is_drawn && relighter_ && scene_->transfer.glossy && !scene_->mesh.textures.empty())
+        result.lobes = relighter_->lobes(relight::picture_lights(*relighter_).empty());
     result.open_floor =
         added_.open_floor +
         (relighter_ ? relighter_->open_radiance({0.0f, 1.0f, 0.0f}) : glm::dvec3(0.0));

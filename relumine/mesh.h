@@ -11,6 +11,7 @@
 #include "mesh/load.h"
 #include "mesh/triangle_mesh.h"
 #include "mesh/up_axis.h"
+#include "prt/receivers/camera.h"
 #include "prt/refinement/refine.h"
 #include "relumine/option_table.h"
 
@@ -36,6 +37,8 @@ struct Mesh {
     /// its end. 0: there is no floor.
     std::uint32_t floor_vertices = 0;
     std::uint32_t floor_added = 0;
+    /// The file's own camera.
+    std::optional<prt::Camera> camera = {};
     /// The triangles that block light, where they are not those of `geometry`.
     std::optional<mesh::TriangleMesh> blockers = {};
 

@@ -131,9 +131,8 @@ relight::Ground picture_ground(const Scene& scene, const OutputOptions& options)
     if (!first)
         throw std::invalid_argument("expected a scene with a floor");
     const mesh::Bounds floor = bounds_of(positions.subspan(*first));
-    glm::vec3 size = floor.size();
-    if (*first != 0)
-        size = bounds_of(positions.first(*first)).size();
+    // The added floor is the lowest plane, so what stands on it is the mesh.
+    const glm::vec3 size = relight::subject_bounds(scene.mesh).size();
     const auto height =
         static_cast<double>(options.photo_height.value_or(std::max({size.x, size.y, size.z})));
     return {.camera = {floor.center().x, double{floor.max.y} + height, floor.center().z},
@@ -172,8 +171,9 @@ struct Painter::Impl {
         : scene(lit.scene()), rays(lit.rays().of_mesh()), options(given),
           floor(picture_floor(scene, options)) {
         // The transfer of a scene that processes share has no highlights.
-        if (is_on_vertices() && !scene.settings.glossy_tolerance)
-            textures = {scene.mesh, scene.receivers.surfaces};
+        if (is_on_vertices())
+            textures = {scene.mesh, scene.receivers.surfaces,
+                        scene.settings.glossy_tolerance.has_value()};
     }
 
     [[nodiscard]] bool is_on_vertices() const { return prt::on_vertices(scene.layout); }
@@ -188,7 +188,11 @@ struct Painter::Impl {
                 .height = options.height,
                 .samples_per_axis = options.samples_per_axis};
     }
-    [[nodiscard]] Camera camera() const { return camera_of(scene, options); }
+    const Camera& camera() {
+        if (!chosen_camera)
+            chosen_camera = camera_of(scene, options);
+        return *chosen_camera;
+    }
 
     const std::vector<glm::vec3>& shown_factors() {
         if (shown.empty())
@@ -205,17 +209,38 @@ struct Painter::Impl {
         if (catches(lighting))
             std::copy(radiance.begin() + floor.first_vertex, radiance.end(),
                       colors.begin() + floor.first_vertex);
-        relight::MeshLight light{.radiance = colors, .textures = &textures};
+        relight::MeshLight light{.radiance = colors};
+        // The lobes are those of lights that are traced, or of no lights.
+        std::vector<prt::Lobes<glm::vec3>> lobes;
+        if (traces || lighting.lights.empty())
+            lobes = shown_lobes(lighting, radiance);
+        if (!lobes.empty() || !scene.settings.glossy_tolerance)
+            light.textures = &textures;
+        light.lobes = lobes;
         light.open_floor = open_floor(lighting);
+        light.surfaces = scene.receivers.surfaces;
         if (traces) {
             light.lights = lighting.lights;
             light.albedo = shown_factors();
-            light.surfaces = scene.receivers.surfaces;
             if (scene.settings.view)
                 light.eye = scene.settings.view->eye;
             light.bias = scene.settings.bias;
         }
         return behind == nullptr ? from.cut_out(light) : from.draw(light, *behind);
+    }
+
+    /// Of vertices with textures and highlights; their radiance is given.
+    std::vector<prt::Lobes<glm::vec3>> shown_lobes(const Lighting& lighting,
+                                                   std::span<const glm::vec3> radiance) {
+        std::vector<prt::Lobes<glm::vec3>> lobes = lighting.lobes;
+        if (lobes.empty())
+            return lobes;
+        relight::add_rest(radiance, scene.receivers.surfaces, lobes);
+        for (std::size_t i = 0; i < lobes.size(); ++i)
+            for (glm::vec3* part : {&lobes[i].diffuse, &lobes[i].diffuse_grazing,
+                                    &lobes[i].specular, &lobes[i].specular_grazing})
+                *part *= shown_factors()[i];
+        return lobes;
     }
 
     /// Chosen by the first light, so that the frames of a movie agree.
@@ -239,7 +264,7 @@ struct Painter::Impl {
         return is_above ? *lighting.open_floor : glm::vec3(0.0f);
     }
 
-    [[nodiscard]] glm::vec3 eye() const {
+    glm::vec3 eye() {
         const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout);
         return pixels != nullptr ? pixels->camera.eye : camera().eye;
     }
@@ -415,7 +440,7 @@ struct Painter::Impl {
     const prt::RayScene& rays;
     OutputOptions options;
     relight::FadingFloor floor;
-    /// Of vertices without highlights.
+    /// Of vertices.
     relight::SurfaceColors textures;
     std::vector<glm::vec3> shown;
     /// Made when a second picture is drawn
@@ -427,6 +452,7 @@ struct Painter::Impl {
     std::vector<float> metered_weights;
     std::optional<double> chosen_ev;
     std::optional<FloorLook> chosen_look;
+    std::optional<Camera> chosen_camera;
 };
 
 Painter::Painter(const LitScene& lit, const OutputOptions& options)

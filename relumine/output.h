@@ -73,8 +73,8 @@ public:
     ~Painter();
     Painter(Painter&&) noexcept;
 
-    /// What vertices look like from the camera, with the textures of the mesh where there are no
-    /// highlights; the pixels' own picture; or the texels' lightmap.
+    /// What vertices look like from the camera, with the textures of the mesh under the highlights;
+    /// the pixels' own picture; or the texels' lightmap.
     [[nodiscard]] Picture draw(const Lighting& lighting);
 
     /// Radiance times albedo and exposure, [num_receivers]: what a .npy file holds.

@@ -94,7 +94,8 @@ public:
                            .floor_vertices = mesh.floor_vertices,
                            .source = std::filesystem::path(mesh.source).filename().string(),
                            .floor_added = mesh.floor_added,
-                           .source_hash = mesh.source_hash};
+                           .source_hash = mesh.source_hash,
+                           .camera = mesh.camera};
         report_ = {};
     }
 
@@ -243,7 +244,7 @@ private:
             // Receivers that are no pixels of the view but seen from it.
             if (options_.view && !std::holds_alternative<Pixels>(options_.receivers)) {
                 const std::optional<prt::Camera>& own = options_.view->camera;
-                scene_.settings.view = own ? *own : relight::framed(scene_.mesh);
+                scene_.settings.view = own ? *own : camera_of(scene_);
                 prt::look_from(scene_.receivers, scene_.settings.view->eye);
             }
             if (options_.bounce_tolerance && !scene_.receivers.points.empty()) {
@@ -258,10 +259,10 @@ private:
 
     void place_pixels(const Pixels& size, const prt::RayScene& rays) {
         const bool has_camera = options_.view && options_.view->camera;
-        const prt::Camera camera =
-            has_camera ? *options_.view->camera
-                       : relight::framed(scene_.mesh, {.aspect = static_cast<float>(size.width) /
-                                                                 static_cast<float>(size.height)});
+        const prt::Camera camera = has_camera
+                                       ? *options_.view->camera
+                                       : camera_of(scene_, static_cast<float>(size.width) /
+                                                               static_cast<float>(size.height));
         prt::PixelReceivers pixels =
             prt::pixel_receivers(scene_.mesh, rays,
                                  {.camera = camera,

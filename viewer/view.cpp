@@ -156,7 +156,7 @@ void handle(Shortcut shortcut, ViewState& state, const PanelLayout& layout) {
             remove(state.desk, *state.desk.selected());
         break;
     case Shortcut::FrameAll:
-        state.camera = camera_on_all(state.mesh, layout.scene);
+        state.camera = camera_on_all(state.desk.lit().scene(), layout.scene);
         break;
     case Shortcut::Wireframe:
         state.scene_look.wireframe = !state.scene_look.wireframe;
@@ -190,7 +190,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
     Pictures pictures(state);
     ScriptPlayer player(options.script.value_or(std::vector<ScriptCommand>{}));
     Idleness idleness;
-    state.camera = camera_on_all(state.mesh, window.layout().scene);
+    state.camera = camera_on_all(state.desk.lit().scene(), window.layout().scene);
     ViewReport report{.renderer = window.renderer()};
     double seconds = 0.0;
 

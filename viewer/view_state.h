@@ -66,10 +66,8 @@ struct ViewState {
 /// Returns what is seen behind the mesh now, for a Refiner. It does not change any more.
 [[nodiscard]] relight::Backdrop backdrop_of(const ViewState& state);
 
-/// Returns the camera that shows all of the mesh but the ground, as `relumine relight` takes it for
-/// a picture of this size.
-[[nodiscard]] OrbitCamera camera_on_all(const mesh::TriangleMesh& mesh,
-                                        const PixelRectangle& viewport);
+/// Returns the camera that `relumine relight` takes for a picture of this size.
+[[nodiscard]] OrbitCamera camera_on_all(const Scene& scene, const PixelRectangle& viewport);
 
 /// Chooses the receiver nearest to the point where a pixel's ray meets the mesh, or none, and shows
 /// the light that reaches it.

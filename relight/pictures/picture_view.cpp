@@ -188,6 +188,27 @@ private:
         return light_.textures != nullptr && light_.textures->has(sample.triangle);
     }
 
+    /// Returns what a sample sends on of the light of the vertices.
+    [[nodiscard]] glm::vec3 soft(const Sample& sample) const {
+        const prt::MeshPoint at = point(sample);
+        if (!has_texture(sample))
+            return prt::value_at(mesh_, light_.radiance, at);
+        if (light_.lobes.empty())
+            return light_.textures->radiance(light_.radiance, at);
+        const auto between = [&](auto part) {
+            const mesh::Triangle& triangle = mesh_.triangles[at.triangle];
+            const glm::vec2& w = at.barycentric;
+            return (1.0f - w.x - w.y) * light_.lobes[triangle[0]].*part +
+                   w.x * light_.lobes[triangle[1]].*part + w.y * light_.lobes[triangle[2]].*part;
+        };
+        using Lobes = prt::Lobes<glm::vec3>;
+        return prt::reflect(surface_at(sample),
+                            {.diffuse = between(&Lobes::diffuse),
+                             .diffuse_grazing = between(&Lobes::diffuse_grazing),
+                             .specular = between(&Lobes::specular),
+                             .specular_grazing = between(&Lobes::specular_grazing)});
+    }
+
     /// Finds the lights that reach a sample.
     void look(const Sample& sample, std::span<std::uint16_t> lanes) const {
         const prt::MeshPoint at = point(sample);
@@ -245,9 +266,7 @@ private:
             if (opacity == 0.0f)
                 continue;
             const bool is_caught = catches(sample);
-            glm::vec3 radiance = has_texture(sample)
-                                     ? light_.textures->radiance(light_.radiance, point(sample))
-                                     : prt::value_at(mesh_, light_.radiance, point(sample));
+            glm::vec3 radiance = soft(sample);
             if (traces && !is_dark) {
                 if (!even)
                     look(sample, lanes_);
@@ -294,9 +313,7 @@ private:
             light_.albedo.empty() ? glm::vec3(1.0f) : prt::value_at(mesh_, light_.albedo, at);
         if (light_.surfaces.empty())
             return albedo * glm::vec3(packets_.radiance(normal, lanes_));
-        prt::Surface surface = surface_at(at);
-        if (has_texture(sample))
-            surface.albedo = light_.textures->albedo(at);
+        const prt::Surface surface = surface_at(sample);
         if (surface.highlight == prt::Highlight::None || !light_.eye)
             return albedo *
                    prt::reflect(surface, {.diffuse = glm::vec3(packets_.radiance(normal, lanes_))});
@@ -313,8 +330,10 @@ private:
                                       .specular_grazing = glm::vec3(lobes.specular_grazing)});
     }
 
-    /// Returns the surface between the vertices', with the highlight of the nearest.
-    [[nodiscard]] prt::Surface surface_at(const prt::MeshPoint& at) const {
+    /// Returns the surface between the vertices', with the highlight of the nearest and the colours
+    /// of the textures.
+    [[nodiscard]] prt::Surface surface_at(const Sample& sample) const {
+        const prt::MeshPoint at = point(sample);
         const mesh::Triangle& triangle = mesh_.triangles[at.triangle];
         const std::array<float, 3> weights = {1.0f - at.barycentric.x - at.barycentric.y,
                                               at.barycentric.x, at.barycentric.y};
@@ -333,6 +352,11 @@ private:
         }
         if (is_same)
             surface.roughness_or_exponent = shape;
+        if (has_texture(sample)) {
+            const prt::Surface own = light_.textures->surface(at);
+            surface.albedo = own.albedo;
+            surface.specular = own.specular;
+        }
         return surface;
     }
 
@@ -356,7 +380,7 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
         return size == 0 || size == mesh_.num_vertices();
     };
     if (light.radiance.size() != mesh_.num_vertices() || !fits(light.albedo.size()) ||
-        !fits(light.surfaces.size()))
+        !fits(light.surfaces.size()) || !fits(light.lobes.size()))
         throw std::invalid_argument("expected one radiance, albedo and surface per vertex");
     const LightPackets packets(light.lights);
     Picture picture{.width = options_.width, .height = options_.height};

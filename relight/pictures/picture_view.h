@@ -70,6 +70,9 @@ struct MeshLight {
     /// Triangles with a texture take its colour at the point, and the light of the vertices. Null:
     /// there are none. Must fit the vertices' surfaces.
     const SurfaceColors* textures = nullptr;
+    /// [num_vertices] what `radiance` is made of, or empty where nothing has a highlight: triangles
+    /// with a texture take them in place of `radiance`.
+    std::span<const prt::Lobes<glm::vec3>> lobes = {};
     /// The eye that highlights are for. Empty: there are none.
     std::optional<glm::vec3> eye = {};
     /// Lift of the rays' origins, as in prt::PrecomputeOptions.

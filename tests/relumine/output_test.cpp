@@ -143,9 +143,10 @@ TEST_F(Output, AFloorWithoutShadowsIsThePhotograph) {
         .eye = {far, 3.0f, 0.0f}, .target = {far, 0.0f, 6.0f}, .fov_degrees = 60.0f};
     for (const bool on_pixels : {false, true}) {
         PrecomputeOptions how{.tolerance = 0.1f};
-        if (on_pixels)
-            how.receivers =
-                Pixels{CAMERA, .height = 15, .samples_per_axis = 1};
+        if (on_pixels) {
+            how.receivers = Pixels{.width = 20, .height = 15, .samples_per_axis = 1};
+            how.view = View{.camera = camera};
+        }
         LitScene lit(precompute(mesh, how));
         lit.light(sunny());
         ASSERT_FALSE(on_pixels ? lit.radiance().empty() : lit.lighting().lights.empty());
