@@ -158,6 +158,30 @@ FloorLook floor_look(const Scene& scene, const Lighting& lighting, const OutputO
                : FloorLook::Studio;
 }
 
+std::optional<glm::vec3> open_floor(const Scene& scene, const Lighting& lighting, FloorLook look,
+                                    const glm::vec3& eye) {
+    if (look == FloorLook::Grey)
+        return std::nullopt;
+    return eye.y > scene.mesh.positions[*first_floor_vertex(scene)].y ? lighting.open_floor
+                                                                      : glm::vec3(0.0f);
+}
+
+glm::vec3 studio_color(const Lighting& lighting, const OutputOptions& options) {
+    return lighting.open_floor.value_or(glm::vec3(0.0f)) *
+           options.floor_albedo.value_or(glm::vec3(FloorAlbedo));
+}
+
+relight::Backdrop on_floor(relight::Backdrop backdrop, const Scene& scene, const Lighting& lighting,
+                           FloorLook look, const glm::vec3& eye, const OutputOptions& options) {
+    if (look == FloorLook::Grey)
+        return backdrop;
+    const relight::Ground ground = picture_ground(scene, options);
+    if (look == FloorLook::Studio)
+        return relight::sweep_backdrop(std::move(backdrop), studio_color(lighting, options), ground,
+                                       eye);
+    return relight::grounded_backdrop(std::move(backdrop), ground, eye);
+}
+
 std::vector<glm::vec3> colors_of(const Scene& scene, std::span<const glm::vec3> radiance,
                                  const Albedo& albedo) {
     require_fit(scene, radiance);
@@ -217,7 +241,7 @@ struct Painter::Impl {
         if (!lobes.empty() || !scene.settings.glossy_tolerance)
             light.textures = &textures;
         light.lobes = lobes;
-        light.open_floor = open_floor(lighting);
+        light.open_floor = open_floor(scene, lighting, look(lighting), eye());
         light.surfaces = scene.receivers.surfaces;
         if (traces) {
             light.lights = lighting.lights;
@@ -251,18 +275,7 @@ struct Painter::Impl {
     }
 
     /// Whether the floor shows what is behind it, in its own light.
-    bool catches(const Lighting& lighting) {
-        return floor.first_vertex < scene.mesh.num_vertices() && lighting.open_floor &&
-               look(lighting) != FloorLook::Grey;
-    }
-
-    /// Of a floor that catches shadows; black from below, where it is not to be seen.
-    std::optional<glm::vec3> open_floor(const Lighting& lighting) {
-        if (!catches(lighting))
-            return std::nullopt;
-        const bool is_above = eye().y > scene.mesh.positions[floor.first_vertex].y;
-        return is_above ? *lighting.open_floor : glm::vec3(0.0f);
-    }
+    bool catches(const Lighting& lighting) { return look(lighting) != FloorLook::Grey; }
 
     glm::vec3 eye() {
         const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout);
@@ -271,16 +284,7 @@ struct Painter::Impl {
 
     /// What is behind the mesh, and the ground.
     relight::Backdrop backdrop(const Lighting& lighting) {
-        relight::Backdrop result = plain_view(lighting);
-        if (!catches(lighting))
-            return result;
-        const relight::Ground ground = picture_ground(scene, options);
-        if (look(lighting) == FloorLook::Studio)
-            return relight::sweep_backdrop(
-                std::move(result),
-                *lighting.open_floor * options.floor_albedo.value_or(glm::vec3(FloorAlbedo)),
-                ground, eye());
-        return relight::grounded_backdrop(std::move(result), ground, eye());
+        return on_floor(plain_view(lighting), scene, lighting, look(lighting), eye(), options);
     }
 
     [[nodiscard]] relight::Backdrop plain_view(const Lighting& lighting) const {
@@ -297,7 +301,7 @@ struct Painter::Impl {
     /// Of pixels, without added vertices; empty where all are opaque.
     [[nodiscard]] std::vector<glm::vec3> opacity(const Lighting& lighting) {
         std::vector<glm::vec3> result;
-        const std::optional<glm::vec3> open = open_floor(lighting);
+        const std::optional<glm::vec3> open = open_floor(scene, lighting, look(lighting), eye());
         if (floor.first_vertex >= scene.mesh.num_vertices() ||
             (!open && !(options.floor_fade > 0.0f)))
             return result;

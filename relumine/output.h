@@ -57,6 +57,19 @@ using relight::Picture;
 [[nodiscard]] FloorLook floor_look(const Scene& scene, const Lighting& lighting,
                                    const OutputOptions& options = {});
 
+/// Returns relight::MeshLight::open_floor for an eye: empty for a Grey floor, black below the
+/// floor, which is not to be seen from there.
+[[nodiscard]] std::optional<glm::vec3> open_floor(const Scene& scene, const Lighting& lighting,
+                                                  FloorLook look, const glm::vec3& eye);
+
+/// Returns a backdrop as an eye sees it on and around an added floor.
+[[nodiscard]] relight::Backdrop on_floor(relight::Backdrop backdrop, const Scene& scene,
+                                         const Lighting& lighting, FloorLook look,
+                                         const glm::vec3& eye, const OutputOptions& options = {});
+
+/// Returns the colour of a Studio floor.
+[[nodiscard]] glm::vec3 studio_color(const Lighting& lighting, const OutputOptions& options = {});
+
 /// Draws and writes many pictures of one scene from one camera. What the camera sees is found once,
 /// and one exposure is chosen for all. draw() and save() of a LitScene are the short forms for one
 /// picture.

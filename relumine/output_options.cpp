@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 namespace relumine {
 
@@ -192,6 +193,15 @@ Camera camera_of(const Scene& scene, const OutputOptions& options) {
     }
     camera.eye = options.eye.value_or(camera.eye);
     return camera;
+}
+
+bool is_other_eye(const Scene& scene, const OutputOptions& options) {
+    if (!prt::on_vertices(scene.layout) || !scene.settings.glossy_tolerance || !scene.settings.view)
+        return false;
+    constexpr float Same = 1e-3f; // of the distance
+    const Camera camera = camera_of(scene, options);
+    return glm::distance(camera.eye, scene.settings.view->eye) >
+           Same * glm::distance(camera.eye, camera.target);
 }
 
 } // namespace relumine

@@ -128,6 +128,10 @@ void check(const OutputOptions& options);
 /// Returns the camera of a picture. Throws as check() does.
 [[nodiscard]] Camera camera_of(const Scene& scene, const OutputOptions& options);
 
+/// Whether a picture looks from elsewhere than the eye that the highlights of a scene of vertices
+/// are for. Highlights then stay where that eye sees them.
+[[nodiscard]] bool is_other_eye(const Scene& scene, const OutputOptions& options);
+
 // How the values are written
 
 struct AlbedoText {

@@ -14,6 +14,7 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/visibility/ray_scene.h"
 #include "relight/pictures/picture_view.h"
+#include "relumine/output.h"
 #include "viewer/gestures.h"
 #include "viewer/lat_long_view.h"
 #include "viewer/light_desk.h"
@@ -30,6 +31,8 @@ struct ViewState {
     const prt::RayScene& rays;
     LightDesk& desk;
     Shading shading;
+    /// How pictures show the floor.
+    OutputOptions picture = {};
     /// Reads an environment file as the command line's options say. Throws std::runtime_error.
     std::function<Environment(const std::filesystem::path&)> load_environment;
 

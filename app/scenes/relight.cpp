@@ -120,6 +120,8 @@ void light_scene(const RelightArguments& options, Session& session) {
     const UpdateReport times = lit.light(std::move(given.light));
     session.poll();
     const relumine::OutputOptions output = options.output.for_scene(scene);
+    if (session.is_first())
+        options.output.warn_of_eye(scene, session);
     const std::optional<BounceReport> bounces =
         options.bounces.bounce(lit, output, options.scene.path);
     Lighting lighting = lit.lighting();

@@ -11,8 +11,9 @@ namespace relumine::relight {
 
 namespace {
 
-/// The sweep's own colour ends between these distances, in heights of the camera.
-constexpr double SweepBegin = 3.0, SweepEnd = 18.0;
+/// The sweep's own colour ends between these distances, in heights of the camera. It falls with
+/// their inverse, as places in a picture do.
+constexpr double SweepBegin = 2.5, SweepEnd = 25.0;
 
 } // namespace
 
@@ -46,8 +47,9 @@ Backdrop sweep_backdrop(Backdrop backdrop, const glm::vec3& color, const Ground&
         if (!(way.y < 0.0 && drop > 0.0))
             return behind;
         const glm::dvec3 at = ground.point(eye, direction);
-        const double distance = std::hypot(at.x, at.z) / ground.height;
-        const double t = std::clamp((SweepEnd - distance) / (SweepEnd - SweepBegin), 0.0, 1.0);
+        const double distance = std::max(std::hypot(at.x, at.z) / ground.height, SweepBegin);
+        const double t =
+            std::max((1.0 / distance - 1.0 / SweepEnd) / (1.0 / SweepBegin - 1.0 / SweepEnd), 0.0);
         return glm::mix(behind, color, static_cast<float>(t * t * (3.0 - 2.0 * t)));
     };
 }
