@@ -64,7 +64,7 @@ vec3 behind(vec3 direction) {
     vec3 beyond = looked_up(environment, way);
     if (way.y >= 0.0 || eye.y <= ground_camera.y - ground_height)
         return beyond;
-    float t = max((1.0 / max(length(at.xz) / ground_height, 2.5) - 0.04) / 0.36, 0.0);
+    float t = max((1.0 / max(length(at.xz) / ground_height, 2.5) - 1.0 / 18.0) / (0.4 - 1.0 / 18.0), 0.0);
     return mix(beyond, studio_color, t * t * (3.0 - 2.0 * t));
 }
 // What is behind, darkened, as the screen shows it.

@@ -10,13 +10,15 @@ namespace relumine::relight {
 namespace {
 
 // Chosen by looking at eight meshes under fifteen environments.
-constexpr double BrightShare = 0.05; // of what is lit is brighter than Bright
-constexpr double Bright = 0.8;       // where the neutral tone curve begins to compress
-constexpr double Middle = 0.1;       // the median is lifted to this, but
-constexpr double LargestLift = 1.5;  // by no more than so many stops
-constexpr double BurntShare = 0.25;  // of a photograph behind may be brighter than Burnt, and more
-constexpr double Burnt = 1.4;        // where what is lit
-constexpr double DarkestAsset = 3.0; // would be so many stops below Bright
+constexpr double BrightShare = 0.05;  // of what is lit is brighter than Bright
+constexpr double Bright = 0.8;        // where the neutral tone curve begins to compress
+constexpr double Middle = 0.1;        // the median is lifted to this, but
+constexpr double LargestLift = 1.5;   // by no more than so many stops
+constexpr double MiddleBehind = 0.18; // the median of a photograph behind is lifted to this, but
+constexpr double LargestRaise = 0.6;  // by no more than so many stops
+constexpr double BurntShare = 0.25;   // of a photograph behind may be brighter than Burnt, and more
+constexpr double Burnt = 1.4;         // where what is lit
+constexpr double DarkestAsset = 3.0;  // would be so many stops below Bright
 
 /// The brightness of a part of what is lit, and its weight.
 using Sample = std::pair<float, double>;
@@ -28,6 +30,10 @@ double exceeded_by(double share, const std::vector<Sample>& samples, double weig
     while (sample + 1 != samples.rend() && brighter + sample->second <= share * weight)
         brighter += (sample++)->second;
     return static_cast<double>(sample->first);
+}
+
+float rounded(double ev) {
+    return static_cast<float>(std::clamp(std::round(100.0 * ev) / 100.0, -100.0, 100.0));
 }
 
 std::vector<Sample> samples_of(std::span<const glm::vec3> colors, std::span<const float> weights) {
@@ -62,12 +68,14 @@ float suitable_exposure_ev(std::span<const glm::vec3> colors, std::span<const fl
         ev = std::clamp(std::log2(Middle / middle), ev, ev + LargestLift);
     else
         ev += LargestLift;
-    if (!photograph.empty())
-        if (const double most =
-                exceeded_by(BurntShare, photograph, static_cast<double>(photograph.size()));
-            most > 0.0)
-            ev = std::min(ev, std::max(std::log2(Burnt / most), lowest));
-    return static_cast<float>(std::clamp(std::round(100.0 * ev) / 100.0, -100.0, 100.0));
+    if (photograph.empty())
+        return rounded(ev);
+    const auto size = static_cast<double>(photograph.size());
+    if (const double middle = exceeded_by(0.5, photograph, size); middle > 0.0)
+        ev = std::clamp(std::log2(MiddleBehind / middle), ev, ev + LargestRaise);
+    if (const double most = exceeded_by(BurntShare, photograph, size); most > 0.0)
+        ev = std::min(ev, std::max(std::log2(Burnt / most), lowest));
+    return rounded(ev);
 }
 
 } // namespace relumine::relight

@@ -43,10 +43,25 @@ std::vector<bool> above(const mesh::TriangleMesh& mesh, const std::vector<bool>&
     return marks;
 }
 
+/// Marks the vertices of triangles among `of` that stay within the sides of a box.
+std::vector<bool> inside(const mesh::TriangleMesh& mesh, const std::vector<bool>& of,
+                         const mesh::Bounds& box) {
+    const glm::vec3 margin = 0.1f * box.size();
+    std::vector<bool> marks(mesh.num_vertices(), false);
+    for (const mesh::Triangle& triangle : mesh.triangles)
+        if (of[triangle[0]] && std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t v) {
+                const glm::vec3& at = mesh.positions[v];
+                return at.x >= box.min.x - margin.x && at.x <= box.max.x + margin.x &&
+                       at.z >= box.min.z - margin.z && at.z <= box.max.z + margin.z;
+            }))
+            for (const std::uint32_t v : triangle)
+                marks[v] = true;
+    return marks;
+}
+
 /// Marks the vertices of the objects on the ground: triangles wholly in the lowest horizontal plane
 /// are left out, and a wide plate under all the rest, unless there is nothing else.
 std::vector<bool> subject(const mesh::TriangleMesh& mesh, const mesh::Bounds& all) {
-    constexpr float Plate = 0.02f; // thickness of a plate over its width
     constexpr float Wider = 1.5f;
     std::vector<bool> used(mesh.num_vertices(), false);
     for (const mesh::Triangle& triangle : mesh.triangles)
@@ -59,9 +74,16 @@ std::vector<bool> subject(const mesh::TriangleMesh& mesh, const mesh::Bounds& al
     const auto width = [](const mesh::Bounds& box) {
         return std::max(box.size().x, box.size().z);
     };
-    std::vector<bool> rest = above(mesh, stands, whole.box.min.y + Plate * width(whole.box));
-    const MarkedBox upper = box_of(mesh, rest);
-    return upper.any && width(whole.box) > Wider * width(upper.box) ? rest : stands;
+    // From thin plates to thick ones, so that little of the rest is cut off.
+    for (const float thickness : {0.001f, 0.003f, 0.01f, 0.02f}) {
+        const float height = whole.box.min.y + thickness * width(whole.box);
+        const MarkedBox upper = box_of(mesh, above(mesh, stands, height));
+        if (!upper.any)
+            return stands;
+        if (width(whole.box) > Wider * width(upper.box))
+            return inside(mesh, stands, upper.box);
+    }
+    return stands;
 }
 
 /// The largest and the smallest of values.
@@ -141,10 +163,13 @@ mesh::Bounds subject_bounds(const mesh::TriangleMesh& mesh) {
 
 namespace {
 
-/// What a ray meets first.
+/// What a ray meets first, and last.
 struct Meeting {
     double distance = std::numeric_limits<double>::infinity();
     bool is_front = false;
+    double farthest = 0.0;
+    /// The last surface faces away from where the ray begins.
+    bool is_closed = false;
 };
 
 /// Finds what rays from one point meet, triangle by triangle.
@@ -167,8 +192,16 @@ std::vector<Meeting> meetings(const mesh::TriangleMesh& mesh, const glm::dvec3& 
             if (!is_inside || sum == 0.0)
                 continue;
             const double distance = volume / sum;
-            if (distance > 0.0 && distance < result[i].distance)
-                result[i] = {.distance = distance, .is_front = sum < 0.0};
+            if (!(distance > 0.0))
+                continue;
+            if (distance < result[i].distance) {
+                result[i].distance = distance;
+                result[i].is_front = sum < 0.0;
+            }
+            if (distance > result[i].farthest) {
+                result[i].farthest = distance;
+                result[i].is_closed = sum > 0.0;
+            }
         }
     }
     return result;
@@ -201,30 +234,44 @@ double way_out(const mesh::Bounds& box, const glm::dvec3& from, const glm::dvec3
     return result;
 }
 
+/// Whether most rays from a point meet fronts, far away in the box. Strictness 1 takes many rays.
+bool is_inside_room(const mesh::TriangleMesh& mesh, const mesh::Bounds& box, const glm::dvec3& from,
+                    std::uint32_t num_around, double strictness) {
+    constexpr double Met = 0.7, Fronts = 0.65, NearBox = 0.55, Closed = 0.6;
+    const std::vector<glm::dvec3> ways = ways_around(num_around, false);
+    const std::vector<Meeting> around = meetings(mesh, from, ways);
+    double met = 0.0, fronts = 0.0, near_box = 0.0, closed = 0.0, level_or_up = 0.0;
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+        if (ways[i].y >= 0.0) { // below, there may be a floor
+            level_or_up += 1.0;
+            closed += around[i].is_closed ? 1.0 : 0.0;
+        }
+        if (!std::isfinite(around[i].distance))
+            continue;
+        met += 1.0;
+        fronts += around[i].is_front ? 1.0 : 0.0;
+        near_box += around[i].distance > 0.6 * way_out(box, from, ways[i]) ? 1.0 : 0.0;
+    }
+    // A chest has an inside, too, but it is closed to the outside.
+    if (closed > Closed * level_or_up)
+        return false;
+    return met >= strictness * Met * static_cast<double>(ways.size()) &&
+           fronts >= strictness * Fronts * met && near_box >= strictness * NearBox * met;
+}
+
 } // namespace
 
 std::optional<Camera> inside_room(const mesh::TriangleMesh& mesh, const Framing& framing) {
     constexpr double EyeHeight = 0.55; // of the room's
     constexpr double FromWall = 0.04;
-    constexpr double Met = 0.7, Fronts = 0.65, NearBox = 0.55;
     constexpr float FovDegrees = 60.0f;
     constexpr std::uint32_t NumAround = 32;
     const mesh::Bounds box = subject_bounds(mesh);
     const glm::dvec3 size(box.size());
     glm::dvec3 middle(box.center());
     middle.y = double{box.min.y} + EyeHeight * size.y;
-    const std::vector<glm::dvec3> ways = ways_around(16, false);
-    const std::vector<Meeting> around = meetings(mesh, middle, ways);
-    double met = 0.0, fronts = 0.0, near_box = 0.0;
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-        if (!std::isfinite(around[i].distance))
-            continue;
-        met += 1.0;
-        fronts += around[i].is_front ? 1.0 : 0.0;
-        near_box += around[i].distance > 0.6 * way_out(box, middle, ways[i]) ? 1.0 : 0.0;
-    }
-    if (met < Met * static_cast<double>(ways.size()) || fronts < Fronts * met ||
-        near_box < NearBox * met)
+    // Few rays tell most objects.
+    if (!is_inside_room(mesh, box, middle, 3, 0.7) || !is_inside_room(mesh, box, middle, 16, 1.0))
         return std::nullopt;
 
     // The eye is where the view is longest; of equal ones, to the front.

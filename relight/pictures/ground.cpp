@@ -13,7 +13,7 @@ namespace {
 
 /// The sweep's own colour ends between these distances, in heights of the camera. It falls with
 /// their inverse, as places in a picture do.
-constexpr double SweepBegin = 2.5, SweepEnd = 25.0;
+constexpr double SweepBegin = 2.5, SweepEnd = 18.0;
 
 } // namespace
 

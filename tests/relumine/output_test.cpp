@@ -6,6 +6,7 @@
 #include "cubemap/image/environment.h"
 #include "mesh/floor.h"
 #include "mesh/load.h"
+#include "tests/prt/textured_square.h"
 #include "tests/relight/environments.h"
 #include "tests/relumine/small_scenes.h"
 
@@ -210,6 +211,42 @@ TEST_F(Output, ExposureIsThatOfTheMeshAndNotOfItsFloor) {
             .choose_exposure_ev(lit.lighting());
     };
     EXPECT_EQ(exposure(0.05f), exposure(5.0f));
+}
+
+TEST_F(Output, TheCameraIsThatOfTheFileOrInsideOfARoom) {
+    Mesh mesh(scenes::corner(3));
+    mesh.camera = Camera{.eye = {5, 6, 7}, .target = {0, 1, 0}, .fov_degrees = 41.0f};
+    const Scene scene = unclustered_scene(mesh);
+    EXPECT_EQ(camera_of(scene, OutputOptions{}), *mesh.camera);
+    EXPECT_EQ(camera_of(scene, OutputOptions{.fov_degrees = 20.0f}).fov_degrees, 20.0f);
+    EXPECT_EQ(camera_of(scene, OutputOptions{.eye = glm::vec3(1.0f)}).eye, glm::vec3(1.0f));
+    const Camera asked = camera_of(scene, OutputOptions{.camera_place = CameraPlace{}});
+    EXPECT_EQ(asked, relight::framed(scene.mesh));
+    const Scene room = unclustered_scene(data_gen::painted_room(2000));
+    const Camera inside = camera_of(room, OutputOptions{});
+    const mesh::Bounds box = mesh::bounds(room.mesh);
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_GT(inside.eye[axis], box.min[axis]);
+        EXPECT_LT(inside.eye[axis], box.max[axis]);
+    }
+}
+
+TEST_F(Output, HighlightsKeepTextures) {
+    mesh::TriangleMesh square = scenes::textured_square();
+    for (mesh::Material& material : square.materials) {
+        material.model = mesh::MaterialModel::MetallicRoughness;
+        material.metallic = 0.0f;
+        material.roughness = 0.5f;
+    }
+    const Camera camera{.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = 28.072487f};
+    LitScene lit(precompute(square, {.tolerance = 0.1f, .view = View{.camera = camera}}));
+    lit.light(sunny());
+    const Picture picture = draw(lit, {.width = 8, .height = 8, .samples_per_axis = 1});
+    const glm::vec3* row = picture.pixels.data() + 32;
+    EXPECT_GT(row[2].r, 1.5f * row[2].g);
+    EXPECT_GT(row[4].g, 1.5f * row[4].r);
+    EXPECT_FALSE(is_other_eye(lit.scene(), {}));
+    EXPECT_TRUE(is_other_eye(lit.scene(), {.camera_place = CameraPlace{}}));
 }
 
 } // namespace
