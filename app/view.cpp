@@ -31,7 +31,7 @@ struct Options {
     std::string layers;
     std::string script;
     std::string screenshot;
-    /// The window's size, the exposure and the tone curve of pictures count.
+    /// The window's size, the exposure, the tone curve and the floor of pictures count.
     relumine::OutputOptions picture = {.width = 1440, .height = 860};
 };
 
@@ -54,9 +54,8 @@ viewer::Shading shading_of(const Scene& scene) {
     return {.albedo = picture_albedo(scene),
             .floor = picture_floor(scene),
             .surfaces = scene.receivers.surfaces,
-            .textures = scene.transfer.glossy
-                            ? relight::SurfaceColors()
-                            : relight::SurfaceColors(scene.mesh, scene.receivers.surfaces),
+            .textures = relight::SurfaceColors(scene.mesh, scene.receivers.surfaces,
+                                               scene.transfer.glossy.has_value()),
             .eye = scene.settings.view ? std::optional(scene.settings.view->eye) : std::nullopt,
             .bias = scene.settings.bias};
 }
@@ -120,6 +119,7 @@ void run(const Options& options, Session& session) {
                             .rays = lit.rays().of_mesh(),
                             .desk = desk,
                             .shading = shading_of(lit.scene()),
+                            .picture = options.picture,
                             .load_environment = load};
     if (!options.layers.empty() && !viewer::open(state, options.layers))
         throw std::runtime_error(state.message);
@@ -145,7 +145,8 @@ void add_view(Command& program, Session& session) {
     command.add(
         row("--layers", options->layers, "light layers to begin with, .json", {.file = true}));
     for (OptionRow& each : options_of(options->picture))
-        if (each.name == "--exposure" || each.name == "--tone-map")
+        if (each.name == "--exposure" || each.name == "--tone-map" || each.name == "--floor" ||
+            each.name == "--photo-height")
             command.add(std::move(each));
     command.add(size_row(options->picture.width, options->picture.height, "the window's size",
                          {.min = 320}));

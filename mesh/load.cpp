@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "files/extension.h"
@@ -39,7 +41,8 @@ bool has_mesh_extension(const std::filesystem::path& path) {
            Extensions.end();
 }
 
-TriangleMesh load(const std::filesystem::path& path, NormalSource normals, std::uint64_t* hash) {
+TriangleMesh load(const std::filesystem::path& path, NormalSource normals, std::uint64_t* hash,
+                  std::optional<FileCamera>* camera) {
     const std::string extension = files::extension_of(path);
     // A name that is not there says so first.
     static_cast<void>(files::size(path));
@@ -51,7 +54,10 @@ TriangleMesh load(const std::filesystem::path& path, NormalSource normals, std::
     if (hash != nullptr)
         *hash = files::hash_of(bytes);
     try {
-        return to_mesh(read_soup(path, extension, bytes), normals);
+        PolygonSoup soup = read_soup(path, extension, bytes);
+        if (camera != nullptr)
+            *camera = soup.camera;
+        return to_mesh(std::move(soup), normals);
     } catch (const std::bad_alloc&) {
         throw std::runtime_error(
             fmt::format("{}: expected a mesh that fits into memory, got {} bytes", path.string(),

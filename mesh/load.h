@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
+#include "mesh/file_camera.h"
 #include "mesh/normals.h"
 #include "mesh/triangle_mesh.h"
 
@@ -25,13 +27,15 @@ namespace relumine::mesh {
 /// library or image does not stop the load; TriangleMesh::missing has its name. A broken one stops
 /// it.
 ///
-/// `hash` receives the xxHash64 of the file's bytes.
+/// `hash` receives the xxHash64 of the file's bytes, `camera` the first perspective camera of a
+/// glTF scene, if there is one.
 /// Throws:  std::runtime_error "path: expected X, got Y" if the file cannot be read, has no face of
 ///          three corners, has an index out of range or a position that is not finite, or declares
 ///          more or less than it holds.
 [[nodiscard]] TriangleMesh load(const std::filesystem::path& path,
                                 NormalSource normals = NormalSource::File,
-                                std::uint64_t* hash = nullptr);
+                                std::uint64_t* hash = nullptr,
+                                std::optional<FileCamera>* camera = nullptr);
 
 /// Returns true if load() knows the path's extension, in capitals or not.
 [[nodiscard]] bool has_mesh_extension(const std::filesystem::path& path);

@@ -126,10 +126,10 @@ void ReceiverLight::light_glossy(std::size_t block) {
         light_block(transfer_.glossy->lobes[lobe], block, pyramid_->light(), glossy_[block][lobe]);
 }
 
-/// Returns the radiance that a receiver with a surface sends on. `diffuse` is its radiance for
+/// Returns the light of a receiver with a surface through each lobe. `diffuse` is its radiance for
 /// albedo 1.
-glm::vec3 ReceiverLight::through_surface(std::size_t place, const glm::vec3& diffuse,
-                                         bool with_sharp_lights) const {
+prt::Lobes<glm::vec3> ReceiverLight::lobes_at(std::size_t place, const glm::vec3& diffuse,
+                                              bool with_sharp_lights) const {
     prt::Lobes<glm::vec3> lobes =
         with_sharp_lights ? traced_.highlights(place) : prt::Lobes<glm::vec3>();
     lobes.diffuse = diffuse;
@@ -142,7 +142,7 @@ glm::vec3 ReceiverLight::through_surface(std::size_t place, const glm::vec3& dif
         lobes.specular_grazing += through(prt::GlossyLobe::SpecularGrazing);
         lobes.diffuse_grazing += through(prt::GlossyLobe::DiffuseGrazing);
     }
-    return prt::reflect(transfer_.surfaces[place], lobes);
+    return lobes;
 }
 
 double ReceiverLight::write_radiance(std::size_t block) {
@@ -166,7 +166,8 @@ double ReceiverLight::write_radiance(std::size_t block, bool with_sharp_lights,
             radiance[receivers[i]] = sums.of(i);
     else
         for (std::size_t i = 0; i < receivers.size(); ++i)
-            radiance[receivers[i]] = through_surface(begin + i, sums.of(i), with_sharp_lights);
+            radiance[receivers[i]] = prt::reflect(
+                transfer_.surfaces[begin + i], lobes_at(begin + i, sums.of(i), with_sharp_lights));
     return brightness;
 }
 
@@ -175,6 +176,20 @@ std::vector<glm::vec3> ReceiverLight::soft_radiance() const {
     files::parallel_for(std::size_t{0}, light_.size(),
                         [&](std::size_t block) { write_radiance(block, false, radiance, {}); });
     return radiance;
+}
+
+std::vector<prt::Lobes<glm::vec3>> ReceiverLight::lobes(bool with_sharp_lights) const {
+    std::vector<prt::Lobes<glm::vec3>> lobes(radiance_.size());
+    files::parallel_for(std::size_t{0}, light_.size(), [&](std::size_t block) {
+        BlockRadiance sums;
+        static_cast<void>(block_radiance(normals_[block], light_[block],
+                                         with_sharp_lights ? traced_.diffuse(block) : nullptr,
+                                         sums));
+        const std::size_t begin = block * prt::BlockSize;
+        for (std::size_t i = 0; i < std::min(prt::BlockSize, lobes.size() - begin); ++i)
+            lobes[transfer_.order[begin + i]] = lobes_at(begin + i, sums.of(i), with_sharp_lights);
+    });
+    return lobes;
 }
 
 } // namespace relumine::relight

@@ -57,6 +57,7 @@ public:
         return diffuse_.empty() ? radiance_ : diffuse_;
     }
     [[nodiscard]] std::vector<glm::vec3> soft_radiance() const;
+    [[nodiscard]] std::vector<prt::Lobes<glm::vec3>> lobes(bool with_sharp_lights) const;
     [[nodiscard]] glm::dvec3 from_cluster(std::size_t place, std::size_t cluster) const;
 
 private:
@@ -69,8 +70,8 @@ private:
     /// Of radiance for albedo 1 in `diffuse`, too, unless that is empty.
     double write_radiance(std::size_t block, bool with_sharp_lights, std::span<glm::vec3> radiance,
                           std::span<glm::vec3> diffuse) const;
-    [[nodiscard]] glm::vec3 through_surface(std::size_t place, const glm::vec3& diffuse,
-                                            bool with_sharp_lights) const;
+    [[nodiscard]] prt::Lobes<glm::vec3> lobes_at(std::size_t place, const glm::vec3& diffuse,
+                                                 bool with_sharp_lights) const;
 
     const prt::Transfer& transfer_;
     TracedLight traced_;

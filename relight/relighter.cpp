@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -273,8 +274,22 @@ std::span<const glm::vec3> Relighter::radiance() const {
 std::vector<glm::vec3> Relighter::soft_radiance() const {
     return light_->soft_radiance();
 }
+std::vector<prt::Lobes<glm::vec3>> Relighter::lobes(bool with_sharp_lights) const {
+    return light_->lobes(with_sharp_lights);
+}
 std::span<const glm::vec3> Relighter::diffuse_radiance() const {
     return light_->diffuse_radiance();
+}
+glm::dvec3 Relighter::open_radiance(const glm::vec3& normal) const {
+    glm::dvec3 sum(0.0);
+    std::vector<VectorIrradiance> soft = sums_;
+    for (const SharpLight& light : sharp_lights_) {
+        soft[light.cluster] -= light.irradiance;
+        sum += light.irradiance.on(normal);
+    }
+    for (const VectorIrradiance& cluster : soft)
+        sum += cluster.on(normal);
+    return sum / std::numbers::pi;
 }
 glm::dvec3 Relighter::from_cluster(std::size_t place, std::size_t cluster) const {
     return light_->from_cluster(place, cluster);

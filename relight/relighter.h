@@ -14,6 +14,7 @@
 #include "cubemap/cube_map.h"
 #include "cubemap/texel_rectangle.h"
 #include "lights/light_list.h"
+#include "prt/glossy/brdf.h"
 #include "prt/transfer/transfer.h"
 #include "relight/binned_environment.h"
 #include "relight/sharp/shadow_rays.h"
@@ -125,10 +126,20 @@ public:
     /// Cost:    O(receivers).
     [[nodiscard]] std::vector<glm::vec3> soft_radiance() const;
 
+    /// Returns the light of receivers with surfaces through each lobe, without colours, all of it
+    /// or without what the sharp lights give: reflect() makes radiance() or soft_radiance() of it.
+    ///
+    /// Shape:   [num_receivers], as radiance().
+    [[nodiscard]] std::vector<prt::Lobes<glm::vec3>> lobes(bool with_sharp_lights) const;
+
     /// Radiance as if every receiver were Lambert of albedo 1: irradiance over pi.
     ///
     /// Shape:   [num_receivers] in the receivers' own order.
     [[nodiscard]] std::span<const glm::vec3> diffuse_radiance() const;
+
+    /// Returns the radiance (albedo 1) of a surface that nothing shades: all light of each cluster,
+    /// the sharp lights' included.
+    [[nodiscard]] glm::dvec3 open_radiance(const glm::vec3& normal) const;
 
     /// Without texels under set_lights() and before the first light.
     [[nodiscard]] const cubemap::CubeMap& environment() const { return *environment_; }

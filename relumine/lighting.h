@@ -2,12 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
+#include "prt/glossy/brdf.h"
 #include "relight/pictures/backdrop.h"
 #include "relight/sharp/sharp_lights.h"
 
@@ -25,6 +27,12 @@ struct Lighting {
     /// radiance has all light.
     std::vector<relight::SharpLight> lights = {};
     std::vector<glm::vec3> soft = {};
+    /// [num_receivers] what `soft` is made of, or `radiance` where there are no lights, without
+    /// bounces. Only of meshes with textures and highlights.
+    std::vector<prt::Lobes<glm::vec3>> lobes = {};
+    /// The radiance, for albedo 1, of a level floor that nothing shades. Empty: unknown, and floors
+    /// catch no shadows.
+    std::optional<glm::vec3> open_floor = {};
     /// What `radiance` points to, where it was gathered from several processes.
     std::shared_ptr<const std::vector<glm::vec3>> gathered = {};
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -12,6 +13,7 @@
 
 #include "files/hash.h"
 #include "prt/clusters/dealt_tiles.h"
+#include "relight/sharp/light_packets.h"
 #include "relight/sharp/shadow_rays.h"
 
 namespace relumine {
@@ -151,6 +153,9 @@ UpdateReport LitScene::light(Light light) {
 /// Lights the scene with a list to get its light.
 LitScene::Added LitScene::light_of_list(std::span<const lights::DistantLight> lights) {
     Added added;
+    for (const lights::DistantLight& light : lights)
+        added.open_floor +=
+            relight::vector_irradiance(light).on({0.0f, 1.0f, 0.0f}) / std::numbers::pi;
     if (relighter_) {
         relighter_->set_lights(lights);
         added.radiance = copy_of(relighter_->radiance());
@@ -373,6 +378,11 @@ Lighting LitScene::lighting(bool is_drawn) const {
         }
         result.lights.insert(result.lights.end(), added_.lights.begin(), added_.lights.end());
     }
+    if (is_drawn && relighter_ && scene_->transfer.glossy && !scene_->mesh.textures.empty())
+        result.lobes = relighter_->lobes(relight::picture_lights(*relighter_).empty());
+    result.open_floor =
+        added_.open_floor +
+        (relighter_ ? relighter_->open_radiance({0.0f, 1.0f, 0.0f}) : glm::dvec3(0.0));
     if (!result.lights.empty()) {
         if (!relighter_)
             result.soft.resize(added_.soft.size());

@@ -153,6 +153,8 @@ private:
     struct Added {
         std::vector<glm::vec3> radiance = {};
         std::vector<glm::vec3> diffuse = {};
+        /// Of a level floor that nothing shades, for albedo 1.
+        glm::dvec3 open_floor{0.0};
         /// As those of Lighting.
         std::vector<relight::SharpLight> lights = {};
         std::vector<glm::vec3> soft = {};

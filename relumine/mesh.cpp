@@ -164,11 +164,21 @@ OptionTable options_of(RefineOptions& o) {
 
 Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
     Mesh mesh;
-    mesh.geometry = mesh::load(path, options.normals, &mesh.source_hash);
+    std::optional<mesh::FileCamera> camera;
+    mesh.geometry = mesh::load(path, options.normals, &mesh.source_hash, &camera);
     mesh.source = path.string();
     if (options.crease)
         mesh.geometry = mesh::with_creases(mesh.geometry, *options.crease);
-    mesh::turn_up(mesh.geometry, options.up.value_or(mesh::customary_up(path)));
+    const mesh::UpAxis up = options.up.value_or(mesh::customary_up(path));
+    mesh::turn_up(mesh.geometry, up);
+    if (camera) {
+        mesh::TriangleMesh ends;
+        ends.positions = {camera->eye, camera->target};
+        mesh::turn_up(ends, up);
+        mesh.camera = {.eye = ends.positions[0],
+                       .target = ends.positions[1],
+                       .fov_degrees = camera->fov_degrees};
+    }
     add_floor(mesh, options);
     return mesh;
 }

@@ -11,6 +11,7 @@
 #include "mesh/load.h"
 #include "mesh/triangle_mesh.h"
 #include "mesh/up_axis.h"
+#include "prt/receivers/camera.h"
 #include "prt/refinement/refine.h"
 #include "relumine/option_table.h"
 
@@ -39,6 +40,8 @@ struct Mesh {
     /// Whether refined_by_itself() may give the floor, or the rest, more vertices. Whoever chose
     /// the vertices wants these.
     bool is_floor_open = false, is_open = true;
+    /// The file's own camera.
+    std::optional<prt::Camera> camera = {};
     /// The triangles that block light, where they are not those of `geometry`.
     std::optional<mesh::TriangleMesh> blockers = {};
 

@@ -12,7 +12,6 @@
 
 #include "cubemap/resample/resample.h"
 #include "files/extension.h"
-#include "mesh/floor.h"
 #include "mesh/save.h"
 #include "prt/receivers/mesh_point.h"
 #include "relight/pictures/array_file.h"
@@ -85,6 +84,15 @@ void require_finite(const std::filesystem::path& path, std::span<const glm::vec3
                             path.string(), std::numeric_limits<float>::max()));
 }
 
+mesh::Bounds bounds_of(std::span<const glm::vec3> positions) {
+    mesh::Bounds box{.min = positions.front(), .max = positions.front()};
+    for (const glm::vec3& position : positions) {
+        box.min = glm::min(box.min, position);
+        box.max = glm::max(box.max, position);
+    }
+    return box;
+}
+
 std::vector<glm::vec3> product(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
     std::vector<glm::vec3> result(a.begin(), a.end());
     for (std::size_t i = 0; i < result.size(); ++i)
@@ -105,14 +113,73 @@ std::vector<glm::vec3> bounce_albedo(const Scene& scene, const OutputOptions& op
 relight::FadingFloor picture_floor(const Scene& scene, const OutputOptions& options) {
     const float fade = options.floor_fade;
     const std::optional<std::size_t> first = first_floor_vertex(scene);
-    if (!first || !(fade > 0.0f))
+    if (!first)
         return {};
-    const mesh::FloorPlace place = mesh::floor_place(
-        std::span(scene.mesh.positions).subspan(*first), scene.settings.floor_vertices);
+    const mesh::Bounds floor = bounds_of(std::span(scene.mesh.positions).subspan(*first));
+    const float half_side = 0.5f * (floor.max.x - floor.min.x);
     return {.first_vertex = static_cast<std::uint32_t>(*first),
-            .center = place.center,
-            .opaque_radius = (1.0f - std::min(fade, 1.0f)) * place.half_side,
-            .end_radius = place.half_side};
+            .center = 0.5f * glm::vec2(floor.min.x + floor.max.x, floor.min.z + floor.max.z),
+            // Without a fade, the corners are opaque, too.
+            .opaque_radius = (fade > 0.0f ? 1.0f - std::min(fade, 1.0f) : 2.0f) * half_side,
+            .end_radius = (fade > 0.0f ? 1.0f : 2.0f) * half_side};
+}
+
+relight::Ground picture_ground(const Scene& scene, const OutputOptions& options) {
+    constexpr double Reach = 20.0; // heights: what stands farther away is upright
+    const std::span<const glm::vec3> positions = scene.mesh.positions;
+    const std::optional<std::size_t> first = first_floor_vertex(scene);
+    if (!first)
+        throw std::invalid_argument("expected a scene with a floor");
+    const mesh::Bounds floor = bounds_of(positions.subspan(*first));
+    // The added floor is the lowest plane, so what stands on it is the mesh.
+    const glm::vec3 size = relight::subject_bounds(scene.mesh).size();
+    const auto height =
+        static_cast<double>(options.photo_height.value_or(std::max({size.x, size.y, size.z})));
+    return {.camera = {floor.center().x, double{floor.max.y} + height, floor.center().z},
+            .height = height,
+            .reach = Reach * height};
+}
+
+FloorLook floor_look(const Scene& scene, const Lighting& lighting, const OutputOptions& options) {
+    const std::vector<bool> is_floor = floor_receivers(scene);
+    const std::vector<prt::Surface>& surfaces = scene.receivers.surfaces;
+    // A floor with a surface of its own is to be seen.
+    for (std::size_t i = 0; i < is_floor.size(); ++i)
+        if (is_floor[i] && !surfaces.empty() && !(surfaces[i] == prt::Surface()))
+            return FloorLook::Grey;
+    const bool is_colored = std::holds_alternative<glm::vec3>(options.background);
+    if (is_floor.empty() || !lighting.open_floor ||
+        (!is_colored && lighting.environment == nullptr))
+        return FloorLook::Grey;
+    if (options.floor != FloorLook::Automatic)
+        return options.floor;
+    return is_colored || relight::has_ground(*lighting.environment, *lighting.open_floor)
+               ? FloorLook::Photo
+               : FloorLook::Studio;
+}
+
+std::optional<glm::vec3> open_floor(const Scene& scene, const Lighting& lighting, FloorLook look,
+                                    const glm::vec3& eye) {
+    if (look == FloorLook::Grey)
+        return std::nullopt;
+    return eye.y > scene.mesh.positions[*first_floor_vertex(scene)].y ? lighting.open_floor
+                                                                      : glm::vec3(0.0f);
+}
+
+glm::vec3 studio_color(const Lighting& lighting, const OutputOptions& options) {
+    return lighting.open_floor.value_or(glm::vec3(0.0f)) *
+           options.floor_albedo.value_or(glm::vec3(FloorAlbedo));
+}
+
+relight::Backdrop on_floor(relight::Backdrop backdrop, const Scene& scene, const Lighting& lighting,
+                           FloorLook look, const glm::vec3& eye, const OutputOptions& options) {
+    if (look == FloorLook::Grey)
+        return backdrop;
+    const relight::Ground ground = picture_ground(scene, options);
+    if (look == FloorLook::Studio)
+        return relight::sweep_backdrop(std::move(backdrop), studio_color(lighting, options), ground,
+                                       eye);
+    return relight::grounded_backdrop(std::move(backdrop), ground, eye);
 }
 
 std::vector<glm::vec3> colors_of(const Scene& scene, std::span<const glm::vec3> radiance,
@@ -128,8 +195,9 @@ struct Painter::Impl {
         : scene(lit.scene()), rays(lit.rays().of_mesh()), options(given),
           floor(picture_floor(scene, options)) {
         // The transfer of a scene that processes share has no highlights.
-        if (is_on_vertices() && !scene.settings.glossy_tolerance)
-            textures = {scene.mesh, scene.receivers.surfaces};
+        if (is_on_vertices())
+            textures = {scene.mesh, scene.receivers.surfaces,
+                        scene.settings.glossy_tolerance.has_value()};
     }
 
     [[nodiscard]] bool is_on_vertices() const { return prt::on_vertices(scene.layout); }
@@ -144,7 +212,11 @@ struct Painter::Impl {
                 .height = options.height,
                 .samples_per_axis = options.samples_per_axis};
     }
-    [[nodiscard]] Camera camera() const { return camera_of(scene, options); }
+    const Camera& camera() {
+        if (!chosen_camera)
+            chosen_camera = camera_of(scene, options);
+        return *chosen_camera;
+    }
 
     const std::vector<glm::vec3>& shown_factors() {
         if (shown.empty())
@@ -156,13 +228,24 @@ struct Painter::Impl {
     [[nodiscard]] Picture drawn(const relight::PictureView& from, const Lighting& lighting,
                                 const relight::Backdrop* behind) {
         const bool traces = options.sun == SunShadows::Pixels && !lighting.lights.empty();
-        const std::vector<glm::vec3> colors =
-            product(traces ? lighting.soft : lighting.radiance, shown_factors());
-        relight::MeshLight light{.radiance = colors, .textures = &textures};
+        const std::span<const glm::vec3> radiance = traces ? lighting.soft : lighting.radiance;
+        std::vector<glm::vec3> colors = product(radiance, shown_factors());
+        if (catches(lighting))
+            std::copy(radiance.begin() + floor.first_vertex, radiance.end(),
+                      colors.begin() + floor.first_vertex);
+        relight::MeshLight light{.radiance = colors};
+        // The lobes are those of lights that are traced, or of no lights.
+        std::vector<prt::Lobes<glm::vec3>> lobes;
+        if (traces || lighting.lights.empty())
+            lobes = shown_lobes(lighting, radiance);
+        if (!lobes.empty() || !scene.settings.glossy_tolerance)
+            light.textures = &textures;
+        light.lobes = lobes;
+        light.open_floor = open_floor(scene, lighting, look(lighting), eye());
+        light.surfaces = scene.receivers.surfaces;
         if (traces) {
             light.lights = lighting.lights;
             light.albedo = shown_factors();
-            light.surfaces = scene.receivers.surfaces;
             if (scene.settings.view)
                 light.eye = scene.settings.view->eye;
             light.bias = scene.settings.bias;
@@ -170,7 +253,41 @@ struct Painter::Impl {
         return behind == nullptr ? from.cut_out(light) : from.draw(light, *behind);
     }
 
-    [[nodiscard]] relight::Backdrop backdrop(const Lighting& lighting) const {
+    /// Of vertices with textures and highlights; their radiance is given.
+    std::vector<prt::Lobes<glm::vec3>> shown_lobes(const Lighting& lighting,
+                                                   std::span<const glm::vec3> radiance) {
+        std::vector<prt::Lobes<glm::vec3>> lobes = lighting.lobes;
+        if (lobes.empty())
+            return lobes;
+        relight::add_rest(radiance, scene.receivers.surfaces, lobes);
+        for (std::size_t i = 0; i < lobes.size(); ++i)
+            for (glm::vec3* part : {&lobes[i].diffuse, &lobes[i].diffuse_grazing,
+                                    &lobes[i].specular, &lobes[i].specular_grazing})
+                *part *= shown_factors()[i];
+        return lobes;
+    }
+
+    /// Chosen by the first light, so that the frames of a movie agree.
+    FloorLook look(const Lighting& lighting) {
+        if (!chosen_look)
+            chosen_look = floor_look(scene, lighting, options);
+        return *chosen_look;
+    }
+
+    /// Whether the floor shows what is behind it, in its own light.
+    bool catches(const Lighting& lighting) { return look(lighting) != FloorLook::Grey; }
+
+    glm::vec3 eye() {
+        const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout);
+        return pixels != nullptr ? pixels->camera.eye : camera().eye;
+    }
+
+    /// What is behind the mesh, and the ground.
+    relight::Backdrop backdrop(const Lighting& lighting) {
+        return on_floor(plain_view(lighting), scene, lighting, look(lighting), eye(), options);
+    }
+
+    [[nodiscard]] relight::Backdrop plain_view(const Lighting& lighting) const {
         if (const auto* color = std::get_if<glm::vec3>(&options.background))
             return relight::plain_backdrop(*color);
         if (lighting.environment == nullptr)
@@ -182,15 +299,21 @@ struct Painter::Impl {
     }
 
     /// Of pixels, without added vertices; empty where all are opaque.
-    [[nodiscard]] std::vector<float> opacity() const {
-        std::vector<float> result;
-        if (!(options.floor_fade > 0.0f) || !first_floor_vertex(scene))
+    [[nodiscard]] std::vector<glm::vec3> opacity(const Lighting& lighting) {
+        std::vector<glm::vec3> result;
+        const std::optional<glm::vec3> open = open_floor(scene, lighting, look(lighting), eye());
+        if (floor.first_vertex >= scene.mesh.num_vertices() ||
+            (!open && !(options.floor_fade > 0.0f)))
             return result;
         const prt::Receivers& receivers = scene.receivers;
-        result.assign(receivers.num_own(), 1.0f);
-        for (std::size_t i = 0; i < result.size(); ++i)
-            if (floor.has(scene.mesh.triangles[receivers.points[i].triangle]))
-                result[i] = floor.opacity(receivers.positions[i]);
+        result.assign(receivers.num_own(), glm::vec3(1.0f));
+        for (std::size_t i = 0; i < result.size(); ++i) {
+            if (!floor.has(scene.mesh.triangles[receivers.points[i].triangle]))
+                continue;
+            const float own = floor.opacity(receivers.positions[i]);
+            result[i] =
+                open ? 1.0f - relight::caught(lighting.radiance[i], *open, own) : glm::vec3(own);
+        }
         return result;
     }
 
@@ -200,11 +323,17 @@ struct Painter::Impl {
         throw std::logic_error("expected receivers with a place in a picture");
     }
     [[nodiscard]] Picture composed(const prt::PixelLayout& pixels,
-                                   std::span<const glm::vec3> colors,
-                                   const Lighting& lighting) const {
+                                   std::span<const glm::vec3> colors, const Lighting& lighting) {
+        std::vector<glm::vec3> emitted(colors.begin(), colors.end());
+        if (catches(lighting)) {
+            const std::vector<bool> is_floor = floor_receivers(scene);
+            for (std::size_t i = 0; i < emitted.size(); ++i)
+                if (is_floor[i])
+                    emitted[i] = glm::vec3(0.0f);
+        }
         if (std::holds_alternative<NothingBehind>(options.background))
-            return relight::compose_cut_out(pixels, colors, opacity());
-        return relight::compose(pixels, colors, backdrop(lighting), opacity());
+            return relight::compose_cut_out(pixels, emitted, opacity(lighting));
+        return relight::compose(pixels, emitted, backdrop(lighting), opacity(lighting));
     }
     [[nodiscard]] Picture composed(const prt::TexelLayout& texels,
                                    std::span<const glm::vec3> colors, const Lighting&) const {
@@ -231,30 +360,52 @@ struct Painter::Impl {
                           scene.layout);
     }
 
-    /// Adds what is seen to the light meter.
+    /// Adds what is seen of the mesh, and behind it, to the light meter. An added floor is no part
+    /// of either.
     void meter(const Lighting& lighting) {
         require_fit(scene, lighting.radiance);
-        if (!is_on_vertices()) {
-            const std::vector<glm::vec3> colors = product(own(lighting.radiance), shown_factors());
-            metered_colors.insert(metered_colors.end(), colors.begin(), colors.end());
-            std::vector<float> weights(colors.size(), 1.0f);
-            if (prt::kind_of(scene.layout).are_seen)
-                if (std::vector<float> seen = opacity(); !seen.empty())
-                    weights = std::move(seen);
-            metered_weights.insert(metered_weights.end(), weights.begin(), weights.end());
+        if (!is_on_vertices())
+            meter_receivers(lighting);
+        else
+            meter_picture(lighting);
+        if (!prt::kind_of(scene.layout).are_seen ||
+            !std::holds_alternative<EnvironmentBehind>(options.background) ||
+            lighting.environment == nullptr)
             return;
-        }
+        constexpr std::uint32_t Side = 64;
+        const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout);
+        const prt::PictureRays rays_behind(pixels != nullptr ? pixels->camera : camera(), Side,
+                                           Side, 1);
+        const relight::Backdrop behind = backdrop(lighting);
+        for (std::uint32_t y = 0; y < Side; ++y)
+            for (std::uint32_t x = 0; x < Side; ++x)
+                metered_behind.push_back(behind(rays_behind.direction(x, y, 0)));
+    }
+
+    void meter_receivers(const Lighting& lighting) {
+        const std::vector<glm::vec3> colors = product(own(lighting.radiance), shown_factors());
+        const std::vector<bool> is_floor = floor_receivers(scene);
+        for (std::size_t i = 0; i < colors.size(); ++i)
+            if (is_floor.empty() || !is_floor[i]) {
+                metered_colors.push_back(colors[i]);
+                metered_weights.push_back(1.0f);
+            }
+    }
+
+    void meter_picture(const Lighting& lighting) {
         if (!small) {
             constexpr float Pixels = 256.0f * 192.0f;
             const float width = std::sqrt(Pixels * size().aspect());
             const auto side = [](float length) {
                 return static_cast<std::uint32_t>(std::clamp(length, 1.0f, 4096.0f));
             };
+            relight::FadingFloor gone = floor;
+            gone.opaque_radius = gone.end_radius = -1.0f;
             small.emplace(scene.mesh, rays, camera(),
                           relight::PictureOptions{.width = side(width),
                                                   .height = side(width / size().aspect()),
                                                   .samples_per_axis = 1},
-                          floor);
+                          gone);
         }
         const Picture seen = drawn(*small, lighting, nullptr);
         for (std::size_t i = 0; i < seen.pixels.size(); ++i)
@@ -268,11 +419,11 @@ struct Painter::Impl {
         if (options.exposure_ev)
             return *options.exposure_ev;
         if (!chosen_ev) {
-            if (metered_colors.empty())
+            if (metered_colors.empty() && metered_behind.empty())
                 meter(lighting);
-            chosen_ev =
-                static_cast<double>(relight::suitable_exposure_ev(metered_colors, metered_weights));
-            metered_colors = {};
+            chosen_ev = static_cast<double>(
+                relight::suitable_exposure_ev(metered_colors, metered_weights, metered_behind));
+            metered_colors = metered_behind = {};
             metered_weights = {};
             small.reset();
         }
@@ -293,7 +444,7 @@ struct Painter::Impl {
     const prt::RayScene& rays;
     OutputOptions options;
     relight::FadingFloor floor;
-    /// Of vertices without highlights.
+    /// Of vertices.
     relight::SurfaceColors textures;
     std::vector<glm::vec3> shown;
     /// Made when a second picture is drawn
@@ -301,9 +452,11 @@ struct Painter::Impl {
     bool drew_one = false;
     /// The light meter's.
     std::optional<relight::PictureView> small;
-    std::vector<glm::vec3> metered_colors;
+    std::vector<glm::vec3> metered_colors, metered_behind;
     std::vector<float> metered_weights;
     std::optional<double> chosen_ev;
+    std::optional<FloorLook> chosen_look;
+    std::optional<Camera> chosen_camera;
 };
 
 Painter::Painter(const LitScene& lit, const OutputOptions& options)

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 namespace relumine {
 
@@ -182,14 +183,25 @@ Camera camera_of(const Scene& scene, const OutputOptions& options) {
     if (const auto fov = place.fov_degrees ? place.fov_degrees : options.fov_degrees)
         framing.fov_degrees = *fov;
     const bool is_plain = !options.camera_place && options.front == Front::PositiveZ;
-    Camera camera = is_plain && scene.settings.view ? *scene.settings.view
-                                                    : relight::framed(scene.mesh, framing);
+    const std::optional<Camera> own = is_plain ? own_camera(scene, framing.aspect) : std::nullopt;
+    Camera camera = own ? *own : relight::framed(scene.mesh, framing);
+    if (own && !scene.settings.view)
+        camera.fov_degrees = options.fov_degrees.value_or(camera.fov_degrees);
     if (options.target) {
         camera.eye += *options.target - camera.target;
         camera.target = *options.target;
     }
     camera.eye = options.eye.value_or(camera.eye);
     return camera;
+}
+
+bool is_other_eye(const Scene& scene, const OutputOptions& options) {
+    if (!prt::on_vertices(scene.layout) || !scene.settings.glossy_tolerance || !scene.settings.view)
+        return false;
+    constexpr float Same = 1e-3f; // of the distance
+    const Camera camera = camera_of(scene, options);
+    return glm::distance(camera.eye, scene.settings.view->eye) >
+           Same * glm::distance(camera.eye, camera.target);
 }
 
 } // namespace relumine

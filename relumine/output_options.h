@@ -53,6 +53,24 @@ struct EnvironmentBehind {
 struct NothingBehind {};
 using Background = std::variant<EnvironmentBehind, NothingBehind, glm::vec3>;
 
+/// How a picture shows the floor that was added to the mesh.
+enum class FloorLook {
+    /// Photo where the environment shows a ground (relight::has_ground()) or the background is
+    /// plain, Studio where it does not, Grey without an environment.
+    Automatic,
+    /// What is behind, on the ground: the environment as if the mesh stood in it, darkened and
+    /// tinted by what the mesh takes and sends.
+    Photo,
+    /// A plain floor that ends far away.
+    Studio,
+    /// A plain disc that fades out at the floor's edge.
+    Grey,
+};
+inline constexpr std::array<std::string_view, 4> FloorLookNames = {"auto", "photo", "studio",
+                                                                   "grey"};
+template<>
+inline constexpr std::span<const std::string_view> WordsOf<FloorLook> = FloorLookNames;
+
 /// The side that a mesh shows a camera of azimuth 0.
 enum class Front { PositiveZ, NegativeZ, PositiveX, NegativeX };
 inline constexpr std::array<std::string_view, 4> FrontNames = {"+z", "-z", "+x", "-x"};
@@ -68,6 +86,10 @@ struct CameraPlace {
 
 struct OutputOptions {
     Albedo albedo = AutomaticAlbedo{};
+    FloorLook floor = FloorLook::Automatic;
+    /// Of the camera that photographed the environment, above the floor, in the mesh's unit. Empty:
+    /// the longest side of what stands on the floor.
+    std::optional<float> photo_height = {};
     /// Of an added floor, where it has no surface of its own. Empty: 0.3 in pictures and colours, 1
     /// in data.
     std::optional<glm::vec3> floor_albedo = {};
@@ -106,6 +128,10 @@ void check(const OutputOptions& options);
 /// Returns the camera of a picture. Throws as check() does.
 [[nodiscard]] Camera camera_of(const Scene& scene, const OutputOptions& options);
 
+/// Whether a picture looks from elsewhere than the eye that the highlights of a scene of vertices
+/// are for. Highlights then stay where that eye sees them.
+[[nodiscard]] bool is_other_eye(const Scene& scene, const OutputOptions& options);
+
 // How the values are written
 
 struct AlbedoText {
@@ -143,6 +169,18 @@ inline OptionTable options_of(OutputOptions& o) {
                         "reflectance: a number, R,G,B, `mesh` for the mesh's vertex colours, or "
                         "auto: the mesh's own, else 0.5 in pictures and 1 in .npy",
                         {.example = "0.25"}),
+        row("--floor", o.floor,
+            "what an added floor looks like: the photographed ground with shadows, a studio's "
+            "plain floor, a grey disc; auto: as the environment suggests",
+            {.receivers = NoTexels, .part = "floor"}),
+        row("--photo-height", o.photo_height,
+            "height above the floor from which the environment was photographed, in the mesh's "
+            "unit (the mesh's longest side)",
+            {.min = 1e-6,
+             .max = LargestPosition,
+             .type = "LENGTH",
+             .receivers = NoTexels,
+             .part = "floor"}),
         row<ColorText>("--floor-albedo", o.floor_albedo,
                        "reflectance of the floor of --floor: a number or R,G,B (0.3; 1 in .npy)",
                        {.example = "0.7,0.6,0.5"}),

@@ -98,7 +98,8 @@ public:
             .floor_vertices = mesh.floor_vertices,
             .source = std::filesystem::path(mesh.source).filename().string(),
             .floor_added = mesh.floor_added,
-            .source_hash = mesh.source_hash};
+            .source_hash = mesh.source_hash,
+            .camera = mesh.camera};
     }
 
     /// Chooses the clusters and leaves the counts to the parts.
@@ -129,7 +130,8 @@ public:
 private:
     /// The mesh with the vertices that are lit: its own, and more where it is coarse.
     Mesh with_vertices(Mesh mesh) {
-        if (!std::holds_alternative<Vertices>(options_.receivers) && !options_.bounce_tolerance)
+        if (!std::holds_alternative<Vertices>(options_.receivers) &&
+            !(options_.bounce_tolerance.value_or(0.0f) > 0.0f))
             return mesh;
         mesh.is_open = mesh.is_open && !options_.no_refine;
         prt::RefineReport found;
@@ -278,7 +280,7 @@ private:
             // Receivers that are no pixels of the view but seen from it.
             if (options_.view && !std::holds_alternative<Pixels>(options_.receivers)) {
                 const std::optional<prt::Camera>& own = options_.view->camera;
-                scene_.settings.view = own ? *own : relight::framed(scene_.mesh);
+                scene_.settings.view = own ? *own : camera_of(scene_);
                 prt::look_from(scene_.receivers, scene_.settings.view->eye);
             }
             if (options_.bounce_tolerance.value_or(0.0f) > 0.0f &&
@@ -294,10 +296,10 @@ private:
 
     void place_pixels(const Pixels& size, const prt::RayScene& rays) {
         const bool has_camera = options_.view && options_.view->camera;
-        const prt::Camera camera =
-            has_camera ? *options_.view->camera
-                       : relight::framed(scene_.mesh, {.aspect = static_cast<float>(size.width) /
-                                                                 static_cast<float>(size.height)});
+        const prt::Camera camera = has_camera
+                                       ? *options_.view->camera
+                                       : camera_of(scene_, static_cast<float>(size.width) /
+                                                               static_cast<float>(size.height));
         prt::PixelReceivers pixels =
             prt::pixel_receivers(scene_.mesh, rays,
                                  {.camera = camera,

@@ -16,6 +16,7 @@ Scene unclustered_scene(Mesh mesh) {
     scene.mesh = std::move(mesh.geometry);
     scene.blockers = std::move(mesh.blockers);
     scene.receivers = prt::vertex_receivers(scene.mesh);
+    scene.settings.camera = mesh.camera;
     scene.settings.bias = prt::automatic_bias(scene.mesh);
     return scene;
 }
@@ -72,9 +73,17 @@ void set_colors(Scene& scene, const SurfaceColors& colors) {
     prt::set_surfaces(scene.transfer, scene.receivers);
 }
 
+std::optional<Camera> own_camera(const Scene& scene, float aspect) {
+    if (scene.settings.view)
+        return scene.settings.view;
+    if (scene.settings.camera)
+        return scene.settings.camera;
+    return relight::inside_room(scene.mesh, {.aspect = aspect});
+}
+
 Camera camera_of(const Scene& scene, float aspect) {
-    return scene.settings.view ? *scene.settings.view
-                               : relight::framed(scene.mesh, {.aspect = aspect});
+    const std::optional<Camera> own = own_camera(scene, aspect);
+    return own ? *own : relight::framed(scene.mesh, {.aspect = aspect});
 }
 
 std::uint32_t nearest_receiver(const Scene& scene, const glm::vec3& position) {

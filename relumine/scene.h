@@ -62,9 +62,12 @@ struct SurfaceColors {
 /// Throws:  std::invalid_argument for a scene without materials.
 void set_colors(Scene& scene, const SurfaceColors& colors);
 
-/// The camera that a picture of the scene's mesh has unless another is given: the eye that its
-/// highlights are for, or one that shows all of the mesh in a picture of this shape, width over
-/// height.
+/// The camera that a scene brings along: the eye that its highlights are for, the camera of the
+/// mesh's file, or one inside of a room (relight::inside_room()). None for other scenes.
+[[nodiscard]] std::optional<Camera> own_camera(const Scene& scene, float aspect = 1024.0f / 768.0f);
+
+/// The camera that a picture of the scene's mesh has unless another is given: the scene's own, or
+/// one that shows all of the mesh in a picture of this shape, width over height.
 [[nodiscard]] Camera camera_of(const Scene& scene, float aspect = 1024.0f / 768.0f);
 
 /// Returns the receiver nearest to a position. The scene must have a receiver.

@@ -1,9 +1,21 @@
 // How the two pictures of the window look.
 #pragma once
 
+#include "relight/pictures/ground.h"
 #include "relight/pictures/tone_curve.h"
+#include "relumine/output_options.h"
 
 namespace relumine::viewer {
+
+/// How the floor is drawn while something moves.
+struct FloorScene {
+    FloorLook look = FloorLook::Grey;
+    relight::Ground ground = {};
+    /// The radiance of a floor that nothing shades.
+    glm::vec3 open{1.0f};
+    /// Of a studio's floor.
+    glm::vec3 color{0.0f};
+};
 
 struct SceneLook {
     float exposure_ev = 0.0f;

@@ -1,5 +1,6 @@
 #include "viewer/refiner.h"
 
+#include <algorithm>
 #include <exception>
 #include <mutex>
 #include <stop_token>
@@ -16,8 +17,12 @@ relight::Picture drawn(const mesh::TriangleMesh& mesh, const prt::RayScene& rays
                        const Shading& shading, const Moment& moment, std::uint32_t samples_per_axis,
                        const std::stop_token& stop) {
     std::vector<glm::vec3> colors = moment.radiance;
-    for (std::size_t i = 0; i < colors.size(); ++i)
+    const std::size_t num_colored = moment.open_floor ? shading.floor.first_vertex : colors.size();
+    for (std::size_t i = 0; i < std::min(colors.size(), num_colored); ++i)
         colors[i] *= shading.albedo[i];
+    std::vector<prt::Lobes<glm::vec3>> lobes = moment.lobes;
+    if (!lobes.empty())
+        relight::add_rest(moment.radiance, shading.surfaces, lobes);
     const relight::PictureView view(mesh, rays, moment.camera,
                                     {.width = moment.width,
                                      .height = moment.height,
@@ -29,8 +34,10 @@ relight::Picture drawn(const mesh::TriangleMesh& mesh, const prt::RayScene& rays
                                    .albedo = shading.albedo,
                                    .surfaces = shading.surfaces,
                                    .textures = &shading.textures,
+                                   .lobes = lobes,
                                    .eye = shading.eye,
-                                   .bias = shading.bias};
+                                   .bias = shading.bias,
+                                   .open_floor = moment.open_floor};
     return moment.backdrop ? view.draw(light, moment.backdrop) : view.cut_out(light);
 }
 

@@ -37,6 +37,10 @@ struct Moment {
     /// [num_vertices] without the lights, albedo 1.
     std::vector<glm::vec3> radiance;
     std::vector<relight::SharpLight> lights;
+    /// As Lighting has them.
+    std::vector<prt::Lobes<glm::vec3>> lobes = {};
+    /// As relight::MeshLight has it.
+    std::optional<glm::vec3> open_floor = {};
     /// Empty: the picture has alpha.
     relight::Backdrop backdrop;
 };

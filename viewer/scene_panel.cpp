@@ -29,7 +29,7 @@ void tools(ViewState& state, const PixelRectangle& place, const PixelRectangle& 
     ImGui::Checkbox("Background", &state.scene_look.background);
     ImGui::SameLine();
     if (ImGui::Button("Frame all"))
-        state.camera = camera_on_all(state.mesh, picture);
+        state.camera = camera_on_all(state.desk.lit().scene(), picture);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("F: the camera that relumine relight takes");
     ImGui::End();

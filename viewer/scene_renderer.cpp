@@ -19,30 +19,81 @@ uniform mat4 clip_from_world;
 uniform int first_floor_vertex;
 // Centroid: the edge of a triangle must not take radiance from beyond it.
 centroid out vec3 radiance;
-centroid out vec2 place;
+centroid out vec3 place;
 flat out int on_floor;
 void main() {
     radiance = vertex_radiance;
-    place = position.xz;
+    place = position;
     on_floor = gl_VertexID >= first_floor_vertex ? 1 : 0;
     gl_Position = clip_from_world * vec4(position, 1.0);
 }
 )";
 
+/// As relight::grounded_backdrop() and relight::sweep_backdrop().
+constexpr const char* BehindSource = R"(
+uniform samplerCube environment;
+uniform int use_environment;
+uniform int floor_look; // 0 grey, 1 photo, 2 studio
+uniform vec3 eye;
+uniform vec3 ground_camera;
+uniform float ground_height;
+uniform float ground_reach;
+uniform vec3 studio_color;
+vec3 ground_point(vec3 way) {
+    vec3 from = eye - ground_camera;
+    if (from.y <= -ground_height)
+        return way;
+    float radius = max(ground_reach, 4.0 * length(from));
+    if (way.y < 0.0) {
+        vec3 at = from + (-ground_height - from.y) / way.y * way;
+        if (dot(at, at) <= radius * radius)
+            return at;
+    }
+    float along = dot(from, way);
+    return from + (sqrt(along * along + radius * radius - dot(from, from)) - along) * way;
+}
+vec3 behind(vec3 direction) {
+    if (use_environment == 0)
+        return vec3(0.0);
+    vec3 way = normalize(direction);
+    if (floor_look == 0)
+        return looked_up(environment, way);
+    vec3 at = ground_point(way);
+    if (floor_look == 1)
+        return looked_up(environment, normalize(at));
+    vec3 beyond = looked_up(environment, way);
+    if (way.y >= 0.0 || eye.y <= ground_camera.y - ground_height)
+        return beyond;
+    float t = max((1.0 / max(length(at.xz) / ground_height, 2.5) - 1.0 / 18.0) / (0.4 - 1.0 / 18.0), 0.0);
+    return mix(beyond, studio_color, t * t * (3.0 - 2.0 * t));
+}
+// What is behind, darkened, as the screen shows it.
+vec3 shown_behind(vec3 direction, vec3 part) {
+    return use_environment != 0 ? shown(part * behind(direction)) : 0.17 * part;
+}
+)";
+
 constexpr const char* MeshFragmentSource = R"(
 centroid in vec3 radiance;
-centroid in vec2 place;
+centroid in vec3 place;
 flat in int on_floor;
 uniform int as_lines;
+uniform vec3 open_floor; // of a floor that nothing shades
 uniform vec2 floor_center;
 uniform vec2 floor_radii; // opaque up to the first, gone from the second on
 out vec4 color;
 void main() {
-    float t = clamp((floor_radii.y - distance(place, floor_center)) /
+    float t = clamp((floor_radii.y - distance(place.xz, floor_center)) /
                     max(floor_radii.y - floor_radii.x, 1e-30), 0.0, 1.0);
     float opacity = on_floor != 0 ? t * t * (3.0 - 2.0 * t) : 1.0;
-    color = vec4(as_lines != 0 ? vec3(0.05, 0.07, 0.1) : shown(radiance),
-                 (as_lines != 0 ? 0.22 : 1.0) * opacity);
+    if (as_lines != 0) {
+        color = vec4(0.05, 0.07, 0.1, 0.22 * opacity);
+    } else if (on_floor != 0 && floor_look != 0) {
+        vec3 part = mix(vec3(1.0), radiance / max(open_floor, vec3(1e-30)), opacity);
+        color = vec4(shown_behind(place - eye, part), eye.y > place.y ? 1.0 : 0.0);
+    } else {
+        color = vec4(shown(radiance), opacity);
+    }
 }
 )";
 
@@ -59,11 +110,9 @@ void main() {
 
 constexpr const char* BackgroundFragmentSource = R"(
 in vec3 direction;
-uniform samplerCube environment;
-uniform int use_environment;
 out vec4 color;
 void main() {
-    color = vec4(use_environment != 0 ? shown(looked_up(environment, direction)) : vec3(0.17), 1.0);
+    color = vec4(shown_behind(direction, vec3(1.0)), 1.0);
 }
 )";
 
@@ -95,9 +144,10 @@ void fill(GLenum target, const GlBuffer& buffer, std::span<const T> data, GLenum
 } // namespace
 
 SceneRenderer::SceneRenderer(const mesh::TriangleMesh& mesh, const relight::FadingFloor& floor)
-    : floor_(floor), mesh_program_(MeshVertexSource, shown_source() + MeshFragmentSource),
-      background_program_(BackgroundVertexSource,
-                          shown_source() + cube_lookup_source() + BackgroundFragmentSource),
+    : floor_(floor), mesh_program_(MeshVertexSource, shown_source() + cube_lookup_source() +
+                                                         BehindSource + MeshFragmentSource),
+      background_program_(BackgroundVertexSource, shown_source() + cube_lookup_source() +
+                                                      BehindSource + BackgroundFragmentSource),
       picture_program_(PictureVertexSource, shown_source() + PictureFragmentSource),
       num_indices_(static_cast<GLsizei>(3 * mesh.num_triangles())) {
     const mesh::Bounds box = mesh::bounds(mesh);
@@ -120,8 +170,24 @@ void SceneRenderer::upload_radiance(std::span<const glm::vec3> radiance) {
     fill<glm::vec3>(GL_ARRAY_BUFFER, radiance_, radiance, GL_STREAM_DRAW);
 }
 
+/// Sets what the shaders need to know of what is behind the mesh.
+void SceneRenderer::set_behind(const GlProgram& program, const OrbitCamera& camera,
+                               const SceneLook& look, const FloorScene& floor) const {
+    program.set("use_environment", look.background ? 1 : 0);
+    program.set("environment", 0);
+    program.set("floor_look", floor.look == FloorLook::Grey     ? 0
+                              : floor.look == FloorLook::Studio ? 2
+                                                                : 1);
+    program.set("eye", camera.eye());
+    program.set("ground_camera", glm::vec3(floor.ground.camera));
+    program.set("ground_height", static_cast<float>(floor.ground.height));
+    program.set("ground_reach", static_cast<float>(floor.ground.reach));
+    program.set("studio_color", floor.color);
+}
+
 void SceneRenderer::draw_background(const OrbitCamera& camera, const PixelRectangle& viewport,
-                                    const CubeTexture& environment, const SceneLook& look) const {
+                                    const CubeTexture& environment, const SceneLook& look,
+                                    const FloorScene& floor) const {
     const CameraFrame axes = frame(camera, viewport);
     background_program_.use();
     background_program_.set("right", axes.right);
@@ -129,18 +195,18 @@ void SceneRenderer::draw_background(const OrbitCamera& camera, const PixelRectan
     background_program_.set("forward", axes.forward);
     background_program_.set("exposure", std::exp2(look.exposure_ev));
     background_program_.set("tone", static_cast<int>(look.tone));
-    background_program_.set("use_environment", look.background ? 1 : 0);
-    background_program_.set("environment", 0);
+    set_behind(background_program_, camera, look, floor);
     environment.bind(0);
     glBindVertexArray(no_array_.id());
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 void SceneRenderer::draw(const OrbitCamera& camera, const PixelRectangle& viewport,
-                         const CubeTexture& environment, const SceneLook& look) const {
+                         const CubeTexture& environment, const SceneLook& look,
+                         const FloorScene& floor) const {
     glDisable(GL_BLEND);
     glDisable(GL_DEPTH_TEST);
-    draw_background(camera, viewport, environment, look);
+    draw_background(camera, viewport, environment, look, floor);
 
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
@@ -152,6 +218,8 @@ void SceneRenderer::draw(const OrbitCamera& camera, const PixelRectangle& viewpo
     mesh_program_.set("exposure", std::exp2(look.exposure_ev));
     mesh_program_.set("tone", static_cast<int>(look.tone));
     mesh_program_.set("as_lines", 0);
+    set_behind(mesh_program_, camera, look, floor);
+    mesh_program_.set("open_floor", floor.open);
     constexpr std::uint32_t None = std::numeric_limits<int>::max();
     mesh_program_.set("first_floor_vertex", static_cast<int>(std::min(floor_.first_vertex, None)));
     mesh_program_.set("floor_center", floor_.center);

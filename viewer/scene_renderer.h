@@ -22,7 +22,8 @@ public:
     void upload_radiance(std::span<const glm::vec3> radiance);
     /// Draws into the current viewport, whose shape must be `viewport`. Clears its depth.
     void draw(const OrbitCamera& camera, const PixelRectangle& viewport,
-              const CubeTexture& environment, const SceneLook& look) const;
+              const CubeTexture& environment, const SceneLook& look,
+              const FloorScene& floor = {}) const;
     /// Takes a picture of the whole viewport that was drawn elsewhere.
     void upload_picture(const relight::Picture& picture);
     /// Draws that picture in place of the mesh.
@@ -30,7 +31,10 @@ public:
 
 private:
     void draw_background(const OrbitCamera& camera, const PixelRectangle& viewport,
-                         const CubeTexture& environment, const SceneLook& look) const;
+                         const CubeTexture& environment, const SceneLook& look,
+                         const FloorScene& floor) const;
+    void set_behind(const GlProgram& program, const OrbitCamera& camera, const SceneLook& look,
+                    const FloorScene& floor) const;
 
     relight::FadingFloor floor_;
     GlProgram mesh_program_;

@@ -47,12 +47,17 @@ Moment moment_of(const ViewState& state, const PixelRectangle& size) {
         .lights = {},
         .backdrop = {}};
     Lighting lighting = state.desk.lit().lighting();
+    const Scene& scene = state.desk.lit().scene();
+    const FloorLook look = floor_look(scene, lighting, state.picture);
+    moment.open_floor = open_floor(scene, lighting, look, camera.eye());
+    moment.lobes = std::move(lighting.lobes);
     moment.lights = std::move(lighting.lights);
     moment.radiance = std::move(lighting.soft);
     if (moment.lights.empty())
         moment.radiance.assign(lighting.radiance.begin(), lighting.radiance.end());
     if (state.scene_look.background)
-        moment.backdrop = backdrop_of(state);
+        moment.backdrop =
+            on_floor(backdrop_of(state), scene, lighting, look, camera.eye(), state.picture);
     return moment;
 }
 
@@ -70,8 +75,10 @@ public:
         if (const auto version = state.desk.version(); version != version_) {
             version_ = version;
             std::vector<glm::vec3> colors(lit.radiance().begin(), lit.radiance().end());
+            find_floor(state);
             for (std::size_t i = 0; i < colors.size(); ++i)
-                colors[i] *= state.shading.albedo[i];
+                if (floor_.look == FloorLook::Grey || i < state.shading.floor.first_vertex)
+                    colors[i] *= state.shading.albedo[i];
             scene_.upload_radiance(colors);
             texture_.upload(environment_of(lit), state.desk.take_changed_texels());
         }
@@ -120,7 +127,7 @@ public:
             scene_.draw_picture(state.scene_look);
         } else {
             target_.begin(place.width, place.height);
-            scene_.draw(state.camera, layout.scene, texture_, state.scene_look);
+            scene_.draw(state.camera, layout.scene, texture_, state.scene_look, floor_);
             target_.show_at(place.x, place.y);
         }
         window.set_viewport(layout.environment);
@@ -130,7 +137,24 @@ public:
     }
 
 private:
+    /// Looks at the light; how the floor is shown depends on the environment below the layers.
+    void find_floor(const ViewState& state) {
+        const LitScene& lit = state.desk.lit();
+        const Lighting lighting = lit.lighting(false);
+        if (!floor_base_ || floor_base_ != lit.state().base) {
+            floor_base_ = lit.state().base;
+            floor_.look = floor_look(lit.scene(), lighting, state.picture);
+        }
+        if (floor_.look == FloorLook::Grey)
+            return;
+        floor_.ground = picture_ground(lit.scene(), state.picture);
+        floor_.open = *lighting.open_floor;
+        floor_.color = studio_color(lighting, state.picture);
+    }
+
     SceneRenderer scene_;
+    FloorScene floor_;
+    std::shared_ptr<const LightBase> floor_base_;
     EnvironmentRenderer environment_;
     MultisampleTarget target_;
     CubeTexture texture_;
@@ -156,7 +180,7 @@ void handle(Shortcut shortcut, ViewState& state, const PanelLayout& layout) {
             remove(state.desk, *state.desk.selected());
         break;
     case Shortcut::FrameAll:
-        state.camera = camera_on_all(state.mesh, layout.scene);
+        state.camera = camera_on_all(state.desk.lit().scene(), layout.scene);
         break;
     case Shortcut::Wireframe:
         state.scene_look.wireframe = !state.scene_look.wireframe;
@@ -190,7 +214,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
     Pictures pictures(state);
     ScriptPlayer player(options.script.value_or(std::vector<ScriptCommand>{}));
     Idleness idleness;
-    state.camera = camera_on_all(state.mesh, window.layout().scene);
+    state.camera = camera_on_all(state.desk.lit().scene(), window.layout().scene);
     ViewReport report{.renderer = window.renderer()};
     double seconds = 0.0;
 

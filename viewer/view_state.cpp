@@ -82,10 +82,9 @@ relight::Backdrop backdrop_of(const ViewState& state) {
     };
 }
 
-OrbitCamera camera_on_all(const mesh::TriangleMesh& mesh, const PixelRectangle& viewport) {
-    return orbit_camera(
-        relight::framed(mesh, {.aspect = static_cast<float>(std::max(viewport.width, 1)) /
-                                         static_cast<float>(std::max(viewport.height, 1))}));
+OrbitCamera camera_on_all(const Scene& scene, const PixelRectangle& viewport) {
+    return orbit_camera(camera_of(scene, static_cast<float>(std::max(viewport.width, 1)) /
+                                             static_cast<float>(std::max(viewport.height, 1))));
 }
 
 void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec2& pixel) {

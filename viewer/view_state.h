@@ -14,6 +14,7 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/visibility/ray_scene.h"
 #include "relight/pictures/picture_view.h"
+#include "relumine/output.h"
 #include "viewer/gestures.h"
 #include "viewer/lat_long_view.h"
 #include "viewer/light_desk.h"
@@ -30,6 +31,8 @@ struct ViewState {
     const prt::RayScene& rays;
     LightDesk& desk;
     Shading shading;
+    /// How pictures show the floor.
+    OutputOptions picture = {};
     /// Reads an environment file as the command line's options say. Throws std::runtime_error.
     std::function<Environment(const std::filesystem::path&)> load_environment;
 
@@ -66,10 +69,8 @@ struct ViewState {
 /// Returns what is seen behind the mesh now, for a Refiner. It does not change any more.
 [[nodiscard]] relight::Backdrop backdrop_of(const ViewState& state);
 
-/// Returns the camera that shows all of the mesh but the ground, as `relumine relight` takes it for
-/// a picture of this size.
-[[nodiscard]] OrbitCamera camera_on_all(const mesh::TriangleMesh& mesh,
-                                        const PixelRectangle& viewport);
+/// Returns the camera that `relumine relight` takes for a picture of this size.
+[[nodiscard]] OrbitCamera camera_on_all(const Scene& scene, const PixelRectangle& viewport);
 
 /// Chooses the receiver nearest to the point where a pixel's ray meets the mesh, or none, and shows
 /// the light that reaches it.

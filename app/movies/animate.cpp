@@ -60,6 +60,8 @@ public:
           binner_(relight::binner_of(lit_.relighter())),
           writer_(lit_, options.output.for_scene(scene())) {
         static_cast<void>(options.bounces.applies_to(scene(), options.scene.path));
+        if (session.is_first())
+            options.output.warn_of_eye(scene(), session);
     }
 
     void run() {

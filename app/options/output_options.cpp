@@ -56,6 +56,13 @@ const relumine::OutputOptions& OutputOptions::for_scene(const Scene& scene) cons
     return picture;
 }
 
+void OutputOptions::warn_of_eye(const Scene& scene, const Session& session) const {
+    if (const std::string extension = extension_of(path);
+        (extension == ".png" || extension == ".exr") && is_other_eye(scene, picture))
+        session.warn("highlights are those that the eye of the precompute's --view sees; this "
+                     "camera stands elsewhere");
+}
+
 std::string OutputOptions::exposure_text(const Painter& painter) const {
     const std::string extension = extension_of(path);
     if (extension == ".npy" || extension == ".exr")

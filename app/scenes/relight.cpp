@@ -45,6 +45,7 @@ void keep_bounces(Lighting& lighting, std::span<const glm::vec3> bounced, const 
     lighting.radiance = bounced;
     lighting.soft.clear();
     lighting.lights.clear();
+    lighting.open_floor.reset();
 }
 
 /// Parts are numbers alone: what shapes a picture does not suit them.
@@ -121,6 +122,8 @@ void light_scene(const RelightArguments& options, Session& session) {
     const UpdateReport times = lit.light(std::move(given.light));
     session.poll();
     const relumine::OutputOptions output = options.output.for_scene(scene);
+    if (session.is_first())
+        options.output.warn_of_eye(scene, session);
     const std::optional<BounceReport> bounces =
         options.bounces.bounce(lit, output, options.scene.path);
     Lighting lighting = lit.lighting();

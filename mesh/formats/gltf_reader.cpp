@@ -73,6 +73,42 @@ glm::dmat4 local_transform(const Json& node) {
                       .scale = gltf::numbers(node, "scale", none.scale)});
 }
 
+/// Returns a perspective camera at a node, with a target one unit ahead; nothing for others, and
+/// for values that no picture can have.
+std::optional<FileCamera> camera_at(const Json& camera, const glm::dmat4& transform) {
+    const Json* perspective = camera.find("perspective");
+    if (perspective == nullptr)
+        return std::nullopt;
+    const double fov = gltf::number(*perspective, "yfov", 0.0);
+    const glm::dvec3 eye(transform[3]), ahead = -glm::dvec3(transform[2]);
+    const double length = glm::length(ahead);
+    constexpr double Farthest = 1e18;
+    if (!(fov > 0.0 && fov < std::numbers::pi) || !(length > 0.0 && length < Farthest) ||
+        !(glm::length(eye) < Farthest))
+        return std::nullopt;
+    return FileCamera{.eye = glm::vec3(eye),
+                      .target = glm::vec3(eye + ahead / length),
+                      .fov_degrees = static_cast<float>(fov * 180.0 / std::numbers::pi)};
+}
+
+/// Puts a camera's target as far ahead as the middle of the mesh is.
+FileCamera looking_at(const std::vector<glm::vec3>& positions, FileCamera camera) {
+    if (positions.empty())
+        return camera;
+    glm::vec3 low = positions.front(), high = low;
+    for (const glm::vec3& position : positions) {
+        low = glm::min(low, position);
+        high = glm::max(high, position);
+    }
+    const glm::dvec3 eye(camera.eye), ahead = glm::dvec3(camera.target) - eye;
+    double distance = glm::dot(0.5 * (glm::dvec3(low) + glm::dvec3(high)) - eye, ahead);
+    if (!(distance > 0.0) || !std::isfinite(distance))
+        distance = 0.5 * glm::distance(glm::dvec3(low), glm::dvec3(high));
+    if (distance > 0.0 && std::isfinite(distance))
+        camera.target = glm::vec3(eye + distance * ahead);
+    return camera;
+}
+
 class GltfReader {
 public:
     GltfReader(std::span<const std::byte> bytes, const std::filesystem::path& folder)
@@ -428,6 +464,7 @@ PolygonSoup GltfReader::read() {
     };
     std::vector<Visit> to_visit;
     std::vector<bool> visited(document_.count("nodes"), false);
+    std::optional<FileCamera> camera;
     const std::vector<std::uint64_t> roots = root_nodes();
     for (auto root = roots.rbegin(); root != roots.rend(); ++root)
         to_visit.push_back({*root, glm::dmat4(1.0)});
@@ -450,10 +487,15 @@ PolygonSoup GltfReader::read() {
                            group(node, index));
                 }
         }
+        if (!camera && node.find("camera"))
+            camera =
+                camera_at(document_.element("cameras", gltf::whole(node, "camera")), transform);
         const Json::Array& children = gltf::items(node, "children");
         for (std::size_t i = children.size(); i-- > 0;)
             to_visit.push_back({gltf::whole_value(children[i], "children"), transform});
     }
+    if (camera)
+        soup_.camera = looking_at(soup_.positions, *camera);
     if (!has_colors_)
         soup_.colors.clear();
     if (!has_uvs_)

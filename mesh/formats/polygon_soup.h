@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "mesh/file_camera.h"
 #include "mesh/normals.h"
 #include "mesh/triangle_mesh.h"
 
@@ -40,6 +42,7 @@ struct PolygonSoup {
     std::vector<Material> materials;
     std::vector<std::string> groups;
     std::vector<Texture> textures;
+    std::optional<FileCamera> camera = {};
     /// As in TriangleMesh.
     std::vector<std::string> missing, warnings;
 

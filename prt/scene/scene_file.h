@@ -39,6 +39,8 @@ struct SceneSettings {
     bool two_sided_bounces = false;
     /// The eye that the highlights of vertices are for.
     std::optional<Camera> view = {};
+    /// The camera of the mesh's file.
+    std::optional<Camera> camera = {};
 };
 
 /// Everything that relighting and drawing need.

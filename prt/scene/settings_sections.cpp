@@ -11,6 +11,21 @@ namespace {
 
 const std::string Settings = "settings";
 
+void camera_member(JsonMembers& member, const char* name, std::optional<Camera>& camera) {
+    std::vector<float> values;
+    if (camera)
+        values = {camera->eye.x,    camera->eye.y,    camera->eye.z,      camera->target.x,
+                  camera->target.y, camera->target.z, camera->fov_degrees};
+    member.unusual(name, values, {});
+    if (values.empty())
+        return;
+    camera = Camera{.eye = {values.at(0), values.at(1), values.at(2)},
+                    .target = {values.at(3), values.at(4), values.at(5)},
+                    .fov_degrees = values.at(6)};
+    // Throws for a camera without a direction.
+    static_cast<void>(axes_of(*camera, 1.0f));
+}
+
 void settings_members(JsonMembers& member, SceneSettings& settings) {
     member("tolerance", settings.tolerance);
     member("min_level", settings.min_level);
@@ -25,18 +40,8 @@ void settings_members(JsonMembers& member, SceneSettings& settings) {
     member.unusual("epsilon", settings.epsilon, {});
     member.unusual("glossy_tolerance", settings.glossy_tolerance, {});
     member.unusual("two_sided_bounces", settings.two_sided_bounces, false);
-    std::vector<float> view;
-    if (const auto& own = settings.view)
-        view = {own->eye.x,    own->eye.y,    own->eye.z,      own->target.x,
-                own->target.y, own->target.z, own->fov_degrees};
-    member.unusual("view", view, {});
-    if (view.empty())
-        return;
-    settings.view = Camera{.eye = {view.at(0), view.at(1), view.at(2)},
-                           .target = {view.at(3), view.at(4), view.at(5)},
-                           .fov_degrees = view.at(6)};
-    // Throws for a camera without a direction.
-    static_cast<void>(axes_of(*settings.view, 1.0f));
+    camera_member(member, "view", settings.view);
+    camera_member(member, "camera", settings.camera);
 }
 
 void add_settings(NewSections& sections, const Scene& scene) {
@@ -76,8 +81,9 @@ void check_settings(const SceneCheck& check, const Scene& scene) {
     check.that(floor <= scene.mesh.num_vertices(),
                fmt::format("a floor among {} vertices", scene.mesh.num_vertices()),
                fmt::format("one of {}", floor));
-    if (settings.view)
-        check_camera(check, scene, *settings.view);
+    for (const std::optional<Camera>& camera : {settings.view, settings.camera})
+        if (camera)
+            check_camera(check, scene, *camera);
 }
 
 float largest_place(const Scene& scene) {

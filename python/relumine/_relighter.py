@@ -339,6 +339,8 @@ class Relighter:
         albedo      a number, (r, g, b) or "mesh"; by default the mesh's own, else 0.5
         exposure    stops that png() and save() apply; by default what suits what is seen
         camera      (azimuth, elevation[, distance[, fov]]) in degrees; or eye and target (x, y, z)
+        floor       "photo" (the environment's ground with shadows), "studio", "grey"; by default
+                    what suits the environment
         background  "sharp" (the environment), "none" (alpha), a number or (r, g, b)
         blur        the environment out of focus, by so many degrees
         """

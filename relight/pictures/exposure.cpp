@@ -10,10 +10,15 @@ namespace relumine::relight {
 namespace {
 
 // Chosen by looking at eight meshes under fifteen environments.
-constexpr double BrightShare = 0.05; // of what is lit is brighter than Bright
-constexpr double Bright = 0.8;       // where the neutral tone curve begins to compress
-constexpr double Middle = 0.1;       // the median is lifted to this, but
-constexpr double LargestLift = 1.5;  // by no more than so many stops
+constexpr double BrightShare = 0.05;  // of what is lit is brighter than Bright
+constexpr double Bright = 0.8;        // where the neutral tone curve begins to compress
+constexpr double Middle = 0.1;        // the median is lifted to this, but
+constexpr double LargestLift = 1.5;   // by no more than so many stops
+constexpr double MiddleBehind = 0.18; // the median of a photograph behind is lifted to this, but
+constexpr double LargestRaise = 0.6;  // by no more than so many stops
+constexpr double BurntShare = 0.25;   // of a photograph behind may be brighter than Burnt, and more
+constexpr double Burnt = 1.4;         // where what is lit
+constexpr double DarkestAsset = 3.0;  // would be so many stops below Bright
 
 /// The brightness of a part of what is lit, and its weight.
 using Sample = std::pair<float, double>;
@@ -27,31 +32,50 @@ double exceeded_by(double share, const std::vector<Sample>& samples, double weig
     return static_cast<double>(sample->first);
 }
 
-} // namespace
+float rounded(double ev) {
+    return static_cast<float>(std::clamp(std::round(100.0 * ev) / 100.0, -100.0, 100.0));
+}
 
-float suitable_exposure_ev(std::span<const glm::vec3> colors, std::span<const float> weights) {
+std::vector<Sample> samples_of(std::span<const glm::vec3> colors, std::span<const float> weights) {
     std::vector<Sample> samples;
     samples.reserve(colors.size());
-    double weight = 0.0;
-    for (std::size_t i = 0; i < colors.size(); ++i) {
-        const auto own = weights.empty() ? 1.0 : static_cast<double>(weights[i]);
-        if (own <= 0.0)
-            continue;
-        samples.emplace_back(std::max({colors[i].r, colors[i].g, colors[i].b}), own);
-        weight += own;
-    }
+    for (std::size_t i = 0; i < colors.size(); ++i)
+        if (const auto own = weights.empty() ? 1.0 : static_cast<double>(weights[i]); own > 0.0)
+            samples.emplace_back(std::max({colors[i].r, colors[i].g, colors[i].b}), own);
+    std::sort(samples.begin(), samples.end());
+    return samples;
+}
+
+} // namespace
+
+float suitable_exposure_ev(std::span<const glm::vec3> colors, std::span<const float> weights,
+                           std::span<const glm::vec3> behind) {
+    const std::vector<Sample> photograph = samples_of(behind, {});
+    std::vector<Sample> samples = samples_of(colors, weights);
+    if (samples.empty())
+        samples = photograph;
     if (samples.empty())
         return 0.0f;
-    std::sort(samples.begin(), samples.end());
+    double weight = 0.0;
+    for (const Sample& sample : samples)
+        weight += sample.second;
     const double bright = exceeded_by(BrightShare, samples, weight);
     if (!(bright > 0.0))
         return 0.0f;
     double ev = std::log2(Bright / bright);
+    const double lowest = ev - DarkestAsset;
     if (const double middle = exceeded_by(0.5, samples, weight); middle > 0.0)
         ev = std::clamp(std::log2(Middle / middle), ev, ev + LargestLift);
     else
         ev += LargestLift;
-    return static_cast<float>(std::clamp(std::round(100.0 * ev) / 100.0, -100.0, 100.0));
+    if (photograph.empty())
+        return rounded(ev);
+    const auto size = static_cast<double>(photograph.size());
+    if (const double middle = exceeded_by(0.5, photograph, size); middle > 0.0)
+        ev = std::clamp(std::log2(MiddleBehind / middle), ev, ev + LargestRaise);
+    if (const double most = exceeded_by(BurntShare, photograph, size); most > 0.0)
+        ev = std::min(ev, std::max(std::log2(Burnt / most), lowest));
+    return rounded(ev);
 }
 
 } // namespace relumine::relight

@@ -12,9 +12,16 @@ namespace relumine::relight {
 /// brightened by up to a stop and a half more. Hundredths of a stop, from -100 to 100; 0 where
 /// nothing is lit.
 ///
+/// `behind` is what the picture shows of a photograph behind and under it. A dark photograph under
+/// a bright mesh is brightened by up to 0.6 stops, which the tone curves bear. The photograph must
+/// not burn out: three quarters of it stay within half a stop above white, unless what is lit is so
+/// dark that its bright parts would fall below a tenth of white. Where nothing is lit, the
+/// photograph itself is exposed.
+///
 /// Shape:   weights is [colors.size()], or empty where all count alike.
 /// Cost:    O(n log n).
 [[nodiscard]] float suitable_exposure_ev(std::span<const glm::vec3> colors,
-                                         std::span<const float> weights = {});
+                                         std::span<const float> weights = {},
+                                         std::span<const glm::vec3> behind = {});
 
 } // namespace relumine::relight

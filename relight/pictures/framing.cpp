@@ -12,21 +12,78 @@ namespace relumine::relight {
 
 namespace {
 
-/// Marks the vertices of the objects on the ground: triangles wholly in the lowest horizontal plane
-/// are left out, unless there is nothing else.
-std::vector<bool> subject(const mesh::TriangleMesh& mesh, const mesh::Bounds& all) {
-    const float ground = all.min.y + 1e-3f * all.size().y;
-    std::vector<bool> stands(mesh.num_vertices(), false), lies(mesh.num_vertices(), false);
+/// The box around marked vertices, and whether there are any.
+struct MarkedBox {
+    mesh::Bounds box;
     bool any = false;
-    for (const mesh::Triangle& triangle : mesh.triangles) {
-        const bool is_above = std::any_of(triangle.begin(), triangle.end(), [&](std::uint32_t v) {
-            return mesh.positions[v].y > ground;
-        });
-        for (const std::uint32_t v : triangle)
-            (is_above ? stands : lies)[v] = true;
-        any = any || is_above;
+};
+
+MarkedBox box_of(const mesh::TriangleMesh& mesh, const std::vector<bool>& is_marked) {
+    MarkedBox result;
+    for (std::size_t v = 0; v < mesh.num_vertices(); ++v) {
+        if (!is_marked[v])
+            continue;
+        const glm::vec3& position = mesh.positions[v];
+        result.box.min = result.any ? glm::min(result.box.min, position) : position;
+        result.box.max = result.any ? glm::max(result.box.max, position) : position;
+        result.any = true;
     }
-    return any ? stands : lies;
+    return result;
+}
+
+/// Marks the vertices of triangles among `of` that rise above a height.
+std::vector<bool> above(const mesh::TriangleMesh& mesh, const std::vector<bool>& of, float height) {
+    std::vector<bool> marks(mesh.num_vertices(), false);
+    for (const mesh::Triangle& triangle : mesh.triangles)
+        if (of[triangle[0]] && std::any_of(triangle.begin(), triangle.end(), [&](std::uint32_t v) {
+                return mesh.positions[v].y > height;
+            }))
+            for (const std::uint32_t v : triangle)
+                marks[v] = true;
+    return marks;
+}
+
+/// Marks the vertices of triangles among `of` that stay within the sides of a box.
+std::vector<bool> inside(const mesh::TriangleMesh& mesh, const std::vector<bool>& of,
+                         const mesh::Bounds& box) {
+    const glm::vec3 margin = 0.1f * box.size();
+    std::vector<bool> marks(mesh.num_vertices(), false);
+    for (const mesh::Triangle& triangle : mesh.triangles)
+        if (of[triangle[0]] && std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t v) {
+                const glm::vec3& at = mesh.positions[v];
+                return at.x >= box.min.x - margin.x && at.x <= box.max.x + margin.x &&
+                       at.z >= box.min.z - margin.z && at.z <= box.max.z + margin.z;
+            }))
+            for (const std::uint32_t v : triangle)
+                marks[v] = true;
+    return marks;
+}
+
+/// Marks the vertices of the objects on the ground: triangles wholly in the lowest horizontal plane
+/// are left out, and a wide plate under all the rest, unless there is nothing else.
+std::vector<bool> subject(const mesh::TriangleMesh& mesh, const mesh::Bounds& all) {
+    constexpr float Wider = 1.5f;
+    std::vector<bool> used(mesh.num_vertices(), false);
+    for (const mesh::Triangle& triangle : mesh.triangles)
+        for (const std::uint32_t v : triangle)
+            used[v] = true;
+    std::vector<bool> stands = above(mesh, used, all.min.y + 1e-3f * all.size().y);
+    const MarkedBox whole = box_of(mesh, stands);
+    if (!whole.any)
+        return used;
+    const auto width = [](const mesh::Bounds& box) {
+        return std::max(box.size().x, box.size().z);
+    };
+    // From thin plates to thick ones, so that little of the rest is cut off.
+    for (const float thickness : {0.001f, 0.003f, 0.01f, 0.02f}) {
+        const float height = whole.box.min.y + thickness * width(whole.box);
+        const MarkedBox upper = box_of(mesh, above(mesh, stands, height));
+        if (!upper.any)
+            return stands;
+        if (width(whole.box) > Wider * width(upper.box))
+            return inside(mesh, stands, upper.box);
+    }
+    return stands;
 }
 
 /// The largest and the smallest of values.
@@ -98,6 +155,146 @@ Camera framed(const mesh::TriangleMesh& mesh, const Framing& framing) {
         return glm::vec3(middle + eye_x * right + eye_y * up + z * forward);
     };
     return {.eye = at(eye_z), .target = at(target_z), .fov_degrees = framing.fov_degrees};
+}
+
+mesh::Bounds subject_bounds(const mesh::TriangleMesh& mesh) {
+    return box_of(mesh, subject(mesh, mesh::bounds(mesh))).box;
+}
+
+namespace {
+
+/// What a ray meets first, and last.
+struct Meeting {
+    double distance = std::numeric_limits<double>::infinity();
+    bool is_front = false;
+    double farthest = 0.0;
+    /// The last surface faces away from where the ray begins.
+    bool is_closed = false;
+};
+
+/// Finds what rays from one point meet, triangle by triangle.
+std::vector<Meeting> meetings(const mesh::TriangleMesh& mesh, const glm::dvec3& from,
+                              const std::vector<glm::dvec3>& ways) {
+    std::vector<Meeting> result(ways.size());
+    for (const mesh::Triangle& triangle : mesh.triangles) {
+        const glm::dvec3 a = glm::dvec3(mesh.positions[triangle[0]]) - from;
+        const glm::dvec3 b = glm::dvec3(mesh.positions[triangle[1]]) - from;
+        const glm::dvec3 c = glm::dvec3(mesh.positions[triangle[2]]) - from;
+        const glm::dvec3 ab = glm::cross(a, b), bc = glm::cross(b, c), ca = glm::cross(c, a);
+        const double volume = glm::dot(a, bc);
+        for (std::size_t i = 0; i < ways.size(); ++i) {
+            // The ray passes all three edges on the same side.
+            const double x = glm::dot(ways[i], ab), y = glm::dot(ways[i], bc),
+                         z = glm::dot(ways[i], ca);
+            const double sum = x + y + z;
+            const bool is_inside =
+                (x >= 0.0 && y >= 0.0 && z >= 0.0) || (x <= 0.0 && y <= 0.0 && z <= 0.0);
+            if (!is_inside || sum == 0.0)
+                continue;
+            const double distance = volume / sum;
+            if (!(distance > 0.0))
+                continue;
+            if (distance < result[i].distance) {
+                result[i].distance = distance;
+                result[i].is_front = sum < 0.0;
+            }
+            if (distance > result[i].farthest) {
+                result[i].farthest = distance;
+                result[i].is_closed = sum > 0.0;
+            }
+        }
+    }
+    return result;
+}
+
+/// Directions around the horizon, and some above and below it.
+std::vector<glm::dvec3> ways_around(std::uint32_t num_around, bool level) {
+    std::vector<glm::dvec3> ways;
+    for (const double up : {0.0, 0.5, -0.5, 0.9, -0.9}) {
+        if (level && up != 0.0)
+            break;
+        for (std::uint32_t i = 0; i < num_around; ++i) {
+            const double angle = 2.0 * std::numbers::pi * i / num_around;
+            const double across = std::sqrt(1.0 - up * up);
+            ways.emplace_back(across * std::sin(angle), up, across * std::cos(angle));
+        }
+    }
+    return ways;
+}
+
+/// Returns how far the box reaches from a point inside.
+double way_out(const mesh::Bounds& box, const glm::dvec3& from, const glm::dvec3& way) {
+    double result = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis)
+        if (way[axis] != 0.0)
+            result = std::min(
+                result,
+                ((way[axis] > 0.0 ? double{box.max[axis]} : double{box.min[axis]}) - from[axis]) /
+                    way[axis]);
+    return result;
+}
+
+/// Whether most rays from a point meet fronts, far away in the box. Strictness 1 takes many rays.
+bool is_inside_room(const mesh::TriangleMesh& mesh, const mesh::Bounds& box, const glm::dvec3& from,
+                    std::uint32_t num_around, double strictness) {
+    constexpr double Met = 0.7, Fronts = 0.65, NearBox = 0.55, Closed = 0.6;
+    const std::vector<glm::dvec3> ways = ways_around(num_around, false);
+    const std::vector<Meeting> around = meetings(mesh, from, ways);
+    double met = 0.0, fronts = 0.0, near_box = 0.0, closed = 0.0, level_or_up = 0.0;
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+        if (ways[i].y >= 0.0) { // below, there may be a floor
+            level_or_up += 1.0;
+            closed += around[i].is_closed ? 1.0 : 0.0;
+        }
+        if (!std::isfinite(around[i].distance))
+            continue;
+        met += 1.0;
+        fronts += around[i].is_front ? 1.0 : 0.0;
+        near_box += around[i].distance > 0.6 * way_out(box, from, ways[i]) ? 1.0 : 0.0;
+    }
+    // A chest has an inside, too, but it is closed to the outside.
+    if (closed > Closed * level_or_up)
+        return false;
+    return met >= strictness * Met * static_cast<double>(ways.size()) &&
+           fronts >= strictness * Fronts * met && near_box >= strictness * NearBox * met;
+}
+
+} // namespace
+
+std::optional<Camera> inside_room(const mesh::TriangleMesh& mesh, const Framing& framing) {
+    constexpr double EyeHeight = 0.55; // of the room's
+    constexpr double FromWall = 0.04;
+    constexpr float FovDegrees = 60.0f;
+    constexpr std::uint32_t NumAround = 32;
+    const mesh::Bounds box = subject_bounds(mesh);
+    const glm::dvec3 size(box.size());
+    glm::dvec3 middle(box.center());
+    middle.y = double{box.min.y} + EyeHeight * size.y;
+    // Few rays tell most objects.
+    if (!is_inside_room(mesh, box, middle, 3, 0.7) || !is_inside_room(mesh, box, middle, 16, 1.0))
+        return std::nullopt;
+
+    // The eye is where the view is longest; of equal ones, to the front.
+    const std::vector<glm::dvec3> level = ways_around(NumAround, true);
+    const std::vector<Meeting> walls = meetings(mesh, middle, level);
+    double best = 0.0, back = 0.0;
+    glm::dvec3 to_eye(framing.front);
+    for (std::size_t i = 0; i < level.size(); ++i) {
+        const double reach = std::min(walls[i].distance, way_out(box, middle, level[i]));
+        const double ahead = std::min(walls[(i + NumAround / 2) % NumAround].distance,
+                                      way_out(box, middle, -level[i]));
+        const bool is_open = !std::isfinite(walls[i].distance);
+        const double score = (is_open ? 1.5 : 1.0) * (reach + ahead) *
+                             (1.0 + 0.1 * glm::dot(level[i], framing.front));
+        if (score > best) {
+            best = score;
+            back = (1.0 - FromWall) * reach;
+            to_eye = level[i];
+        }
+    }
+    return Camera{.eye = glm::vec3(middle + back * to_eye),
+                  .target = glm::vec3(middle),
+                  .fov_degrees = FovDegrees};
 }
 
 } // namespace relumine::relight

@@ -23,6 +23,11 @@ constexpr std::uint32_t TileSize = 32;
 
 using Lanes = std::vector<std::uint16_t>;
 
+/// Alpha knows no colours.
+float opacity_of(const glm::vec3& passed) {
+    return std::clamp(1.0f - (passed.r + passed.g + passed.b) / 3.0f, 0.0f, 1.0f);
+}
+
 } // namespace
 
 float FadingFloor::opacity(const glm::vec3& position) const {
@@ -33,6 +38,14 @@ float FadingFloor::opacity(const glm::vec3& position) const {
         return 0.0f;
     const float t = (end_radius - radius) / (end_radius - opaque_radius);
     return t * t * (3.0f - 2.0f * t);
+}
+
+glm::vec3 caught(const glm::vec3& radiance, const glm::vec3& open, float opacity) {
+    glm::vec3 result(1.0f);
+    for (int channel = 0; channel < 3; ++channel)
+        if (open[channel] > 0.0f)
+            result[channel] += opacity * (radiance[channel] / open[channel] - 1.0f);
+    return result;
 }
 
 PictureView::PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
@@ -156,7 +169,7 @@ public:
                 picture.pixels[pixel] = color;
                 if (backdrop == nullptr)
                     picture.alpha[pixel] = alpha;
-                else if (alpha < 1.0f)
+                else if (alpha < 1.0f || light_.open_floor)
                     picture.pixels[pixel] += behind(x, y, *backdrop);
             }
     }
@@ -173,6 +186,27 @@ private:
 
     [[nodiscard]] bool has_texture(const Sample& sample) const {
         return light_.textures != nullptr && light_.textures->has(sample.triangle);
+    }
+
+    /// Returns what a sample sends on of the light of the vertices.
+    [[nodiscard]] glm::vec3 soft(const Sample& sample) const {
+        const prt::MeshPoint at = point(sample);
+        if (!has_texture(sample))
+            return prt::value_at(mesh_, light_.radiance, at);
+        if (light_.lobes.empty())
+            return light_.textures->radiance(light_.radiance, at);
+        const auto between = [&](auto part) {
+            const mesh::Triangle& triangle = mesh_.triangles[at.triangle];
+            const glm::vec2& w = at.barycentric;
+            return (1.0f - w.x - w.y) * light_.lobes[triangle[0]].*part +
+                   w.x * light_.lobes[triangle[1]].*part + w.y * light_.lobes[triangle[2]].*part;
+        };
+        using Lobes = prt::Lobes<glm::vec3>;
+        return prt::reflect(surface_at(sample),
+                            {.diffuse = between(&Lobes::diffuse),
+                             .diffuse_grazing = between(&Lobes::diffuse_grazing),
+                             .specular = between(&Lobes::specular),
+                             .specular_grazing = between(&Lobes::specular_grazing)});
     }
 
     /// Finds the lights that reach a sample.
@@ -225,34 +259,47 @@ private:
                                                  [](std::uint16_t lanes) { return lanes == 0; });
         glm::vec3 sum(0.0f);
         float alpha = 0.0f;
-        for (const Sample& sample : samples) {
+        passed_.assign(samples.size(), glm::vec3(1.0f));
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const Sample& sample = samples[i];
             const float opacity = view_.opacity(sample);
             if (opacity == 0.0f)
                 continue;
-            glm::vec3 radiance = has_texture(sample)
-                                     ? light_.textures->radiance(light_.radiance, point(sample))
-                                     : prt::value_at(mesh_, light_.radiance, point(sample));
+            const bool is_caught = catches(sample);
+            glm::vec3 radiance = soft(sample);
             if (traces && !is_dark) {
                 if (!even)
                     look(sample, lanes_);
-                radiance += traced(sample);
+                radiance += is_caught ? traced_white(sample) : traced(sample);
             }
-            sum += opacity * radiance;
-            alpha += opacity;
+            passed_[i] = is_caught ? caught(radiance, *light_.open_floor, opacity)
+                                   : glm::vec3(1.0f - opacity);
+            if (!is_caught)
+                sum += opacity * radiance;
+            alpha += is_caught ? opacity_of(passed_[i]) : opacity;
         }
         const auto count = static_cast<float>(samples.size());
         return {.color = sum / count, .alpha = alpha / count};
     }
 
-    /// Returns what a pixel shows of a backdrop.
+    /// Returns what the pixel that was just drawn shows of a backdrop.
     [[nodiscard]] glm::vec3 behind(std::uint32_t x, std::uint32_t y,
                                    const Backdrop& backdrop) const {
-        const std::span<const Sample> samples = rows_[y - top_].pixel(x);
         glm::vec3 sum(0.0f);
-        for (std::uint32_t i = 0; i < samples.size(); ++i)
-            if (const float opacity = view_.opacity(samples[i]); opacity < 1.0f)
-                sum += (1.0f - opacity) * backdrop(view_.grid_.direction(x, y, i));
-        return sum / static_cast<float>(samples.size());
+        for (std::uint32_t i = 0; i < passed_.size(); ++i)
+            if (passed_[i] != glm::vec3(0.0f))
+                sum += passed_[i] * backdrop(view_.grid_.direction(x, y, i));
+        return sum / static_cast<float>(passed_.size());
+    }
+
+    /// Whether a sample lies on a floor that catches shadows.
+    [[nodiscard]] bool catches(const Sample& sample) const {
+        return light_.open_floor && view_.floor_.has(mesh_.triangles[sample.triangle]);
+    }
+
+    /// Returns what the lights in lanes_ give to a white Lambert surface.
+    [[nodiscard]] glm::vec3 traced_white(const Sample& sample) const {
+        return glm::vec3(packets_.radiance(prt::shading_normal(mesh_, point(sample)), lanes_));
     }
 
     /// Returns what a sample sends on of the lights in lanes_.
@@ -266,9 +313,7 @@ private:
             light_.albedo.empty() ? glm::vec3(1.0f) : prt::value_at(mesh_, light_.albedo, at);
         if (light_.surfaces.empty())
             return albedo * glm::vec3(packets_.radiance(normal, lanes_));
-        prt::Surface surface = surface_at(at);
-        if (has_texture(sample))
-            surface.albedo = light_.textures->albedo(at);
+        const prt::Surface surface = surface_at(sample);
         if (surface.highlight == prt::Highlight::None || !light_.eye)
             return albedo *
                    prt::reflect(surface, {.diffuse = glm::vec3(packets_.radiance(normal, lanes_))});
@@ -285,8 +330,10 @@ private:
                                       .specular_grazing = glm::vec3(lobes.specular_grazing)});
     }
 
-    /// Returns the surface between the vertices', with the highlight of the nearest.
-    [[nodiscard]] prt::Surface surface_at(const prt::MeshPoint& at) const {
+    /// Returns the surface between the vertices', with the highlight of the nearest and the colours
+    /// of the textures.
+    [[nodiscard]] prt::Surface surface_at(const Sample& sample) const {
+        const prt::MeshPoint at = point(sample);
         const mesh::Triangle& triangle = mesh_.triangles[at.triangle];
         const std::array<float, 3> weights = {1.0f - at.barycentric.x - at.barycentric.y,
                                               at.barycentric.x, at.barycentric.y};
@@ -305,6 +352,11 @@ private:
         }
         if (is_same)
             surface.roughness_or_exponent = shape;
+        if (has_texture(sample)) {
+            const prt::Surface own = light_.textures->surface(at);
+            surface.albedo = own.albedo;
+            surface.specular = own.specular;
+        }
         return surface;
     }
 
@@ -319,6 +371,8 @@ private:
     Lanes middles_;
     /// Scratch: [packets]
     Lanes lanes_;
+    /// [samples of a pixel] what passes of the light behind.
+    std::vector<glm::vec3> passed_;
 };
 
 Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) const {
@@ -326,7 +380,7 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
         return size == 0 || size == mesh_.num_vertices();
     };
     if (light.radiance.size() != mesh_.num_vertices() || !fits(light.albedo.size()) ||
-        !fits(light.surfaces.size()))
+        !fits(light.surfaces.size()) || !fits(light.lobes.size()))
         throw std::invalid_argument("expected one radiance, albedo and surface per vertex");
     const LightPackets packets(light.lights);
     Picture picture{.width = options_.width, .height = options_.height};

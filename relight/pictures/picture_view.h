@@ -70,11 +70,22 @@ struct MeshLight {
     /// Triangles with a texture take its colour at the point, and the light of the vertices. Null:
     /// there are none. Must fit the vertices' surfaces.
     const SurfaceColors* textures = nullptr;
+    /// [num_vertices] what `radiance` is made of, or empty where nothing has a highlight: triangles
+    /// with a texture take them in place of `radiance`.
+    std::span<const prt::Lobes<glm::vec3>> lobes = {};
     /// The eye that highlights are for. Empty: there are none.
     std::optional<glm::vec3> eye = {};
     /// Lift of the rays' origins, as in prt::PrecomputeOptions.
     float bias = 0.0f;
+    /// The radiance, for albedo 1, of a floor that nothing shades. With it the floor is not seen:
+    /// it multiplies what is behind it with its light over this. `radiance` of its vertices is then
+    /// for albedo 1.
+    std::optional<glm::vec3> open_floor = {};
 };
+
+/// Returns what a floor that catches shadows leaves of the light behind it, where its own light is
+/// `radiance` in place of `open`: their ratio, and 1 where it is not opaque.
+[[nodiscard]] glm::vec3 caught(const glm::vec3& radiance, const glm::vec3& open, float opacity);
 
 /// A camera's view of a still scene, traced once and drawn in any light.
 class PictureView {

@@ -22,7 +22,7 @@ void require_one_per_receiver(std::size_t num_receivers, std::span<const glm::ve
 /// not opaque. The mean opacity goes to the picture's alpha if asked for.
 template<typename Behind>
 Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
-                 std::span<const float> opacity, const Behind& behind, bool with_alpha) {
+                 std::span<const glm::vec3> opacity, const Behind& behind, bool with_alpha) {
     require_one_per_receiver(layout.samples.size(), radiance);
     if (!opacity.empty() && opacity.size() != radiance.size())
         throw std::invalid_argument("expected one opacity per receiver");
@@ -41,15 +41,15 @@ Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radi
             glm::vec3 sum(0.0f);
             float alpha = 0.0f;
             for (std::uint32_t i = 0; i < per_pixel; ++i) {
-                float own = 0.0f;
+                glm::vec3 own(0.0f);
                 if (receiver < layout.samples.size() &&
                     layout.samples[receiver] == pixel * per_pixel + i) {
-                    own = opacity.empty() ? 1.0f : opacity[receiver];
+                    own = opacity.empty() ? glm::vec3(1.0f) : opacity[receiver];
                     sum += own * radiance[receiver++];
                 }
-                if (own < 1.0f)
+                if (own != glm::vec3(1.0f))
                     sum += (1.0f - own) * behind(x, y, i);
-                alpha += own;
+                alpha += std::clamp((own.r + own.g + own.b) / 3.0f, 0.0f, 1.0f);
             }
             picture.pixels[pixel] = sum / static_cast<float>(per_pixel);
             if (with_alpha)
@@ -119,13 +119,13 @@ private:
 } // namespace
 
 Picture compose_cut_out(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
-                        std::span<const float> opacity) {
+                        std::span<const glm::vec3> opacity) {
     return averaged(
         layout, radiance, opacity, [](auto, auto, auto) { return glm::vec3(0.0f); }, true);
 }
 
 Picture compose(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
-                const Backdrop& backdrop, std::span<const float> opacity) {
+                const Backdrop& backdrop, std::span<const glm::vec3> opacity) {
     const prt::PictureRays rays(layout.camera, layout.width, layout.height,
                                 layout.samples_per_axis);
     return averaged(

@@ -17,18 +17,19 @@ using cubemap::Picture;
 /// Composes the picture of pixel receivers without a background. Alpha is the mean opacity of a
 /// pixel's samples, which is 0 for a sample without a receiver; the pixels are premultiplied.
 ///
-/// Shape:   radiance is [num_receivers], opacity the same, or empty for opaque receivers.
+/// Shape:   radiance is [num_receivers], opacity the same for each colour, or empty for opaque
+///          receivers. It may be negative where light is added to what is behind.
 /// Throws:  std::invalid_argument for another number of values.
 [[nodiscard]] Picture compose_cut_out(const prt::PixelLayout& layout,
                                       std::span<const glm::vec3> radiance,
-                                      std::span<const float> opacity = {});
+                                      std::span<const glm::vec3> opacity = {});
 
 /// Composes the picture of pixel receivers before a backdrop: each pixel is the mean of its
 /// samples. The picture is opaque.
 ///
 /// Shape:   as compose_cut_out().
 [[nodiscard]] Picture compose(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
-                              const Backdrop& backdrop, std::span<const float> opacity = {});
+                              const Backdrop& backdrop, std::span<const glm::vec3> opacity = {});
 
 /// Composes the lightmap of texel receivers.
 ///

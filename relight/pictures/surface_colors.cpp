@@ -7,8 +7,9 @@
 
 namespace relumine::relight {
 
-SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt::Surface> surfaces)
-    : mesh_(&mesh) {
+SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt::Surface> surfaces,
+                             bool has_highlights)
+    : mesh_(&mesh), has_highlights_(has_highlights) {
     const auto has_texture = [](const mesh::Material& material) {
         return material.base_color_texture.has_value();
     };
@@ -25,9 +26,9 @@ SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt
     }
 }
 
-glm::vec3 SurfaceColors::albedo(const prt::MeshPoint& point) const {
-    return prt::without_highlight(prt::surface_at(*mesh_, point.triangle, point.barycentric))
-        .albedo;
+prt::Surface SurfaceColors::surface(const prt::MeshPoint& point) const {
+    const prt::Surface own = prt::surface_at(*mesh_, point.triangle, point.barycentric);
+    return has_highlights_ ? own : prt::without_highlight(own);
 }
 
 glm::vec3 SurfaceColors::radiance(std::span<const glm::vec3> vertex_radiance,
@@ -40,6 +41,23 @@ glm::vec3 SurfaceColors::radiance(std::span<const glm::vec3> vertex_radiance,
         light += weights[corner] * vertex_radiance[triangle[corner]] *
                  light_of_radiance_[triangle[corner]];
     return light * albedo(point);
+}
+
+void add_rest(std::span<const glm::vec3> radiance, std::span<const prt::Surface> surfaces,
+              std::span<prt::Lobes<glm::vec3>> lobes) {
+    constexpr float LeastDiffuse = 0.02f;
+    for (std::size_t i = 0; i < lobes.size(); ++i) {
+        const glm::vec3 rest = radiance[i] - prt::reflect(surfaces[i], lobes[i]);
+        const glm::vec3 share = prt::reflect(surfaces[i], {.diffuse = glm::vec3(1.0f)});
+        for (int channel = 0; channel < 3; ++channel)
+            if (share[channel] > LeastDiffuse)
+                lobes[i].diffuse[channel] += rest[channel] / share[channel];
+            else {
+                // What Fresnel makes white is a part of the highlight.
+                lobes[i].specular[channel] += rest[channel];
+                lobes[i].specular_grazing[channel] += rest[channel];
+            }
+    }
 }
 
 } // namespace relumine::relight

@@ -8,27 +8,33 @@
 #include <glm/vec3.hpp>
 
 #include "mesh/triangle_mesh.h"
+#include "prt/glossy/brdf.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/receivers/surface.h"
 
 namespace relumine::relight {
 
-/// Takes the light from the vertices and the albedo from the textures, so that a picture shows what
-/// is finer than the mesh.
+/// Takes the light from the vertices and the colours from the textures, so that a picture shows
+/// what is finer than the mesh. Highlights keep their shape and stay on top.
 class SurfaceColors {
 public:
     /// Nothing has a texture.
     SurfaceColors() = default;
-    /// `surfaces` are the vertices', [num_vertices] or empty, without highlights. The mesh must
-    /// outlive this object.
-    SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt::Surface> surfaces);
+    /// `surfaces` are the vertices', [num_vertices] or empty, with highlights if the scene has an
+    /// eye for them. The mesh must outlive this object.
+    SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt::Surface> surfaces,
+                  bool has_highlights = false);
 
     /// Whether a triangle has a texture of its albedo.
     [[nodiscard]] bool has(std::uint32_t triangle) const {
         return !is_textured_.empty() && is_textured_[triangle];
     }
     /// Returns the albedo at a point of such a triangle.
-    [[nodiscard]] glm::vec3 albedo(const prt::MeshPoint& point) const;
+    [[nodiscard]] glm::vec3 albedo(const prt::MeshPoint& point) const {
+        return surface(point).albedo;
+    }
+    /// Returns the surface that the materials give to a point.
+    [[nodiscard]] prt::Surface surface(const prt::MeshPoint& point) const;
     /// Returns the radiance at a point of such a triangle, under the light of its vertices.
     [[nodiscard]] glm::vec3 radiance(std::span<const glm::vec3> vertex_radiance,
                                      const prt::MeshPoint& point) const;
@@ -37,8 +43,16 @@ private:
     const mesh::TriangleMesh* mesh_ = nullptr;
     /// [num_triangles], or empty.
     std::vector<bool> is_textured_;
+    bool has_highlights_ = false;
     /// [num_vertices], 1 / albedo; 0 where that is 0.
     std::vector<glm::vec3> light_of_radiance_;
 };
+
+/// Adds to the lobes of vertices what their radiance has beyond them, bounces above all, as diffuse
+/// light; where a surface reflects none, as light of its own colour.
+///
+/// Shape:   all are [num_vertices].
+void add_rest(std::span<const glm::vec3> radiance, std::span<const prt::Surface> surfaces,
+              std::span<prt::Lobes<glm::vec3>> lobes);
 
 } // namespace relumine::relight

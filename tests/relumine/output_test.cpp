@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "cubemap/image/environment.h"
+#include "mesh/floor.h"
 #include "mesh/load.h"
+#include "tests/prt/textured_square.h"
 #include "tests/relight/environments.h"
 #include "tests/relumine/small_scenes.h"
 
@@ -103,6 +105,148 @@ TEST_F(Output, OfAMapIsALatLong) {
     EXPECT_EQ(image.height, 8u);
     for (const glm::vec3& pixel : image.pixels)
         EXPECT_NEAR(pixel.g, 1.0f, 1e-6f);
+}
+
+/// A wall on a floor of this size.
+Mesh standing(float floor_scale) {
+    Mesh mesh(scenes::corner(3));
+    mesh::append_floor(mesh.geometry, 12, floor_scale);
+    mesh.floor_vertices = 12;
+    return mesh;
+}
+
+/// A ground, a sky and a sun of one texel.
+cubemap::CubeMap sunny() {
+    cubemap::CubeMap map = scenes::random_environment(16, 3);
+    map.at(cubemap::Face::PositiveY, 3, 4) = glm::vec3(300.0f, 200.0f, 100.0f);
+    return map;
+}
+
+/// Expects that a picture shows the ground of the photograph and nothing else.
+void expect_photograph(const LitScene& lit, const Picture& picture, const Camera& camera) {
+    const prt::PictureRays rays(camera, picture.width, picture.height, 1);
+    const relight::Backdrop ground = relight::grounded_backdrop(
+        relight::map_backdrop(environment_of(lit)), picture_ground(lit.scene()), camera.eye);
+    for (std::uint32_t y = 0; y < picture.height; ++y)
+        for (std::uint32_t x = 0; x < picture.width; ++x)
+            for (int channel = 0; channel < 3; ++channel) {
+                const float expected = ground(rays.direction(x, y, 0))[channel];
+                EXPECT_NEAR(picture.pixels[y * picture.width + x][channel], expected,
+                            1e-3f * expected);
+            }
+}
+
+TEST_F(Output, AFloorWithoutShadowsIsThePhotograph) {
+    // The thing is a speck on the floor, and the picture looks elsewhere.
+    const Mesh mesh = standing(40000.0f);
+    const float far = 0.25f * mesh::bounds(mesh.geometry).size().x;
+    const Camera camera{
+        .eye = {far, 3.0f, 0.0f}, .target = {far, 0.0f, 6.0f}, .fov_degrees = 60.0f};
+    for (const bool on_pixels : {false, true}) {
+        PrecomputeOptions how{.tolerance = 0.1f};
+        if (on_pixels) {
+            how.receivers = Pixels{.width = 20, .height = 15, .samples_per_axis = 1};
+            how.view = View{.camera = camera};
+        }
+        LitScene lit(precompute(mesh, how));
+        lit.light(sunny());
+        ASSERT_FALSE(on_pixels ? lit.radiance().empty() : lit.lighting().lights.empty());
+        OutputOptions options{.floor_fade = 0.0f, .samples_per_axis = 1};
+        if (!on_pixels) {
+            options.width = 20;
+            options.height = 15;
+            options.camera = camera;
+        }
+        expect_photograph(lit, draw(lit, options), camera);
+        options.floor = FloorLook::Grey;
+        EXPECT_NE(draw(lit, options).pixels, draw(lit, {.samples_per_axis = 1}).pixels);
+    }
+}
+
+TEST_F(Output, AFloorCatchesShadows) {
+    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
+    lit.light(sunny());
+    const OutputOptions options{.width = 40, .height = 30, .background = NothingBehind{}};
+    const Picture alone = draw(lit, options);
+    std::size_t num_clear = 0, num_shaded = 0;
+    for (std::size_t i = 0; i < alone.alpha.size(); ++i) {
+        num_clear += alone.alpha[i] < 0.01f ? 1 : 0;
+        // What is dark and not opaque is a shadow.
+        num_shaded +=
+            alone.alpha[i] > 0.1f && alone.alpha[i] < 0.95f && alone.pixels[i].g == 0.0f ? 1 : 0;
+    }
+    EXPECT_GT(num_clear, 300u);
+    EXPECT_GT(num_shaded, 10u);
+    // A plain background takes the same shadows.
+    OutputOptions white = options;
+    white.background = glm::vec3(1.0f);
+    const Picture on_white = draw(lit, white);
+    for (std::size_t i = 0; i < alone.alpha.size(); ++i)
+        if (alone.pixels[i] == glm::vec3(0.0f) && alone.alpha[i] > 0.0f) {
+            const glm::vec3 left = on_white.pixels[i];
+            EXPECT_NEAR((left.r + left.g + left.b) / 3.0f, 1.0f - alone.alpha[i], 1e-5f);
+        }
+}
+
+TEST_F(Output, TheFloorIsGreyWhereNoGroundIsKnown) {
+    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
+    lit.light(sunny());
+    EXPECT_EQ(floor_look(lit.scene(), lit.lighting()), FloorLook::Photo);
+    EXPECT_EQ(floor_look(lit.scene(), lit.lighting(), {.floor = FloorLook::Grey}), FloorLook::Grey);
+    lit.light(cubemap::CubeMap(8, glm::vec3(1.0f)));
+    EXPECT_EQ(floor_look(lit.scene(), lit.lighting()), FloorLook::Studio);
+    lit.light(std::vector<lights::DistantLight>{{.direction = {0, 1, 0}, .irradiance = {1, 1, 1}}});
+    EXPECT_EQ(floor_look(lit.scene(), lit.lighting()), FloorLook::Grey);
+    EXPECT_EQ(floor_look(lit.scene(), lit.lighting(), {.background = glm::vec3(1.0f)}),
+              FloorLook::Photo);
+}
+
+TEST_F(Output, ExposureIsThatOfTheMeshAndNotOfItsFloor) {
+    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
+    lit.light(sunny());
+    const auto exposure = [&](float albedo) {
+        return Painter(lit, {.floor = FloorLook::Grey,
+                             .floor_albedo = glm::vec3(albedo),
+                             .background = glm::vec3(0.0f)})
+            .choose_exposure_ev(lit.lighting());
+    };
+    EXPECT_EQ(exposure(0.05f), exposure(5.0f));
+}
+
+TEST_F(Output, TheCameraIsThatOfTheFileOrInsideOfARoom) {
+    Mesh mesh(scenes::corner(3));
+    mesh.camera = Camera{.eye = {5, 6, 7}, .target = {0, 1, 0}, .fov_degrees = 41.0f};
+    const Scene scene = unclustered_scene(mesh);
+    EXPECT_EQ(camera_of(scene, OutputOptions{}), *mesh.camera);
+    EXPECT_EQ(camera_of(scene, OutputOptions{.fov_degrees = 20.0f}).fov_degrees, 20.0f);
+    EXPECT_EQ(camera_of(scene, OutputOptions{.eye = glm::vec3(1.0f)}).eye, glm::vec3(1.0f));
+    const Camera asked = camera_of(scene, OutputOptions{.camera_place = CameraPlace{}});
+    EXPECT_EQ(asked, relight::framed(scene.mesh));
+    const Scene room = unclustered_scene(data_gen::painted_room(2000));
+    const Camera inside = camera_of(room, OutputOptions{});
+    const mesh::Bounds box = mesh::bounds(room.mesh);
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_GT(inside.eye[axis], box.min[axis]);
+        EXPECT_LT(inside.eye[axis], box.max[axis]);
+    }
+}
+
+TEST_F(Output, HighlightsKeepTextures) {
+    mesh::TriangleMesh square = scenes::textured_square();
+    for (mesh::Material& material : square.materials) {
+        material.model = mesh::MaterialModel::MetallicRoughness;
+        material.metallic = 0.0f;
+        material.roughness = 0.5f;
+    }
+    const Camera camera{.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = 28.072487f};
+    LitScene lit(precompute(square, {.tolerance = 0.1f, .view = View{.camera = camera}}));
+    lit.light(sunny());
+    const Picture picture = draw(lit, {.width = 8, .height = 8, .samples_per_axis = 1});
+    const glm::vec3* row = picture.pixels.data() + 32;
+    EXPECT_GT(row[2].r, 1.5f * row[2].g);
+    EXPECT_GT(row[4].g, 1.5f * row[4].r);
+    EXPECT_FALSE(is_other_eye(lit.scene(), {}));
+    EXPECT_TRUE(is_other_eye(lit.scene(), {.camera_place = CameraPlace{}}));
 }
 
 } // namespace

@@ -56,7 +56,7 @@ protected:
                 environment.at(cubemap::Face::PositiveY, x, y) = glm::vec3(0.05f, 0.05f, 0.2f);
         cubemap::save_environment(folder_ / "env.exr", environment);
         viewport_ = panel_layout(Width, Height).scene;
-        camera_ = camera_on_all(mesh, viewport_);
+        camera_ = camera_on_all(unclustered_scene(mesh), viewport_);
     }
     void TearDown() override {
         if (!folder_.empty())

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <string>
 
+#include <gmock/gmock.h>
+
 #include "tests/app/command.h"
 #include "tests/app/formats.h"
 #include "tests/app/small_files.h"
@@ -31,6 +33,14 @@ TEST_F(Glossy, HighlightsOnVerticesAreVerified) {
     EXPECT_LT(succeed({"verify", "s.prt", "white.hdr", "--json"}).json()["relative_l2"], 0.02);
     succeed({"relight", "s.prt", "white.hdr", "-o", "lit.png", "--size", "32x24"});
     EXPECT_EQ(png_size(read("lit.png")), (Size{32, 24}));
+    const auto warnings = [&](const std::string& camera) {
+        return succeed({"relight", "s.prt", "white.hdr", "-o", "lit.png", "--size", "8x6", camera,
+                        "--json"})
+            .json()["warnings"]
+            .dump();
+    };
+    EXPECT_THAT(warnings("--camera=100,10"), testing::HasSubstr("stands elsewhere"));
+    EXPECT_THAT(warnings("--camera=24,20"), testing::Not(testing::HasSubstr("elsewhere")));
     succeed({"relight", "s.prt", "white.hdr", "-o", "lit.npy"});
     make("d.prt", {"--material", "lambert:albedo=0.3"});
     succeed({"relight", "d.prt", "white.hdr", "-o", "dull.npy"});

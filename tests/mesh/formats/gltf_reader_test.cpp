@@ -470,5 +470,34 @@ TEST_F(GltfTest, DeepFilesAreRefusedOrRead) {
     EXPECT_EQ(gltf(model.embedded()).num_vertices(), 4u);
 }
 
+TEST_F(GltfTest, TheFirstPerspectiveCameraIsKept) {
+    Model model = square();
+    model.json["cameras"] = {
+        {{"type", "orthographic"},
+         {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"zfar", 9}, {"znear", 1}}}},
+        {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
+    const double h = std::sqrt(0.5);
+    model.json["nodes"] = {{{"mesh", 0}, {"children", {1, 2}}},
+                           {{"camera", 0}, {"translation", {1, 1, 1}}},
+                           // Turned by 90 degrees about +Y: it looks along -X.
+                           {{"camera", 1},
+                            {"translation", {7, 2, 0}},
+                            {"rotation", {0, h, 0, h}},
+                            {"scale", {3, 3, 3}}}};
+    model.json["scenes"] = {{{"nodes", {0}}}};
+    std::optional<FileCamera> camera;
+    static_cast<void>(
+        load(write("a.gltf", model.embedded()), NormalSource::File, nullptr, &camera));
+    ASSERT_TRUE(camera);
+    EXPECT_LT(glm::distance(camera->eye, {7, 2, 0}), 1e-5f);
+    // As far ahead as the middle of the square, at x = 0.5, is.
+    EXPECT_LT(glm::distance(camera->target, {0.5f, 2, 0}), 1e-5f);
+    EXPECT_NEAR(camera->fov_degrees, 28.64789f, 1e-4f);
+    model.json["cameras"][1]["perspective"]["yfov"] = 0;
+    static_cast<void>(
+        load(write("b.gltf", model.embedded()), NormalSource::File, nullptr, &camera));
+    EXPECT_FALSE(camera);
+}
+
 } // namespace
 } // namespace relumine::mesh

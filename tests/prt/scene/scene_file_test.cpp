@@ -333,6 +333,7 @@ Scene glossy_scene() {
     set_surfaces(scene.transfer, scene.receivers);
     scene.settings.glossy_tolerance = 0.3f;
     scene.settings.view = Camera{.eye = {0.0f, 1.0f, 4.0f}};
+    scene.settings.camera = Camera{.eye = {1.0f, 2.0f, 3.0f}, .fov_degrees = 50.0f};
     return scene;
 }
 
@@ -341,7 +342,9 @@ TEST_F(SceneFileTest, RefusesValuesThatCannotBeLitOrDrawn) {
     constexpr float Infinity = std::numeric_limits<float>::infinity();
     const Scene good = glossy_scene();
     EXPECT_NO_THROW(save_scene(file_, good));
-    EXPECT_NO_THROW(static_cast<void>(load_scene(file_)));
+    const Scene loaded = load_scene(file_);
+    EXPECT_EQ(loaded.settings.view, good.settings.view);
+    EXPECT_EQ(loaded.settings.camera, good.settings.camera);
     const auto refused = [&](const std::string& reason, const std::function<void(Scene&)>& how) {
         Scene scene = good;
         how(scene);
@@ -373,6 +376,7 @@ TEST_F(SceneFileTest, RefusesValuesThatCannotBeLitOrDrawn) {
     for (const float value : {NaN, Infinity, 1e19f, -1.9e18f}) {
         refused("coordinates", [&](Scene& s) { s.mesh.positions[7].z = value; });
         refused("coordinates within", [&](Scene& s) { s.settings.view->eye.x = value; });
+        refused("coordinates within", [&](Scene& s) { s.settings.camera->eye.x = value; });
     }
     refused("coordinates within", [](Scene& s) { s.settings.bias = 1e19f; });
     refused("a bias >= 0", [](Scene& s) { s.settings.bias = -1.0f; });

@@ -52,5 +52,20 @@ TEST(SuitableExposure, OfNothingIsZero) {
     EXPECT_EQ(suitable_exposure_ev(std::vector(3, glm::vec3(1e38f))), -100.0f);
 }
 
+TEST(Exposure, LeavesAPhotographBehindAsItIs) {
+    const std::vector<glm::vec3> dark(100, glm::vec3(0.1f)), bright(100, glm::vec3(1.0f));
+    const float alone = suitable_exposure_ev(dark);
+    EXPECT_NEAR(alone, 3.0f, 1e-6f);
+    // A photograph that is no brighter changes nothing; a bright one must not burn out.
+    EXPECT_EQ(suitable_exposure_ev(dark, {}, dark), alone);
+    EXPECT_NEAR(suitable_exposure_ev(dark, {}, bright), std::log2(1.4f), 0.005f);
+    // Nor is it left in the dark by something white.
+    EXPECT_NEAR(suitable_exposure_ev(bright, {}, dark), suitable_exposure_ev(bright) + 0.6f, 0.01f);
+    // But what is lit stays visible.
+    const std::vector<glm::vec3> black(100, glm::vec3(0.001f));
+    EXPECT_NEAR(suitable_exposure_ev(black, {}, bright), suitable_exposure_ev(black) - 3.0f, 0.01f);
+    EXPECT_EQ(suitable_exposure_ev({}, {}, bright), suitable_exposure_ev(bright));
+}
+
 } // namespace
 } // namespace relumine::relight

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -113,6 +115,55 @@ TEST(Framing, LooksAtWhatStandsOnTheGround) {
     const Camera ground = framed(scenes::floor_grid(5, 50.0f));
     EXPECT_LT(ground.target.y, ground.eye.y);
     EXPECT_GT(glm::length(ground.eye), 25.0f);
+}
+
+TEST(Framing, AGroundPlateOfTheFileDoesNotShrinkWhatStandsOnIt) {
+    const mesh::TriangleMesh sphere = scenes::icosphere(2, 1.0f, {2.0f, 1.0f, 3.0f});
+    const mesh::TriangleMesh plate =
+        scenes::box(glm::vec3(-40.0f, -0.5f, -40.0f), glm::vec3(40.0f, 0.0f, 40.0f));
+    const Camera alone = framed(sphere);
+    const Camera on_plate = framed(scenes::joined(plate, sphere));
+    EXPECT_LT(glm::distance(on_plate.eye, alone.eye),
+              0.05f * glm::distance(alone.eye, alone.target));
+    EXPECT_NEAR(subject_bounds(scenes::joined(plate, sphere)).size().x, 2.0f, 0.1f);
+    // A pedestal is part of the object.
+    const mesh::TriangleMesh pedestal =
+        scenes::box(glm::vec3(0.8f, -0.02f, 1.8f), glm::vec3(3.2f, 0.0f, 4.2f));
+    EXPECT_NEAR(subject_bounds(scenes::joined(pedestal, sphere)).size().x, 2.4f, 1e-4f);
+}
+
+/// A box whose faces look inwards, without its side at +Z if that is open.
+mesh::TriangleMesh chamber(bool is_open) {
+    mesh::TriangleMesh mesh =
+        scenes::box(glm::vec3(-2.0f, 0.0f, -2.5f), glm::vec3(2.0f, 2.8f, 2.5f));
+    std::erase_if(mesh.triangles, [&](const mesh::Triangle& triangle) {
+        return is_open && std::all_of(triangle.begin(), triangle.end(),
+                                      [&](std::uint32_t v) { return mesh.positions[v].z > 2.0f; });
+    });
+    for (mesh::Triangle& triangle : mesh.triangles)
+        std::swap(triangle[1], triangle[2]);
+    return mesh;
+}
+
+TEST(Framing, RoomsAreSeenFromInside) {
+    for (const bool is_open : {false, true}) {
+        const std::optional<Camera> camera = inside_room(chamber(is_open));
+        ASSERT_TRUE(camera) << is_open;
+        EXPECT_GT(camera->eye.y, 1.0f);
+        EXPECT_LT(camera->eye.y, 2.0f);
+        EXPECT_LT(glm::abs(camera->eye.x), 2.0f);
+        EXPECT_LT(glm::abs(camera->eye.z), 2.5f);
+        if (is_open) {
+            EXPECT_GT(camera->eye.z, 2.0f) << "its back to the open side";
+        }
+    }
+    EXPECT_FALSE(inside_room(scenes::box(glm::vec3(-2.0f), glm::vec3(2.0f))));
+    // A chest: walls with two sides.
+    EXPECT_FALSE(inside_room(scenes::joined(
+        chamber(false), scenes::box(glm::vec3(-2.1f, -0.1f, -2.6f), glm::vec3(2.1f, 2.9f, 2.6f)))));
+    EXPECT_FALSE(inside_room(scenes::icosphere(2, 1.0f, {0.0f, 1.0f, 0.0f})));
+    EXPECT_FALSE(inside_room(scenes::floor_grid(5, 50.0f)));
+    EXPECT_FALSE(inside_room({}));
 }
 
 } // namespace

@@ -90,7 +90,8 @@ TEST(ReceiverPicture, APixelIsTheMeanOfItsSamples) {
     EXPECT_EQ(cut_out.pixels[0], glm::vec3(1.5f));
     EXPECT_EQ(cut_out.pixels[1], glm::vec3(2.0f));
     // A receiver that is half transparent shows half of what is behind it.
-    const std::vector<float> opacity = {1.0f, 0.5f, 1.0f, 0.0f};
+    const std::vector<glm::vec3> opacity = {glm::vec3(1.0f), glm::vec3(0.5f), glm::vec3(1.0f),
+                                            glm::vec3(0.0f)};
     EXPECT_LT(difference(compose(layout, radiance, grey, opacity).pixels[0],
                          glm::vec3((1.0f + 1.0f + 0.25f + 0.5f + 3.0f) / 4.0f)),
               1e-6f);

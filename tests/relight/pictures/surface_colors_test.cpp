@@ -90,5 +90,46 @@ TEST(SurfaceColors, NothingWithoutTexturesOrSurfaces) {
     EXPECT_FALSE(SurfaceColors(mesh, white).has(1));
 }
 
+TEST(SurfaceColors, HighlightsStayOnTopOfTextures) {
+    mesh::TriangleMesh mesh = scenes::textured_square();
+    for (mesh::Material& material : mesh.materials) {
+        material.model = mesh::MaterialModel::MetallicRoughness;
+        material.metallic = 0.0f;
+    }
+    const prt::RayScene rays(mesh);
+    // A grey highlight over the vertices' own colour.
+    const prt::Surface shiny{.albedo = glm::vec3(0.5f),
+                             .specular = glm::vec3(0.04f),
+                             .highlight = prt::Highlight::Ggx,
+                             .roughness_or_exponent = 0.4f};
+    const std::vector<prt::Surface> surfaces(4, shiny);
+    std::vector<prt::Lobes<glm::vec3>> lobes(
+        4, {.diffuse = glm::vec3(1.0f), .specular = glm::vec3(5.0f)});
+    std::vector<glm::vec3> radiance(4, prt::reflect(shiny, lobes[0]));
+    const SurfaceColors textures(mesh, surfaces, true);
+    const PictureView view(mesh, rays,
+                           {.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = 28.072487f},
+                           {.width = 8, .height = 8, .samples_per_axis = 1});
+    const Picture picture = view.cut_out(
+        {.radiance = radiance, .surfaces = surfaces, .textures = &textures, .lobes = lobes});
+    const glm::vec3* row = picture.pixels.data() + 32;
+    for (std::size_t x = 0; x < 8; ++x) {
+        const float low = std::min({row[x].r, row[x].g, row[x].b});
+        EXPECT_NEAR(low, 0.04f * 5.0f, 0.02f) << "the highlight alone where a colour is black";
+    }
+    EXPECT_GT(row[2].r, row[2].g + 0.5f);
+    EXPECT_GT(row[4].g, row[4].b + 0.5f);
+
+    // What the lobes do not tell counts as diffuse, and nothing is lost.
+    radiance.assign(4, glm::vec3(2.0f, 0.9f, 3.0f));
+    prt::Surface metal = shiny;
+    metal.albedo = glm::vec3(0.0f);
+    for (const prt::Surface& surface : {shiny, metal}) {
+        std::vector<prt::Lobes<glm::vec3>> all = lobes;
+        add_rest(radiance, std::vector(4, surface), all);
+        EXPECT_LT(glm::distance(prt::reflect(surface, all[1]), radiance[1]), 1e-5f);
+    }
+}
+
 } // namespace
 } // namespace relumine::relight
