@@ -349,4 +349,16 @@ Mesh simplified(Mesh mesh, std::size_t num_vertices) {
     return mesh;
 }
 
+void stand_on_floor(Mesh& mesh) {
+    constexpr float WiderThanSubject = 1.5f;
+    if (mesh.floor_vertices != 0 || relight::inside_room(mesh.geometry))
+        return;
+    const auto width = [](const mesh::Bounds& box) {
+        return std::max(box.max.x - box.min.x, box.max.z - box.min.z);
+    };
+    if (width(mesh::bounds(mesh.geometry)) <=
+        WiderThanSubject * width(relight::subject_bounds(mesh.geometry)))
+        add_floor(mesh, {.floor_vertices = AutomaticFloor});
+}
+
 } // namespace relumine

@@ -12,7 +12,7 @@ namespace relumine::app {
 
 void SceneOptions::add_to(Command& command) {
     command.add(row("SCENE", path,
-                    mesh_too ? "scene file from `relumine precompute`; with --lights a mesh, too"
+                    mesh_too ? "scene file from `relumine precompute`, or a mesh"
                              : "scene file from `relumine precompute`",
                     {.file = true, .required = true}));
     command.add(row("--clusters-only", clusters_only,
@@ -64,8 +64,12 @@ LitScene lit_scene(const SceneOptions& options, prt::Team* team) {
         recolour(part.scene, options);
         return LitScene(std::move(part), light);
     }
-    Scene scene = load(options);
+    return lit_scene(load(options), options);
+}
+
+LitScene lit_scene(Scene scene, const SceneOptions& options) {
     recolour(scene, options);
+    const LightOptions light{.clusters_only = options.clusters_only, .path = options.path};
     return naming_scene(options.path, [&] { return LitScene(std::move(scene), light); });
 }
 

@@ -25,4 +25,7 @@ struct SceneOptions {
 /// UsageError for their wrong text.
 [[nodiscard]] LitScene lit_scene(const SceneOptions& options, prt::Team* team = nullptr);
 
+/// The same for a scene that is there; its path is for messages.
+[[nodiscard]] LitScene lit_scene(Scene scene, const SceneOptions& options);
+
 } // namespace relumine::app

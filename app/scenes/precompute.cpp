@@ -18,9 +18,11 @@
 #include "app/options/plan_option.h"
 #include "app/options/receiver_options.h"
 #include "app/options/refine_options.h"
+#include "app/scenes/first_scene.h"
 #include "mesh/floor.h"
 #include "mesh/half_edge/winding.h"
 #include "relumine/precompute_table.h"
+#include "relumine/scene_cache.h"
 
 namespace relumine::app {
 
@@ -402,6 +404,31 @@ void add_work_options(Command& command, PrecomputeArguments& options) {
 }
 
 } // namespace
+
+Scene first_scene(const std::string& path, bool is_cached, Session& session) {
+    Stopwatch watch;
+    PrecomputeArguments options;
+    options.mesh = path;
+    Mesh mesh = made_mesh(options, session);
+    stand_on_floor(mesh);
+    const std::optional<SceneCache> cache = is_cached ? user_cache() : std::nullopt;
+    const PrecomputeWork work = precompute_work(session);
+    PrecomputeReport facts;
+    try {
+        Scene scene = cache ? cached_precompute(*cache, std::move(mesh), {}, work, &facts)
+                            : precompute(std::move(mesh), {}, work, &facts);
+        session.end_progress();
+        if (facts.num_vertices != 0) {
+            report_refinement(facts, session);
+            session.say(fmt::format("{}: {} vertices -> {} clusters in {:.1f} s{}", path,
+                                    facts.num_vertices, facts.clusters.num_clusters, watch.total(),
+                                    cache ? ", kept in " + cache->folder.string() : ""));
+        }
+        return scene;
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
+    }
+}
 
 void add_precompute(Command& program, Session& session) {
     Command command =

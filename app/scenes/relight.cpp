@@ -18,7 +18,9 @@
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/plan_option.h"
+#include "app/scenes/first_scene.h"
 #include "lights/light_file.h"
+#include "mesh/load.h"
 #include "prt/team.h"
 #include "relumine/lit_part.h"
 
@@ -34,6 +36,7 @@ struct RelightArguments {
     OutputOptions output;
     BounceOption bounces;
     bool only_bounces = false;
+    bool no_cache = false;
     /// count is 0 until --part is given.
     prt::Part part = {.index = 0, .count = 0};
 };
@@ -107,12 +110,13 @@ std::string name_of(const RelightArguments& options, const LitScene& lit, std::s
 /// whose first one writes the output.
 void light_scene(const RelightArguments& options, Session& session) {
     Stopwatch watch;
-    LitScene lit = lit_scene(options.scene, session.team);
+    const bool is_first_picture =
+        !options.environment.path.empty() && mesh::has_mesh_extension(options.scene.path);
+    LitScene lit =
+        is_first_picture
+            ? lit_scene(first_scene(options.scene.path, !options.no_cache, session), options.scene)
+            : lit_scene(options.scene, session.team);
     const Scene& scene = lit.scene();
-    if (!options.environment.path.empty() && !has_clusters(scene))
-        throw std::runtime_error(
-            fmt::format("{}: expected a scene file (`relumine precompute`) or --lights, got a mesh",
-                        options.scene.path));
     options.output.check_fits(scene);
     const double seconds_load_scene = watch.lap();
     session.poll();
@@ -229,6 +233,9 @@ void add_relight(Command& program, Session& session) {
                     "light part I of N of the receivers, from 1/N to N/N; -o names the part, and "
                     "`relumine join` makes the numbers (.npy) of all parts",
                     {.type = "I/N"}));
+    command.add(row("--no-cache", options->no_cache,
+                    "SCENE is a mesh: precompute it, whether it was before or not, and do not keep "
+                    "the scene"));
     options->bounces.add_to(command);
     command.add(row("--only-bounces", options->only_bounces,
                     "what surfaces add to the direct light, alone"));

@@ -340,9 +340,41 @@ TEST_F(Relight, InputsThatCannotBeReadAreNamed) {
               5.0);
 }
 
+TEST_F(Relight, AMeshIsPrecomputedOnceAndKept) {
+    succeed({"generate", "colonnade", "-o", ".", "--vertices", "1500", "-q"});
+    const auto first_picture = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = {"relight", "colonnade.ply", "white.hdr", "-o",
+                                              "lit.png"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return succeed(arguments).out.find("kept in cache") != std::string::npos;
+    };
+    const auto num_kept = [&] {
+        return fs::exists(folder() / "cache")
+                   ? std::distance(fs::directory_iterator(folder() / "cache"),
+                                   fs::directory_iterator())
+                   : 0;
+    };
+    EXPECT_FALSE(first_picture({"--no-cache"}));
+    EXPECT_EQ(num_kept(), 0);
+    EXPECT_TRUE(first_picture({}));
+    EXPECT_EQ(num_kept(), 1);
+    const std::string picture = read("lit.png");
+    EXPECT_FALSE(first_picture({}));
+    EXPECT_EQ(read("lit.png"), picture);
+    // It is the scene that the options of precompute make by themselves, with a floor.
+    succeed({"precompute", "colonnade.ply", "--floor", "-o", "own.prt", "-q"});
+    succeed({"relight", "own.prt", "white.hdr", "-o", "own.png", "-q"});
+    EXPECT_EQ(read("own.png"), picture);
+    // Another mesh of the same name is another scene.
+    succeed({"generate", "knot", "-o", ".", "--vertices", "1500", "-q"});
+    fs::rename(folder() / "knot.ply", folder() / "colonnade.ply");
+    EXPECT_TRUE(first_picture({}));
+    EXPECT_EQ(num_kept(), 2);
+    write("broken.ply", "ply\nformat ascii 1.0\n");
+    fail({"relight", "broken.ply", "white.hdr", "-o", "lit.png"}, {"broken.ply"});
+}
+
 TEST_F(Relight, AnotherKindOfFileIsToldApart) {
-    fail({"relight", "mesh.obj", "white.hdr", "-o", "new.npy"},
-         {"mesh.obj", "expected a scene file"});
     fail({"relight", "white.hdr", "scene.prt", "-o", "new.npy"},
          {"white.hdr", "expected a .prt scene"});
     fail({"relight", "scene.prt", "mesh.obj", "-o", "new.npy"}, {"mesh.obj", "expected"});

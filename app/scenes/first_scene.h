@@ -1,0 +1,18 @@
+// A mesh that is lit without a precompute of its own.
+#pragma once
+
+#include <string>
+
+#include "app/session.h"
+#include "relumine/scene.h"
+
+namespace relumine::app {
+
+/// Precomputes a mesh on a floor, with the options that `relumine precompute` has by itself, or
+/// takes the scene from the user's cache. Says what took long. `is_cached`: whether the cache is
+/// asked.
+///
+/// Throws:  as load_mesh() and precompute().
+[[nodiscard]] Scene first_scene(const std::string& path, bool is_cached, Session& session);
+
+} // namespace relumine::app
