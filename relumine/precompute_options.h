@@ -86,8 +86,8 @@ enum class Warning {
 
 /// PrecomputeOptions::tolerance where refined_by_itself() added vertices: they stand where shadows
 /// are, so clusters have to be finer for the same root mean square. Measured: with this one the
-/// light of the vertices is right to 0.3 %, and what they interpolate to 1 % to 2 %.
-inline constexpr float ToleranceOfRefined = 0.02f;
+/// light of the vertices is right to half a percent, and what they interpolate to 1 % to 2 %.
+inline constexpr float ToleranceOfRefined = 0.025f;
 
 struct PrecomputeOptions {
     /// RMS error of the transfer allowed within a cluster, 1/sr; smaller is finer. Empty: that of

@@ -25,14 +25,14 @@ struct VerifyArguments {
 };
 
 /// One sentence that says what a picture has to expect.
-std::string headline(const Verification& check) {
+std::string headline(const Verification& check, std::string_view receiver) {
     const WorstError worst = worst_of(check);
     const bool is_coarse = check.surface && worst.place != VerifiedPlaces[0] &&
                            worst.relative_l2 > 2.0 * check.error.relative_l2;
     constexpr double Large = 0.05;
     return fmt::format(
         "the light is off by {:.3g} % where it is worst: {}{}", 100.0 * worst.relative_l2,
-        worst.place,
+        check.surface ? std::string(worst.place) : fmt::format("at each {}", receiver),
         worst.relative_l2 <= Large ? ""
         : is_coarse ? "; the triangles are too large for what the vertices see, --refine adds more"
                     : "; a smaller --tolerance makes it better");
@@ -81,7 +81,7 @@ void run(const VerifyArguments& options, Session& session) {
 
     const glm::vec3& worst = lit.scene().receivers.positions[error.worst_receiver];
     const std::string name(prt::kind_of(lit.scene().layout).one);
-    session.say(headline(check));
+    session.say(headline(check, name));
     session.say(
         fmt::format("{} receivers, R = {}, exact integration of the file's pixels in {:.1f} s",
                     check.receivers.size(), environment_of(lit).resolution, seconds));

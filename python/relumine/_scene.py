@@ -89,7 +89,7 @@ def precompute(
     """Finds how much light from every direction reaches every receiver: once per mesh.
 
     mesh       a Mesh, or an array of vertices (N, 3) with `triangles` (M, 3)
-    tolerance  RMS error of the transfer allowed within a cluster, in 1/sr (0.0135; 0.02 where
+    tolerance  RMS error of the transfer allowed within a cluster, in 1/sr (0.0135; 0.025 where
                vertices were added)
     epsilon    the paper's form of it; excludes `tolerance`
     receivers  "vertices"; "pixels:WxH[:N]", what a fixed camera sees; "texels:WxH", a lightmap

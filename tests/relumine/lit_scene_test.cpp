@@ -20,7 +20,8 @@ namespace relumine {
 namespace {
 
 const Scene& boulder_scene() {
-    static const Scene Boulder = precompute(scenes::boulder(), {.tolerance = scenes::Tolerance});
+    static const Scene Boulder =
+        precompute(scenes::boulder(), {.tolerance = scenes::Tolerance, .no_refine = true});
     return Boulder;
 }
 

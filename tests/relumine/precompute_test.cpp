@@ -20,7 +20,7 @@ class PrecomputeFile : public scenes::InFolder {};
 TEST(Precompute, IsItsStepsInOneCall) {
     const mesh::TriangleMesh mesh = boulder();
     PrecomputeReport report;
-    const Scene scene = precompute(mesh, {.tolerance = Tolerance}, {}, &report);
+    const Scene scene = precompute(mesh, {.tolerance = Tolerance, .no_refine = true}, {}, &report);
 
     const prt::RayScene rays(mesh);
     const float bias = prt::automatic_bias(mesh);
@@ -120,6 +120,7 @@ TEST(Precompute, HighlightsNeedAView) {
     EXPECT_FALSE(diffuse.settings.glossy_tolerance);
 
     PrecomputeOptions seen = options;
+    seen.no_refine = true;
     seen.view = View{};
     double last = 0.0;
     std::vector<Stage> stages;
@@ -196,8 +197,10 @@ TEST_F(PrecomputeFile, IsWrittenAndItsCheckpointGoes) {
 
 TEST_F(PrecomputeFile, StoppedIsResumedToTheSameBytes) {
     const auto options = [&](const char* name) {
-        return PrecomputeOptions{
-            .tolerance = 0.02f, .output = file(name), .checkpoint_seconds = 1e-9};
+        return PrecomputeOptions{.tolerance = 0.02f,
+                                 .no_refine = true,
+                                 .output = file(name),
+                                 .checkpoint_seconds = 1e-9};
     };
     static_cast<void>(precompute(boulder(), options("whole.prt")));
 
