@@ -275,7 +275,9 @@ struct Painter::Impl {
     }
 
     /// Whether the floor shows what is behind it, in its own light.
-    bool catches(const Lighting& lighting) { return look(lighting) != FloorLook::Grey; }
+    bool catches(const Lighting& lighting) {
+        return look(lighting) != FloorLook::Grey && lighting.open_floor;
+    }
 
     glm::vec3 eye() {
         const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout);
