@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "mesh/customs.h"
 #include "mesh/floor.h"
 #include "mesh/half_edge/simplify.h"
 #include "mesh/normals.h"
@@ -164,8 +165,12 @@ Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
     Mesh mesh;
     mesh.geometry = mesh::load(path, options.normals, &mesh.source_hash);
     mesh.source = path.string();
-    if (options.crease)
-        mesh.geometry = mesh::with_creases(mesh.geometry, *options.crease);
+    const std::optional<float> crease =
+        options.crease || options.normals == mesh::NormalSource::Smooth
+            ? options.crease
+            : mesh::customary_crease(path);
+    if (crease)
+        mesh.geometry = mesh::with_creases(mesh.geometry, *crease);
     mesh::turn_up(mesh.geometry, options.up.value_or(mesh::customary_up(path)));
     if (options.floor_vertices) {
         mesh::append_floor(mesh.geometry, *options.floor_vertices, options.floor_scale);
