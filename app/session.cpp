@@ -55,6 +55,8 @@ struct Shared {
     std::atomic<int> num_patient = 0;
     std::atomic<bool> is_bar_open = false;
     std::mutex mutex;
+    /// True once the main thread has said how the work ended after a signal.
+    bool is_said = false;
     std::string cancelled_message = "cancelled; nothing was written";
 };
 Shared& shared() {
@@ -67,6 +69,8 @@ Shared& shared() {
     std::string text = shared().is_bar_open ? "\r\033[K" : "";
     // Nobody holds the mutex for long.
     const std::scoped_lock lock(shared().mutex);
+    if (shared().is_said)
+        ::_exit(1);
     text += fmt::format("relumine: {}\n", shared().cancelled_message);
     static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
     ::_exit(1);
@@ -207,6 +211,8 @@ void Session::warn(const std::string& message) const {
 
 void Session::complain(const std::string& message) const {
     end_progress();
+    const std::scoped_lock lock(shared().mutex);
+    shared().is_said = stop_source_.stop_requested();
     // Not fmt::print, which throws where stderr cannot be written.
     std::fputs(fmt::format("relumine: {}\n", one_line(message)).c_str(), stderr);
 }

@@ -3,6 +3,7 @@
 #include "files/nearest_name.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <vector>
 
@@ -41,12 +42,54 @@ std::size_t distance(std::string_view a, std::string_view b) {
     return last.back();
 }
 
+/// Words of other programs, and what they are called here.
+constexpr std::array<std::array<std::string_view, 2>, 26> Synonyms = {{
+    {"rotation", "rotate"},
+    {"azimuth", "rotate"},
+    {"yaw", "rotate"},
+    {"angle", "rotate"},
+    {"pitch", "tilt"},
+    {"brightness", "exposure"},
+    {"ev", "exposure"},
+    {"tonemapping", "tone-map"},
+    {"resolution", "size"},
+    {"width", "size"},
+    {"height", "size"},
+    {"bg", "background"},
+    {"alpha", "transparent"},
+    {"ground", "floor"},
+    {"jobs", "threads"},
+    {"diffuse", "albedo"},
+    {"color", "albedo"},
+    {"projection", "layout"},
+    {"equirectangular", "latlong"},
+    {"equirect", "latlong"},
+    {"panorama", "latlong"},
+    {"spherical", "latlong"},
+    {"lightprobe", "angular"},
+    {"probe", "angular"},
+    {"chrome", "mirrorball"},
+    {"cubemap", "cube"},
+}};
+
+/// Returns the name whose synonym is a text of these letters. Empty if there is none.
+std::string_view named_otherwise(const std::string& letters,
+                                 std::span<const std::string_view> names) {
+    for (const auto& [other, own] : Synonyms)
+        for (const std::string_view name : names)
+            if (letters == other && letters_of(name) == own)
+                return name;
+    return {};
+}
+
 } // namespace
 
 std::string_view nearest_name(std::string_view text, std::span<const std::string_view> names) {
     const std::string letters = letters_of(text);
     if (letters.empty() || letters.size() > MaxNameLength)
         return {};
+    if (const std::string_view name = named_otherwise(letters, names); !name.empty())
+        return name;
     std::string_view nearest;
     // A third of the letters may be wrong, in short names one.
     std::size_t least = std::max<std::size_t>(1, letters.size() / 3) + 1;

@@ -9,7 +9,8 @@ namespace relumine::files {
 
 /// Returns the name that differs least from `text`: letters left out, added, changed, or swapped
 /// with their neighbour. Capital letters and the dashes in front do not count. A name that begins
-/// with `text` is near, too. Empty where no name is near.
+/// with `text` is near, too, and so is one that other programs call `text`. Empty where no name is
+/// near.
 ///
 /// Cost:    the product of the lengths, for each name.
 [[nodiscard]] std::string_view nearest_name(std::string_view text,

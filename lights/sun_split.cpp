@@ -26,6 +26,15 @@ std::optional<SunSplit<Map>> split(const Map& map) {
 
 } // namespace
 
+std::filesystem::path sun_file_of(std::filesystem::path map) {
+    return map.replace_extension(".sun.json");
+}
+
+bool has_sun_file(const std::filesystem::path& map) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(sun_file_of(map), error);
+}
+
 DistantLight sun_light(const cubemap::Sun& sun) {
     return {
         .direction = sun.direction, .irradiance = sun.irradiance, .solid_angle = sun.solid_angle};

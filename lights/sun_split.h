@@ -1,6 +1,7 @@
 // Splits the sun off an environment: one light, and the map without the sun.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 
 #include "cubemap/cube_map.h"
@@ -9,6 +10,13 @@
 #include "lights/light_list.h"
 
 namespace relumine::lights {
+
+/// Returns the name of the sun's light list beside a map that it was split off: "sky.sun.json" for
+/// "sky.exr".
+[[nodiscard]] std::filesystem::path sun_file_of(std::filesystem::path map);
+
+/// Returns true if the sun was split off the map: its light list lies beside it.
+[[nodiscard]] bool has_sun_file(const std::filesystem::path& map);
 
 /// Returns the sun as a light: a disc of its solid angle and of uniform radiance. Light and map
 /// together light a surface like the original.

@@ -24,8 +24,9 @@ namespace relumine::mesh {
 /// have several uvs, or none, has corner_uvs instead.
 ///
 /// Materials, groups and textures come with OBJ and glTF (docs/materials.md). A missing material
-/// library or image does not stop the load; TriangleMesh::missing has its name. A broken one stops
-/// it.
+/// library or image does not stop the load; TriangleMesh::missing has its name. A broken one
+/// does not stop it either, nor a material that cannot be read: TriangleMesh::warnings says so, and
+/// the surface is grey or without its texture.
 ///
 /// `hash` receives the xxHash64 of the file's bytes, `camera` the first perspective camera of a
 /// glTF scene, if there is one.

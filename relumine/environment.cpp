@@ -13,6 +13,7 @@
 #include "cubemap/image/convention.h"
 #include "cubemap/resample/resample.h"
 #include "files/joined.h"
+#include "lights/sun_split.h"
 
 namespace relumine {
 
@@ -219,6 +220,8 @@ Environment load_environment(const std::filesystem::path& path, const Environmen
         std::make_shared<const cubemap::EnvironmentImage>(load_environment_image(path, options));
     const double seconds_load = std::chrono::duration<double>(Clock::now() - start).count();
     Environment result = environment_of(image, options);
+    if (lights::has_sun_file(path)) // what is left may well be darker above
+        result.warnings = warnings_about(*image, 0.0);
     result.seconds_load = seconds_load;
     result.path = path;
     return result;

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "mesh/customs.h"
 #include "mesh/floor.h"
 #include "mesh/half_edge/simplify.h"
 #include "mesh/normals.h"
@@ -167,8 +168,12 @@ Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
     std::optional<mesh::FileCamera> camera;
     mesh.geometry = mesh::load(path, options.normals, &mesh.source_hash, &camera);
     mesh.source = path.string();
-    if (options.crease)
-        mesh.geometry = mesh::with_creases(mesh.geometry, *options.crease);
+    const std::optional<float> crease =
+        options.crease || options.normals == mesh::NormalSource::Smooth
+            ? options.crease
+            : mesh::customary_crease(path);
+    if (crease)
+        mesh.geometry = mesh::with_creases(mesh.geometry, *crease);
     const mesh::UpAxis up = options.up.value_or(mesh::customary_up(path));
     mesh::turn_up(mesh.geometry, up);
     if (camera) {

@@ -99,6 +99,23 @@ std::string pattern_of(const std::vector<std::string>& names) {
     return (first.parent_path() / fmt::format("{}*{}", stem, first.extension().string())).string();
 }
 
+/// The name of a file that stands without quotes: some words in a row, with blanks between them.
+/// Empty where no such file exists.
+std::string file_of_words(const std::vector<std::string>& words) {
+    // Longer lists of files are no name.
+    constexpr std::size_t MostWords = 64;
+    for (std::size_t first = 0; first < words.size() && words.size() <= MostWords; ++first) {
+        std::string name = words[first];
+        for (std::size_t next = first + 1; next < words.size(); ++next) {
+            name += " " + words[next];
+            std::error_code error;
+            if (std::filesystem::is_regular_file(name, error))
+                return name;
+        }
+    }
+    return {};
+}
+
 /// The option of CLI11 with all that the row says. The row must stay where it is.
 CLI::Option* add_value(CLI::App& app, const OptionRow& row) {
     const auto read = [&row, &app](const CLI::results_t& texts) {
@@ -138,6 +155,10 @@ std::string surplus(const CLI::App& command, const std::vector<std::string>& res
         }
     given.insert(given.end(), rest.begin(), rest.end());
     const std::string name = last == nullptr ? full_name(command) : last->get_name(true);
+    if (const std::string file = file_of_words(given); !file.empty())
+        return fmt::format("{}: expected one name, got its words; put a name with blanks in "
+                           "quotes: '{}'",
+                           name, file);
     // The first arguments may be others: SCENE.prt before the frames.
     for (auto start = given.begin(); given.end() - start > static_cast<std::ptrdiff_t>(rest.size());
          ++start) {

@@ -14,6 +14,7 @@
 #include "cubemap/image/convention.h"
 #include "cubemap/image/image_layout.h"
 #include "cubemap/resample/convert.h"
+#include "lights/sun_split.h"
 
 namespace relumine::app {
 
@@ -126,7 +127,7 @@ std::unique_ptr<SunFile> checked_outputs(const ConvertArguments& options) {
         check_output(path.string(), inputs);
     std::unique_ptr<SunFile> sun_file;
     if (options.split_sun) {
-        check_output(SunFile::path_beside(options.output).string(), inputs);
+        check_output(lights::sun_file_of(options.output).string(), inputs);
         sun_file = std::make_unique<SunFile>(options.output);
     }
     return sun_file;

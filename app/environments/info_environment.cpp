@@ -18,6 +18,7 @@
 #include "cubemap/doctor/upside_down.h"
 #include "cubemap/image/environment.h"
 #include "files/joined.h"
+#include "lights/sun_split.h"
 #include "relight/pictures/environment_picture.h"
 
 namespace relumine::app {
@@ -32,6 +33,8 @@ struct Findings {
     cubemap::SunSearch search;
     std::optional<cubemap::ClippedSun> clipped;
     std::vector<cubemap::SeamFault> faults;
+    /// The sun was split off the map; what is left may be darker above.
+    bool has_sun_file = false;
 };
 
 std::string direction_text(const glm::dvec3& w) {
@@ -96,8 +99,13 @@ void say_light(const Findings& found, const Session& session) {
         sun.irradiance.r, sun.irradiance.g, sun.irradiance.b, 100.0 * sun.share_of_power));
 }
 
+std::optional<std::string> upside_down(const Findings& found) {
+    return found.has_sun_file ? std::nullopt
+                              : cubemap::upside_down(found.statistics.light_from_below);
+}
+
 void say_doubts(const Findings& found, const Session& session) {
-    if (const auto doubt = cubemap::upside_down(found.statistics.light_from_below))
+    if (const auto doubt = upside_down(found))
         session.say(fmt::format("suspect             {}", *doubt));
     if (found.clipped)
         session.say(
@@ -136,7 +144,7 @@ Report report(const cubemap::EnvironmentImage& image, const Findings& found) {
                      {"brightest_direction", s.brightest_direction},
                      {"irradiance", irradiance},
                      {"light_from_below", s.light_from_below},
-                     {"upside_down", cubemap::upside_down(s.light_from_below).has_value()},
+                     {"upside_down", upside_down(found).has_value()},
                      {"pixel_diameter_degrees", found.search.pixel_diameter_degrees},
                      {"num_nan", image.bad_pixels.num_nan},
                      {"num_infinite", image.bad_pixels.num_infinite},
@@ -180,7 +188,8 @@ void describe_environment(const EnvironmentInfoOptions& options, const Session& 
     Findings found{.statistics = cubemap::statistics(image),
                    .search = cubemap::find_sun(image),
                    .clipped = {},
-                   .faults = cubemap::seam_faults(image)};
+                   .faults = cubemap::seam_faults(image),
+                   .has_sun_file = lights::has_sun_file(options.path)};
     found.clipped = cubemap::clipped_sun(image, found.search, found.statistics);
     session.poll();
     if (!options.picture.empty()) {

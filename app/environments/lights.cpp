@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "app/counted.h"
 #include "app/options/environment_options.h"
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
@@ -97,13 +98,21 @@ cubemap::EnvironmentImage load_lat_long(const EnvironmentOptions& options, Sessi
     return lights::lat_long_of(map);
 }
 
+/// Lights are chosen and judged on plain white surfaces: what arrives, whatever is reflected of it.
+Scene without_materials(Scene scene) {
+    scene.receivers.surfaces.clear();
+    scene.transfer.glossy.reset();
+    scene.bounces.reset();
+    prt::set_surfaces(scene.transfer, scene.receivers);
+    return scene;
+}
+
 /// A scene under the environment, for what depends on both.
 struct Lit {
     LitScene scene;
 
     Lit(const std::string& path, const cubemap::CubeMap& environment)
-        : scene(lit_scene({.path = path})) {
-        require_diffuse(scene.scene(), path);
+        : scene(without_materials(load_scene(path)), {.path = path}) {
         scene.light(environment);
     }
 
@@ -133,7 +142,7 @@ lights::Placement place(const LightsArguments& options, const cubemap::Environme
             .lights = relight::transfer_lights(
                 lit->scene.relighter(), options.number,
                 {.stop = session.stop(),
-                 .on_progress = session.progress(fmt::format("{} lights", options.number))}),
+                 .on_progress = session.progress(counted(options.number, "light"))}),
             .regions = {}};
         session.end_progress();
         return result;
@@ -180,8 +189,9 @@ Report describe(const LightsArguments& options, const cubemap::EnvironmentImage&
     const auto [dimmest, brightest] = std::minmax_element(shares.begin(), shares.end());
     const double all = lights::luminance(power);
     const double scale = all > 0.0 ? 1.0 / all : 0.0;
-    session.say(fmt::format("{} lights by {} from {} x {} pixels in {:.1f} ms", list.size(),
-                            options.method, map.width, map.height, 1e3 * seconds_place));
+    session.say(fmt::format("{} by {} from {} x {} pixels in {:.1f} ms",
+                            counted(list.size(), "light"), options.method, map.width, map.height,
+                            1e3 * seconds_place));
     session.say(fmt::format(
         "power ({:.6g}, {:.6g}, {:.6g}), a light's share of the luminance {:.3g} to {:.3g} %",
         power.r, power.g, power.b, 100.0 * scale * *dimmest, 100.0 * scale * *brightest));
@@ -216,7 +226,7 @@ void convert_list(const LightsArguments& options, Session& session) {
     warn_of_lost_softness(options, session);
     lights::export_lights(options.path, list, format_of(options), options.export_options);
     const glm::dvec3 power = lights::total_irradiance(list.lights);
-    session.say(fmt::format("{}: {} lights of {}", options.path, list.lights.size(),
+    session.say(fmt::format("{}: {} of {}", options.path, counted(list.lights.size(), "light"),
                             options.environment.path));
     session.report({{"lights", list.lights.size()}, {"power", power}});
 }
@@ -248,8 +258,8 @@ void run(const LightsArguments& options, Session& session) {
     result.set("seconds_load", seconds_load);
     if (lit) {
         const double error = lit->error(placement.lights);
-        session.say(fmt::format("{} lights: {:.2g} % relative L2 on this asset",
-                                placement.lights.size(), 100.0 * error));
+        session.say(fmt::format("{}: {:.2g} % relative L2 on this asset",
+                                counted(placement.lights.size(), "light"), 100.0 * error));
         result.set("relative_l2", error);
     }
     session.report(result);

@@ -13,11 +13,7 @@
 
 namespace relumine::app {
 
-std::filesystem::path SunFile::path_beside(std::filesystem::path map_path) {
-    return map_path.replace_extension(".sun.json");
-}
-
-SunFile::SunFile(const std::filesystem::path& map_path) : file_(path_beside(map_path)) {}
+SunFile::SunFile(const std::filesystem::path& map_path) : file_(lights::sun_file_of(map_path)) {}
 
 SunFile::Split SunFile::split(cubemap::EnvironmentImage& image, const glm::dmat3& world_from_image,
                               const std::string& source) {

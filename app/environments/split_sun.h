@@ -16,9 +16,6 @@ namespace relumine::app {
 /// light (direction, irradiance, solid angle) in world axes.
 class SunFile {
 public:
-    /// Where it will be.
-    [[nodiscard]] static std::filesystem::path path_beside(std::filesystem::path map_path);
-
     /// Creates a temporary file beside the map's, so that an unwritable folder is found before any
     /// work is done.
     explicit SunFile(const std::filesystem::path& map_path);

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "lights/sun_split.h"
+
 namespace relumine::app {
 
 namespace {
@@ -37,7 +39,8 @@ cubemap::EnvironmentImage load_image(const EnvironmentOptions& options, const Se
 
 bool warn_about(const EnvironmentOptions& options, const cubemap::EnvironmentImage& image,
                 double light_from_below, Session& session) {
-    const std::vector<std::string> warnings = warnings_about(image, light_from_below);
+    const std::vector<std::string> warnings =
+        warnings_about(image, lights::has_sun_file(options.path) ? 0.0 : light_from_below);
     for (const std::string& warning : warnings)
         session.warn(fmt::format("{}: {}", options.path, warning));
     return !warnings.empty();

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/session.h"
+#include "files/extension.h"
 #include "mesh/load.h"
 
 namespace relumine::app {
@@ -57,6 +58,11 @@ auto naming_scene(const std::string& path, const Make& make) {
 } // namespace
 
 LitScene lit_scene(const SceneOptions& options, prt::Team* team) {
+    const std::string extension = files::extension_of(options.path);
+    if (extension == ".hdr" || extension == ".exr" || extension == ".pic")
+        throw UsageError("SCENE", fmt::format("expected a scene, got the environment {}: the scene "
+                                              "stands first, the environment behind it",
+                                              options.path));
     const LightOptions light{
         .clusters_only = options.clusters_only, .team = team, .path = options.path};
     if (team != nullptr && team->has_others()) {

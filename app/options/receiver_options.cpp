@@ -48,12 +48,4 @@ void require_vertices(const prt::Scene& scene, const std::string& path) {
                         prt::description(scene.layout)));
 }
 
-void require_diffuse(const prt::Scene& scene, const std::string& path) {
-    if (!scene.receivers.surfaces.empty())
-        throw std::runtime_error(fmt::format(
-            "{}: expected a scene without materials (highlights or albedo), as lights are chosen "
-            "for plain white surfaces",
-            path));
-}
-
 } // namespace relumine::app

@@ -22,8 +22,4 @@ namespace relumine::app {
 /// other layouts.
 void require_vertices(const prt::Scene& scene, const std::string& path);
 
-/// Throws std::runtime_error "path: expected a scene without materials ..." for receivers with
-/// surfaces.
-void require_diffuse(const prt::Scene& scene, const std::string& path);
-
 } // namespace relumine::app

@@ -13,6 +13,7 @@
 #include <glm/geometric.hpp>
 
 #include "app/commands.h"
+#include "app/counted.h"
 #include "app/file_watch.h"
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
@@ -157,8 +158,8 @@ private:
         if (!report)
             return;
         bounced_ = *report;
-        session_.say(
-            fmt::format("{} bounces in {:.1f} ms", report->num_bounces, 1e3 * report->seconds));
+        session_.say(fmt::format("{} in {:.1f} ms", counted(report->num_bounces, "bounce"),
+                                 1e3 * report->seconds));
     }
 
     void record(const std::string& name, const relight::UpdateReport& report) {
@@ -201,6 +202,14 @@ private:
         const std::uint32_t receiver = nearest_receiver(lit_.scene(), *options_.who);
         const glm::vec3& nearest = lit_.scene().receivers.positions[receiver];
         const cubemap::CubeMap map = contribution_map(lit_, {&receiver, 1});
+        const auto is_dark = [](const glm::vec3& texel) {
+            return texel == glm::vec3(0.0f);
+        };
+        if (std::all_of(map.texels.begin(), map.texels.end(), is_dark))
+            session_.warn(fmt::format(
+                "{}: black, since no light reaches {} {}: other surfaces cover it whole, or all "
+                "that it sees is dark; name a point that is in the open",
+                options_.output.path, prt::kind_of(lit_.scene().layout).one, receiver));
         save_map(options_.output.path, map, options_.output.picture.exposure_ev.value_or(0.0));
         session_.say(fmt::format("{}: what lights {} {} ({}, {}, {})", options_.output.path,
                                  prt::kind_of(lit_.scene().layout).one, receiver, nearest.x,

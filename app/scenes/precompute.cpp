@@ -19,6 +19,7 @@
 #include "app/options/receiver_options.h"
 #include "app/options/refine_options.h"
 #include "app/scenes/first_scene.h"
+#include "mesh/customs.h"
 #include "mesh/floor.h"
 #include "mesh/half_edge/winding.h"
 #include "relumine/precompute_table.h"
@@ -108,6 +109,8 @@ Scene precomputed(Mesh mesh, const PrecomputeOptions& options, const PrecomputeW
     } catch (const std::exception& error) {
         if (report.checkpoint.empty())
             throw;
+        // To free what was computed may take longer than a second signal is waited for.
+        Session::set_cancelled_message(with_checkpoint(error.what()));
         throw std::runtime_error(with_checkpoint(error.what()));
     }
 }
@@ -311,6 +314,18 @@ Mesh made_mesh(const PrecomputeArguments& options, Session& session) {
     if (turns_by_custom(options))
         session.say(fmt::format("{}: +Z is up, by the custom of .stl; --up y where it is not",
                                 options.mesh));
+    else if (!options.mesh_options.up &&
+             mesh::stands_on_z(mesh.geometry, mesh.geometry.num_vertices() -
+                                                  mesh.floor_vertices * mesh.floor_vertices))
+        session.say(fmt::format("{}: +Y is taken as up, but the mesh stands flat on its side "
+                                "towards -Z; --up z turns it if it lies on its back",
+                                options.mesh));
+    if (const auto crease = mesh::customary_crease(options.mesh);
+        crease && !options.mesh_options.crease &&
+        options.mesh_options.normals == mesh::NormalSource::File)
+        session.say(fmt::format("{}: edges over {} degrees are sharp, by the custom of .stl; "
+                                "--normals smooth where they are not",
+                                options.mesh, *crease));
     for (const std::string& warning : mesh.geometry.warnings)
         session.warn(fmt::format("{}: {}", options.mesh, warning));
     for (const std::string& name : mesh.geometry.missing)

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "app/counted.h"
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
 #include "app/options/lit_scene.h"
@@ -99,7 +100,7 @@ Given given_light(const RelightArguments& options, Session& session) {
 
 /// "sky.exr (R = 256) and 3 lights of sun.json"
 std::string name_of(const RelightArguments& options, const LitScene& lit, std::size_t num_lights) {
-    const std::string list = fmt::format("{} lights of {}", num_lights, options.lights);
+    const std::string list = fmt::format("{} of {}", counted(num_lights, "light"), options.lights);
     if (options.environment.path.empty())
         return list;
     return fmt::format("{} (R = {}){}", options.environment.path, environment_of(lit).resolution,
@@ -141,14 +142,14 @@ void light_scene(const RelightArguments& options, Session& session) {
     const double seconds_output = watch.lap();
 
     session.say(fmt::format(
-        "{}: {} receivers under {} in {:.2f} s{}: scene {:.0f}, {}bin {:.1f}, trace {:.1f} ({} "
-        "lights), relight {:.1f}{}, output {:.0f} ms{}{}",
-        options.output.path, scene.receivers.num_own(), name_of(options, lit, num_lights),
-        watch.total(),
+        "{}: {} under {} in {:.2f} s{}: scene {:.0f}, {}bin {:.1f}, trace {:.1f} ({}), relight "
+        "{:.1f}{}, output {:.0f} ms{}{}",
+        options.output.path, counted(scene.receivers.num_own(), "receiver"),
+        name_of(options, lit, num_lights), watch.total(),
         session.team != nullptr ? fmt::format(" by {} processes", session.team->part().count) : "",
         1e3 * seconds_load_scene, given.text, 1e3 * times.seconds_bin, 1e3 * times.seconds_trace,
-        times.num_sharp_lights, 1e3 * times.seconds_relight, text_of(bounces), 1e3 * seconds_output,
-        options.scene.clusters_only ? ", through the clusters" : "",
+        counted(times.num_sharp_lights, "light"), 1e3 * times.seconds_relight, text_of(bounces),
+        1e3 * seconds_output, options.scene.clusters_only ? ", through the clusters" : "",
         options.output.exposure_text(painter)));
     Report report = {{"receivers", scene.receivers.num_own()},
                      {"clusters", scene.transfer.num_clusters()},

@@ -145,12 +145,28 @@ void fix_bad_pixels(EnvironmentImage& image) {
 /// In a path of six files, `{face}` stands for px, nx, ...
 constexpr std::string_view FacePlace = "{face}";
 
+/// Says what a file is that is no environment.
+std::string_view kind_of_other(const std::filesystem::path& path,
+                               std::span<const std::byte> bytes) {
+    const std::string_view head(reinterpret_cast<const char*>(bytes.data()),
+                                std::min<std::size_t>(bytes.size(), 12));
+    const std::string extension = files::extension_of(path);
+    const bool is_webp = head.starts_with("RIFF") && head.ends_with("WEBP");
+    if (bytes.empty())
+        return "an empty file";
+    if (head.starts_with("\xff\xd8\xff") || head.starts_with("\x89PNG") || is_webp)
+        return "a JPEG, PNG or WebP picture, which holds no light above white: use the .hdr or "
+               ".exr that it was made from";
+    return extension == ".prt" ? "a scene: the scene stands first, the environment behind it"
+                               : "something else";
+}
+
 ImageFile decode(const std::filesystem::path& path) {
     const std::vector<std::byte> bytes = files::read(path);
     if (!is_exr(bytes) && !is_hdr(bytes))
         throw std::runtime_error(
             fmt::format("{}: expected an OpenEXR or Radiance .hdr file, got {}", path.string(),
-                        bytes.empty() ? "an empty file" : "something else"));
+                        kind_of_other(path, bytes)));
     return is_exr(bytes) ? decode_exr(bytes, path.string()) : decode_hdr(bytes, path.string());
 }
 

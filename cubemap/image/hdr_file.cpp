@@ -56,6 +56,8 @@ public:
         }
         if (exposure_ != glm::dvec3(1.0))
             image.remarks.emplace_back("exposure of the header divided out");
+        if (has_zero_exposure_)
+            image.remarks.emplace_back("EXPOSURE=0 of the header counts as 1");
         return image;
     }
 
@@ -84,13 +86,22 @@ private:
             if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
                 fail("FORMAT=32-bit_rle_rgbe", fmt::format("{:.60}", printable(line)));
             if (line.starts_with("EXPOSURE="))
-                exposure_ *= multiplier(line.substr(9));
+                read_exposure(line.substr(9));
             if (line.starts_with("COLORCORR="))
                 read_color_correction(line.substr(10));
         }
         if (!(std::min({exposure_.x, exposure_.y, exposure_.z}) > 1e-30 &&
               std::max({exposure_.x, exposure_.y, exposure_.z}) < 1e30))
             fail("a positive exposure", fmt::format("{}", exposure_.x));
+    }
+
+    /// Takes 0 as not set: FreeImage writes it into every file.
+    void read_exposure(std::string_view text) {
+        const double exposure = multiplier(text);
+        if (exposure == 0.0)
+            has_zero_exposure_ = true;
+        else
+            exposure_ *= exposure;
     }
 
     void read_color_correction(std::string_view text) {
@@ -221,7 +232,7 @@ private:
     std::size_t position_ = 0;
     glm::dvec3 exposure_{1.0};
     std::uint32_t width_ = 0, height_ = 0;
-    bool bottom_up_ = false, right_to_left_ = false;
+    bool bottom_up_ = false, right_to_left_ = false, has_zero_exposure_ = false;
 };
 
 Rgbe rgbe(const glm::vec3& radiance) {

@@ -18,6 +18,8 @@ namespace {
 /// A checked accessor: `count` elements, `stride` bytes apart, all inside `bytes`.
 struct Elements {
     std::span<const std::byte> bytes;
+    /// What `bytes` shows if no buffer view has these elements as they are.
+    std::vector<std::byte> own;
     std::size_t count = 0;
     std::size_t stride = 0;
     std::uint64_t component_type = 0;
@@ -49,45 +51,112 @@ std::uint32_t num_components_of(const std::string& type) {
     return static_cast<std::uint32_t>(found - Names.begin()) + 1;
 }
 
-Elements elements_of(Document& document, std::uint64_t index, std::uint32_t num_components) {
-    const Json& accessor = document.element("accessors", index);
-    if (accessor.find("sparse") || !accessor.find("bufferView"))
-        throw std::runtime_error(
-            fmt::format("expected accessor {} in a buffer view of its own, got a {} one", index,
-                        accessor.find("sparse") ? "sparse" : "zero"));
-    Elements elements;
-    elements.component_type = whole(accessor, "componentType");
-    elements.normalized = flag(accessor, "normalized");
-    const std::uint32_t has = num_components_of(text(accessor, "type"));
-    if (has < num_components || (num_components == 1 && has != 1))
-        throw std::runtime_error(fmt::format("expected {} components of accessor {}, got {}",
-                                             num_components, index, has));
-    const std::uint64_t view = whole(accessor, "bufferView");
-    const std::uint64_t size = component_size(elements.component_type) * has;
-    const std::uint64_t stride = whole(document.element("bufferViews", view), "byteStride", size);
-    const std::uint64_t offset = whole(accessor, "byteOffset", 0);
-    const std::uint64_t count = whole(accessor, "count");
-    elements.bytes = document.view(view);
-    if (stride < size || stride > 252 + size)
-        throw std::runtime_error(fmt::format(
-            "expected a byteStride of {} or more for accessor {}, got {}", size, index, stride));
-    if (count == 0 || offset > elements.bytes.size() || size > elements.bytes.size() - offset ||
-        count - 1 > (elements.bytes.size() - offset - size) / stride)
-        throw std::runtime_error(fmt::format(
-            "expected accessor {} inside its buffer view of {} bytes, got {} elements at {}", index,
-            elements.bytes.size(), count, offset));
-    elements.bytes = elements.bytes.subspan(offset);
-    elements.count = count;
-    elements.stride = stride;
-    return elements;
-}
-
 template<class Component>
 Component component(const Elements& elements, std::size_t element, std::size_t place) {
     Component value{};
     std::memcpy(&value, elements.bytes.data() + element * elements.stride + place * sizeof value,
                 sizeof value);
     return value;
+}
+
+std::uint32_t index_in(const Elements& elements, std::size_t i) {
+    switch (elements.component_type) {
+    case 5121:
+        return component<std::uint8_t>(elements, i, 0);
+    case 5123:
+        return component<std::uint16_t>(elements, i, 0);
+    case 5125:
+        return component<std::uint32_t>(elements, i, 0);
+    default:
+        throw std::runtime_error(
+            fmt::format("expected unsigned integers as indices, got componentType {}",
+                        elements.component_type));
+    }
+}
+
+/// Finds `count` elements of `size` bytes in a buffer view. `place` is an object with bufferView
+/// and byteOffset; `name` is for errors.
+Elements elements_in_view(Document& document, const Json& place, std::uint64_t count,
+                          std::uint64_t size, const std::string& name) {
+    const std::uint64_t view = whole(place, "bufferView");
+    const std::uint64_t stride = whole(document.element("bufferViews", view), "byteStride", size);
+    const std::uint64_t offset = whole(place, "byteOffset", 0);
+    Elements elements;
+    elements.bytes = document.view(view);
+    if (stride < size || stride > 252 + size)
+        throw std::runtime_error(
+            fmt::format("expected a byteStride of {} or more for {}, got {}", size, name, stride));
+    if (count == 0 || offset > elements.bytes.size() || size > elements.bytes.size() - offset ||
+        count - 1 > (elements.bytes.size() - offset - size) / stride)
+        throw std::runtime_error(
+            fmt::format("expected {} inside its buffer view of {} bytes, got {} elements at {}",
+                        name, elements.bytes.size(), count, offset));
+    elements.bytes = elements.bytes.subspan(offset);
+    elements.count = count;
+    elements.stride = stride;
+    return elements;
+}
+
+/// Copies elements of `size` bytes next to each other. Without a buffer view they are zeros.
+Elements own_elements(Document& document, const Json& accessor, std::uint64_t size,
+                      const std::string& name) {
+    const std::uint64_t count = whole(accessor, "count");
+    if (count == 0)
+        throw std::runtime_error(fmt::format("expected elements of {}, got 0 elements", name));
+    document.take_memory(count * size);
+    Elements own;
+    if (accessor.find("bufferView"))
+        own = elements_in_view(document, accessor, count, size, name);
+    own.own.resize(count * size);
+    for (std::size_t i = 0; i < count && !own.bytes.empty(); ++i)
+        std::memcpy(&own.own[i * size], &own.bytes[i * own.stride], size);
+    own.bytes = own.own;
+    own.count = count;
+    own.stride = size;
+    return own;
+}
+
+/// Puts the elements of "sparse" over those of the accessor.
+void replace_sparse(Document& document, const Json& sparse, std::uint64_t size,
+                    const std::string& name, Elements& elements) {
+    const std::uint64_t count = whole(sparse, "count");
+    if (count == 0)
+        return;
+    const Json& place = child(sparse, "indices");
+    const std::uint64_t type = whole(place, "componentType");
+    Elements indices =
+        elements_in_view(document, place, count, component_size(type), "indices of " + name);
+    indices.component_type = type;
+    const Elements values =
+        elements_in_view(document, child(sparse, "values"), count, size, "values of " + name);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t target = index_in(indices, i);
+        if (target >= elements.count)
+            throw std::runtime_error(fmt::format("expected sparse indices of {} below {}, got {}",
+                                                 name, elements.count, target));
+        std::memcpy(&elements.own[target * size], &values.bytes[i * values.stride], size);
+    }
+}
+
+Elements elements_of(Document& document, std::uint64_t index, std::uint32_t num_components) {
+    const Json& accessor = document.element("accessors", index);
+    const std::string name = fmt::format("accessor {}", index);
+    const std::uint64_t component_type = whole(accessor, "componentType");
+    const std::uint32_t has = num_components_of(text(accessor, "type"));
+    if (has < num_components || (num_components == 1 && has != 1))
+        throw std::runtime_error(fmt::format("expected {} components of accessor {}, got {}",
+                                             num_components, index, has));
+    const std::uint64_t size = component_size(component_type) * has;
+    const Json& sparse = child(accessor, "sparse");
+    const bool is_in_view = accessor.find("bufferView") && sparse.size() == 0;
+    Elements elements =
+        is_in_view ? elements_in_view(document, accessor, whole(accessor, "count"), size, name)
+                   : own_elements(document, accessor, size, name);
+    if (sparse.size() != 0)
+        replace_sparse(document, sparse, size, name, elements);
+    elements.component_type = component_type;
+    elements.normalized = flag(accessor, "normalized");
+    return elements;
 }
 
 template<class Component>
@@ -136,18 +205,8 @@ Floats read_floats(Document& document, std::uint64_t accessor, std::uint32_t num
 std::vector<std::uint32_t> read_indices(Document& document, std::uint64_t accessor) {
     const Elements elements = elements_of(document, accessor, 1);
     std::vector<std::uint32_t> indices(elements.count);
-    for (std::size_t i = 0; i < indices.size(); ++i) {
-        if (elements.component_type == 5121)
-            indices[i] = component<std::uint8_t>(elements, i, 0);
-        else if (elements.component_type == 5123)
-            indices[i] = component<std::uint16_t>(elements, i, 0);
-        else if (elements.component_type == 5125)
-            indices[i] = component<std::uint32_t>(elements, i, 0);
-        else
-            throw std::runtime_error(
-                fmt::format("expected unsigned integers as indices, got componentType {}",
-                            elements.component_type));
-    }
+    for (std::size_t i = 0; i < indices.size(); ++i)
+        indices[i] = index_in(elements, i);
     return indices;
 }
 

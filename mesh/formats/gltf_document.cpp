@@ -12,6 +12,7 @@
 #include "files/output_file.h"
 #include "mesh/formats/meshopt_decoder.h"
 #include "mesh/formats/mtl_reader.h"
+#include "mesh/materials/material.h"
 #include "mesh/text_reader.h"
 
 namespace relumine::mesh::gltf {
@@ -219,9 +220,9 @@ double number(const Json& object, const char* key, std::optional<double> fallbac
 
 float fraction(const Json& object, const char* key, float fallback) {
     const double value = number(object, key, double{fallback});
-    if (!(value >= 0.0 && value <= 1.0))
+    if (!is_fraction(value))
         fail(key, "a number of 0 to 1", require(object, key));
-    return static_cast<float>(value);
+    return static_cast<float>(std::clamp(value, 0.0, 1.0));
 }
 
 bool flag(const Json& object, const char* key) {
@@ -275,8 +276,10 @@ const Json::Array& items(const Json& object, const char* key) {
     return value->values();
 }
 
-Document::Document(std::span<const std::byte> file, std::filesystem::path folder)
-    : folder_(std::move(folder)), file_bytes_(file.size()), json_text_(as_text(file)) {
+Document::Document(std::span<const std::byte> file, std::filesystem::path folder,
+                   std::uint64_t max_bytes)
+    : folder_(std::move(folder)), file_bytes_(file.size()), json_text_(as_text(file)),
+      max_bytes_(max_bytes) {
     if (json_text_.starts_with("glTF"))
         split_glb(file);
     try {
@@ -304,6 +307,15 @@ std::uint64_t Document::num_bytes() const {
     return result;
 }
 
+void Document::take_memory(std::uint64_t bytes) {
+    num_taken_bytes_ += bytes;
+    if (num_taken_bytes_ > max_bytes_)
+        throw std::runtime_error(fmt::format(
+            "expected a mesh that fits into {:.3g} GB, half of the free memory; got "
+            "one of {:.3g} GB or more, with all repetitions",
+            static_cast<double>(max_bytes_) * 1e-9, static_cast<double>(num_taken_bytes_) * 1e-9));
+}
+
 /// Finds the JSON chunk and the binary chunk behind the header. Further chunks are for extensions.
 void Document::split_glb(std::span<const std::byte> file) {
     if (file.size() < 20)
@@ -329,13 +341,14 @@ void Document::split_glb(std::span<const std::byte> file) {
 }
 
 void Document::check_extensions() {
-    constexpr std::array<std::string_view, 8> Understood = {"EXT_mesh_gpu_instancing",
+    constexpr std::array<std::string_view, 9> Understood = {"EXT_mesh_gpu_instancing",
                                                             "EXT_meshopt_compression",
                                                             "EXT_texture_webp",
                                                             "KHR_draco_mesh_compression",
                                                             "KHR_materials_pbrSpecularGlossiness",
                                                             "KHR_materials_unlit",
                                                             "KHR_mesh_quantization",
+                                                            "KHR_meshopt_compression",
                                                             "KHR_texture_transform"};
     const auto names = [this](const char* key) {
         std::set<std::string> result;
@@ -421,7 +434,10 @@ std::vector<std::byte> Document::unpacked(const Json& packed, std::uint64_t view
 
 std::span<const std::byte> Document::view(std::uint64_t index) {
     const Json& description = element("bufferViews", index);
-    const Json& packed = child(child(description, "extensions"), "EXT_meshopt_compression");
+    const Json& extensions = child(description, "extensions");
+    const Json& ratified = child(extensions, "KHR_meshopt_compression");
+    const Json& packed =
+        ratified.size() != 0 ? ratified : child(extensions, "EXT_meshopt_compression");
     if (packed.size() == 0)
         return part(description, index);
     std::optional<std::vector<std::byte>>& view = views_[index];

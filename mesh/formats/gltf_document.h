@@ -30,7 +30,7 @@ using files::Json;
                                   std::optional<std::uint64_t> fallback = {});
 [[nodiscard]] double number(const Json& object, const char* key,
                             std::optional<double> fallback = {});
-/// Returns a number in [0, 1].
+/// Returns a number in [0, 1]. A rounding outside is brought inside.
 [[nodiscard]] float fraction(const Json& object, const char* key, float fallback);
 /// Returns a truth value; false if it is absent.
 [[nodiscard]] bool flag(const Json& object, const char* key);
@@ -49,12 +49,17 @@ using files::Json;
 class Document {
 public:
     /// `file` is a whole .gltf or .glb and must outlive the document. Versions other than 2 are
-    /// refused, and required extensions without which there is no mesh.
-    Document(std::span<const std::byte> file, std::filesystem::path folder);
+    /// refused, and required extensions without which there is no mesh. `max_bytes` is the limit of
+    /// take_memory().
+    Document(std::span<const std::byte> file, std::filesystem::path folder,
+             std::uint64_t max_bytes);
 
     [[nodiscard]] const Json& root() const { return root_; }
     /// Returns the size of the file and of the buffers beside it that were needed so far.
     [[nodiscard]] std::uint64_t num_bytes() const;
+    /// Counts memory that a mesh needs beyond the file's bytes: a file may repeat what it holds.
+    /// Throws:  std::runtime_error if all that was taken is more than max_bytes.
+    void take_memory(std::uint64_t bytes);
     /// Returns an element of one of the document's arrays: "accessors", "nodes" ...
     [[nodiscard]] const Json& element(const char* array, std::uint64_t index) const;
     [[nodiscard]] std::size_t count(const char* array) const { return items(root_, array).size(); }
@@ -64,7 +69,7 @@ public:
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
     /// Returns the bytes of a buffer view, checked against its buffer, and decoded if
-    /// EXT_meshopt_compression packed them.
+    /// KHR_meshopt_compression or EXT_meshopt_compression packed them.
     [[nodiscard]] std::span<const std::byte> view(std::uint64_t index);
 
     /// Returns the content of a URI: a data: URI or a file. Nothing if there is no such file.
@@ -81,6 +86,7 @@ private:
     std::filesystem::path folder_;
     std::uint64_t file_bytes_;
     std::string_view json_text_;
+    std::uint64_t max_bytes_, num_taken_bytes_ = 0;
     /// The binary chunk of a .glb.
     std::optional<std::span<const std::byte>> chunk_;
     Json root_;

@@ -1,5 +1,6 @@
 #include "mesh/formats/gltf_materials.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <stdexcept>
@@ -23,6 +24,8 @@ private:
     [[nodiscard]] std::optional<std::uint32_t> image(std::uint64_t index);
     template<class Decode>
     [[nodiscard]] std::optional<Texture> decoded(std::uint64_t index, const Decode& decode);
+    void join_uv_sets(Material& material);
+    void set_mean(Material& material) const;
     void read_specular_glossiness(const Json& extension, Material& material);
 
     Document& document_;
@@ -31,11 +34,12 @@ private:
     std::map<std::uint64_t, std::optional<std::uint32_t>> textures_;
     /// Image of each texture.
     std::map<std::uint32_t, std::uint64_t> images_;
-    /// UV set of the current material.
-    std::optional<std::uint64_t> uv_set_;
+    /// UV sets of the textures of the current material, by the key of the texture.
+    std::map<std::string, std::uint64_t> uv_sets_;
 };
 
-/// Decodes an image. Returns nothing if its file does not exist.
+/// Decodes an image. Returns nothing if its file does not exist, or, with a warning, if it cannot
+/// be read.
 template<class Decode>
 std::optional<Texture> MaterialReader::decoded(std::uint64_t index, const Decode& decode) {
     const Json& description = document_.element("images", index);
@@ -43,18 +47,20 @@ std::optional<Texture> MaterialReader::decoded(std::uint64_t index, const Decode
     const std::string name = !uri.empty() && !uri.starts_with("data:")
                                  ? uri
                                  : text(description, "name", fmt::format("image {}", index));
-    std::optional<std::vector<std::byte>> fetched;
-    if (!uri.empty() && !(fetched = document_.fetch(uri)))
-        return std::nullopt;
-    const std::span<const std::byte> bytes = fetched
-                                                 ? std::span<const std::byte>(*fetched)
-                                                 : document_.view(whole(description, "bufferView"));
     try {
-        Texture texture = decode(bytes, VOrigin::Top);
+        std::optional<std::vector<std::byte>> fetched;
+        if (!uri.empty() && !(fetched = document_.fetch(uri))) {
+            result_.missing.push_back(uri);
+            return std::nullopt;
+        }
+        Texture texture = decode(fetched ? std::span<const std::byte>(*fetched)
+                                         : document_.view(whole(description, "bufferView")),
+                                 VOrigin::Top);
         texture.name = name;
         return texture;
     } catch (const std::runtime_error& error) {
-        throw std::runtime_error(fmt::format("{}: {}", name, error.what()));
+        result_.warnings.push_back(fmt::format("the image {} is left out: {}", name, error.what()));
+        return std::nullopt;
     }
 }
 
@@ -67,8 +73,6 @@ std::optional<std::uint32_t> MaterialReader::image(std::uint64_t index) {
         place = static_cast<std::uint32_t>(result_.textures.size());
         result_.textures.push_back(std::move(*texture));
         images_.emplace(*place, index);
-    } else {
-        result_.missing.push_back(text(document_.element("images", index), "uri"));
     }
     textures_.emplace(index, place);
     return place;
@@ -115,8 +119,8 @@ std::optional<TextureSlot> MaterialReader::slot(const Json& parent, const char* 
     std::uint64_t uv_set = whole(info, "texCoord", 0);
     if (const Json& transform = child(child(info, "extensions"), "KHR_texture_transform");
         transform.size() != 0) {
-        // The extension defines uv' = translation * rotation * scale * uv, with a rotation from v
-        // to u.
+        // The extension defines uv' = translation * rotation * scale * uv, with a rotation from
+        // v to u.
         const std::vector<double> scale = numbers(transform, "scale", {1.0, 1.0});
         const std::vector<double> offset = numbers(transform, "offset", {0.0, 0.0});
         const double angle = number(transform, "rotation", 0.0);
@@ -125,21 +129,60 @@ std::optional<TextureSlot> MaterialReader::slot(const Json& parent, const char* 
         slot.uv_offset = glm::vec2(offset[0], offset[1]);
         uv_set = whole(transform, "texCoord", uv_set);
     }
-    if (uv_set_ && *uv_set_ != uv_set)
-        throw std::runtime_error(
-            fmt::format("expected one texCoord for the textures of a material, got {} and {}",
-                        *uv_set_, uv_set));
-    uv_set_ = uv_set;
+    uv_sets_.emplace(key, uv_set);
     return slot;
 }
 
-/// Returns factors of a colour, each in [0, 1].
+/// A mesh has one uv for each vertex: that of the material's colours. A texture of another set
+/// becomes one number, its mean.
+void MaterialReader::join_uv_sets(Material& material) {
+    if (uv_sets_.empty())
+        return;
+    const bool is_specular = material.model == MaterialModel::SpecularGlossiness;
+    const auto colors = uv_sets_.find(is_specular ? "diffuseTexture" : "baseColorTexture");
+    const auto others =
+        uv_sets_.find(is_specular ? "specularGlossinessTexture" : "metallicRoughnessTexture");
+    const std::uint64_t uv_set = (colors == uv_sets_.end() ? others : colors)->second;
+    result_.uv_sets.back() = uv_set;
+    if (others == uv_sets_.end() || others->second == uv_set)
+        return;
+    set_mean(material);
+    result_.warnings.push_back(
+        fmt::format("the material {} has its colours in TEXCOORD_{} and its {} in TEXCOORD_{}; one "
+                    "set is read: the mean of the second texture stands for it",
+                    material.name, uv_set, others->first, others->second));
+}
+
+/// Puts the means of the textures beside the one of colours into the material's numbers.
+void MaterialReader::set_mean(Material& material) const {
+    const auto mean = [&](const std::optional<TextureSlot>& slot) {
+        const Texture& texture = result_.textures[slot->texture];
+        glm::dvec3 sum(0.0);
+        for (std::uint32_t y = 0; y < texture.height; ++y)
+            for (std::uint32_t x = 0; x < texture.width; ++x)
+                sum += glm::dvec3(texel(texture, x, y, slot->is_srgb));
+        return glm::vec3(sum / (static_cast<double>(texture.texels.size())));
+    };
+    if (material.metallic_roughness_texture) {
+        const glm::vec3 factors = mean(material.metallic_roughness_texture);
+        material.roughness *= factors.g;
+        material.metallic *= factors.b;
+    }
+    if (material.specular_texture)
+        material.specular *= mean(material.specular_texture);
+    material.metallic_roughness_texture.reset();
+    material.specular_texture.reset();
+}
+
+/// Returns factors of a colour, each in [0, 1]. A rounding outside is brought inside.
 std::vector<double> factors(const Json& object, const char* key, std::vector<double> fallback) {
     std::vector<double> values = numbers(object, key, std::move(fallback));
-    for (const double value : values)
-        if (!(value >= 0.0 && value <= 1.0))
+    for (double& value : values) {
+        if (!is_fraction(value))
             throw std::runtime_error(
                 fmt::format("expected numbers of 0 to 1 as \"{}\", got {}", key, value));
+        value = std::clamp(value, 0.0, 1.0);
+    }
     return values;
 }
 
@@ -199,30 +242,42 @@ Material MaterialReader::material(const Json& description, std::size_t index) {
 }
 
 Materials MaterialReader::read() {
-    std::size_t num_masked = 0, num_blended = 0;
+    std::size_t num_masked = 0, num_blended = 0, num_normals = 0, num_emissive = 0;
     for (std::size_t i = 0; i < document_.count("materials"); ++i) {
-        uv_set_.reset();
+        uv_sets_.clear();
+        result_.uv_sets.emplace_back();
+        std::string name = fmt::format("material {}", i);
         try {
             const Json& description = document_.element("materials", i);
-            result_.materials.push_back(material(description, i));
+            name = text(description, "name", name);
+            Material read = material(description, i);
+            join_uv_sets(read);
+            result_.materials.push_back(std::move(read));
             const std::string mode = text(description, "alphaMode", "OPAQUE");
-            if (mode == "MASK")
-                ++num_masked;
-            else if (mode != "OPAQUE")
-                ++num_blended;
+            num_masked += mode == "MASK" ? 1 : 0;
+            num_blended += mode != "OPAQUE" && mode != "MASK" ? 1 : 0;
+            num_normals += description.find("normalTexture") != nullptr ? 1 : 0;
+            const std::vector<double> emission =
+                numbers(description, "emissiveFactor", {0.0, 0.0, 0.0});
+            num_emissive += *std::max_element(emission.begin(), emission.end()) > 0.0 ? 1 : 0;
         } catch (const std::runtime_error& error) {
-            throw std::runtime_error(fmt::format("material {}: {}", i, error.what()));
+            result_.materials.resize(i);
+            result_.materials.push_back(unreadable_material(name));
+            result_.warnings.push_back(fmt::format("the material {} is grey, since it cannot be "
+                                                   "read: material {}: {}",
+                                                   name, i, error.what()));
         }
-        result_.uv_sets.push_back(uv_set_);
     }
     const auto warn = [this](std::size_t num_materials, const char* kind, const char* instead) {
         if (num_materials > 0)
-            result_.warnings.push_back(fmt::format("{} material{} {}; alpha is not read: {}",
-                                                   num_materials, num_materials == 1 ? "" : "s",
-                                                   kind, instead));
+            result_.warnings.push_back(fmt::format("{} material{} {}: {}", num_materials,
+                                                   num_materials == 1 ? "" : "s", kind, instead));
     };
-    warn(num_masked, "cut out by alpha (leaves, fences)", "what is cut out is opaque");
-    warn(num_blended, "transparent by alpha", "surfaces are opaque");
+    warn(num_masked, "cut out by alpha (leaves, fences); alpha is not read",
+         "what is cut out is opaque");
+    warn(num_blended, "transparent by alpha; alpha is not read", "surfaces are opaque");
+    warn(num_normals, "with a normal map, which is not read", "surfaces are as smooth as the mesh");
+    warn(num_emissive, "with emission, which is not read", "surfaces give no light of their own");
     return std::move(result_);
 }
 

@@ -15,8 +15,8 @@ namespace relumine::mesh::gltf {
 struct Materials {
     /// Materials in the file's order.
     std::vector<Material> materials;
-    /// [materials] the number of the TEXCOORD set that the material's textures use. Empty: no
-    /// textures.
+    /// [materials] the number of the TEXCOORD set that the material's texture of colours uses, or
+    /// its other one. Empty: no textures.
     std::vector<std::optional<std::uint64_t>> uv_sets;
     std::vector<Texture> textures;
     std::vector<std::string> missing;
@@ -26,8 +26,8 @@ struct Materials {
 
 /// Reads factors, textures, samplers, KHR_texture_transform and EXT_texture_webp. A
 /// KHR_materials_unlit material becomes Lambert, KHR_materials_pbrSpecularGlossiness its own model.
-/// Alpha, emission, normal maps and the other extensions are skipped.
-/// Throws:  std::runtime_error "expected X, got Y".
+/// Alpha, emission, normal maps and the other extensions are skipped. A material that cannot be
+/// read becomes grey, an image is left out, each with a warning.
 [[nodiscard]] Materials read_materials(Document& document);
 
 } // namespace relumine::mesh::gltf

@@ -111,8 +111,9 @@ FileCamera looking_at(const std::vector<glm::vec3>& positions, FileCamera camera
 
 class GltfReader {
 public:
-    GltfReader(std::span<const std::byte> bytes, const std::filesystem::path& folder)
-        : document_(bytes, folder) {}
+    GltfReader(std::span<const std::byte> bytes, const std::filesystem::path& folder,
+               std::uint64_t max_bytes)
+        : document_(bytes, folder, max_bytes) {}
     PolygonSoup read();
 
 private:
@@ -123,7 +124,7 @@ private:
                                                   std::size_t num_vertices);
     void check_counts(const Json& description, const DracoMesh& mesh);
     [[nodiscard]] std::vector<glm::dmat4> instances(const Json& node);
-    void count(const Primitive& primitive);
+    void take_memory(const Primitive& primitive, std::size_t num_times);
     void append(const Primitive& primitive, const glm::dmat4& transform, std::uint32_t group);
     [[nodiscard]] std::uint32_t group(const Json& node, std::uint64_t mesh);
     [[nodiscard]] std::uint32_t default_material();
@@ -133,8 +134,6 @@ private:
     std::vector<std::optional<std::vector<Primitive>>> meshes_;
     std::optional<std::uint32_t> default_material_;
     std::map<std::string, std::uint32_t> group_indices_;
-    /// Vertices and triangles that primitives and nodes have made so far.
-    std::uint64_t num_elements_ = 0;
     PolygonSoup soup_;
     bool has_colors_ = false, has_uvs_ = false, has_skins_ = false, has_targets_ = false;
 };
@@ -343,7 +342,7 @@ const std::vector<Primitive>& GltfReader::mesh(std::uint64_t index) {
         for (const Json& item : gltf::items(description, "primitives")) {
             has_targets_ |= gltf::child(item, "targets").size() != 0;
             if (std::optional<Primitive> read = primitive(item)) {
-                count(*read);
+                take_memory(*read, 1);
                 mesh->push_back(std::move(*read));
             }
         }
@@ -409,16 +408,14 @@ std::uint32_t GltfReader::group(const Json& node, std::uint64_t mesh) {
     return place->second;
 }
 
-/// Nodes repeat meshes, and primitives repeat accessors. Without a limit, 64 KB of glTF could make
-/// thousands of millions of vertices.
-void GltfReader::count(const Primitive& primitive) {
-    constexpr std::uint64_t AlwaysAllowed = std::uint64_t{1} << 20, PerByte = 64;
-    const std::uint64_t limit = std::max(AlwaysAllowed, PerByte * document_.num_bytes());
-    num_elements_ += primitive.positions.size() + primitive.triangles.size();
-    if (num_elements_ > limit)
-        throw std::runtime_error(fmt::format(
-            "expected at most {} vertices and triangles of {} bytes with all repetitions, got more",
-            limit, document_.num_bytes()));
+/// Nodes repeat meshes, and primitives repeat accessors: 64 KB of glTF could make thousands of
+/// millions of vertices.
+void GltfReader::take_memory(const Primitive& primitive, std::size_t num_times) {
+    // A vertex and a triangle of a PolygonSoup take 44 and 28 bytes, of the TriangleMesh that it
+    // becomes 20 more, and vectors that grow have twice that.
+    constexpr std::uint64_t Each = 128;
+    document_.take_memory(Each * num_times *
+                          (primitive.positions.size() + primitive.triangles.size()));
 }
 
 void GltfReader::append(const Primitive& primitive, const glm::dmat4& transform,
@@ -480,12 +477,13 @@ PolygonSoup GltfReader::read() {
         if (node.find("mesh")) {
             const std::uint64_t index = gltf::whole(node, "mesh");
             has_skins_ |= node.find("skin") != nullptr;
-            for (const glm::dmat4& instance : instances(node))
-                for (const Primitive& primitive : mesh(index)) {
-                    count(primitive);
-                    append(primitive, node.find("skin") ? glm::dmat4(1.0) : transform * instance,
+            const std::vector<glm::dmat4> places = instances(node);
+            for (const Primitive& primitive : mesh(index))
+                take_memory(primitive, places.size());
+            for (const glm::dmat4& place : places)
+                for (const Primitive& primitive : mesh(index))
+                    append(primitive, node.find("skin") ? glm::dmat4(1.0) : transform * place,
                            group(node, index));
-                }
         }
         if (!camera && node.find("camera"))
             camera =
@@ -515,9 +513,10 @@ PolygonSoup GltfReader::read() {
 
 } // namespace
 
-PolygonSoup read_gltf(std::span<const std::byte> bytes, const std::filesystem::path& folder) {
+PolygonSoup read_gltf(std::span<const std::byte> bytes, const std::filesystem::path& folder,
+                      std::uint64_t max_bytes) {
     try {
-        return GltfReader(bytes, folder).read();
+        return GltfReader(bytes, folder, max_bytes).read();
     } catch (const files::JsonError&) {
         throw std::runtime_error("expected glTF's JSON, got a value of another type");
     }

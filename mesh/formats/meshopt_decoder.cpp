@@ -1,6 +1,13 @@
 #include "mesh/formats/meshopt_decoder.h"
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
 #include <stdexcept>
+#include <type_traits>
 
 #include <fmt/format.h>
 #include <meshoptimizer.h>
@@ -26,7 +33,8 @@ void check(const MeshoptView& view, std::size_t num_bytes) {
     const bool filter_fits =
         filter == "NONE" ||
         (is_attributes &&
-         (filter == "EXPONENTIAL" || (filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) ||
+         (filter == "EXPONENTIAL" ||
+          ((filter == "OCTAHEDRAL" || filter == "COLOR") && (stride == 4 || stride == 8)) ||
           (filter == "QUATERNION" && stride == 8)));
     if (!filter_fits)
         throw std::runtime_error(fmt::format("expected a filter for {} of {} bytes, got {}", mode,
@@ -34,6 +42,29 @@ void check(const MeshoptView& view, std::size_t num_bytes) {
     if (count * stride / MaxMeshoptRatio > num_bytes)
         throw std::runtime_error(fmt::format("expected the data of {} elements of {} bytes, got {}",
                                              count, stride, num_bytes));
+}
+
+/// Undoes the filter COLOR of KHR_meshopt_compression, which the library does not have yet: Y, Co,
+/// Cg and alpha with a bit less, all scaled by the bits that alpha's highest one tells.
+template<typename Unsigned>
+void decode_colors(std::span<std::byte> bytes) {
+    using Signed = std::make_signed_t<Unsigned>;
+    for (std::size_t at = 0; at + 4 * sizeof(Unsigned) <= bytes.size();
+         at += 4 * sizeof(Unsigned)) {
+        std::array<Unsigned, 4> color{};
+        std::memcpy(color.data(), &bytes[at], sizeof color);
+        const int y = color[0], co = static_cast<Signed>(color[1]),
+                  cg = static_cast<Signed>(color[2]), alpha = color[3];
+        const int range = static_cast<int>(std::bit_ceil(static_cast<unsigned>(alpha) + 1)) - 1;
+        const double scale =
+            range == 0 ? 0.0 : double{std::numeric_limits<Unsigned>::max()} / range;
+        const std::array<int, 4> levels = {y + co - cg, y + cg, y - co - cg,
+                                           (alpha << 1 & range) | (alpha & 1)};
+        for (std::size_t i = 0; i < 4; ++i)
+            color[i] = static_cast<Unsigned>(std::lround(
+                std::clamp(levels[i] * scale, 0.0, double{std::numeric_limits<Unsigned>::max()})));
+        std::memcpy(&bytes[at], color.data(), sizeof color);
+    }
 }
 
 } // namespace
@@ -49,13 +80,20 @@ std::vector<std::byte> decode_meshopt(std::span<const std::byte> data, const Mes
     else if (view.mode == "INDICES")
         decode = meshopt_decodeIndexSequence;
     if (decode(result.data(), view.count, view.stride, bytes, data.size()) != 0)
-        throw std::runtime_error(fmt::format("expected compressed {}, got broken data", view.mode));
+        throw std::runtime_error(
+            !data.empty() && data[0] == std::byte{0xa1}
+                ? "expected vertices packed by meshopt's codec of version 0, got version 1, which "
+                  "is not read; gltfpack -c and -cc write version 0"
+                : fmt::format("expected compressed {}, got broken data", view.mode));
     if (view.filter == "OCTAHEDRAL")
         meshopt_decodeFilterOct(result.data(), view.count, view.stride);
     else if (view.filter == "QUATERNION")
         meshopt_decodeFilterQuat(result.data(), view.count, view.stride);
     else if (view.filter == "EXPONENTIAL")
         meshopt_decodeFilterExp(result.data(), view.count, view.stride);
+    else if (view.filter == "COLOR")
+        view.stride == 4 ? decode_colors<std::uint8_t>(result)
+                         : decode_colors<std::uint16_t>(result);
     return result;
 }
 

@@ -1,4 +1,5 @@
-// Decodes buffer views of EXT_meshopt_compression. The only user of libmeshoptimizer.
+// Decodes buffer views of KHR_meshopt_compression and EXT_meshopt_compression. The only user of
+// libmeshoptimizer.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +20,7 @@ struct MeshoptView {
     std::uint64_t stride = 0;
     /// ATTRIBUTES, TRIANGLES or INDICES.
     std::string mode;
-    /// NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL.
+    /// NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL or COLOR.
     std::string filter = "NONE";
 };
 

@@ -1,6 +1,7 @@
 #include "mesh/formats/mtl_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
@@ -22,9 +23,11 @@ bool is_file(const std::filesystem::path& path) {
 
 float number_between(const TextReader& reader, std::string_view word, double min, double max) {
     const double value = reader.number(word);
-    if (!(value >= min && value <= max))
+    const bool is_allowed =
+        min == 0.0 && max == 1.0 ? is_fraction(value) : value >= min && value <= max;
+    if (!is_allowed)
         reader.fail(fmt::format("a number of {} to {}", min, max), excerpt(word));
-    return static_cast<float>(value);
+    return static_cast<float>(std::clamp(value, min, max));
 }
 
 /// Reads one value of a line "Kd 0.5" or three of "Kd 0.5 0.5 0.5".
@@ -76,9 +79,11 @@ void MtlLibrary::read(const std::string& name) {
     has_library_ = true;
     const std::vector<std::byte> bytes = files::read(path);
     try {
-        parse(bytes, path.parent_path());
+        parse(bytes, name, path.parent_path());
     } catch (const std::runtime_error& error) {
-        throw std::runtime_error(fmt::format("{}: {}", name, error.what()));
+        is_broken_ = true;
+        warnings_.push_back(
+            fmt::format("{} cannot be read, its materials are grey: {}", name, error.what()));
     }
 }
 
@@ -94,9 +99,12 @@ std::uint32_t MtlLibrary::add(const std::string& name) {
 std::uint32_t MtlLibrary::index_of(const std::string& name) {
     if (const auto found = indices_.find(name); found != indices_.end())
         return found->second;
-    if (has_library_ && !name.empty())
+    if (has_library_ && !is_broken_ && !name.empty())
         missing.push_back(fmt::format("material {}", name));
-    return add(name);
+    const std::uint32_t index = add(name);
+    if (is_broken_)
+        materials[index] = unreadable_material(name);
+    return index;
 }
 
 /// Reads map_Kd [options] file name. The name may have blanks, so options end at the first unknown
@@ -140,50 +148,99 @@ std::optional<TextureSlot> MtlLibrary::texture(std::span<const std::string_view>
             missing.push_back(name);
         return std::nullopt;
     }
-    const auto [place, is_new] =
-        texture_indices_.try_emplace(path.string(), static_cast<std::uint32_t>(textures.size()));
-    if (is_new) {
-        const std::vector<std::byte> bytes = files::read(path);
-        try {
-            textures.push_back(decode_texture(bytes, VOrigin::Bottom));
-        } catch (const std::runtime_error& error) {
-            throw std::runtime_error(fmt::format("{}: {}", name, error.what()));
-        }
-        textures.back().name = name;
-    }
-    slot.texture = place->second;
+    const std::optional<std::uint32_t> index = texture_of(path, name);
+    if (!index)
+        return std::nullopt;
+    slot.texture = *index;
     return slot;
 }
 
-void MtlLibrary::parse(std::span<const std::byte> bytes, const std::filesystem::path& folder) {
+/// Returns the texture of an image file. Each file is read once.
+std::optional<std::uint32_t> MtlLibrary::texture_of(const std::filesystem::path& path,
+                                                    const std::string& name) {
+    const auto [place, is_new] = texture_indices_.try_emplace(path.string());
+    if (!is_new)
+        return place->second;
+    try {
+        textures.push_back(decode_texture(files::read(path), VOrigin::Bottom));
+        textures.back().name = name;
+        place->second = static_cast<std::uint32_t>(textures.size() - 1);
+    } catch (const std::runtime_error& error) {
+        warnings_.push_back(fmt::format("the image {} is left out: {}", name, error.what()));
+    }
+    return place->second;
+}
+
+/// Notes statements that change what a surface looks like and are not read.
+void MtlLibrary::note_unread(std::span<const std::string_view> words) {
+    constexpr std::array<std::string_view, 12> Maps = {"map_Ks", "map_Ns", "map_Pr",   "map_Pm",
+                                                       "map_Ke", "map_d",  "map_Bump", "map_bump",
+                                                       "bump",   "norm",   "disp",     "refl"};
+    const std::string_view keyword = words[0];
+    const auto is_only = [&](std::string_view digit) { // 0, 0.0, 1.000 ...
+        return std::all_of(words.begin() + 1, words.end(), [&](std::string_view word) {
+            return word.starts_with(digit) &&
+                   word.find_first_not_of("0.", digit.size()) == std::string_view::npos;
+        });
+    };
+    const bool is_unread = std::find(Maps.begin(), Maps.end(), keyword) != Maps.end() ||
+                           (keyword == "d" && !is_only("1")) ||
+                           ((keyword == "Ke" || keyword == "Tr") && !is_only("0"));
+    if (is_unread && std::find(unread_.begin(), unread_.end(), keyword) == unread_.end())
+        unread_.emplace_back(keyword);
+}
+
+std::vector<std::string> MtlLibrary::take_warnings() {
+    if (!unread_.empty())
+        warnings_.push_back(fmt::format("the materials have {}, which {} not read",
+                                        files::joined(unread_, ", "),
+                                        unread_.size() == 1 ? "is" : "are"));
+    return std::move(warnings_);
+}
+
+/// Reads a statement of a material.
+void MtlLibrary::read_value(Material& material, const TextReader& reader,
+                            const std::filesystem::path& folder) {
+    const std::vector<std::string_view>& words = reader.words();
+    const std::string_view keyword = words[0];
+    if (keyword == "Kd")
+        material.base_color = color(reader);
+    else if (keyword == "Ks")
+        material.specular = color(reader);
+    else if (keyword == "Ns")
+        material.exponent = scalar(reader, 1e6);
+    else if (keyword == "map_Kd")
+        material.base_color_texture = texture(std::span(words).subspan(1), reader, folder);
+    else if (keyword == "Pr" || keyword == "Pm") {
+        (keyword == "Pr" ? material.roughness : material.metallic) = scalar(reader, 1.0);
+        material.model = MaterialModel::MetallicRoughness;
+    } else
+        note_unread(words);
+}
+
+void MtlLibrary::parse(std::span<const std::byte> bytes, const std::string& name,
+                       const std::filesystem::path& folder) {
     TextReader reader(as_text(bytes), '#');
     constexpr std::uint32_t None = 0xffffffffu;
+    // Statements of no material, and those behind one that cannot be read, are skipped.
     std::uint32_t current = None;
     while (reader.next_line()) {
-        const auto& words = reader.words();
-        const std::string_view keyword = words[0];
-        if (keyword == "newmtl") {
+        const std::vector<std::string_view>& words = reader.words();
+        if (words[0] == "newmtl") {
             current = add(rest_of(std::span(words).subspan(1)));
             continue;
         }
-        const bool is_known = keyword == "Kd" || keyword == "Ks" || keyword == "Ns" ||
-                              keyword == "Pr" || keyword == "Pm" || keyword == "map_Kd";
-        if (!is_known)
-            continue;
         if (current == None)
-            reader.fail("newmtl before the first value", excerpt(keyword));
-        Material& material = materials[current];
-        if (keyword == "Kd")
-            material.base_color = color(reader);
-        else if (keyword == "Ks")
-            material.specular = color(reader);
-        else if (keyword == "Ns")
-            material.exponent = scalar(reader, 1e6);
-        else if (keyword == "map_Kd")
-            material.base_color_texture = texture(std::span(words).subspan(1), reader, folder);
-        else {
-            (keyword == "Pr" ? material.roughness : material.metallic) = scalar(reader, 1.0);
-            material.model = MaterialModel::MetallicRoughness;
+            continue;
+        try {
+            read_value(materials[current], reader, folder);
+        } catch (const std::runtime_error& error) {
+            const std::string material = materials[current].name;
+            materials[current] = unreadable_material(material);
+            current = None;
+            warnings_.push_back(
+                fmt::format("the material {} is grey, since it cannot be read: {}: {}", material,
+                            name, error.what()));
         }
     }
 }

@@ -24,20 +24,31 @@ public:
 
     /// Adds a library. It reads Kd, Ks, Ns, Pr, Pm and map_Kd (with -s, -o and -clamp) and skips
     /// the rest. A material with Pr or Pm is MetallicRoughness. A second definition of a material
-    /// replaces the first. A missing library or image goes to `missing`.
-    /// Throws:  std::runtime_error "name: expected X, got Y".
+    /// replaces the first. A missing library or image goes to `missing`. A material that cannot be
+    /// read becomes grey, a broken image is left out, each with a warning.
     void read(const std::string& name);
 
     /// Returns the index of a material. A name that no library defines becomes a white Lambert
-    /// material; it counts as missing if libraries were read.
+    /// material; it counts as missing if libraries were read. It is grey if a library could not be
+    /// read.
     [[nodiscard]] std::uint32_t index_of(const std::string& name);
+
+    /// Returns what the libraries have and the materials do not, a line each. Call it once, at the
+    /// end.
+    [[nodiscard]] std::vector<std::string> take_warnings();
 
     std::vector<Material> materials;
     std::vector<Texture> textures;
     std::vector<std::string> missing;
 
 private:
-    void parse(std::span<const std::byte> bytes, const std::filesystem::path& folder);
+    void parse(std::span<const std::byte> bytes, const std::string& name,
+               const std::filesystem::path& folder);
+    void read_value(Material& material, const class TextReader& reader,
+                    const std::filesystem::path& folder);
+    void note_unread(std::span<const std::string_view> words);
+    [[nodiscard]] std::optional<std::uint32_t> texture_of(const std::filesystem::path& path,
+                                                          const std::string& name);
     [[nodiscard]] std::optional<TextureSlot> texture(std::span<const std::string_view> words,
                                                      const class TextReader& reader,
                                                      const std::filesystem::path& folder);
@@ -45,8 +56,11 @@ private:
 
     std::filesystem::path folder_;
     std::map<std::string, std::uint32_t, std::less<>> indices_;
-    std::map<std::string, std::uint32_t> texture_indices_;
-    bool has_library_ = false;
+    /// Texture of each image file. Empty: the image is broken.
+    std::map<std::string, std::optional<std::uint32_t>> texture_indices_;
+    /// Keywords that are not read.
+    std::vector<std::string> warnings_, unread_;
+    bool has_library_ = false, is_broken_ = false;
 };
 
 } // namespace relumine::mesh

@@ -253,6 +253,8 @@ void ObjReader::gather_materials() {
         soup_.textures = std::move(library_.textures);
     }
     soup_.missing = std::move(library_.missing);
+    for (std::string& warning : library_.take_warnings())
+        soup_.warnings.push_back(std::move(warning));
     if (soup_.groups.empty()) {
         soup_.face_groups.clear();
     } else if (std::find(soup_.face_groups.begin(), soup_.face_groups.end(), NoIndex) !=

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "files/joined.h"
 #include "mesh/text_reader.h"
 
 namespace relumine::mesh::ply_format {
@@ -77,7 +78,8 @@ bool is_float(Type type) {
 }
 
 Header read_header(std::string_view text) {
-    if (!text.starts_with("ply\n") && !text.starts_with("ply\r"))
+    const std::string_view first_line = text.substr(0, text.find_first_of("\r\n"));
+    if (!first_line.starts_with("ply") || first_line.find_first_not_of(" \t", 3) != first_line.npos)
         throw std::runtime_error(fmt::format("expected a PLY file that begins with 'ply', got {}",
                                              excerpt(text.substr(0, 3))));
     Header header;
@@ -101,8 +103,10 @@ Header read_header(std::string_view text) {
             header.elements.push_back({words[1], static_cast<std::uint64_t>(count), {}});
         } else if (words[0] == "property")
             read_property(reader, header);
-        else
-            reader.fail("format 1.0, element, property, comment or obj_info", excerpt(words[0]));
+        else if (words[0] == "format" || words[0] == "element")
+            reader.fail("format 1.0 or 'element NAME NUMBER'", excerpt(files::joined(words, " ")));
+        else if (header.num_unknown++ == 0)
+            header.unknown = words[0];
     }
     return header;
 }

@@ -31,6 +31,9 @@ struct Element {
 struct Header {
     std::string_view format;
     std::vector<Element> elements;
+    /// Number of lines that the format does not have, which are skipped, and the first one's word.
+    std::size_t num_unknown = 0;
+    std::string_view unknown = {};
     /// Size of the header: the data begin there.
     std::size_t num_bytes = 0;
 };

@@ -319,15 +319,23 @@ PolygonSoup read_ply(std::span<const std::byte> bytes) {
     const std::string_view text = as_text(bytes);
     const Header header = ply_format::read_header(text);
     const std::string_view body = text.substr(header.num_bytes);
+    PolygonSoup soup;
     if (header.format == "ascii")
-        return read_body(header, AsciiValues(body));
-    if (header.format == "binary_little_endian")
-        return read_body(header, BinaryValues<std::endian::little>(body));
-    if (header.format == "binary_big_endian")
-        return read_body(header, BinaryValues<std::endian::big>(body));
-    throw std::runtime_error(
-        fmt::format("expected the format ascii, binary_little_endian or binary_big_endian, got {}",
-                    excerpt(header.format)));
+        soup = read_body(header, AsciiValues(body));
+    else if (header.format == "binary_little_endian")
+        soup = read_body(header, BinaryValues<std::endian::little>(body));
+    else if (header.format == "binary_big_endian")
+        soup = read_body(header, BinaryValues<std::endian::big>(body));
+    else
+        throw std::runtime_error(fmt::format(
+            "expected the format ascii, binary_little_endian or binary_big_endian, got {}",
+            excerpt(header.format)));
+    if (header.num_unknown > 0)
+        soup.warnings.push_back(
+            fmt::format("{} of the header that PLY does not have {} skipped, the first of {}",
+                        header.num_unknown == 1 ? "a line" : "lines",
+                        header.num_unknown == 1 ? "is" : "are", excerpt(header.unknown)));
+    return soup;
 }
 
 } // namespace relumine::mesh

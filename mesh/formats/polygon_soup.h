@@ -12,6 +12,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "files/free_memory.h"
 #include "mesh/file_camera.h"
 #include "mesh/normals.h"
 #include "mesh/triangle_mesh.h"
@@ -56,10 +57,12 @@ struct PolygonSoup {
 
 /// The readers, one per format. They take a whole file's bytes, never read outside them, and
 /// allocate no more than a small multiple of their size. Other files that a file names are looked
-/// up from its `folder`. A glTF mesh of several nodes is repeated for each node.
+/// up from its `folder`. A glTF mesh of several nodes is repeated for each node, up to `max_bytes`
+/// in all.
 /// Throws:  std::runtime_error "expected X, got Y"; load() puts the path in front.
 [[nodiscard]] PolygonSoup read_gltf(std::span<const std::byte> bytes,
-                                    const std::filesystem::path& folder);
+                                    const std::filesystem::path& folder,
+                                    std::uint64_t max_bytes = files::free_memory() / 2);
 [[nodiscard]] PolygonSoup read_obj(std::span<const std::byte> bytes,
                                    const std::filesystem::path& folder = {});
 [[nodiscard]] PolygonSoup read_off(std::span<const std::byte> bytes);

@@ -138,6 +138,9 @@ DecodedImage decode(std::span<const std::byte> file, int num_channels) {
             throw std::bad_alloc();
         return image.bytes.get();
     };
+    if (as_text(file).starts_with("\xabKTX 20\xbb"))
+        throw std::runtime_error(
+            "expected a PNG, JPEG, WebP, BMP or TGA image, got KTX 2, which is not read");
     const Format format = format_of(file);
     if (format == Format::Jpeg) {
         decode_jpeg(file, allocate);
@@ -160,11 +163,12 @@ DecodedImage decode(std::span<const std::byte> file, int num_channels) {
           static_cast<std::uint32_t>(std::max(height, 0)));
     image.bytes.reset(
         stbi_load_from_memory(bytes, num_bytes, &width, &height, &channels, num_channels));
+    const char* reason = stbi_failure_reason(); // null for some faults of the data
     if (!image.bytes)
-        throw std::runtime_error(
-            fmt::format("expected a whole image of {} x {} pixels, got broken data: {}",
-                        image.width, image.height,
-                        excerpt(stbi_failure_reason()))); // may quote the file
+        throw std::runtime_error(fmt::format(
+            "expected a whole image of {} x {} pixels, got broken data: {}", image.width,
+            image.height,
+            excerpt(reason == nullptr ? "an unknown fault" : reason))); // may quote the file
     return image;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <glm/mat2x2.hpp>
 #include <glm/vec2.hpp>
@@ -40,6 +41,12 @@ enum class MaterialModel : std::uint8_t {
     SpecularGlossiness,
 };
 
+/// Returns true for a number of 0 to 1. A little outside is a rounding: of a float, or of four
+/// decimals.
+[[nodiscard]] constexpr bool is_fraction(double value) {
+    return value >= -1e-4 && value <= 1.0 + 1e-4;
+}
+
 /// One material. Colours are linear RGB.
 struct Material {
     std::string name = {};
@@ -65,5 +72,10 @@ struct Material {
 
     bool operator==(const Material&) const = default;
 };
+
+/// Returns what stands for a material that cannot be read: grey, Lambert.
+[[nodiscard]] inline Material unreadable_material(std::string name) {
+    return {.name = std::move(name), .base_color = glm::vec3(0.5f)};
+}
 
 } // namespace relumine::mesh

@@ -97,16 +97,19 @@ Texture decode_alpha_texture(std::span<const std::byte> file, VOrigin origin) {
     });
 }
 
+glm::vec3 texel(const Texture& texture, std::uint32_t column, std::uint32_t row, bool is_srgb) {
+    return decoded(texture.texels[std::size_t{row} * texture.width + column], is_srgb);
+}
+
 glm::vec3 sample(const Texture& texture, const TextureSlot& slot, const glm::vec2& mesh_uv) {
     const glm::vec2 uv = slot.uv_from_mesh_uv * mesh_uv + slot.uv_offset;
     const Pair u = neighbours(uv.x, texture.width, slot.wrap[0]);
     const Pair v = neighbours(uv.y, texture.height, slot.wrap[1]);
-    const auto texel = [&](std::uint32_t column, std::uint32_t row) {
-        return decoded(texture.texels[std::size_t{row} * texture.width + column], slot.is_srgb);
+    const auto at = [&](std::uint32_t column, std::uint32_t row) {
+        return texel(texture, column, row, slot.is_srgb);
     };
-    return glm::mix(glm::mix(texel(u.first, v.first), texel(u.second, v.first), u.weight),
-                    glm::mix(texel(u.first, v.second), texel(u.second, v.second), u.weight),
-                    v.weight);
+    return glm::mix(glm::mix(at(u.first, v.first), at(u.second, v.first), u.weight),
+                    glm::mix(at(u.first, v.second), at(u.second, v.second), u.weight), v.weight);
 }
 
 } // namespace relumine::mesh

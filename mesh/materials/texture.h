@@ -47,6 +47,10 @@ struct Texture {
 /// Throws:  as decode_texture().
 [[nodiscard]] Texture decode_alpha_texture(std::span<const std::byte> file, VOrigin origin);
 
+/// Returns the value of a texel, each channel in [0, 1].
+[[nodiscard]] glm::vec3 texel(const Texture& texture, std::uint32_t column, std::uint32_t row,
+                              bool is_srgb);
+
 /// Returns the texture's value at a uv of the mesh, each channel in [0, 1]. Values are bilinear
 /// between texel centres, which lie at (i + 0.5) / width. A uv that is not finite counts as 0.
 [[nodiscard]] glm::vec3 sample(const Texture& texture, const TextureSlot& slot,

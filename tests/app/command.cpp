@@ -174,6 +174,8 @@ AppTest::AppTest() {
     folder_ = fs::path(testing::TempDir()) / name;
     fs::remove_all(folder_);
     fs::create_directories(folder_);
+    // Scenes are kept in the test's folder, where the program runs.
+    ::setenv("RELUMINE_CACHE", "cache", 1); // NOLINT(concurrency-mt-unsafe)
 }
 
 AppTest::~AppTest() {

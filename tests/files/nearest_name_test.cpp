@@ -26,6 +26,15 @@ TEST(NearestName, IsNoneForOtherWords) {
     EXPECT_EQ(nearest_name("--eye", std::span<const std::string_view>()), "");
 }
 
+TEST(NearestName, OfAnotherProgramIsUnderstood) {
+    EXPECT_EQ(nearest_name("--rotation", Names), "--rotate");
+    EXPECT_EQ(nearest_name("--brightness", Names), "--exposure");
+    EXPECT_EQ(nearest_name("--panorama", Names), "") << "no such name here";
+    constexpr std::array<std::string_view, 3> Layouts = {"latlong", "cube", "angular"};
+    EXPECT_EQ(did_you_mean("equirectangular", Layouts), "; did you mean latlong?");
+    EXPECT_EQ(nearest_name("lightprobe", Layouts), "angular");
+}
+
 TEST(NearestName, IsAQuestionAtTheEndOfAMessage) {
     EXPECT_EQ(did_you_mean("--rotat", Names), "; did you mean --rotate?");
     EXPECT_EQ(did_you_mean("--zzz", Names), "");

@@ -291,6 +291,45 @@ TEST(GltfCompression, MeshoptIsExactAndFiltersAreUndone) {
               (std::vector<Triangle>{{0, 17, 1}, {17, 18, 1}, {1, 18, 2}}));
 }
 
+/// The ratified name of the extension, and its filter of colours.
+TEST(GltfCompression, KhrMeshoptAndItsColors) {
+    const DracoSource source = packable();
+    Model model = packed(source);
+    const std::size_t n = source.positions.size();
+    // Y, Co, Cg of seven bits and alpha of six: 127 and 63 stand for 255; the bit 64 says seven.
+    std::vector<std::array<std::uint8_t, 4>> colors(n, {127, 0, 0, 127}); // white
+    colors[0] = {32, 63, 224, 127};                                       // red: r = y + co - cg
+    colors[1] = {64, 0, 63, 127};                                         // green: y + cg
+    const std::string data = meshopt_attributes(as_bytes(colors), 4);
+    const std::size_t view = model.add_view(data);
+    Json extension = {{"buffer", 0},
+                      {"byteOffset", model.json["bufferViews"][view]["byteOffset"]},
+                      {"byteLength", data.size()},
+                      {"byteStride", 4},
+                      {"count", n},
+                      {"mode", "ATTRIBUTES"},
+                      {"filter", "COLOR"}};
+    model.json["bufferViews"][view] = {{"buffer", 1},
+                                       {"byteLength", 4 * n},
+                                       {"extensions", {{"EXT_meshopt_compression", extension}}}};
+    model.json["accessors"].push_back({{"bufferView", view},
+                                       {"type", "VEC4"},
+                                       {"componentType", 5121},
+                                       {"normalized", true},
+                                       {"count", n}});
+    model.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+        model.json["accessors"].size() - 1;
+    Model other = model;
+    other.json = Json::parse(
+        replace_all(model.json.dump(), "EXT_meshopt_compression", "KHR_meshopt_compression"));
+    const TriangleMesh mesh = gltf(other.embedded());
+    EXPECT_EQ(mesh.positions, source.positions);
+    EXPECT_THAT(mesh.warnings, ElementsAre());
+    EXPECT_LT(glm::distance(mesh.colors[0], glm::vec3(1, 0, 0)), 0.01f);
+    EXPECT_LT(glm::distance(mesh.colors[1], glm::vec3(0, 1, 0)), 0.02f);
+    EXPECT_EQ(mesh.colors[2], glm::vec3(1));
+}
+
 TEST(GltfCompression, BrokenMeshoptDataAreOneLine) {
     const Model good = packed(packable());
     const auto refused = [&](std::size_t view, const char* key, const Json& value,

@@ -1,7 +1,11 @@
 #include "relumine/mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fstream>
+
+#include <fmt/format.h>
 
 #include "files/hash.h"
 #include "mesh/floor.h"
@@ -40,6 +44,30 @@ TEST_F(MeshFile, IsTurnedUpright) {
         EXPECT_EQ(turned.geometry.normals[i], glm::vec3(0, 0, -1));
         EXPECT_EQ(turned.geometry.positions[i].y, squares.positions[i].z);
     }
+}
+
+/// A cube of STL: eight corners, each with the normals of three faces.
+TEST_F(MeshFile, OfStlHasSharpEdgesUnlessTheyAreToBeSmooth) {
+    std::string text = "solid s\n";
+    const std::array<std::array<int, 4>, 6> faces = {
+        {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
+    for (const auto& face : faces)
+        for (const auto& corners :
+             {std::array{face[0], face[1], face[2]}, std::array{face[0], face[2], face[3]}}) {
+            text += "facet normal 0 0 0\nouter loop\n";
+            for (const int corner : corners)
+                text += fmt::format("vertex {} {} {}\n", corner & 1, corner >> 1 & 1, corner >> 2);
+            text += "endloop\nendfacet\n";
+        }
+    const std::filesystem::path path = file("cube.stl");
+    std::ofstream(path) << text << "endsolid s\n";
+    const Mesh sharp = load_mesh(path);
+    EXPECT_EQ(sharp.geometry.num_vertices(), 24u);
+    for (const glm::vec3& normal : sharp.geometry.normals)
+        EXPECT_NEAR(std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)}), 1.0f,
+                    1e-6f);
+    EXPECT_EQ(load_mesh(path, {.normals = mesh::NormalSource::Smooth}).geometry.num_vertices(), 8u);
+    EXPECT_EQ(load_mesh(path, {.crease = 120.0f}).geometry.num_vertices(), 8u);
 }
 
 TEST_F(MeshFile, RefinedKeepsTheFloorLastAndTheBlockersAsTheyWere) {

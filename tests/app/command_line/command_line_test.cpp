@@ -241,6 +241,21 @@ TEST_F(CommandLineTest, APatternWithoutQuotesIsToldSo) {
            "ENV: expected one name, got 2 files; put a pattern in quotes: 'f.*.hdr'");
     misuse({"relight", "scene.prt", "f.1.hdr", "stray", "-o", "x.npy"},
            "ENV: expected no argument more, got 'stray'");
+    // A name with blanks, without quotes; words of other programs; the wrong way round; a picture.
+    write("my white sky.hdr", white_hdr());
+    misuse({"relight", "scene.prt", "my", "white", "sky.hdr", "-o", "x.npy"},
+           "put a name with blanks in quotes: 'my white sky.hdr'");
+    misuse({"relight", "scene.prt", "f.1.hdr", "--rotation", "9", "-o", "x.npy"},
+           "did you mean --rotate?");
+    misuse({"relight", "scene.prt", "f.1.hdr", "--layout", "equirectangular", "-o", "x.npy"},
+           "did you mean latlong?");
+    misuse({"relight", "f.1.hdr", "scene.prt", "-o", "x.npy"},
+           "SCENE: expected a scene, got the environment f.1.hdr: the scene stands first");
+    write("sky.jpg", "\xff\xd8\xff\xe0 and more");
+    fail({"info", "sky.jpg"}, {"sky.jpg: expected"});
+    write("jpeg.hdr", "\xff\xd8\xff\xe0 and more");
+    fail({"relight", "scene.prt", "jpeg.hdr", "-o", "x.npy"}, {"holds no light above white"});
+    fail({"relight", "scene.prt", "scene.prt", "-o", "x.npy"}, {"the scene stands first"});
 }
 
 TEST_F(CommandLineTest, HelpIsACommandToo) {

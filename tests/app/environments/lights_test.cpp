@@ -142,6 +142,17 @@ TEST_F(Lights, ChosenForASceneAndItsErrorSaid) {
     const Result said =
         succeed({"lights", "lamp.hdr", "-n", "4", "--scene", "scene.prt", "-o", "lights.json"});
     EXPECT_THAT(said.out, HasSubstr("% relative L2 on this asset"));
+    // Materials change what is reflected, not what arrives: the lights and their error are the
+    // same.
+    succeed({"precompute", "mesh.obj", "-o", "grey.prt", "--face-resolution", "16", "-q",
+             "--material", "lambert:albedo=0.3"});
+    const auto of_grey = succeed({"lights", "lamp.hdr", "-n", "4", "--method", "transfer",
+                                  "--scene", "grey.prt", "-o", "lights.json", "--json"})
+                             .json();
+    EXPECT_EQ(of_grey["lights"], transfer["lights"]);
+    EXPECT_EQ(of_grey["relative_l2"], transfer["relative_l2"]);
+    EXPECT_THAT(succeed({"lights", "lamp.hdr", "-n", "1", "-o", "lights.json"}).out,
+                HasSubstr("1 light by"));
     misuse({"lights", "lamp.hdr", "--method", "transfer", "-o", "lights.json"},
            "expected --scene SCENE.prt with transfer");
     misuse({"lights", "lamp.hdr", "-n", "1,2", "-o", "a.json"});

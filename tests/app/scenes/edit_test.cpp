@@ -144,6 +144,14 @@ TEST_F(Edit, WhoShowsTheLightOfThatPoint) {
     EXPECT_NEAR(map["mean_radiance"][0].get<double>() * 4.0 * 3.14159265, 2.0, 0.03);
     succeed({"edit", "scene.prt", "white.hdr", "layers.json", "--who", "1,0,0", "-o", "who.png"});
     EXPECT_EQ(read("who.png").substr(1, 3), "PNG");
+    // The lamp is the only light, and on the other side.
+    write("black.hdr", hdr_file(64, 32, [](std::uint32_t, std::uint32_t) {
+              return Rgb{0.0f, 0.0f, 0.0f};
+          }));
+    EXPECT_NE(succeed({"edit", "scene.prt", "black.hdr", "--disc", "0,1,0", "--who", "1,0,0", "-o",
+                       "who.png"})
+                  .err.find("who.png: black, since no light reaches vertex"),
+              std::string::npos);
 }
 
 TEST_F(Edit, LitByShowsWhatARegionLights) {

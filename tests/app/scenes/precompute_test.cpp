@@ -231,6 +231,16 @@ TEST_F(Precompute, StlHasZUpByCustomAndSaysSo) {
         EXPECT_EQ(said.find("+Z is up, by the custom of .stl") != std::string::npos, up.empty());
         return npy_values(read("flat.npy")).at(0)[0] > 1.0f;
     };
+    const auto said = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> command = {"precompute", "flat.stl",          "-o",
+                                            "flat.prt",   "--face-resolution", "16"};
+        command.insert(command.end(), more.begin(), more.end());
+        return succeed(command).out;
+    };
+    EXPECT_NE(said({}).find("edges over 40 degrees are sharp, by the custom of .stl"),
+              std::string::npos);
+    EXPECT_EQ(said({"--normals", "smooth"}).find("edges over"), std::string::npos);
+    EXPECT_EQ(said({"--crease", "30"}).find("edges over"), std::string::npos);
     EXPECT_TRUE(top_is_lit({}));
     EXPECT_TRUE(top_is_lit({"--up", "z"}));
     EXPECT_FALSE(top_is_lit({"--up", "y"}));

@@ -378,8 +378,8 @@ TEST_F(Relight, AMeshIsPrecomputedOnceAndKept) {
 }
 
 TEST_F(Relight, AnotherKindOfFileIsToldApart) {
-    fail({"relight", "white.hdr", "scene.prt", "-o", "new.npy"},
-         {"white.hdr", "expected a .prt scene"});
+    misuse({"relight", "white.hdr", "scene.prt", "-o", "new.npy"},
+           "SCENE: expected a scene, got the environment white.hdr: the scene stands first");
     fail({"relight", "scene.prt", "mesh.obj", "-o", "new.npy"}, {"mesh.obj", "expected"});
     fail({"relight", "scene.prt", "scene.prt", "-o", "new.npy"}, {"scene.prt", "expected"});
 }
@@ -455,6 +455,11 @@ TEST_F(Relight, AGroundBrighterThanTheSkyIsDoubted) {
     EXPECT_NE(succeed({"info", "down.exr"}).out.find("--flip y"), std::string::npos);
     EXPECT_EQ(succeed({"info", "down.exr", "--json"}).json()["upside_down"], true);
     EXPECT_EQ(warnings("down.exr", "--flip", "y"), "");
+    // A map whose sun lies beside it is darker above, and stands upright all the same.
+    write("down.sun.json", "{}");
+    EXPECT_EQ(warnings("down.exr", "--rotate", "0"), "");
+    EXPECT_EQ(succeed({"info", "down.exr"}).out.find("--flip y"), std::string::npos);
+    EXPECT_EQ(succeed({"info", "down.exr", "--json"}).json()["upside_down"], false);
 }
 
 } // namespace

@@ -55,6 +55,14 @@ TEST(HdrFile, ExposureAndColorCorrectionAreDividedOut) {
     EXPECT_EQ(image.remarks.size(), 1u);
 }
 
+/// FreeImage writes EXPOSURE=0 where nothing was set.
+TEST(HdrFile, AnExposureOfZeroIsNone) {
+    const ImageFile image = decode("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=0\n\n-Y 1 +X 1\n" +
+                                   pixel(128, 64, 0, 129));
+    EXPECT_EQ(image.pixels[0], glm::vec3(1.0f, 0.5f, 0.0f));
+    EXPECT_THAT(image.remarks, testing::ElementsAre("EXPOSURE=0 of the header counts as 1"));
+}
+
 TEST(HdrFile, RowsAndColumnsMayRunTheOtherWay) {
     const std::string pixels =
         pixel(128, 0, 0, 129) + pixel(0, 128, 0, 129) + pixel(0, 0, 128, 129) + pixel(0, 0, 0, 0);
@@ -79,8 +87,8 @@ TEST(HdrFile, OtherContentIsRefusedByName) {
               "name: expected a resolution line such as -Y 512 +X 1024, got 'hello'");
     EXPECT_EQ(refusal(Header + "-Y 2 +X 1\nabcd"),
               "name: expected 2 rows, got a file that ends in row 1");
-    EXPECT_EQ(refusal("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=0\n\n-Y 1 +X 1\nabcd"),
-              "name: expected a positive exposure, got 0");
+    EXPECT_EQ(refusal("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=-1\n\n-Y 1 +X 1\nabcd"),
+              "name: expected a positive exposure, got -1");
     EXPECT_NE(refusal("#?RADIANCE\nEXPOSURE=nan\n\n-Y 1 +X 1\nabcd"), "");
     EXPECT_NE(refusal("#?RADIANCE\nEXPOSURE=x\n\n-Y 1 +X 1\nabcd"), "");
     EXPECT_NE(refusal(Header + "-Y 1 +X 2\n" + pixel(1, 1, 1, 1) + "abcd"), "")

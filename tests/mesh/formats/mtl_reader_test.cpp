@@ -137,24 +137,48 @@ TEST_F(MtlTest, TheFloorHasItsOwn) {
     EXPECT_THAT(plain.triangle_groups, ElementsAre(0, 1, 1));
 }
 
-TEST_F(MtlTest, RefusesWhatItWouldMisread) {
-    const auto refused = [this](const std::string& mtl, const std::string& part) {
-        expect_refusal([&] { return with_mtl(mtl); }, part);
+/// Neither a material nor an image ends the load: the surface is grey, or without its texture.
+TEST_F(MtlTest, WhatCannotBeReadIsGreyWithAWarning) {
+    const Material grey{.name = "m", .base_color = glm::vec3(0.5f)};
+    const auto warns = [&](const std::string& mtl, const std::string& part) {
+        const TriangleMesh mesh = with_mtl(mtl + "newmtl n\nKd 0.25\n", "usemtl n\n");
+        EXPECT_THAT(mesh.warnings, ElementsAre(testing::HasSubstr(part))) << mtl;
+        EXPECT_THAT(mesh.materials, testing::Contains(grey)) << mtl;
     };
-    refused("Kd 1 1 1\n", "mesh.obj: a.mtl: expected newmtl before the first value in line 1");
-    refused("newmtl m\nKd 1 1\n", "1 or 3 numbers of Kd in line 2, got 2");
-    refused("newmtl m\nKd 1 x 1\n", "a number in line 2, got 'x'");
-    refused("newmtl m\nKd spectral file.rfl\n", "line 2");
-    refused("newmtl m\nKs 1 1 1.5\n", "a number of 0 to 1 in line 2, got '1.5'");
-    refused("newmtl m\nKd nan\n", "'nan'");
-    refused("newmtl m\nNs -1\n", "'-1'");
-    refused("newmtl m\nNs\n", "1 number of Ns");
-    refused("newmtl m\nPr 2\n", "'2'");
-    refused("newmtl m\nmap_Kd\n", "file name of a texture");
-    refused("newmtl m\nmap_Kd -o\n", "arguments of -o");
+    warns("newmtl m\nKd 1 1\n",
+          "the material m is grey, since it cannot be read: a.mtl: expected 1 "
+          "or 3 numbers of Kd in line 2, got 2");
+    warns("newmtl m\nKd 1 x 1\nKs 1\nPm 1\n", "a number in line 2, got 'x'");
+    warns("newmtl m\nKd spectral file.rfl\n", "line 2");
+    warns("newmtl m\nKs 1 1 1.5\n", "a number of 0 to 1 in line 2, got '1.5'");
+    warns("newmtl m\nKd nan\n", "'nan'");
+    warns("newmtl m\nNs -1\n", "'-1'");
+    warns("newmtl m\nNs\n", "1 number of Ns");
+    warns("newmtl m\nPr 2\n", "'2'");
+    warns("newmtl m\nmap_Kd\n", "file name of a texture");
+    warns("newmtl m\nmap_Kd -o\n", "arguments of -o");
+    warns(std::string("newmtl m\0\n", 10), "a.mtl cannot be read, its materials are grey: ");
+
     static_cast<void>(write("broken.png", four_colors().substr(0, 40)));
-    refused("newmtl m\nmap_Kd broken.png\n", "a.mtl: broken.png: expected");
-    refused(std::string("newmtl m\0\n", 10), "NUL");
+    const TriangleMesh mesh = with_mtl("newmtl m\nKd 0.25\nmap_Kd broken.png\n"
+                                       "newmtl n\nmap_Kd broken.png\n");
+    EXPECT_THAT(mesh.warnings,
+                ElementsAre(testing::StartsWith("the image broken.png is left out: expected")));
+    EXPECT_EQ(mesh.materials[0], (Material{.name = "m", .base_color = glm::vec3(0.25f)}));
+    EXPECT_TRUE(mesh.textures.empty());
+}
+
+TEST_F(MtlTest, RoundingsAboveOneAreOne) {
+    const TriangleMesh mesh = with_mtl("newmtl m\nKd 1.00000012 1.0001 -0.00001\n");
+    EXPECT_EQ(mesh.materials[0], (Material{.name = "m", .base_color = {1, 1, 0}}));
+    EXPECT_THAT(mesh.warnings, ElementsAre());
+}
+
+TEST_F(MtlTest, SaysWhatIsNotRead) {
+    EXPECT_THAT(with_mtl("newmtl m\nKa 1 1 1\nKe 0 0 0\nd 1.000\nTr 0.0\nillum 2\n").warnings,
+                ElementsAre());
+    EXPECT_THAT(with_mtl("newmtl m\nKe 1 0 0\nd 0.5\nmap_Bump a.png\nnewmtl n\nd 0.5\n").warnings,
+                ElementsAre("the materials have Ke, d, map_Bump, which are not read"));
 }
 
 } // namespace

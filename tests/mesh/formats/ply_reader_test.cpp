@@ -40,6 +40,22 @@ TEST_P(PlyReaderTest, LineEndsOfTheHeader) {
     expect_box(ply(replace_all(text.substr(0, body), "\n", "\r") + text.substr(body)));
     expect_box(ply(replace_all(text, "comment a box", "comment end_header")));
     expect_box(ply(replace_all(text, "end_header\n", "end_header \n")));
+    expect_box(ply(replace_all(text, "ply\n", "ply \t\n")));
+}
+
+/// Other tools skip lines that they do not know.
+TEST_P(PlyReaderTest, UnknownLinesOfTheHeaderAreSkippedWithAWarning) {
+    const std::string text = box_ply({.format = GetParam()});
+    const TriangleMesh mesh = ply(replace_all(text, "element vertex",
+                                              "obj_info num_cols 4\nTextureFile a.png\n"
+                                              "element vertex"));
+    expect_box(mesh);
+    EXPECT_THAT(mesh.warnings,
+                testing::ElementsAre("a line of the header that PLY does not have is skipped, the "
+                                     "first of 'TextureFile'"));
+    const TriangleMesh two = ply(replace_all(text, "element vertex", "a\nb\nelement vertex"));
+    EXPECT_THAT(two.warnings, testing::ElementsAre("lines of the header that PLY does not have are "
+                                                   "skipped, the first of 'a'"));
 }
 
 TEST_P(PlyReaderTest, RefusesTooMuchAndTooLittle) {
