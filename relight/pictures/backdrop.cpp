@@ -40,8 +40,7 @@ glm::vec3 bilinear(const EnvironmentImage& image, const glm::dvec2& place, bool 
         const double own =
             (right != 0 ? part.x : 1.0 - part.x) * (down != 0 ? part.y : 1.0 - part.y);
         std::int64_t x = static_cast<std::int64_t>(corner.x) + right;
-        // The place is at most one pixel outside, so no division is needed, which would take a tenth
-        // of a whole picture's time.
+        // The place is at most one pixel outside: no division is needed.
         if (is_closed)
             x = x < 0 ? x + width : x >= width ? x - width : x;
         x = std::clamp<std::int64_t>(x, 0, width - 1);
