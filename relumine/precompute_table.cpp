@@ -226,61 +226,61 @@ OptionRow material_row(std::vector<SurfaceMaterial>& materials) {
 }
 
 OptionTable options_of(PrecomputeOptions& o) {
-    return {row("--tolerance", o.tolerance,
-                fmt::format("RMS error of the transfer allowed within a cluster, 1/sr ({}; {} where "
-                            "the mesh or its floor is refined by itself)",
-                            prt::PrecomputeOptions{}.tolerance, ToleranceOfRefined),
-                {.min = 0, .max = 1e6}),
-            row("--epsilon", o.epsilon,
-                "the paper's form of the tolerance: grows lax with the mesh's size",
-                {.min = 0, .max = 1e6, .excludes = "--tolerance"}),
-            row("--min-depth", o.min_level, "every cell is split at least this often",
-                {.min = 0, .max = prt::MaxLevel}),
-            row("--face-resolution", o.face_resolution,
-                "R: cells stop at single texels of a 6 x R x R environment",
-                {.min = 1, .max = 1u << prt::MaxLevel}),
-            row("--bias", o.bias, "lift of the rays' origins off the surface, in the mesh's unit",
-                {.min = 0, .max = LargestPosition}),
-            row("--engine", o.engine,
-                "how visibility is traced: whole beams of rays, or each ray with Embree; the "
-                "results are the same"),
-            row<ReceiversText>("--receivers", o.receivers,
-                               "what is lit: vertices, pixels:WxH[:N] (of --view, N x N samples "
-                               "each) or texels:WxH (a lightmap on the mesh's uvs)",
-                               {.example = "texels:64x32"}),
-            row("--no-refine", o.no_refine,
-                "keep the mesh's vertices; otherwise a coarse mesh gets more where its light needs "
-                "them"),
-            row<ViewText>("--view", o.view,
-                          "the camera of pixels, and the eye that highlights are for: "
-                          "EX,EY,EZ,TX,TY,TZ[,FOV] (eye, target, vertical degrees: 35) or auto",
-                          {.example = "0,1,5,0,0,0,40"}),
-            row("--glossy-tolerance", o.glossy_tolerance,
-                "relative error of a highlight under a small light anywhere",
-                {.min = 1e-4, .max = 1}),
-            row<MemoryText>("--max-memory", o.max_memory,
-                            "refuse the work when it would take more memory, stop when it does: "
-                            "500M, 4G",
-                            {.example = "4G"}),
-            row("--bounces", o.bounce_tolerance,
-                "light goes on from surface to surface; the standard error of one bounce under a "
-                "sun or a white sky of radiance 1, 0.01 when it is not given; 0: direct light "
-                "alone. Without the option vertices bounce light where they see other surfaces",
-                {.min = 0,
-                 .max = 1,
-                 .type = "[ERROR]",
-                 .bare = fmt::format("{}", prt::BounceOptions{}.tolerance)}),
-            row("--two-sided", o.two_sided_bounces,
-                "backs of surfaces send the bounced light that their fronts do",
-                {.needs = "--bounces"}),
-            row("--resume", o.resume,
-                "go on from the last checkpoint of the same work, SCENE.prt.checkpoint, where "
-                "there is one; without it the work begins anew and its checkpoints replace that "
-                "one"),
-            row("--checkpoint-seconds", o.checkpoint_seconds,
-                "time between two checkpoints; 0: none. The last goes away when the scene is "
-                "written",
-                {.min = 0, .max = 86400})};
+    return {
+        row("--tolerance", o.tolerance,
+            fmt::format("RMS error of the transfer allowed within a cluster, 1/sr ({}; {} where "
+                        "the mesh or its floor is refined by itself)",
+                        prt::PrecomputeOptions{}.tolerance, ToleranceOfRefined),
+            {.min = 0, .max = 1e6}),
+        row("--epsilon", o.epsilon,
+            "the paper's form of the tolerance: grows lax with the mesh's size",
+            {.min = 0, .max = 1e6, .excludes = "--tolerance"}),
+        row("--min-depth", o.min_level, "every cell is split at least this often",
+            {.min = 0, .max = prt::MaxLevel}),
+        row("--face-resolution", o.face_resolution,
+            "R: cells stop at single texels of a 6 x R x R environment",
+            {.min = 1, .max = 1u << prt::MaxLevel}),
+        row("--bias", o.bias, "lift of the rays' origins off the surface, in the mesh's unit",
+            {.min = 0, .max = LargestPosition}),
+        row("--engine", o.engine,
+            "how visibility is traced: whole beams of rays, or each ray with Embree; the "
+            "results are the same"),
+        row<ReceiversText>("--receivers", o.receivers,
+                           "what is lit: vertices, pixels:WxH[:N] (of --view, N x N samples "
+                           "each) or texels:WxH (a lightmap on the mesh's uvs)",
+                           {.example = "texels:64x32"}),
+        row("--no-refine", o.no_refine,
+            "keep the mesh's vertices; otherwise a coarse mesh gets more where its light needs "
+            "them"),
+        row<ViewText>("--view", o.view,
+                      "the camera of pixels, and the eye that highlights are for: "
+                      "EX,EY,EZ,TX,TY,TZ[,FOV] (eye, target, vertical degrees: 35) or auto",
+                      {.example = "0,1,5,0,0,0,40"}),
+        row("--glossy-tolerance", o.glossy_tolerance,
+            "relative error of a highlight under a small light anywhere", {.min = 1e-4, .max = 1}),
+        row<MemoryText>("--max-memory", o.max_memory,
+                        "refuse the work when it would take more memory, stop when it does: "
+                        "500M, 4G",
+                        {.example = "4G"}),
+        row("--bounces", o.bounce_tolerance,
+            "light goes on from surface to surface; the standard error of one bounce under a "
+            "sun or a white sky of radiance 1, 0.01 when it is not given; 0: direct light "
+            "alone. Without the option vertices bounce light where they see other surfaces",
+            {.min = 0,
+             .max = 1,
+             .type = "[ERROR]",
+             .bare = fmt::format("{}", prt::BounceOptions{}.tolerance)}),
+        row("--two-sided", o.two_sided_bounces,
+            "backs of surfaces send the bounced light that their fronts do",
+            {.needs = "--bounces"}),
+        row("--resume", o.resume,
+            "go on from the last checkpoint of the same work, SCENE.prt.checkpoint, where "
+            "there is one; without it the work begins anew and its checkpoints replace that "
+            "one"),
+        row("--checkpoint-seconds", o.checkpoint_seconds,
+            "time between two checkpoints; 0: none. The last goes away when the scene is "
+            "written",
+            {.min = 0, .max = 86400})};
 }
 
 void check(const PrecomputeOptions& options) {

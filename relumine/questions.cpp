@@ -135,11 +135,16 @@ std::vector<prt::MeshPoint> points_of_picture(const LitScene& lit, std::size_t m
     const Scene& scene = lit.scene();
     if (most == 0)
         return {};
-    const prt::Receivers seen =
-        prt::pixel_receivers(
-            scene.mesh, lit.rays().of_mesh(),
-            {.camera = relight::framed(scene.mesh), .width = Width, .height = Height})
-            .receivers;
+    prt::Receivers seen;
+    try {
+        seen = prt::pixel_receivers(
+                   scene.mesh, lit.rays().of_mesh(),
+                   {.camera = relight::framed(scene.mesh), .width = Width, .height = Height})
+                   .receivers;
+    } catch (const std::invalid_argument&) {
+        // There is nothing to see, as of a mesh in one point.
+        return {};
+    }
     std::vector<prt::MeshPoint> fronts;
     for (std::size_t i = 0; i < seen.size(); ++i)
         if (glm::dot(seen.normals[i], prt::shading_normal(scene.mesh, seen.points[i])) > 0.0f)

@@ -61,6 +61,11 @@ struct RefineReport {
 /// are short in the scene, middles and new vertices are traced only in directions on which the ends
 /// do not agree.
 ///
+/// Where light is asked, a new vertex that is hidden in another solid moves along an edge to where
+/// light begins, if the surface around it is flat and goes on to all sides: its darkness would
+/// spread over the triangles beside it. So edges of four times min_edge with such an end are not
+/// split, and a few edges become shorter than min_edge. With `curved` nothing moves.
+///
 /// Vertices of the mesh keep index and position; its triangles come first, too, each cut down.
 ///
 /// Cost:    O(n log n).
