@@ -14,7 +14,7 @@
 #include "cubemap/cube_map.h"
 #include "cubemap/texel_rectangle.h"
 #include "lights/light_list.h"
-#include "prt/glossy/brdf.h"
+#include "prt/glossy/lobes.h"
 #include "prt/transfer/transfer.h"
 #include "relight/binned_environment.h"
 #include "relight/sharp/shadow_rays.h"

@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "prt/glossy/brdf.h"
+#include "prt/glossy/lobes.h"
 #include "relight/pictures/backdrop.h"
 #include "relight/sharp/sharp_lights.h"
 

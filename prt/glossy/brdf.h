@@ -14,24 +14,9 @@
 #include <glm/vec3.hpp>
 
 #include "prt/glossy/lobe_list.h"
+#include "prt/glossy/lobes.h"
 
 namespace relumine::prt {
-
-/// The scalar lobes for one light: BRDF times cosine without colours. Also used for sums of
-/// radiance times lobe.
-///
-/// Unit:    1/sr.
-template<typename Value>
-struct Lobes {
-    /// D
-    Value diffuse{};
-    /// Dc: the part that Fresnel takes from D.
-    Value diffuse_grazing{};
-    /// S
-    Value specular{};
-    /// Sc: the part of S that Fresnel makes white.
-    Value specular_grazing{};
-};
 
 /// Returns the lobes for unit vectors n (normal), to_eye and w (to the light). Always finite.
 ///

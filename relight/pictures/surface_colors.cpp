@@ -1,5 +1,7 @@
 #include "relight/pictures/surface_colors.h"
 
+#include "prt/glossy/brdf.h"
+
 #include <algorithm>
 #include <array>
 

@@ -8,7 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "mesh/triangle_mesh.h"
-#include "prt/glossy/brdf.h"
+#include "prt/glossy/lobes.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/receivers/surface.h"
 

@@ -58,7 +58,8 @@ TEST_F(Info, ExtensionsInCapitals) {
 }
 
 TEST_F(Info, CheckFindsEveryFlippedBit) {
-    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
+    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q",
+             "--no-refine"});
     EXPECT_NE(succeed({"info", "scene.prt", "--check"}).out.find("checked: whole and sound"),
               std::string::npos);
     EXPECT_EQ(succeed({"info", "scene.prt", "--check", "--json"}).json()["checked"], true);
@@ -82,7 +83,7 @@ TEST_F(Info, CheckFindsEveryFlippedBit) {
 
 TEST_F(Info, Scene) {
     succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "--tolerance",
-             "0.25", "--min-depth", "2", "--bias", "0.125", "--floor", "4"});
+             "0.25", "--min-depth", "2", "--bias", "0.125", "--floor", "4", "--no-refine"});
     const nlohmann::json info = succeed({"info", "scene.prt", "--json"}).json();
     EXPECT_EQ(info["kind"], "scene");
     EXPECT_EQ(info["vertices"], 22);
@@ -94,7 +95,7 @@ TEST_F(Info, Scene) {
     EXPECT_EQ(info["source"], "mesh.obj");
     EXPECT_FALSE(info.contains("epsilon"));
     succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "--epsilon",
-             "0.5"});
+             "0.5", "--no-refine"});
     EXPECT_EQ(succeed({"info", "scene.prt", "--json"}).json()["epsilon"], 0.5);
 }
 

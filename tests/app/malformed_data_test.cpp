@@ -33,7 +33,7 @@ protected:
     bool is_read_or_refused(const std::vector<std::string>& arguments, const fs::path& file) const {
         const std::vector<std::string> before = files();
         const Result result = relumine(arguments);
-        EXPECT_LT(result.seconds, 1.0 * SanitizerFactor) << file;
+        EXPECT_LT(result.seconds, 5.0 * SanitizerFactor) << file;
         EXPECT_LT(result.peak_bytes, 200'000'000u * SanitizerFactor) << file;
         EXPECT_EQ(result.signal, 0) << file;
         if (result.exit_code == 0) {
@@ -72,7 +72,8 @@ TEST_F(MalformedData, Environments) {
     if (environments.empty())
         GTEST_SKIP() << absent_data("envs/robustness");
     write("mesh.obj", octahedron_obj());
-    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
+    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q",
+             "--no-refine"});
     for (const fs::path& environment : environments)
         for (const std::vector<std::string>& more : {std::vector<std::string>{},
                                                      {"--layout", "latlong"},

@@ -123,16 +123,19 @@ private:
 TEST_F(FullDisk, LeavesTheOldFile) {
     write("mesh.obj", octahedron_obj());
     write("white.hdr", white_hdr());
-    succeed({"precompute", "mesh.obj", "-o", "disk/scene.prt", "--face-resolution", "16", "-q"});
+    succeed({"precompute", "mesh.obj", "-o", "disk/scene.prt", "--no-refine", "--face-resolution",
+             "16", "-q"});
     succeed({"relight", "disk/scene.prt", "white.hdr", "-o", "disk/lit.npy"});
     const std::vector<std::string> no_space = {"cannot write", "No space left"};
     fail({"generate", "blob", "-o", "disk", "--vertices", "3000"}, no_space);
 
     succeed({"generate", "blob", "-o", ".", "--vertices", "7000", "-q"});
-    succeed({"precompute", "blob.ply", "-o", "scene.prt", "--face-resolution", "16"});
+    succeed(
+        {"precompute", "blob.ply", "-o", "scene.prt", "--no-refine", "--face-resolution", "16"});
     for (const char* name : {"disk/lit.npy", "disk/lit.ply", "disk/lit.glb"})
         fail({"relight", "scene.prt", "white.hdr", "-o", name}, no_space);
-    fail({"precompute", "blob.ply", "-o", "disk/scene.prt", "--face-resolution", "16", "-q"},
+    fail({"precompute", "blob.ply", "-o", "disk/scene.prt", "--no-refine", "--face-resolution",
+          "16", "-q"},
          no_space);
     succeed({"info", "disk/scene.prt"});
 }

@@ -17,8 +17,8 @@ protected:
     nlohmann::json precompute(const std::string& scene, int num_vertices,
                               const std::string& tolerance = "0.03") const {
         succeed({"generate", scene, "-o", ".", "--vertices", std::to_string(num_vertices), "-q"});
-        return succeed({"precompute", scene + ".ply", "-o", "scene.prt", "--tolerance", tolerance,
-                        "--face-resolution", "64", "--json"})
+        return succeed({"precompute", scene + ".ply", "--no-refine", "-o", "scene.prt",
+                        "--tolerance", tolerance, "--face-resolution", "64", "--json"})
             .json();
     }
     void generate(const std::string& environment, int resolution,

@@ -16,7 +16,8 @@ protected:
         write("env.hdr", white_hdr());
     }
     void precompute() const {
-        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16"});
+        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16",
+                 "--no-refine"});
     }
 
     /// One command line per subcommand that does its work.
@@ -192,7 +193,8 @@ TEST_F(CommandLineTest, NamesMayBeAsLongAsTheSystemAllows) {
     const std::string name(245, 'n');
     for (const char* extension : {".npy", ".exr", ".png", ".ply"})
         succeed({"relight", "scene.prt", "env.hdr", "-o", name + extension, "--size", "8x8"});
-    succeed({"precompute", "mesh.obj", "-o", name + ".prt", "--face-resolution", "16"});
+    succeed(
+        {"precompute", "mesh.obj", "-o", name + ".prt", "--face-resolution", "16", "--no-refine"});
     succeed({"info", name + ".prt", "--check"});
     fail({"relight", "scene.prt", "env.hdr", "-o", std::string(252, 'n') + ".npy"},
          {"cannot write"});

@@ -26,7 +26,8 @@ protected:
     }
     void make_scene() const {
         write("mesh.obj", octahedron_obj());
-        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
+        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16",
+                 "--no-refine", "-q"});
         write("lamp.hdr", lamp_hdr(32)); // a lamp at +X
     }
     static void expect_same(const std::vector<float>& expected, const std::vector<float>& got,

@@ -18,7 +18,8 @@ class EnvironmentFiles : public AppTest {
 protected:
     EnvironmentFiles() {
         write("mesh.obj", octahedron_obj());
-        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
+        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16",
+                 "--no-refine", "-q"});
     }
     void refused(const std::string& name, const std::string& content,
                  const std::vector<std::string>& parts = {}) const {

@@ -133,7 +133,8 @@ TEST_F(Lights, ABlackMapGivesBlackLights) {
 
 TEST_F(Lights, ChosenForASceneAndItsErrorSaid) {
     write("mesh.obj", octahedron_obj());
-    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
+    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "--no-refine",
+             "-q"});
     const auto transfer = succeed({"lights", "lamp.hdr", "-n", "4", "--method", "transfer",
                                    "--scene", "scene.prt", "-o", "lights.json", "--json"})
                               .json();
@@ -145,7 +146,7 @@ TEST_F(Lights, ChosenForASceneAndItsErrorSaid) {
     // Materials change what is reflected, not what arrives: the lights and their error are the
     // same.
     succeed({"precompute", "mesh.obj", "-o", "grey.prt", "--face-resolution", "16", "-q",
-             "--material", "lambert:albedo=0.3"});
+             "--material", "lambert:albedo=0.3", "--no-refine"});
     const auto of_grey = succeed({"lights", "lamp.hdr", "-n", "4", "--method", "transfer",
                                   "--scene", "grey.prt", "-o", "lights.json", "--json"})
                              .json();
@@ -162,7 +163,8 @@ TEST_F(Lights, ChosenForASceneAndItsErrorSaid) {
 // alone.
 TEST_F(Lights, LightASceneOrAMesh) {
     write("mesh.obj", octahedron_obj());
-    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
+    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "--no-refine",
+             "-q"});
     succeed({"lights", "lamp.hdr", "-n", "1", "-o", "lamp.json"});
     const auto lit = [&](std::vector<std::string> arguments) {
         arguments.insert(arguments.end(), {"-o", "lit.npy", "-q"});

@@ -32,8 +32,8 @@ protected:
                                const std::vector<std::string>& options = {"--face-resolution",
                                                                           "64"}) const {
         write("mesh.obj", obj);
-        std::vector<std::string> arguments = {"precompute", "mesh.obj",  "-o",
-                                              "mesh.prt",   "--bounces", "0"};
+        std::vector<std::string> arguments = {"precompute", "mesh.obj", "-o",         "mesh.prt",
+                                              "--bounces",  "0",        "--no-refine"};
         arguments.insert(arguments.end(), options.begin(), options.end());
         succeed(arguments);
         succeed({"relight", "mesh.prt", environment, "-o", "lit.npy", "--albedo", "1"});

@@ -22,7 +22,8 @@ class Animate : public AppTest {
 protected:
     Animate() {
         write("mesh.obj", octahedron_obj());
-        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
+        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16",
+                 "--no-refine", "-q"});
     }
     /// The last numbers of a .npy, as many as there are.
     [[nodiscard]] std::vector<float> numbers(const std::string& name, std::size_t count) const {

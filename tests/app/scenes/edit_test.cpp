@@ -17,7 +17,8 @@ protected:
     Edit() {
         write("mesh.obj", octahedron_obj());
         write("white.hdr", white_hdr());
-        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "32", "-q"});
+        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "32", "-q",
+                 "--no-refine"});
     }
     [[nodiscard]] static std::vector<std::string> command(const std::vector<std::string>& options) {
         std::vector<std::string> arguments = {"edit", "scene.prt", "white.hdr", "-o", "new.npy"};

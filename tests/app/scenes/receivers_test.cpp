@@ -31,7 +31,7 @@ protected:
     }
     void make_pixels(const std::string& receivers = "pixels:24x16:2") const {
         succeed({"precompute", "mesh.obj", "-o", "px.prt", "--face-resolution", "16", "--tolerance",
-                 "0.05", "--receivers", receivers, "--view", "auto", "-q"});
+                 "0.05", "--receivers", receivers, "--view", "auto", "-q", "--no-refine"});
     }
     void make_texels() const {
         succeed({"precompute", "square.ply", "-o", "tx.prt", "--face-resolution", "32",
@@ -42,7 +42,8 @@ protected:
 TEST_F(Receivers, PixelsBecomeThePictureOfTheirView) {
     const nlohmann::json made =
         succeed({"precompute", "mesh.obj", "-o", "px.prt", "--face-resolution", "16", "--tolerance",
-                 "0.05", "--receivers", "pixels:24x16:2", "--view", "0,1,5,0,0,0,40", "--json"})
+                 "0.05", "--receivers", "pixels:24x16:2", "--view", "0,1,5,0,0,0,40", "--json",
+                 "--no-refine"})
             .json();
     EXPECT_EQ(made["layout"]["kind"], "pixels");
     EXPECT_EQ(made["vertices"], 6);

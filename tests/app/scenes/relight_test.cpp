@@ -23,7 +23,8 @@ protected:
     Relight() {
         write("mesh.obj", octahedron_obj());
         write("white.hdr", white_hdr());
-        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "32", "-q"});
+        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "32", "-q",
+                 "--no-refine"});
     }
     /// Radiance of the six vertices.
     [[nodiscard]] Values lit(const std::string& environment,
@@ -344,10 +345,9 @@ TEST_F(Relight, InputsThatCannotBeReadAreNamed) {
 }
 
 TEST_F(Relight, AMeshIsPrecomputedOnceAndKept) {
-    succeed({"generate", "colonnade", "-o", ".", "--vertices", "1500", "-q"});
+    succeed({"generate", "blob", "-o", ".", "--vertices", "600", "-q"});
     const auto first_picture = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> arguments = {"relight", "colonnade.ply", "white.hdr", "-o",
-                                              "lit.png"};
+        std::vector<std::string> arguments = {"relight", "blob.ply", "white.hdr", "-o", "lit.png"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return succeed(arguments).out.find("kept in cache") != std::string::npos;
     };
@@ -365,12 +365,12 @@ TEST_F(Relight, AMeshIsPrecomputedOnceAndKept) {
     EXPECT_FALSE(first_picture({}));
     EXPECT_EQ(read("lit.png"), picture);
     // It is the scene that the options of precompute make by themselves, with a floor.
-    succeed({"precompute", "colonnade.ply", "--floor", "-o", "own.prt", "-q"});
+    succeed({"precompute", "blob.ply", "--floor", "-o", "own.prt", "-q"});
     succeed({"relight", "own.prt", "white.hdr", "-o", "own.png", "-q"});
     EXPECT_EQ(read("own.png"), picture);
     // Another mesh of the same name is another scene.
-    succeed({"generate", "knot", "-o", ".", "--vertices", "1500", "-q"});
-    fs::rename(folder() / "knot.ply", folder() / "colonnade.ply");
+    succeed({"generate", "sphere", "-o", ".", "--vertices", "600", "-q"});
+    fs::rename(folder() / "sphere.ply", folder() / "blob.ply");
     EXPECT_TRUE(first_picture({}));
     EXPECT_EQ(num_kept(), 2);
     write("broken.ply", "ply\nformat ascii 1.0\n");

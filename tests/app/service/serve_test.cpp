@@ -79,7 +79,8 @@ protected:
     Serve() {
         write("mesh.obj", octahedron_obj());
         write("studio.hdr", white_hdr());
-        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
+        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q",
+                 "--no-refine"});
     }
 
     /// The answers to lines on stdin.
@@ -190,7 +191,7 @@ TEST_F(Serve, AFailedRequestIsOneLineAndTheSceneGoesOn) {
         "relumine-is-not-there: cannot write shared memory: No such file",
         "request:1: expected \"type\"",
         "missing.json: cannot read",
-        "studio.hdr: expected",
+        "expected a scene, got the environment studio.hdr",
         ""};
     ASSERT_EQ(all.size(), parts.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
