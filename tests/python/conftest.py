@@ -55,7 +55,7 @@ def arrays():
 
 @pytest.fixture(scope="session")
 def scene(arrays):
-    return relumine.precompute(*arrays, tolerance=0.05)
+    return relumine.precompute(*arrays, tolerance=0.05, bounces=False)
 
 
 @pytest.fixture(scope="session")

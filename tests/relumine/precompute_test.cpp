@@ -120,6 +120,7 @@ TEST(Precompute, HighlightsNeedAView) {
     EXPECT_FALSE(diffuse.settings.glossy_tolerance);
 
     PrecomputeOptions seen = options;
+    seen.bounce_tolerance = 0.0f;
     seen.no_refine = true;
     seen.view = View{};
     double last = 0.0;

@@ -145,7 +145,7 @@ TEST_F(SharedWork, ProcessesFindTheLightOfOne) {
 
 TEST_F(SharedWork, ProcessesAndPartsFindTheHighlightsOfOne) {
     PrecomputeOptions work = options(Vertices{}, file("scene.prt"));
-    work.bounce_tolerance.reset();
+    work.bounce_tolerance = 0.0f;
     work.view =
         View{Camera{.eye = {0.5f, 1.2f, 2.5f}, .target = {0.5f, 0.3f, 0.3f}, .fov_degrees = 30}};
     work.surface = everywhere({.albedo = glm::vec3(0.4f),

@@ -345,9 +345,8 @@ TEST_F(Relight, InputsThatCannotBeReadAreNamed) {
 }
 
 TEST_F(Relight, AMeshIsPrecomputedOnceAndKept) {
-    succeed({"generate", "blob", "-o", ".", "--vertices", "600", "-q"});
     const auto first_picture = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> arguments = {"relight", "blob.ply", "white.hdr", "-o", "lit.png"};
+        std::vector<std::string> arguments = {"relight", "mesh.obj", "white.hdr", "-o", "lit.png"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return succeed(arguments).out.find("kept in cache") != std::string::npos;
     };
@@ -365,12 +364,11 @@ TEST_F(Relight, AMeshIsPrecomputedOnceAndKept) {
     EXPECT_FALSE(first_picture({}));
     EXPECT_EQ(read("lit.png"), picture);
     // It is the scene that the options of precompute make by themselves, with a floor.
-    succeed({"precompute", "blob.ply", "--floor", "-o", "own.prt", "-q"});
+    succeed({"precompute", "mesh.obj", "--floor", "-o", "own.prt", "-q"});
     succeed({"relight", "own.prt", "white.hdr", "-o", "own.png", "-q"});
     EXPECT_EQ(read("own.png"), picture);
     // Another mesh of the same name is another scene.
-    succeed({"generate", "sphere", "-o", ".", "--vertices", "600", "-q"});
-    fs::rename(folder() / "sphere.ply", folder() / "blob.ply");
+    write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
     EXPECT_TRUE(first_picture({}));
     EXPECT_EQ(num_kept(), 2);
     write("broken.ply", "ply\nformat ascii 1.0\n");

@@ -1,3 +1,4 @@
+#include "prt/glossy/brdf.h"
 #include "relight/pictures/surface_colors.h"
 
 #include <glm/common.hpp>
