@@ -302,7 +302,7 @@ Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& wo
     const mesh::TriangleMesh own = part_of(mesh.geometry, 0, first_of_floor);
     const float size = mesh::bounds(own).diagonal();
     const bool is_coarse =
-        mesh.is_open && size > 0.0f && prt::has_edge_longer_than(own, CoarseEdge * size);
+        mesh.is_open && size > 0.0f && prt::has_coarse_triangles(own, CoarseEdge * size);
     if (!is_coarse && !mesh.is_floor_open)
         return mesh;
     mesh::TriangleMesh before =

@@ -68,11 +68,27 @@ float longest_side(const mesh::TriangleMesh& mesh, const mesh::Triangle& triangl
         {glm::distance(at[a], at[b]), glm::distance(at[b], at[c]), glm::distance(at[c], at[a])});
 }
 
-/// Returns which triangles have a side longer than an edge, if there is one; all otherwise.
+/// Whether a triangle has a side longer than an edge, and is shaded nearly as flat as it is. What
+/// stands between the vertices of a triangle that is shaded as a ball would be in its shadow.
+bool is_coarse(const mesh::TriangleMesh& mesh, const mesh::Triangle& triangle, float edge) {
+    constexpr float LeastCosine = 0.6f;
+    if (!(longest_side(mesh, triangle) > edge))
+        return false;
+    const std::array<glm::vec3, 3> p = {mesh.positions[triangle[0]], mesh.positions[triangle[1]],
+                                        mesh.positions[triangle[2]]};
+    const glm::vec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
+    const float length = glm::length(across);
+    return mesh.normals.empty() || !(length > 0.0f) ||
+           std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t vertex) {
+               return std::abs(glm::dot(mesh.normals[vertex], across)) > LeastCosine * length;
+           });
+}
+
+/// Returns which triangles are coarse for an edge, if there is one; all otherwise.
 std::vector<bool> triangles_to_refine(const mesh::TriangleMesh& mesh, std::optional<float> edge) {
     std::vector<bool> result;
     for (const mesh::Triangle& triangle : mesh.triangles)
-        result.push_back(!edge || longest_side(mesh, triangle) > *edge);
+        result.push_back(!edge || is_coarse(mesh, triangle, *edge));
     return result;
 }
 
@@ -708,10 +724,10 @@ mesh::TriangleMesh refine(const mesh::TriangleMesh& mesh, const Blockers& blocke
     return result;
 }
 
-bool has_edge_longer_than(const mesh::TriangleMesh& mesh, float length) {
+bool has_coarse_triangles(const mesh::TriangleMesh& mesh, float edge) {
     return std::any_of(
         mesh.triangles.begin(), mesh.triangles.end(),
-        [&](const mesh::Triangle& triangle) { return longest_side(mesh, triangle) > length; });
+        [&](const mesh::Triangle& triangle) { return is_coarse(mesh, triangle, edge); });
 }
 
 } // namespace relumine::prt
