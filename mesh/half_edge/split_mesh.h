@@ -118,8 +118,8 @@ private:
     std::uint32_t cut_in_two(std::uint32_t triangle, std::uint32_t side);
 
     TriangleMesh mesh_;
-    /// [num_vertices], with normals: linear over the triangles of the beginning. Normals are these at
-    /// length 1.
+    /// [num_vertices], with normals: linear over the triangles of the beginning. Normals are these
+    /// at length 1.
     std::vector<glm::vec3> vectors_;
     /// [num_vertices] the first vertex at the position.
     std::vector<std::uint32_t> places_;

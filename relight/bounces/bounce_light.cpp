@@ -32,9 +32,9 @@ constexpr std::uint32_t MaxBounces = 1000;
 /// long, by no more than the second.
 constexpr double LeastRatio = 0.5, LeastRatioOfRooms = 0.75;
 
-/// Receivers with less direct light than this part of the mean are not waited for: light in gaps
-/// that are nearly closed is found late.
-constexpr double LeastDirect = 1e-3;
+/// The error of receivers with less direct light than this part of the mean counts a third: light
+/// in gaps that are nearly closed is found late.
+constexpr double LeastDirect = 1e-3, WeightWithout = 1.0 / 3.0;
 
 using AndersonMatrix = Eigen::Matrix<double, AndersonDepth, AndersonDepth>;
 using AndersonVector = Eigen::Matrix<double, AndersonDepth, 1>;
@@ -274,7 +274,9 @@ private:
             return sums[0] + sums[1] + sums[2];
         };
         const double light = sum_of(all[AllLight]);
-        return light > 0.0 ? std::sqrt(sum_of(all[WaitedFor]) / light) : 0.0;
+        const double change =
+            std::max(sum_of(all[WaitedFor]), WeightWithout * WeightWithout * sum_of(all[0]));
+        return light > 0.0 ? std::sqrt(change / light) : 0.0;
     }
 
     /// Estimates the error after a step: steps go on becoming smaller by the larger one of the last

@@ -19,8 +19,9 @@ namespace relumine::relight {
 struct BounceLimits {
     /// Exactly so many bounces; empty: as many as `tolerance` asks for.
     std::optional<std::uint32_t> num_bounces = {};
-    /// Relative error of the sum of all bounces, L2 over the receivers that have direct light:
-    /// light that fills a white box through a crack is not waited for.
+    /// Relative error of the sum of all bounces, L2 over the receivers that have direct light, and
+    /// three times as much over all: light that fills a white box through a crack is not waited
+    /// for.
     double tolerance = 1e-3;
 
     bool operator==(const BounceLimits&) const = default;
