@@ -67,20 +67,27 @@ TEST_F(Precompute, TheFloorHasTheVerticesAskedFor) {
 }
 
 TEST_F(Precompute, ACoarseMeshGetsVerticesUnlessItMustNot) {
+    // A wall on the ground.
+    write("wall.obj", "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n"
+                      "v -1 0 -.5\nv 1 0 -.5\nv 1 1 -.5\nv -1 1 -.5\nf 5 6 7 8\n");
     const auto said = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> line = {"precompute",    "mesh.obj",          "-o",
+        std::vector<std::string> line = {"precompute",    "wall.obj",          "-o",
                                          "by_itself.prt", "--face-resolution", "16"};
         line.insert(line.end(), more.begin(), more.end());
         return succeed(line).out;
     };
     const std::string refined = said({});
-    EXPECT_NE(refined.find("refined: 6 vertices became "), std::string::npos) << refined;
+    EXPECT_NE(refined.find("refined: 8 vertices became "), std::string::npos) << refined;
     EXPECT_NE(refined.find("at most 24000 more for the mesh"), std::string::npos) << refined;
     EXPECT_GT(succeed({"info", "by_itself.prt", "--json"}).json()["vertices"], 100);
     EXPECT_EQ(said({"--no-refine"}).find("refined"), std::string::npos);
-    EXPECT_EQ(succeed({"info", "by_itself.prt", "--json"}).json()["vertices"], 6);
+    EXPECT_EQ(succeed({"info", "by_itself.prt", "--json"}).json()["vertices"], 8);
     // Who says how wants it so.
     EXPECT_EQ(said({"--max-edge", "100"}).find("at most"), std::string::npos);
+    // What is shaded as a ball stays as it is.
+    EXPECT_EQ(succeed({"precompute", "mesh.obj", "-o", "ball.prt", "--face-resolution", "16"})
+                  .out.find("refined"),
+              std::string::npos);
 }
 
 TEST_F(Precompute, ToleranceAndDepthChangeTheClusters) {
