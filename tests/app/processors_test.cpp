@@ -44,7 +44,8 @@ protected:
     void expect_the_same(const std::vector<std::string>& arguments) {
         std::vector<std::string> command = {"precompute"};
         command.insert(command.end(), arguments.begin(), arguments.end());
-        command.insert(command.end(), {"--tolerance", "0.06", "-q", "-o", "scene.prt"});
+        command.insert(command.end(),
+                       {"--tolerance", "0.06", "--no-refine", "-q", "-o", "scene.prt"});
         succeed(command);
         const std::string best = read("scene.prt");
         const Limit limit("avx2");

@@ -18,7 +18,8 @@ protected:
     /// Options of a run that leaves a checkpoint whenever it can.
     [[nodiscard]] static std::vector<std::string> run(const std::vector<std::string>& more = {}) {
         std::vector<std::string> words = {
-            "precompute", "knot.ply", "-o", "scene.prt", "-q", "--checkpoint-seconds", "0.001"};
+            "precompute", "knot.ply", "--no-refine",          "-o",
+            "scene.prt",  "-q",       "--checkpoint-seconds", "0.001"};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
@@ -87,7 +88,7 @@ TEST_F(Resume, KilledWithACheckpointItIsTakenUp) {
         static_cast<void>(process.wait());
     }
     ASSERT_TRUE(fs::exists(state));
-    std::vector<std::string> again = {"precompute", "knot.ply", "-o",
+    std::vector<std::string> again = {"precompute", "knot.ply", "--no-refine", "-o",
                                       "scene.prt",  "-v",       "--resume"};
     again.insert(again.end(), scene.begin(), scene.end());
     EXPECT_NE(succeed(again).out.find("going on from scene.prt.checkpoint"), std::string::npos);
