@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "files/counted.h"
 #include "files/json.h"
 #include "files/output_file.h"
 
@@ -49,8 +50,7 @@ std::string harmless(const std::string& name) {
 
 /// Returns the first line of every file's head: "64 lights of grace.hdr by median-cut".
 std::string title(const LightList& list) {
-    std::string result =
-        fmt::format("{} distant light{}", list.lights.size(), list.lights.size() == 1 ? "" : "s");
+    std::string result = files::counted(list.lights.size(), "distant light");
     if (!list.environment.empty())
         result += fmt::format(" of {}", harmless(list.environment));
     if (!list.method.empty())

@@ -9,6 +9,10 @@
 
 namespace relumine::mesh {
 
+UpAxis customary_up(const std::filesystem::path& path) {
+    return files::extension_of(path) == ".stl" ? UpAxis::Z : UpAxis::Y;
+}
+
 std::optional<float> customary_crease(const std::filesystem::path& path) {
     return files::extension_of(path) == ".stl" ? std::optional(40.0f) : std::nullopt;
 }

@@ -5,8 +5,13 @@
 #include <optional>
 
 #include "mesh/triangle_mesh.h"
+#include "mesh/up_axis.h"
 
 namespace relumine::mesh {
+
+/// Returns the axis that files of this extension have up by custom: Z for .stl, which comes from
+/// CAD and printing, Y for all others.
+[[nodiscard]] UpAxis customary_up(const std::filesystem::path& path);
 
 /// Returns the angle in degrees beyond which edges are sharp: 40 for .stl, which has no normals of
 /// vertices and comes from CAD, none for others.

@@ -42,7 +42,7 @@ bool has_mesh_extension(const std::filesystem::path& path) {
 }
 
 TriangleMesh load(const std::filesystem::path& path, NormalSource normals, std::uint64_t* hash,
-                  std::optional<FileCamera>* camera) {
+                  std::optional<Camera>* camera) {
     const std::string extension = files::extension_of(path);
     // A name that is not there says so first.
     static_cast<void>(files::size(path));

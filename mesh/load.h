@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "mesh/file_camera.h"
+#include "mesh/camera.h"
 #include "mesh/normals.h"
 #include "mesh/triangle_mesh.h"
 
@@ -36,7 +36,7 @@ namespace relumine::mesh {
 [[nodiscard]] TriangleMesh load(const std::filesystem::path& path,
                                 NormalSource normals = NormalSource::File,
                                 std::uint64_t* hash = nullptr,
-                                std::optional<FileCamera>* camera = nullptr);
+                                std::optional<Camera>* camera = nullptr);
 
 /// Returns true if load() knows the path's extension, in capitals or not.
 [[nodiscard]] bool has_mesh_extension(const std::filesystem::path& path);

@@ -10,20 +10,26 @@ float Bounds::diagonal() const {
 }
 
 Bounds bounds(const TriangleMesh& mesh) {
-    if (mesh.positions.empty())
-        return {};
-    const glm::vec3 first = mesh.positions[mesh.triangles.empty() ? 0 : mesh.triangles.front()[0]];
+    if (mesh.triangles.empty())
+        return bounds(mesh.positions);
+    const glm::vec3 first = mesh.positions[mesh.triangles.front()[0]];
     Bounds box{first, first};
-    const auto extend = [&box](const glm::vec3& point) {
+    for (const Triangle& triangle : mesh.triangles)
+        for (const std::uint32_t vertex : triangle) {
+            box.min = glm::min(box.min, mesh.positions[vertex]);
+            box.max = glm::max(box.max, mesh.positions[vertex]);
+        }
+    return box;
+}
+
+Bounds bounds(std::span<const glm::vec3> points) {
+    if (points.empty())
+        return {};
+    Bounds box{points.front(), points.front()};
+    for (const glm::vec3& point : points) {
         box.min = glm::min(box.min, point);
         box.max = glm::max(box.max, point);
-    };
-    for (const Triangle& triangle : mesh.triangles)
-        for (const std::uint32_t vertex : triangle)
-            extend(mesh.positions[vertex]);
-    if (mesh.triangles.empty())
-        for (const glm::vec3& point : mesh.positions)
-            extend(point);
+    }
     return box;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -70,5 +71,8 @@ struct Bounds {
 /// Returns the box around the vertices of the triangles; stray points do not count. A mesh without
 /// triangles gets the box around all vertices.
 [[nodiscard]] Bounds bounds(const TriangleMesh& mesh);
+
+/// Returns the box around points; one in the origin around none.
+[[nodiscard]] Bounds bounds(std::span<const glm::vec3> points);
 
 } // namespace relumine::mesh

@@ -1,19 +1,28 @@
 #include "mesh/up_axis.h"
 
-#include "files/extension.h"
-
 namespace relumine::mesh {
 
-UpAxis customary_up(const std::filesystem::path& path) {
-    return files::extension_of(path) == ".stl" ? UpAxis::Z : UpAxis::Y;
+namespace {
+
+glm::vec3 turned(const glm::vec3& v, UpAxis axis) {
+    return axis == UpAxis::Y   ? v
+           : axis == UpAxis::Z ? glm::vec3(v.x, v.z, -v.y)
+                               : glm::vec3(-v.y, v.x, v.z);
 }
+
+} // namespace
 
 void turn_up(TriangleMesh& mesh, UpAxis axis) {
     if (axis == UpAxis::Y)
         return;
     for (std::vector<glm::vec3>* vectors : {&mesh.positions, &mesh.normals})
         for (glm::vec3& v : *vectors)
-            v = axis == UpAxis::Z ? glm::vec3(v.x, v.z, -v.y) : glm::vec3(-v.y, v.x, v.z);
+            v = turned(v, axis);
+}
+
+void turn_up(Camera& camera, UpAxis axis) {
+    camera.eye = turned(camera.eye, axis);
+    camera.target = turned(camera.target, axis);
 }
 
 } // namespace relumine::mesh

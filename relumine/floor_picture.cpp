@@ -7,31 +7,16 @@
 #include <variant>
 #include <vector>
 
-#include <glm/common.hpp>
-
 #include "mesh/triangle_mesh.h"
 
 namespace relumine {
-
-namespace {
-
-mesh::Bounds bounds_of(std::span<const glm::vec3> positions) {
-    mesh::Bounds box{.min = positions.front(), .max = positions.front()};
-    for (const glm::vec3& position : positions) {
-        box.min = glm::min(box.min, position);
-        box.max = glm::max(box.max, position);
-    }
-    return box;
-}
-
-} // namespace
 
 relight::FadingFloor picture_floor(const Scene& scene, const OutputOptions& options) {
     const float fade = options.floor_fade;
     const std::optional<std::size_t> first = first_floor_vertex(scene);
     if (!first)
         return {};
-    const mesh::Bounds floor = bounds_of(std::span(scene.mesh.positions).subspan(*first));
+    const mesh::Bounds floor = mesh::bounds(std::span(scene.mesh.positions).subspan(*first));
     const float half_side = 0.5f * (floor.max.x - floor.min.x);
     return {.first_vertex = static_cast<std::uint32_t>(*first),
             .center = 0.5f * glm::vec2(floor.min.x + floor.max.x, floor.min.z + floor.max.z),
@@ -46,7 +31,7 @@ relight::Ground picture_ground(const Scene& scene, const OutputOptions& options)
     const std::optional<std::size_t> first = first_floor_vertex(scene);
     if (!first)
         throw std::invalid_argument("expected a scene with a floor");
-    const mesh::Bounds floor = bounds_of(positions.subspan(*first));
+    const mesh::Bounds floor = mesh::bounds(positions.subspan(*first));
     // The added floor is the lowest plane, so what stands on it is the mesh.
     const glm::vec3 size = relight::subject_bounds(scene.mesh).size();
     const auto height =

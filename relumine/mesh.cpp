@@ -165,8 +165,7 @@ OptionTable options_of(RefineOptions& o) {
 
 Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
     Mesh mesh;
-    std::optional<mesh::FileCamera> camera;
-    mesh.geometry = mesh::load(path, options.normals, &mesh.source_hash, &camera);
+    mesh.geometry = mesh::load(path, options.normals, &mesh.source_hash, &mesh.camera);
     mesh.source = path.string();
     const std::optional<float> crease =
         options.crease || options.normals == mesh::NormalSource::Smooth
@@ -176,14 +175,8 @@ Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
         mesh.geometry = mesh::with_creases(mesh.geometry, *crease);
     const mesh::UpAxis up = options.up.value_or(mesh::customary_up(path));
     mesh::turn_up(mesh.geometry, up);
-    if (camera) {
-        mesh::TriangleMesh ends;
-        ends.positions = {camera->eye, camera->target};
-        mesh::turn_up(ends, up);
-        mesh.camera = {.eye = ends.positions[0],
-                       .target = ends.positions[1],
-                       .fov_degrees = camera->fov_degrees};
-    }
+    if (mesh.camera)
+        mesh::turn_up(*mesh.camera, up);
     add_floor(mesh, options);
     return mesh;
 }
@@ -296,6 +289,8 @@ mesh::TriangleMesh refined_part(const mesh::TriangleMesh& part, RefineOptions op
 
 Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& work,
                        RefineReport* report) {
+    if (!mesh.is_open && !mesh.is_floor_open)
+        return mesh;
     const std::size_t n = mesh.floor_vertices;
     const std::size_t first_of_floor =
         mesh.geometry.num_vertices() - (n == 0 ? 0 : n * n + mesh.floor_added);

@@ -84,9 +84,10 @@ enum class Warning {
     Checkpoint,
 };
 
-/// PrecomputeOptions::tolerance where refined_by_itself() added vertices: they stand where shadows
-/// are, so clusters have to be finer for the same root mean square. Measured: with this one the
-/// light of the vertices is right to half a percent, and what they interpolate to 1 % to 2 %.
+/// PrecomputeOptions::tolerance where refined_by_itself() added vertices. New vertices stand where
+/// shadows are, so the same root mean square asks for far more clusters. Measured: with this
+/// tolerance the light of the vertices is right to half a percent, and what they interpolate to 1 %
+/// to 2 %.
 inline constexpr float ToleranceOfRefined = 0.025f;
 
 struct PrecomputeOptions {

@@ -21,19 +21,18 @@ relight::SurfaceBounces bounces_of(const Scene& scene, std::span<const glm::vec3
 
 void SceneBounces::set(const Scene& scene, relight::SurfaceBounces surfaces,
                        const relight::SharedRows& rows) {
+    const bool has_albedo = light_ && surfaces.albedo == surfaces_.albedo;
     if (!light_) {
         relight::BounceLight made(*surfaces.matrix, scene.transfer, rows);
         made.set_albedo(surfaces.albedo);
         light_ = std::move(made);
-    } else if (surfaces.albedo != surfaces_.albedo) {
+    } else if (!has_albedo) {
         light_->set_albedo(surfaces.albedo);
     }
-    const bool is_same = scene_ == &scene && surfaces_.matrix == surfaces.matrix &&
-                         surfaces_.albedo == surfaces.albedo && surfaces_.limits == surfaces.limits;
+    if (!has_albedo || surfaces.limits != surfaces_.limits)
+        found_of_.clear();
     scene_ = &scene;
     surfaces_ = std::move(surfaces);
-    if (!is_same)
-        found_of_.clear();
     forget();
 }
 

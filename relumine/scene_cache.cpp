@@ -1,6 +1,7 @@
 #include "relumine/scene_cache.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <string>
 #include <system_error>
@@ -24,13 +25,6 @@ namespace fs = std::filesystem;
 
 /// Raise it when a change of the precompute makes scenes that were kept worthless.
 constexpr int CacheVersion = 1;
-
-std::optional<fs::path> folder_of(const char* variable, const char* below) {
-    const char* const value = std::getenv(variable); // NOLINT(concurrency-mt-unsafe): none is set
-    if (value == nullptr || *value == '\0')
-        return std::nullopt;
-    return fs::path(value) / below;
-}
 
 /// Removes the scenes that were used longest ago, until the rest is within the limit. `kept` stays.
 void remove_oldest(const SceneCache& cache, const fs::path& kept) {
@@ -58,14 +52,16 @@ void remove_oldest(const SceneCache& cache, const fs::path& kept) {
 } // namespace
 
 std::optional<SceneCache> user_cache() {
-    if (std::getenv("RELUMINE_CACHE") != nullptr) { // NOLINT(concurrency-mt-unsafe)
-        const std::optional<fs::path> own = folder_of("RELUMINE_CACHE", "");
-        return own ? std::optional(SceneCache{.folder = *own}) : std::nullopt;
+    constexpr std::array<std::array<const char*, 2>, 3> Places = {
+        {{"RELUMINE_CACHE", nullptr}, {"XDG_CACHE_HOME", "relumine"}, {"HOME", ".cache/relumine"}}};
+    for (const auto& [variable, below] : Places) {
+        const char* const value = std::getenv(variable); // NOLINT(concurrency-mt-unsafe)
+        if (value != nullptr && *value != '\0')
+            return SceneCache{.folder =
+                                  below == nullptr ? fs::path(value) : fs::path(value) / below};
+        if (value != nullptr && below == nullptr)
+            return std::nullopt;
     }
-    for (const auto& [variable, below] :
-         {std::pair("XDG_CACHE_HOME", "relumine"), std::pair("HOME", ".cache/relumine")})
-        if (const std::optional<fs::path> folder = folder_of(variable, below))
-            return SceneCache{.folder = *folder};
     return std::nullopt;
 }
 
@@ -76,8 +72,11 @@ fs::path cached_file(const SceneCache& cache, const Mesh& mesh, const Precompute
     named.output.clear();
     named.resume = false;
     named.checkpoint_seconds = PrecomputeOptions{}.checkpoint_seconds;
-    const std::string text = fmt::format("{} {} {}\n{}", CacheVersion, prt::SceneFileVersion,
-                                         prt::arithmetic(), settings_of(options_of(named)));
+    // Meshes of equal content may differ in which vertices are a floor, and which may become more.
+    const std::string text =
+        fmt::format("{} {} {} {} {} {} {}\n{}", CacheVersion, prt::SceneFileVersion,
+                    prt::arithmetic(), mesh.floor_vertices, mesh.floor_added, mesh.is_floor_open,
+                    mesh.is_open, settings_of(options_of(named)));
     const std::uint64_t of_options = files::hash_of(std::as_bytes(std::span(text)));
     Scene scene = unclustered_scene(mesh);
     if (!mesh.geometry.materials.empty())

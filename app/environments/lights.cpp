@@ -11,13 +11,13 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
-#include "app/counted.h"
 #include "app/options/environment_options.h"
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
 #include "cubemap/doctor/statistics.h"
 #include "cubemap/doctor/upside_down.h"
+#include "files/counted.h"
 #include "lights/light_export.h"
 #include "lights/luminance.h"
 #include "lights/place_lights.h"
@@ -142,7 +142,7 @@ lights::Placement place(const LightsArguments& options, const cubemap::Environme
             .lights = relight::transfer_lights(
                 lit->scene.relighter(), options.number,
                 {.stop = session.stop(),
-                 .on_progress = session.progress(counted(options.number, "light"))}),
+                 .on_progress = session.progress(files::counted(options.number, "light"))}),
             .regions = {}};
         session.end_progress();
         return result;
@@ -190,8 +190,8 @@ Report describe(const LightsArguments& options, const cubemap::EnvironmentImage&
     const double all = lights::luminance(power);
     const double scale = all > 0.0 ? 1.0 / all : 0.0;
     session.say(fmt::format("{} by {} from {} x {} pixels in {:.1f} ms",
-                            counted(list.size(), "light"), options.method, map.width, map.height,
-                            1e3 * seconds_place));
+                            files::counted(list.size(), "light"), options.method, map.width,
+                            map.height, 1e3 * seconds_place));
     session.say(fmt::format(
         "power ({:.6g}, {:.6g}, {:.6g}), a light's share of the luminance {:.3g} to {:.3g} %",
         power.r, power.g, power.b, 100.0 * scale * *dimmest, 100.0 * scale * *brightest));
@@ -226,8 +226,8 @@ void convert_list(const LightsArguments& options, Session& session) {
     warn_of_lost_softness(options, session);
     lights::export_lights(options.path, list, format_of(options), options.export_options);
     const glm::dvec3 power = lights::total_irradiance(list.lights);
-    session.say(fmt::format("{}: {} of {}", options.path, counted(list.lights.size(), "light"),
-                            options.environment.path));
+    session.say(fmt::format("{}: {} of {}", options.path,
+                            files::counted(list.lights.size(), "light"), options.environment.path));
     session.report({{"lights", list.lights.size()}, {"power", power}});
 }
 
@@ -259,7 +259,7 @@ void run(const LightsArguments& options, Session& session) {
     if (lit) {
         const double error = lit->error(placement.lights);
         session.say(fmt::format("{}: {:.2g} % relative L2 on this asset",
-                                counted(placement.lights.size(), "light"), 100.0 * error));
+                                files::counted(placement.lights.size(), "light"), 100.0 * error));
         result.set("relative_l2", error);
     }
     session.report(result);

@@ -9,6 +9,16 @@
 
 namespace relumine::app {
 
+void report_refinement(const RefineReport& found, std::size_t num_vertices, Session& session) {
+    session.add_to_report("refine", Report({{"vertices_before", num_vertices - found.num_added},
+                                            {"vertices", num_vertices},
+                                            {"rounds", found.num_rounds},
+                                            {"points", found.num_points},
+                                            {"at_limit", found.is_at_limit},
+                                            {"largest_error", found.largest_error},
+                                            {"seconds", found.seconds}}));
+}
+
 void RefineOptionGroup::add_to_precompute(Command& command) {
     OptionTable table = options_of(options_);
     OptionRow& error = table.front();
@@ -83,13 +93,7 @@ Mesh RefineOptionGroup::refined(Mesh mesh, std::optional<float> bias, Session& s
             found.is_at_limit
                 ? fmt::format("; at the limit, with errors up to {:.4f}", found.largest_error)
                 : ""));
-    session.add_to_report("refine", Report({{"vertices_before", num_before},
-                                            {"vertices", num_after},
-                                            {"rounds", found.num_rounds},
-                                            {"points", found.num_points},
-                                            {"at_limit", found.is_at_limit},
-                                            {"largest_error", found.largest_error},
-                                            {"seconds", found.seconds}}));
+    report_refinement(found, num_after, session);
     return result;
 }
 

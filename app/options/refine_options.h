@@ -10,6 +10,9 @@
 
 namespace relumine::app {
 
+/// Reports what refinement did to a mesh that has so many vertices now.
+void report_refinement(const RefineReport& found, std::size_t num_vertices, Session& session);
+
 class RefineOptionGroup {
 public:
     RefineOptionGroup() { options_.error.reset(); }

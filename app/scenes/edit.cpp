@@ -13,7 +13,6 @@
 #include <glm/geometric.hpp>
 
 #include "app/commands.h"
-#include "app/counted.h"
 #include "app/file_watch.h"
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
@@ -23,6 +22,7 @@
 #include "cubemap/image/environment.h"
 #include "cubemap/layers/layer_file.h"
 #include "cubemap/resample/save_environment.h"
+#include "files/counted.h"
 
 namespace relumine::app {
 
@@ -158,7 +158,7 @@ private:
         if (!report)
             return;
         bounced_ = *report;
-        session_.say(fmt::format("{} in {:.1f} ms", counted(report->num_bounces, "bounce"),
+        session_.say(fmt::format("{} in {:.1f} ms", files::counted(report->num_bounces, "bounce"),
                                  1e3 * report->seconds));
     }
 

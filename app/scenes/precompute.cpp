@@ -206,7 +206,7 @@ Report process_report(const std::vector<ProcessFigures>& processes, const Sessio
 }
 
 /// What was done to a coarse mesh.
-void report_refinement(const PrecomputeReport& facts, Session& session) {
+void say_refinement(const PrecomputeReport& facts, Session& session) {
     if (!facts.refined)
         return;
     const prt::RefineReport& found = *facts.refined;
@@ -218,14 +218,7 @@ void report_refinement(const PrecomputeReport& facts, Session& session) {
         found.is_at_limit ? fmt::format("; errors up to {:.3f} are left, --refine has no limit",
                                         found.largest_error)
                           : ""));
-    session.add_to_report("refine",
-                          Report({{"vertices_before", facts.num_vertices - found.num_added},
-                                  {"vertices", facts.num_vertices},
-                                  {"rounds", found.num_rounds},
-                                  {"points", found.num_points},
-                                  {"at_limit", found.is_at_limit},
-                                  {"largest_error", found.largest_error},
-                                  {"seconds", found.seconds}}));
+    report_refinement(found, facts.num_vertices, session);
 }
 
 /// How fine the floor's shadows are: what one of its vertices spans.
@@ -286,7 +279,7 @@ void write_plan(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWor
     PrecomputeReport facts;
     plan(std::move(mesh), options, work, &facts);
     session.end_progress();
-    report_refinement(facts, session);
+    say_refinement(facts, session);
     const double seconds = watch.total();
     session.say(fmt::format("{}: {} receivers, {} clusters in {:.1f} s, {:.1f} MB",
                             options.output.string(), facts.num_receivers,
@@ -344,7 +337,7 @@ Mesh made_mesh(const PrecomputeArguments& options, Session& session) {
 void write_report(const PrecomputeArguments& options, const PrecomputeOptions& work,
                   const PrecomputeReport& facts, const Scene& scene, double seconds,
                   Session& session) {
-    report_refinement(facts, session);
+    say_refinement(facts, session);
     Report report = report_of(work, facts, scene, session);
     const std::string others = prt::on_vertices(scene.layout)
                                    ? ""
@@ -434,7 +427,7 @@ Scene first_scene(const std::string& path, bool is_cached, Session& session) {
                             : precompute(std::move(mesh), {}, work, &facts);
         session.end_progress();
         if (facts.num_vertices != 0) {
-            report_refinement(facts, session);
+            say_refinement(facts, session);
             session.say(fmt::format("{}: {} vertices -> {} clusters in {:.1f} s{}", path,
                                     facts.num_vertices, facts.clusters.num_clusters, watch.total(),
                                     cache ? ", kept in " + cache->folder.string() : ""));

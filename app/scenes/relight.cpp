@@ -13,13 +13,13 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
-#include "app/counted.h"
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/plan_option.h"
 #include "app/scenes/first_scene.h"
+#include "files/counted.h"
 #include "lights/light_file.h"
 #include "mesh/load.h"
 #include "prt/team.h"
@@ -100,7 +100,8 @@ Given given_light(const RelightArguments& options, Session& session) {
 
 /// "sky.exr (R = 256) and 3 lights of sun.json"
 std::string name_of(const RelightArguments& options, const LitScene& lit, std::size_t num_lights) {
-    const std::string list = fmt::format("{} of {}", counted(num_lights, "light"), options.lights);
+    const std::string list =
+        fmt::format("{} of {}", files::counted(num_lights, "light"), options.lights);
     if (options.environment.path.empty())
         return list;
     return fmt::format("{} (R = {}){}", options.environment.path, environment_of(lit).resolution,
@@ -144,12 +145,13 @@ void light_scene(const RelightArguments& options, Session& session) {
     session.say(fmt::format(
         "{}: {} under {} in {:.2f} s{}: scene {:.0f}, {}bin {:.1f}, trace {:.1f} ({}), relight "
         "{:.1f}{}, output {:.0f} ms{}{}",
-        options.output.path, counted(scene.receivers.num_own(), "receiver"),
+        options.output.path, files::counted(scene.receivers.num_own(), "receiver"),
         name_of(options, lit, num_lights), watch.total(),
         session.team != nullptr ? fmt::format(" by {} processes", session.team->part().count) : "",
         1e3 * seconds_load_scene, given.text, 1e3 * times.seconds_bin, 1e3 * times.seconds_trace,
-        counted(times.num_sharp_lights, "light"), 1e3 * times.seconds_relight, text_of(bounces),
-        1e3 * seconds_output, options.scene.clusters_only ? ", through the clusters" : "",
+        files::counted(times.num_sharp_lights, "light"), 1e3 * times.seconds_relight,
+        text_of(bounces), 1e3 * seconds_output,
+        options.scene.clusters_only ? ", through the clusters" : "",
         options.output.exposure_text(painter)));
     Report report = {{"receivers", scene.receivers.num_own()},
                      {"clusters", scene.transfer.num_clusters()},

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "files/counted.h"
+
 namespace relumine::mesh::gltf {
 
 namespace {
@@ -270,8 +272,8 @@ Materials MaterialReader::read() {
     }
     const auto warn = [this](std::size_t num_materials, const char* kind, const char* instead) {
         if (num_materials > 0)
-            result_.warnings.push_back(fmt::format("{} material{} {}: {}", num_materials,
-                                                   num_materials == 1 ? "" : "s", kind, instead));
+            result_.warnings.push_back(
+                fmt::format("{} {}: {}", files::counted(num_materials, "material"), kind, instead));
     };
     warn(num_masked, "cut out by alpha (leaves, fences); alpha is not read",
          "what is cut out is opaque");

@@ -75,7 +75,7 @@ glm::dmat4 local_transform(const Json& node) {
 
 /// Returns a perspective camera at a node, with a target one unit ahead; nothing for others, and
 /// for values that no picture can have.
-std::optional<FileCamera> camera_at(const Json& camera, const glm::dmat4& transform) {
+std::optional<Camera> camera_at(const Json& camera, const glm::dmat4& transform) {
     const Json* perspective = camera.find("perspective");
     if (perspective == nullptr)
         return std::nullopt;
@@ -86,20 +86,16 @@ std::optional<FileCamera> camera_at(const Json& camera, const glm::dmat4& transf
     if (!(fov > 0.0 && fov < std::numbers::pi) || !(length > 0.0 && length < Farthest) ||
         !(glm::length(eye) < Farthest))
         return std::nullopt;
-    return FileCamera{.eye = glm::vec3(eye),
-                      .target = glm::vec3(eye + ahead / length),
-                      .fov_degrees = static_cast<float>(fov * 180.0 / std::numbers::pi)};
+    return Camera{.eye = glm::vec3(eye),
+                  .target = glm::vec3(eye + ahead / length),
+                  .fov_degrees = static_cast<float>(fov * 180.0 / std::numbers::pi)};
 }
 
 /// Puts a camera's target as far ahead as the middle of the mesh is.
-FileCamera looking_at(const std::vector<glm::vec3>& positions, FileCamera camera) {
+Camera looking_at(const std::vector<glm::vec3>& positions, Camera camera) {
     if (positions.empty())
         return camera;
-    glm::vec3 low = positions.front(), high = low;
-    for (const glm::vec3& position : positions) {
-        low = glm::min(low, position);
-        high = glm::max(high, position);
-    }
+    const auto& [low, high] = bounds(positions);
     const glm::dvec3 eye(camera.eye), ahead = glm::dvec3(camera.target) - eye;
     double distance = glm::dot(0.5 * (glm::dvec3(low) + glm::dvec3(high)) - eye, ahead);
     if (!(distance > 0.0) || !std::isfinite(distance))
@@ -461,7 +457,7 @@ PolygonSoup GltfReader::read() {
     };
     std::vector<Visit> to_visit;
     std::vector<bool> visited(document_.count("nodes"), false);
-    std::optional<FileCamera> camera;
+    std::optional<Camera> camera;
     const std::vector<std::uint64_t> roots = root_nodes();
     for (auto root = roots.rbegin(); root != roots.rend(); ++root)
         to_visit.push_back({*root, glm::dmat4(1.0)});

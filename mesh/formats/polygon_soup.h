@@ -13,7 +13,7 @@
 #include <glm/vec3.hpp>
 
 #include "files/free_memory.h"
-#include "mesh/file_camera.h"
+#include "mesh/camera.h"
 #include "mesh/normals.h"
 #include "mesh/triangle_mesh.h"
 
@@ -43,7 +43,7 @@ struct PolygonSoup {
     std::vector<Material> materials;
     std::vector<std::string> groups;
     std::vector<Texture> textures;
-    std::optional<FileCamera> camera = {};
+    std::optional<Camera> camera = {};
     /// As in TriangleMesh.
     std::vector<std::string> missing, warnings;
 

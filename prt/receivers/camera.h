@@ -1,4 +1,4 @@
-// A pinhole camera and the rays through the pixels of its picture.
+// The rays through the pixels of a camera's picture.
 #pragma once
 
 #include <cstdint>
@@ -7,16 +7,11 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "mesh/camera.h"
+
 namespace relumine::prt {
 
-/// A pinhole camera, +Y up.
-struct Camera {
-    glm::vec3 eye{0.0f};
-    glm::vec3 target{0.0f};
-    /// Vertical field of view.
-    float fov_degrees = 35.0f;
-    bool operator==(const Camera&) const = default;
-};
+using mesh::Camera;
 
 /// Axes of a camera. Right and up are scaled to reach the picture's edges at distance 1.
 struct CameraAxes {

@@ -92,8 +92,7 @@ public:
         sends_ = largest > 0.0f && product_.has_emitters();
         for (std::size_t place = 0; place < size_; ++place)
             albedo_[place] = padded(glm::min(albedo[transfer_.order[place]], glm::vec3(safe)));
-        if (sends_)
-            coarse_.emplace(product_, albedo_);
+        coarse_.reset();
     }
 
     BounceReport solve(std::span<const glm::vec3> direct, const BounceLimits& limits) {
@@ -212,6 +211,8 @@ private:
 
     /// Returns all further bounces of the change next_ - indirect_, as groups of receivers tell.
     std::span<const PaddedRgb> bounces_of_change() {
+        if (!coarse_)
+            coarse_.emplace(product_, albedo_);
         of_groups_.assign(coarse_->num_groups(), {});
         for_rows(first_, size_, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
@@ -387,7 +388,7 @@ private:
     bool sends_ = false;
     /// Upper bound of the factor from one bounce to the next, after many.
     double contraction_ = 0.0;
-    /// Of the albedo; where any receiver sends light.
+    /// Of the albedo, once it is needed: a number of bounces asks for none.
     std::optional<CoarseBounces> coarse_;
     std::vector<PaddedRgb> of_groups_;
     /// Of each colour; receivers with more direct light are waited for.

@@ -80,7 +80,8 @@ public:
 
     /// Sets the diffuse reflectance, [num_receivers] in the receivers' order.
     ///
-    /// Cost:    some ten products with the matrix: the groups of receivers are made for it.
+    /// Cost:    O(receivers). The next solve() without a number of bounces, or step(), makes the
+    ///          groups of receivers for it: some ten products with the matrix.
     /// Throws:  std::invalid_argument for another number of albedos, one that is negative or not
     ///          finite, or above 1 and so large that light would grow for ever. The message names
     ///          the largest albedo that is safe. Nothing has changed then. In a closed white room

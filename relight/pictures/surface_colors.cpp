@@ -1,10 +1,9 @@
 #include "relight/pictures/surface_colors.h"
 
-#include "prt/glossy/brdf.h"
-
 #include <algorithm>
 #include <array>
 
+#include "prt/glossy/brdf.h"
 #include "prt/glossy/surface_sampling.h"
 
 namespace relumine::relight {

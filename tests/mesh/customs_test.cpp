@@ -45,5 +45,12 @@ TEST(Customs, AFlatSideBelowSuggestsWhatIsUp) {
     EXPECT_TRUE(stands_on_z(with_floor, own));
 }
 
+TEST(UpAxis, OfStlIsZByCustom) {
+    EXPECT_EQ(customary_up("part.stl"), UpAxis::Z);
+    EXPECT_EQ(customary_up("PART.STL"), UpAxis::Z);
+    for (const char* name : {"a.obj", "a.ply", "a.glb", "a.gltf", "a.off", "stl"})
+        EXPECT_EQ(customary_up(name), UpAxis::Y) << name;
+}
+
 } // namespace
 } // namespace relumine::mesh

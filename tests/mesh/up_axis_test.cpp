@@ -26,12 +26,5 @@ TEST(UpAxis, BecomesPlusY) {
                   turned(axis, {0, 0, 1}));
 }
 
-TEST(UpAxis, OfStlIsZByCustom) {
-    EXPECT_EQ(customary_up("part.stl"), UpAxis::Z);
-    EXPECT_EQ(customary_up("PART.STL"), UpAxis::Z);
-    for (const char* name : {"a.obj", "a.ply", "a.glb", "a.gltf", "a.off", "stl"})
-        EXPECT_EQ(customary_up(name), UpAxis::Y) << name;
-}
-
 } // namespace
 } // namespace relumine::mesh

@@ -571,7 +571,7 @@ TEST_F(GltfTest, TheFirstPerspectiveCameraIsKept) {
                             {"rotation", {0, h, 0, h}},
                             {"scale", {3, 3, 3}}}};
     model.json["scenes"] = {{{"nodes", {0}}}};
-    std::optional<FileCamera> camera;
+    std::optional<Camera> camera;
     static_cast<void>(
         load(write("a.gltf", model.embedded()), NormalSource::File, nullptr, &camera));
     ASSERT_TRUE(camera);
