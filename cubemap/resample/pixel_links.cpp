@@ -1,7 +1,7 @@
 #include "cubemap/resample/pixel_links.h"
 
-#include <algorithm>
 #include <span>
+#include <utility>
 
 #include <glm/matrix.hpp>
 
@@ -12,71 +12,70 @@ namespace relumine::cubemap {
 
 namespace {
 
-/// The pixels over each texel of a cube map. Each has a part of the texel; the parts add up to 1.
-class TexelPixels {
-public:
-    TexelPixels(const ImageShape& shape, const glm::dmat3& turn, std::uint32_t resolution)
-        : starts_(std::size_t{NumFaces} * resolution * resolution + 1, 0) {
-        std::vector<detail::PixelShare> shares;
-        detail::for_each_row_of_shares(shape, turn, resolution,
-                                       [&](std::span<const detail::PixelShare> row) {
-                                           shares.insert(shares.end(), row.begin(), row.end());
-                                       });
-        std::vector<double> sums(starts_.size() - 1, 0.0);
-        for (const detail::PixelShare& share : shares) {
-            ++starts_[share.texel + 1];
-            sums[share.texel] += share.solid_angle;
-        }
-        for (std::size_t i = 1; i < starts_.size(); ++i)
-            starts_[i] += starts_[i - 1];
-        parts_.resize(shares.size());
-        std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
-        for (const detail::PixelShare& share : shares)
-            parts_[next[share.texel]++] = {
-                share.pixel, static_cast<float>(share.solid_angle / sums[share.texel])};
-    }
-
-    struct Part {
-        std::uint32_t pixel;
-        float part;
-    };
-    [[nodiscard]] std::span<const Part> over(std::uint32_t texel) const {
-        return std::span(parts_).subspan(starts_[texel], starts_[texel + 1] - starts_[texel]);
-    }
-
-private:
-    std::vector<std::size_t> starts_;
-    std::vector<Part> parts_;
+/// A part of the sphere that a pixel of each image shows.
+struct PixelPair {
+    std::uint32_t from, to;
+    double solid_angle;
 };
+
+/// Sorts overlaps by `to`. Those of one `to` keep their order.
+PixelMeans means(std::span<const PixelPair> overlaps, std::size_t num_to) {
+    PixelMeans result;
+    result.starts.assign(num_to + 1, 0);
+    std::vector<double> sums(num_to, 0.0);
+    for (const PixelPair& overlap : overlaps) {
+        ++result.starts[overlap.to + 1];
+        sums[overlap.to] += overlap.solid_angle;
+    }
+    for (std::size_t i = 1; i < result.starts.size(); ++i)
+        result.starts[i] += result.starts[i - 1];
+    result.parts.resize(overlaps.size());
+    std::vector<std::size_t> next(result.starts.begin(), result.starts.end() - 1);
+    for (const PixelPair& overlap : overlaps) {
+        const double sum = sums[overlap.to];
+        const double part = sum > 0.0 ? overlap.solid_angle / sum : 0.0;
+        result.parts[next[overlap.to]++] = {overlap.from, static_cast<float>(part)};
+    }
+    return result;
+}
+
+/// Returns the pixels over each texel of a cube map.
+PixelMeans pixels_over_texels(const ImageShape& shape, const glm::dmat3& turn,
+                              std::uint32_t resolution) {
+    std::vector<PixelPair> overlaps;
+    detail::for_each_row_of_shares(
+        shape, turn, resolution, [&](std::span<const detail::PixelShare> row) {
+            for (const detail::PixelShare& share : row)
+                overlaps.push_back({share.pixel, share.texel, share.solid_angle});
+        });
+    return means(overlaps, std::size_t{NumFaces} * resolution * resolution);
+}
 
 } // namespace
 
 PixelLinks::PixelLinks(const ImageShape& source, const ImageShape& target,
-                       const glm::dmat3& target_from_source, std::uint32_t resolution, Axes axes)
-    : num_source_pixels_(static_cast<std::size_t>(source.width) * source.height),
-      source_angles_(num_source_pixels_, 0.0) {
+                       const glm::dmat3& target_from_source, std::uint32_t resolution, Axes axes) {
     const bool as_source = axes == Axes::Source;
-    const TexelPixels over(source, as_source ? glm::dmat3(1.0) : target_from_source, resolution);
-    const std::size_t num_pixels = static_cast<std::size_t>(target.width) * target.height;
+    const PixelMeans over =
+        pixels_over_texels(source, as_source ? glm::dmat3(1.0) : target_from_source, resolution);
 
-    // Rows of faces do not come in the order of pixels. So the place of each pixel's links is noted
-    // first.
+    // Rows of faces do not come in the order of pixels. So the place of each pixel's overlaps is
+    // noted.
     struct Range {
         std::size_t begin = 0, end = 0;
     };
+    const std::size_t num_pixels = std::size_t{target.width} * target.height;
     std::vector<Range> ranges(num_pixels);
-    std::vector<std::uint32_t> sources;
-    std::vector<double> solid_angles;
-    const auto add = [&](Range& range, std::uint32_t pixel, double solid_angle) {
+    std::vector<PixelPair> overlaps;
+    const auto add = [&](Range& range, const PixelPair& overlap) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
-            if (sources[i] == pixel) {
-                solid_angles[i] += solid_angle;
+            if (overlaps[i].from == overlap.from) {
+                overlaps[i].solid_angle += overlap.solid_angle;
                 return;
             }
         }
-        sources.push_back(pixel);
-        solid_angles.push_back(solid_angle);
-        range.end = sources.size();
+        overlaps.push_back(overlap);
+        range.end = overlaps.size();
     };
     detail::for_each_row_of_shares(
         target, as_source ? glm::transpose(target_from_source) : glm::dmat3(1.0), resolution,
@@ -84,69 +83,27 @@ PixelLinks::PixelLinks(const ImageShape& source, const ImageShape& target,
             for (const detail::PixelShare& share : row) {
                 Range& range = ranges[share.pixel];
                 if (range.begin == range.end)
-                    range = {sources.size(), sources.size()};
-                for (const auto& [pixel, part] : over.over(share.texel))
-                    add(range, pixel, share.solid_angle * static_cast<double>(part));
+                    range = {overlaps.size(), overlaps.size()};
+                for (std::size_t i = over.starts[share.texel]; i < over.starts[share.texel + 1];
+                     ++i)
+                    add(range, {over.parts[i].pixel, share.pixel,
+                                share.solid_angle * static_cast<double>(over.parts[i].part)});
             }
         });
-
-    starts_.reserve(num_pixels + 1);
-    starts_.push_back(0);
-    sources_.reserve(sources.size());
-    solid_angles_.reserve(sources.size());
-    for (const Range& range : ranges) {
-        for (std::size_t i = range.begin; i < range.end; ++i) {
-            sources_.push_back(sources[i]);
-            solid_angles_.push_back(solid_angles[i]);
-            source_angles_[sources[i]] += solid_angles[i];
-        }
-        starts_.push_back(sources_.size());
-    }
-
-    sort_by_source();
+    targets_ = means(overlaps, num_pixels);
+    for (PixelPair& overlap : overlaps)
+        std::swap(overlap.from, overlap.to);
+    sources_ = means(overlaps, std::size_t{source.width} * source.height);
 }
 
-/// Makes the same links in the order of their source pixels.
-void PixelLinks::sort_by_source() {
-    source_starts_.assign(num_source_pixels_ + 1, 0);
-    for (const std::uint32_t source_pixel : sources_)
-        ++source_starts_[source_pixel + 1];
-    for (std::size_t i = 1; i < source_starts_.size(); ++i)
-        source_starts_[i] += source_starts_[i - 1];
-    back_.resize(sources_.size());
-    std::vector<std::size_t> next(source_starts_.begin(), source_starts_.end() - 1);
-    for (std::size_t i = 0; i + 1 < starts_.size(); ++i) {
-        for (std::size_t link = starts_[i]; link < starts_[i + 1]; ++link)
-            back_[next[sources_[link]]++] = {static_cast<std::uint32_t>(i),
-                                             static_cast<std::uint32_t>(link)};
-    }
-}
-
-std::vector<glm::vec3> PixelLinks::to_target(const std::vector<glm::vec3>& pixels) const {
-    std::vector<glm::vec3> result(starts_.size() - 1);
+std::vector<glm::vec3> PixelMeans::of(const std::vector<glm::vec3>& pixels) const {
+    std::vector<glm::vec3> result(starts.size() - 1);
     files::parallel_for(files::IndexRange<std::size_t>(0, result.size()), [&](const auto& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
             glm::dvec3 sum(0.0);
-            double weights = 0.0;
-            for (std::size_t link = starts_[i]; link < starts_[i + 1]; ++link) {
-                sum += glm::dvec3(pixels[sources_[link]]) * solid_angles_[link];
-                weights += solid_angles_[link];
-            }
-            result[i] = weights > 0.0 ? glm::vec3(sum / weights) : glm::vec3(0.0f);
-        }
-    });
-    return result;
-}
-
-std::vector<glm::vec3> PixelLinks::to_source(const std::vector<glm::vec3>& pixels) const {
-    std::vector<glm::vec3> result(num_source_pixels_, glm::vec3(0.0f));
-    files::parallel_for(files::IndexRange<std::size_t>(0, result.size()), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            glm::dvec3 sum(0.0);
-            for (std::size_t k = source_starts_[i]; k < source_starts_[i + 1]; ++k)
-                sum += glm::dvec3(pixels[back_[k].target]) * solid_angles_[back_[k].link];
-            if (source_angles_[i] > 0.0)
-                result[i] = glm::vec3(sum / source_angles_[i]);
+            for (std::size_t k = starts[i]; k < starts[i + 1]; ++k)
+                sum += glm::dvec3(pixels[parts[k].pixel]) * static_cast<double>(parts[k].part);
+            result[i] = glm::vec3(sum);
         }
     });
     return result;
