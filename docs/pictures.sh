@@ -1,13 +1,21 @@
 #!/usr/bin/env bash
-# Draws the pictures of docs/meshes.md: a mesh as it is, refined evenly, by light, and for the sun, at equal numbers of
-# vertices. Needs a mesh of RELUMINE_DATA (docs/data.md). FOLDER keeps the scenes.
+# Draws the pictures of README.md: one mesh under four photographs, without an option but the size. And those of
+# docs/meshes.md: a mesh as it is, refined evenly, by light, and for the sun, at equal numbers of vertices. Needs meshes
+# and environments of RELUMINE_DATA (docs/data.md). FOLDER keeps the scenes.
 #
-#   docs/refinement.sh build/release/app/relumine FOLDER PICTURES
+#   docs/pictures.sh build/release/app/relumine FOLDER docs/pictures
 set -euo pipefail
 relumine=$1
 folder=$2
 pictures=$3
 mkdir -p "$folder" "$pictures"
+
+for environment in kiara_1_dawn rooitou_park studio_small_03; do
+    "$relumine" relight "$RELUMINE_DATA/meshes/stanford/dragon_vrip_res2.ply" \
+        "$RELUMINE_DATA/envs/polyhaven/${environment}_1k.hdr" --size 400x300 -o "$pictures/dragon_$environment.png" -q
+done
+"$relumine" relight "$RELUMINE_DATA/meshes/stanford/dragon_vrip_res2.ply" \
+    "$RELUMINE_DATA/lowpoly/kloppenheim_05_1k.hdr" --size 400x300 -o "$pictures/dragon_kloppenheim_05.png" -q
 
 for environment in sun_sky soft_boxes; do
     "$relumine" generate "$environment" -o "$folder" -q
@@ -34,7 +42,7 @@ draw() { # draw NAME ENVIRONMENT MESH VERTICES OPTION...
     local name=$1 environment=$2 mesh=$3 vertices=$4 way
     shift 4
     for way in before uniform refined sun; do
-        local -a more=()
+        local -a more=(--no-refine)
         [ "$way" = uniform ] && more=(--max-edge 1e-6 --max-vertices "$vertices")
         [ "$way" = refined ] && more=(--refine 0 --max-vertices "$vertices")
         [ "$way" = sun ] && more=(--refine 0 --refine-for "$folder/sun_sky.exr" --max-vertices "$vertices")
