@@ -6,6 +6,7 @@
 #include "app/command_line/command_line.h"
 #include "app/program.h"
 #include "files/parallel.h"
+#include "relumine/version.h"
 
 int main(int argc, char** argv) {
     using namespace relumine;
@@ -13,7 +14,7 @@ int main(int argc, char** argv) {
     app::CommandLine program("relumine",
                              "Relights meshes under measured environment light. Exit code 0: done, "
                              "1: the work failed, 2: wrong usage.",
-                             RELUMINE_VERSION);
+                             std::string(version()));
     app::add_commands(program, session);
 
     std::optional<files::ThreadLimit> thread_limit;

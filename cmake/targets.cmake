@@ -14,6 +14,10 @@ endif()
 # makes relumine::NAME with the warnings, the language level and the include spelling ("NAME/file.h") that all
 # folders share. A public header includes public headers, GLM and std only (tests/headers checks it). The library
 # is static or shared as BUILD_SHARED_LIBS says; an INTERNAL one is always static and is not installed.
+#
+# Users spell "relumine/NAME/file.h", and "relumine/file.h" for the door's: no header of theirs is in the way. Installed
+# headers do so, too (cmake/one_root.cmake); a link in the build folder makes that spelling right for those who add this
+# project as a folder.
 
 include(GNUInstallDirs)
 
@@ -23,23 +27,23 @@ if(RELUMINE_WARNINGS_AS_ERRORS)
     target_compile_options(relumine_warnings INTERFACE -Werror)
 endif()
 
-# Compiles each private header by itself, as all_verify_interface_header_sets does for public ones.
-add_custom_target(verify_private_headers)
+# Compiles each header by itself.
+add_custom_target(verify_headers)
 
-function(relumine_verify_private_headers name)
+function(relumine_verify_headers name)
     set(sources "")
     foreach(header IN LISTS ARGN)
-        set(source ${CMAKE_CURRENT_BINARY_DIR}/private_headers/${header}.cpp)
+        set(source ${CMAKE_CURRENT_BINARY_DIR}/verified_headers/${header}.cpp)
         file(CONFIGURE OUTPUT ${source} CONTENT "#include \"${name}/${header}\"\n")
         list(APPEND sources ${source})
     endforeach()
-    set(verify relumine_${name}_verify_private_headers)
+    set(verify relumine_${name}_verify_headers)
     add_library(${verify} OBJECT EXCLUDE_FROM_ALL ${sources})
     target_compile_features(${verify} PRIVATE cxx_std_20)
     target_include_directories(${verify} PRIVATE $<TARGET_PROPERTY:relumine_${name},INCLUDE_DIRECTORIES>)
     target_compile_definitions(${verify} PRIVATE $<TARGET_PROPERTY:relumine_${name},COMPILE_DEFINITIONS>)
     target_link_libraries(${verify} PRIVATE relumine_warnings)
-    add_dependencies(verify_private_headers ${verify})
+    add_dependencies(verify_headers ${verify})
 endfunction()
 
 function(relumine_library name)
@@ -50,11 +54,12 @@ function(relumine_library name)
     endif()
     add_library(relumine_${name} ${kind} ${arg_SOURCES} ${arg_PRIVATE_HEADERS})
     add_library(relumine::${name} ALIAS relumine_${name})
-    target_sources(relumine_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${arg_HEADERS})
+    target_include_directories(relumine_${name} PUBLIC
+        $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
+        $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     target_compile_features(relumine_${name} PUBLIC cxx_std_20)
     set_target_properties(relumine_${name} PROPERTIES
         EXPORT_NAME ${name}
-        VERIFY_INTERFACE_HEADER_SETS ON
         VERSION ${PROJECT_VERSION}
         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
         INSTALL_RPATH "$ORIGIN"
@@ -67,18 +72,25 @@ function(relumine_library name)
     # A shared library depends on no more than it uses.
     target_link_options(relumine_${name} PRIVATE LINKER:--as-needed)
 
-    if(arg_PRIVATE_HEADERS)
-        relumine_verify_private_headers(${name} ${arg_PRIVATE_HEADERS})
-    endif()
+    relumine_verify_headers(${name} ${arg_HEADERS} ${arg_PRIVATE_HEADERS})
     if(NOT arg_INTERNAL)
+        set(root ${CMAKE_INSTALL_INCLUDEDIR}/relumine)
+        if(NOT name STREQUAL relumine)
+            string(APPEND root /${name})
+            file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include/relumine)
+            file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/relumine/${name} SYMBOLIC)
+        endif()
+        foreach(header IN LISTS arg_HEADERS)
+            cmake_path(GET header PARENT_PATH room)
+            install(FILES ${header} DESTINATION ${root}/${room} COMPONENT development)
+        endforeach()
         list(TRANSFORM arg_HEADERS PREPEND ${name}/)
         set_property(GLOBAL APPEND PROPERTY RELUMINE_PUBLIC_HEADERS ${arg_HEADERS})
         set_property(GLOBAL APPEND PROPERTY RELUMINE_LIBRARIES ${name})
         install(TARGETS relumine_${name} EXPORT relumine
             RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime
             LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development
-            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
-            FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/relumine COMPONENT development)
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
     endif()
     relumine_compile_together(relumine_${name})
     relumine_use_precompiled(relumine_${name} relumine_headers)

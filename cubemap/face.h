@@ -7,6 +7,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "files/plain_glm.h"
+
 namespace relumine::cubemap {
 
 /// Cube faces in the order of the OpenEXR specification (ImfEnvmap.h). A file stacks the faces in

@@ -11,6 +11,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "files/plain_glm.h"
 #include "mesh/materials/material.h"
 #include "mesh/materials/texture.h"
 

@@ -6,12 +6,14 @@
 
 #include "files/joined.h"
 #include "prt/arithmetic.h"
+#include "relumine/version.h"
 
 namespace relumine::mpi {
 
 Greeting greeting(const std::vector<std::string>& arguments) {
-    return {
-        .version = RELUMINE_VERSION, .instruction_set = prt::arithmetic(), .arguments = arguments};
+    return {.version = std::string(version()),
+            .instruction_set = prt::arithmetic(),
+            .arguments = arguments};
 }
 
 std::vector<std::byte> packed(const Greeting& greeting) {

@@ -19,6 +19,7 @@
 #include "files/parallel.h"
 #include "mpi/communicator.h"
 #include "mpi/greeting.h"
+#include "relumine/version.h"
 
 namespace relumine::mpi {
 
@@ -39,7 +40,7 @@ int run(const std::vector<std::string>& arguments, app::Session& session, Commun
                              "Shares the work of one command out to the processes that mpirun or "
                              "srun starts. `relumine` has the other commands. Exit code 0: done, "
                              "1: the work failed, 2: wrong usage.",
-                             RELUMINE_VERSION);
+                             std::string(relumine::version()));
     double timeout = 3600.0;
     app::Command root = program.root();
     app::add_precompute(root, session);

@@ -102,8 +102,8 @@ struct LightState {
 class LightHistory {
 public:
     /// Forgets all marks but this one.
-    void restart(LightState first) {
-        marks_.assign(1, std::move(first));
+    void restart(const LightState& first) {
+        marks_.assign(1, first);
         at_ = 0;
     }
     /// Forgets the marks after the present one, and adds one of another state.

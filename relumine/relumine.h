@@ -28,4 +28,5 @@
 #include "relumine/scene.h"
 #include "relumine/scene_cache.h"
 #include "relumine/shared_radiance.h"
+#include "relumine/version.h"
 // IWYU pragma: end_exports

@@ -11,6 +11,7 @@
 #include "app/command_line/completion.h"
 #include "app/command_line/man_page.h"
 #include "files/output_file.h"
+#include "relumine/version.h"
 
 namespace relumine::app {
 
@@ -81,7 +82,7 @@ void add_man(CommandLine& program) {
                     {.folder = true}));
     command.on_run([options, &program] {
         const CommandTable table = program.table();
-        const std::vector<ManPage> pages = man_pages(table, RELUMINE_VERSION);
+        const std::vector<ManPage> pages = man_pages(table, std::string(version()));
         if (!options->folder.empty()) {
             save_pages(pages, options->folder);
             return;

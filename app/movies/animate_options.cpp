@@ -11,6 +11,7 @@
 #include "app/movies/frame_record.h"
 #include "app/movies/movie.h"
 #include "files/output_file.h"
+#include "relumine/version.h"
 
 namespace relumine::app {
 
@@ -116,8 +117,8 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
 }
 
 std::string AnimateOptions::settings(const cubemap::FrameSequence& sequence) const {
-    std::string all = fmt::format("{}\n{}\n{}", RELUMINE_VERSION, FrameRecord::stamp(scene.path),
-                                  command_->settings());
+    std::string all =
+        fmt::format("{}\n{}\n{}", version(), FrameRecord::stamp(scene.path), command_->settings());
     if (method == "clusters") // every frame depends on all
         for (const cubemap::FrameFile& frame : sequence.files())
             for (const fs::path& file : cubemap::environment_files(frame.path))

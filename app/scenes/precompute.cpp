@@ -308,8 +308,9 @@ Mesh made_mesh(const PrecomputeArguments& options, Session& session) {
         session.say(fmt::format("{}: +Z is up, by the custom of .stl; --up y where it is not",
                                 options.mesh));
     else if (!options.mesh_options.up &&
-             mesh::stands_on_z(mesh.geometry, mesh.geometry.num_vertices() -
-                                                  mesh.floor_vertices * mesh.floor_vertices))
+             mesh::stands_on_z(mesh.geometry,
+                               mesh.geometry.num_vertices() -
+                                   std::size_t{mesh.floor_vertices} * mesh.floor_vertices))
         session.say(fmt::format("{}: +Y is taken as up, but the mesh stands flat on its side "
                                 "towards -Z; --up z turns it if it lies on its back",
                                 options.mesh));

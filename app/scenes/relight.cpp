@@ -100,8 +100,7 @@ Given given_light(const RelightArguments& options, Session& session) {
 
 /// "sky.exr (R = 256) and 3 lights of sun.json"
 std::string name_of(const RelightArguments& options, const LitScene& lit, std::size_t num_lights) {
-    const std::string list =
-        fmt::format("{} of {}", files::counted(num_lights, "light"), options.lights);
+    std::string list = fmt::format("{} of {}", files::counted(num_lights, "light"), options.lights);
     if (options.environment.path.empty())
         return list;
     return fmt::format("{} (R = {}){}", options.environment.path, environment_of(lit).resolution,

@@ -13,8 +13,8 @@ sys.path.insert(0, os.environ["RELUMINE_PYTHON"])  # the built package
 project = "Relumine"
 author = "Relumine developers"
 copyright = "Relumine developers, Apache-2.0"
-with open(os.path.join(ROOT, "CMakeLists.txt")) as file:
-    version = release = re.search(r"project\(relumine VERSION (\S+)", file.read())[1]
+with open(os.path.join(ROOT, "pyproject.toml")) as file:
+    version = release = re.search(r'^version = "(\S+)"', file.read(), re.MULTILINE)[1]
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "breathe"]
 root_doc = "docs/site/index"

@@ -48,13 +48,15 @@ void check(const MeshoptView& view, std::size_t num_bytes) {
 /// Cg and alpha with a bit less, all scaled by the bits that alpha's highest one tells.
 template<typename Unsigned>
 void decode_colors(std::span<std::byte> bytes) {
-    using Signed = std::make_signed_t<Unsigned>;
+    const auto as_signed = [](Unsigned value) {
+        return int{std::bit_cast<std::make_signed_t<Unsigned>>(value)};
+    };
     for (std::size_t at = 0; at + 4 * sizeof(Unsigned) <= bytes.size();
          at += 4 * sizeof(Unsigned)) {
         std::array<Unsigned, 4> color{};
         std::memcpy(color.data(), &bytes[at], sizeof color);
-        const int y = color[0], co = static_cast<Signed>(color[1]),
-                  cg = static_cast<Signed>(color[2]), alpha = color[3];
+        const int y = color[0], co = as_signed(color[1]), cg = as_signed(color[2]),
+                  alpha = color[3];
         const int range = static_cast<int>(std::bit_ceil(static_cast<unsigned>(alpha) + 1)) - 1;
         const double scale =
             range == 0 ? 0.0 : double{std::numeric_limits<Unsigned>::max()} / range;

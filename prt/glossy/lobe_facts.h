@@ -13,8 +13,8 @@ struct LobeFacts {
     std::string_view name;
     /// Names of Surface::albedo, specular and roughness_or_exponent; empty: not used.
     std::string_view albedo;
-    std::string_view specular = "";
-    std::string_view shape = "";
+    std::string_view specular = {};
+    std::string_view shape = {};
     float largest_shape = 1e6f;
     /// The specular colour must be given, and with the albedo it is at most 1.
     bool needs_specular = false;

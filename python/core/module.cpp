@@ -51,5 +51,5 @@ PYBIND11_MODULE(_core, module) {
     bind_lights(module);
     bind_relighters(module);
     module.def("set_threads", &set_threads);
-    module.attr("__version__") = RELUMINE_VERSION;
+    module.attr("__version__") = std::string(relumine::version());
 }

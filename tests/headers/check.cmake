@@ -53,6 +53,8 @@ foreach(user IN LISTS users)
         includes_of(${source})
         foreach(include IN LISTS includes)
             string(REGEX REPLACE "[<>\"]" "" path "${include}")
+            # Users of the installed library spell relumine/FOLDER/FILE.
+            string(REGEX REPLACE "^relumine/([^/]+/)" "\\1" path "${path}")
             string(REGEX REPLACE "/.*" "" folder "${path}")
             if(include MATCHES "^\"" AND folder IN_LIST folders AND NOT path IN_LIST public)
                 wrong("${source} includes the private ${path}")

@@ -65,6 +65,26 @@ cmake -S "$source" -B "$work/build" -G Ninja -DCMAKE_PREFIX_PATH="$root" "$@" >"
 cmake --build "$work/build" >"$work/build.log" || { cat "$work/build.log" >&2; exit 1; }
 "$work/build/consumer" "$source/octahedron.off"
 
+# Without CMake, by pkg-config, which knows where the file lies.
+pkgconfig=$(dirname "$(find "$root" -name relumine.pc)")
+flags() { PKG_CONFIG_PATH=$pkgconfig pkg-config --define-prefix "$@" relumine; }
+compiler=c++
+for argument in "$@"; do
+    [[ "$argument" != -DCMAKE_CXX_COMPILER=* ]] || compiler=${argument#*=}
+    [[ "$argument" != -DCMAKE_CXX_FLAGS=* ]] || read -ra options <<<"${argument#*=}"
+done
+# shellcheck disable=SC2046 # lists of words
+"$compiler" "${options[@]}" -I"$source" "$source/main.cpp" $(flags --cflags --libs) -o "$work/by_pkg_config"
+"$work/by_pkg_config" "$source/octahedron.off"
+
+# Aligned vectors would be read with the wrong layout.
+# shellcheck disable=SC2046
+if "$compiler" -fsyntax-only -DGLM_FORCE_INTRINSICS -DGLM_FORCE_DEFAULT_ALIGNED_GENTYPES -I"$source" "$source/main.cpp" $(flags --cflags) \
+    2>"$work/aligned.log"; then
+    fail "aligned vectors compile"
+fi
+grep -q "vectors without alignment" "$work/aligned.log" || fail "$(cat "$work/aligned.log")"
+
 # All headers that the compiler read: Relumine's lie under the root, the others belong to Debian packages.
 headers=$(cd "$work/build" && ninja -t deps | sed -n 's/^    //p' | xargs realpath | sort -u)
 grep -q "^$(realpath "$root")/include/relumine/" <<<"$headers" || fail "no header of Relumine was read"

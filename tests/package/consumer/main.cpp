@@ -3,7 +3,12 @@
 #include <cmath>
 #include <cstdio>
 
+// An engine's own header, which has the name of one of Relumine's.
+#include "mesh/triangle_mesh.h"
+#include "relumine/cubemap/resample/save_environment.h"
 #include "relumine/relumine.h"
+
+static_assert(RELUMINE_VERSION >= 100, "the first version");
 
 int main(int argc, char** argv) {
     using namespace relumine;
@@ -16,6 +21,7 @@ int main(int argc, char** argv) {
     float error = 0.0f;
     for (const glm::vec3& color : lit.radiance())
         error = std::max(error, std::abs(color.g - 1.0f));
-    std::printf("%zu vertices, error %.4f\n", lit.radiance().size(), static_cast<double>(error));
+    std::printf("%s, version %s: %zu vertices, error %.4f\n", engine::name, version().data(),
+                lit.radiance().size(), static_cast<double>(error));
     return lit.radiance().size() == 6 && error < 0.01f ? 0 : 1;
 }
