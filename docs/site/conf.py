@@ -30,7 +30,7 @@ nitpicky = False
 pygments_style = "friendly"
 highlight_language = "none"
 
-# The C++ door: the headers of relumine/.
+# The C++ door: the headers of relumine/, and those whose types stand in its signatures.
 breathe_projects = {"relumine": os.path.join(BUILD, "xml")}
 breathe_default_project = "relumine"
 breathe_show_include = False
@@ -39,7 +39,8 @@ breathe_show_include = False
 def run_doxygen():
     os.makedirs(BUILD, exist_ok=True)
     settings = f"""
-        INPUT = {ROOT}/relumine
+        INPUT = {ROOT}/relumine {ROOT}/mesh {ROOT}/cubemap {ROOT}/lights {ROOT}/prt {ROOT}/relight {ROOT}/files
+        RECURSIVE = YES
         FILE_PATTERNS = *.h
         EXCLUDE = {ROOT}/relumine/stages.h
         OUTPUT_DIRECTORY = {BUILD}
