@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -19,6 +20,7 @@
 #include "files/parallel.h"
 #include "mpi/communicator.h"
 #include "mpi/greeting.h"
+#include "mpi/processors.h"
 #include "relumine/version.h"
 
 namespace relumine::mpi {
@@ -53,10 +55,14 @@ int run(const std::vector<std::string>& arguments, app::Session& session, Commun
                 "end all processes when one has not answered for so many seconds; 0: wait",
                 {.min = 0, .max = 1e9, .shapes_frames = false}));
 
+    // Said unless a number of threads, or the share of a job, shows that it is meant.
+    std::string idle;
     std::optional<files::ThreadLimit> thread_limit;
     program.before_run([&] {
         if (session.num_threads > 0)
             thread_limit.emplace(session.num_threads);
+        else if (is_first && !idle.empty() && std::getenv("SLURM_CPUS_PER_TASK") == nullptr)
+            session.warn(idle);
         // The first process speaks for all.
         session.quiet = session.quiet || !is_first;
         session.json = session.json && is_first;
@@ -69,6 +75,10 @@ int run(const std::vector<std::string>& arguments, app::Session& session, Commun
         if (!differs.empty())
             throw std::runtime_error(differs);
         team.meet();
+        std::vector<Processors> all;
+        for (const std::vector<std::byte>& bytes : team.gather(packed(processors())))
+            all.push_back(unpacked_processors(bytes));
+        idle = idle_processors(all);
         if (!arguments.empty() && !arguments[0].empty() && arguments[0][0] != '-' &&
             std::find(Commands.begin(), Commands.end(), arguments[0]) == Commands.end())
             throw app::UsageError(arguments[0],
