@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cubemap/layers/layer_composite.h"
+#include "cubemap/layers/shapes/sphere_lines.h"
 
 namespace relumine::viewer {
 
@@ -77,6 +78,13 @@ void change(LightDesk& desk, std::size_t index, const cubemap::LightLayer& layer
     LightState next = desk.state();
     next.layers.at(index) = layer;
     desk.edit(std::move(next));
+}
+
+void move_middle(LightDesk& desk, std::size_t index, const glm::dvec3& direction) {
+    cubemap::LightLayer layer = desk.layers()[index];
+    layer.region = cubemap::moved(layer.region, middle(layer.region),
+                                  cubemap::turned(direction, -desk.state().rotation_degrees));
+    change(desk, index, layer);
 }
 
 void set_rotation(LightDesk& desk, double degrees) {

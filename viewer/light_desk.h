@@ -71,6 +71,8 @@ private:
 // Edits in progress, for example while a slider moves.
 
 void change(LightDesk& desk, std::size_t index, const cubemap::LightLayer& layer);
+/// Moves a layer so that its middle is at a direction, as seen after the rotation.
+void move_middle(LightDesk& desk, std::size_t index, const glm::dvec3& direction);
 void set_rotation(LightDesk& desk, double degrees);
 void set_base(LightDesk& desk, Environment environment);
 /// Adds a layer on top, selects it and returns its index. The name gets a number if a layer has the

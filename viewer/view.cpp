@@ -222,7 +222,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
     while (!is_last && !window.should_close() && !options.stop.stop_requested()) {
         ScriptPlayer::Frame scripted;
         if (options.script) {
-            scripted = player.step(state);
+            scripted = player.step(state, window.layout().scene);
             is_last = player.is_done();
         }
         const bool is_busy = options.script || !state.desk.lit().bounces().is_settled();

@@ -105,6 +105,15 @@ void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec
     state.heat_is_stale = true;
 }
 
+bool aim_light(ViewState& state, std::size_t layer, const PixelRectangle& viewport,
+               const glm::vec2& pixel, Aim aim) {
+    const Ray ray = ray_through(state.camera, viewport, pixel);
+    const auto direction = light_direction(state.desk.lit(), ray.origin, ray.direction, aim);
+    if (direction)
+        move_middle(state.desk, layer, *direction);
+    return direction.has_value();
+}
+
 bool open(ViewState& state, const std::filesystem::path& path) {
     return reported(state, [&]() -> std::string {
         if (path.extension() == ".json")

@@ -15,6 +15,7 @@
 #include "prt/visibility/ray_scene.h"
 #include "relight/pictures/picture_view.h"
 #include "relumine/output.h"
+#include "relumine/questions.h"
 #include "viewer/gestures.h"
 #include "viewer/lat_long_view.h"
 #include "viewer/light_desk.h"
@@ -25,6 +26,9 @@
 namespace relumine::viewer {
 
 enum class Tool { Move, Paint, Lasso };
+
+/// What a click on the mesh does.
+enum class Click { Ask, Face, Mirror };
 
 struct ViewState {
     const mesh::TriangleMesh& mesh;
@@ -43,6 +47,9 @@ struct ViewState {
     EnvironmentLook environment_look = {};
 
     Tool tool = Tool::Move;
+    Click click = Click::Ask;
+    /// The pointer places the chosen layer on the mesh.
+    bool is_aiming = false;
     cubemap::LightLayer brush{.name = "Stroke", .region = cubemap::Stroke::as_added()};
     cubemap::LightLayer lasso{.name = "Lasso",
                               .region = cubemap::Lasso::as_added(),
@@ -75,6 +82,11 @@ struct ViewState {
 /// Chooses the receiver nearest to the point where a pixel's ray meets the mesh, or none, and shows
 /// the light that reaches it.
 void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec2& pixel);
+
+/// Moves a layer so that its light falls on the point of the mesh that a pixel shows. This is not a
+/// step of undo yet. Returns false, and changes nothing, where the pixel shows no mesh.
+bool aim_light(ViewState& state, std::size_t layer, const PixelRectangle& viewport,
+               const glm::vec2& pixel, Aim aim);
 
 // Files. These functions report success or failure in `message` and return false for a failure.
 // They do not throw for errors of files.

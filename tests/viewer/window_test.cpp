@@ -219,6 +219,39 @@ TEST_F(WindowTest, ThePointerDragsLayersTurnsTheSceneAndAsksWhoLights) {
     EXPECT_FALSE(equal(heat, picture("turned.exr"), viewport_));
 }
 
+TEST_F(WindowTest, ALightGoesWhereTheMeshIsClicked) {
+    const std::array right = pixel_of(right_), left = pixel_of(left_);
+    ASSERT_EQ(play(fmt::format("rotate 50\n"
+                               "add_disc Key 0,-1,0 10\n"
+                               "aim_layer Key {0} {1}\n"
+                               "save_layers facing.json\n"
+                               "mirror_layer Key {0} {1}\n"
+                               "save_layers mirrored.json\n"
+                               "click_does 1\n"
+                               "drag_mesh {0} {1} {2} {3}\n"
+                               "save_layers dragged.json\n"
+                               "undo\n"
+                               "save_layers undone.json\n",
+                               right[0], right[1], left[0], left[1])),
+              0)
+        << words("err.txt");
+    const auto seen = [&](const std::string& file) {
+        const cubemap::LightLayers layers = cubemap::load_layers(folder_ / file);
+        return turned(middle(layers.layers.at(0).region), *layers.rotate_degrees);
+    };
+    const glm::dvec3 normal(right_ - data_gen::SphereCenter);
+    const glm::dvec3 to_eye(glm::normalize(camera_.eye() - right_));
+    EXPECT_LT(angle_between(seen("facing.json"), normal), 2.0);
+    EXPECT_LT(angle_between(seen("mirrored.json") + to_eye, normal), 2.0);
+    EXPECT_LT(angle_between(seen("dragged.json"), glm::dvec3(left_ - data_gen::SphereCenter)), 2.0)
+        << "it follows the pointer, and the camera stays";
+    EXPECT_EQ(seen("undone.json"), seen("mirrored.json")) << "one step of undo";
+
+    EXPECT_EQ(play("add_disc Key 0,1,0 10\naim_layer Key 3 45\n"), 1);
+    EXPECT_EQ(words("err.txt"),
+              "relumine: script line 2: expected a pixel of the mesh, got 3 45\n");
+}
+
 TEST_F(WindowTest, LassosAndDroppedPicturesBecomeLayersAndRotationIsUndone) {
     const PixelRectangle map = panel_layout(Width, Height).environment;
     cubemap::save_environment(folder_ / "picture.exr",
