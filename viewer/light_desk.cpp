@@ -116,6 +116,13 @@ std::size_t add(LightDesk& desk, cubemap::LightLayer layer) {
     return index;
 }
 
+void set_solo(LightDesk& desk, std::size_t index, bool solo) {
+    cubemap::LightLayer layer = desk.layers()[index];
+    layer.solo = solo;
+    change(desk, index, layer);
+    desk.finish();
+}
+
 void replace(LightDesk& desk, std::vector<cubemap::LightLayer> layers) {
     LightState next = desk.state();
     next.layers = std::move(layers);

@@ -85,6 +85,7 @@ std::size_t add(LightDesk& desk, cubemap::LightLayer layer);
 void remove(LightDesk& desk, std::size_t index);
 /// Moves a layer to the place of another one.
 void reorder(LightDesk& desk, std::size_t from, std::size_t to);
+void set_solo(LightDesk& desk, std::size_t index, bool solo);
 /// Replaces all layers.
 void replace(LightDesk& desk, std::vector<cubemap::LightLayer> layers);
 

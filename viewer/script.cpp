@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "cubemap/layers/presets.h"
 #include "files/output_file.h"
 
 namespace relumine::viewer {
@@ -164,6 +165,19 @@ void aim(Step& s) {
     s.state.desk.finish();
 }
 
+void add_preset(Step& s) {
+    const auto presets = cubemap::layer_presets();
+    const auto preset = std::find_if(presets.begin(), presets.end(),
+                                     [&](const auto& each) { return each.name == s.command.text; });
+    if (preset == presets.end())
+        fail(s.command, fmt::format("expected the name of a preset, got '{}'", s.command.text));
+    add(s.state.desk, cubemap::placed(*preset, s.direction()));
+}
+
+void solo(Step& s) {
+    set_solo(s.state.desk, s.layer(), s.number(0) != 0.0);
+}
+
 void set_gain(Step& s) {
     const std::size_t index = s.layer();
     cubemap::LightLayer layer = s.state.desk.layers()[index];
@@ -204,6 +218,8 @@ constexpr std::array Verbs = {
     Verb{"add_disc NAME X,Y,Z RADIUS", add_disc},
     Verb{"add_rectangle NAME X,Y,Z WIDTH HEIGHT", add_rectangle},
     Verb{"add_gain NAME X,Y,Z RADIUS FACTOR", add_gain},
+    Verb{"add_preset NAME X,Y,Z", add_preset},
+    Verb{"solo NAME 0|1", solo},
     Verb{"drag_layer NAME X,Y,Z [EVENTS]", drag_layer, DragEvents, 3},
     Verb{"resize_layer NAME DEGREES [EVENTS]", resize_layer, DragEvents, 1},
     Verb{"aim_layer NAME X Y", aim<Aim::Facing>},

@@ -252,6 +252,30 @@ TEST_F(WindowTest, ALightGoesWhereTheMeshIsClicked) {
               "relumine: script line 2: expected a pixel of the mesh, got 3 45\n");
 }
 
+TEST_F(WindowTest, ASoloLightShinesAlone) {
+    ASSERT_EQ(play("add_preset strip 1,0.2,0.3\n"
+                   "add_preset ring -1,0.2,0.3\n"
+                   "set_gain strip 2\n"
+                   "set_gain ring 2\n"
+                   "wait 1\n"
+                   "screenshot both.exr\n"
+                   "solo ring 1\n"
+                   "wait 1\n"
+                   "screenshot ring.exr\n"
+                   "undo\n"
+                   "wait 1\n"
+                   "screenshot undone.exr\n"),
+              0)
+        << words("err.txt");
+    const cubemap::Picture both = picture("both.exr"), ring = picture("ring.exr");
+    EXPECT_GT(brightness(both, pixel_of(right_)), 0.02f);
+    EXPECT_LT(brightness(ring, pixel_of(right_)), 0.3f * brightness(both, pixel_of(right_)));
+    EXPECT_GT(brightness(ring, pixel_of(left_)), 0.02f);
+    EXPECT_EQ(brightness(ring, {viewport_.x + 8, viewport_.y + 60}), 0.0f) << "no environment";
+    EXPECT_TRUE(equal(both, picture("undone.exr"), viewport_));
+    EXPECT_EQ(play("add_preset strop 1,0,0\n"), 1);
+}
+
 TEST_F(WindowTest, LassosAndDroppedPicturesBecomeLayersAndRotationIsUndone) {
     const PixelRectangle map = panel_layout(Width, Height).environment;
     cubemap::save_environment(folder_ / "picture.exr",
