@@ -3,7 +3,14 @@
 #include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <map>
 #include <thread>
+
+#include <ImathBox.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
 
 #include "tests/app/command.h"
 #include "tests/app/formats.h"
@@ -194,6 +201,66 @@ TEST_F(Edit, LitByShowsWhatARegionLights) {
             "-o", "bad.exr"},
            "--who");
     EXPECT_FALSE(std::filesystem::exists(folder() / "bad.npy"));
+}
+
+/// The channels of an OpenEXR file by name, of 32-bit floats.
+std::map<std::string, std::vector<float>> exr_channels(const std::filesystem::path& path) {
+    Imf::InputFile file(path.c_str());
+    const Imath::Box2i window = file.header().dataWindow();
+    const auto width = static_cast<std::size_t>(window.max.x + 1);
+    const auto height = static_cast<std::size_t>(window.max.y + 1);
+    std::map<std::string, std::vector<float>> channels;
+    Imf::FrameBuffer buffer;
+    for (auto each = file.header().channels().begin(); each != file.header().channels().end();
+         ++each) {
+        std::vector<float>& values = channels[each.name()];
+        values.resize(width * height);
+        buffer.insert(each.name(), Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()),
+                                              sizeof(float), sizeof(float) * width));
+    }
+    file.setFrameBuffer(buffer);
+    file.readPixels(0, window.max.y);
+    return channels;
+}
+
+/// The mixer's layers as a compositor reads them: channels by name.
+TEST_F(Edit, TheMixersLayersAddUpToThePicture) {
+    write("mixed.json", R"({"version": 1, "layers": [
+        {"name": "key.1", "preset": "softbox", "direction": [1, 1, 1], "kelvin": 3200, "exposure": 3},
+        {"name": "muted", "on": false, "preset": "ring", "direction": [0, 1, 1]},
+        {"name": "flag", "preset": "flag", "direction": [1, 1, 1]},
+        {"name": "environment", "preset": "bulb", "direction": [-1, 1, 1]}]})");
+    const std::vector<std::string> edit = {"edit",   "scene.prt", "white.hdr",  "mixed.json",
+                                           "--size", "64x48",     "--exposure", "1"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), edit.begin(), edit.end());
+        return more;
+    };
+    succeed(with({"--mixer", "-o", "mix.exr"}));
+    succeed(with({"-o", "whole.exr"}));
+    const auto mix = exr_channels(folder() / "mix.exr"),
+               whole = exr_channels(folder() / "whole.exr");
+    ASSERT_EQ(whole.size(), 3u);
+    ASSERT_EQ(mix.size(), 15u) << "the picture, environment, key_1, flag, environment 2";
+    double key = 0.0, flag = 0.0;
+    for (const std::string channel : {"R", "G", "B"}) {
+        ASSERT_EQ(mix.at(channel).size(), 64u * 48u);
+        for (std::size_t i = 0; i < 64 * 48; ++i) {
+            float sum = 0.0f;
+            for (const char* layer : {"environment", "key_1", "flag", "environment 2"})
+                sum += mix.at(std::string(layer) + "." + channel)[i];
+            const float expected = whole.at(channel)[i];
+            ASSERT_NEAR(sum, expected, 1e-4f * (1.0f + expected)) << channel << i;
+            ASSERT_NEAR(mix.at(channel)[i], expected, 1e-4f * (1.0f + expected)) << channel << i;
+            key += mix.at("key_1." + channel)[i];
+            flag += mix.at("flag." + channel)[i];
+        }
+    }
+    EXPECT_GT(key, 1.0);
+    EXPECT_LT(flag, 0.0) << "it takes light away";
+
+    misuse(with({"--mixer", "-o", "mix.png"}), "--output");
+    misuse(with({"--mixer", "--who", "1,0,0", "-o", "mix2.exr"}), "--mixer");
 }
 
 TEST_F(Edit, WhoIsAPictureAndAsksForAPoint) {
