@@ -377,6 +377,11 @@ void status_panel(const ViewState& state, const PanelLayout& layout) {
         cost.report.num_receivers, lit.radiance().size());
     ImGui::TextUnformatted(last.c_str());
     ImGui::SameLine(0.0f, 22.0f);
+    const std::string camera = camera_options(state.camera);
+    if (ImGui::SmallButton(camera.c_str()))
+        ImGui::SetClipboardText(camera.c_str());
+    hint("a click copies these options of relumine relight");
+    ImGui::SameLine(0.0f, 22.0f);
     if (state.message_is_error)
         ImGui::TextColored({1.0f, 0.45f, 0.4f, 1.0f}, "%s", state.message.c_str());
     else

@@ -29,9 +29,15 @@ void tools(ViewState& state, const PixelRectangle& place, const PixelRectangle& 
     ImGui::Checkbox("Background", &state.scene_look.background);
     ImGui::SameLine();
     if (ImGui::Button("Frame all"))
-        state.camera = camera_on_all(state.desk.lit().scene(), picture);
+        state.camera = camera_on_all(state.desk.lit().scene(), picture, state.picture);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("F: the camera that relumine relight takes");
+    ImGui::SameLine();
+    if (ImGui::Button("Save picture"))
+        save_picture(state, picture, new_picture(state));
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("P: a new picture as relumine relight draws it, .png or .exr, of the "
+                          "name in the field of files or picture-1.png and on");
     ImGui::SameLine();
     int click = static_cast<int>(state.click);
     ImGui::SetNextItemWidth(130.0f);
@@ -80,11 +86,15 @@ void point_and_drag(ViewState& state, const PixelRectangle& place) {
         return;
     const glm::vec2 moved(io.MouseDelta.x, io.MouseDelta.y);
     if (ImGui::IsItemActive()) {
-        const bool pans = ImGui::IsMouseDown(ImGuiMouseButton_Right) ||
-                          ImGui::IsMouseDown(ImGuiMouseButton_Middle) || io.KeyShift;
+        const bool flies = ImGui::IsMouseDown(ImGuiMouseButton_Right);
+        const bool pans = ImGui::IsMouseDown(ImGuiMouseButton_Middle) || io.KeyShift;
         const bool is_click = ImGui::IsMouseDown(ImGuiMouseButton_Left) &&
                               !ImGui::IsMouseDragging(ImGuiMouseButton_Left, ClickReach);
-        if (pans)
+        if (flies) {
+            // A way as long as to the target takes one and a half seconds.
+            state.camera.look(moved);
+            state.camera.fly(state.steering * (io.DeltaTime * state.camera.distance / 1.5f));
+        } else if (pans)
             state.camera.pan(moved, place);
         else if (!is_click)
             state.camera.orbit(moved);

@@ -198,6 +198,11 @@ void use_file(Step& s) {
         fail(s.command, s.state.message);
 }
 
+void picture(Step& s) {
+    if (!save_picture(s.state, s.viewport, s.command.text))
+        fail(s.command, s.state.message);
+}
+
 constexpr std::size_t None = std::numeric_limits<std::size_t>::max();
 
 /// A command: its word and its arguments, what it does in a frame, and how many frames it takes.
@@ -265,6 +270,15 @@ constexpr std::array Verbs = {
     Verb{"drop FILE", use_file<drop>},
     Verb{"save_layers FILE", use_file<save_layers>},
     Verb{"save_env FILE", use_file<save_environment>},
+    Verb{"save_picture FILE", picture},
+    Verb{"look X Y",
+         [](Step& s) {
+             s.state.camera.look({s.number(0), s.number(1)});
+         }},
+    Verb{"fly X,Y,Z",
+         [](Step& s) {
+             s.state.camera.fly({s.number(0), s.number(1), s.number(2)});
+         }},
     Verb{"screenshot FILE",
          [](Step& s) {
              s.wishes.screenshot = s.command.text;

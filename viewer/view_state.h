@@ -55,6 +55,9 @@ struct ViewState {
                               .region = cubemap::Lasso::as_added(),
                               .effect = cubemap::Gain{.factor = 0.25f}};
 
+    /// Where keys steer the eye: right, up and forward.
+    glm::vec3 steering{0.0f};
+
     /// The vertex that was clicked.
     std::optional<std::uint32_t> receiver = {};
     /// The contribution map must be made anew.
@@ -76,8 +79,9 @@ struct ViewState {
 /// Returns what is seen behind the mesh now, for a Refiner. It does not change any more.
 [[nodiscard]] relight::Backdrop backdrop_of(const ViewState& state);
 
-/// Returns the camera that `relumine relight` takes for a picture of this size.
-[[nodiscard]] OrbitCamera camera_on_all(const Scene& scene, const PixelRectangle& viewport);
+/// Returns the camera that `relumine relight` takes for a picture of this size with these options.
+[[nodiscard]] OrbitCamera camera_on_all(const Scene& scene, const PixelRectangle& viewport,
+                                        OutputOptions options = {});
 
 /// Chooses the receiver nearest to the point where a pixel's ray meets the mesh, or none, and shows
 /// the light that reaches it.
@@ -101,5 +105,12 @@ bool open(ViewState& state, const std::filesystem::path& path);
 bool save_layers(ViewState& state, const std::filesystem::path& path);
 /// Saves base and layers as one lat-long, .exr or .hdr.
 bool save_environment(ViewState& state, const std::filesystem::path& path);
+/// Saves what the scene's view shows, as `relumine relight` draws it from this camera: .png as in
+/// the window, .exr linear and without exposure.
+bool save_picture(ViewState& state, const PixelRectangle& viewport,
+                  const std::filesystem::path& path);
+/// Returns the path of the text field where it names a picture that does not exist yet, otherwise
+/// the first of picture-1.png, picture-2.png, ... that does not.
+[[nodiscard]] std::filesystem::path new_picture(const ViewState& state);
 
 } // namespace relumine::viewer

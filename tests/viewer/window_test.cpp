@@ -252,6 +252,37 @@ TEST_F(WindowTest, ALightGoesWhereTheMeshIsClicked) {
               "relumine: script line 2: expected a pixel of the mesh, got 3 45\n");
 }
 
+TEST_F(WindowTest, ASavedPictureIsThatOfRelightFromTheCameraItTells) {
+    ASSERT_EQ(play("drag_mesh 200 250 260 280\n"
+                   "look 20 10\n"
+                   "fly 0.1,0.2,0.4\n"
+                   "save_picture own.png\n"
+                   "save_picture own.exr\n"),
+              0)
+        << words("err.txt");
+    const std::string camera = nlohmann::json::parse(words("out.txt"))["camera"];
+    ASSERT_EQ(
+        std::system(fmt::format("cd '{}' && '{}' relight scene.prt env.exr -q {} --size {}x{} "
+                                "--exposure 0 -o relit.exr",
+                                folder_.string(), RELUMINE_BINARY, camera, viewport_.width,
+                                viewport_.height)
+                        .c_str()),
+        0)
+        << camera;
+    const cubemap::Picture own = picture("own.exr"), relit = picture("relit.exr");
+    ASSERT_EQ(own.pixels.size(), relit.pixels.size());
+    double difference = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < own.pixels.size(); ++i) {
+        difference += std::abs(own.pixels[i].g - relit.pixels[i].g);
+        sum += relit.pixels[i].g;
+    }
+    EXPECT_LT(difference, 0.002 * sum) << "up to the digits of the camera";
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "own.png"));
+    EXPECT_EQ(play("save_picture own.jpeg\n"), 1);
+    EXPECT_EQ(words("err.txt"), "relumine: script line 1: own.jpeg: expected .png or .exr for a "
+                                "picture, got '.jpeg'\n");
+}
+
 TEST_F(WindowTest, ASoloLightShinesAlone) {
     ASSERT_EQ(play("add_preset strip 1,0.2,0.3\n"
                    "add_preset ring -1,0.2,0.3\n"
