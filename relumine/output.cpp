@@ -434,6 +434,13 @@ double Painter::choose_exposure_ev(const Lighting& lighting) {
     return impl_->exposure(lighting);
 }
 
+void Painter::look_from(const Camera& camera) {
+    impl_->chosen_camera = camera;
+    impl_->view.reset();
+    impl_->small.reset();
+    impl_->drew_one = false;
+}
+
 void Painter::set_exposure_ev(double ev) {
     // Chosen for what is shown: numbers stay as they are.
     impl_->chosen_ev = ev;

@@ -3,14 +3,7 @@
 #include <cmath>
 #include <csignal>
 #include <filesystem>
-#include <map>
 #include <thread>
-
-#include <ImathBox.h>
-#include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfInputFile.h>
 
 #include "tests/app/command.h"
 #include "tests/app/formats.h"
@@ -201,26 +194,6 @@ TEST_F(Edit, LitByShowsWhatARegionLights) {
             "-o", "bad.exr"},
            "--who");
     EXPECT_FALSE(std::filesystem::exists(folder() / "bad.npy"));
-}
-
-/// The channels of an OpenEXR file by name, of 32-bit floats.
-std::map<std::string, std::vector<float>> exr_channels(const std::filesystem::path& path) {
-    Imf::InputFile file(path.c_str());
-    const Imath::Box2i window = file.header().dataWindow();
-    const auto width = static_cast<std::size_t>(window.max.x + 1);
-    const auto height = static_cast<std::size_t>(window.max.y + 1);
-    std::map<std::string, std::vector<float>> channels;
-    Imf::FrameBuffer buffer;
-    for (auto each = file.header().channels().begin(); each != file.header().channels().end();
-         ++each) {
-        std::vector<float>& values = channels[each.name()];
-        values.resize(width * height);
-        buffer.insert(each.name(), Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()),
-                                              sizeof(float), sizeof(float) * width));
-    }
-    file.setFrameBuffer(buffer);
-    file.readPixels(0, window.max.y);
-    return channels;
 }
 
 /// The mixer's layers as a compositor reads them: channels by name.
