@@ -60,8 +60,10 @@ viewer::Shading shading_of(const Scene& scene) {
             .bias = scene.settings.bias};
 }
 
-void report(const viewer::ViewReport& result, const LitScene& lit, const Session& session) {
+void report(const viewer::ViewReport& result, const viewer::ViewState& state, const LitScene& lit,
+            const Session& session) {
     const std::vector<double>& seconds = result.drag_seconds;
+    const std::string camera = viewer::camera_options(state.camera);
     double sum = 0.0;
     double worst = 0.0;
     for (const double value : seconds) {
@@ -75,6 +77,7 @@ void report(const viewer::ViewReport& result, const LitScene& lit, const Session
                     result.num_frames, 1e3 * result.mean_frame_seconds, result.renderer,
                     seconds.size(), 1e3 * mean, 1e3 * worst));
     session.report({{"renderer", result.renderer},
+                    {"camera", camera},
                     {"frames", result.num_frames},
                     {"seconds_frame_mean", result.mean_frame_seconds},
                     {"clusters", lit.relighter().transfer().num_clusters()},
@@ -87,6 +90,7 @@ void report(const viewer::ViewReport& result, const LitScene& lit, const Session
 }
 
 void run(const Options& options, Session& session) {
+    check(options.picture);
     viewer::ViewOptions view{.screenshot = options.screenshot, .stop = session.stop()};
     view.width = static_cast<int>(options.picture.width);
     view.height = static_cast<int>(options.picture.height);
@@ -128,7 +132,8 @@ void run(const Options& options, Session& session) {
     state.environment_look.exposure_ev = state.scene_look.exposure_ev;
     state.scene_look.tone = options.picture.tone;
     state.environment_look.tone = state.scene_look.tone;
-    report(viewer::view(state, view), lit, session);
+    const viewer::ViewReport result = viewer::view(state, view);
+    report(result, state, lit, session);
     session.poll();
 }
 
@@ -145,8 +150,8 @@ void add_view(Command& program, Session& session) {
     command.add(
         row("--layers", options->layers, "light layers to begin with, .json", {.file = true}));
     for (OptionRow& each : options_of(options->picture))
-        if (each.name == "--exposure" || each.name == "--tone-map" || each.name == "--floor" ||
-            each.name == "--photo-height")
+        if ((each.part == "camera" && each.name != "--size") || each.name == "--exposure" ||
+            each.name == "--tone-map" || each.name == "--floor" || each.name == "--photo-height")
             command.add(std::move(each));
     command.add(size_row(options->picture.width, options->picture.height, "the window's size",
                          {.min = 320}));

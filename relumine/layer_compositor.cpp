@@ -83,8 +83,9 @@ std::optional<cubemap::LightLayer>
 added_piece(const cubemap::LightLayer& a, const cubemap::LightLayer& b, std::uint32_t resolution) {
     const auto* from = std::get_if<cubemap::Stroke>(&a.region);
     const auto* to = std::get_if<cubemap::Stroke>(&b.region);
-    if (!from || !to || a.on != b.on || a.gain_ev != b.gain_ev || a.effect != b.effect ||
-        from->radius_degrees != to->radius_degrees || from->softness != to->softness)
+    if (!from || !to || a.on != b.on || a.gain_ev != b.gain_ev || a.kelvin != b.kelvin ||
+        a.effect != b.effect || from->radius_degrees != to->radius_degrees ||
+        from->softness != to->softness)
         return std::nullopt;
     if (from->points.size() > to->points.size())
         std::swap(from, to);
@@ -128,7 +129,7 @@ cubemap::CubeMap LayerCompositor::whole() {
 
 void LayerCompositor::turn_layers(const LightState& state,
                                   std::vector<cubemap::LightLayer>& turned) const {
-    turned.assign(state.layers.begin(), state.layers.end());
+    turned = cubemap::without_solo(state.layers);
     if (rotation_degrees_ != 0.0)
         for (cubemap::LightLayer& layer : turned)
             layer.region = cubemap::turned(layer.region, rotation_degrees_);

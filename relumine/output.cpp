@@ -364,6 +364,11 @@ struct Painter::Impl {
     const Scene& scene;
     const prt::RayScene& rays;
     OutputOptions options;
+    /// Null: the tone curve.
+    std::unique_ptr<const relight::DisplayTransform> display =
+        options.display.config.empty()
+            ? nullptr
+            : std::make_unique<const relight::DisplayTransform>(options.display);
     relight::FadingFloor floor;
     /// Of vertices.
     relight::SurfaceColors textures;
@@ -406,7 +411,8 @@ void Painter::save(const std::filesystem::path& path, const Lighting& lighting) 
     if (is_picture(extension)) {
         const Picture picture = draw(lighting);
         relight::Development development{.exposure_ev = impl_->options.exposure_ev.value_or(0.0),
-                                         .tone = impl_->options.tone};
+                                         .tone = impl_->options.tone,
+                                         .display = impl_->display.get()};
         if (extension == ".exr")
             require_finite(path, picture.pixels, development.exposure_ev);
         else
@@ -432,6 +438,13 @@ void Painter::meter(const Lighting& lighting) {
 
 double Painter::choose_exposure_ev(const Lighting& lighting) {
     return impl_->exposure(lighting);
+}
+
+void Painter::look_from(const Camera& camera) {
+    impl_->chosen_camera = camera;
+    impl_->view.reset();
+    impl_->small.reset();
+    impl_->drew_one = false;
 }
 
 void Painter::set_exposure_ev(double ev) {

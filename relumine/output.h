@@ -81,6 +81,9 @@ public:
     /// to it.
     [[nodiscard]] double choose_exposure_ev(const Lighting& lighting);
 
+    /// Looks from another camera from now on. Only for scenes of vertices.
+    void look_from(const Camera& camera);
+
     /// Keeps to an exposure that was chosen before.
     void set_exposure_ev(double ev);
 

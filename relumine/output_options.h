@@ -10,6 +10,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "relight/pictures/display_transform.h"
 #include "relight/pictures/framing.h"
 #include "relight/pictures/tone_curve.h"
 #include "relumine/option_table.h"
@@ -100,6 +101,8 @@ struct OutputOptions {
     std::optional<double> exposure_ev = {};
     /// Of .png; all else stays linear.
     ToneCurve tone = ToneCurve::Neutral;
+    /// Of .png, in place of the tone curve, where it has a config.
+    relight::DisplayView display = {};
 
     /// Size of the picture. Only for scenes of vertices, as are the camera and the rays below.
     std::uint32_t width = 1024;

@@ -246,6 +246,19 @@ Share lit_by(const LitScene& lit, const cubemap::Region& region) {
     return result;
 }
 
+std::optional<glm::vec3> light_direction(const LitScene& lit, const glm::vec3& eye,
+                                         const glm::vec3& view_direction, Aim aim) {
+    const glm::vec3 view = glm::normalize(view_direction);
+    const std::optional<prt::Hit> hit = lit.rays().of_mesh().closest_hit(eye, view);
+    if (!hit)
+        return std::nullopt;
+    const mesh::TriangleMesh& mesh = lit.scene().mesh;
+    const prt::MeshPoint at{.triangle = hit->triangle, .barycentric = hit->barycentric};
+    const glm::vec3 front = prt::shading_normal(mesh, at);
+    const glm::vec3 normal = prt::meets_front(mesh, at, view) ? front : -front;
+    return aim == Aim::Facing ? normal : glm::reflect(view, normal);
+}
+
 Lighting Share::lighting() const {
     return {.radiance = radiance, .environment = &environment, .lights = lights, .soft = soft};
 }

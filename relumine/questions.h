@@ -114,4 +114,18 @@ struct Share {
 /// Throws:  std::invalid_argument for a region that is not valid; std::logic_error as above.
 [[nodiscard]] Share lit_by(const LitScene& lit, const cubemap::Region& region);
 
+/// Where a light stands for a point that is seen.
+enum class Aim {
+    /// In front of the surface: it lights the point most.
+    Facing,
+    /// Where the eye sees it mirrored in the surface: its highlight is at the point.
+    Mirrored,
+};
+
+/// Returns the unit direction from the scene to a light that is aimed at the first surface on a
+/// ray; nothing where the ray meets none. Of a surface that is seen from behind, the side that is
+/// seen counts.
+[[nodiscard]] std::optional<glm::vec3> light_direction(const LitScene& lit, const glm::vec3& eye,
+                                                       const glm::vec3& view_direction, Aim aim);
+
 } // namespace relumine

@@ -15,6 +15,7 @@
 #include "cubemap/layers/layer_file.h"
 #include "relumine/environment.h"
 #include "relumine/light.h"
+#include "relumine/light_mix.h"
 #include "relumine/lit_scene.h"
 #include "relumine/material.h"
 #include "relumine/mesh.h"

@@ -127,14 +127,16 @@ void draw_line(const ViewState& state, const PixelRectangle& place,
 
 void draw_layers(const ViewState& state, const PixelRectangle& place) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
+    const bool is_solo = cubemap::has_solo(state.desk.layers());
     for (std::size_t i = 0; i < state.desk.layers().size(); ++i) {
         const cubemap::LightLayer& layer = state.desk.layers()[i];
         const bool chosen = state.desk.selected() == i;
         const cubemap::Region region = turned(layer.region, state.desk.state().rotation_degrees);
         const std::vector<glm::dvec3> rim = outline(region);
-        const ImU32 color = chosen     ? IM_COL32(255, 190, 60, 255)
-                            : layer.on ? IM_COL32(240, 240, 240, 210)
-                                       : IM_COL32(150, 150, 150, 120);
+        const bool shines = layer.on && (layer.solo || !is_solo);
+        const ImU32 color = chosen   ? IM_COL32(255, 190, 60, 255)
+                            : shines ? IM_COL32(240, 240, 240, 210)
+                                     : IM_COL32(150, 150, 150, 120);
         draw_line(state, place, rim, IM_COL32(0, 0, 0, 150), chosen ? 5.0f : 3.5f);
         draw_line(state, place, rim, color, chosen ? 2.5f : 1.5f);
         const ImVec2 size = ImGui::CalcTextSize(layer.name.c_str());

@@ -13,6 +13,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "cubemap/layers/presets.h"
 #include "cubemap/resample/save_environment.h"
 #include "files/one_of_each.h"
 #include "viewer/panels.h"
@@ -27,11 +28,9 @@ cubemap::LightLayer new_layer(const ViewState& state, std::string name, cubemap:
                               cubemap::Effect effect) {
     const glm::dvec3 direction =
         turned(direction_at(state.lat_long.center), -state.desk.state().rotation_degrees);
-    for (const cubemap::LayerField& field : fields(region))
-        if (field.direction != nullptr)
-            *field.direction = direction;
+    region = moved(region, middle(region), direction);
     if (auto* emit = std::get_if<cubemap::Emit>(&effect))
-        emit->radiance = glm::vec3(4.0f * std::exp2(-state.scene_look.exposure_ev));
+        emit->radiance *= 4.0f * std::exp2(-state.scene_look.exposure_ev);
     return {.name = std::move(name), .region = std::move(region), .effect = std::move(effect)};
 }
 
@@ -85,6 +84,19 @@ void add_buttons(ViewState& state) {
     if (ImGui::Button("+ Stroke"))
         state.tool = Tool::Paint;
     hint(cubemap::Stroke::Words.hint);
+    next("+ Preset");
+    if (ImGui::Button("+ Preset"))
+        ImGui::OpenPopup("presets");
+    hint("a light as studios have them");
+    if (ImGui::BeginPopup("presets")) {
+        for (const cubemap::LayerPreset& preset : cubemap::layer_presets()) {
+            const std::string& name = preset.layer.name;
+            if (ImGui::Selectable(name.c_str()))
+                add(state.desk, new_layer(state, name, preset.layer.region, preset.layer.effect));
+            hint(preset.hint);
+        }
+        ImGui::EndPopup();
+    }
     next("+ Image");
     if (ImGui::Button("+ Image"))
         add_image(state, state.path);
@@ -159,11 +171,16 @@ private:
                              : field.single != nullptr        ? "%.3f"
                                                               : "%.2f";
         auto shown = static_cast<float>(values(field)[0]);
+        if (field.name == "kelvin")
+            format = shown > 0.0f ? "%.0f K" : "the colour's own";
         const bool changed = ImGui::SliderFloat(
             label, &shown, static_cast<float>(from), static_cast<float>(to), format,
             field.logarithmic_slider ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
+        double value = std::clamp(static_cast<double>(shown), from, to);
+        if (value < field.least_but_zero)
+            value = value < 0.5 * field.least_but_zero ? 0.0 : field.least_but_zero;
         if (changed)
-            set_values(field, std::array{std::clamp(static_cast<double>(shown), from, to)});
+            set_values(field, std::array{value});
         note(changed);
     }
     void color(const char* label, glm::vec3& value) {
@@ -195,6 +212,16 @@ std::function<void()> layer_row(ViewState& state, std::size_t index) {
             state.desk.finish();
         };
     }
+    ImGui::SameLine(0.0f, 4.0f);
+    if (layer.solo)
+        ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_CheckMark));
+    if (ImGui::Button("S"))
+        later = [&state, index] {
+            set_solo(state.desk, index, !state.desk.layers()[index].solo);
+        };
+    if (layer.solo)
+        ImGui::PopStyleColor();
+    hint("solo: this light alone, without the environment");
     ImGui::SameLine();
     const float right = ImGui::GetContentRegionMax().x;
     const float width = ImGui::GetContentRegionAvail().x - 220.0f;
@@ -349,6 +376,11 @@ void status_panel(const ViewState& state, const PanelLayout& layout) {
         cost.report.num_clusters, lit.relighter().transfer().num_clusters(),
         cost.report.num_receivers, lit.radiance().size());
     ImGui::TextUnformatted(last.c_str());
+    ImGui::SameLine(0.0f, 22.0f);
+    const std::string camera = camera_options(state.camera);
+    if (ImGui::SmallButton(camera.c_str()))
+        ImGui::SetClipboardText(camera.c_str());
+    hint("a click copies these options of relumine relight");
     ImGui::SameLine(0.0f, 22.0f);
     if (state.message_is_error)
         ImGui::TextColored({1.0f, 0.45f, 0.4f, 1.0f}, "%s", state.message.c_str());

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cubemap/layers/layer_composite.h"
+#include "cubemap/layers/shapes/sphere_lines.h"
 
 namespace relumine::viewer {
 
@@ -79,6 +80,13 @@ void change(LightDesk& desk, std::size_t index, const cubemap::LightLayer& layer
     desk.edit(std::move(next));
 }
 
+void move_middle(LightDesk& desk, std::size_t index, const glm::dvec3& direction) {
+    cubemap::LightLayer layer = desk.layers()[index];
+    layer.region = cubemap::moved(layer.region, middle(layer.region),
+                                  cubemap::turned(direction, -desk.state().rotation_degrees));
+    change(desk, index, layer);
+}
+
 void set_rotation(LightDesk& desk, double degrees) {
     LightState next = desk.state();
     next.rotation_degrees = degrees;
@@ -106,6 +114,13 @@ std::size_t add(LightDesk& desk, cubemap::LightLayer layer) {
     const std::size_t index = put_on_top(desk, std::move(layer));
     desk.finish();
     return index;
+}
+
+void set_solo(LightDesk& desk, std::size_t index, bool solo) {
+    cubemap::LightLayer layer = desk.layers()[index];
+    layer.solo = solo;
+    change(desk, index, layer);
+    desk.finish();
 }
 
 void replace(LightDesk& desk, std::vector<cubemap::LightLayer> layers) {

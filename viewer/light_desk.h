@@ -71,6 +71,8 @@ private:
 // Edits in progress, for example while a slider moves.
 
 void change(LightDesk& desk, std::size_t index, const cubemap::LightLayer& layer);
+/// Moves a layer so that its middle is at a direction, as seen after the rotation.
+void move_middle(LightDesk& desk, std::size_t index, const glm::dvec3& direction);
 void set_rotation(LightDesk& desk, double degrees);
 void set_base(LightDesk& desk, Environment environment);
 /// Adds a layer on top, selects it and returns its index. The name gets a number if a layer has the
@@ -83,6 +85,7 @@ std::size_t add(LightDesk& desk, cubemap::LightLayer layer);
 void remove(LightDesk& desk, std::size_t index);
 /// Moves a layer to the place of another one.
 void reorder(LightDesk& desk, std::size_t from, std::size_t to);
+void set_solo(LightDesk& desk, std::size_t index, bool solo);
 /// Replaces all layers.
 void replace(LightDesk& desk, std::vector<cubemap::LightLayer> layers);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
@@ -39,6 +40,18 @@ void OrbitCamera::orbit(const glm::vec2& pixels) {
     pitch = std::clamp(pitch + RadiansPerPixel * pixels.y, -MaxPitch, MaxPitch);
 }
 
+void OrbitCamera::look(const glm::vec2& pixels) {
+    const glm::vec3 before = eye();
+    orbit(pixels);
+    target += before - eye();
+}
+
+void OrbitCamera::fly(const glm::vec3& by) {
+    const CameraFrame axes = frame(*this, {});
+    target += by.x * glm::normalize(axes.right) + by.y * glm::vec3(0.0f, 1.0f, 0.0f) +
+              by.z * axes.forward;
+}
+
 void OrbitCamera::pan(const glm::vec2& pixels, const PixelRectangle& viewport) {
     const CameraFrame axes = frame(*this, viewport);
     const float half_width = 0.5f * static_cast<float>(std::max(viewport.width, 1));
@@ -62,6 +75,17 @@ OrbitCamera orbit_camera(const relight::Camera& camera) {
                        -MaxPitch, MaxPitch);
     }
     return result;
+}
+
+relight::Camera picture_camera(const OrbitCamera& camera) {
+    return {.eye = camera.eye(), .target = camera.target, .fov_degrees = camera.fov_degrees};
+}
+
+std::string camera_options(const OrbitCamera& camera) {
+    constexpr float Degrees = 90.0f / QuarterTurn;
+    return fmt::format("--camera {:.2f},{:.2f},{:.5g},{:.4g} --target {:.5g},{:.5g},{:.5g}",
+                       camera.yaw * Degrees, camera.pitch * Degrees, camera.distance,
+                       camera.fov_degrees, camera.target.x, camera.target.y, camera.target.z);
 }
 
 CameraFrame frame(const OrbitCamera& camera, const PixelRectangle& viewport) {

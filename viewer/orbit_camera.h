@@ -1,6 +1,8 @@
 // The camera of the scene's view, which turns about a point. Works without a window.
 #pragma once
 
+#include <string>
+
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -22,6 +24,10 @@ struct OrbitCamera {
     /// Turns by a drag in pixels: to the right turns the scene to the right, down shows more of its
     /// top.
     void orbit(const glm::vec2& pixels);
+    /// Looks around by a drag in pixels: the eye stays.
+    void look(const glm::vec2& pixels);
+    /// Moves the eye to the right, upwards and forwards, in the mesh's unit.
+    void fly(const glm::vec3& by);
     /// Shifts by a drag in pixels: the target's plane follows the pointer.
     void pan(const glm::vec2& pixels, const PixelRectangle& viewport);
     /// Zooms by wheel steps; positive ones go towards the target.
@@ -46,6 +52,9 @@ struct CameraFrame {
 
 /// Returns the camera with the same view as another: right way up, target at the same place.
 [[nodiscard]] OrbitCamera orbit_camera(const relight::Camera& camera);
+[[nodiscard]] relight::Camera picture_camera(const OrbitCamera& camera);
+/// Returns the options of `relumine relight` for this view: "--camera 24,20,3,35 --target 0,1,0".
+[[nodiscard]] std::string camera_options(const OrbitCamera& camera);
 [[nodiscard]] CameraFrame frame(const OrbitCamera& camera, const PixelRectangle& viewport);
 /// Returns the matrix from world to OpenGL's clip space. `reach` is how far the scene extends from
 /// the target.

@@ -29,10 +29,52 @@ void tools(ViewState& state, const PixelRectangle& place, const PixelRectangle& 
     ImGui::Checkbox("Background", &state.scene_look.background);
     ImGui::SameLine();
     if (ImGui::Button("Frame all"))
-        state.camera = camera_on_all(state.desk.lit().scene(), picture);
+        state.camera = camera_on_all(state.desk.lit().scene(), picture, state.picture);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("F: the camera that relumine relight takes");
+    ImGui::SameLine();
+    if (ImGui::Button("Save picture"))
+        save_picture(state, picture, new_picture(state));
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("P: a new picture as relumine relight draws it, .png or .exr, of the "
+                          "name in the field of files or picture-1.png and on");
+    ImGui::SameLine();
+    int click = static_cast<int>(state.click);
+    ImGui::SetNextItemWidth(130.0f);
+    if (ImGui::Combo("##click", &click, "click: asks\0click: lights\0click: mirrors\0"))
+        state.click = static_cast<Click>(click);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("A click on the model: shows what lights the point, moves the chosen "
+                          "layer so that it lights it (Ctrl), or so that the point mirrors it "
+                          "(Ctrl-Shift)");
     ImGui::End();
+}
+
+/// What a click does now: the keys go before the choice.
+Click click_of(const ViewState& state) {
+    const ImGuiIO& io = ImGui::GetIO();
+    return !io.KeyCtrl ? state.click : io.KeyShift ? Click::Mirror : Click::Face;
+}
+
+/// Lets the chosen layer follow the pointer over the mesh, from the press on. Returns false where
+/// the pointer does something else.
+bool aim_by_pointer(ViewState& state, const PixelRectangle& place) {
+    if (ImGui::IsItemClicked(ImGuiMouseButton_Left) && click_of(state) != Click::Ask) {
+        state.is_aiming = state.desk.selected().has_value();
+        state.message = state.is_aiming ? "" : "choose a layer first: a click moves its light";
+        state.message_is_error = !state.is_aiming;
+    }
+    if (!state.is_aiming)
+        return false;
+    if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && state.desk.selected()) {
+        aim_light(state, *state.desk.selected(), place, pointer(),
+                  click_of(state) == Click::Mirror ? Aim::Mirrored : Aim::Facing);
+    } else {
+        state.is_aiming = false;
+        state.desk.finish();
+        state.heat_is_stale = true;
+    }
+    return true;
 }
 
 void point_and_drag(ViewState& state, const PixelRectangle& place) {
@@ -40,13 +82,19 @@ void point_and_drag(ViewState& state, const PixelRectangle& place) {
     constexpr float ClickReach = 4.0f; // pixels
     if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f)
         state.camera.zoom(io.MouseWheel);
+    if (aim_by_pointer(state, place))
+        return;
     const glm::vec2 moved(io.MouseDelta.x, io.MouseDelta.y);
     if (ImGui::IsItemActive()) {
-        const bool pans = ImGui::IsMouseDown(ImGuiMouseButton_Right) ||
-                          ImGui::IsMouseDown(ImGuiMouseButton_Middle) || io.KeyShift;
+        const bool flies = ImGui::IsMouseDown(ImGuiMouseButton_Right);
+        const bool pans = ImGui::IsMouseDown(ImGuiMouseButton_Middle) || io.KeyShift;
         const bool is_click = ImGui::IsMouseDown(ImGuiMouseButton_Left) &&
                               !ImGui::IsMouseDragging(ImGuiMouseButton_Left, ClickReach);
-        if (pans)
+        if (flies) {
+            // A way as long as to the target takes one and a half seconds.
+            state.camera.look(moved);
+            state.camera.fly(state.steering * (io.DeltaTime * state.camera.distance / 1.5f));
+        } else if (pans)
             state.camera.pan(moved, place);
         else if (!is_click)
             state.camera.orbit(moved);

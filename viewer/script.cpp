@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "cubemap/layers/presets.h"
 #include "files/output_file.h"
 
 namespace relumine::viewer {
@@ -30,6 +31,8 @@ constexpr std::size_t DragFrames = DragEvents + 2;
 struct Step {
     const ScriptCommand& command;
     ViewState& state;
+    /// Of the scene's picture.
+    const PixelRectangle& viewport;
     ScriptPlayer::Frame& wishes;
     /// Of `count` frames.
     std::size_t index, count;
@@ -153,6 +156,28 @@ void resize_layer(Step& s) {
         s.state.desk.finish();
 }
 
+/// Lets a light fall on the point of the mesh that a pixel shows.
+template<Aim How>
+void aim(Step& s) {
+    if (!aim_light(s.state, s.layer(), s.viewport, {s.number(0), s.number(1)}, How))
+        fail(s.command,
+             fmt::format("expected a pixel of the mesh, got {} {}", s.number(0), s.number(1)));
+    s.state.desk.finish();
+}
+
+void add_preset(Step& s) {
+    const auto presets = cubemap::layer_presets();
+    const auto preset = std::find_if(presets.begin(), presets.end(),
+                                     [&](const auto& each) { return each.name == s.command.text; });
+    if (preset == presets.end())
+        fail(s.command, fmt::format("expected the name of a preset, got '{}'", s.command.text));
+    add(s.state.desk, cubemap::placed(*preset, s.direction()));
+}
+
+void solo(Step& s) {
+    set_solo(s.state.desk, s.layer(), s.number(0) != 0.0);
+}
+
 void set_gain(Step& s) {
     const std::size_t index = s.layer();
     cubemap::LightLayer layer = s.state.desk.layers()[index];
@@ -170,6 +195,11 @@ void rotate(Step& s) {
 template<bool (*Use)(ViewState&, const std::filesystem::path&)>
 void use_file(Step& s) {
     if (!Use(s.state, s.command.text))
+        fail(s.command, s.state.message);
+}
+
+void picture(Step& s) {
+    if (!save_picture(s.state, s.viewport, s.command.text))
         fail(s.command, s.state.message);
 }
 
@@ -193,13 +223,21 @@ constexpr std::array Verbs = {
     Verb{"add_disc NAME X,Y,Z RADIUS", add_disc},
     Verb{"add_rectangle NAME X,Y,Z WIDTH HEIGHT", add_rectangle},
     Verb{"add_gain NAME X,Y,Z RADIUS FACTOR", add_gain},
+    Verb{"add_preset NAME X,Y,Z", add_preset},
+    Verb{"solo NAME 0|1", solo},
     Verb{"drag_layer NAME X,Y,Z [EVENTS]", drag_layer, DragEvents, 3},
     Verb{"resize_layer NAME DEGREES [EVENTS]", resize_layer, DragEvents, 1},
+    Verb{"aim_layer NAME X Y", aim<Aim::Facing>},
+    Verb{"mirror_layer NAME X Y", aim<Aim::Mirrored>},
     Verb{"set_gain NAME EV", set_gain},
     Verb{"drag_env X0 Y0 X1 Y1", drag_to_move, DragFrames},
     Verb{"paint_env X0 Y0 X1 Y1", paint, DragFrames},
     Verb{"lasso_env X0 Y0 X1 Y1", draw_lasso, DragFrames},
     Verb{"drag_mesh X0 Y0 X1 Y1", drag_to_move, DragFrames},
+    Verb{"click_does 0|1|2",
+         [](Step& s) {
+             s.state.click = static_cast<Click>(std::clamp(s.number(0), 0.0, 2.0));
+         }},
     Verb{"click X Y", click, 3},
     Verb{"click_mesh X Y", click, 3},
     Verb{"rotate DEGREES", rotate},
@@ -232,6 +270,15 @@ constexpr std::array Verbs = {
     Verb{"drop FILE", use_file<drop>},
     Verb{"save_layers FILE", use_file<save_layers>},
     Verb{"save_env FILE", use_file<save_environment>},
+    Verb{"save_picture FILE", picture},
+    Verb{"look X Y",
+         [](Step& s) {
+             s.state.camera.look({s.number(0), s.number(1)});
+         }},
+    Verb{"fly X,Y,Z",
+         [](Step& s) {
+             s.state.camera.fly({s.number(0), s.number(1), s.number(2)});
+         }},
     Verb{"screenshot FILE",
          [](Step& s) {
              s.wishes.screenshot = s.command.text;
@@ -352,13 +399,13 @@ std::vector<ScriptCommand> load_script(const std::filesystem::path& path) {
     return parse_script({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path.string());
 }
 
-ScriptPlayer::Frame ScriptPlayer::step(ViewState& state) {
+ScriptPlayer::Frame ScriptPlayer::step(ViewState& state, const PixelRectangle& viewport) {
     Frame wishes;
     if (is_done())
         return wishes;
     const ScriptCommand& command = commands_[next_];
     const std::size_t count = command.num_frames();
-    Step now{command, state, wishes, frame_, count, from_};
+    Step now{command, state, viewport, wishes, frame_, count, from_};
     try {
         Verbs[command.verb].play(now);
     } catch (const std::invalid_argument& error) { // values that no layer can have

@@ -52,11 +52,11 @@ public:
     };
 
     [[nodiscard]] bool is_done() const { return next_ >= commands_.size(); }
-    /// Goes on by one frame.
+    /// Goes on by one frame. `viewport` is the scene's picture in the window.
     ///
     /// Throws:  std::runtime_error that names the line, for a layer that does not exist or a file
     ///          that cannot be opened.
-    Frame step(ViewState& state);
+    Frame step(ViewState& state, const PixelRectangle& viewport);
 
 private:
     std::vector<ScriptCommand> commands_;

@@ -39,13 +39,12 @@ struct Scenery {
 
 Moment moment_of(const ViewState& state, const PixelRectangle& size) {
     const OrbitCamera& camera = state.camera;
-    Moment moment{
-        .camera = {.eye = camera.eye(), .target = camera.target, .fov_degrees = camera.fov_degrees},
-        .width = static_cast<std::uint32_t>(std::max(size.width, 1)),
-        .height = static_cast<std::uint32_t>(std::max(size.height, 1)),
-        .radiance = {},
-        .lights = {},
-        .backdrop = {}};
+    Moment moment{.camera = picture_camera(camera),
+                  .width = static_cast<std::uint32_t>(std::max(size.width, 1)),
+                  .height = static_cast<std::uint32_t>(std::max(size.height, 1)),
+                  .radiance = {},
+                  .lights = {},
+                  .backdrop = {}};
     Lighting lighting = state.desk.lit().lighting();
     const Scene& scene = state.desk.lit().scene();
     const FloorLook look = floor_look(scene, lighting, state.picture);
@@ -180,13 +179,16 @@ void handle(Shortcut shortcut, ViewState& state, const PanelLayout& layout) {
             remove(state.desk, *state.desk.selected());
         break;
     case Shortcut::FrameAll:
-        state.camera = camera_on_all(state.desk.lit().scene(), layout.scene);
+        state.camera = camera_on_all(state.desk.lit().scene(), layout.scene, state.picture);
         break;
     case Shortcut::Wireframe:
         state.scene_look.wireframe = !state.scene_look.wireframe;
         break;
     case Shortcut::Quadtree:
         state.environment_look.quadtree = !state.environment_look.quadtree;
+        break;
+    case Shortcut::SavePicture:
+        save_picture(state, layout.scene, new_picture(state));
         break;
     }
 }
@@ -214,7 +216,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
     Pictures pictures(state);
     ScriptPlayer player(options.script.value_or(std::vector<ScriptCommand>{}));
     Idleness idleness;
-    state.camera = camera_on_all(state.desk.lit().scene(), window.layout().scene);
+    state.camera = camera_on_all(state.desk.lit().scene(), window.layout().scene, state.picture);
     ViewReport report{.renderer = window.renderer()};
     double seconds = 0.0;
 
@@ -222,7 +224,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
     while (!is_last && !window.should_close() && !options.stop.stop_requested()) {
         ScriptPlayer::Frame scripted;
         if (options.script) {
-            scripted = player.step(state);
+            scripted = player.step(state, window.layout().scene);
             is_last = player.is_done();
         }
         const bool is_busy = options.script || !state.desk.lit().bounces().is_settled();
@@ -232,6 +234,8 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
             drop(state, path);
         for (const Shortcut shortcut : window.take_shortcuts())
             handle(shortcut, state, window.layout());
+
+        state.steering = window.steering();
 
         // The panels come first, so that this frame shows what the pointer does in it.
         const PanelLayout layout = window.layout();

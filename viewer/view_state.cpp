@@ -71,7 +71,7 @@ relight::Backdrop backdrop_of(const ViewState& state) {
             };
     // A copy: the environment may change while the picture is drawn.
     const auto now = std::make_shared<const cubemap::CubeMap>(environment_of(state.desk.lit()));
-    if (pixels && light.rotation_degrees == 0.0)
+    if (pixels && light.rotation_degrees == 0.0 && !cubemap::has_solo(light.layers))
         return [now, base = light.base,
                 edited = relight::edited_backdrop(pixels, *light.base->map(), *now)](
                    const glm::vec3& w) {
@@ -82,9 +82,11 @@ relight::Backdrop backdrop_of(const ViewState& state) {
     };
 }
 
-OrbitCamera camera_on_all(const Scene& scene, const PixelRectangle& viewport) {
-    return orbit_camera(camera_of(scene, static_cast<float>(std::max(viewport.width, 1)) /
-                                             static_cast<float>(std::max(viewport.height, 1))));
+OrbitCamera camera_on_all(const Scene& scene, const PixelRectangle& viewport,
+                          OutputOptions options) {
+    options.width = static_cast<std::uint32_t>(std::max(viewport.width, 1));
+    options.height = static_cast<std::uint32_t>(std::max(viewport.height, 1));
+    return orbit_camera(camera_of(scene, options));
 }
 
 void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec2& pixel) {
@@ -103,6 +105,15 @@ void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec
                                                                         : 2;
     state.receiver = state.mesh.triangles[hit->triangle][static_cast<std::size_t>(corner)];
     state.heat_is_stale = true;
+}
+
+bool aim_light(ViewState& state, std::size_t layer, const PixelRectangle& viewport,
+               const glm::vec2& pixel, Aim aim) {
+    const Ray ray = ray_through(state.camera, viewport, pixel);
+    const auto direction = light_direction(state.desk.lit(), ray.origin, ray.direction, aim);
+    if (direction)
+        move_middle(state.desk, layer, *direction);
+    return direction.has_value();
 }
 
 bool open(ViewState& state, const std::filesystem::path& path) {
@@ -188,6 +199,38 @@ bool save_environment(ViewState& state, const std::filesystem::path& path) {
         cubemap::save_environment(path, environment_of(state.desk.lit()), cubemap::Layout::LatLong);
         return fmt::format("{}: saved the environment with its layers", path.string());
     });
+}
+
+bool save_picture(ViewState& state, const PixelRectangle& viewport,
+                  const std::filesystem::path& path) {
+    return reported(state, [&] {
+        const bool is_linear = path.extension() == ".exr";
+        if (!is_linear && path.extension() != ".png")
+            throw std::runtime_error(fmt::format("{}: expected .png or .exr for a picture, got "
+                                                 "'{}'",
+                                                 path.string(), path.extension().string()));
+        OutputOptions options = state.picture;
+        options.camera = picture_camera(state.camera);
+        options.width = static_cast<std::uint32_t>(std::max(viewport.width, 1));
+        options.height = static_cast<std::uint32_t>(std::max(viewport.height, 1));
+        options.exposure_ev = is_linear ? 0.0 : static_cast<double>(state.scene_look.exposure_ev);
+        options.tone = state.scene_look.tone;
+        if (!state.scene_look.background)
+            options.background = NothingBehind{};
+        state.desk.bounce(true);
+        Painter(state.desk.lit(), options).save(path, state.desk.lit().lighting());
+        return fmt::format("{}: {} x {} pixels", path.string(), options.width, options.height);
+    });
+}
+
+std::filesystem::path new_picture(const ViewState& state) {
+    const std::filesystem::path named(state.path);
+    if ((named.extension() == ".png" || named.extension() == ".exr") &&
+        !std::filesystem::exists(named))
+        return named;
+    for (int number = 1;; ++number)
+        if (const auto path = fmt::format("picture-{}.png", number); !std::filesystem::exists(path))
+            return path;
 }
 
 } // namespace relumine::viewer

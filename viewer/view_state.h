@@ -15,6 +15,7 @@
 #include "prt/visibility/ray_scene.h"
 #include "relight/pictures/picture_view.h"
 #include "relumine/output.h"
+#include "relumine/questions.h"
 #include "viewer/gestures.h"
 #include "viewer/lat_long_view.h"
 #include "viewer/light_desk.h"
@@ -25,6 +26,9 @@
 namespace relumine::viewer {
 
 enum class Tool { Move, Paint, Lasso };
+
+/// What a click on the mesh does.
+enum class Click { Ask, Face, Mirror };
 
 struct ViewState {
     const mesh::TriangleMesh& mesh;
@@ -43,10 +47,16 @@ struct ViewState {
     EnvironmentLook environment_look = {};
 
     Tool tool = Tool::Move;
+    Click click = Click::Ask;
+    /// The pointer places the chosen layer on the mesh.
+    bool is_aiming = false;
     cubemap::LightLayer brush{.name = "Stroke", .region = cubemap::Stroke::as_added()};
     cubemap::LightLayer lasso{.name = "Lasso",
                               .region = cubemap::Lasso::as_added(),
                               .effect = cubemap::Gain{.factor = 0.25f}};
+
+    /// Where keys steer the eye: right, up and forward.
+    glm::vec3 steering{0.0f};
 
     /// The vertex that was clicked.
     std::optional<std::uint32_t> receiver = {};
@@ -69,12 +79,18 @@ struct ViewState {
 /// Returns what is seen behind the mesh now, for a Refiner. It does not change any more.
 [[nodiscard]] relight::Backdrop backdrop_of(const ViewState& state);
 
-/// Returns the camera that `relumine relight` takes for a picture of this size.
-[[nodiscard]] OrbitCamera camera_on_all(const Scene& scene, const PixelRectangle& viewport);
+/// Returns the camera that `relumine relight` takes for a picture of this size with these options.
+[[nodiscard]] OrbitCamera camera_on_all(const Scene& scene, const PixelRectangle& viewport,
+                                        OutputOptions options = {});
 
 /// Chooses the receiver nearest to the point where a pixel's ray meets the mesh, or none, and shows
 /// the light that reaches it.
 void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec2& pixel);
+
+/// Moves a layer so that its light falls on the point of the mesh that a pixel shows. This is not a
+/// step of undo yet. Returns false, and changes nothing, where the pixel shows no mesh.
+bool aim_light(ViewState& state, std::size_t layer, const PixelRectangle& viewport,
+               const glm::vec2& pixel, Aim aim);
 
 // Files. These functions report success or failure in `message` and return false for a failure.
 // They do not throw for errors of files.
@@ -89,5 +105,12 @@ bool open(ViewState& state, const std::filesystem::path& path);
 bool save_layers(ViewState& state, const std::filesystem::path& path);
 /// Saves base and layers as one lat-long, .exr or .hdr.
 bool save_environment(ViewState& state, const std::filesystem::path& path);
+/// Saves what the scene's view shows, as `relumine relight` draws it from this camera: .png as in
+/// the window, .exr linear and without exposure.
+bool save_picture(ViewState& state, const PixelRectangle& viewport,
+                  const std::filesystem::path& path);
+/// Returns the path of the text field where it names a picture that does not exist yet, otherwise
+/// the first of picture-1.png, picture-2.png, ... that does not.
+[[nodiscard]] std::filesystem::path new_picture(const ViewState& state);
 
 } // namespace relumine::viewer

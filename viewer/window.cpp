@@ -90,9 +90,13 @@ struct Window::Impl {
     std::vector<std::filesystem::path> dropped;
     std::vector<Shortcut> shortcuts;
 
+    [[nodiscard]] bool flies() const {
+        return !scripted && glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS;
+    }
+
     /// Goes by the letter on the key, not by its place: Z is elsewhere on a German keyboard.
     void on_key(int key, int scancode, int modifiers) {
-        if (ImGui::GetIO().WantTextInput)
+        if (ImGui::GetIO().WantTextInput || flies())
             return;
         const char* key_name = glfwGetKeyName(key, scancode);
         const std::string_view letter = key_name ? key_name : "";
@@ -110,6 +114,8 @@ struct Window::Impl {
             shortcuts.push_back(Shortcut::Wireframe);
         else if (!control && letter == "q")
             shortcuts.push_back(Shortcut::Quadtree);
+        else if (!control && letter == "p")
+            shortcuts.push_back(Shortcut::SavePicture);
     }
 };
 
@@ -258,6 +264,21 @@ std::vector<std::filesystem::path> Window::take_dropped_files() {
 
 std::vector<Shortcut> Window::take_shortcuts() {
     return std::exchange(impl_->shortcuts, {});
+}
+
+glm::vec3 Window::steering() const {
+    if (!impl_->flies() || ImGui::GetIO().WantTextInput)
+        return glm::vec3(0.0f);
+    // By the keys' places, which are those of W, A, S and D on an American keyboard.
+    const auto axis = [&](int more, int less) {
+        const auto is_down = [&](int key) {
+            return glfwGetKey(impl_->window, key) == GLFW_PRESS ? 1.0f : 0.0f;
+        };
+        return is_down(more) - is_down(less);
+    };
+    const glm::vec3 direction(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),
+                              axis(GLFW_KEY_W, GLFW_KEY_S));
+    return direction * (ImGui::GetIO().KeyShift ? 4.0f : 1.0f);
 }
 
 std::string Window::renderer() const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "relight/pictures/picture.h"
 #include "viewer/panel_layout.h"
@@ -20,7 +21,7 @@ struct Pointer {
     bool down = false;
 };
 
-enum class Shortcut { Undo, Redo, Delete, FrameAll, Wireframe, Quadtree };
+enum class Shortcut { Undo, Redo, Delete, FrameAll, Wireframe, Quadtree, SavePicture };
 
 class Window {
 public:
@@ -53,6 +54,9 @@ public:
     /// Returns the files that were dropped since the last call.
     [[nodiscard]] std::vector<std::filesystem::path> take_dropped_files();
     [[nodiscard]] std::vector<Shortcut> take_shortcuts();
+    /// Returns where the keys W, A, S, D, Q and E steer while the right button is down: right, up
+    /// and forward, each from -1 to 1, with Shift from -4 to 4.
+    [[nodiscard]] glm::vec3 steering() const;
 
     /// OpenGL's own words about the renderer.
     [[nodiscard]] std::string renderer() const;

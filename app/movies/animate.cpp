@@ -16,6 +16,7 @@
 #include "app/movies/frame_record.h"
 #include "app/movies/movie.h"
 #include "app/options/lit_scene.h"
+#include "app/options/receiver_options.h"
 #include "cubemap/doctor/upside_down.h"
 #include "cubemap/image/frame_sequence.h"
 #include "cubemap/image/read_ahead.h"
@@ -60,8 +61,14 @@ public:
           binner_(relight::binner_of(lit_.relighter())),
           writer_(lit_, options.output.for_scene(scene())) {
         static_cast<void>(options.bounces.applies_to(scene(), options.scene.path));
+        OutputOptions seen = options.output;
+        if (options.turns_camera() && pattern_) {
+            require_vertices(scene(), options.scene.path);
+            camera_ = camera_of(scene(), options.output.for_scene(scene()));
+            seen.picture.camera = camera_at(1);
+        }
         if (session.is_first())
-            options.output.warn_of_eye(scene(), session);
+            seen.warn_of_eye(scene(), session);
     }
 
     void run() {
@@ -134,6 +141,18 @@ private:
 
     [[nodiscard]] const Scene& scene() const { return lit_.scene(); }
 
+    /// The camera turned about its target.
+    [[nodiscard]] Camera camera_at(std::size_t frame) const {
+        Camera camera = *camera_;
+        camera.eye = camera.target + glm::vec3(cubemap::turn_about_y(options_.turn_degrees(frame)) *
+                                               glm::dvec3(camera.eye - camera.target));
+        return camera;
+    }
+    void look_at(std::size_t frame) {
+        if (camera_)
+            writer_.look_from(camera_at(frame));
+    }
+
     /// Whether the frame is to be a picture.
     [[nodiscard]] bool is_drawn(std::size_t frame) const { return pattern_ && !is_there_[frame]; }
 
@@ -176,12 +195,14 @@ private:
         const std::size_t num_gaps = std::min(MostFrames - 1, last);
         for (std::size_t i = 0; i <= num_gaps; ++i) {
             session_.poll();
-            PreparedFrame frame = prepare(num_gaps == 0 ? 0 : i * last / num_gaps);
+            const std::size_t index = num_gaps == 0 ? 0 : i * last / num_gaps;
+            PreparedFrame frame = prepare(index);
             static_cast<void>(light(frame, 0.0));
             bounce();
             const Lighting lighting = lit_.lighting();
             if (!session_.is_first())
                 continue;
+            look_at(index);
             writer_.meter(lighting);
             if (i == num_gaps)
                 record_->set_exposure_ev(writer_.choose_exposure_ev(lighting));
@@ -193,10 +214,11 @@ private:
     /// A frame's image as it lights the scene: turned and of the resolution that was asked for.
     [[nodiscard]] cubemap::EnvironmentImage image_of(std::size_t frame) const {
         cubemap::EnvironmentImage image = sequence_.read(frame);
-        if (world_from_image(image.layout, options_.environment) == glm::dmat3(1.0) &&
-            options_.environment.face_resolution == 0)
+        const EnvironmentOptions environment = options_.environment_at(frame);
+        if (world_from_image(image.layout, environment) == glm::dmat3(1.0) &&
+            environment.face_resolution == 0)
             return image;
-        return lights::lat_long_of(cube_map_of(image, options_.environment));
+        return lights::lat_long_of(cube_map_of(image, environment));
     }
 
     void cluster_frames() {
@@ -254,22 +276,31 @@ private:
                                                                      options_.frames)));
     }
 
-    /// Runs on another thread; touches no state but the binner and has_warned_.
+    /// Runs on another thread; touches no state but the binner, has_warned_ and still_.
     PreparedFrame prepare(std::size_t frame) {
+        if (still_)
+            return *still_;
+        PreparedFrame result = prepare_anew(frame);
+        if (options_.turntable > 0 && sequence_.path(0) == sequence_.path(sequence_.size() - 1) &&
+            !options_.turns_environment())
+            still_ = result;
+        return result;
+    }
+
+    PreparedFrame prepare_anew(std::size_t frame) {
         PreparedFrame result;
         Stopwatch watch;
         auto image = std::make_shared<const cubemap::EnvironmentImage>(sequence_.read(frame));
         result.seconds_load = watch.lap();
-        cubemap::CubeMap map = cube_map_of(*image, options_.environment);
+        EnvironmentOptions environment = options_.environment_at(frame);
+        cubemap::CubeMap map = cube_map_of(*image, environment);
         if (pattern_)
-            result.sharp = backdrop_of(image, options_.environment);
+            result.sharp = backdrop_of(image, environment);
         result.seconds_resample = watch.lap();
         // One warning is enough for all frames.
         if (!has_warned_) {
-            EnvironmentOptions frame_options = options_.environment;
-            frame_options.path = sequence_.path(frame).string();
-            has_warned_ =
-                warn_about(frame_options, *image, cubemap::light_from_below(map), session_);
+            environment.path = sequence_.path(frame).string();
+            has_warned_ = warn_about(environment, *image, cubemap::light_from_below(map), session_);
         }
         try {
             if (options_.method == "prt") {
@@ -336,6 +367,7 @@ private:
         if (prepared.background.resolution != 0)
             lighting.environment = &prepared.background;
         lighting.sharp = prepared.sharp;
+        look_at(frame);
         writer_.save(path, lighting);
         record_->add(sequence_.number(frame), sequence_.path(frame), path);
         ++num_written_;
@@ -389,6 +421,10 @@ private:
     LitScene lit_;
     relight::EnvironmentBinner binner_;
     Painter writer_;
+    /// Of --turntable at its first frame.
+    std::optional<Camera> camera_;
+    /// The environment that lights all frames.
+    std::optional<PreparedFrame> still_;
     std::optional<FrameRecord> record_;
     std::vector<bool> is_there_;
     std::vector<std::size_t> todo_;
@@ -402,19 +438,8 @@ private:
     double seconds_load_scene_ = 0.0, seconds_frames_ = 0.0;
 };
 
-cubemap::FrameRange frame_range(const std::string& text) {
-    try {
-        return cubemap::FrameRange::parse(text);
-    } catch (const std::runtime_error& error) {
-        throw UsageError("--frames", error.what());
-    }
-}
-
 void run(const AnimateOptions& options, Session& session) {
-    std::optional<cubemap::FrameRange> range;
-    if (!options.range.empty())
-        range = frame_range(options.range);
-    const cubemap::FrameSequence sequence(cubemap::find_frames(options.frames, range),
+    const cubemap::FrameSequence sequence(options.frame_files(),
                                           [&](const std::filesystem::path& path) {
                                               EnvironmentOptions environment = options.environment;
                                               environment.path = path.string();

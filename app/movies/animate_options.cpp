@@ -1,5 +1,6 @@
 #include "app/movies/animate_options.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <stdexcept>
@@ -27,6 +28,13 @@ void AnimateOptions::add_to(Command& command) {
     command.add(row("--frames", range,
                     "which of them: FIRST-LAST, or FIRST-LASTxSTEP for every STEP-th (all)",
                     {.shapes_frames = false}));
+    command.add_all(
+        {row("--turntable", turntable,
+             "one environment, and the camera turns once about the mesh in so many frames (0: no)",
+             {.max = 100000}),
+         row("--turns", turns,
+             "of --turntable: what turns; under an object the environment stays where it is",
+             {.choices = {"camera", "object", "environment"}})});
     command.add_all(options_of(environment));
     command.add_all(
         {row("--method", method,
@@ -63,6 +71,40 @@ void AnimateOptions::add_to(Command& command) {
                     {.min = 0.01, .max = 1000, .shapes_frames = false}));
     command.add(row("--resume", resume, "keep frames that are there already, from the same inputs",
                     {.shapes_frames = false}));
+}
+
+std::vector<cubemap::FrameFile> AnimateOptions::frame_files() const {
+    std::optional<cubemap::FrameRange> chosen;
+    try {
+        if (!range.empty())
+            chosen = cubemap::FrameRange::parse(range);
+    } catch (const std::runtime_error& error) {
+        throw UsageError("--frames", error.what());
+    }
+    std::vector<cubemap::FrameFile> files = cubemap::find_frames(frames, chosen);
+    if (turntable == 0 || files.size() == turntable)
+        return files;
+    if (files.size() != 1)
+        throw UsageError("--turntable", fmt::format("expected one environment or {}, got {}",
+                                                    turntable, files.size()));
+    files.resize(turntable, files.front());
+    for (std::size_t i = 0; i < files.size(); ++i)
+        files[i].number = static_cast<std::int64_t>(i);
+    return files;
+}
+
+double AnimateOptions::turn_degrees(std::size_t frame) const {
+    const double degrees = 360.0 * static_cast<double>(frame) /
+                           static_cast<double>(std::max<std::size_t>(turntable, 1));
+    // An object that turns is a camera and an environment that turn the other way.
+    return turns == "object" ? -degrees : degrees;
+}
+
+EnvironmentOptions AnimateOptions::environment_at(std::size_t frame) const {
+    EnvironmentOptions result = environment;
+    if (turns_environment())
+        result.rotate_degrees += turn_degrees(frame);
+    return result;
 }
 
 std::optional<cubemap::FramePattern> AnimateOptions::output_pattern() const {

@@ -50,9 +50,22 @@ struct AnimateOptions {
     std::string movie;
     double frames_per_second = 24.0;
     bool resume = false;
+    /// Frames of one turn under one environment; 0: FRAMES are the frames.
+    std::size_t turntable = 0;
+    /// What turns.
+    std::string turns = "camera";
+    [[nodiscard]] bool turns_camera() const { return turntable > 0 && turns != "environment"; }
+    [[nodiscard]] bool turns_environment() const { return turntable > 0 && turns != "camera"; }
 
     void add_to(Command& command);
 
+    /// The frames that FRAMES names; with --turntable one environment many times. Throws
+    /// std::runtime_error as cubemap::find_frames().
+    [[nodiscard]] std::vector<cubemap::FrameFile> frame_files() const;
+    /// The environment's options at a frame: turned with --turntable.
+    [[nodiscard]] EnvironmentOptions environment_at(std::size_t frame) const;
+    /// How far --turntable has turned at a frame.
+    [[nodiscard]] double turn_degrees(std::size_t frame) const;
     /// Refuses what cannot be done before any work is.
     void check(const cubemap::FrameSequence& sequence) const;
     /// The pattern of -o, nothing without -o. Throws std::runtime_error where the number has no

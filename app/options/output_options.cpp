@@ -21,6 +21,13 @@ Option OutputOptions::add_to(Command& command) {
                         ".npy (numbers)",
                         {.file = true, .required = true}));
     options_ = command.add_all(options_of(picture));
+    command.add_all({row("--ocio", picture.display.config,
+                         "an OpenColorIO config: its view shows .png, in place of --tone-map",
+                         {.file = true, .excludes = "--tone-map"}),
+                     row("--ocio-display", picture.display.display,
+                         "a display of --ocio (the config's own)", {.needs = "--ocio"}),
+                     row("--ocio-view", picture.display.view,
+                         "a view of the display (the display's own)", {.needs = "--ocio"})});
     return output;
 }
 
@@ -28,6 +35,8 @@ void OutputOptions::check(const std::vector<std::string>& inputs) const {
     require_extension("--output", path, {".png", ".exr", ".ply", ".glb", ".npy"});
     check_output(path, inputs);
     relumine::check(picture);
+    if (!picture.display.config.empty())
+        relight::DisplayTransform{picture.display};
 }
 
 void OutputOptions::check_fits(const Scene& scene) const {

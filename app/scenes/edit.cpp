@@ -23,6 +23,7 @@
 #include "cubemap/layers/layer_file.h"
 #include "cubemap/resample/save_environment.h"
 #include "files/counted.h"
+#include "relumine/light_mix.h"
 
 namespace relumine::app {
 
@@ -44,6 +45,7 @@ struct EditArguments {
     /// --lit-by: a layer's name, or a disc X,Y,Z,RADIUS. Empty: not asked for.
     std::string lit_by;
     bool watch = false;
+    bool mixer = false;
 };
 
 void check_saved_environment(const EditArguments& options) {
@@ -83,8 +85,10 @@ void check_outputs(const EditArguments& options, const cubemap::LightLayers& lay
     OutputOptions output = options.output;
     if (!options.who && options.lit_by.empty() && !layers.frames.empty())
         output.path = frame_names(output.path).name(0);
-    if (options.who) {
-        require_extension("--output", output.path, {".exr", ".png"});
+    if (options.mixer && (options.who || !options.lit_by.empty()))
+        throw UsageError("--mixer", "expected neither --who nor --lit-by with it");
+    if (options.who || options.mixer) {
+        require_extension("--output", output.path, {".exr", options.mixer ? ".exr" : ".png"});
     }
     if (!options.lit_by.empty())
         static_cast<void>(lit_by_region(options.lit_by, layers.layers));
@@ -148,7 +152,16 @@ private:
         else if (!layers_.frames.empty())
             save_frames();
         else
-            painter_->save(options_.output.path, lit_.lighting());
+            save_picture(options_.output.path);
+    }
+
+    /// The scene in its light, with --mixer taken apart.
+    void save_picture(const std::string& path) {
+        if (options_.mixer)
+            relight::save_layered_picture(path, light_mix(lit_, *painter_),
+                                          options_.output.picture.exposure_ev.value_or(0.0));
+        else
+            painter_->save(path, lit_.lighting());
     }
 
     /// Edits are timed without their bounces, which come once, before anything is written.
@@ -192,7 +205,7 @@ private:
             record(fmt::format("frame {}", frame),
                    set_layers(lit_, cubemap::layers_at(layers_, frame)));
             bounce();
-            painter_->save(frame_names(options_.output.path).name(frame), lit_.lighting());
+            save_picture(frame_names(options_.output.path).name(frame));
             session_.poll();
         }
     }
@@ -310,6 +323,9 @@ void add_edit(Command& program, Session& session) {
             "write the scene as lit by a region of the environment alone: a layer's name, or "
             "X,Y,Z,RADIUS for a disc",
             {.excludes = "--who"}));
+    command.add(row("--mixer", options->mixer,
+                    "write OUT, .exr, with a layer for the environment and for each light, whose "
+                    "sum is the picture"));
     command.add(row("--watch", options->watch,
                     "go on: when another program saves ENV, update and write OUT again"));
     session.add_common_options(command);

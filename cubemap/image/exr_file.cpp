@@ -397,7 +397,7 @@ int num_writers(const Picture& picture) {
 
 } // namespace
 
-std::vector<std::byte> encode_exr(const EnvironmentImage& image) {
+std::vector<std::byte> encode_exr(const EnvironmentImage& image, std::span<const ExrLayer> layers) {
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
     header.compression() = Imf::ZIP_COMPRESSION;
     if (image.sampling == Sampling::Borders &&
@@ -406,14 +406,20 @@ std::vector<std::byte> encode_exr(const EnvironmentImage& image) {
                        image.layout == Layout::Cube ? Imf::ENVMAP_CUBE : Imf::ENVMAP_LATLONG);
     Imf::FrameBuffer buffer;
     // OpenEXR only reads here, but its frame buffers are made for reading and writing.
-    char* base = const_cast<char*>(reinterpret_cast<const char*>(image.pixels.data()));
-    std::size_t offset = 0;
-    for (const char* channel : {"R", "G", "B"}) {
-        header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
-        buffer.insert(channel, Imf::Slice(Imf::FLOAT, base + offset, sizeof(glm::vec3),
-                                          sizeof(glm::vec3) * image.width));
-        offset += sizeof(float);
-    }
+    const auto insert = [&](const std::string& prefix, std::span<const glm::vec3> pixels) {
+        char* base = const_cast<char*>(reinterpret_cast<const char*>(pixels.data()));
+        std::size_t offset = 0;
+        for (const char* letter : {"R", "G", "B"}) {
+            const std::string channel = prefix + letter;
+            header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+            buffer.insert(channel, Imf::Slice(Imf::FLOAT, base + offset, sizeof(glm::vec3),
+                                              sizeof(glm::vec3) * image.width));
+            offset += sizeof(float);
+        }
+    };
+    insert("", image.pixels);
+    for (const ExrLayer& layer : layers)
+        insert(layer.name + ".", layer.pixels);
     if (!image.alpha.empty()) {
         header.channels().insert("A", Imf::Channel(Imf::FLOAT));
         buffer.insert(

@@ -43,9 +43,19 @@ inline constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 29;
 [[nodiscard]] ImageSize hdr_size(std::span<const std::byte> head, std::size_t num_bytes,
                                  const std::string& name);
 
+/// Pixels that stand beside a picture in its file.
+struct ExrLayer {
+    /// Without a dot, and different from all others.
+    std::string name;
+    /// As many as the picture has.
+    std::span<const glm::vec3> pixels;
+};
+
 /// Returns an .exr file: 32-bit float RGB, ZIP. The `envmap` attribute is set if samples lie on the
-/// borders. The file has a channel A if the picture has alpha.
-[[nodiscard]] std::vector<std::byte> encode_exr(const EnvironmentImage& image);
+/// borders. The file has a channel A if the picture has alpha, and three channels NAME.R, NAME.G,
+/// NAME.B for each layer.
+[[nodiscard]] std::vector<std::byte> encode_exr(const EnvironmentImage& image,
+                                                std::span<const ExrLayer> layers = {});
 /// Returns an .hdr file: RGBE, run-length encoded, rounded to nearest.
 /// Throws:  std::invalid_argument for radiance that RGBE cannot hold.
 [[nodiscard]] std::vector<std::byte> encode_hdr(const EnvironmentImage& image);

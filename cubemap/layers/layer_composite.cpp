@@ -33,7 +33,7 @@ struct Filter {
 struct Image {
     const ImagePyramid* picture;
     bool replace;
-    float gain;
+    glm::vec3 gain;
 };
 using PreparedEffect = std::variant<Light, Filter, Image>;
 
@@ -44,9 +44,8 @@ struct PreparedLayer {
 
 PreparedLayer prepared(const LightLayer& layer) {
     validate(layer);
-    const auto gain = static_cast<float>(std::exp2(layer.gain_ev));
     struct Prepare {
-        float gain;
+        glm::vec3 gain;
         PreparedEffect operator()(const Emit& emit) const { return Light{gain * emit.radiance}; }
         PreparedEffect operator()(const Gain& effect) const {
             return Filter{gain * effect.factor * effect.tint};
@@ -55,7 +54,7 @@ PreparedLayer prepared(const LightLayer& layer) {
             return Image{patch.picture.get(), patch.blend == ImagePatch::Blend::Replace, gain};
         }
     };
-    return {shape(layer.region), std::visit(Prepare{gain}, layer.effect)};
+    return {shape(layer.region), std::visit(Prepare{strength(layer)}, layer.effect)};
 }
 
 /// Calls texel(x, y, coverage) for the covered texels of a range that lie in the rectangle.
@@ -212,8 +211,8 @@ void composite(const CubeMap& base, std::span<const LightLayer> layers,
                                                     base.resolution, r.x0, r.x1, r.y0, r.y1));
     }
     std::vector<PreparedLayer> ready;
-    ready.reserve(layers.size());
-    for (const LightLayer& layer : layers) {
+    ready.reserve(layers.size() + 2);
+    for (const LightLayer& layer : without_solo(layers)) {
         if (layer.on)
             ready.push_back(prepared(layer));
         else

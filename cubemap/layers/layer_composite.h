@@ -12,8 +12,8 @@
 namespace relumine::cubemap {
 
 /// Returns rectangles that hold every texel the layer can change: at most eight per face, without
-/// overlaps, none if the layer is off. The rectangles of a layer before and after an edit hold
-/// every texel that the edit changes.
+/// overlaps, none if the layer is off. It looks at no other layer: see without_solo() first. The
+/// rectangles of a layer before and after an edit hold every texel that the edit changes.
 ///
 /// Cost:    microseconds.
 /// Throws:  std::invalid_argument as validate() does.

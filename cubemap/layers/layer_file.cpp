@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "cubemap/layers/layer_list.h"
+#include "cubemap/layers/presets.h"
 #include "files/joined.h"
 #include "files/json_reader.h"
 #include "files/nearest_name.h"
@@ -108,6 +109,25 @@ private:
         return patch;
     }
 
+    LightLayer from_preset(const files::Json& preset, const files::Json& direction) const {
+        const std::string& name = json_.string(preset, "\"preset\"");
+        std::vector<std::string_view> names;
+        for (const LayerPreset& each : layer_presets()) {
+            names.push_back(each.name);
+            glm::dvec3 towards = json_.vector(direction, "\"direction\"");
+            if (each.name != name)
+                continue;
+            try {
+                check(direction_field(towards));
+            } catch (const std::invalid_argument& error) {
+                json_.refuse(direction, error.what());
+            }
+            return placed(each, towards);
+        }
+        json_.refuse(preset, fmt::format("\"preset\" to be one of {}", files::joined(names, ", ")),
+                     fmt::format("\"{}\"{}", name, files::did_you_mean(name, names)));
+    }
+
     LightLayer layer(const files::Json& value, const std::vector<LightLayer>& others) const {
         (void)json_.object(value, "a layer");
         LightLayer result;
@@ -117,15 +137,37 @@ private:
                         [&](const LightLayer& other) { return other.name == result.name; }))
             json_.refuse(name, "layers of different names",
                          fmt::format("a second \"{}\"", result.name));
-        result.region = kind<Region>(json_.required(value, "type"), "\"type\"", type_name);
-        result.effect = kind<Effect>(json_.required(value, "effect"), "\"effect\"", effect_name);
-        std::vector<std::string_view> names = {"name", "type", "effect"};
+        std::vector<std::string_view> names = {"name"};
+        const files::Json* preset = value.find("preset");
+        if (preset != nullptr) {
+            const std::string layer_name = std::move(result.name);
+            result = from_preset(*preset, json_.required(value, "direction"));
+            result.name = layer_name;
+            names.insert(names.end(), {"preset", "direction"});
+        } else {
+            result.region = kind<Region>(json_.required(value, "type"), "\"type\"", type_name);
+            result.effect =
+                kind<Effect>(json_.required(value, "effect"), "\"effect\"", effect_name);
+            names.insert(names.end(), {"type", "effect"});
+        }
         for (const LayerField& field : fields(result)) {
             names.push_back(field.name);
             const files::Json* given = value.find(field.name);
+            if (!field.other_name.empty()) {
+                names.push_back(field.other_name);
+                const files::Json* other = value.find(field.other_name);
+                if (given != nullptr && other != nullptr)
+                    json_.refuse(
+                        *other,
+                        fmt::format("either \"{}\" or \"{}\"", field.name, field.other_name),
+                        "both");
+                given = given != nullptr ? given : other;
+            }
+            // A temperature is a colour, too.
+            const bool is_colored = field.colour != nullptr && result.kelvin > 0.0;
             if (given != nullptr)
                 set_values(field, numbers(field, *given));
-            else if (field.required)
+            else if (field.required && preset == nullptr && !is_colored)
                 (void)json_.required(value, field.name);
         }
         if (auto* patch = std::get_if<ImagePatch>(&result.effect)) {
@@ -175,20 +217,25 @@ private:
         const auto& members =
             json_.object(changes, fmt::format("the change of layer \"{}\"", layer.name));
         const std::vector<LayerField> all = fields(layer);
-        names.reserve(all.size());
-        for (const LayerField& field : all)
+        for (const LayerField& field : all) {
             names.push_back(field.name);
+            if (!field.other_name.empty())
+                names.push_back(field.other_name);
+        }
         json_.known(changes, names,
                     fmt::format("a key frame of a {} with the effect {}", type_name(layer.region),
                                 effect_name(layer.effect)));
         for (const auto& [name, value] : members) {
             const auto field =
-                std::find_if(all.begin(), all.end(),
-                             [&, &member = name](const LayerField& f) { return f.name == member; });
-            KeyedValue change{.layer = layer.name, .field = name, .values = numbers(*field, value)};
+                std::find_if(all.begin(), all.end(), [&, &member = name](const LayerField& f) {
+                    return f.name == member || f.other_name == member;
+                });
+            KeyedValue change{.layer = layer.name,
+                              .field = std::string(field->name),
+                              .values = numbers(*field, value)};
             for (const KeyFrame& earlier : before.frames) {
                 for (const KeyedValue& other : earlier.changes) {
-                    if (other.layer == change.layer && other.field == name &&
+                    if (other.layer == change.layer && other.field == change.field &&
                         other.values.size() != change.values.size())
                         json_.refuse(value,
                                      fmt::format("as many points as at frame {}, {}", earlier.frame,

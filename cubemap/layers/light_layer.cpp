@@ -1,10 +1,13 @@
 #include "cubemap/layers/light_layer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
 
 #include <fmt/format.h>
+
+#include "cubemap/kelvin.h"
 
 namespace relumine::cubemap {
 
@@ -13,13 +16,13 @@ namespace {
 void check_colour(std::string_view what, const glm::vec3& colour, double scale) {
     for (const float value : {colour.x, colour.y, colour.z}) {
         if (!(value >= 0.0f) || !std::isfinite(static_cast<float>(value * scale)))
-            refuse(what, "to be finite and at least 0 (gain_ev included)",
+            refuse(what, "to be finite and at least 0 (gain_ev and kelvin included)",
                    fmt::format("({}, {}, {})", colour.x, colour.y, colour.z));
     }
 }
 
 struct CheckEffect {
-    /// 2^gain_ev
+    /// The largest of strength().
     double scale;
     const Region& region;
     void operator()(const Emit& emit) const { check_colour("radiance", emit.radiance, scale); }
@@ -66,7 +69,9 @@ void validate(const LightLayer& layer) {
         for (const LayerField& field : own_fields(const_cast<LightLayer&>(layer))) // only read
             check(field);
         validate(layer.region);
-        std::visit(CheckEffect{std::exp2(layer.gain_ev), layer.region}, layer.effect);
+        const glm::vec3 factors = strength(layer);
+        std::visit(CheckEffect{std::max({factors.r, factors.g, factors.b}), layer.region},
+                   layer.effect);
     } catch (const std::invalid_argument& error) {
         throw std::invalid_argument(
             fmt::format("light layer \"{}\": {}", layer.name, error.what()));
@@ -75,10 +80,16 @@ void validate(const LightLayer& layer) {
 
 std::vector<LayerField> own_fields(LightLayer& layer) {
     return {{.name = "on", .flag = &layer.on},
+            {.name = "solo", .flag = &layer.solo},
             {.name = "gain_ev",
+             .other_name = "exposure",
              .range = {-100.0, 100.0},
              .slider = FieldRange{-12.0, 12.0},
-             .number = &layer.gain_ev}};
+             .number = &layer.gain_ev},
+            {.name = "kelvin",
+             .range = {0.0, HighestKelvin},
+             .least_but_zero = LowestKelvin,
+             .number = &layer.kelvin}};
 }
 
 std::vector<LayerField> fields(LightLayer& layer) {
@@ -90,6 +101,33 @@ std::vector<LayerField> fields(LightLayer& layer) {
 
 std::vector<LayerField> fields(Effect& effect) {
     return std::visit(EffectFields{}, effect);
+}
+
+glm::vec3 strength(const LightLayer& layer) {
+    const auto gain = static_cast<float>(std::exp2(layer.gain_ev));
+    return layer.kelvin > 0.0 ? gain * kelvin_color(layer.kelvin) : glm::vec3(gain);
+}
+
+bool has_solo(std::span<const LightLayer> layers) {
+    return std::any_of(layers.begin(), layers.end(),
+                       [](const LightLayer& layer) { return layer.on && layer.solo; });
+}
+
+std::vector<LightLayer> without_solo(std::span<const LightLayer> layers) {
+    std::vector<LightLayer> result;
+    const bool is_solo = has_solo(layers);
+    // Two discs that overlap: the rim of each lies well inside of the other.
+    for (const double z : {1.0, -1.0})
+        if (is_solo)
+            result.push_back({.name = "black",
+                              .region = Disc{.direction = {0.0, 0.0, z}, .radius_degrees = 120.0},
+                              .effect = Gain{0.0f}});
+    for (const LightLayer& layer : layers) {
+        result.push_back(layer);
+        result.back().on = layer.on && (layer.solo || !is_solo);
+        result.back().solo = false;
+    }
+    return result;
 }
 
 std::string_view effect_name(const Effect& effect) {

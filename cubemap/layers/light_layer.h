@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -57,9 +58,13 @@ using Effect = std::variant<Emit, Gain, ImagePatch>;
 struct LightLayer {
     std::string name;
     bool on = true;
+    /// Where a layer that is on has it, only such layers shine, over black.
+    bool solo = false;
     /// Stops, in [-100, 100]. 2^gain_ev multiplies the radiance of Emit and ImagePatch, and the
     /// factor of Gain.
     double gain_ev = 0.0;
+    /// Multiplies the same as gain_ev by kelvin_color(); 0 leaves the colour as it is.
+    double kelvin = 0.0;
     Region region = Disc{};
     Effect effect = Emit{};
     bool operator==(const LightLayer&) const = default;
@@ -76,6 +81,16 @@ void validate(const LightLayer& layer);
 [[nodiscard]] std::vector<LayerField> fields(LightLayer& layer);
 [[nodiscard]] std::vector<LayerField> own_fields(LightLayer& layer);
 [[nodiscard]] std::vector<LayerField> fields(Effect& effect);
+
+/// Returns what multiplies a layer's radiance or factor: 2^gain_ev times the colour of its kelvin.
+[[nodiscard]] glm::vec3 strength(const LightLayer& layer);
+
+/// Returns true if a layer that is on has `solo`.
+[[nodiscard]] bool has_solo(std::span<const LightLayer> layers);
+
+/// Returns the layers that give the same light and of which none has `solo`: with has_solo(), all
+/// others are off, and the lowest two make the environment black.
+[[nodiscard]] std::vector<LightLayer> without_solo(std::span<const LightLayer> layers);
 
 /// Returns "emit", "gain" or "image".
 [[nodiscard]] std::string_view effect_name(const Effect& effect);

@@ -1,9 +1,11 @@
 #include "cubemap/layers/region.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include "cubemap/layers/shapes/sphere_lines.h"
 
@@ -17,8 +19,11 @@ glm::dmat3 rotation_between(const glm::dvec3& from, const glm::dvec3& to) {
     const glm::dvec3 b = glm::normalize(to);
     const glm::dvec3 axis = glm::cross(a, b);
     const double cosine = glm::dot(a, b);
-    if (cosine < -0.999999) // opposite: no shortest way, and a pointer does not jump so far
-        return glm::dmat3(1.0);
+    if (cosine < -0.999999) { // opposite: no shortest way, half a turn about any axis across
+        const glm::dvec3 across = glm::normalize(glm::cross(
+            a, std::abs(a.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0)));
+        return 2.0 * glm::outerProduct(across, across) - glm::dmat3(1.0);
+    }
     // Rodrigues' formula: R = c I + [axis]x + axis axis^T / (1 + c); columns.
     const double k = 1.0 / (1.0 + cosine);
     return {glm::dvec3(cosine + k * axis.x * axis.x, axis.z + k * axis.x * axis.y,

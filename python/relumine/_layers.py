@@ -91,6 +91,9 @@ _EFFECTS: Dict[str, Any] = {"emit": Emit, "gain": Gain, "image": Image}
 class Layer:
     """A region, what happens in it, and how strongly: `gain_ev` in stops.
 
+    `kelvin`, from 1000 to 15000, multiplies by a colour. Where a layer has `solo`, only such layers
+    shine.
+
     Directions point from the scene to the light, +Y up; colours are linear RGB. A layer is the same
     as a dictionary of a layer file, and functions take both.
 
@@ -104,13 +107,17 @@ class Layer:
     effect: Effect
     on: bool = True
     gain_ev: float = 0.0
+    kelvin: float = 0.0
+    solo: bool = False
 
     def to_dict(self) -> Dict[str, Any]:
         """The layer as a layer file has it."""
         return {
             "name": self.name,
             "on": self.on,
+            "solo": self.solo,
             "gain_ev": self.gain_ev,
+            "kelvin": self.kelvin,
             "type": self.region.type,
             **asdict(self.region),
             "effect": self.effect.effect,
@@ -136,6 +143,8 @@ def parsed(text: str) -> List[Layer]:
                 effect(**{f.name: values[f.name] for f in fields(effect) if f.name in values}),
                 values.get("on", True),
                 values.get("gain_ev", 0.0),
+                values.get("kelvin", 0.0),
+                values.get("solo", False),
             )
         )
     return result

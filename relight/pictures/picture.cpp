@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -24,17 +25,40 @@ std::uint8_t srgb_byte(float linear) {
     return static_cast<std::uint8_t>(std::lround(encoded * 255.0f));
 }
 
+float linear_of(float encoded) {
+    return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+}
+
+/// Puts the colours of some pixels through a tone curve.
+void curve(std::span<glm::vec3> colors, const Development& development) {
+    if (development.display == nullptr) {
+        for (glm::vec3& color : colors)
+            color = on_screen(development.tone, color);
+        return;
+    }
+    // The display's values are encoded; the file will encode them again.
+    development.display->apply(colors);
+    for (glm::vec3& color : colors)
+        color = {linear_of(color.r), linear_of(color.g), linear_of(color.b)};
+}
+
 /// Exposes the picture and puts its colours through a tone curve.
-Picture curved(const Picture& picture, float scale, ToneCurve tone) {
+Picture curved(const Picture& picture, float scale, const Development& development) {
     Picture result = picture;
     files::parallel_for(
         files::IndexRange<std::size_t>(0, result.pixels.size(), 4096), [&](const auto& pixels) {
-            for (std::size_t i = pixels.begin(); i < pixels.end(); ++i) {
-                // The curve is for the colour itself, not for its covered part.
-                const float alpha = result.alpha.empty() ? 1.0f : result.alpha[i];
-                if (alpha > 0.0f)
-                    result.pixels[i] = alpha * on_screen(tone, result.pixels[i] * (scale / alpha));
-            }
+            // The curve is for the colour itself, not for its covered part.
+            const auto alpha = [&](std::size_t i) {
+                return result.alpha.empty() ? 1.0f : result.alpha[i];
+            };
+            const std::span part =
+                std::span(result.pixels).subspan(pixels.begin(), pixels.end() - pixels.begin());
+            for (std::size_t i = 0; i < part.size(); ++i)
+                if (const float covered = alpha(pixels.begin() + i); covered > 0.0f)
+                    part[i] *= scale / covered;
+            curve(part, development);
+            for (std::size_t i = 0; i < part.size(); ++i)
+                part[i] *= alpha(pixels.begin() + i);
         });
     return result;
 }
@@ -76,9 +100,9 @@ void require_pixels(const Picture& picture) {
 std::vector<std::byte> png_file(const Picture& picture, const Development& development) {
     require_pixels(picture);
     const auto scale = static_cast<float>(std::exp2(development.exposure_ev));
-    return development.tone == ToneCurve::None
+    return development.tone == ToneCurve::None && development.display == nullptr
                ? png_of(picture, scale)
-               : png_of(curved(picture, scale, development.tone), 1.0f);
+               : png_of(curved(picture, scale, development), 1.0f);
 }
 
 void save_picture(const std::filesystem::path& path, const Picture& picture,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cubemap/image/picture.h"
+#include "relight/pictures/display_transform.h"
 #include "relight/pictures/tone_curve.h"
 
 namespace relumine::relight {
@@ -18,6 +19,8 @@ struct Development {
     double exposure_ev = 0.0;
     /// Of .png; .exr is linear.
     ToneCurve tone = ToneCurve::None;
+    /// Of .png, in place of `tone`; null: none.
+    const DisplayTransform* display = nullptr;
 };
 
 /// Returns a PNG file: exposed, through the tone curve, sRGB, 8 bit, with alpha where the picture

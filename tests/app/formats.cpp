@@ -4,6 +4,12 @@
 #include <cstring>
 #include <stdexcept>
 
+#include <ImathBox.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+
 namespace relumine::app {
 
 namespace {
@@ -66,6 +72,25 @@ Size exr_size(const std::string& bytes) {
     };
     return {static_cast<std::uint32_t>(corner(2) - corner(0) + 1),
             static_cast<std::uint32_t>(corner(3) - corner(1) + 1)};
+}
+
+std::map<std::string, std::vector<float>> exr_channels(const std::filesystem::path& path) {
+    Imf::InputFile file(path.c_str());
+    const Imath::Box2i window = file.header().dataWindow();
+    const auto width = static_cast<std::size_t>(window.max.x + 1);
+    const auto height = static_cast<std::size_t>(window.max.y + 1);
+    std::map<std::string, std::vector<float>> channels;
+    Imf::FrameBuffer buffer;
+    for (auto each = file.header().channels().begin(); each != file.header().channels().end();
+         ++each) {
+        std::vector<float>& values = channels[each.name()];
+        values.resize(width * height);
+        buffer.insert(each.name(), Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()),
+                                              sizeof(float), sizeof(float) * width));
+    }
+    file.setFrameBuffer(buffer);
+    file.readPixels(0, window.max.y);
+    return channels;
 }
 
 nlohmann::json glb_json(const std::string& bytes) {

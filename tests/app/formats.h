@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,9 @@ struct Size {
 [[nodiscard]] std::vector<std::array<float, 3>> npy_values(const std::string& bytes);
 [[nodiscard]] Size png_size(const std::string& bytes);
 [[nodiscard]] Size exr_size(const std::string& bytes);
+/// The channels of an OpenEXR file of 32-bit floats, by name, row by row.
+[[nodiscard]] std::map<std::string, std::vector<float>>
+exr_channels(const std::filesystem::path& path);
 /// The JSON chunk of binary glTF.
 [[nodiscard]] nlohmann::json glb_json(const std::string& bytes);
 /// The count of an element in a binary little-endian PLY header.

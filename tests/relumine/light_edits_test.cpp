@@ -52,6 +52,8 @@ cubemap::LightLayer random_layer(std::mt19937& random) {
         layer.effect = cubemap::Gain{.factor = static_cast<float>(3.0 * unit(random))};
     layer.on = unit(random) < 0.9;
     layer.gain_ev = 4.0 * unit(random) - 2.0;
+    layer.solo = unit(random) < 0.1;
+    layer.kelvin = unit(random) < 0.3 ? 1000.0 + 9000.0 * unit(random) : 0.0;
     return layer;
 }
 

@@ -55,6 +55,25 @@ TEST(OrbitCamera, PanningMovesTheTargetWithThePointer) {
     EXPECT_NEAR(after.y - before.y, -13.0f, 0.1f);
 }
 
+TEST(OrbitCamera, LookingAroundKeepsTheEyeAndFlyingGoesWhereItLooks) {
+    OrbitCamera camera{.target = {1, 2, 3}, .distance = 4.0f, .yaw = 0.5f, .pitch = 0.3f};
+    const glm::vec3 eye = camera.eye();
+    const glm::vec3 right = frame(camera, Viewport).right;
+    camera.look({50.0f, 0.0f});
+    EXPECT_LT(glm::length(camera.eye() - eye), 1e-5f);
+    EXPECT_GT(glm::dot(frame(camera, Viewport).forward, right), 0.0f) << "to the right";
+    const float before = camera.pitch;
+    camera.look({0.0f, 30.0f});
+    EXPECT_GT(camera.pitch, before) << "down";
+    const CameraFrame axes = frame(camera, Viewport);
+    camera.fly({0.0f, 0.0f, 2.0f});
+    EXPECT_LT(glm::length(camera.eye() - eye - 2.0f * axes.forward), 1e-5f);
+    camera.fly({3.0f, 1.0f, -2.0f});
+    EXPECT_LT(
+        glm::length(camera.eye() - eye - 3.0f * glm::normalize(axes.right) - glm::vec3(0, 1, 0)),
+        1e-5f);
+}
+
 TEST(OrbitCamera, DraggingToTheRightTurnsTheFrontToTheRightAndNeverGoesOverTheTop) {
     OrbitCamera camera{.distance = 5.0f};
     camera.orbit({40.0f, 0.0f});

@@ -219,6 +219,94 @@ TEST_F(WindowTest, ThePointerDragsLayersTurnsTheSceneAndAsksWhoLights) {
     EXPECT_FALSE(equal(heat, picture("turned.exr"), viewport_));
 }
 
+TEST_F(WindowTest, ALightGoesWhereTheMeshIsClicked) {
+    const std::array right = pixel_of(right_), left = pixel_of(left_);
+    ASSERT_EQ(play(fmt::format("rotate 50\n"
+                               "add_disc Key 0,-1,0 10\n"
+                               "aim_layer Key {0} {1}\n"
+                               "save_layers facing.json\n"
+                               "mirror_layer Key {0} {1}\n"
+                               "save_layers mirrored.json\n"
+                               "click_does 1\n"
+                               "drag_mesh {0} {1} {2} {3}\n"
+                               "save_layers dragged.json\n"
+                               "undo\n"
+                               "save_layers undone.json\n",
+                               right[0], right[1], left[0], left[1])),
+              0)
+        << words("err.txt");
+    const auto seen = [&](const std::string& file) {
+        const cubemap::LightLayers layers = cubemap::load_layers(folder_ / file);
+        return turned(middle(layers.layers.at(0).region), *layers.rotate_degrees);
+    };
+    const glm::dvec3 normal(right_ - data_gen::SphereCenter);
+    const glm::dvec3 to_eye(glm::normalize(camera_.eye() - right_));
+    EXPECT_LT(angle_between(seen("facing.json"), normal), 2.0);
+    EXPECT_LT(angle_between(seen("mirrored.json") + to_eye, normal), 2.0);
+    EXPECT_LT(angle_between(seen("dragged.json"), glm::dvec3(left_ - data_gen::SphereCenter)), 2.0)
+        << "it follows the pointer, and the camera stays";
+    EXPECT_EQ(seen("undone.json"), seen("mirrored.json")) << "one step of undo";
+
+    EXPECT_EQ(play("add_disc Key 0,1,0 10\naim_layer Key 3 45\n"), 1);
+    EXPECT_EQ(words("err.txt"),
+              "relumine: script line 2: expected a pixel of the mesh, got 3 45\n");
+}
+
+TEST_F(WindowTest, ASavedPictureIsThatOfRelightFromTheCameraItTells) {
+    ASSERT_EQ(play("drag_mesh 200 250 260 280\n"
+                   "look 20 10\n"
+                   "fly 0.1,0.2,0.4\n"
+                   "save_picture own.png\n"
+                   "save_picture own.exr\n"),
+              0)
+        << words("err.txt");
+    const std::string camera = nlohmann::json::parse(words("out.txt"))["camera"];
+    ASSERT_EQ(
+        std::system(fmt::format("cd '{}' && '{}' relight scene.prt env.exr -q {} --size {}x{} "
+                                "--exposure 0 -o relit.exr",
+                                folder_.string(), RELUMINE_BINARY, camera, viewport_.width,
+                                viewport_.height)
+                        .c_str()),
+        0)
+        << camera;
+    const cubemap::Picture own = picture("own.exr"), relit = picture("relit.exr");
+    ASSERT_EQ(own.pixels.size(), relit.pixels.size());
+    double difference = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < own.pixels.size(); ++i) {
+        difference += std::abs(own.pixels[i].g - relit.pixels[i].g);
+        sum += relit.pixels[i].g;
+    }
+    EXPECT_LT(difference, 0.002 * sum) << "up to the digits of the camera";
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "own.png"));
+    EXPECT_EQ(play("save_picture own.jpeg\n"), 1);
+    EXPECT_EQ(words("err.txt"), "relumine: script line 1: own.jpeg: expected .png or .exr for a "
+                                "picture, got '.jpeg'\n");
+}
+
+TEST_F(WindowTest, ASoloLightShinesAlone) {
+    ASSERT_EQ(play("add_preset strip 1,0.2,0.3\n"
+                   "add_preset ring -1,0.2,0.3\n"
+                   "set_gain strip 2\n"
+                   "set_gain ring 2\n"
+                   "wait 1\n"
+                   "screenshot both.exr\n"
+                   "solo ring 1\n"
+                   "wait 1\n"
+                   "screenshot ring.exr\n"
+                   "undo\n"
+                   "wait 1\n"
+                   "screenshot undone.exr\n"),
+              0)
+        << words("err.txt");
+    const cubemap::Picture both = picture("both.exr"), ring = picture("ring.exr");
+    EXPECT_GT(brightness(both, pixel_of(right_)), 0.02f);
+    EXPECT_LT(brightness(ring, pixel_of(right_)), 0.3f * brightness(both, pixel_of(right_)));
+    EXPECT_GT(brightness(ring, pixel_of(left_)), 0.02f);
+    EXPECT_EQ(brightness(ring, {viewport_.x + 8, viewport_.y + 60}), 0.0f) << "no environment";
+    EXPECT_TRUE(equal(both, picture("undone.exr"), viewport_));
+    EXPECT_EQ(play("add_preset strop 1,0,0\n"), 1);
+}
+
 TEST_F(WindowTest, LassosAndDroppedPicturesBecomeLayersAndRotationIsUndone) {
     const PixelRectangle map = panel_layout(Width, Height).environment;
     cubemap::save_environment(folder_ / "picture.exr",

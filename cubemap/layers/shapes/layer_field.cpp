@@ -25,6 +25,9 @@ void check_number(const LayerField& field) {
     if (std::isinf(from) && std::isinf(to)) {
         if (!std::isfinite(value))
             refuse(field.name, "to be finite", fmt::format("{}", value));
+    } else if (value > 0.0 && value < field.least_but_zero) {
+        refuse(field.name, fmt::format("to be 0 or from {} to {}", field.least_but_zero, to),
+               fmt::format("{}", value));
     } else if (!(value >= from && value <= to) || (field.below_end && value == to)) {
         refuse(field.name,
                fmt::format("from {} to {}{}", from, field.below_end ? "below " : "", to),

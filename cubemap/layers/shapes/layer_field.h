@@ -23,12 +23,16 @@ struct FieldRange {
 /// soft edge, and 0 makes the edge hard.
 struct LayerField {
     std::string_view name;
+    /// Layer files may say this instead; empty: nothing else.
+    std::string_view other_name = {};
     /// True if a layer file must give the field. Other fields have the default of the header.
     bool required = false;
     /// What a `number` may be; every finite number by default.
     FieldRange range = {};
     /// The end of the range is excluded.
     bool below_end = false;
+    /// Of a range from 0: what is greater than 0 is at least this.
+    double least_but_zero = 0.0;
     /// What a slider offers, where it is not the range.
     std::optional<FieldRange> slider = {};
     bool logarithmic_slider = false;

@@ -1,6 +1,7 @@
 // `relumine generate sequence` and `relumine animate`: from nothing to frames.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "tests/app/command.h"
+#include "tests/app/formats.h"
 #include "tests/app/small_files.h"
 
 namespace relumine::app {
@@ -40,6 +42,47 @@ protected:
                   lamp_hdr(10 + 20 * static_cast<std::uint32_t>(i)));
     }
 };
+
+/// Frames of --turntable are what relight draws with the camera, the environment or both turned.
+TEST_F(Animate, ATurntableTurnsTheCameraTheObjectOrTheEnvironment) {
+    write("lamp.hdr", lamp_hdr(10));
+    const std::vector<std::string> common = {"--size", "40x30", "--background", "none", "--target",
+                                             "0,0,0",  "-q"};
+    const auto with = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), common.begin(), common.end());
+        return arguments;
+    };
+    for (const std::string turns : {"camera", "object", "environment"}) {
+        const nlohmann::json report =
+            succeed({"animate", "scene.prt", "lamp.hdr", "-o", "turn.%d.exr", "--turntable", "4",
+                     "--turns", turns, "--camera", "20,30,4", "--size", "40x30", "--background",
+                     "none", "--target", "0,0,0", "--json"})
+                .json();
+        EXPECT_EQ(report["frames"], 4);
+        for (int frame = 0; frame < 4; ++frame) {
+            const int degrees = turns == "object" ? -90 * frame : 90 * frame;
+            const int camera = turns == "environment" ? 20 : 20 + degrees;
+            const int light = turns == "camera" ? 0 : degrees;
+            succeed(with({"relight", "scene.prt", "lamp.hdr", "-o", "one.exr", "--camera",
+                          fmt::format("{},30,4", camera), "--rotate", fmt::format("{}", light)}));
+            const auto expected = exr_channels(folder() / "one.exr");
+            const auto seen = exr_channels(folder() / fmt::format("turn.{}.exr", frame));
+            double difference = 0.0, sum = 0.0;
+            for (std::size_t i = 0; i < expected.at("R").size(); ++i) {
+                difference += std::abs(seen.at("R")[i] - expected.at("R")[i]);
+                sum += expected.at("R")[i];
+            }
+            EXPECT_GT(sum, 0.0);
+            EXPECT_LT(difference, 1e-3 * sum) << turns << " " << frame;
+        }
+    }
+    EXPECT_NE(read("turn.0.exr"), read("turn.1.exr"));
+    lamps(2);
+    misuse(with({"animate", "scene.prt", "lamp.%d.hdr", "-o", "bad.%d.exr", "--turntable", "4"}),
+           "--turntable");
+    misuse(with({"animate", "scene.prt", "lamp.hdr", "-o", "bad.%d.exr", "--turns", "moon"}),
+           "--turns");
+}
 
 TEST_F(Animate, EveryFrameIsWhatRelightMakesOfIt) {
     lamps(4);

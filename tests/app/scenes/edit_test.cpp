@@ -196,6 +196,46 @@ TEST_F(Edit, LitByShowsWhatARegionLights) {
     EXPECT_FALSE(std::filesystem::exists(folder() / "bad.npy"));
 }
 
+/// The mixer's layers as a compositor reads them: channels by name.
+TEST_F(Edit, TheMixersLayersAddUpToThePicture) {
+    write("mixed.json", R"({"version": 1, "layers": [
+        {"name": "key.1", "preset": "softbox", "direction": [1, 1, 1], "kelvin": 3200, "exposure": 3},
+        {"name": "muted", "on": false, "preset": "ring", "direction": [0, 1, 1]},
+        {"name": "flag", "preset": "flag", "direction": [1, 1, 1]},
+        {"name": "environment", "preset": "bulb", "direction": [-1, 1, 1]}]})");
+    const std::vector<std::string> edit = {"edit",   "scene.prt", "white.hdr",  "mixed.json",
+                                           "--size", "64x48",     "--exposure", "1"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), edit.begin(), edit.end());
+        return more;
+    };
+    succeed(with({"--mixer", "-o", "mix.exr"}));
+    succeed(with({"-o", "whole.exr"}));
+    const auto mix = exr_channels(folder() / "mix.exr"),
+               whole = exr_channels(folder() / "whole.exr");
+    ASSERT_EQ(whole.size(), 3u);
+    ASSERT_EQ(mix.size(), 15u) << "the picture, environment, key_1, flag, environment 2";
+    double key = 0.0, flag = 0.0;
+    for (const std::string channel : {"R", "G", "B"}) {
+        ASSERT_EQ(mix.at(channel).size(), 64u * 48u);
+        for (std::size_t i = 0; i < 64 * 48; ++i) {
+            float sum = 0.0f;
+            for (const char* layer : {"environment", "key_1", "flag", "environment 2"})
+                sum += mix.at(std::string(layer) + "." + channel)[i];
+            const float expected = whole.at(channel)[i];
+            ASSERT_NEAR(sum, expected, 1e-4f * (1.0f + expected)) << channel << i;
+            ASSERT_NEAR(mix.at(channel)[i], expected, 1e-4f * (1.0f + expected)) << channel << i;
+            key += mix.at("key_1." + channel)[i];
+            flag += mix.at("flag." + channel)[i];
+        }
+    }
+    EXPECT_GT(key, 1.0);
+    EXPECT_LT(flag, 0.0) << "it takes light away";
+
+    misuse(with({"--mixer", "-o", "mix.png"}), "--output");
+    misuse(with({"--mixer", "--who", "1,0,0", "-o", "mix2.exr"}), "--mixer");
+}
+
 TEST_F(Edit, WhoIsAPictureAndAsksForAPoint) {
     write("layers.json", Lamp);
     misuse({"edit", "scene.prt", "white.hdr", "layers.json", "--who", "1,0,0", "-o", "who.npy"},

@@ -63,6 +63,12 @@ TEST_F(Relight, WhiteFurnace) {
             EXPECT_NEAR(channel, 1.0f, 2e-3f);
 }
 
+TEST_F(Relight, AConfigOfOpenColorIOIsReadBeforeAnyWork) {
+    refuse({"--ocio", "missing.ocio"}, 1);
+    refuse({"--ocio-view", "Film"}, 2);
+    refuse({"--ocio", "missing.ocio", "--tone-map", "aces"}, 2);
+}
+
 TEST_F(Relight, LightComesFromWhereItIs) {
     const std::vector<std::pair<std::uint32_t, std::size_t>> columns = {
         {64, PlusZ}, {32, PlusX}, {96, MinusX}};

@@ -1,3 +1,4 @@
+#include "cubemap/kelvin.h"
 #include "cubemap/layers/layer_composite.h"
 
 #include <cmath>
@@ -83,6 +84,34 @@ TEST(LayerComposite, GainIsInStops) {
     layer.effect = Gain{1.0f, {1.0f, 0.5f, 0.0f}};
     layer.gain_ev = -1.0;
     EXPECT_EQ(seen(composite(base, std::span(&layer, 1)), {1, 0, 0}), glm::vec3(1.5f, 0.75f, 0.0f));
+}
+
+TEST(LayerComposite, KelvinTintsEveryEffect) {
+    const CubeMap base(8, glm::vec3(3.0f));
+    const glm::vec3 tint = kelvin_color(3200.0);
+    LightLayer layer{.name = "a",
+                     .gain_ev = 1.0,
+                     .kelvin = 3200.0,
+                     .region = Disc{.radius_degrees = 180.0},
+                     .effect = Emit{{1, 2, 3}}};
+    const glm::vec3 lit = seen(composite(base, std::span(&layer, 1)), {1, 0, 0});
+    EXPECT_LT(glm::length(lit - (3.0f + 2.0f * tint * glm::vec3(1, 2, 3))), 1e-5f);
+    layer.effect = Gain{};
+    const glm::vec3 filtered = seen(composite(base, std::span(&layer, 1)), {1, 0, 0});
+    EXPECT_LT(glm::length(filtered - 6.0f * tint), 1e-5f);
+}
+
+TEST(LayerComposite, SoloShinesAloneOverBlack) {
+    const CubeMap base = random_map(16, 1), black(16, glm::vec3(0.0f));
+    std::vector<LightLayer> layers = random_layers(4, 2);
+    layers[1].solo = layers[2].solo = true;
+    EXPECT_TRUE(
+        same_bits(composite(base, layers), composite(black, std::array{layers[1], layers[2]})));
+    layers[2].on = false;
+    EXPECT_TRUE(same_bits(composite(base, layers), composite(black, std::array{layers[1]})));
+    layers[1].on = false; // and nobody has it
+    EXPECT_TRUE(
+        same_bits(composite(base, layers), composite(base, std::array{layers[0], layers[3]})));
 }
 
 TEST(LayerComposite, CoverageOfSmallTexelsIsThatOfTheirCentres) {

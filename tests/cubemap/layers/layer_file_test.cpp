@@ -1,4 +1,7 @@
+#include "cubemap/kelvin.h"
 #include "cubemap/layers/layer_file.h"
+#include "cubemap/layers/presets.h"
+#include "cubemap/layers/shapes/sphere_lines.h"
 #include "cubemap/resample/save_environment.h"
 
 #include <algorithm>
@@ -175,6 +178,14 @@ TEST_F(LayerFile, RefusesWhatIsMalformedAndSaysWhere) {
         {with(disc + ",\n\"effect\": \"emit\",\n\"radiance\": [1, 1, 1e39]"), 3,
          "radiance to be finite"},
         {with(disc + ",\n\"effect\": \"image\",\n\"path\": \"none.exr\""), 6, "none.exr"},
+        {with(disc + emit + ",\n\"gain_ev\": 1,\n\"exposure\": 1"), 7, "got both"},
+        {with(disc + emit + ",\n\"kelvin\": 900"), 3, "kelvin to be 0 or from 1000 to 15000"},
+        {with(disc + emit + ",\n\"kelvin\": 15001"), 3, "kelvin from 0 to 15000, got 15001"},
+        {with("\"preset\": \"strop\", \"direction\": [0, 1, 0]"), 4, "did you mean strip?"},
+        {with("\"preset\": \"strip\",\n\"direction\": [0, 0, 0]"), 5, "direction of finite"},
+        {with("\"preset\": \"strip\""), 3, "expected \"direction\", got none"},
+        {with("\"preset\": \"strip\", \"direction\": [0, 1, 0],\n\"type\": \"disc\""), 5,
+         "got \"type\""},
         {with("\"type\": \"blob\"" + emit), 4, "disc, rectangle, lasso, stroke, got \"blob\""},
         {with("\"type\": \"disc\"" + emit), 3, "expected \"direction\""},
         {with("\"type\": \"disc\", \"direction\": [0, 0, 0], \"radius_degrees\": 5" + emit), 3,
@@ -192,6 +203,38 @@ TEST_F(LayerFile, RefusesWhatIsMalformedAndSaysWhere) {
         EXPECT_THAT(said, HasSubstr(bad.says)) << bad.text;
         EXPECT_EQ(said.find('\n'), std::string::npos);
     }
+}
+
+TEST_F(LayerFile, PresetsTakeADirectionAndAnyFieldOfTheirShape) {
+    for (const LayerPreset& preset : layer_presets()) {
+        const std::string text = fmt::format(
+            R"({{"version": 1, "layers": [{{"name": "a", "preset": "{}", "direction": [3, 1, 2],
+                 "kelvin": 5600, "exposure": 1.5, "solo": true}}]}})",
+            preset.name);
+        const LightLayer layer = load_layers(write(text)).layers.at(0);
+        EXPECT_EQ(layer.name, "a");
+        EXPECT_EQ(layer.kelvin, 5600.0);
+        EXPECT_EQ(layer.gain_ev, 1.5);
+        EXPECT_TRUE(layer.solo);
+        EXPECT_EQ(layer.effect, preset.layer.effect);
+        EXPECT_LT(angle_between(middle(layer.region), {3, 1, 2}), 1e-6);
+        save_layers(folder_ / "saved.json", {.layers = {layer}});
+        EXPECT_EQ(load_layers(folder_ / "saved.json").layers.at(0), layer);
+    }
+    const LightLayer wide = load_layers(write(R"({"version": 1, "layers": [{"name": "a",
+        "preset": "strip", "direction": [0, 1, 1], "width_degrees": 12}]})"))
+                                .layers.at(0);
+    EXPECT_EQ(std::get<Rectangle>(wide.region).width_degrees, 12.0);
+    EXPECT_EQ(std::get<Rectangle>(wide.region).direction, glm::dvec3(0, 1, 1));
+}
+
+TEST_F(LayerFile, ATemperatureIsAColour) {
+    const LightLayer layer = load_layers(write(R"({"version": 1, "layers": [{"name": "a",
+        "type": "disc", "direction": [0, 1, 1], "radius_degrees": 5, "effect": "emit",
+        "kelvin": 3200}], "frames": [{"frame": 0, "layers": {"a": {"exposure": -1}}}]})"))
+                                 .layers.at(0);
+    EXPECT_EQ(layer.effect, Effect(Emit{}));
+    EXPECT_EQ(strength(layer), kelvin_color(3200.0));
 }
 
 TEST_F(LayerFile, RefusesDuplicateNames) {
