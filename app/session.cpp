@@ -10,6 +10,7 @@
 #include <optional>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -19,6 +20,7 @@
 #include <unistd.h>
 
 #include "files/output_file.h"
+#include "files/printable.h"
 #include "prt/precompute.h"
 #include "prt/team.h"
 
@@ -86,7 +88,7 @@ Session::Session() {
     // Threads started later inherit the mask.
     const sigset_t signals = signals_to_stop();
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-    std::thread([signals, source = stop_source_]() mutable {
+    const auto wait_for_signals = [signals, source = stop_source_]() mutable {
         int signal = 0;
         sigwait(&signals, &signal);
         const double first = now();
@@ -102,7 +104,13 @@ Session::Session() {
         while (!is_impatient && (shared().num_patient > 0 || now() - first < MostPatience))
             is_impatient = sigtimedwait(&signals, nullptr, &Tick) > 0 && now() - first >= SameWish;
         end_now();
-    }).detach();
+    };
+    try {
+        std::thread(wait_for_signals).detach();
+    } catch (const std::system_error& error) {
+        complain(fmt::format("cannot start a thread: {}", error.code().message()));
+        ::_exit(1);
+    }
 }
 
 void Session::set_cancelled_message(const std::string& message) {
@@ -192,7 +200,7 @@ void Session::end_progress() const {
 void Session::say(const std::string& line) const {
     if (json || quiet)
         return;
-    fmt::print("{}\n", line);
+    fmt::print("{}\n", files::printable(line)); // names in files may be anything
     std::fflush(stdout); // whoever reads along, as with --watch, need not wait for more
 }
 
@@ -240,10 +248,7 @@ void Session::report(Report result) const {
 std::string one_line(std::string message) {
     while (!message.empty() && (message.back() == '\n' || message.back() == ' '))
         message.pop_back();
-    for (char& c : message)
-        if ((c >= 0 && c < ' ') || c == '\x7f')
-            c = ' ';
-    return message;
+    return files::printable(message, ' ');
 }
 
 Stopwatch::Stopwatch() : start_(now()), last_(start_) {}

@@ -8,6 +8,7 @@
 
 #include "files/joined.h"
 #include "files/nearest_name.h"
+#include "files/printable.h"
 
 namespace relumine::files {
 
@@ -52,12 +53,8 @@ void JsonReader::refuse(const Json& value, std::string_view reason) const {
 
 void JsonReader::fail(int line, std::string_view expected, std::string_view got) const {
     // Both may quote the file: a name, a text, or all that the parser has read since.
-    std::string message =
-        fmt::format("{}:{}: expected {:.500}, got {:.500}", name_, line, expected, got);
-    std::replace_if(
-        message.begin(), message.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; },
-        '?');
-    throw std::runtime_error(message);
+    throw std::runtime_error(
+        printable(fmt::format("{}:{}: expected {:.500}, got {:.500}", name_, line, expected, got)));
 }
 
 double JsonReader::number(const Json& value, std::string_view what) const {

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "files/printable.h"
+
 namespace relumine::mesh {
 
 namespace {
@@ -28,10 +30,8 @@ std::string_view as_text(std::span<const std::byte> bytes) {
 
 std::string excerpt(std::string_view text) {
     constexpr std::size_t MaxLength = 40;
-    std::string result(text.substr(0, MaxLength));
-    std::replace_if(
-        result.begin(), result.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return fmt::format("'{}{}'", result, text.size() > MaxLength ? "..." : "");
+    return fmt::format("'{}{}'", files::printable(text.substr(0, MaxLength)),
+                       text.size() > MaxLength ? "..." : "");
 }
 
 TextReader::TextReader(std::string_view text, char comment) : rest_(text), comment_(comment) {

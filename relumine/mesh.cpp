@@ -12,8 +12,10 @@
 #include "mesh/floor.h"
 #include "mesh/half_edge/simplify.h"
 #include "mesh/normals.h"
+#include "prt/memory_estimate.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
+#include "relumine/stages.h"
 
 namespace relumine {
 
@@ -201,6 +203,17 @@ void add_floor(Mesh& mesh, const MeshOptions& options) {
         return;
     mesh.is_floor_open = *options.floor_vertices == AutomaticFloor;
     mesh.floor_vertices = mesh.is_floor_open ? NumToBegin : *options.floor_vertices;
+    const std::size_t n = mesh.floor_vertices;
+    const std::uint64_t bytes =
+        prt::scene_bytes({.num_vertices = mesh.geometry.num_vertices() + n * n,
+                          .num_triangles = mesh.geometry.num_triangles() + 2 * (n - 1) * (n - 1),
+                          .has_beams = false});
+    if (options.max_memory && bytes > *options.max_memory)
+        throw MemoryLimitExceeded(
+            MemoryLimitExceeded::Part::Scene,
+            fmt::format("{}: expected work within {}, got a floor with which the scene takes {} of "
+                        "memory alone",
+                        mesh.source, megabytes(*options.max_memory), megabytes(bytes)));
     mesh::append_floor(mesh.geometry, mesh.floor_vertices, options.floor_scale);
 }
 

@@ -72,6 +72,8 @@ struct MeshOptions {
     std::optional<std::uint32_t> floor_vertices = {};
     /// Side of the floor over the mesh's width, or half its height if that is more.
     float floor_scale = 4.0f;
+    /// Refuses a floor that takes more bytes; PrecomputeOptions::max_memory
+    std::optional<std::uint64_t> max_memory = {};
 };
 
 [[nodiscard]] OptionTable options_of(MeshOptions& options);
@@ -82,7 +84,8 @@ struct MeshOptions {
 /// Reads an .obj, .gltf, .glb, .ply, .off or .stl file, turns it upright and adds the floor.
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y" for a file that cannot be read;
-///          std::invalid_argument for a floor that does not fit (mesh::append_floor()).
+///          std::invalid_argument for a floor that does not fit (mesh::append_floor());
+///          MemoryLimitExceeded.
 [[nodiscard]] Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options = {});
 
 using prt::RefineOptions;

@@ -20,7 +20,9 @@ namespace {
 std::optional<long double> long_number(const std::string& text) {
     char* end = nullptr;
     const long double value = std::strtold(text.c_str(), &end);
-    if (text.empty() || end != text.c_str() + text.size())
+    // Hexadecimal numbers are none of ours.
+    if (text.empty() || end != text.c_str() + text.size() ||
+        text.find_first_of("xX") != std::string::npos)
         return std::nullopt;
     return value;
 }

@@ -129,7 +129,8 @@ struct Painter::Impl {
     [[nodiscard]] relight::PictureOptions size() const {
         return {.width = options.width,
                 .height = options.height,
-                .samples_per_axis = options.samples_per_axis};
+                .samples_per_axis = options.samples_per_axis,
+                .on_progress = on_progress};
     }
     const Camera& camera() {
         if (!chosen_camera)
@@ -373,6 +374,7 @@ struct Painter::Impl {
     /// Of vertices.
     relight::SurfaceColors textures;
     std::vector<glm::vec3> shown;
+    std::function<void(double)> on_progress;
     /// Made when a second picture is drawn
     std::optional<relight::PictureView> view;
     bool drew_one = false;
@@ -389,6 +391,10 @@ Painter::Painter(const LitScene& lit, const OutputOptions& options)
     : impl_(std::make_unique<Impl>(lit, options)) {}
 Painter::~Painter() = default;
 Painter::Painter(Painter&&) noexcept = default;
+
+void Painter::on_progress(std::function<void(double)> told) {
+    impl_->on_progress = std::move(told);
+}
 
 Picture Painter::draw(const Lighting& lighting) {
     return impl_->draw(lighting);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -58,6 +59,10 @@ public:
     Painter(LitScene&&, const OutputOptions&) = delete;
     ~Painter();
     Painter(Painter&&) noexcept;
+
+    /// Tells from now on how much of a picture of vertices is drawn; one call at a time, from any
+    /// thread.
+    void on_progress(std::function<void(double)> told);
 
     /// What vertices look like from the camera, with the textures of the mesh under the highlights;
     /// the pixels' own picture; or the texels' lightmap.

@@ -135,14 +135,9 @@ private:
             return mesh;
         mesh.is_open = mesh.is_open && !options_.no_refine;
         prt::RefineReport found;
-        mesh = refined_by_itself(std::move(mesh), options_.bias,
-                                 {.stop = work_.stop,
-                                  .on_progress =
-                                      [this](double fraction) {
-                                          if (work_.on_progress)
-                                              work_.on_progress(Stage::Refinement, fraction);
-                                      }},
-                                 &found);
+        mesh = refined_by_itself(
+            std::move(mesh), options_.bias,
+            {.stop = work_.stop, .on_progress = progress_of(Stage::Refinement)}, &found);
         if (found.num_added != 0)
             report_.refined = found;
         return mesh;
@@ -300,12 +295,13 @@ private:
                                        ? *options_.view->camera
                                        : camera_of(scene_, static_cast<float>(size.width) /
                                                                static_cast<float>(size.height));
-        prt::PixelReceivers pixels =
-            prt::pixel_receivers(scene_.mesh, rays,
-                                 {.camera = camera,
-                                  .width = size.width,
-                                  .height = size.height,
-                                  .samples_per_axis = size.samples_per_axis});
+        prt::PixelReceivers pixels = prt::pixel_receivers(
+            scene_.mesh, rays,
+            {.camera = camera,
+             .width = size.width,
+             .height = size.height,
+             .samples_per_axis = size.samples_per_axis},
+            {.stop = work_.stop, .on_progress = progress_of(Stage::Receivers)});
         scene_.receivers = std::move(pixels.receivers);
         scene_.layout = std::move(pixels.layout);
         note(fmt::format("{}: {} samples hit the mesh", prt::description(scene_.layout),
@@ -442,6 +438,13 @@ private:
                              prt::CheckpointFile::folder_for(options_.output).string()));
     }
 
+    [[nodiscard]] std::function<void(double)> progress_of(Stage stage) const {
+        if (!work_.on_progress)
+            return {};
+        return [&on_progress = work_.on_progress, stage](double fraction) {
+            on_progress(stage, fraction);
+        };
+    }
     void poll() const {
         if (work_.stop.stop_requested())
             throw Cancelled();

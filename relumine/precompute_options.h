@@ -62,6 +62,8 @@ enum class Engine {
 enum class Stage {
     /// More vertices for a coarse mesh
     Refinement,
+    /// Which points the pixels of a camera see
+    Receivers,
     /// Visibility and clusters
     Clusters,
     /// The view-dependent part; only where there are highlights and an eye

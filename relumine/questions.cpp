@@ -122,7 +122,8 @@ std::optional<Verification::Surface> verify_points(const LitScene& lit,
         shown.push_back(prt::value_at(scene.mesh, at_vertices, point) +
                         glm::vec3(packets.radiance(position, normal, rays)));
     }
-    const relight::ExactOptions exact_options{.bias = scene.settings.bias, .stop = options.stop};
+    const relight::ExactOptions exact_options{
+        .bias = scene.settings.bias, .stop = options.stop, .on_progress = options.on_progress};
     const auto exact = exact_radiance(lit, receivers, indices, options, exact_options);
     Verification::Surface result{.points = std::move(points), .error = {}};
     result.error = relight::compare(indices, exact, shown);
@@ -184,20 +185,37 @@ Verification verify(const LitScene& lit, const VerifyOptions& options) {
     Verification result;
     result.receivers = relight::random_receivers(scene.transfer, options.num_samples, options.seed,
                                                  scene.receivers.num_own());
+    const bool is_bounced = !lit.bounces().bounced().empty();
+    const bool has_surface = options.num_surface_points != 0 && prt::on_vertices(scene.layout);
+    const auto num_receivers = static_cast<double>(result.receivers.size());
+    const double num_points = has_surface ? static_cast<double>(options.num_surface_points) : 0.0;
+    const double all = (is_bounced ? 2.0 : 1.0) * num_receivers + 2.0 * num_points;
+    double done = 0.0;
+    // Each part of the work has its part of the progress.
+    const auto options_of_next = [&](double size) {
+        VerifyOptions part = options;
+        if (options.on_progress)
+            part.on_progress = [&options, begin = done / all, share = size / all](double fraction) {
+                options.on_progress(begin + share * fraction);
+            };
+        done += size;
+        return part;
+    };
+    const VerifyOptions direct = options_of_next(num_receivers);
     const relight::ExactOptions exact_options{
-        .bias = scene.settings.bias, .stop = options.stop, .on_progress = options.on_progress};
+        .bias = scene.settings.bias, .stop = direct.stop, .on_progress = direct.on_progress};
     result.of_file = file_of(lit) != nullptr;
     std::vector<glm::dvec3> exact =
-        exact_radiance(lit, scene.receivers, result.receivers, options, exact_options);
-    if (!lit.bounces().bounced().empty())
-        result.noise = add_traced(lit, result.receivers, options, exact);
+        exact_radiance(lit, scene.receivers, result.receivers, direct, exact_options);
+    if (is_bounced)
+        result.noise = add_traced(lit, result.receivers, options_of_next(num_receivers), exact);
     result.error = relight::compare(result.receivers, exact, lit.radiance());
-    if (options.num_surface_points == 0 || !prt::on_vertices(scene.layout))
+    if (!has_surface)
         return result;
     result.surface =
         verify_points(lit, prt::random_points(scene.mesh, options.num_surface_points, options.seed),
-                      lit.relighter().diffuse_radiance(), {}, options);
-    result.picture = verify_picture(lit, options);
+                      lit.relighter().diffuse_radiance(), {}, options_of_next(num_points));
+    result.picture = verify_picture(lit, options_of_next(num_points));
     return result;
 }
 

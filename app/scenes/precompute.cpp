@@ -55,19 +55,20 @@ PrecomputeOptions precompute_options(const PrecomputeArguments& options,
 /// What the session says of the work.
 PrecomputeWork precompute_work(Session& session) {
     PrecomputeWork work{.team = session.processes(), .stop = session.stop()};
-    work.on_progress = [&session, refinement = session.progress("refine"),
-                        clusters = session.progress("precompute"),
-                        highlights = session.progress("highlights"),
-                        bounces = session.progress("bounces"),
-                        last = Stage::Clusters](Stage stage, double fraction) mutable {
-        if (std::exchange(last, stage) != stage)
-            session.end_progress();
-        if (const auto& show = stage == Stage::Refinement   ? refinement
-                               : stage == Stage::Clusters   ? clusters
-                               : stage == Stage::Highlights ? highlights
-                                                            : bounces)
-            show(fraction);
-    };
+    work.on_progress =
+        [&session, refinement = session.progress("refine"),
+         receivers = session.progress("receivers"), clusters = session.progress("precompute"),
+         highlights = session.progress("highlights"), bounces = session.progress("bounces"),
+         last = Stage::Clusters](Stage stage, double fraction) mutable {
+            if (std::exchange(last, stage) != stage)
+                session.end_progress();
+            if (const auto& show = stage == Stage::Refinement   ? refinement
+                                   : stage == Stage::Receivers  ? receivers
+                                   : stage == Stage::Clusters   ? clusters
+                                   : stage == Stage::Highlights ? highlights
+                                                                : bounces)
+                show(fraction);
+        };
     work.on_warning = [&session](Warning kind, const std::string& message) {
         session.warn(kind == Warning::HighlightsWithoutView ? message + " (see --view)" : message);
     };
@@ -303,7 +304,9 @@ bool turns_by_custom(const PrecomputeArguments& options) {
 
 /// Loads the mesh, says what is odd about it, and gives it the vertices that are asked for.
 Mesh made_mesh(const PrecomputeArguments& options, Session& session) {
-    Mesh mesh = load_mesh(options.mesh, options.mesh_options);
+    MeshOptions mesh_options = options.mesh_options;
+    mesh_options.max_memory = options.precompute.max_memory;
+    Mesh mesh = load_mesh(options.mesh, mesh_options);
     if (turns_by_custom(options))
         session.say(fmt::format("{}: +Z is up, by the custom of .stl; --up y where it is not",
                                 options.mesh));

@@ -138,7 +138,9 @@ void light_scene(const RelightArguments& options, Session& session) {
     if (options.only_bounces)
         keep_bounces(lighting, lit.bounces().bounced(), options.scene.path);
     Painter painter(lit, output);
+    painter.on_progress(session.progress("picture"));
     painter.save(options.output.path, lighting);
+    session.end_progress();
     const double seconds_output = watch.lap();
 
     session.say(fmt::format(

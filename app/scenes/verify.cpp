@@ -133,7 +133,7 @@ void add_verify(Command& program, Session& session) {
     command.add(row("--surface", options->num_surface_points,
                     "points of the surface chosen at random, where exact light is compared with "
                     "what the vertices interpolate; 0 for none",
-                    {.type = "N"}));
+                    {.min = 0, .max = 1u << 24, .type = "N"}));
     command.add(row("--seed", options->seed, "seed of the choice"));
     options->bounces.add_to(command, false);
     command.add(

@@ -29,6 +29,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Programs that are answered, and as many that wait until one of them goes.
+constexpr std::size_t MaxPeers = 64;
+
 [[noreturn]] void fail_to_serve(const fs::path& path, int error) {
     throw std::runtime_error(
         fmt::format("{}: cannot serve: {}", path.string(), std::strerror(error)));
@@ -95,16 +98,9 @@ private:
     void answer(const LineService& service, std::string_view line) {
         if (line.ends_with('\r'))
             line.remove_suffix(1);
-        if (std::exchange(is_too_long_, false))
-            refuse_length(service);
-        else if (line.find_first_not_of(" \t") != std::string_view::npos)
+        if (!std::exchange(is_too_long_, false) &&
+            line.find_first_not_of(" \t") != std::string_view::npos)
             answers_ += service.answer(line) + '\n';
-    }
-
-    void refuse_length(const LineService& service) {
-        answers_ += service.refuse(fmt::format("expected a line of at most {} bytes, got more",
-                                               service.max_line_bytes)) +
-                    '\n';
     }
 
     /// The last line may have no line break.
@@ -130,10 +126,14 @@ private:
             return;
         }
         lines_.append(buffer.data(), static_cast<std::size_t>(size));
-        // Of a line that is too long only its end is looked for.
+        // A line that is too long is refused at once. Of the rest only its end is looked for.
         if (lines_.find('\n', searched_) == std::string::npos &&
             (is_too_long_ || lines_.size() > service.max_line_bytes)) {
-            is_too_long_ = true;
+            if (!std::exchange(is_too_long_, true))
+                answers_ += service.refuse(fmt::format("expected a line of at most {} bytes, got "
+                                                       "more",
+                                                       service.max_line_bytes)) +
+                            '\n';
             lines_.clear();
             searched_ = 0;
         }
@@ -262,7 +262,7 @@ LineSocket::LineSocket(const fs::path& path) : path_(path) {
     ::umask(mask);
     if (bound != 0)
         fail_to_serve(path, bind_error);
-    constexpr int QueueLength = 16;
+    constexpr int QueueLength = static_cast<int>(MaxPeers);
     struct stat status {};
     if (::listen(listener_.get(), QueueLength) != 0 || ::lstat(hidden.c_str(), &status) != 0 ||
         ::rename(hidden.c_str(), path.c_str()) != 0) {
@@ -281,7 +281,6 @@ LineSocket::~LineSocket() {
 }
 
 void LineSocket::serve(const LineService& service, const std::stop_token& stop) {
-    constexpr std::size_t MaxPeers = 64;
     const StopEvent stopped(stop);
     std::vector<Peer> peers;
     std::vector<pollfd> entries;

@@ -365,10 +365,10 @@ std::string Service::answer(std::string_view request) {
             answer.set("id", id);
         return answer.text();
     };
-    const auto failed = [&](const std::string& message) {
-        return answered(false, {{"error", one_line(message)}});
-    };
     const Stopwatch watch;
+    const auto failed = [&](const std::string& message) {
+        return answered(false, {{"error", one_line(message)}, {"seconds", watch.total()}});
+    };
     impl_->report = Report();
     try {
         const Report root = reader.parse(std::as_bytes(std::span(request)));
@@ -390,7 +390,7 @@ std::string Service::answer(std::string_view request) {
 }
 
 std::string Service::refusal(const std::string& message) {
-    return Report{{"ok", false}, {"error", one_line(message)}}.text();
+    return Report{{"ok", false}, {"error", one_line(message)}, {"seconds", 0.0}}.text();
 }
 
 } // namespace relumine::app

@@ -27,6 +27,7 @@
 #include "files/joined.h"
 #include "files/output_file.h"
 #include "files/parallel.h"
+#include "files/printable.h"
 
 namespace relumine::cubemap {
 
@@ -357,12 +358,11 @@ auto with_own_messages(const std::string& name, const Read& read) {
         std::string message = error.what();
         if (message.starts_with(name + ": ")) // our own message, already complete
             throw;
-        std::replace(message.begin(), message.end(), '\n', ' ');
         // OpenEXR quotes the name of the stream, which is always "file" here.
         for (std::size_t at = 0; (at = message.find("\"file\"")) != std::string::npos;)
             message.replace(at, 6, "it");
-        throw std::runtime_error(
-            fmt::format("{}: expected an intact OpenEXR image, got: {}", name, message));
+        throw std::runtime_error(fmt::format("{}: expected an intact OpenEXR image, got: {}", name,
+                                             files::printable(message, ' ')));
     }
 }
 

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "cubemap/image/image_file.h"
+#include "files/printable.h"
 
 namespace relumine::cubemap {
 
@@ -84,7 +85,7 @@ private:
         read_line(); // "#?RADIANCE" or another program's name
         for (std::string_view line = read_line(); !line.empty(); line = read_line()) {
             if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
-                fail("FORMAT=32-bit_rle_rgbe", fmt::format("{:.60}", printable(line)));
+                fail("FORMAT=32-bit_rle_rgbe", fmt::format("{:.60}", files::printable(line)));
             if (line.starts_with("EXPOSURE="))
                 read_exposure(line.substr(9));
             if (line.starts_with("COLORCORR="))
@@ -116,9 +117,11 @@ private:
         const std::string number(text);
         char* end = nullptr;
         const double value = std::strtod(number.c_str(), &end);
-        if (end == number.c_str())
+        // strtod() also takes hexadecimal numbers.
+        if (end == number.c_str() || std::any_of(number.c_str(), static_cast<const char*>(end),
+                                                 [](char c) { return c == 'x' || c == 'X'; }))
             fail("a number after EXPOSURE= or COLORCORR=",
-                 fmt::format("'{:.60}'", printable(text)));
+                 fmt::format("'{:.60}'", files::printable(text)));
         return value;
     }
 
@@ -131,12 +134,12 @@ private:
         if (std::sscanf(line.c_str(), "%c%c %19llu %c%c %19llu", &signs[0], &axes[0], &sizes[0],
                         &signs[1], &axes[1], &sizes[1]) != 6)
             fail("a resolution line such as -Y 512 +X 1024",
-                 fmt::format("'{:.60}'", printable(line)));
+                 fmt::format("'{:.60}'", files::printable(line)));
         const auto is_sign = [](char c) {
             return c == '+' || c == '-';
         };
         if (axes[0] != 'Y' || axes[1] != 'X' || !is_sign(signs[0]) || !is_sign(signs[1]))
-            fail("rows of pixels (-Y H +X W)", fmt::format("'{:.60}'", printable(line)));
+            fail("rows of pixels (-Y H +X W)", fmt::format("'{:.60}'", files::printable(line)));
         bottom_up_ = signs[0] == '+';
         right_to_left_ = signs[1] == '-';
 
@@ -217,13 +220,6 @@ private:
             return glm::vec3(0.0f);
         return glm::vec3(glm::dvec3(pixel[0], pixel[1], pixel[2]) *
                          std::ldexp(1.0, pixel[3] - 136) / exposure_);
-    }
-
-    [[nodiscard]] static std::string printable(std::string_view text) {
-        std::string result(text);
-        std::replace_if(
-            result.begin(), result.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-        return result;
     }
 
     std::span<const std::uint8_t> bytes_;

@@ -36,6 +36,7 @@ private:
     std::map<std::uint64_t, std::optional<std::uint32_t>> textures_;
     /// Image of each texture.
     std::map<std::uint32_t, std::uint64_t> images_;
+    ImageBudget budget_;
     /// UV sets of the textures of the current material, by the key of the texture.
     std::map<std::string, std::uint64_t> uv_sets_;
 };
@@ -57,7 +58,7 @@ std::optional<Texture> MaterialReader::decoded(std::uint64_t index, const Decode
         }
         Texture texture = decode(fetched ? std::span<const std::byte>(*fetched)
                                          : document_.view(whole(description, "bufferView")),
-                                 VOrigin::Top);
+                                 VOrigin::Top, budget_);
         texture.name = name;
         return texture;
     } catch (const std::runtime_error& error) {

@@ -162,7 +162,7 @@ std::optional<std::uint32_t> MtlLibrary::texture_of(const std::filesystem::path&
     if (!is_new)
         return place->second;
     try {
-        textures.push_back(decode_texture(files::read(path), VOrigin::Bottom));
+        textures.push_back(decode_texture(files::read(path), VOrigin::Bottom, budget_));
         textures.back().name = name;
         place->second = static_cast<std::uint32_t>(textures.size() - 1);
     } catch (const std::runtime_error& error) {

@@ -58,6 +58,7 @@ private:
     std::map<std::string, std::uint32_t, std::less<>> indices_;
     /// Texture of each image file. Empty: the image is broken.
     std::map<std::string, std::optional<std::uint32_t>> texture_indices_;
+    ImageBudget budget_;
     /// Keywords that are not read.
     std::vector<std::string> warnings_, unread_;
     bool has_library_ = false, is_broken_ = false;

@@ -14,6 +14,23 @@
 
 #include <fmt/format.h>
 
+namespace {
+
+/// The most bytes that stb_image may take in one piece. It would inflate all data of a PNG, however
+/// few pixels they are for.
+thread_local std::size_t largest_piece = 0;
+thread_local bool is_piece_refused = false;
+
+void* limited_realloc(void* bytes, std::size_t size) {
+    is_piece_refused |= size > largest_piece;
+    return size > largest_piece ? nullptr : std::realloc(bytes, size);
+}
+
+} // namespace
+
+#define STBI_MALLOC(size) limited_realloc(nullptr, size)
+#define STBI_REALLOC(bytes, size) limited_realloc(bytes, size)
+#define STBI_FREE(bytes) std::free(bytes)
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_NO_STDIO
@@ -23,6 +40,7 @@
 #include <stb/stb_image.h>
 
 #include "mesh/materials/jpeg_decoder.h"
+#include "mesh/materials/texture.h"
 #include "mesh/materials/webp_decoder.h"
 #include "mesh/text_reader.h"
 
@@ -106,26 +124,31 @@ void check_png_chunks(std::span<const std::byte> file) {
     throw std::runtime_error("expected a PNG image with its end, got none");
 }
 
-void check_size(std::span<const std::byte> file, std::uint64_t width, std::uint64_t height) {
+void check_size(std::span<const std::byte> file, std::uint64_t width, std::uint64_t height,
+                std::uint64_t bytes_per_pixel, ImageBudget& budget) {
     if (width < 1 || height < 1 || width > MaxImageEdge || height > MaxImageEdge)
         throw std::runtime_error(
             fmt::format("expected an image of at most {0} x {0} pixels, got {1} x {2}",
                         MaxImageEdge, width, height));
-    const std::uint64_t num_pixels = width * height;
-    const std::uint64_t of_large = num_pixels > MaxCheapPixels ? num_pixels / 128 : 0;
-    if (std::max(of_large, least_bytes(format_of(file), file, width, height)) > file.size())
+    if (least_bytes(format_of(file), file, width, height) > file.size())
         throw std::runtime_error(fmt::format("expected the data of {} x {} pixels, got {} bytes",
                                              width, height, file.size()));
+    if (!budget.allows(width * height * bytes_per_pixel, file.size()))
+        throw std::runtime_error(
+            fmt::format("expected images that the bytes of their files and the memory allow, got "
+                        "{} x {} pixels more in {} bytes",
+                        width, height, file.size()));
 }
 
 /// Decodes to bytes of RGB (3 channels) or RGBA (4; not JPEG).
-DecodedImage decode(std::span<const std::byte> file, int num_channels) {
+DecodedImage decode(std::span<const std::byte> file, int num_channels, ImageBudget& budget) {
     if (file.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
         throw std::runtime_error(
             fmt::format("expected an image below 2 GiB, got {} bytes", file.size()));
     DecodedImage image{.bytes = {nullptr, std::free}};
+    std::uint64_t bytes_per_pixel = static_cast<std::uint64_t>(num_channels);
     const auto check = [&](std::uint32_t width, std::uint32_t height) {
-        check_size(file, width, height);
+        check_size(file, width, height, bytes_per_pixel, budget);
         image.width = width;
         image.height = height;
     };
@@ -153,32 +176,44 @@ DecodedImage decode(std::span<const std::byte> file, int num_channels) {
     const auto* bytes = reinterpret_cast<const stbi_uc*>(file.data());
     const int num_bytes = static_cast<int>(file.size());
     int width = 0, height = 0, channels = 0;
+    largest_piece = file.size() + 4096; // a header
     if (file.empty() || stbi_info_from_memory(bytes, num_bytes, &width, &height, &channels) == 0)
         throw std::runtime_error(fmt::format(
             "expected a PNG, JPEG, WebP, BMP or TGA image, got {} bytes of something else",
             file.size()));
     if (format == Format::Png)
         check_png_chunks(file);
+    const bool is_16_bit = stbi_is_16_bit_from_memory(bytes, num_bytes) != 0;
+    bytes_per_pixel =
+        std::max(bytes_per_pixel, static_cast<std::uint64_t>(channels) * (is_16_bit ? 2 : 1));
     check(static_cast<std::uint32_t>(std::max(width, 0)),
           static_cast<std::uint32_t>(std::max(height, 0)));
+    // Pieces double where they were too small. Rows have a byte more, and interlaced ones up to 8
+    // pixels.
+    largest_piece = 2 * (file.size() + 4096 +
+                         (image.width + 8ull) * (image.height + 8ull) * (bytes_per_pixel + 1));
+    is_piece_refused = false;
+    stbi__g_failure_reason = nullptr; // of an image before
     image.bytes.reset(
         stbi_load_from_memory(bytes, num_bytes, &width, &height, &channels, num_channels));
     const char* reason = stbi_failure_reason(); // null for some faults of the data
     if (!image.bytes)
-        throw std::runtime_error(fmt::format(
-            "expected a whole image of {} x {} pixels, got broken data: {}", image.width,
-            image.height,
-            excerpt(reason == nullptr ? "an unknown fault" : reason))); // may quote the file
+        throw std::runtime_error(
+            fmt::format("expected a whole image of {} x {} pixels, got broken data: {}",
+                        image.width, image.height,
+                        excerpt(is_piece_refused    ? "more than its pixels take"
+                                : reason == nullptr ? "an unknown fault"
+                                                    : reason))); // may quote the file
     return image;
 }
 
 } // namespace
 
-DecodedImage decode_image(std::span<const std::byte> file) {
-    return decode(file, 3);
+DecodedImage decode_image(std::span<const std::byte> file, ImageBudget& budget) {
+    return decode(file, 3, budget);
 }
 
-DecodedImage decode_alpha(std::span<const std::byte> file) {
+DecodedImage decode_alpha(std::span<const std::byte> file, ImageBudget& budget) {
     if (format_of(file) == Format::Jpeg) {
         DecodedImage image{.width = 1,
                            .height = 1,
@@ -188,7 +223,7 @@ DecodedImage decode_alpha(std::span<const std::byte> file) {
         *image.bytes = 255;
         return image;
     }
-    DecodedImage image = decode(file, 4);
+    DecodedImage image = decode(file, 4, budget);
     const std::size_t num_pixels = std::size_t{image.width} * image.height;
     for (std::size_t i = 0; i < num_pixels; ++i)
         image.bytes.get()[i] = image.bytes.get()[4 * i + 3];

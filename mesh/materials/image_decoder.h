@@ -11,9 +11,7 @@ namespace relumine::mesh {
 
 /// The longest edge of an image.
 inline constexpr std::uint32_t MaxImageEdge = 16384;
-/// An image with more pixels than this needs a file of at least one byte per 128 pixels, so a
-/// hostile file of kilobytes cannot cost gigabytes.
-inline constexpr std::uint64_t MaxCheapPixels = std::uint64_t{1} << 26;
+class ImageBudget;
 
 /// A decoded image.
 struct DecodedImage {
@@ -24,14 +22,14 @@ struct DecodedImage {
 };
 
 /// Decodes an image. Grey becomes RGB, alpha is dropped, 16 bits become 8. The size that the header
-/// declares is checked against the file's size before memory is allocated.
+/// declares is checked against the file's size and the budget before memory is allocated.
 /// Throws:  std::runtime_error "expected X, got Y".
-[[nodiscard]] DecodedImage decode_image(std::span<const std::byte> file);
+[[nodiscard]] DecodedImage decode_image(std::span<const std::byte> file, ImageBudget& budget);
 
 /// Decodes the alpha of an image: 255 everywhere if it has none. A JPEG never has any, and gives
 /// one pixel.
 ///
 /// Throws:  as decode_image().
-[[nodiscard]] DecodedImage decode_alpha(std::span<const std::byte> file);
+[[nodiscard]] DecodedImage decode_alpha(std::span<const std::byte> file, ImageBudget& budget);
 
 } // namespace relumine::mesh

@@ -6,6 +6,7 @@
 
 #include <glm/common.hpp>
 
+#include "files/free_memory.h"
 #include "mesh/materials/image_decoder.h"
 
 namespace relumine::mesh {
@@ -77,8 +78,17 @@ Texture in_rows_of_v(const DecodedImage& image, VOrigin origin, const Texel& tex
 
 } // namespace
 
-Texture decode_texture(std::span<const std::byte> file, VOrigin origin) {
-    const DecodedImage image = decode_image(file);
+ImageBudget::ImageBudget() : most_(files::free_memory() / 2) {}
+
+bool ImageBudget::allows(std::uint64_t image_bytes, std::uint64_t file_bytes) {
+    constexpr std::uint64_t Cheap = std::uint64_t{1} << 28, PerByte = 512;
+    image_bytes_ += image_bytes;
+    file_bytes_ += file_bytes;
+    return image_bytes_ <= std::min(std::max(Cheap, PerByte * file_bytes_), most_);
+}
+
+Texture decode_texture(std::span<const std::byte> file, VOrigin origin, ImageBudget& budget) {
+    const DecodedImage image = decode_image(file, budget);
     Texture texture = in_rows_of_v(image, origin, [&](std::size_t pixel) {
         Channels texel{};
         std::memcpy(texel.data(), image.bytes.get() + 3 * pixel, texel.size());
@@ -89,8 +99,8 @@ Texture decode_texture(std::span<const std::byte> file, VOrigin origin) {
     return texture;
 }
 
-Texture decode_alpha_texture(std::span<const std::byte> file, VOrigin origin) {
-    const DecodedImage image = decode_alpha(file);
+Texture decode_alpha_texture(std::span<const std::byte> file, VOrigin origin, ImageBudget& budget) {
+    const DecodedImage image = decode_alpha(file, budget);
     return in_rows_of_v(image, origin, [&](std::size_t pixel) {
         const std::uint8_t alpha = image.bytes.get()[pixel];
         return Channels{alpha, alpha, alpha};

@@ -35,17 +35,33 @@ struct Texture {
     bool operator==(const Texture&) const = default;
 };
 
+/// What all images of one mesh file may take: 256 MiB or 512 bytes for each byte of their files,
+/// and no more than half of the memory that is free. So hostile files of kilobytes cannot cost
+/// gigabytes.
+class ImageBudget {
+public:
+    ImageBudget();
+    /// Counts an image before its memory is taken. Returns whether it may be.
+    [[nodiscard]] bool allows(std::uint64_t image_bytes, std::uint64_t file_bytes);
+
+private:
+    std::uint64_t image_bytes_ = 0, file_bytes_ = 0;
+    std::uint64_t most_;
+};
+
 /// Decodes a PNG, JPEG, WebP, BMP or TGA file. Grey becomes RGB, alpha is dropped, 16 bits become
 /// 8. `origin` is the end from which the mesh's uvs count.
 ///
 /// Throws:  std::runtime_error "expected X, got Y" for a file that is no such image, is broken, or
-///          declares more than 16384 x 16384 pixels or more than its bytes can hold
-///          (mesh/materials/image_decoder.h).
-[[nodiscard]] Texture decode_texture(std::span<const std::byte> file, VOrigin origin);
+///          declares more than 16384 x 16384 pixels, more than its bytes can hold or more than
+///          the budget allows (mesh/materials/image_decoder.h).
+[[nodiscard]] Texture decode_texture(std::span<const std::byte> file, VOrigin origin,
+                                     ImageBudget& budget);
 
 /// Decodes the alpha of an image, as grey: 255 if it has none.
 /// Throws:  as decode_texture().
-[[nodiscard]] Texture decode_alpha_texture(std::span<const std::byte> file, VOrigin origin);
+[[nodiscard]] Texture decode_alpha_texture(std::span<const std::byte> file, VOrigin origin,
+                                           ImageBudget& budget);
 
 /// Returns the value of a texel, each channel in [0, 1].
 [[nodiscard]] glm::vec3 texel(const Texture& texture, std::uint32_t column, std::uint32_t row,

@@ -38,7 +38,7 @@ struct StoredPart {
 };
 
 StoredPart read_part(const std::filesystem::path& path) {
-    StoredPart stored{.reader = SectionReader(path, read_sections(path))};
+    StoredPart stored{.reader = SectionReader(path)};
     if (!stored.reader.has("part"))
         throw std::runtime_error(fmt::format("{}: expected a part, got {}", path.string(),
                                              stored.reader.has("plan") ? "a plan" : "a scene"));
@@ -99,14 +99,10 @@ NewSections sections_of(const std::filesystem::path& path, const Plan& plan) {
     return sections;
 }
 
-Plan plan_from(const std::filesystem::path& path, Sections&& sections) {
-    Sections own = {{"plan", sections["plan"]}};
-    if (const auto probes = sections.find("plan_probes"); probes != sections.end())
-        own.insert(sections.extract(probes));
-    const SectionReader reader(path, std::move(own));
+Plan plan_from(const SectionReader& reader) {
     const files::Json json = reader.json("plan");
     check_processor(reader, json);
-    Plan plan{.scene = plan_of(path, std::move(sections)),
+    Plan plan{.scene = plan_of(reader),
               .bounces = planned_bounces(reader, json),
               .has_clusters = json.find("clusters") != nullptr};
     if (plan.bounces && plan.has_clusters &&
@@ -146,12 +142,11 @@ std::uint64_t save_plan(const std::filesystem::path& path, const Plan& plan) {
 }
 
 Plan load_plan(const std::filesystem::path& path) {
-    Sections sections = read_sections(path);
-    if (!sections.contains("plan") || sections.contains("part"))
-        throw std::runtime_error(
-            fmt::format("{}: expected a plan, got {}", path.string(),
-                        sections.contains("part") ? "a part of a scene" : "a scene"));
-    Plan plan = plan_from(path, std::move(sections));
+    const SectionReader reader(path);
+    if (!reader.has("plan") || reader.has("part"))
+        throw std::runtime_error(fmt::format("{}: expected a plan, got {}", path.string(),
+                                             reader.has("part") ? "a part of a scene" : "a scene"));
+    Plan plan = plan_from(reader);
     if (!plan.has_clusters)
         throw std::runtime_error(fmt::format("{}: expected a plan with clusters", path.string()));
     plan.hash = files::file_hash(path);
@@ -170,7 +165,7 @@ void share_plan(Team& team, Plan& plan) {
     }
     bytes = team.broadcast(std::move(bytes));
     if (!team.is_first())
-        plan = plan_from("plan", unpacked_sections(bytes));
+        plan = plan_from(SectionReader("plan", std::move(bytes)));
 }
 
 std::uint64_t save_part(const std::filesystem::path& path, const Plan& plan, const Part& part,
@@ -190,7 +185,7 @@ std::uint64_t save_part(const std::filesystem::path& path, const Plan& plan, con
 Scene join_parts(std::span<const std::filesystem::path> paths) {
     auto parts = all_parts_of("plan", paths, read_part);
     const std::filesystem::path first = parts.front()->reader.path();
-    Scene scene = plan_of(first, read_sections(first));
+    Scene scene = plan_of(parts.front()->reader);
     std::vector<PartLight> light;
     for (std::optional<StoredPart>& part : parts) {
         light.push_back(light_of(part->reader, part->head.num_receivers, scene.transfer));
@@ -217,8 +212,7 @@ std::vector<PartLight> gather_light(Team& team, const Scene& scene, PartLight&& 
     if (!team.is_first())
         return {};
     for (std::uint32_t i = 1; i < of_all.size(); ++i) {
-        const std::vector<std::byte> bytes = std::move(of_all[i]);
-        const SectionReader reader("part", unpacked_sections(bytes));
+        const SectionReader reader("part", std::move(of_all[i]));
         const Part part{i, team.part().count};
         lights.push_back(light_of(reader, places_of(part, scene.transfer.num_receivers()).size(),
                                   scene.transfer));

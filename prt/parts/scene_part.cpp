@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -24,17 +23,6 @@ namespace relumine::prt {
 
 namespace {
 
-/// Moves the sections whose names begin with `prefix` out of a scene's sections.
-Sections taken(Sections& sections, std::string_view prefix) {
-    Sections taken;
-    for (auto section = sections.begin(); section != sections.end();) {
-        const auto here = section++;
-        if (here->first.starts_with(prefix))
-            taken.insert(sections.extract(here));
-    }
-    return taken;
-}
-
 /// A part as its file has it.
 struct StoredLight {
     PartHead head;
@@ -43,7 +31,7 @@ struct StoredLight {
 };
 
 StoredLight read_lit_part(const std::filesystem::path& path) {
-    const SectionReader reader(path, read_sections(path));
+    const SectionReader reader(path);
     if (!reader.has("lit"))
         throw std::runtime_error(fmt::format(
             "{}: expected a part that `relumine relight --part` wrote, got another file",
@@ -60,26 +48,15 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     if (part.index >= part.count || part.count > MaxParts)
         throw std::invalid_argument(
             fmt::format("{}: expected a part of 1 to {}", path.string(), MaxParts));
-    std::vector<std::string> streamed = long_glossy_sections();
-    for (const std::string& name : long_count_sections())
-        streamed.push_back(name);
-    streamed.push_back(EmitterSection);
-    Sections sections = read_sections(path, streamed);
-    const auto refuse = [&](const std::string& expected, const std::string& got) {
+    const SectionReader reader(path);
+    if (reader.has("plan") || reader.has("part") || reader.has("lit"))
         throw std::runtime_error(
-            fmt::format("{}: expected {}, got {}", path.string(), expected, got));
-    };
-    if (sections.contains("plan") || sections.contains("part") || sections.contains("lit"))
-        refuse("a scene", "a plan or a part");
-    const SectionReader of_bounces(path, taken(sections, "bounce_"));
-    const SectionReader of_highlights(path, taken(sections, "g_"));
-    const SectionReader of_counts(path, taken(sections, "count"));
-    sections["plan"] = {}; // bounces and counts come later
-    ScenePart result{.scene = plan_of(path, std::move(sections))};
+            fmt::format("{}: expected a scene, got a plan or a part", path.string()));
+    ScenePart result{.scene = plan_of(reader)}; // bounces and counts come later
     const Scene& whole = result.scene;
     const std::size_t num_receivers = whole.receivers.size();
-    if (has_bounces(of_bounces)) {
-        BounceRows rows = read_bounce_rows(of_bounces, num_receivers, part);
+    if (has_bounces(reader)) {
+        BounceRows rows = read_bounce_rows(reader, num_receivers, part);
         check_emitters(SceneCheck(path), whole, rows.matrix);
         result.scene.bounces = std::move(rows.matrix);
         result.bounces = {.first = rows.first, .num_emitters = std::move(rows.num_emitters)};
@@ -100,15 +77,13 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     std::vector<std::size_t> tiles;
     for (std::size_t tile = part.index; tile < shape.num_tiles(); tile += part.count)
         tiles.push_back(tile);
-    transfer.counts = read_counts_of_tiles(of_counts, shape, tiles, result.receivers.size());
-    if (has_glossy(of_highlights)) {
-        if (whole.receivers.to_eye.empty() || whole.receivers.surfaces.empty())
-            refuse("directions to the eye and surfaces with highlights", "none");
+    transfer.counts = read_counts_of_tiles(reader, shape, tiles, result.receivers.size());
+    if (whole.settings.glossy_tolerance) {
         std::vector<BlockRange> blocks;
         blocks.reserve(tiles.size());
         for (const std::size_t tile : tiles)
             blocks.push_back({shape.tile_begin(tile), shape.tile_begin(tile + 1)});
-        transfer.glossy = read_glossy_part(of_highlights, shape.num_blocks(), blocks);
+        transfer.glossy = read_glossy_part(reader, shape.num_blocks(), blocks);
         check_highlights(SceneCheck(path), *transfer.glossy);
         for (const std::uint32_t receiver : result.receivers)
             transfer.glossy->to_eye.push_back(whole.receivers.to_eye[receiver]);

@@ -39,7 +39,7 @@ glm::vec3 normal_towards(const mesh::TriangleMesh& mesh, const MeshPoint& point,
 } // namespace
 
 PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& rays,
-                               const PixelView& view) {
+                               const PixelView& view, const Work& work) {
     const PictureRays picture(view.camera, view.width, view.height, view.samples_per_axis);
     PixelReceivers result{.receivers = {},
                           .layout = {.camera = view.camera,
@@ -51,14 +51,22 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
                                                 MaxLayoutPlaces, result.layout.num_samples()));
 
     std::vector<std::vector<Seen>> rows(view.height);
-    files::parallel_for(std::uint32_t{0}, view.height, [&](std::uint32_t y) {
+    const auto trace_row = [&](std::uint32_t y) {
         auto sample =
             static_cast<std::uint32_t>(std::size_t{y} * view.width * picture.samples_per_pixel());
         for (std::uint32_t x = 0; x < view.width; ++x)
             for (std::uint32_t i = 0; i < picture.samples_per_pixel(); ++i, ++sample)
                 if (const auto hit = rays.closest_hit(view.camera.eye, picture.direction(x, y, i)))
                     rows[y].push_back({sample, {hit->triangle, inside(hit->barycentric)}});
-    });
+    };
+    constexpr std::uint32_t Band = 128; // rows between two looks at the work
+    for (std::uint32_t y = 0; y < view.height; y += Band) {
+        if (work.stop.stop_requested())
+            throw Cancelled();
+        files::parallel_for(y, std::min(y + Band, view.height), trace_row);
+        if (work.on_progress)
+            work.on_progress(std::min(1.0, static_cast<double>(y + Band) / view.height));
+    }
 
     std::vector<std::size_t> first(rows.size() + 1, 0);
     for (std::size_t y = 0; y < rows.size(); ++y)

@@ -5,6 +5,7 @@
 #include "prt/receivers/receiver_layout.h"
 #include "prt/receivers/receivers.h"
 #include "prt/visibility/ray_scene.h"
+#include "prt/work.h"
 
 namespace relumine::prt {
 
@@ -31,8 +32,8 @@ struct PixelReceivers {
 ///
 /// Cost:    one ray per sample; parallel over rows.
 /// Throws:  std::invalid_argument as PictureRays does, for more than MaxLayoutPlaces samples and
-///          for a view that sees nothing of the mesh.
+///          for a view that sees nothing of the mesh; Cancelled.
 [[nodiscard]] PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& rays,
-                                             const PixelView& view);
+                                             const PixelView& view, const Work& work = {});
 
 } // namespace relumine::prt

@@ -18,7 +18,7 @@ namespace relumine::prt {
 namespace {
 
 const std::string Radius = "bounce_radius", Weights = "bounce_weights",
-                  EmitterSizes = "bounce_hits_size", Emitters = EmitterSection,
+                  EmitterSizes = "bounce_hits_size", Emitters = "bounce_hits",
                   AveragedSizes = "bounce_near_size", Averaged = "bounce_near",
                   OpenParts = "bounce_open", Distances = "bounce_distance",
                   HitCounts = "bounce_rays_hit", Rays = "bounce_rays", Errors = "bounce_errors";
@@ -84,7 +84,7 @@ void stream_lists(const SectionReader& reader, std::span<const std::uint32_t> si
                 num_left = sizes[list];
         }
     };
-    stream_section(reader.path(), Emitters, std::nullopt, [&](std::span<const std::byte> piece) {
+    reader.stream(Emitters, std::nullopt, [&](std::span<const std::byte> piece) {
         for (const std::byte byte : piece) {
             const auto bits = std::to_integer<std::uint64_t>(byte);
             number |= (bits & 0x7fu) << shift;

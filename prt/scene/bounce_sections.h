@@ -33,11 +33,7 @@ struct BounceRows {
     std::vector<std::uint32_t> num_emitters = {};
 };
 
-/// The section with the emitters, which is long.
-inline constexpr const char* EmitterSection = "bounce_hits";
-
-/// Reads the rows of a process from a scene file. `reader` has the sections of the bounces but for
-/// the emitters, which are read from the file piece by piece.
+/// Reads the rows of a process from a scene file. The emitters are unpacked piece by piece.
 ///
 /// Throws:  as SectionReader, also where check_scene() would.
 [[nodiscard]] BounceRows read_bounce_rows(const SectionReader& reader, std::size_t num_receivers,

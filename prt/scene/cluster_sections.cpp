@@ -20,7 +20,7 @@ void add_clusters(NewSections& sections, const Scene& scene) {
 }
 
 Quadtree read_tree(const SectionReader& reader) {
-    const std::vector<std::byte>& bytes = reader.bytes(Tree);
+    const std::vector<std::byte> bytes = reader.bytes(Tree);
     std::uint32_t num_flags = 0;
     if (bytes.size() < sizeof num_flags)
         reader.fail(Tree, "split flags");

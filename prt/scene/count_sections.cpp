@@ -110,7 +110,7 @@ void add_counts(NewSections& sections, const VisibleCounts& counts) {
 void read_counts(const SectionReader& reader, VisibleCounts& counts) {
     counts.visible = reader.elements<std::uint64_t>(Visible);
     counts.mixed = reader.elements<std::uint64_t>(Mixed);
-    const std::vector<std::byte>& codes = reader.bytes(Codes);
+    const std::vector<std::byte> codes = reader.bytes(Codes);
     const EntryRange all{0, 2 * codes.size()};
     counts.counts = counts_of(reader, codes, {&all, 1}, all.end);
     try {
@@ -134,7 +134,7 @@ VisibleCounts read_counts_of_tiles(const SectionReader& reader, const VisibleCou
 
     VisibleCounts counts{.num_receivers = num_own, .num_leaves = whole.num_leaves};
     SectionPicker visible(words);
-    stream_section(reader.path(), Visible, num_bytes, [&](auto piece) { visible.take(piece); });
+    reader.stream(Visible, num_bytes, [&](auto piece) { visible.take(piece); });
     counts.visible = visible.elements<std::uint64_t>();
 
     // Where the counts of a tile begin follows from the mixed pairs of all tiles before.
@@ -142,7 +142,7 @@ VisibleCounts read_counts_of_tiles(const SectionReader& reader, const VisibleCou
     std::vector<std::uint64_t> pairs(num_tiles + 1);
     std::uint64_t word = 0;
     std::size_t tile = 0;
-    stream_section(reader.path(), Mixed, num_bytes, [&](std::span<const std::byte> piece) {
+    reader.stream(Mixed, num_bytes, [&](std::span<const std::byte> piece) {
         mixed.take(piece);
         for (std::size_t at = 0; at < piece.size(); at += WordBytes, ++word) {
             while (word == words_before(tile + 1))
@@ -164,7 +164,7 @@ VisibleCounts read_counts_of_tiles(const SectionReader& reader, const VisibleCou
     }
     const std::uint64_t num_entries = pairs[num_tiles] * BlockSize;
     SectionPicker codes(bytes);
-    stream_section(reader.path(), Codes, num_entries / 2, [&](auto piece) { codes.take(piece); });
+    reader.stream(Codes, num_entries / 2, [&](auto piece) { codes.take(piece); });
     counts.counts = counts_of(reader, codes.elements<std::byte>(), entries, num_entries);
     try {
         counts.index();
@@ -174,10 +174,6 @@ VisibleCounts read_counts_of_tiles(const SectionReader& reader, const VisibleCou
                         reader.path().string()));
     }
     return counts;
-}
-
-std::vector<std::string> long_count_sections() {
-    return {Visible, Mixed, Codes};
 }
 
 const SectionGroup CountSections = {

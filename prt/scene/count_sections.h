@@ -24,15 +24,11 @@ void read_counts(const SectionReader& reader, VisibleCounts& counts);
 /// Reads and checks the counts of `num_own` receivers in `tiles`, which ascend. No other counts
 /// stay in memory.
 ///
-/// reader:  has the sections of a scene but long_count_sections().
 /// whole:   num_receivers and num_leaves of the scene.
 /// Throws:  std::runtime_error.
 [[nodiscard]] VisibleCounts read_counts_of_tiles(const SectionReader& reader,
                                                  const VisibleCounts& whole,
                                                  std::span<const std::size_t> tiles,
                                                  std::size_t num_own);
-
-/// The sections that grow with the number of counts.
-[[nodiscard]] std::vector<std::string> long_count_sections();
 
 } // namespace relumine::prt

@@ -52,7 +52,7 @@ std::vector<Number> numbers_of(const std::vector<std::byte>& planes) {
 
 template<typename Number>
 std::vector<Number> from_byte_planes(const SectionReader& reader, const std::string& name) {
-    const std::vector<std::byte>& planes = reader.bytes(name);
+    const std::vector<std::byte> planes = reader.bytes(name);
     if (planes.size() % sizeof(Number) != 0)
         reader.fail(name, fmt::format("a multiple of {} bytes", sizeof(Number)));
     return numbers_of<Number>(planes);
@@ -121,18 +121,18 @@ std::vector<std::uint32_t> stream_cells(const SectionReader& reader, std::size_t
     std::vector<std::uint32_t> cells;
     std::size_t entry = 0;
     std::uint32_t shift = 0;
-    stream_section(reader.path(), name_of(lobe, 'c'), num_entries * sizeof(std::uint32_t),
-                   [&](std::span<const std::byte> piece) {
-                       // Pieces come once the section has the right size.
-                       cells.resize(static_cast<std::size_t>(num_entries));
-                       for (const std::byte byte : piece) {
-                           cells[entry] |= std::to_integer<std::uint32_t>(byte) << shift;
-                           if (++entry == cells.size()) {
-                               entry = 0;
-                               shift += 8;
-                           }
-                       }
-                   });
+    reader.stream(name_of(lobe, 'c'), num_entries * sizeof(std::uint32_t),
+                  [&](std::span<const std::byte> piece) {
+                      // Pieces come once the section has the right size.
+                      cells.resize(static_cast<std::size_t>(num_entries));
+                      for (const std::byte byte : piece) {
+                          cells[entry] |= std::to_integer<std::uint32_t>(byte) << shift;
+                          if (++entry == cells.size()) {
+                              entry = 0;
+                              shift += 8;
+                          }
+                      }
+                  });
     return sums(std::move(cells));
 }
 
@@ -147,8 +147,7 @@ std::vector<std::byte> picked(const SectionReader& reader, const std::string& na
             ranges.push_back({plane * num_entries + range.begin * width,
                               plane * num_entries + range.end * width});
     SectionPicker picker(std::move(ranges));
-    stream_section(reader.path(), name, num_entries * size,
-                   [&](auto piece) { picker.take(piece); });
+    reader.stream(name, num_entries * size, [&](auto piece) { picker.take(piece); });
     return picker.elements<std::byte>();
 }
 
@@ -220,14 +219,6 @@ GlossyTransfer read_glossy_part(const SectionReader& reader, std::size_t num_blo
     return glossy;
 }
 
-std::vector<std::string> long_glossy_sections() {
-    std::vector<std::string> names;
-    for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe)
-        for (const char part : {'c', 's', 'v'})
-            names.push_back(name_of(lobe, part));
-    return names;
-}
-
 void check_highlights(const SceneCheck& check, const GlossyTransfer& glossy) {
     // Larger than the transfer of the narrowest highlight at the most grazing angle, 1/sr.
     constexpr float MaxTransfer = 1e9f;
@@ -245,11 +236,8 @@ const SectionGroup GlossySections = {
         },
     .read =
         [](const SectionReader& reader, Scene& scene) {
-            if (!has_glossy(reader))
-                return;
-            if (scene.receivers.to_eye.empty() || scene.receivers.surfaces.empty())
-                reader.fail(name_of(0, 'b'), "directions to the eye and surfaces with highlights");
-            scene.transfer.glossy = read_glossy(reader, scene.transfer.counts.num_blocks());
+            if (has_glossy(reader))
+                scene.transfer.glossy = read_glossy(reader, scene.transfer.counts.num_blocks());
         },
     .check =
         [](const SceneCheck& check, const Scene& scene) {
@@ -259,6 +247,10 @@ const SectionGroup GlossySections = {
             check.that(is_glossy == scene.settings.glossy_tolerance.has_value() ||
                            (is_plan && !is_glossy),
                        is_glossy ? "a tolerance of the highlights" : "highlights", "none");
+            const Receivers& receivers = scene.receivers;
+            check.that(!scene.settings.glossy_tolerance ||
+                           (!receivers.to_eye.empty() && !receivers.surfaces.empty()),
+                       "directions to the eye and surfaces with highlights", "none");
             if (is_glossy)
                 check_highlights(check, *scene.transfer.glossy);
         },

@@ -28,8 +28,8 @@ struct BlockRange {
     std::size_t end = 0;
 };
 
-/// Reads the highlights of some blocks, one range behind the other, and checks them. `reader` has
-/// the glossy sections but for the long ones, which are read from the file piece by piece.
+/// Reads the highlights of some blocks, one range behind the other, and checks them. Long sections
+/// are unpacked piece by piece.
 ///
 /// Memory:  the blocks' own highlights, and for a while 4 bytes a cell of all blocks.
 /// Throws:  as SectionReader.
@@ -38,8 +38,5 @@ struct BlockRange {
 
 /// Checks that highlights can be lit.
 void check_highlights(const SceneCheck& check, const GlossyTransfer& glossy);
-
-/// The long glossy sections.
-[[nodiscard]] std::vector<std::string> long_glossy_sections();
 
 } // namespace relumine::prt

@@ -14,9 +14,6 @@ using files::Json;
 using mesh::Material;
 using mesh::TextureSlot;
 
-/// So many texels need no bytes of a file to prove them.
-constexpr std::size_t MaxCheapTexels = std::size_t{1} << 26;
-
 /// The textures that are stored, by their index in the mesh.
 using Stored = std::map<std::uint32_t, std::size_t>;
 
@@ -112,13 +109,13 @@ Material material_of(const Json& json, std::size_t num_textures) {
 }
 
 mesh::Texture texture_of(const Json& json, const std::vector<std::byte>& images,
-                         std::size_t& offset) {
+                         std::size_t& offset, mesh::ImageBudget& budget) {
     const std::size_t size = natural(json.at("bytes"));
     if (size > images.size() - offset)
         throw std::out_of_range("expected an image in the section");
     mesh::Texture texture = mesh::decode_texture(
         std::span(images).subspan(offset, size),
-        json.at("v_from_top").boolean() ? mesh::VOrigin::Top : mesh::VOrigin::Bottom);
+        json.at("v_from_top").boolean() ? mesh::VOrigin::Top : mesh::VOrigin::Bottom, budget);
     offset += size;
     return texture;
 }
@@ -172,18 +169,13 @@ void read_materials(const SectionReader& reader, Scene& scene) {
     mesh::TriangleMesh& mesh = scene.mesh;
     if (!reader.has("materials"))
         return;
-    const std::vector<char> text = reader.elements<char>("materials");
-    const std::vector<std::byte>& images = reader.bytes("images");
+    const Json json = reader.json("materials");
+    const std::vector<std::byte> images = reader.bytes("images");
     try {
-        const Json json = files::parse_json({text.data(), text.size()});
-        std::size_t offset = 0, num_texels = 0;
-        for (const Json& texture : json.at("images").values()) {
-            mesh.textures.push_back(texture_of(texture, images, offset));
-            num_texels += mesh.textures.back().texels.size();
-            // As for one image of a mesh file: a byte for 128 texels where there are many.
-            if (num_texels > std::max(MaxCheapTexels, 128 * images.size()))
-                throw std::out_of_range("expected images that fit their bytes");
-        }
+        std::size_t offset = 0;
+        mesh::ImageBudget budget;
+        for (const Json& texture : json.at("images").values())
+            mesh.textures.push_back(texture_of(texture, images, offset, budget));
         if (offset != images.size())
             throw std::out_of_range("expected as many bytes as images have");
         for (const Json& material : json.at("materials").values())
@@ -199,8 +191,15 @@ void read_materials(const SectionReader& reader, Scene& scene) {
         reader.elements<std::array<glm::vec2, 3>>("corner_uvs", mesh.num_triangles(), true);
 }
 
+void check_materials(const SceneCheck& check, const Scene& scene) {
+    for (std::size_t corner = 0; corner < 3; ++corner)
+        check.all("finite uvs of corners", scene.mesh.corner_uvs, is_finite_uv,
+                  [&](const auto& uvs) { return uvs[corner]; });
+}
+
 } // namespace
 
-const SectionGroup MaterialSections = {.add = add_materials, .read = read_materials};
+const SectionGroup MaterialSections = {
+    .add = add_materials, .read = read_materials, .check = check_materials};
 
 } // namespace relumine::prt

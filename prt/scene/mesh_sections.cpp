@@ -59,8 +59,7 @@ void check_mesh(const SceneCheck& check, const Scene& scene) {
     constexpr float MaxColor = 1e6f;
     check.all(fmt::format("colours of 0 to {}", MaxColor), scene.mesh.colors,
               [](const glm::vec3& color) { return is_within(color, 0.0f, MaxColor); });
-    check.all("finite uvs", scene.mesh.uvs,
-              [](const glm::vec2& uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); });
+    check.all("finite uvs", scene.mesh.uvs, is_finite_uv);
 }
 
 } // namespace

@@ -73,6 +73,10 @@ inline bool is_within(const glm::vec3& v, float low, float high) {
     return v.x >= low && v.x <= high && v.y >= low && v.y <= high && v.z >= low && v.z <= high;
 }
 
+inline bool is_finite_uv(const glm::vec2& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y);
+}
+
 inline bool is_finite(const glm::vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }

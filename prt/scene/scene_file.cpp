@@ -22,11 +22,11 @@ void check_scene(const Scene& scene, const std::filesystem::path& path) {
 Scene read_scene(const SectionReader& reader, bool is_plan) {
     Scene scene;
     for (const SectionGroup* group : AllSections)
-        if (!(is_plan && group->is_light))
+        if (!(is_plan && (group->is_light || group == &BounceSections)))
             group->read(reader, scene);
+    check_scene(scene, reader.path());
     if (!is_plan)
         set_surfaces(scene.transfer, scene.receivers);
-    check_scene(scene, reader.path());
     return scene;
 }
 
@@ -79,20 +79,19 @@ std::uint64_t hash_without_light(const Scene& scene) {
 }
 
 Scene load_scene(const std::filesystem::path& path) {
-    return scene_of(path, read_sections(path));
+    return scene_of(SectionReader(path));
 }
 
-Scene scene_of(const std::filesystem::path& path, Sections&& sections) {
-    const SectionReader reader(path, std::move(sections));
+Scene scene_of(const SectionReader& reader) {
     if (reader.has("plan"))
         throw std::runtime_error(fmt::format(
-            "{}: expected a scene, got {}", path.string(),
+            "{}: expected a scene, got {}", reader.path().string(),
             reader.has("part") ? "a part of one" : "a plan of one, which has no light yet"));
     return read_scene(reader, false);
 }
 
-Scene plan_of(const std::filesystem::path& path, Sections&& sections) {
-    return read_scene({path, std::move(sections)}, true);
+Scene plan_of(const SectionReader& reader) {
+    return read_scene(reader, true);
 }
 
 } // namespace relumine::prt

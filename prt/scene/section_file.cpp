@@ -15,6 +15,7 @@
 #include <zstd.h>
 
 #include "files/compression.h"
+#include "files/free_memory.h"
 #include "files/hash.h"
 #include "files/output_file.h"
 #include "files/parallel.h"
@@ -40,6 +41,11 @@ constexpr int FastCompressionLevel = 1;
 // A section is cut into frames of this many bytes, the last one shorter, so that all processors
 // pack and unpack. The counts of the Stanford bunny are 0.5 % larger for it.
 constexpr std::size_t FrameSize = std::size_t{1} << 21;
+constexpr std::size_t LeastFrame = std::size_t{1} << 16;
+
+// What the sections of a file may take in all. Positions alone, which every scene has, pack much
+// worse.
+constexpr std::uint64_t LeastBudget = std::uint64_t{1} << 28, BudgetPerByte = 256;
 
 struct Header {
     std::array<char, 8> magic;
@@ -75,197 +81,42 @@ std::uint64_t table_checksum(const Header& header, std::span<const SectionEntry>
     return files::hash_of(bytes);
 }
 
-class Reader {
-public:
-    Reader(const std::filesystem::path& path, std::span<const std::byte> bytes)
-        : path_(path), bytes_(bytes) {}
+std::string name_of(const SectionEntry& entry) {
+    return {entry.name.begin(), std::find(entry.name.begin(), entry.name.end(), '\0')};
+}
 
-    Sections sections(std::span<const std::string> left_out) {
-        std::vector<SectionEntry> table = checked_table(checked_header());
-        std::erase_if(table, [&](const SectionEntry& entry) {
-            return std::find(left_out.begin(), left_out.end(), name(entry)) != left_out.end();
-        });
-        std::vector<std::vector<std::byte>> contents(table.size());
-        files::parallel_for(std::size_t{0}, table.size(),
-                            [&](std::size_t i) { contents[i] = content(table[i]); });
-        Sections result;
-        for (std::size_t i = 0; i < table.size(); ++i)
-            result.emplace(name(table[i]), std::move(contents[i]));
-        return result;
-    }
+bool is_padded_with_zeros(const SectionEntry& entry) {
+    return std::all_of(std::find(entry.name.begin(), entry.name.end(), '\0'), entry.name.end(),
+                       [](char c) { return c == '\0'; });
+}
 
-    void stream(const std::string& wanted, std::optional<std::uint64_t> wanted_size,
-                const std::function<void(std::span<const std::byte>)>& on_piece) {
-        const std::vector<SectionEntry> table = checked_table(checked_header());
-        const auto entry = std::find_if(table.begin(), table.end(), [&](const SectionEntry& other) {
-            return name(other) == wanted;
-        });
-        if (entry == table.end())
-            fail(fmt::format("a section '{}'", wanted), "none");
-        if (wanted_size && entry->size != *wanted_size)
-            fail(fmt::format("a section '{}' of {} bytes", wanted, *wanted_size), "another");
-        check(*entry);
-        unpack(*entry, on_piece);
-    }
-
-private:
-    [[noreturn]] void fail(std::string_view expected, std::string_view got) const {
-        throw std::runtime_error(
-            fmt::format("{}: expected {}, got {}", path_.string(), expected, got));
-    }
-
-    Header checked_header() const {
-        Header header;
-        if (bytes_.size() < sizeof header ||
-            std::memcmp(bytes_.data(), Magic.data(), Magic.size()) != 0)
-            fail("a .prt scene", "another kind of file");
-        std::memcpy(&header, bytes_.data(), sizeof header);
-        if (header.byte_order_mark == std::uint32_t{0x04030201})
-            fail("a little-endian .prt scene", "a big-endian one");
-        if (header.byte_order_mark != ByteOrderMark)
-            fail("a .prt scene", "a damaged header");
-        if (header.version != SceneFileVersion)
-            fail(fmt::format(".prt version {}", SceneFileVersion),
-                 fmt::format("version {}, made by {}", header.version,
-                             header.version > SceneFileVersion
-                                 ? "a newer relumine"
-                                 : "an older relumine: run precompute again"));
-        if (header.file_size != bytes_.size())
-            fail(fmt::format("{} bytes", header.file_size),
-                 fmt::format("{} (truncated or damaged)", bytes_.size()));
-        if (header.num_sections > MaxSections ||
-            sizeof header + header.num_sections * sizeof(SectionEntry) > bytes_.size() ||
-            header.reserved != 0)
-            fail("a .prt scene", "a damaged header");
-        return header;
-    }
-
-    std::vector<SectionEntry> checked_table(const Header& header) const {
-        std::vector<SectionEntry> table(header.num_sections);
-        if (!table.empty())
-            std::memcpy(table.data(), bytes_.data() + sizeof header,
-                        table.size() * sizeof(SectionEntry));
-        if (table_checksum(header, table) != header.checksum)
-            fail("a matching checksum", "a damaged section table");
-        std::uint64_t end = sizeof header + table.size() * sizeof(SectionEntry);
-        std::string last_name;
-        for (const SectionEntry& entry : table) {
-            // Sections follow each other without gaps, so they are inside the file and every byte
-            // belongs to one.
-            const bool inside = entry.offset == end && entry.stored_size <= bytes_.size() - end;
-            end += inside ? entry.stored_size : 0;
-            // The size is believed only after the section's checksum, and bounded even then.
-            if (!inside || entry.size / files::MaxCompressionRatio > entry.stored_size)
-                fail("sections inside the file", "a damaged section table");
-            const std::string own_name = name(entry); // A name goes into messages.
-            if (!std::all_of(own_name.begin(), own_name.end(),
-                             [](char c) { return c > ' ' && c <= '~'; }))
-                fail("names of sections", "a damaged section table");
-            if (own_name <= last_name || !is_padded_with_zeros(entry))
-                fail("names of sections in ascending order", "a damaged section table");
-            last_name = own_name;
-        }
-        if (end != bytes_.size())
-            fail("sections that fill the file", "a damaged section table");
-        return table;
-    }
-
-    static std::string name(const SectionEntry& entry) {
-        return {entry.name.begin(), std::find(entry.name.begin(), entry.name.end(), '\0')};
-    }
-
-    static bool is_padded_with_zeros(const SectionEntry& entry) {
-        return std::all_of(std::find(entry.name.begin(), entry.name.end(), '\0'), entry.name.end(),
-                           [](char c) { return c == '\0'; });
-    }
-
-    [[noreturn]] void fail_unpacking(const SectionEntry& entry) const {
-        fail("zstd data", fmt::format("a damaged section '{}'", name(entry)));
-    }
-
-    void check(const SectionEntry& entry) const {
-        if (files::hash_of({bytes_.data() + entry.offset, entry.stored_size}) != entry.checksum)
-            fail("a matching checksum", fmt::format("a damaged section '{}'", name(entry)));
-    }
-
-    std::vector<std::byte> content(const SectionEntry& entry) const {
-        check(entry);
-        const std::vector<Frame> frames = frames_of(entry);
-        // An unlikely size is allocated as the data comes, so that a lie costs nothing.
-        constexpr std::uint64_t Cheap = std::uint64_t{1} << 26, BelievableRatio = 256;
-        std::vector<std::byte> result;
-        if (entry.size > std::max(Cheap, BelievableRatio * entry.stored_size)) {
-            unpack(entry, [&](std::span<const std::byte> piece) {
-                result.insert(result.end(), piece.begin(), piece.end());
-            });
-            return result;
-        }
-        result.resize(entry.size);
-        files::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
-            const Frame& frame = frames[i];
-            const std::size_t size = ZSTD_decompress(result.data() + frame.begin, frame.size,
-                                                     frame.stored.data(), frame.stored.size());
-            if (ZSTD_isError(size) != 0 || size != frame.size)
-                fail_unpacking(entry);
-        });
-        return result;
-    }
-
-    /// A zstd frame of a section, and where its content begins and how many bytes it says it has.
-    struct Frame {
-        std::span<const std::byte> stored;
-        std::uint64_t begin;
-        std::uint64_t size;
-    };
-
-    /// Finds a section's frames, whose sizes add up to the section's.
-    std::vector<Frame> frames_of(const SectionEntry& entry) const {
-        std::span<const std::byte> rest(bytes_.data() + entry.offset, entry.stored_size);
-        std::vector<Frame> frames;
-        std::uint64_t size = 0;
-        do {
-            const std::size_t stored = ZSTD_findFrameCompressedSize(rest.data(), rest.size());
-            if (ZSTD_isError(stored) != 0)
-                fail_unpacking(entry);
-            const unsigned long long own = ZSTD_getFrameContentSize(rest.data(), stored);
-            // The two errors are larger than any size.
-            if (own > entry.size - size)
-                fail_unpacking(entry);
-            frames.push_back({.stored = rest.first(stored), .begin = size, .size = own});
-            size += own;
-            rest = rest.subspan(stored);
-        } while (!rest.empty());
-        if (size != entry.size)
-            fail_unpacking(entry);
-        return frames;
-    }
-
-    /// Unpacks a section piece by piece.
-    void unpack(const SectionEntry& entry,
-                const std::function<void(std::span<const std::byte>)>& on_piece) const {
-        const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(),
-                                                                              ZSTD_freeDCtx);
-        if (!context)
-            throw std::bad_alloc();
-        ZSTD_inBuffer in{.src = bytes_.data() + entry.offset, .size = entry.stored_size, .pos = 0};
-        std::vector<std::byte> piece(SectionPiece);
-        for (std::uint64_t done = 0; done < entry.size;) {
-            const std::size_t size = std::min<std::uint64_t>(SectionPiece, entry.size - done);
-            ZSTD_outBuffer out{.dst = piece.data(), .size = size, .pos = 0};
-            while (out.pos < size) {
-                const std::size_t before = out.pos + in.pos;
-                if (ZSTD_isError(ZSTD_decompressStream(context.get(), &out, &in)) != 0 ||
-                    out.pos + in.pos == before)
-                    fail_unpacking(entry);
-            }
-            on_piece(std::span(piece).first(size));
-            done += size;
-        }
-    }
-
-    const std::filesystem::path& path_;
-    std::span<const std::byte> bytes_;
+/// A zstd frame of a section, and where its content begins and how many bytes it says it has.
+struct Frame {
+    std::span<const std::byte> stored;
+    std::uint64_t begin;
+    std::uint64_t size;
 };
+
+/// Finds a section's frames, whose sizes add up to `size`. All but the last have at least
+/// LeastFrame bytes, so that a file cannot have millions of them. Returns none for others.
+std::vector<Frame> frames_of(std::span<const std::byte> stored_bytes, std::uint64_t size) {
+    std::vector<Frame> frames;
+    std::uint64_t done = 0;
+    while (!stored_bytes.empty()) {
+        const std::size_t stored =
+            ZSTD_findFrameCompressedSize(stored_bytes.data(), stored_bytes.size());
+        if (ZSTD_isError(stored) != 0 || (!frames.empty() && frames.back().size < LeastFrame))
+            return {};
+        const unsigned long long own = ZSTD_getFrameContentSize(stored_bytes.data(), stored);
+        // The two errors are larger than any size.
+        if (own > size - done)
+            return {};
+        frames.push_back({.stored = stored_bytes.first(stored), .begin = done, .size = own});
+        done += own;
+        stored_bytes = stored_bytes.subspan(stored);
+    }
+    return done == size ? frames : std::vector<Frame>();
+}
 
 /// Writes sections frame by frame: a batch of frames is packed in parallel, written and forgotten.
 class Writer {
@@ -446,20 +297,141 @@ std::vector<std::byte> packed_sections(const NewSections& sections) {
     return writer.take_bytes();
 }
 
-Sections unpacked_sections(std::span<const std::byte> bytes) {
-    return Reader("bytes of a process", bytes).sections({});
+PackedSections::PackedSections(const std::filesystem::path& path)
+    : PackedSections(path, files::read(path)) {}
+
+PackedSections::PackedSections(std::filesystem::path path, std::vector<std::byte> bytes)
+    : path_(std::move(path)), bytes_(std::move(bytes)),
+      budget_(
+          std::min(std::max(LeastBudget, BudgetPerByte * bytes_.size()), files::free_memory())) {
+    Header header;
+    if (bytes_.size() < sizeof header ||
+        std::memcmp(bytes_.data(), Magic.data(), Magic.size()) != 0)
+        fail("a .prt scene", "another kind of file");
+    std::memcpy(&header, bytes_.data(), sizeof header);
+    if (header.byte_order_mark == std::uint32_t{0x04030201})
+        fail("a little-endian .prt scene", "a big-endian one");
+    if (header.byte_order_mark != ByteOrderMark)
+        fail("a .prt scene", "a damaged header");
+    if (header.version != SceneFileVersion)
+        fail(fmt::format(".prt version {}", SceneFileVersion),
+             fmt::format("version {}, made by {}", header.version,
+                         header.version > SceneFileVersion
+                             ? "a newer relumine"
+                             : "an older relumine: run precompute again"));
+    if (header.file_size != bytes_.size())
+        fail(fmt::format("{} bytes", header.file_size),
+             fmt::format("{} (truncated or damaged)", bytes_.size()));
+    if (header.num_sections > MaxSections ||
+        sizeof header + header.num_sections * sizeof(SectionEntry) > bytes_.size() ||
+        header.reserved != 0)
+        fail("a .prt scene", "a damaged header");
+
+    std::vector<SectionEntry> table(header.num_sections);
+    if (!table.empty())
+        std::memcpy(table.data(), bytes_.data() + sizeof header,
+                    table.size() * sizeof(SectionEntry));
+    if (table_checksum(header, table) != header.checksum)
+        fail("a matching checksum", "a damaged section table");
+    std::uint64_t end = sizeof header + table.size() * sizeof(SectionEntry);
+    std::string last_name;
+    for (const SectionEntry& entry : table) {
+        // Sections follow each other without gaps, so they are inside the file and every byte
+        // belongs to one.
+        if (entry.offset != end || entry.stored_size > bytes_.size() - end)
+            fail("sections inside the file", "a damaged section table");
+        end += entry.stored_size;
+        const std::string name = name_of(entry); // A name goes into messages.
+        if (!std::all_of(name.begin(), name.end(), [](char c) { return c > ' ' && c <= '~'; }))
+            fail("names of sections", "a damaged section table");
+        if (name <= last_name || !is_padded_with_zeros(entry))
+            fail("names of sections in ascending order", "a damaged section table");
+        last_name = name;
+        entries_[name] = {.stored = std::span(bytes_).subspan(entry.offset, entry.stored_size),
+                          .size = entry.size};
+    }
+    if (end != bytes_.size())
+        fail("sections that fill the file", "a damaged section table");
+    files::parallel_for(std::size_t{0}, table.size(), [&](std::size_t i) {
+        const std::string name = name_of(table[i]);
+        if (files::hash_of(entries_.at(name).stored) != table[i].checksum)
+            fail("a matching checksum", fmt::format("a damaged section '{}'", name));
+    });
 }
 
-Sections read_sections(const std::filesystem::path& path, std::span<const std::string> left_out) {
-    const std::vector<std::byte> bytes = files::read(path);
-    return Reader(path, bytes).sections(left_out);
+void PackedSections::fail(std::string_view expected, std::string_view got) const {
+    throw std::runtime_error(fmt::format("{}: expected {}, got {}", path_.string(), expected, got));
 }
 
-void stream_section(const std::filesystem::path& path, const std::string& name,
-                    std::optional<std::uint64_t> size,
-                    const std::function<void(std::span<const std::byte>)>& on_piece) {
-    const std::vector<std::byte> bytes = files::read(path);
-    Reader(path, bytes).stream(name, size, on_piece);
+std::vector<std::string> PackedSections::names() const {
+    std::vector<std::string> names;
+    for (const auto& [name, entry] : entries_)
+        names.push_back(name);
+    return names;
+}
+
+const PackedSections::Entry& PackedSections::entry(const std::string& name,
+                                                   std::uint64_t cost) const {
+    const auto found = entries_.find(name);
+    if (found == entries_.end())
+        fail(fmt::format("a section '{}'", name), "none");
+    if (found->second.size > budget_ / cost)
+        fail(fmt::format("sections that a file of {} bytes can have", bytes_.size()),
+             fmt::format("{} bytes in section '{}'", found->second.size, name));
+    return found->second;
+}
+
+std::vector<std::byte> PackedSections::bytes(const std::string& name, std::uint64_t cost) const {
+    const auto& [stored, size] = entry(name, cost);
+    budget_ -= size * cost;
+    const std::vector<Frame> frames = frames_of(stored, size);
+    const auto fail_unpacking = [&] {
+        fail("zstd data", fmt::format("a damaged section '{}'", name));
+    };
+    if (frames.empty())
+        fail_unpacking();
+    std::vector<std::byte> result(size);
+    files::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
+        const Frame& frame = frames[i];
+        const std::size_t unpacked = ZSTD_decompress(result.data() + frame.begin, frame.size,
+                                                     frame.stored.data(), frame.stored.size());
+        if (ZSTD_isError(unpacked) != 0 || unpacked != frame.size)
+            fail_unpacking();
+    });
+    return result;
+}
+
+void PackedSections::stream(const std::string& name, std::optional<std::uint64_t> wanted_size,
+                            const std::function<void(std::span<const std::byte>)>& on_piece) const {
+    const auto& [stored, whole_size] = entry(name, 1);
+    if (wanted_size && whole_size != *wanted_size)
+        fail(fmt::format("a section '{}' of {} bytes", name, *wanted_size), "another");
+    const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(),
+                                                                          ZSTD_freeDCtx);
+    if (!context)
+        throw std::bad_alloc();
+    ZSTD_inBuffer in{.src = stored.data(), .size = stored.size(), .pos = 0};
+    std::vector<std::byte> piece(SectionPiece);
+    for (std::uint64_t done = 0; done < whole_size;) {
+        const std::size_t size = std::min<std::uint64_t>(SectionPiece, whole_size - done);
+        ZSTD_outBuffer out{.dst = piece.data(), .size = size, .pos = 0};
+        while (out.pos < size) {
+            const std::size_t before = out.pos + in.pos;
+            if (ZSTD_isError(ZSTD_decompressStream(context.get(), &out, &in)) != 0 ||
+                out.pos + in.pos == before)
+                fail("zstd data", fmt::format("a damaged section '{}'", name));
+        }
+        on_piece(std::span(piece).first(size));
+        done += size;
+    }
+}
+
+Sections read_sections(const std::filesystem::path& path) {
+    const PackedSections packed(path);
+    Sections sections;
+    for (const std::string& name : packed.names())
+        sections.emplace(name, packed.bytes(name));
+    return sections;
 }
 
 } // namespace relumine::prt

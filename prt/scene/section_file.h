@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -72,31 +73,62 @@ using NewSections = std::map<std::string, SectionContent>;
 /// Throws:  std::runtime_error that names the path.
 std::uint64_t write_sections(const std::filesystem::path& path, const NewSections& sections);
 
-/// Reads a file of sections, all but those in `left_out`. Refuses a file that is truncated, longer
-/// than it says, of another version or byte order, or changed in any bit, before its sizes are
-/// believed.
-///
-/// Throws:  std::runtime_error "path: expected X, got Y".
-[[nodiscard]] Sections read_sections(const std::filesystem::path& path,
-                                     std::span<const std::string> left_out = {});
-
 /// Returns the bytes of a file of sections, to send them to another process.
 [[nodiscard]] std::vector<std::byte> packed_sections(const NewSections& sections);
-/// Reads them.
-///
-/// Throws:  std::runtime_error for damaged bytes.
-[[nodiscard]] Sections unpacked_sections(std::span<const std::byte> bytes);
 
-/// Bytes of a piece that stream_section() gives; the last one may have fewer.
+/// Bytes of a piece that PackedSections::stream() gives; the last one may have fewer.
 inline constexpr std::size_t SectionPiece = std::size_t{1} << 20;
 
-/// Passes the bytes of one section on, piece by piece in their order. Without a `size` it may have
-/// any.
+/// The sections of a file. One is unpacked when it is asked for, so what nobody knows costs no more
+/// than its stored bytes. All of them together unpack to so many bytes at most: 256 for each
+/// byte of the file, 256 MiB for a small file, no more than what memory is free.
 ///
-/// Memory:  the file's bytes, compressed as they are, and one piece.
-/// Throws:  as read_sections(), also where the section is missing or not of `size` bytes.
-void stream_section(const std::filesystem::path& path, const std::string& name,
-                    std::optional<std::uint64_t> size,
-                    const std::function<void(std::span<const std::byte>)>& on_piece);
+/// Throws:  std::runtime_error "path: expected X, got Y".
+class PackedSections {
+public:
+    /// Reads a file. Refuses one that is truncated, longer than it says, of another version or byte
+    /// order, or changed in any bit, before its sizes are believed.
+    explicit PackedSections(const std::filesystem::path& path);
+    /// Takes the bytes of such a file. `path` is for messages.
+    PackedSections(std::filesystem::path path, std::vector<std::byte> bytes);
+    PackedSections(PackedSections&&) = default;
+    PackedSections& operator=(PackedSections&&) = default;
+
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    [[nodiscard]] bool has(const std::string& name) const { return entries_.contains(name); }
+    [[nodiscard]] std::vector<std::string> names() const;
+
+    /// Unpacks a section. Fails where there is none. `cost` is the memory that the caller makes of
+    /// each byte.
+    [[nodiscard]] std::vector<std::byte> bytes(const std::string& name,
+                                               std::uint64_t cost = 1) const;
+
+    /// Passes the bytes of one section on, piece by piece in their order. Without a `size` it may
+    /// have any.
+    ///
+    /// Memory:  one piece.
+    /// Throws:  also where the section is missing or not of `size` bytes.
+    void stream(const std::string& name, std::optional<std::uint64_t> size,
+                const std::function<void(std::span<const std::byte>)>& on_piece) const;
+
+private:
+    struct Entry {
+        std::span<const std::byte> stored;
+        std::uint64_t size;
+    };
+    /// Returns a section. Fails where the ones before left fewer than `cost` bytes for each of its.
+    [[nodiscard]] const Entry& entry(const std::string& name, std::uint64_t cost) const;
+    [[noreturn]] void fail(std::string_view expected, std::string_view got) const;
+
+    std::filesystem::path path_;
+    std::vector<std::byte> bytes_;
+    std::map<std::string, Entry> entries_;
+    /// How many bytes sections may still become.
+    mutable std::uint64_t budget_;
+};
+
+/// Unpacks all sections of a file.
+/// Throws:  as PackedSections does.
+[[nodiscard]] Sections read_sections(const std::filesystem::path& path);
 
 } // namespace relumine::prt

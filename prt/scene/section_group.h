@@ -39,13 +39,11 @@ inline const std::array AllSections = {&SettingsSections, &MeshSections,    &Mat
 [[nodiscard]] std::string expected_place(const Scene& scene);
 void check_camera(const SceneCheck& check, const Scene& scene, const Camera& camera);
 
-/// Does what load_scene() does, for a file's sections as read_sections() gives them. `path` is for
-/// messages only.
-/// Throws: as load_scene() does.
-[[nodiscard]] Scene scene_of(const std::filesystem::path& path, Sections&& sections);
+/// Does what load_scene() does.
+[[nodiscard]] Scene scene_of(const SectionReader& reader);
 
-/// Does the same for a scene whose counts are missing, as sections_without_light() makes it.
-[[nodiscard]] Scene plan_of(const std::filesystem::path& path, Sections&& sections);
+/// Does the same for a scene without its light, as sections_without_light() makes it.
+[[nodiscard]] Scene plan_of(const SectionReader& reader);
 
 /// Returns the sections of a scene without counts, highlights and bounces. They refer to the scene,
 /// which must last until they are written.

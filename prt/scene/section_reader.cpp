@@ -34,23 +34,17 @@ std::vector<bool> unpacked(std::span<const std::byte> bytes, std::size_t count) 
 
 void SectionReader::fail(std::string_view section, std::string_view expected) const {
     throw std::runtime_error(fmt::format("{}: expected {}, got a damaged section '{}'",
-                                         path_.string(), expected, section));
-}
-
-const std::vector<std::byte>& SectionReader::bytes(const std::string& name) const {
-    const auto found = sections_.find(name);
-    if (found == sections_.end())
-        throw std::runtime_error(
-            fmt::format("{}: expected a section '{}', got none", path_.string(), name));
-    return found->second;
+                                         path().string(), expected, section));
 }
 
 files::Json SectionReader::json(const std::string& name) const {
-    const std::vector<char> text = elements<char>(name);
-    if (std::find(text.begin(), text.end(), '\0') != text.end())
+    constexpr std::uint64_t MemoryPerByte = 32; // "0," becomes a value
+    const std::vector<std::byte> text = bytes(name, MemoryPerByte);
+    // A zero ends a text for the JSON library.
+    if (std::find(text.begin(), text.end(), std::byte{0}) != text.end())
         fail(name, "JSON text");
     try {
-        return files::parse_json({text.data(), text.size()});
+        return files::parse_json({reinterpret_cast<const char*>(text.data()), text.size()});
     } catch (const files::JsonError&) {
         fail(name, "JSON text");
     }

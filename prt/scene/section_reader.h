@@ -38,24 +38,17 @@ template<typename Element>
 /// Throws:  std::length_error for bytes of another size, and for bits behind the last.
 [[nodiscard]] std::vector<bool> unpacked(std::span<const std::byte> bytes, std::size_t count);
 
-/// Sections by name. Every message names the file and the section.
-class SectionReader {
+/// The sections of a file as arrays. Every message names the file and the section.
+class SectionReader : public PackedSections {
 public:
-    /// `path` is for messages.
-    SectionReader(std::filesystem::path path, Sections&& sections)
-        : path_(std::move(path)), sections_(std::move(sections)) {}
+    using PackedSections::PackedSections;
 
     [[noreturn]] void fail(std::string_view section, std::string_view expected) const;
-
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-    [[nodiscard]] bool has(const std::string& name) const { return sections_.contains(name); }
-    /// Returns the section's bytes. Fails where there is none.
-    [[nodiscard]] const std::vector<std::byte>& bytes(const std::string& name) const;
 
     /// Returns all elements of a section.
     template<typename Element>
     [[nodiscard]] std::vector<Element> elements(const std::string& name) const {
-        const std::vector<std::byte>& stored = bytes(name);
+        const std::vector<std::byte> stored = bytes(name);
         if (stored.size() % sizeof(Element) != 0)
             fail(name, fmt::format("a multiple of {} bytes", sizeof(Element)));
         static_assert(std::is_trivially_copyable_v<Element>);
@@ -77,16 +70,11 @@ public:
         return result;
     }
 
-    /// Parses a section of JSON text. Fails for other text, and for zero bytes, which end a text
-    /// for the JSON library.
+    /// Parses a section of JSON text. Fails for other text, and for zero bytes.
     [[nodiscard]] files::Json json(const std::string& name) const;
 
     /// Returns exactly `count` bits. The rest of the last byte must be zero.
     [[nodiscard]] std::vector<bool> bits(const std::string& name, std::size_t count) const;
-
-private:
-    std::filesystem::path path_;
-    Sections sections_;
 };
 
 } // namespace relumine::prt

@@ -35,6 +35,8 @@ void settings_members(JsonMembers& member, SceneSettings& settings) {
     member("source", settings.source);
     std::string hash = fmt::format("{:016x}", settings.source_hash);
     member("source_hash", hash);
+    if (hash.size() != 16 || hash.find_first_not_of("0123456789abcdef") != std::string::npos)
+        throw std::out_of_range("expected 16 hexadecimal digits");
     settings.source_hash = std::stoull(hash, nullptr, 16);
     member.unusual("floor_added", settings.floor_added, 0u);
     member.unusual("epsilon", settings.epsilon, {});

@@ -44,7 +44,7 @@ public:
 private:
     const SectionReader& reader_;
     std::string section_, expected_;
-    const std::vector<std::byte>& bytes_;
+    std::vector<std::byte> bytes_;
     std::size_t at_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -35,6 +36,10 @@ using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneDelete
 
 void throw_on_error(RTCDevice device, const char* action) {
     const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_OUT_OF_MEMORY)
+        throw std::bad_alloc();
+    if (error == RTC_ERROR_UNSUPPORTED_CPU)
+        throw std::runtime_error("Embree could not start on this processor");
     if (error != RTC_ERROR_NONE)
         throw std::runtime_error(
             fmt::format("Embree could not {} (error {})", action, static_cast<int>(error)));
@@ -217,8 +222,10 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
                     throw std::runtime_error(fmt::format("expected coordinates within {}, got {}",
                                                          LargestCoordinate, x));
     impl_->device.reset(rtcNewDevice(nullptr));
-    if (!impl_->device)
-        throw std::runtime_error("Embree could not start on this processor");
+    if (!impl_->device) {
+        throw_on_error(nullptr, "start");
+        throw std::runtime_error("Embree could not start");
+    }
     RTCDevice device = impl_->device.get();
     impl_->scene.reset(rtcNewScene(device));
     rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
-#include <thread>
+#include <vector>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -50,26 +50,20 @@ public:
     }
     /// A progress function that calls back would wait for itself.
     void refuse_reentry() const {
-        if (caller_ == std::this_thread::get_id())
+        if (std::find(waiting_.begin(), waiting_.end(), this) != waiting_.end())
             throw std::runtime_error("relighter: expected no call from its own progress function");
     }
     [[nodiscard]] bool is_lit() const { return is_lit_; }
     [[nodiscard]] std::span<const glm::vec3> radiance() const { return radiance_; }
     [[nodiscard]] const Scene& scene() const { return lit_.scene(); }
 
-    /// Marks the thread that waits for a job.
+    /// Notes that this thread waits for a job.
     class Caller {
     public:
-        explicit Caller(Lit& own) : own_(own), before_(own.caller_) {
-            own.caller_ = std::this_thread::get_id();
-        }
+        explicit Caller(const Lit& own) { waiting_.push_back(&own); }
         Caller(const Caller&) = delete;
         Caller& operator=(const Caller&) = delete;
-        ~Caller() { own_.caller_ = before_; }
-
-    private:
-        Lit& own_;
-        std::thread::id before_;
+        ~Caller() { waiting_.pop_back(); }
     };
 
 private:
@@ -77,7 +71,8 @@ private:
     LitScene lit_;
     std::vector<glm::vec3> radiance_;
     std::atomic<bool> is_lit_ = false;
-    std::atomic<std::thread::id> caller_ = std::thread::id();
+    /// What this thread waits for, one within the other.
+    static inline thread_local std::vector<const Lit*> waiting_;
 };
 
 using LitPointer = std::shared_ptr<Lit>;

@@ -109,8 +109,8 @@ std::function<void(Stage, double)> joined(const std::function<void(double)>& on_
     const int num_stages = 1 + static_cast<int>(has_highlights) +
                            static_cast<int>(options.bounce_tolerance.value_or(1.0f) > 0.0f);
     return [=](Stage stage, double fraction) {
-        // A small part of the whole.
-        if (stage == Stage::Refinement)
+        // Small parts of the whole.
+        if (stage == Stage::Refinement || stage == Stage::Receivers)
             return;
         const int before = stage == Stage::Clusters     ? 0
                            : stage == Stage::Highlights ? 1

@@ -18,9 +18,12 @@ def view(array: Any) -> Any:
 
 
 def numbers(name: str, value: ArrayLike, *shape: Optional[int]) -> NDArray[Any]:
-    """Checks that `value` holds numbers in a shape, where None is any size above 0."""
+    """A copy of `value`, which holds numbers in a shape, where None is any size above 0.
+
+    A copy: what is checked must not change before it is taken, whatever other threads write.
+    """
     try:
-        array = np.asarray(value)
+        array = np.array(value)
     except ValueError:
         raise ValueError(f"{name}: expected an array, got rows of different lengths") from None
     if array.dtype.kind not in "iuf":

@@ -78,11 +78,9 @@ class LightList:
             )
 
     def _arrays(self) -> Tuple[Doubles, Doubles, Doubles]:
-        return (
-            np.ascontiguousarray(self.directions),
-            np.ascontiguousarray(self.irradiances),
-            np.ascontiguousarray(self.solid_angles),
-        )
+        # Whoever has the list may have changed its arrays.
+        checked = LightList(self.directions, self.irradiances, self.solid_angles)
+        return checked.directions, checked.irradiances, checked.solid_angles
 
     @property
     def total_irradiance(self) -> Doubles:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <mutex>
 #include <stdexcept>
 
 #include <glm/geometric.hpp>
@@ -389,11 +390,18 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
         picture.alpha.resize(picture.pixels.size());
     const std::uint32_t num_columns = (options_.width + TileSize - 1) / TileSize;
     const std::uint32_t num_rows = (options_.height + TileSize - 1) / TileSize;
-    files::parallel_for(std::uint32_t{0}, num_columns * num_rows, [&](std::uint32_t tile) {
-        if (!options_.stop.stop_requested())
-            Tile(*this, light, packets)
-                .draw(tile % num_columns * TileSize, tile / num_columns * TileSize, backdrop,
-                      picture);
+    const std::uint32_t num_tiles = num_columns * num_rows;
+    std::mutex mutex;
+    std::uint32_t num_drawn = 0;
+    files::parallel_for(std::uint32_t{0}, num_tiles, [&](std::uint32_t tile) {
+        if (options_.stop.stop_requested())
+            return;
+        Tile(*this, light, packets)
+            .draw(tile % num_columns * TileSize, tile / num_columns * TileSize, backdrop, picture);
+        if (!options_.on_progress)
+            return;
+        const std::scoped_lock lock(mutex);
+        options_.on_progress(static_cast<double>(++num_drawn) / num_tiles);
     });
     return picture;
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -34,6 +35,8 @@ struct PictureOptions {
     std::uint32_t samples_per_axis = 3;
     /// Polled between parts of the picture. What is drawn after a stop request is unfinished.
     std::stop_token stop = {};
+    /// Receives the fraction of a picture that is drawn; one call at a time, from any thread.
+    std::function<void(double)> on_progress = {};
 
     [[nodiscard]] float aspect() const {
         return static_cast<float>(width) / static_cast<float>(height);

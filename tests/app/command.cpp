@@ -61,10 +61,14 @@ void become_program(const char* folder, const char* out, const char* err, const 
         ::signal(signal, SIG_DFL);
     if (options.ignored_signal != 0)
         ::signal(options.ignored_signal, SIG_IGN);
-    if (options.max_file_bytes) {
-        const struct rlimit limit = {*options.max_file_bytes, *options.max_file_bytes};
-        ::setrlimit(RLIMIT_FSIZE, &limit);
-    }
+    const auto limit = [](auto resource, const std::optional<std::uint64_t>& bytes) {
+        const struct rlimit most = {bytes.value_or(0), bytes.value_or(0)};
+        if (bytes)
+            ::setrlimit(resource, &most);
+    };
+    limit(RLIMIT_FSIZE, options.max_file_bytes);
+    limit(RLIMIT_AS, options.max_address_bytes);
+    limit(RLIMIT_STACK, options.stack_bytes);
     ::execv(RELUMINE_BINARY, arguments);
     ::_exit(127);
 }

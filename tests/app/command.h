@@ -46,6 +46,8 @@ struct RunOptions {
     std::string stdout_path = {};
     /// Where stdin comes from
     std::string stdin_path = "/dev/null";
+    /// `ulimit -v` and `ulimit -s`
+    std::optional<std::uint64_t> max_address_bytes = {}, stack_bytes = {};
     /// From the start, as `nohup` does it
     int ignored_signal = 0;
 };

@@ -22,6 +22,26 @@ TEST_F(Info, Mesh) {
     EXPECT_NE(succeed({"info", "mesh.obj"}).out.find("6 vertices, 8 triangles"), std::string::npos);
 }
 
+TEST_F(Info, NamesInFilesDoNotCommandTheTerminal) {
+    const std::string name = "\x1b]0;title\a\xff.obj";
+    write(name, octahedron_obj());
+    succeed({"precompute", name, "-o", "scene.prt", "--tolerance", "1", "--min-depth", "0", "-q",
+             "--no-refine", "--bounces", "0"});
+    const std::string out = succeed({"info", "scene.prt"}).out;
+    EXPECT_NE(out.find("from ?]0;title?"), std::string::npos) << out;
+    EXPECT_EQ(out.find_first_of("\x1b\a\xff"), std::string::npos) << out;
+    write("layers.json", "{\"versi\xff\": 1}");
+    const Result bad = relumine({"edit", "scene.prt", "none.exr", "layers.json"});
+    EXPECT_EQ(bad.err.find('\xff'), std::string::npos) << bad.err;
+}
+
+TEST_F(Info, WithoutRoomForAThreadItEndsWithOneLine) {
+    // Threads get stacks of this size, which no address space has.
+    const Result result =
+        fail({"info", "mesh.obj"}, {"cannot start a thread"}, {.stack_bytes = 1ull << 58});
+    EXPECT_EQ(result.signal, 0);
+}
+
 TEST_F(Info, MaterialsOfAMesh) {
     write("a.mtl",
           "newmtl shiny\nKd 0.5\nKs 0.25\nNs 50\nmap_Kd gone.png\nnewmtl metal\nPr 0.25\nPm 1\n");

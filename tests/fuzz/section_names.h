@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 48> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 56> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -54,6 +54,14 @@ inline constexpr std::array<std::string_view, 48> SectionNames = {"settings",
                                                                   "bounce_near_size",
                                                                   "bounce_near",
                                                                   "count_codes",
-                                                                  "counts_14"};
+                                                                  "counts_14",
+                                                                  "part",
+                                                                  "plan_probes",
+                                                                  "bounce_open",
+                                                                  "bounce_distance",
+                                                                  "bounce_rays_hit",
+                                                                  "bounce_rays",
+                                                                  "bounce_errors",
+                                                                  "unknown"};
 
 } // namespace relumine::fuzz

@@ -1,15 +1,37 @@
 // The sections of a .prt file without its container, so that mutations reach what is in them: for
-// each section the letter of its name (below), its size (two bytes, low first) and its bytes.
+// each section the letter of its name (below), its size (two bytes, low first) and its bytes. With
+// a section `plan` they are those of a plan, whose light is computed.
 #include <array>
 #include <vector>
 
+#include "prt/parts/part_file.h"
 #include "prt/scene/section_group.h"
+#include "relumine/precompute.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/scene_target.h"
 #include "tests/fuzz/section_names.h"
 
+namespace {
+
+using namespace relumine;
+
+void try_plan(prt::Sections&& sections) {
+    const PartOptions options{
+        .plan = fuzz::file("input.plan", prt::packed_sections(prt::to_write(std::move(sections)))),
+        .output = fuzz::folder() / "part.prt"};
+    const auto plan = fuzz::accepted([&] { return prt::load_plan(options.plan); });
+    constexpr std::size_t MostPairs = 10'000;
+    if (plan && plan->scene.receivers.size() * plan->scene.transfer.num_clusters() <= MostPairs &&
+        plan->scene.settings.face_resolution <= 8)
+        static_cast<void>(fuzz::accepted([&] {
+            precompute_part(options);
+            return true;
+        }));
+}
+
+} // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    using namespace relumine;
     std::span<const std::byte> rest = fuzz::bytes(data, size);
     prt::Sections sections;
     while (rest.size() >= 3) {
@@ -23,8 +45,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             sections[std::string(fuzz::SectionNames[letter])].assign(content.begin(),
                                                                      content.end());
     }
-    if (const auto scene =
-            fuzz::accepted([&] { return prt::scene_of("input.prt", std::move(sections)); }))
+    if (sections.contains("plan"))
+        try_plan(std::move(sections));
+    else if (const auto scene = fuzz::accepted([&] {
+                 return prt::scene_of(
+                     {"input.prt", prt::packed_sections(prt::to_write(std::move(sections)))});
+             }))
         fuzz::require_sound(*scene);
     return 0;
 }

@@ -20,6 +20,8 @@
 #include "mesh/load.h"
 #include "mesh/save.h"
 #include "prt/glossy/glossy_precompute.h"
+#include "prt/parts/part_file.h"
+#include "prt/parts/part_file.h"
 #include "prt/precompute.h"
 #include "prt/scene/scene_file.h"
 #include "prt/scene/section_file.h"
@@ -255,6 +257,12 @@ void write_scenes(const fs::path& folder) {
     prt::set_surfaces(scene.transfer, scene.receivers);
     scene.settings.glossy_tolerance = 0.5f;
     save("glossy");
+    prt::Plan plan{.scene = scene, .has_clusters = true};
+    plan.scene.transfer.glossy.reset();
+    plan.scene.transfer.counts = {};
+    prt::save_plan(folder / "prt" / "glossy.plan", plan);
+    write(folder / "sections" / "glossy_plan", lettered(folder / "prt" / "glossy.plan"));
+    fs::remove(folder / "prt" / "glossy.plan");
 
     // Four texels of one triangle.
     prt::Scene texels;

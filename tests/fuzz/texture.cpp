@@ -5,10 +5,13 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace relumine;
-    const auto texture = fuzz::accepted(
-        [&] { return mesh::decode_texture(fuzz::bytes(data, size), mesh::VOrigin::Bottom); });
-    const auto alpha = fuzz::accepted(
-        [&] { return mesh::decode_alpha_texture(fuzz::bytes(data, size), mesh::VOrigin::Bottom); });
+    const auto decoded = [&](const auto& decode) {
+        mesh::ImageBudget budget;
+        return fuzz::accepted(
+            [&] { return decode(fuzz::bytes(data, size), mesh::VOrigin::Bottom, budget); });
+    };
+    const auto texture = decoded(mesh::decode_texture);
+    const auto alpha = decoded(mesh::decode_alpha_texture);
     if (!texture)
         return 0;
     fuzz::require(alpha && (alpha->width == texture->width || alpha->width == 1),

@@ -1,22 +1,26 @@
-// The bytes of sections that were to be written.
+// Sections that no file has.
 #pragma once
 
-#include <cstddef>
-#include <span>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "prt/scene/section_file.h"
+#include "prt/scene/section_reader.h"
 
 namespace relumine::scenes {
 
+[[nodiscard]] inline prt::SectionReader reader_of(const std::filesystem::path& path,
+                                                  prt::Sections sections) {
+    return {path, prt::packed_sections(prt::to_write(std::move(sections)))};
+}
+
 [[nodiscard]] inline prt::Sections made(const prt::NewSections& sections) {
+    const prt::PackedSections packed("made", prt::packed_sections(sections));
     prt::Sections result;
-    for (const auto& [name, content] : sections) {
-        std::vector<std::byte> own;
-        const std::span<const std::byte> bytes =
-            content.bytes(0, static_cast<std::size_t>(content.size()), own);
-        result[name].assign(bytes.begin(), bytes.end());
-    }
+    for (const std::string& name : packed.names())
+        result[name] = packed.bytes(name);
     return result;
 }
 

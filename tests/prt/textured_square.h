@@ -25,8 +25,9 @@ inline mesh::TriangleMesh textured_square() {
     mesh.triangles = {{0, 1, 3}, {0, 3, 2}};
     mesh.uvs = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
     const std::string file = four_colors_tga();
+    mesh::ImageBudget budget;
     mesh.textures.push_back(
-        mesh::decode_texture(std::as_bytes(std::span(file)), mesh::VOrigin::Bottom));
+        mesh::decode_texture(std::as_bytes(std::span(file)), mesh::VOrigin::Bottom, budget));
     mesh.materials = {{.name = "plain", .base_color = {0.5f, 0.25f, 1.0f}},
                       {.name = "textured",
                        .base_color = {1.0f, 1.0f, 0.5f},

@@ -71,6 +71,18 @@ def wrong(message, vertices=None, triangles=None, **others):
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize("dtype", ["f4", "f8", "u4", "i8"])
+def test_what_is_checked_is_a_copy(dtype):
+    """Other threads may write the user's array between its check and its use."""
+    given = np.zeros((4, 3), dtype=dtype)
+    for taken in (
+        relumine._arrays.floats("given", given, None, 3),
+        relumine._arrays.doubles("given", given, None, 3),
+        relumine._arrays.indices("given", given, 1, None, 3),
+    ):
+        assert not np.shares_memory(taken, given)
+
+
 def test_wrong_arrays_are_named():
     vertices, triangles = tetrahedron()
     nan, huge = vertices.copy(), vertices.copy()

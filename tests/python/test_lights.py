@@ -45,6 +45,17 @@ def test_lists_come_back(sky, folder):
     assert again.method == "median-cut"
 
 
+def test_a_list_that_was_changed_is_checked_again(relighter, folder):
+    for name, value in (("directions", np.nan), ("irradiances", -1.0), ("solid_angles", np.inf)):
+        lights = relumine.LightList([[0, 1, 0]], [[1, 1, 1]])
+        getattr(lights, name)[0] = value
+        with pytest.raises(ValueError, match=f"^{name}: expected"):
+            relighter.set_lights(lights)
+    lights.solid_angles = np.zeros(3)
+    with pytest.raises(ValueError, match="^solid_angles: expected shape"):
+        lights.save("a.json")
+
+
 def test_many_lights_are_the_environment(relighter, sky):
     exact = relighter.radiance.copy()
     relighter.set_lights(sky.place_lights(256))

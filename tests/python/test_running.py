@@ -145,6 +145,27 @@ def test_threads_on_one_relighter_take_turns(relighter, sky):
     assert any((relighter.radiance == one).all() for one in expected)
 
 
+def test_threads_that_wait_are_no_progress_functions(relighter, sky):
+    """A long call that ends while another waits does not leave its thread behind as the caller."""
+    relighter.set_environment(sky)
+    errors = []
+
+    def work():
+        try:
+            for _ in range(10):
+                relighter.set_environment(sky)
+                relighter.picture(size=(16, 12))
+        except RuntimeError as error:
+            errors.append(str(error))
+
+    threads = [threading.Thread(target=work) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert errors == []
+
+
 def test_threads_relight_while_python_runs(scene, sky):
     """Two threads in C++ and one in Python: none waits for the others."""
     relighters = [relumine.Relighter(scene) for _ in range(2)]

@@ -201,6 +201,17 @@ TEST(LitScene, IsVerifiedByExactIntegration) {
     EXPECT_LT(some.error.relative_l2, 0.05);
     EXPECT_EQ(verify(scene, {.num_samples = 0}).receivers.size(), scene.radiance().size());
 
+    // Points of the surface, which may be far more than receivers, have their part of the progress.
+    std::vector<double> told;
+    static_cast<void>(
+        verify(scene, {.num_samples = 10, .num_surface_points = 90, .on_progress = [&](double f) {
+                           told.push_back(f);
+                       }}));
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    ASSERT_FALSE(told.empty());
+    EXPECT_NEAR(told.back(), 1.0, 1e-9);
+    EXPECT_LT(told.front(), 0.1);
+
     std::stop_source stop;
     stop.request_stop();
     EXPECT_THROW(static_cast<void>(verify(scene, {.stop = stop.get_token()})), Cancelled);

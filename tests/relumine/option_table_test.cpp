@@ -22,14 +22,14 @@ TEST(Sides, AreTwoNumbers) {
 TEST(Numbers, AreTheWholeText) {
     EXPECT_EQ(parse_number("1.5"), 1.5);
     EXPECT_EQ(parse_number("-2e3"), -2000.0);
-    for (const char* text : {"", "x", "1x", "1 2", "1,5"})
+    for (const char* text : {"", "x", "1x", "1 2", "1,5", "0x10", "-0X1p3"})
         EXPECT_FALSE(parse_number(text)) << text;
     EXPECT_EQ(parse_count("0"), 0u);
     EXPECT_EQ(parse_count("4294967295"), 4294967295u);
     for (const char* text : {"", "-1", "+1", "1.0", "4294967296", "0x10", " 1", "1 ", "64x64"})
         EXPECT_FALSE(parse_count(text)) << text;
     EXPECT_THAT(parse_numbers("1,-2.5,3"), testing::Optional(testing::ElementsAre(1, -2.5, 3)));
-    for (const char* text : {"", "1,", ",1", "1,x", "1,,2"})
+    for (const char* text : {"", "1,", ",1", "1,x", "1,,2", "1,0x2"})
         EXPECT_FALSE(parse_numbers(text)) << text;
 }
 

@@ -1,5 +1,6 @@
 #include "relumine/output.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -47,6 +48,17 @@ TEST_F(Output, OfManyFramesIsThatOfOne) {
         EXPECT_EQ(painter.draw(scene.lighting()).pixels,
                   draw(scene, {.width = 20, .height = 10, .samples_per_axis = 2}).pixels);
     }
+}
+
+TEST_F(Output, TellsHowMuchIsDrawn) {
+    const LitScene scene = lit();
+    Painter painter(scene, {.width = 200, .height = 100, .samples_per_axis = 1});
+    std::vector<double> told;
+    painter.on_progress([&](double fraction) { told.push_back(fraction); });
+    static_cast<void>(painter.draw(scene.lighting()));
+    EXPECT_GT(told.size(), 3u);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_EQ(told.back(), 1.0);
 }
 
 TEST_F(Output, LooksThroughTheCameraThatIsGiven) {

@@ -29,6 +29,26 @@ TEST_F(MaxMemory, RefusesBeforeTheWorkWithBothFigures) {
         misuse(run(size), "--max-memory");
 }
 
+TEST_F(MaxMemory, IsAskedBeforeAFloorIsMade) {
+    succeed({"generate", "knot", "-o", ".", "--vertices", "1000", "-q"});
+    const Result refused = fail(run("150M", {"--floor", "4097"}),
+                                {"knot.ply: expected work within 150 MB, got a floor with which"});
+    EXPECT_LT(refused.peak_bytes, SanitizerFactor * (std::uint64_t{150} << 20));
+}
+
+TEST_F(MaxMemory, TheProcessorIsNotBlamedForALimitOfTheSystem) {
+    if (SanitizerFactor != 1)
+        GTEST_SKIP() << "sanitizers take terabytes of addresses";
+    write("mesh.obj", octahedron_obj());
+    for (const std::uint64_t megabytes : {90, 120, 150, 200}) {
+        const Result result =
+            relumine({"precompute", "mesh.obj", "-o", "scene.prt", "-q", "--no-refine"},
+                     {.max_address_bytes = megabytes * 1'000'000});
+        EXPECT_NE(result.exit_code, -1) << result.described();
+        EXPECT_EQ(result.err.find("processor"), std::string::npos) << result.described();
+    }
+}
+
 TEST_F(MaxMemory, EnoughOfItChangesNothing) {
     succeed({"generate", "knot", "-o", ".", "--vertices", "5000", "-q"});
     succeed({"precompute", "knot.ply", "-o", "plain.prt", "--tolerance", "0.05", "-q"});

@@ -81,6 +81,7 @@ TEST_F(Verify, ItIsTheSceneFileThatIsTested) {
 TEST_F(Verify, BadOptionsAreRefused) {
     for (const char* samples : {"-5", "nan", "1.5", "all"})
         misuse({"verify", "scene.prt", "white.hdr", "--samples", samples}, "--samples");
+    misuse({"verify", "scene.prt", "white.hdr", "--surface", "4294967296"}, "--surface");
     misuse({"verify", "scene.prt", "white.hdr", "--seed", "-1"}, "--seed");
     fail({"verify", "missing.prt", "white.hdr"}, {"missing.prt"});
     fail({"verify", "scene.prt", "missing.hdr"}, {"missing.hdr"});

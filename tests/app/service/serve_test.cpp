@@ -32,7 +32,8 @@ using nlohmann::json;
 /// A client of a server's socket.
 class Client {
 public:
-    explicit Client(const fs::path& path) : socket_(::socket(AF_UNIX, SOCK_STREAM, 0)) {
+    explicit Client(const fs::path& path, int flags = 0)
+        : socket_(::socket(AF_UNIX, SOCK_STREAM | flags, 0)) {
         sockaddr_un address{};
         address.sun_family = AF_UNIX;
         std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
@@ -197,6 +198,7 @@ TEST_F(Serve, AFailedRequestIsOneLineAndTheSceneGoesOn) {
     for (std::size_t i = 0; i < all.size(); ++i) {
         EXPECT_EQ(all[i]["ok"], parts[i].empty()) << all[i];
         EXPECT_NE(all[i].value("error", "").find(parts[i]), std::string::npos) << all[i];
+        EXPECT_GE(all[i].value("seconds", -1.0), 0.0) << all[i];
     }
     EXPECT_TRUE(fs::exists(folder() / "after.npy"));
     EXPECT_FALSE(fs::exists(folder() / "a.png"));
@@ -336,15 +338,32 @@ TEST_F(Serve, ClientsThatGoAwayOrDoNotReadDoNoHarm) {
     EXPECT_TRUE(server.is_running());
 }
 
+TEST_F(Serve, SixtyFourClientsMayConnectWhileARequestIsAnswered) {
+    Process server(folder(), {"serve", "socket"});
+    wait_for(socket());
+    server.send(SIGSTOP);
+    std::vector<std::unique_ptr<Client>> clients;
+    for (int i = 0; i < 64; ++i)
+        clients.push_back(std::make_unique<Client>(socket(), SOCK_NONBLOCK));
+    for (const auto& client : clients)
+        EXPECT_TRUE(client->is_open());
+    server.send(SIGCONT);
+}
+
 TEST_F(Serve, LinesHaveABound) {
     Process server(folder(), {"serve", "socket"});
     wait_for(socket());
     Client client(socket());
     const std::string part(1 << 20, ' ');
-    for (int i = 0; i < 40; ++i)
+    for (int i = 0; i < 17; ++i)
+        client.send(part);
+    // Refused before it ends.
+    const json refused = client.receive();
+    EXPECT_NE(refused["error"].dump().find("at most 16777216 bytes"), std::string::npos);
+    EXPECT_GE(refused.value("seconds", -1.0), 0.0);
+    for (int i = 0; i < 23; ++i)
         client.send(part);
     client.send("\n" + scene_ + "\n");
-    EXPECT_NE(client.receive()["error"].dump().find("at most 16777216 bytes"), std::string::npos);
     EXPECT_EQ(client.receive()["ok"], true);
     server.send(SIGTERM);
     EXPECT_LT(server.wait().peak_bytes, SanitizerFactor * (std::uint64_t{200} << 20));

@@ -90,6 +90,7 @@ TEST(HdrFile, OtherContentIsRefusedByName) {
     EXPECT_EQ(refusal("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=-1\n\n-Y 1 +X 1\nabcd"),
               "name: expected a positive exposure, got -1");
     EXPECT_NE(refusal("#?RADIANCE\nEXPOSURE=nan\n\n-Y 1 +X 1\nabcd"), "");
+    EXPECT_NE(refusal("#?RADIANCE\nEXPOSURE=0x10\n\n-Y 1 +X 1\nabcd"), "");
     EXPECT_NE(refusal("#?RADIANCE\nEXPOSURE=x\n\n-Y 1 +X 1\nabcd"), "");
     EXPECT_NE(refusal(Header + "-Y 1 +X 2\n" + pixel(1, 1, 1, 1) + "abcd"), "")
         << "a repetition of nothing";

@@ -9,7 +9,8 @@ namespace relumine::mesh {
 namespace {
 
 Texture decoded(const std::string& file, VOrigin origin = VOrigin::Top) {
-    return decode_texture(bytes_of(file), origin);
+    ImageBudget budget;
+    return decode_texture(bytes_of(file), origin, budget);
 }
 
 void expect_color(const glm::vec3& got, const glm::vec3& expected) {
@@ -96,6 +97,61 @@ TEST(Texture, RefusesWhatIsNoImage) {
         } catch (const std::runtime_error& error) {
             EXPECT_EQ(std::string_view(error.what()).find('\n'), std::string_view::npos);
         }
+}
+
+/// A PNG file of 2 x 2 pixels of RGB with the deflate stream.
+std::string png_of(const std::string& deflated) {
+    const auto chunk = [](const std::string& type, const std::string& data) {
+        const auto size = static_cast<std::uint32_t>(data.size());
+        std::string length;
+        for (const std::uint32_t shift : {24u, 16u, 8u, 0u})
+            length += static_cast<char>(size >> shift & 0xffu);
+        return length + type + data + "sums";
+    };
+    return "\x89PNG\r\n\x1a\n" + chunk("IHDR", std::string("\0\0\0\2\0\0\0\2\x8\2\0\0\0", 13)) +
+           chunk("IDAT", "\x78\x01" + deflated) + chunk("IEND", "");
+}
+
+/// A deflate stream of a zero and 258 more for each run, in a block of fixed codes.
+std::string zeros_deflated(int num_runs) {
+    std::string bytes;
+    int num_bits = 0;
+    const auto put = [&](const char* bits) {
+        for (; *bits != 0; ++bits, ++num_bits) {
+            if (num_bits % 8 == 0)
+                bytes += '\0';
+            if (*bits == '1')
+                bytes.back() = static_cast<char>(bytes.back() | 1 << (num_bits % 8));
+        }
+    };
+    put("110"); // the last block
+    put("00110000");
+    for (int i = 0; i < num_runs; ++i)
+        put("1100010100000"); // 258 times the byte before
+    put("0000000");
+    return bytes + "sums";
+}
+
+TEST(Texture, APngHasNoMoreDataThanItsPixels) {
+    EXPECT_EQ(decoded(png_of(zeros_deflated(1))).texels, std::vector<Rgb8>(4));
+    // A million bytes for 2 x 2 pixels, in 7 KB.
+    expect_refusal([] { return decoded(png_of(zeros_deflated(4000))); },
+                   "broken data: 'more than its pixels take'");
+    // A block of the kind that does not exist, for which stb_image has no words.
+    expect_refusal([] { return decoded(png_of("\x7")); }, "broken data: 'an unknown fault'");
+}
+
+TEST(Texture, TheImagesOfAFileHaveOneBudget) {
+    constexpr std::uint64_t Cheap = std::uint64_t{1} << 28;
+    ImageBudget budget;
+    EXPECT_TRUE(budget.allows(Cheap - 12, 0));
+    const std::string image = four_colors();
+    static_cast<void>(decode_texture(bytes_of(image), VOrigin::Top, budget));
+    EXPECT_FALSE(budget.allows(Cheap, 1000));
+    expect_refusal([&] { return decode_texture(bytes_of(image), VOrigin::Top, budget); },
+                   "images that the bytes of their files and the memory allow");
+    EXPECT_TRUE(ImageBudget().allows(512 * 600'000, 600'000)) << "a file of many bytes";
+    EXPECT_FALSE(ImageBudget().allows(std::uint64_t{1} << 60, std::uint64_t{1} << 60));
 }
 
 /// A BMP or TGA file of 3 x 2 pixels by the writer.

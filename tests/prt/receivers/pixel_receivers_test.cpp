@@ -55,6 +55,27 @@ TEST(PixelReceivers, CoverASpheresSilhouette) {
     }
 }
 
+TEST(PixelReceivers, TellTheirProgressAndStop) {
+    const mesh::TriangleMesh sphere = scenes::icosphere(2, 1.0f, glm::vec3(0.0f));
+    const RayScene rays(sphere);
+    const PixelView view{
+        .camera = {.eye = {0, 0, 4}, .target = glm::vec3(0)}, .width = 8, .height = 1000};
+    std::vector<double> told;
+    const auto pixels = pixel_receivers(sphere, rays, view, {.on_progress = [&](double fraction) {
+                                            told.push_back(fraction);
+                                        }});
+    EXPECT_EQ(pixels.layout.samples, seen(sphere, view).layout.samples);
+    EXPECT_GT(told.size(), 4u);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_EQ(told.back(), 1.0);
+
+    std::stop_source stop;
+    const Work work{.stop = stop.get_token(), .on_progress = [&](double) {
+                        stop.request_stop();
+                    }};
+    EXPECT_THROW(static_cast<void>(pixel_receivers(sphere, rays, view, work)), Cancelled);
+}
+
 TEST(PixelReceivers, FacetsDoNotShadeACoarseSphereWhereLightGrazes) {
     const mesh::TriangleMesh sphere = scenes::icosphere(2, 1.0f, glm::vec3(0.0f));
     const RayScene rays(sphere);

@@ -35,12 +35,12 @@ TEST(BounceSections, KeepEveryRow) {
     const BounceMatrix matrix = matrix_of_all_kinds();
     NewSections sections;
     add_bounce_sections(sections, matrix);
-    const SectionReader reader("scene.prt", scenes::made(sections));
+    const SectionReader reader("scene.prt", packed_sections(sections));
     EXPECT_EQ(read_bounces(reader, NumReceivers), matrix);
 }
 
 TEST(BounceSections, MayBeAbsent) {
-    EXPECT_FALSE(read_bounces(SectionReader("scene.prt", {}), NumReceivers));
+    EXPECT_FALSE(read_bounces(scenes::reader_of("scene.prt", {}), NumReceivers));
 }
 
 TEST(BounceSections, DamageIsRefused) {
@@ -50,7 +50,7 @@ TEST(BounceSections, DamageIsRefused) {
         add_bounce_sections(added, matrix);
         Sections sections = scenes::made(added);
         damage(sections);
-        const SectionReader reader("scene.prt", std::move(sections));
+        const SectionReader reader = scenes::reader_of("scene.prt", std::move(sections));
         EXPECT_THROW(static_cast<void>(read_bounces(reader, NumReceivers)), std::runtime_error);
     };
     refuses([](Sections& s) { s["bounce_weights"].pop_back(); });

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/prt/damaged_file.h"
+#include "tests/prt/made_sections.h"
 
 namespace relumine::prt {
 namespace {
@@ -55,7 +56,7 @@ protected:
     void TearDown() override { fs::remove_all(folder_); }
 
     VisibleCounts read(Sections sections) const {
-        const SectionReader reader(file_, std::move(sections));
+        const SectionReader reader = scenes::reader_of(file_, std::move(sections));
         VisibleCounts counts{.num_receivers = counts_.num_receivers,
                              .num_leaves = counts_.num_leaves};
         read_counts(reader, counts);
@@ -84,7 +85,7 @@ TEST_F(CountSectionsTest, EveryValueComesBack) {
 
 TEST_F(CountSectionsTest, TilesAreReadAlone) {
     const std::size_t num_tiles = counts_.num_tiles();
-    const SectionReader reader(file_, read_sections(file_, long_count_sections()));
+    const SectionReader reader(file_);
     for (const std::vector<std::size_t>& tiles : std::vector<std::vector<std::size_t>>{
              {0}, {1, 3}, {0, 2}, {num_tiles - 1}, {0, 1, 2, 3}}) {
         std::vector<std::uint64_t> mixed;

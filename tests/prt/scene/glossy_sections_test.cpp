@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "prt/parts/part_file.h"
 #include "prt/parts/scene_part.h"
 #include "prt/scene/scene_file.h"
 #include "tests/prt/damaged_file.h"
@@ -108,6 +109,22 @@ TEST_F(GlossySections, AnEyeIsNeeded) {
     sections.erase("r_to_eye");
     write_sections(path_, to_write(sections));
     scenes::expect_refused(path_, "eye", [&] { static_cast<void>(load_scene(path_)); });
+}
+
+TEST_F(GlossySections, APlanNeedsAnEyeAndSurfacesToo) {
+    scene_.transfer.glossy.reset();
+    scene_.transfer.counts = {};
+    const auto num_clusters = scene_.transfer.num_clusters();
+    save_plan(path_, {.scene = std::move(scene_), .has_clusters = true});
+    EXPECT_EQ(load_plan(path_).scene.transfer.num_clusters(), num_clusters);
+    const Sections good = read_sections(path_);
+    for (const char* name : {"r_to_eye", "r_albedo"}) {
+        Sections sections = good;
+        sections.erase(name);
+        write_sections(path_, to_write(sections));
+        scenes::expect_refused(path_, "directions to the eye and surfaces with highlights",
+                               [&] { static_cast<void>(load_plan(path_)); });
+    }
 }
 
 } // namespace

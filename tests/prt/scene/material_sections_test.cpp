@@ -1,7 +1,10 @@
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "prt/glossy/surface_sampling.h"
 #include "prt/scene/section_group.h"
+#include "tests/prt/damaged_file.h"
 #include "tests/prt/made_sections.h"
 #include "tests/prt/textured_square.h"
 
@@ -16,7 +19,7 @@ mesh::TriangleMesh read(Sections sections, const mesh::TriangleMesh& from) {
     result.normals = from.normals;
     result.triangles = from.triangles;
     result.uvs = from.uvs;
-    MaterialSections.read({"scene.prt", std::move(sections)}, scene);
+    MaterialSections.read(scenes::reader_of("scene.prt", std::move(sections)), scene);
     return scene.mesh;
 }
 
@@ -35,6 +38,17 @@ void expect_same_colors(const mesh::TriangleMesh& a, const mesh::TriangleMesh& b
             const glm::vec2 point(0.02f * static_cast<float>(i), 0.3f);
             EXPECT_EQ(surface_at(a, triangle, point).albedo, surface_at(b, triangle, point).albedo);
         }
+}
+
+TEST(MaterialSections, UvsOfCornersAreFinite) {
+    const std::filesystem::path path = "scene.prt";
+    Scene scene;
+    scene.mesh = scenes::textured_square();
+    scene.mesh.corner_uvs.resize(scene.mesh.num_triangles());
+    MaterialSections.check(SceneCheck(path), scene);
+    scene.mesh.corner_uvs[1][2].y = NAN;
+    scenes::expect_refused(path, "finite uvs of corners, got element 1",
+                           [&] { MaterialSections.check(SceneCheck(path), scene); });
 }
 
 TEST(MaterialSections, KeepTheColoursOfEveryPoint) {

@@ -270,8 +270,8 @@ TEST_F(SectionFileTest, RefusesForgedTables) {
     });
 }
 
-TEST_F(SectionFileTest, WhatIsHardlyBelievableIsReadPiecewise) {
-    // 3000 times its stored size: true, so it is read; a frame that lies is refused.
+TEST_F(SectionFileTest, WhatPacksWellIsReadAndLiesAreRefused) {
+    // 3000 times its stored size: true, so it is read.
     std::vector<std::byte> zeros((std::size_t{1} << 27) + 12345);
     zeros.back() = std::byte{1};
     write_sections(file_, {{"zeros", zeros}});
@@ -279,12 +279,12 @@ TEST_F(SectionFileTest, WhatIsHardlyBelievableIsReadPiecewise) {
 
     std::vector<std::byte> lie = files::read(file_);
     const auto offset = value_at<std::uint64_t>(lie, HeaderSize + OffsetAt);
-    const std::uint64_t claimed = 0x60000000; // 1.5 GB
+    const std::uint64_t claimed = 0x0c000000; // 200 MB
     // zstd's magic number, a frame header with nothing but the size in four bytes, five bytes of
     // one last raw block.
     std::vector<std::byte> frame = text(std::string("\x28\xb5\x2f\xfd\xa0????\x29\0\0hello", 17));
     put(frame, 5, static_cast<std::uint32_t>(claimed));
-    frame.resize(20000); // so that the ratio is below the largest
+    frame.resize(20000);
     lie.resize(offset);
     lie.insert(lie.end(), frame.begin(), frame.end());
     put(lie, FileSizeAt, std::uint64_t{lie.size()});
@@ -296,6 +296,47 @@ TEST_F(SectionFileTest, WhatIsHardlyBelievableIsReadPiecewise) {
     expect_refused("expected zstd data, got a damaged section 'zeros'");
 }
 
+TEST_F(SectionFileTest, AFileHasOneBudget) {
+    const SectionContent zeros(std::uint64_t{200} << 20,
+                               [](std::uint64_t, std::span<std::byte> piece) {
+                                   std::fill(piece.begin(), piece.end(), std::byte{0});
+                               });
+    const SectionContent too_many(std::uint64_t{300} << 20,
+                                  [](std::uint64_t, std::span<std::byte> piece) {
+                                      std::fill(piece.begin(), piece.end(), std::byte{0});
+                                  });
+    write_sections(file_, {{"a", zeros}, {"b", zeros}, {"c", too_many}, {"d", text("small")}});
+    const PackedSections packed(file_);
+    const auto refuses = [&](const std::string& name) {
+        scenes::expect_refused(file_, "sections that a file of ",
+                               [&] { static_cast<void>(packed.bytes(name)); });
+    };
+    refuses("c");
+    scenes::expect_refused(file_, "sections that a file of ", [&] {
+        packed.stream("c", std::nullopt, [](std::span<const std::byte>) {});
+    });
+    scenes::expect_refused(file_, "sections that a file of ",
+                           [&] { static_cast<void>(packed.bytes("d", std::uint64_t{1} << 28)); });
+    EXPECT_EQ(packed.bytes("a").size(), zeros.size());
+    refuses("b"); // beside the first one
+    EXPECT_EQ(packed.bytes("d"), text("small")) << "what nobody asks for costs nothing";
+}
+
+TEST_F(SectionFileTest, MillionsOfFramesAreRefused) {
+    write_sections(file_, {{"empty", {}}});
+    std::vector<std::byte> bad = files::read(file_);
+    const auto offset =
+        static_cast<std::ptrdiff_t>(value_at<std::uint64_t>(bad, HeaderSize + OffsetAt));
+    const std::vector<std::byte> frame(bad.begin() + offset, bad.end());
+    bad.insert(bad.end(), frame.begin(), frame.end());
+    put(bad, FileSizeAt, std::uint64_t{bad.size()});
+    put(bad, HeaderSize + StoredSizeAt, std::uint64_t{2 * frame.size()});
+    put(bad, HeaderSize + ChecksumAt, XXH64(bad.data() + offset, 2 * frame.size(), 0));
+    sign(bad);
+    write(bad);
+    expect_refused("expected zstd data, got a damaged section 'empty'");
+}
+
 TEST_F(SectionFileTest, LargeSectionsAreSeveralFrames) {
     std::mt19937 random(3);
     std::vector<std::byte> large((std::size_t{5} << 20) + 7);
@@ -303,7 +344,7 @@ TEST_F(SectionFileTest, LargeSectionsAreSeveralFrames) {
     write_sections(file_, {{"large", large}});
     EXPECT_TRUE(read_sections(file_).at("large") == large);
     std::vector<std::byte> streamed;
-    stream_section(file_, "large", large.size(), [&](std::span<const std::byte> piece) {
+    PackedSections(file_).stream("large", large.size(), [&](std::span<const std::byte> piece) {
         streamed.insert(streamed.end(), piece.begin(), piece.end());
     });
     EXPECT_TRUE(streamed == large);
