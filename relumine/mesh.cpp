@@ -62,6 +62,7 @@ std::uint32_t move_floor_last(mesh::TriangleMesh& mesh, std::size_t first_of_flo
     sort(mesh.normals);
     sort(mesh.colors);
     sort(mesh.uvs);
+    sort(mesh.lifts);
     for (mesh::Triangle& triangle : mesh.triangles)
         for (std::uint32_t& vertex : triangle)
             vertex = places[vertex];
@@ -82,6 +83,7 @@ mesh::TriangleMesh part_of(const mesh::TriangleMesh& mesh, std::size_t begin, st
     keep_vertices(part.normals);
     keep_vertices(part.colors);
     keep_vertices(part.uvs);
+    keep_vertices(part.lifts);
     const auto keep_triangles = [&](auto& values) {
         if (values.empty())
             return;
@@ -111,6 +113,11 @@ void append(mesh::TriangleMesh& mesh, const mesh::TriangleMesh& part) {
     add(mesh.normals, part.normals);
     add(mesh.colors, part.colors);
     add(mesh.uvs, part.uvs);
+    if (!mesh.lifts.empty() || !part.lifts.empty()) {
+        mesh.lifts.resize(first, glm::vec3(0.0f));
+        add(mesh.lifts, part.lifts);
+        mesh.lifts.resize(mesh.num_vertices(), glm::vec3(0.0f));
+    }
     add(mesh.corner_uvs, part.corner_uvs);
     add(mesh.triangle_materials, part.triangle_materials);
     add(mesh.triangle_groups, part.triangle_groups);

@@ -21,9 +21,8 @@ struct RefineOptions {
     std::optional<float> error = 0.01f;
     /// Longer edges are split in any case. Empty: none.
     std::optional<float> max_edge = {};
-    /// Triangles of the mesh without a side longer than this, and those that are shaded round, are
-    /// left as they are, but for sides that they share with others, and cost nothing. Empty: all
-    /// triangles are refined.
+    /// Triangles of the mesh without a side longer than this are left as they are, but for sides
+    /// that they share with others, and cost nothing. Empty: all triangles are refined.
     std::optional<float> coarse_edge = {};
     /// Edges shorter than twice this are not split, in the mesh's unit. Empty: 1/1000 of the mesh's
     /// diagonal.
