@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -54,9 +53,6 @@ constexpr std::size_t FewestOfRound = 32, PartsOfWhole = 64;
 
 /// Bounds of edges give way to errors until so small a part of the first edges has bounds only.
 constexpr std::size_t PartsWithBounds = 16;
-
-/// A vertex that fewer of the 1,536 directions reach is hidden, in another solid or under one.
-constexpr int FewestDirections = 16;
 
 /// As vertex_receivers() does it: a part of the way to the triangle's centre, or the bias.
 constexpr float LargestPartOfWay = 0.25f;
@@ -265,14 +261,8 @@ private:
                 std::abs(angles[middle.vertex] - 2.0 * std::numbers::pi) < LargestGap;
     }
 
-    [[nodiscard]] static int num_lit(const Bits& bits) {
-        int result = 0;
-        for (const std::uint64_t word : bits)
-            result += std::popcount(word);
-        return result;
-    }
     [[nodiscard]] bool is_hidden(std::uint32_t vertex) const {
-        return num_lit(vertex_bits_[vertex]) < FewestDirections;
+        return CoarseDirections::num_lit(vertex_bits_[vertex]) < CoarseDirections::FewestDirections;
     }
     [[nodiscard]] bool moves_to(std::uint32_t hidden, std::uint32_t lit) const {
         return is_movable_[hidden] && is_hidden(hidden) && !is_hidden(lit);
@@ -321,8 +311,9 @@ private:
             for (std::size_t j = 0; j < ways.size(); ++j) {
                 // Beside a solid half of the light is left. Gaps between solids let in little.
                 const int least =
-                    std::max(FewestDirections, num_lit(vertex_bits_[ways[j].towards]) / 4);
-                (num_lit(bits[j]) < least ? ways[j].hidden : ways[j].lit) =
+                    std::max(CoarseDirections::FewestDirections,
+                             CoarseDirections::num_lit(vertex_bits_[ways[j].towards]) / 4);
+                (CoarseDirections::num_lit(bits[j]) < least ? ways[j].hidden : ways[j].lit) =
                     0.5f * (ways[j].hidden + ways[j].lit);
             }
         }
@@ -629,7 +620,7 @@ private:
     std::vector<Candidate> candidates(std::size_t most) {
         std::vector<Candidate> all;
         for (std::uint32_t edge = 0; edge < split_.num_edges(); ++edge)
-            if (errors_[edge] > *options_.error && may_split(edge))
+            if (errors_[edge] > error_ && may_split(edge))
                 all.push_back(candidate(edge));
         for (;;) {
             const std::size_t size = std::min(all.size(), most);
@@ -645,7 +636,7 @@ private:
             for (auto first = all.begin(); first != end; ++first)
                 *first = candidate(first->edge);
             const auto last = std::remove_if(all.begin(), end, [this](const Candidate& each) {
-                return !(errors_[each.edge] > *options_.error);
+                return !(errors_[each.edge] > error_);
             });
             if (size == all.size() || unknown.size() <= size / PartsWithBounds) {
                 all.erase(last, all.end());
@@ -658,8 +649,18 @@ private:
 
     /// Splits the edges beyond the error, or those of them that matter most.
     bool split_by_error() {
+        const std::size_t num_added = num_vertices() - base_.num_vertices();
+        if (options_.error_of_few && num_added < options_.few) {
+            error_ = *options_.error_of_few;
+            if (split_worst(std::min(room(), options_.few - num_added)))
+                return true;
+        }
+        error_ = *options_.error;
+        return split_worst(room());
+    }
+
+    bool split_worst(std::size_t most) {
         // Without a limit that is near, all of them.
-        const std::size_t most = room();
         const std::size_t whole = options_.max_vertices - base_.num_vertices();
         const std::size_t of_round =
             std::max({most / RoundsToLimit, FewestOfRound, whole / PartsOfWhole});
@@ -683,7 +684,7 @@ private:
     [[nodiscard]] float largest_error() const {
         float result = 0.0f;
         for (std::uint32_t edge = 0; edge < split_.num_edges(); ++edge)
-            if (is_asked_[edge] && errors_[edge] > *options_.error && may_split(edge))
+            if (is_asked_[edge] && errors_[edge] > error_ && may_split(edge))
                 result = std::max(result, errors_[edge]);
         return result;
     }
@@ -716,6 +717,8 @@ private:
     float bias_;
     CoarseDirections directions_;
     float large_, fine_;
+    /// RefineOptions::error, or that of few.
+    float error_ = 0.0f;
     float min_edge_;
     /// [num_triangles of the beginning].
     std::vector<bool> is_refined_;
@@ -739,6 +742,8 @@ void check(const mesh::TriangleMesh& mesh, const RefineOptions& options) {
             fmt::format("expected an error >= 0, got {}", options.error.value_or(0.0f)));
     require(!options.max_edge || *options.max_edge > 0.0f,
             fmt::format("expected edges longer than 0, got {}", options.max_edge.value_or(0.0f)));
+    require(!options.error_of_few || *options.error_of_few >= 0.0f,
+            fmt::format("expected an error >= 0, got {}", options.error_of_few.value_or(0.0f)));
     const float min_edge = options.min_edge.value_or(0.0f);
     require(min_edge >= 0.0f, fmt::format("expected a shortest edge >= 0, got {}", min_edge));
     require(!options.max_edge || min_edge <= *options.max_edge,
