@@ -36,6 +36,9 @@ struct TriangleMesh {
     std::vector<glm::vec3> colors;
     /// [num_vertices], or empty.
     std::vector<glm::vec2> uvs;
+    /// [num_vertices] from each vertex to the smooth surface that the normals pretend, or empty:
+    /// the vertices lie on it. Rays start there, and the shape stays what it is.
+    std::vector<glm::vec3> lifts;
 
     /// [num_triangles], or empty. Used instead of uvs if a vertex has several (seams).
     std::vector<std::array<glm::vec2, 3>> corner_uvs;

@@ -13,6 +13,7 @@
 #include "mesh/half_edge/simplify.h"
 #include "mesh/normals.h"
 #include "prt/memory_estimate.h"
+#include "prt/refinement/lit_backs.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
 #include "relumine/stages.h"
@@ -64,6 +65,7 @@ std::uint32_t move_floor_last(mesh::TriangleMesh& mesh, std::size_t first_of_flo
     sort(mesh.normals);
     sort(mesh.colors);
     sort(mesh.uvs);
+    sort(mesh.lifts);
     for (mesh::Triangle& triangle : mesh.triangles)
         for (std::uint32_t& vertex : triangle)
             vertex = places[vertex];
@@ -84,6 +86,7 @@ mesh::TriangleMesh part_of(const mesh::TriangleMesh& mesh, std::size_t begin, st
     keep_vertices(part.normals);
     keep_vertices(part.colors);
     keep_vertices(part.uvs);
+    keep_vertices(part.lifts);
     const auto keep_triangles = [&](auto& values) {
         if (values.empty())
             return;
@@ -113,6 +116,11 @@ void append(mesh::TriangleMesh& mesh, const mesh::TriangleMesh& part) {
     add(mesh.normals, part.normals);
     add(mesh.colors, part.colors);
     add(mesh.uvs, part.uvs);
+    if (!mesh.lifts.empty() || !part.lifts.empty()) {
+        mesh.lifts.resize(first, glm::vec3(0.0f));
+        add(mesh.lifts, part.lifts);
+        mesh.lifts.resize(mesh.num_vertices(), glm::vec3(0.0f));
+    }
     add(mesh.corner_uvs, part.corner_uvs);
     add(mesh.triangle_materials, part.triangle_materials);
     add(mesh.triangle_groups, part.triangle_groups);
@@ -263,15 +271,17 @@ Mesh refined(Mesh mesh, const RefineOptions& options, const prt::Work& work, Ref
 
 namespace {
 
-/// Parts of the diagonal of the mesh without its floor. Triangles with longer sides are coarse:
-/// they are wider than some twenty pixels of a picture that the mesh fills. Edges of twice the
-/// least length are split.
-constexpr float CoarseEdge = 1.0f / 40.0f, LeastEdge = 1.0f / 320.0f,
+/// Parts of the diagonal of the mesh without its floor. A mesh with longer sides is coarse: they
+/// are wider than some twenty pixels of a picture that the mesh fills. Then triangles are refined
+/// that are wider than eight. Edges of twice the least length are split.
+constexpr float CoarseEdge = 1.0f / 40.0f, RefinedEdge = 1.0f / 100.0f, LeastEdge = 1.0f / 320.0f,
                 LeastEdgeOfFloor = 1.0f / 160.0f;
 
-/// RefineOptions::error. Twice what --refine asks for leaves a third of the vertices. Shadows on an
-/// even floor show every triangle, and its light hardly changes elsewhere.
-constexpr float ErrorOfMesh = 0.02f, ErrorOfFloor = 0.005f;
+/// RefineOptions::error. A few vertices are added wherever light shows; more only where it changes
+/// more than --refine allows. Shadows on an even floor show every triangle, and its light hardly
+/// changes elsewhere.
+constexpr float ErrorOfFew = 0.006f, ErrorOfMesh = 0.013f, ErrorOfFloor = 0.005f;
+constexpr std::size_t FewOfMesh = 10000;
 
 /// Where refined_by_itself() finds things: the scene, and what it adds to.
 struct Refining {
@@ -323,12 +333,19 @@ Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& wo
         const prt::BeamScene beams(before, rays);
         const Refining with{beams, bias.value_or(prt::automatic_bias(mesh.geometry)), work,
                             report != nullptr ? *report : local};
-        mesh.geometry = is_coarse ? refined_part(own,
-                                                 {.error = ErrorOfMesh,
-                                                  .coarse_edge = CoarseEdge * size,
-                                                  .min_edge = LeastEdge * size},
-                                                 BudgetOfMesh, with)
-                                  : own;
+        mesh.geometry = own;
+        if (is_coarse) {
+            mesh.geometry = prt::with_lit_backs(own, beams, with.bias, work);
+            const std::size_t num_of_backs = mesh.geometry.num_vertices() - first_of_floor;
+            with.report.num_added += num_of_backs;
+            mesh.geometry = refined_part(mesh.geometry,
+                                         {.error = ErrorOfMesh,
+                                          .error_of_few = ErrorOfFew,
+                                          .few = FewOfMesh,
+                                          .coarse_edge = RefinedEdge * size,
+                                          .min_edge = LeastEdge * size},
+                                         BudgetOfMesh, with);
+        }
         if (mesh.is_floor_open)
             floor =
                 refined_part(floor, {.error = ErrorOfFloor, .min_edge = LeastEdgeOfFloor * size},

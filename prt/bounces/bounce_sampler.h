@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "prt/receivers/receivers.h"
 #include "prt/transfer/transfer.h"
 #include "prt/visibility/ray_scene.h"
+#include "prt/visibility/twin_triangles.h"
 
 namespace relumine::prt {
 
@@ -80,6 +82,7 @@ private:
     const BounceOptions& options_;
     /// [num_vertices] place of each vertex.
     std::vector<std::uint32_t> place_of_;
+    std::unique_ptr<const TwinTriangles> twins_;
 };
 
 } // namespace relumine::prt

@@ -45,6 +45,7 @@ glm::vec3 shading_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point)
 glm::vec3 smooth_position(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
     const mesh::Triangle& triangle = mesh.triangles[point.triangle];
     const glm::vec3 flat = value_at(mesh, mesh.positions, point);
+    const glm::vec3 lifted = mesh.lifts.empty() ? flat : flat + value_at(mesh, mesh.lifts, point);
     const glm::vec3 weights(1.0f - point.barycentric.x - point.barycentric.y, point.barycentric.x,
                             point.barycentric.y);
     const glm::vec3 facing = face_normal(mesh, point.triangle);
@@ -55,12 +56,12 @@ glm::vec3 smooth_position(const mesh::TriangleMesh& mesh, const MeshPoint& point
         // A normal so far from the face's is that of an edge, not of a smooth surface.
         constexpr float Smooth = 0.7f;
         if (std::abs(glm::dot(normal, facing)) < Smooth)
-            return flat;
+            return lifted;
         // Onto the plane through the corner, where the point lies below it.
         const float below = std::min(0.0f, glm::dot(flat - mesh.positions[vertex], normal));
         moved -= weights[corner] * below * normal;
     }
-    return flat + moved;
+    return lifted + moved;
 }
 
 std::vector<MeshPoint> random_points(const mesh::TriangleMesh& mesh, std::size_t count,

@@ -35,7 +35,8 @@ struct MeshPoint {
 
 /// Returns the point moved outwards to the smooth surface that the vertex normals pretend. Shadow
 /// rays that start there do not see the facets of a convex mesh where the light grazes it. Points
-/// of flat and hollow parts stay where they are, and so do those beside a sharp edge.
+/// of flat and hollow parts stay where they are, and so do those beside a sharp edge. Lifts of
+/// the vertices come on top.
 ///
 /// Based on: J. Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021.
 [[nodiscard]] glm::vec3 smooth_position(const mesh::TriangleMesh& mesh, const MeshPoint& point);

@@ -36,6 +36,8 @@ std::vector<bool> inner_vertices(const mesh::TriangleMesh& mesh) {
 
 Receivers vertex_receivers(const mesh::TriangleMesh& mesh) {
     Receivers receivers{.positions = mesh.positions, .normals = mesh.normals};
+    for (std::size_t vertex = 0; vertex < mesh.lifts.size(); ++vertex)
+        receivers.positions[vertex] += mesh.lifts[vertex];
     const std::vector<bool> is_inner = inner_vertices(mesh);
     if (std::find(is_inner.begin(), is_inner.end(), false) == is_inner.end())
         return receivers;

@@ -36,7 +36,8 @@ struct Receivers {
 
 /// Returns one receiver per vertex, in the mesh's order: geometry relighting, any view [JN, Section
 /// 3.1]. Vertices on the rim of a surface look from a little inside of it, by automatic_bias(): a
-/// wall that meets the floor at a hard edge must not look out under it.
+/// wall that meets the floor at a hard edge must not look out under it. Those with a lift look from
+/// the smooth surface.
 [[nodiscard]] Receivers vertex_receivers(const mesh::TriangleMesh& mesh);
 
 /// Adds the mesh's vertices that belong to triangles to receivers that are pixels or texels, so

@@ -179,6 +179,13 @@ CoarseDirections::trace(const Receivers& receivers, const Blockers& blockers, fl
     return result;
 }
 
+int CoarseDirections::num_lit(const Bits& bits) {
+    int result = 0;
+    for (const std::uint64_t word : bits)
+        result += std::popcount(word);
+    return result;
+}
+
 float CoarseDirections::difference(const Point& point, std::span<const Point> others,
                                    Signs signs) const {
     const bool is_flat = std::all_of(others.begin(), others.end(), [&](const Point& other) {

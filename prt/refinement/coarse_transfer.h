@@ -25,6 +25,9 @@ public:
     static constexpr std::size_t NumEvenPatches = 24, MostBrightPatches = 8;
     /// Bits of one point: a word for each patch, a bit for each direction whose light reaches it.
     using Bits = std::array<std::uint64_t, NumEvenPatches + MostBrightPatches>;
+    /// A point that fewer directions reach is hidden, in a solid or under one.
+    static constexpr int FewestDirections = 16;
+    [[nodiscard]] static int num_lit(const Bits& bits);
 
     /// `light` is the environment that matters most, or null.
     explicit CoarseDirections(const cubemap::CubeMap* light = nullptr);

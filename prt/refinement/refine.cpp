@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -55,11 +54,11 @@ constexpr std::size_t FewestOfRound = 32, PartsOfWhole = 64;
 /// Bounds of edges give way to errors until so small a part of the first edges has bounds only.
 constexpr std::size_t PartsWithBounds = 16;
 
-/// A vertex that fewer of the 1,536 directions reach is hidden, in another solid or under one.
-constexpr int FewestDirections = 16;
-
 /// As vertex_receivers() does it: a part of the way to the triangle's centre, or the bias.
 constexpr float LargestPartOfWay = 0.25f;
+
+/// Parts of automatic_bias(). Smaller lifts are none.
+constexpr float LeastLift = 0.25f;
 
 float longest_side(const mesh::TriangleMesh& mesh, const mesh::Triangle& triangle) {
     const auto& [a, b, c] = triangle;
@@ -68,41 +67,31 @@ float longest_side(const mesh::TriangleMesh& mesh, const mesh::Triangle& triangl
         {glm::distance(at[a], at[b]), glm::distance(at[b], at[c]), glm::distance(at[c], at[a])});
 }
 
-/// Whether a triangle has a side longer than an edge, and is shaded nearly as flat as it is. What
-/// stands between the vertices of a triangle that is shaded as a ball would be in its shadow.
-bool is_coarse(const mesh::TriangleMesh& mesh, const mesh::Triangle& triangle, float edge) {
-    constexpr float LeastCosine = 0.6f;
-    if (!(longest_side(mesh, triangle) > edge))
-        return false;
-    const std::array<glm::vec3, 3> p = {mesh.positions[triangle[0]], mesh.positions[triangle[1]],
-                                        mesh.positions[triangle[2]]};
-    const glm::vec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
-    const float length = glm::length(across);
-    return mesh.normals.empty() || !(length > 0.0f) ||
-           std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t vertex) {
-               return std::abs(glm::dot(mesh.normals[vertex], across)) > LeastCosine * length;
-           });
-}
-
 /// Returns which triangles are coarse for an edge, if there is one; all otherwise.
 std::vector<bool> triangles_to_refine(const mesh::TriangleMesh& mesh, std::optional<float> edge) {
     std::vector<bool> result;
     for (const mesh::Triangle& triangle : mesh.triangles)
-        result.push_back(!edge || is_coarse(mesh, triangle, *edge));
+        result.push_back(!edge || longest_side(mesh, triangle) > *edge);
     return result;
+}
+
+mesh::TriangleMesh without_lifts(mesh::TriangleMesh mesh) {
+    mesh.lifts.clear();
+    return mesh;
 }
 
 class Refinement {
 public:
     Refinement(const mesh::TriangleMesh& mesh, const Blockers& blockers,
                const RefineOptions& options, const Work& work, RefineReport& report)
-        : base_(mesh), blockers_(blockers), options_(options), report_(report), split_(mesh),
-          progress_(work), step_(automatic_bias(mesh)), bias_(options.bias.value_or(step_)),
+        : base_(mesh), blockers_(blockers), options_(options), report_(report),
+          split_(without_lifts(mesh)), progress_(work), step_(automatic_bias(mesh)),
+          bias_(options.bias.value_or(step_)),
           directions_(options.light ? &*options.light : nullptr),
           large_(LargeTriangle * mesh::bounds(mesh).diagonal()),
           fine_(FineEdge * mesh::bounds(mesh).diagonal()),
           min_edge_(options.min_edge.value_or(ShortestEdge * mesh::bounds(mesh).diagonal())),
-          is_refined_(triangles_to_refine(mesh, options.coarse_edge)) {}
+          is_refined_(triangles_to_refine(mesh, options.coarse_edge)), lifts_(mesh.lifts) {}
 
     mesh::TriangleMesh run() {
         progress_.start_stage(0.0, 1.0);
@@ -127,7 +116,11 @@ public:
         if (!options_.error)
             return split_.take();
         const std::vector<Way> ways = ways_out();
-        return moved_out(split_.take(), ways);
+        mesh::TriangleMesh mesh = split_.take();
+        if (std::any_of(lifts_.begin(), lifts_.end(),
+                        [](const glm::vec3& lift) { return lift != glm::vec3(0.0f); }))
+            mesh.lifts = lifts_;
+        return moved_out(std::move(mesh), ways);
     }
 
 private:
@@ -172,7 +165,10 @@ private:
 
     /// Finds what reaches the vertices that are not known yet, of triangles that are refined.
     void trace_vertices() {
-        const Receivers all = vertex_receivers(split_.mesh());
+        lift_new_vertices();
+        Receivers all = vertex_receivers(split_.mesh());
+        for (std::size_t vertex = 0; vertex < all.size(); ++vertex)
+            all.positions[vertex] += lifts_[vertex];
         is_traced_.resize(all.size());
         vertex_bits_.resize(all.size());
         std::vector<Neighbours> ends_of(all.size());
@@ -198,6 +194,41 @@ private:
         for (std::size_t i = 0; i < vertices.size(); ++i)
             vertex_bits_[vertices[i]] = bits[i];
         find_movable();
+    }
+
+    /// Finds the smooth surface over new vertices: where the triangles beside one do not agree, the
+    /// highest.
+    void lift_new_vertices() {
+        lifts_.resize(num_vertices(), glm::vec3(0.0f));
+        if (options_.curved)
+            return;
+        std::vector<bool> is_new(num_vertices());
+        for (const SplitMesh::Middle& middle : split_.new_vertices())
+            is_new[middle.vertex] = true;
+        for (const std::uint32_t triangle : split_.changed_triangles())
+            for (std::size_t k = 0; k < 3; ++k) {
+                std::array<float, 3> weights{};
+                weights[k] = 1.0f;
+                glm::vec3& own = lifts_[split_.mesh().triangles[triangle][k]];
+                if (const glm::vec3 lift = lift_at(triangle, weights);
+                    is_new[split_.mesh().triangles[triangle][k]] &&
+                    glm::length(lift) > glm::length(own))
+                    own = lift;
+            }
+    }
+
+    /// Returns how far the smooth surface lies above a point of a triangle.
+    [[nodiscard]] glm::vec3 lift_at(std::uint32_t triangle,
+                                    const std::array<float, 3>& weights) const {
+        const SplitMesh::Origin& origin = split_.origin(triangle);
+        const MeshPoint point{.triangle = origin.triangle,
+                              .barycentric = weights[0] * origin.corners[0] +
+                                             weights[1] * origin.corners[1] +
+                                             weights[2] * origin.corners[2]};
+        const glm::vec3 lift =
+            smooth_position(base_, point) - value_at(base_, base_.positions, point);
+        // Of a flat triangle it is rounding.
+        return glm::length(lift) > LeastLift * step_ ? lift : glm::vec3(0.0f);
     }
 
     /// A new vertex may move where the surface around it is flat and goes on to all sides.
@@ -230,14 +261,8 @@ private:
                 std::abs(angles[middle.vertex] - 2.0 * std::numbers::pi) < LargestGap;
     }
 
-    [[nodiscard]] static int num_lit(const Bits& bits) {
-        int result = 0;
-        for (const std::uint64_t word : bits)
-            result += std::popcount(word);
-        return result;
-    }
     [[nodiscard]] bool is_hidden(std::uint32_t vertex) const {
-        return num_lit(vertex_bits_[vertex]) < FewestDirections;
+        return CoarseDirections::num_lit(vertex_bits_[vertex]) < CoarseDirections::FewestDirections;
     }
     [[nodiscard]] bool moves_to(std::uint32_t hidden, std::uint32_t lit) const {
         return is_movable_[hidden] && is_hidden(hidden) && !is_hidden(lit);
@@ -286,8 +311,9 @@ private:
             for (std::size_t j = 0; j < ways.size(); ++j) {
                 // Beside a solid half of the light is left. Gaps between solids let in little.
                 const int least =
-                    std::max(FewestDirections, num_lit(vertex_bits_[ways[j].towards]) / 4);
-                (num_lit(bits[j]) < least ? ways[j].hidden : ways[j].lit) =
+                    std::max(CoarseDirections::FewestDirections,
+                             CoarseDirections::num_lit(vertex_bits_[ways[j].towards]) / 4);
+                (CoarseDirections::num_lit(bits[j]) < least ? ways[j].hidden : ways[j].lit) =
                     0.5f * (ways[j].hidden + ways[j].lit);
             }
         }
@@ -366,6 +392,7 @@ private:
         };
         follow(mesh.uvs);
         follow(mesh.colors);
+        follow(mesh.lifts);
         mesh.positions[way.vertex] = after;
         return true;
     }
@@ -404,6 +431,14 @@ private:
         receivers.positions.emplace_back(position);
         receivers.normals.push_back(length > Shortest ? glm::vec3(normal / length)
                                                       : mesh.normals[vertices.front()]);
+    }
+
+    /// The same on a triangle's smooth surface.
+    void add_inside(std::uint32_t triangle, const std::array<float, 3>& weights,
+                    Receivers& receivers) const {
+        add_mean(split_.mesh().triangles[triangle], weights, receivers);
+        if (!options_.curved)
+            receivers.positions.back() += lift_at(triangle, weights);
     }
 
     [[nodiscard]] bool may_split(std::uint32_t edge) const {
@@ -480,8 +515,12 @@ private:
             }
             std::vector<Neighbours> ends;
             for (const Pair& pair : pairs) {
-                add_mean(std::array{pair.ends.low, pair.ends.high}, std::array{0.5f, 0.5f},
-                         receivers);
+                const mesh::Triangle& corners = split_.mesh().triangles[pair.ends.triangle];
+                std::array<float, 3> weights{};
+                for (std::size_t k = 0; k < 3; ++k)
+                    weights[k] =
+                        corners[k] == pair.ends.low || corners[k] == pair.ends.high ? 0.5f : 0.0f;
+                add_inside(pair.ends.triangle, weights, receivers);
                 ends.push_back(neighbours(pair.ends.low, pair.ends.high));
                 if (pair.ends.is_rim)
                     move_inside(pair.ends.triangle, receivers.positions.back());
@@ -548,7 +587,7 @@ private:
     void ask_inside(std::span<const Inside> points) {
         Receivers receivers;
         for (const Inside& point : points)
-            add_mean(split_.mesh().triangles[point.triangle], point.weights, receivers);
+            add_inside(point.triangle, point.weights, receivers);
         const std::vector<Bits> bits = trace(receivers);
         std::vector<float> errors(points.size());
         files::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
@@ -581,7 +620,7 @@ private:
     std::vector<Candidate> candidates(std::size_t most) {
         std::vector<Candidate> all;
         for (std::uint32_t edge = 0; edge < split_.num_edges(); ++edge)
-            if (errors_[edge] > *options_.error && may_split(edge))
+            if (errors_[edge] > error_ && may_split(edge))
                 all.push_back(candidate(edge));
         for (;;) {
             const std::size_t size = std::min(all.size(), most);
@@ -597,7 +636,7 @@ private:
             for (auto first = all.begin(); first != end; ++first)
                 *first = candidate(first->edge);
             const auto last = std::remove_if(all.begin(), end, [this](const Candidate& each) {
-                return !(errors_[each.edge] > *options_.error);
+                return !(errors_[each.edge] > error_);
             });
             if (size == all.size() || unknown.size() <= size / PartsWithBounds) {
                 all.erase(last, all.end());
@@ -610,8 +649,18 @@ private:
 
     /// Splits the edges beyond the error, or those of them that matter most.
     bool split_by_error() {
+        const std::size_t num_added = num_vertices() - base_.num_vertices();
+        if (options_.error_of_few && num_added < options_.few) {
+            error_ = *options_.error_of_few;
+            if (split_worst(std::min(room(), options_.few - num_added)))
+                return true;
+        }
+        error_ = *options_.error;
+        return split_worst(room());
+    }
+
+    bool split_worst(std::size_t most) {
         // Without a limit that is near, all of them.
-        const std::size_t most = room();
         const std::size_t whole = options_.max_vertices - base_.num_vertices();
         const std::size_t of_round =
             std::max({most / RoundsToLimit, FewestOfRound, whole / PartsOfWhole});
@@ -635,7 +684,7 @@ private:
     [[nodiscard]] float largest_error() const {
         float result = 0.0f;
         for (std::uint32_t edge = 0; edge < split_.num_edges(); ++edge)
-            if (is_asked_[edge] && errors_[edge] > *options_.error && may_split(edge))
+            if (is_asked_[edge] && errors_[edge] > error_ && may_split(edge))
                 result = std::max(result, errors_[edge]);
         return result;
     }
@@ -668,12 +717,15 @@ private:
     float bias_;
     CoarseDirections directions_;
     float large_, fine_;
+    /// RefineOptions::error, or that of few.
+    float error_ = 0.0f;
     float min_edge_;
     /// [num_triangles of the beginning].
     std::vector<bool> is_refined_;
     /// [num_vertices]. Only vertices of triangles that are refined are traced.
     std::vector<Bits> vertex_bits_;
     std::vector<bool> is_traced_, is_movable_;
+    std::vector<glm::vec3> lifts_;
     /// [num_edges]. Of edges that were not asked, a bound.
     std::vector<float> errors_;
     std::vector<bool> is_asked_, is_candidate_;
@@ -690,6 +742,8 @@ void check(const mesh::TriangleMesh& mesh, const RefineOptions& options) {
             fmt::format("expected an error >= 0, got {}", options.error.value_or(0.0f)));
     require(!options.max_edge || *options.max_edge > 0.0f,
             fmt::format("expected edges longer than 0, got {}", options.max_edge.value_or(0.0f)));
+    require(!options.error_of_few || *options.error_of_few >= 0.0f,
+            fmt::format("expected an error >= 0, got {}", options.error_of_few.value_or(0.0f)));
     const float min_edge = options.min_edge.value_or(0.0f);
     require(min_edge >= 0.0f, fmt::format("expected a shortest edge >= 0, got {}", min_edge));
     require(!options.max_edge || min_edge <= *options.max_edge,
@@ -727,7 +781,7 @@ mesh::TriangleMesh refine(const mesh::TriangleMesh& mesh, const Blockers& blocke
 bool has_coarse_triangles(const mesh::TriangleMesh& mesh, float edge) {
     return std::any_of(
         mesh.triangles.begin(), mesh.triangles.end(),
-        [&](const mesh::Triangle& triangle) { return is_coarse(mesh, triangle, edge); });
+        [&](const mesh::Triangle& triangle) { return longest_side(mesh, triangle) > edge; });
 }
 
 } // namespace relumine::prt

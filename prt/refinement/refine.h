@@ -19,11 +19,13 @@ struct RefineOptions {
     /// light from everywhere counts as small lights do; 1/sr, albedo 1. 0.046 is the edge of a
     /// floor at the foot of a wall. Empty: light is not asked.
     std::optional<float> error = 0.01f;
+    /// The error in place of it while fewer vertices than `few` are added. Empty: the same.
+    std::optional<float> error_of_few = {};
+    std::size_t few = 0;
     /// Longer edges are split in any case. Empty: none.
     std::optional<float> max_edge = {};
-    /// Triangles of the mesh without a side longer than this, and those that are shaded round, are
-    /// left as they are, but for sides that they share with others, and cost nothing. Empty: all
-    /// triangles are refined.
+    /// Triangles of the mesh without a side longer than this are left as they are, but for sides
+    /// that they share with others, and cost nothing. Empty: all triangles are refined.
     std::optional<float> coarse_edge = {};
     /// Edges shorter than twice this are not split, in the mesh's unit. Empty: 1/1000 of the mesh's
     /// diagonal.

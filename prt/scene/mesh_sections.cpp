@@ -20,6 +20,8 @@ void add_mesh(NewSections& sections, const Scene& scene) {
         sections["colors"] = SectionContent::view(scene.mesh.colors);
     if (!scene.mesh.uvs.empty())
         sections["uvs"] = SectionContent::view(scene.mesh.uvs);
+    if (!scene.mesh.lifts.empty())
+        sections["lifts"] = SectionContent::view(scene.mesh.lifts);
     if (scene.blockers) {
         sections["block_positions"] = SectionContent::view(scene.blockers->positions);
         sections["block_triangles"] = SectionContent::view(scene.blockers->triangles);
@@ -33,6 +35,7 @@ void read_mesh(const SectionReader& reader, Scene& scene) {
     mesh.normals = reader.elements<glm::vec3>("normals", mesh.num_vertices());
     mesh.colors = reader.elements<glm::vec3>("colors", mesh.num_vertices(), true);
     mesh.uvs = reader.elements<glm::vec2>("uvs", mesh.num_vertices(), true);
+    mesh.lifts = reader.elements<glm::vec3>("lifts", mesh.num_vertices(), true);
     require_indices(reader, mesh, "triangles");
     if (!reader.has("block_triangles"))
         return;
@@ -46,6 +49,7 @@ void check_mesh(const SceneCheck& check, const Scene& scene) {
     check.that(!scene.mesh.triangles.empty(), "triangles", "none");
     const auto check_places = [&](const mesh::TriangleMesh& mesh) {
         check.all("finite coordinates", mesh.positions, is_finite);
+        check.all("finite lifts", mesh.lifts, is_finite);
         for (const mesh::Triangle& triangle : mesh.triangles)
             for (const std::uint32_t vertex : triangle)
                 if (!can_start_rays(scene, mesh.positions[vertex]))

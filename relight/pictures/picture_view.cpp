@@ -54,7 +54,7 @@ PictureView::PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& ra
                          const FadingFloor& floor, std::size_t max_bytes)
     : mesh_(mesh), rays_(rays), camera_(camera), options_(options), floor_(floor),
       grid_(camera, options.width, options.height, options.samples_per_axis),
-      twins_(std::make_unique<const TwinTriangles>(mesh)) {
+      twins_(std::make_unique<const prt::TwinTriangles>(mesh)) {
     const std::size_t num_samples =
         std::size_t{options.width} * options.height * grid_.samples_per_pixel();
     if (num_samples > max_bytes / sizeof(Sample))

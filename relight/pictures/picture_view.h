@@ -18,9 +18,9 @@
 #include "prt/receivers/camera.h"
 #include "prt/receivers/surface.h"
 #include "prt/visibility/ray_scene.h"
+#include "prt/visibility/twin_triangles.h"
 #include "relight/pictures/backdrop.h"
 #include "relight/pictures/surface_colors.h"
-#include "relight/pictures/twin_triangles.h"
 #include "relight/sharp/sharp_lights.h"
 
 namespace relumine::relight {
@@ -141,7 +141,7 @@ private:
     /// [height * width * samples per pixel]; empty when they are traced anew.
     std::vector<Sample> samples_;
     /// The other side of surfaces that the mesh has twice.
-    std::unique_ptr<const TwinTriangles> twins_;
+    std::unique_ptr<const prt::TwinTriangles> twins_;
 };
 
 } // namespace relumine::relight

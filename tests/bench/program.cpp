@@ -106,9 +106,11 @@ void Program::add(const std::string& option, std::vector<std::string>& values,
                         .default_value = fmt::format("{}", fmt::join(values, ",")),
                         .read = [&values, known = values](const std::string& text) {
                             values = words_of(text);
-                            return std::all_of(values.begin(), values.end(), [&](const auto& word) {
-                                return std::find(known.begin(), known.end(), word) != known.end();
-                            });
+                            return known.empty() ||
+                                   std::all_of(values.begin(), values.end(), [&](const auto& word) {
+                                       return std::find(known.begin(), known.end(), word) !=
+                                              known.end();
+                                   });
                         }});
 }
 

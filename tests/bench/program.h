@@ -29,7 +29,7 @@ public:
     void add(const std::string& option, int& value, const std::string& help = "");
     void add(const std::string& option, float& value, const std::string& help = "");
     void add(const std::string& option, double& value, const std::string& help = "");
-    /// Several values with commas between them
+    /// Several values with commas between them; words are some of the default's, if it has any
     void add(const std::string& option, std::vector<float>& values, const std::string& help = "");
     void add(const std::string& option, std::vector<std::string>& values,
              const std::string& help = "");

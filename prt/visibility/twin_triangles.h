@@ -12,7 +12,7 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/visibility/ray_scene.h"
 
-namespace relumine::relight {
+namespace relumine::prt {
 
 /// Finds the other side of surfaces that a mesh has twice, with the same corners and one for each
 /// side, as exporters write what is seen from both sides. A ray meets either of the two, as
@@ -28,7 +28,7 @@ public:
     /// it has one, otherwise the hit as it is.
     ///
     /// Cost:    O(log triangles) for a hit on a back; the first one sorts all triangles.
-    [[nodiscard]] prt::Hit facing(const prt::Hit& hit, const glm::vec3& direction) const;
+    [[nodiscard]] Hit facing(const Hit& hit, const glm::vec3& direction) const;
 
 private:
     [[nodiscard]] std::optional<std::uint32_t> twin_of(std::uint32_t triangle) const;
@@ -40,4 +40,4 @@ private:
     mutable std::vector<std::pair<std::uint64_t, std::uint32_t>> by_key_;
 };
 
-} // namespace relumine::relight
+} // namespace relumine::prt

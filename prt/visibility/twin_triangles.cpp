@@ -1,4 +1,4 @@
-#include "relight/pictures/twin_triangles.h"
+#include "prt/visibility/twin_triangles.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include "cubemap/split_mix64.h"
 
-namespace relumine::relight {
+namespace relumine::prt {
 
 namespace {
 
@@ -22,7 +22,7 @@ glm::vec3 normal_of(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
 
 } // namespace
 
-prt::Hit TwinTriangles::facing(const prt::Hit& hit, const glm::vec3& direction) const {
+Hit TwinTriangles::facing(const Hit& hit, const glm::vec3& direction) const {
     if (!(glm::dot(normal_of(mesh_, hit.triangle), direction) > 0.0f))
         return hit;
     const std::optional<std::uint32_t> twin = twin_of(hit.triangle);
@@ -83,4 +83,4 @@ std::optional<std::uint32_t> TwinTriangles::twin_of(std::uint32_t triangle) cons
     return std::nullopt;
 }
 
-} // namespace relumine::relight
+} // namespace relumine::prt

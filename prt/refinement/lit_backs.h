@@ -1,0 +1,22 @@
+// Surfaces without thickness that are lit from both sides.
+#pragma once
+
+#include "mesh/triangle_mesh.h"
+#include "prt/visibility/blockers.h"
+#include "prt/work.h"
+
+namespace relumine::prt {
+
+/// Appends the backs of triangles that light from outside reaches from behind: the same corners as
+/// vertices of their own, with normals turned over. Vertices and triangles of the mesh come first.
+/// A closed surface gets none, nor do triangles that the mesh has for both sides
+/// (prt::TwinTriangles).
+///
+/// Cost:    O(n log n), and four points to trace for each triangle of an open surface.
+/// Threads: parallel inside; the result is the same for any number of threads.
+/// Throws:  Cancelled.
+[[nodiscard]] mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh,
+                                                const Blockers& blockers, float bias,
+                                                const Work& work = {});
+
+} // namespace relumine::prt
