@@ -31,10 +31,13 @@ namespace ocio = OCIO_NAMESPACE;
 namespace {
 
 /// What configs call the linear colours of Rec. 709; the last is the role that every config has.
-constexpr const char* LinearSpaces[] = {
-    "Linear Rec.709 (sRGB)",      "lin_rec709", "Utility - Linear - sRGB",
-    "Utility - Linear - Rec.709", "lin_srgb",   "Linear",
-    "scene_linear"};
+constexpr const char* LinearSpaces[] = {"Linear Rec.709 (sRGB)",
+                                        "lin_rec709",
+                                        "Utility - Linear - sRGB",
+                                        "Utility - Linear - Rec.709",
+                                        "lin_srgb",
+                                        "Linear",
+                                        "scene_linear"};
 
 /// Returns the wanted name, or the config's own for an empty one. Refuses others than `known`.
 std::string chosen(const DisplayView& view, const char* what, const std::string& wanted,
