@@ -21,7 +21,6 @@
 #include "mesh/save.h"
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/parts/part_file.h"
-#include "prt/parts/part_file.h"
 #include "prt/precompute.h"
 #include "prt/scene/scene_file.h"
 #include "prt/scene/section_file.h"
