@@ -356,8 +356,8 @@ auto with_own_messages(const std::string& name, const Read& read) {
         return read();
     } catch (const std::exception& error) {
         std::string message = error.what();
-        if (message.starts_with(name + ": ")) // our own message, already complete
-            throw;
+        if (message.starts_with(name + ": ")) // our own message, which may quote the file
+            throw std::runtime_error(name + files::printable(message.substr(name.size())));
         // OpenEXR quotes the name of the stream, which is always "file" here.
         for (std::size_t at = 0; (at = message.find("\"file\"")) != std::string::npos;)
             message.replace(at, 6, "it");

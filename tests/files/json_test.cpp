@@ -1,15 +1,32 @@
 #include "files/json.h"
 
 #include <limits>
+#include <span>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+
+#include "files/json_reader.h"
 
 namespace relumine::files {
 namespace {
 
 nlohmann::json parsed(const Json& report) {
     return nlohmann::json::parse(report.text(2));
+}
+
+TEST(JsonReader, WhatIsNoTextIsNotQuoted) {
+    const std::string text = "{\"versi\xff\x1b\": 1}";
+    try {
+        static_cast<void>(JsonReader("a.json").parse(std::as_bytes(std::span(text))));
+        FAIL() << "accepted";
+    } catch (const std::runtime_error& error) {
+        const std::string message = error.what();
+        EXPECT_NE(message.find("a.json:1: expected"), std::string::npos) << message;
+        EXPECT_NE(message.find("versi?"), std::string::npos) << message;
+        EXPECT_EQ(message.find_first_of("\xff\x1b"), std::string::npos) << message;
+    }
 }
 
 TEST(Json, ValuesKeepTheirTypes) {

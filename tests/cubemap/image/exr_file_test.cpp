@@ -315,6 +315,10 @@ TEST(ExrFile, FilesWithoutColourNameTheirChannels) {
                     Imf::Header(Width, Height));
     EXPECT_EQ(refusal_of_file(folder / "a.exr"),
               (folder / "a.exr").string() + ": expected channels R, G and B, or Y, got R, Z");
+    write_scanlines(folder / "a.exr", {{"Z\xff\x1b[2J", Imf::FLOAT, 0}}, whole_numbers(),
+                    Imf::Header(Width, Height));
+    EXPECT_EQ(refusal_of_file(folder / "a.exr"),
+              (folder / "a.exr").string() + ": expected channels R, G and B, or Y, got Z??[2J");
 }
 
 TEST(ExrFile, RoundTripIsExact) {
@@ -394,6 +398,16 @@ TEST(ExrFile, WhatTheHeaderDeclaresIsInTheFileOrRefused) {
     expect_refused("dataWindow\0box2i\0"sv, 4 + 12, 0x7ffffffe,
                    "a table of 134217728 or more chunks");
     expect_refused("dataWindow\0box2i\0"sv, 4 + 8, 0x7ffffffe, "blocks of 412316860224 bytes");
+}
+
+TEST(ExrFile, WhatIsNoTextIsNotQuoted) {
+    std::vector<std::byte> bad = encode_exr(black_image(Layout::LatLong, Sampling::Borders, 18));
+    // An attribute of one byte, whose type has a name that is none.
+    const std::string attribute("type\0\xfftring\0\1\0\0\0x", 17);
+    const auto* bytes = reinterpret_cast<const std::byte*>(attribute.data());
+    bad.insert(bad.begin() + 8, bytes, bytes + attribute.size());
+    const std::string message = message_of([&] { (void)decode_exr(bad, "name"); });
+    EXPECT_NE(message.find("\" tring\""), std::string::npos) << message;
 }
 
 TEST(ExrFile, TruncationsAreRefusedAndCorruptionsDoNoHarm) {
