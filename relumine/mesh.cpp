@@ -280,7 +280,7 @@ constexpr float CoarseEdge = 1.0f / 40.0f, RefinedEdge = 1.0f / 100.0f, LeastEdg
 /// RefineOptions::error. A few vertices are added wherever light shows; more only where it changes
 /// more than --refine allows. Shadows on an even floor show every triangle, and its light hardly
 /// changes elsewhere.
-constexpr float ErrorOfFew = 0.006f, ErrorOfMesh = 0.013f, ErrorOfFloor = 0.005f;
+constexpr float ErrorOfFew = 0.006f, ErrorOfMesh = 0.012f, ErrorOfFloor = 0.005f;
 constexpr std::size_t FewOfMesh = 10000;
 
 /// Where refined_by_itself() finds things: the scene, and what it adds to.

@@ -113,7 +113,7 @@ void add_floor(Mesh& mesh, const MeshOptions& options);
 void stand_on_floor(Mesh& mesh);
 
 /// What refined_by_itself() may add to a mesh, and to its floor.
-inline constexpr std::size_t BudgetOfMesh = 40000, BudgetOfFloor = 7000;
+inline constexpr std::size_t BudgetOfMesh = 45000, BudgetOfFloor = 7000;
 
 /// Returns the mesh with more vertices where it is coarse, its triangles large in the scene, and
 /// light changes between them; so is an automatic floor. At most BudgetOfMesh and BudgetOfFloor

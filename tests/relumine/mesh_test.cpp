@@ -9,6 +9,7 @@
 
 #include "files/hash.h"
 #include "mesh/floor.h"
+#include "mesh/normals.h"
 #include "mesh/save.h"
 #include "prt/scene/scene_file.h"
 #include "tests/relumine/small_scenes.h"
@@ -249,6 +250,22 @@ TEST(RefinedByItself, AFineMeshAndChosenVerticesStay) {
     pixels.view = View{};
     EXPECT_EQ(precompute(Mesh(wall_behind_posts()), pixels, {}, &report).mesh.num_vertices(),
               wall_behind_posts().num_vertices());
+}
+
+TEST_F(MeshFile, LiftsOfRefinedVerticesStandInTheScene) {
+    mesh::TriangleMesh tent;
+    tent.positions = {{-1, 0, -1}, {-1, 0, 1}, {0, 0.5f, -1}, {0, 0.5f, 1}, {1, 0, -1}, {1, 0, 1}};
+    tent.triangles = {{0, 1, 3}, {0, 3, 2}, {2, 3, 5}, {2, 5, 4}};
+    tent.normals = mesh::smooth_normals(tent);
+    const Scene scene = precompute(Mesh(tent), small_work());
+    ASSERT_EQ(scene.mesh.lifts.size(), scene.mesh.num_vertices());
+    EXPECT_NE(scene.receivers.positions, scene.mesh.positions);
+    save_scene(file("tent.prt"), scene);
+    const Scene loaded = load_scene(file("tent.prt"));
+    EXPECT_EQ(loaded.mesh.lifts, scene.mesh.lifts);
+    EXPECT_EQ(loaded.receivers.positions, scene.receivers.positions);
+    // A sheet has a back, which light from below reaches.
+    EXPECT_GE(scene.mesh.num_triangles(), 2 * tent.num_triangles());
 }
 
 TEST(RefinedByItself, AnAutomaticFloorGetsVerticesWhereShadowsFall) {

@@ -14,6 +14,7 @@
 #include "mesh/edge_uses.h"
 #include "prt/precompute.h"
 #include "prt/refinement/coarse_transfer.h"
+#include "prt/refinement/lit_backs.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/prt/scenes.h"
@@ -455,6 +456,60 @@ TEST(Refine, SameBytesForAnyNumberOfThreads) {
     expect_same(scenes::joined(scenes::icosphere(4, 0.3f, {0.0f, 0.32f, 0.0f}),
                                scenes::floor_grid(2, 8.0f)),
                 {.error = 0.0f, .min_edge = 0.0f, .max_vertices = 4500});
+}
+
+TEST(Refine, NewVerticesOfARoundMeshLookFromItsSmoothSurface) {
+    const mesh::TriangleMesh ball = scenes::icosphere(1, 1.0f, {0.0f, 0.0f, 0.0f});
+    const mesh::TriangleMesh fine = refined(ball, {.error = 0.005f, .max_vertices = 1000});
+    ASSERT_GT(fine.num_vertices(), 200u);
+    ASSERT_EQ(fine.lifts.size(), fine.num_vertices());
+    const Receivers receivers = vertex_receivers(fine);
+    for (std::size_t i = 0; i < fine.num_vertices(); ++i) {
+        // The shape stays, the flat triangles lie inside of the ball.
+        EXPECT_LE(glm::length(fine.positions[i]), 1.0001f);
+        EXPECT_GE(glm::length(receivers.positions[i]), 0.9999f);
+        EXPECT_LE(glm::length(receivers.positions[i]), 1.06f);
+    }
+    // Nothing stands before a ball.
+    const RayScene rays(ball);
+    for (const CoarseDirections::Bits& bits :
+         CoarseDirections().trace(receivers, rays, automatic_bias(ball), Progress{Work()}))
+        EXPECT_GT(CoarseDirections::num_lit(bits), 740) << "of the 768 above its horizon";
+    // A flat mesh has no lifts, and a second refinement keeps those of the first.
+    EXPECT_TRUE(refined(box_on_floor(), {.max_vertices = 500}).lifts.empty());
+    const mesh::TriangleMesh twice =
+        refine(fine, rays, {.error = 0.003f, .max_vertices = fine.num_vertices() + 50});
+    EXPECT_TRUE(std::equal(fine.lifts.begin(), fine.lifts.end(), twice.lifts.begin()));
+}
+
+TEST(Refine, AFewVerticesHaveAnErrorOfTheirOwn) {
+    const mesh::TriangleMesh mesh = box_on_floor();
+    const RefineOptions few{.error = 1.0f, .error_of_few = 0.001f, .few = 100};
+    const std::size_t num_added = refined(mesh, few).num_vertices() - mesh.num_vertices();
+    EXPECT_GT(num_added, 90u);
+    EXPECT_LE(num_added, 100u);
+}
+
+TEST(LitBacks, OpenSurfacesGetThoseThatLightReaches) {
+    mesh::TriangleMesh box = scenes::box({-1, 0, -1}, {1, 1, 1});
+    const auto backs = [](const mesh::TriangleMesh& mesh) {
+        return with_lit_backs(mesh, RayScene(mesh), automatic_bias(mesh));
+    };
+    EXPECT_EQ(backs(box).triangles, box.triangles) << "closed";
+    std::erase_if(box.triangles, [&](const mesh::Triangle& triangle) {
+        return std::all_of(triangle.begin(), triangle.end(),
+                           [&](std::uint32_t vertex) { return box.positions[vertex].y == 1.0f; });
+    });
+    const mesh::TriangleMesh open = backs(box);
+    ASSERT_EQ(open.num_triangles(), 2 * box.num_triangles());
+    EXPECT_TRUE(std::equal(box.triangles.begin(), box.triangles.end(), open.triangles.begin()));
+    for (std::size_t i = 0; i < box.num_triangles(); ++i) {
+        const mesh::Triangle& back = open.triangles[box.num_triangles() + i];
+        EXPECT_EQ(open.positions[back[0]], box.positions[box.triangles[i][0]]);
+        EXPECT_EQ(open.positions[back[1]], box.positions[box.triangles[i][2]]);
+        EXPECT_EQ(open.normals[back[0]], -box.normals[box.triangles[i][0]]);
+    }
+    EXPECT_EQ(backs(open).num_triangles(), open.num_triangles()) << "both sides are there";
 }
 
 TEST(Refine, OptionsOutOfRangeAreRefused) {
