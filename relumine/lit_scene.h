@@ -98,8 +98,9 @@ public:
     [[nodiscard]] LightHistory& history() { return history_; }
     [[nodiscard]] const SceneBounces& bounces() const { return bounces_; }
 
-    /// Lights the scene [JN, Eq. 8]. Layers stay over an environment; a list without one takes them
-    /// away, with the history. Bounces go until the next call of bounce().
+    /// Lights the scene [JN, Eq. 8]. Layers and the turn of set_rotation() stay: a new environment
+    /// is turned as well. A list without one takes the layers away, with the history. Bounces go
+    /// until the next call of bounce().
     ///
     /// Throws:  std::invalid_argument for a map without texels, radiance that is not finite or
     ///          negative, a direction that is not of unit length, an environment binned for another

@@ -281,7 +281,7 @@ constexpr float CoarseEdge = 1.0f / 40.0f, RefinedEdge = 1.0f / 100.0f, LeastEdg
 /// more than --refine allows. Shadows on an even floor show every triangle, and its light hardly
 /// changes elsewhere.
 constexpr float ErrorOfFew = 0.006f, ErrorOfMesh = 0.012f, ErrorOfFloor = 0.005f;
-constexpr std::size_t FewOfMesh = 10000;
+constexpr std::size_t FewOfMesh = 9000;
 
 /// Where refined_by_itself() finds things: the scene, and what it adds to.
 struct Refining {

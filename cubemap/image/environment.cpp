@@ -266,7 +266,8 @@ std::uint32_t automatic_resolution(const EnvironmentImage& image) {
     constexpr double SharpShare = 0.01;
     constexpr std::uint32_t Least = 256, Most = 1024;
     const std::uint32_t natural = natural_resolution(image);
-    const std::uint32_t finer = std::min(std::max(2 * natural, Least), Most);
+    // Four texels a pixel are small enough, however wide the pixels are.
+    const std::uint32_t finer = std::min(std::max(2 * natural, std::min(4 * natural, Least)), Most);
     // A pixel of a face is a texel of the cube map.
     if (has_faces(image.layout) || finer <= natural)
         return natural;

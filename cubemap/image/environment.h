@@ -144,8 +144,8 @@ environment_files(const std::filesystem::path& path);
 [[nodiscard]] std::uint32_t natural_resolution(const EnvironmentImage& image);
 
 /// Returns the cube-map resolution at which an image should light a scene: the natural one, and
-/// twice as much, 256 at least and 1,024 at most, where a single pixel holds over a hundredth of
-/// the light. A sun of one pixel lies in up to four texels, which must be small for its shadows
+/// twice as much (four times up to 256), 1,024 at most, where a single pixel holds over a hundredth
+/// of the light. A sun of one pixel lies in up to four texels, which must be small for its shadows
 /// not to move.
 ///
 /// Cost:    O(pixels).

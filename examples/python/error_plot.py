@@ -9,6 +9,8 @@ import matplotlib.pyplot as plt
 
 import relumine
 
+if len(sys.argv) < 4:
+    sys.exit("error_plot.py MESH ENVIRONMENT PLOT.png [SAMPLES]")
 mesh_path, environment_path, output = sys.argv[1:4]
 samples = int(sys.argv[4]) if len(sys.argv) > 4 else 500
 mesh = relumine.Mesh.load(mesh_path, floor=49)

@@ -13,6 +13,8 @@ import numpy as np
 
 import relumine
 
+if len(sys.argv) != 3:
+    sys.exit("fit_lights.py MESH OUT.png")
 path, output = sys.argv[1:]
 mesh = relumine.Mesh.load(path, floor=33)
 scene = relumine.precompute(mesh, tolerance=0.05, receivers="pixels:320x240", view="auto")

@@ -4,6 +4,8 @@ import sys
 
 import relumine
 
+if len(sys.argv) != 4:
+    sys.exit("relight.py MESH ENVIRONMENT PICTURE.png")
 mesh, environment, picture = sys.argv[1:]
 scene = relumine.precompute(relumine.Mesh.load(mesh, floor=65), tolerance=0.03)
 relighter = relumine.Relighter(scene)

@@ -7,6 +7,8 @@ import numpy as np
 
 import relumine
 
+if len(sys.argv) < 4:
+    sys.exit("turntable.py SCENE.prt ENVIRONMENT OUT.png [FRAMES]")
 path, environment_path, output = sys.argv[1:4]
 frames = int(sys.argv[4]) if len(sys.argv) > 4 else 6
 relighter = relumine.Relighter(relumine.Scene.load(path))

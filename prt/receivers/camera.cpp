@@ -37,7 +37,7 @@ CameraAxes axes_of(const Camera& camera, float aspect) {
 
 PictureRays::PictureRays(const Camera& camera, std::uint32_t width, std::uint32_t height,
                          std::uint32_t samples_per_axis)
-    : width_(width), height_(height), samples_per_axis_(samples_per_axis) {
+    : samples_per_axis_(samples_per_axis) {
     const auto is_size = [](std::uint32_t size) {
         return size >= 1 && size <= MaxPictureSize;
     };
@@ -49,7 +49,10 @@ PictureRays::PictureRays(const Camera& camera, std::uint32_t width, std::uint32_
         throw std::invalid_argument(
             fmt::format("expected 1 to {} samples a side of a pixel, got {}", MaxSamplesPerAxis,
                         samples_per_axis));
-    axes_ = axes_of(camera, static_cast<float>(width) / static_cast<float>(height));
+    const CameraAxes axes = axes_of(camera, static_cast<float>(width) / static_cast<float>(height));
+    corner_ = axes.forward - axes.right + axes.up;
+    right_ = 2.0f / static_cast<float>(width) * axes.right;
+    down_ = -2.0f / static_cast<float>(height) * axes.up;
     for (std::uint32_t row = 0; row < samples_per_axis; ++row)
         for (std::uint32_t column = 0; column < samples_per_axis; ++column)
             places_.push_back((glm::vec2(column, row) + 0.5f) /
@@ -57,12 +60,8 @@ PictureRays::PictureRays(const Camera& camera, std::uint32_t width, std::uint32_
 }
 
 glm::vec3 PictureRays::direction(std::uint32_t x, std::uint32_t y, std::uint32_t i) const {
-    // Picture coordinates in pixels from the top left corner.
-    const float px = static_cast<float>(x) + places_[i].x;
-    const float py = static_cast<float>(y) + places_[i].y;
-    const float across = 2.0f * px / static_cast<float>(width_) - 1.0f;
-    const float upwards = 1.0f - 2.0f * py / static_cast<float>(height_);
-    return glm::normalize(axes_.forward + across * axes_.right + upwards * axes_.up);
+    return glm::normalize(corner_ + (static_cast<float>(x) + places_[i].x) * right_ +
+                          (static_cast<float>(y) + places_[i].y) * down_);
 }
 
 } // namespace relumine::prt

@@ -46,8 +46,9 @@ public:
     [[nodiscard]] glm::vec3 direction(std::uint32_t x, std::uint32_t y, std::uint32_t i) const;
 
 private:
-    CameraAxes axes_;
-    std::uint32_t width_, height_, samples_per_axis_;
+    std::uint32_t samples_per_axis_;
+    /// Towards the picture's top left corner, and one pixel to the right and down.
+    glm::vec3 corner_, right_, down_;
     /// [samples per pixel] places in the pixel, from its top left corner.
     std::vector<glm::vec2> places_;
 };

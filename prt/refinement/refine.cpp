@@ -322,11 +322,12 @@ private:
 
     /// Moves vertices out of other solids, each by the shortest way that turns no triangle over:
     /// their darkness would spread over the triangles beside them.
-    static mesh::TriangleMesh moved_out(mesh::TriangleMesh mesh, std::vector<Way> ways) {
+    static mesh::TriangleMesh moved_out(mesh::TriangleMesh mesh, const std::vector<Way>& ways) {
         const auto length = [&](const Way& way) {
             return way.lit * glm::distance(mesh.positions[way.vertex], mesh.positions[way.towards]);
         };
         std::vector<std::pair<float, Way>> sorted;
+        sorted.reserve(ways.size());
         for (const Way& way : ways)
             sorted.emplace_back(length(way), way);
         std::stable_sort(sorted.begin(), sorted.end(),

@@ -198,6 +198,15 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
         .def("set_layers", &set_layers)
         .def("set_layer", &set_layer)
         .def("layers", &layers_text)
+        .def("set_rotation",
+             [](Lit& own, double degrees) {
+                 return update_of(change(own, [degrees](LitScene& lit) {
+                     if (!has_environment(lit))
+                         throw std::invalid_argument("set_rotation: expected an environment, got "
+                                                     "none");
+                     return relumine::set_rotation(lit, degrees);
+                 }));
+             })
         .def("mark", &mark)
         .def("undo", [](Lit& own) { return update_of(change(own, &relumine::undo)); })
         .def("redo", [](Lit& own) { return update_of(change(own, &relumine::redo)); })

@@ -12,6 +12,13 @@ Doubles = NDArray[np.float64]
 Indices = NDArray[np.uint32]
 
 
+def expect(name: str, value: Any, wanted: type, hint: str = "") -> None:
+    """Refuses what is no object of a class of Relumine's."""
+    if not isinstance(value, wanted):
+        got = type(value).__name__
+        raise TypeError(f"{name}: expected a relumine.{wanted.__name__}, got {got}{hint}")
+
+
 def view(array: Any) -> Any:
     """A numpy array of what the compiled part holds: no copy, read-only, keeps its owner alive."""
     return np.asarray(memoryview(array))
@@ -32,7 +39,8 @@ def numbers(name: str, value: ArrayLike, *shape: Optional[int]) -> NDArray[Any]:
         want is None or want == have for want, have in zip(shape, array.shape)
     )
     if not fits:
-        words = ", ".join("N" if size is None else str(size) for size in shape)
+        letters = iter("NMKL")
+        words = ", ".join(next(letters) if size is None else str(size) for size in shape)
         raise ValueError(
             f"{name}: expected shape ({words}{',' if len(shape) == 1 else ''}), got {array.shape}"
         )

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._arrays import Floats, Indices, floats, indices, view
+from ._arrays import Floats, Indices, expect, floats, indices, view
 from ._environment import Environment, _options
 from ._files import Path, errors
 from ._layers import Layer, Region, naming_layers, parsed, region_text, text_of
@@ -91,6 +91,12 @@ class Frame(NamedTuple):
     radiance: Floats
 
 
+def _environment(value: Environment) -> _core.Environment:
+    hint = ": relumine.Environment(array) makes one" if isinstance(value, np.ndarray) else ""
+    expect("environment", value, Environment, hint)
+    return value._core
+
+
 class Relighter:
     """A scene under light, which may change.
 
@@ -115,6 +121,7 @@ class Relighter:
         surface_albedo: Optional[Color] = None,
         surface_specular: Optional[Color] = None,
     ) -> None:
+        expect("scene", scene, Scene)
         if surface_albedo is not None or surface_specular is not None:
             scene = scene.recolored(
                 surface_albedo=surface_albedo, surface_specular=surface_specular
@@ -147,14 +154,15 @@ class Relighter:
 
     def set_environment(self, environment: Environment) -> RelightTimes:
         """Lights the scene with an environment. Layers stay over it."""
-        return RelightTimes(*self._core.set_environment(environment._core))
+        return RelightTimes(*self._core.set_environment(_environment(environment)))
 
     def update_environment(self, environment: Environment) -> Update:
         """Replaces the environment by one of the same resolution, and updates what differs."""
-        return Update(*self._core.update_environment(environment._core))
+        return Update(*self._core.update_environment(_environment(environment)))
 
     def set_lights(self, lights: LightList) -> RelightTimes:
         """Lights the scene with distant lights alone, each with a shadow ray per receiver."""
+        expect("lights", lights, LightList)
         return RelightTimes(*self._core.set_lights(*lights._arrays()))
 
     def update_region(
@@ -251,6 +259,13 @@ class Relighter:
             raise IndexError(f"index: expected the place of a layer, got {index}")
         with naming_layers():
             return Update(*self._core.set_layer(index, text_of([layer])))
+
+    def set_rotation(self, degrees: float) -> Update:
+        """Turns the environment and its layers about +Y: light from +Z comes from +X at 90.
+
+        It stays for environments that are set later.
+        """
+        return Update(*self._core.set_rotation(degrees))
 
     def mark(self) -> None:
         """Marks the present layers and environment as a state that undo() comes back to."""

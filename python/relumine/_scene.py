@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._arrays import Floats, Indices, view
+from ._arrays import Floats, Indices, expect, view
 from ._core import Scene as CoreScene
 from ._files import Path, errors
 from ._mesh import Mesh, warn
@@ -114,6 +114,8 @@ def precompute(
     """
     if not isinstance(mesh, Mesh):
         if triangles is None:
+            if np.ndim(mesh) < 2:
+                expect("mesh", mesh, Mesh, ": or an array of vertices, with triangles")
             raise ValueError("triangles: expected an array beside an array of vertices, got None")
         mesh = Mesh(mesh, triangles)
     elif triangles is not None:
@@ -182,6 +184,7 @@ def plan(
         "view": view,
         "output": os.fspath(output),
     }
+    expect("mesh", mesh, Mesh)
     with errors(output, only=True):
         report, warnings = _core.plan(mesh._core, options, progress)
     warn(warnings)
@@ -246,6 +249,7 @@ class Scene:
     @classmethod
     def unclustered(cls, mesh: Mesh) -> "Scene":
         """A scene without a precompute: light lists light it, environments cannot."""
+        expect("mesh", mesh, Mesh)
         return cls._of(_core.unclustered_scene(mesh._core))
 
     def save(self, path: Path) -> int:

@@ -80,7 +80,7 @@ void write(const fs::path& path, const std::string& content) {
 /// Lines that work in the folder with the small files. All that they write begins with "new".
 const std::vector<Words>& working_lines() {
     static const std::vector<Words> All = {
-        {"precompute", "mesh.obj", "-o", "new.prt", "--face-resolution", "8"},
+        {"precompute", "mesh.obj", "-o", "new.prt", "--face-resolution", "8", "--no-refine"},
         {"precompute", "mesh.obj", "-o", "new.prt", "--face-resolution", "8", "--receivers",
          "pixels:4x4", "--view", "0,0,3,0,0,0"},
         {"relight", "scene.prt", "env.0.hdr", "-o", "new.npy"},
@@ -115,8 +115,8 @@ const fs::path& working_folder() {
                   }));
         app::CommandLine program("relumine", "", "");
         app::add_commands(program, fresh_session());
-        static_cast<void>(program.run(
-            {"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "8", "-q"}));
+        static_cast<void>(program.run({"precompute", "mesh.obj", "-o", "scene.prt",
+                                       "--face-resolution", "8", "--no-refine", "-q"}));
         return path;
     }();
     return Path;

@@ -110,6 +110,23 @@ def test_wrong_arrays_are_named():
     wrong("up: expected x, y or z, got 'q'", up="q")
 
 
+def test_wrong_classes_are_named(relighter, scene):
+    pixels = np.ones((4, 8, 3))
+    for call, message in [
+        (lambda: relumine.Relighter(5), "scene: expected a relumine.Scene, got int"),
+        (lambda: relighter.set_environment(scene), "environment: expected a relumine.Environment"),
+        (lambda: relighter.set_environment(pixels), r"relumine.Environment\(array\) makes one"),
+        (lambda: relighter.set_lights([1]), "lights: expected a relumine.LightList, got list"),
+        (lambda: relumine.precompute(scene), "mesh: expected a relumine.Mesh, got Scene"),
+        (lambda: relumine.plan(scene, "a.plan"), "mesh: expected a relumine.Mesh, got Scene"),
+        (lambda: relumine.Scene.unclustered(5), "mesh: expected a relumine.Mesh, got int"),
+    ]:
+        with pytest.raises(TypeError, match=message):
+            call()
+    with pytest.raises(ValueError, match=r"expected shape \(N, M, 3\), got \(4, 8\)"):
+        relumine.Environment(pixels[..., 0])
+
+
 def test_triangles_alone_are_refused():
     vertices, triangles = tetrahedron()
     with pytest.raises(ValueError, match="^triangles: expected an array beside"):
@@ -155,7 +172,7 @@ def test_results_speak_to_other_libraries(relighter):
 
 
 def test_regions_receivers_and_lights_are_checked(relighter):
-    with pytest.raises(ValueError, match=r"^radiance: expected shape \(N, N, 3\)"):
+    with pytest.raises(ValueError, match=r"^radiance: expected shape \(N, M, 3\)"):
         relighter.update_region("+x", 0, 0, np.ones((2, 3)))
     with pytest.raises(ValueError, match=r"^radiance: expected finite numbers, got inf"):
         relighter.update_region("+x", 0, 0, np.full((2, 2, 3), np.inf))

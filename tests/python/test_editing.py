@@ -70,6 +70,19 @@ def test_a_drag_and_its_undo(relighter):
         ({**KEY.to_dict()}, r"^layers\[1\]: expected layers of different names"),
     ],
 )
+def test_rotation_stays_for_other_environments(relighter, sky):
+    relighter.set_environment(sky.turned(rotate=90))
+    expected = np.array(relighter.radiance)
+    relighter.set_environment(sky)
+    relighter.set_rotation(90)
+    assert np.allclose(relighter.radiance, expected, rtol=0.02, atol=0.01)
+    relighter.set_environment(sky)
+    assert np.allclose(relighter.radiance, expected, rtol=0.02, atol=0.01)
+    relighter.set_rotation(0)
+    with pytest.raises(ValueError, match="finite rotation"):
+        relighter.set_rotation(float("nan"))
+
+
 def test_wrong_layers_are_named_and_change_nothing(relighter, layer, message):
     before = relighter.radiance.copy()
     with pytest.raises(ValueError, match=message):

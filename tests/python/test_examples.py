@@ -48,6 +48,14 @@ def test_runs(files, arguments, size):
     assert struct.unpack(">II", (files / "out.png").read_bytes()[16:24]) == size
 
 
+@pytest.mark.parametrize("name", [n for n in sorted(os.listdir(EXAMPLES)) if n.endswith(".py")])
+def test_says_its_usage(name):
+    done = subprocess.run(
+        [sys.executable, os.path.join(EXAMPLES, name)], capture_output=True, text=True
+    )
+    assert done.returncode == 1 and done.stderr.startswith(name), done.stderr
+
+
 def test_the_notebook_runs():
     with open(os.path.join(EXAMPLES, "first_steps.ipynb")) as file:
         notebook = json.load(file)

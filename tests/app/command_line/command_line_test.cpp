@@ -22,7 +22,7 @@ protected:
 
     /// One command line per subcommand that does its work.
     const std::vector<std::vector<std::string>> all_ = {
-        {"precompute", "mesh.obj", "-o", "new.prt", "--face-resolution", "16"},
+        {"precompute", "mesh.obj", "-o", "new.prt", "--face-resolution", "16", "--no-refine"},
         {"relight", "scene.prt", "env.hdr", "-o", "new.npy"},
         {"edit", "scene.prt", "env.hdr", "-o", "new.npy", "--disc", "0,1,0"},
         {"verify", "scene.prt", "env.hdr"},
@@ -145,7 +145,7 @@ TEST_F(CommandLineTest, OddFileNamesWork) {
         write(name + ".obj", octahedron_obj());
         write(name + ".hdr", white_hdr());
         const Result made = succeed({"precompute", name + ".obj", "-o", name + ".prt",
-                                     "--face-resolution", "16", "--json"});
+                                     "--face-resolution", "16", "--no-refine", "--json"});
         EXPECT_EQ(made.json().value("vertices", 0), 6) << name;
         succeed({"relight", name + ".prt", name + ".hdr", "-o", name + ".npy"});
         EXPECT_TRUE(fs::exists(folder() / (name + ".npy"))) << name;

@@ -137,6 +137,8 @@ TEST(Environment, APixelWithMuchOfTheLightAsksForAFinerMap) {
             sun * static_cast<float>(height) * static_cast<float>(height) * 4.0f / 3.1415927f);
         return automatic_resolution(image);
     };
+    EXPECT_EQ(resolution(8, 0.5f), 8u);
+    EXPECT_EQ(resolution(64, 0.5f), 64u);
     EXPECT_EQ(resolution(256, 0.009f), 64u);
     EXPECT_EQ(resolution(256, 0.011f), 256u);
     EXPECT_EQ(resolution(1024, 0.009f), 256u);

@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
     using namespace relumine;
     if (argc != 2)
         return 2;
-    LitScene lit(precompute(load_mesh(argv[1]), {.face_resolution = 16}));
+    LitScene lit(precompute(load_mesh(argv[1]), {.face_resolution = 16, .no_refine = true}));
     lit.light(cubemap::CubeMap(16, glm::vec3(1.0f)));
     // A vertex of a convex mesh sees all of the sky above it: radiance 1, up to the size of
     // clusters.
