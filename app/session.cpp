@@ -248,7 +248,11 @@ void Session::report(Report result) const {
 std::string one_line(std::string message) {
     while (!message.empty() && (message.back() == '\n' || message.back() == ' '))
         message.pop_back();
-    return files::printable(message, ' ');
+    // Not files::printable(): a path may have any bytes, and is named as the system knows it.
+    for (char& c : message)
+        if ((c >= 0 && c < ' ') || c == '\x7f')
+            c = ' ';
+    return message;
 }
 
 Stopwatch::Stopwatch() : start_(now()), last_(start_) {}

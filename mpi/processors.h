@@ -17,13 +17,13 @@ struct Processors {
     std::uint32_t num_online = 1;
 };
 
-/// Returns those of this process.
+/// Returns the processors of this process.
 [[nodiscard]] Processors processors();
 
 [[nodiscard]] std::vector<std::byte> packed(const Processors& processors);
 [[nodiscard]] Processors unpacked_processors(std::span<const std::byte> bytes);
 
-/// Returns a line on the first host with processors that none of the processes may use, or nothing.
+/// Returns a line on the first host where some processors are left to no process, or nothing.
 [[nodiscard]] std::string idle_processors(std::span<const Processors> of_processes);
 
 } // namespace relumine::mpi

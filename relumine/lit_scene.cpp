@@ -412,7 +412,7 @@ Lighting LitScene::lighting(bool is_drawn) const {
         return result;
     if (!is_edited())
         result.sharp = state_.base->backdrop();
-    else if (state_.rotation_degrees == 0.0 && !cubemap::has_solo(state_.layers))
+    else if (state_.shows_base())
         result.sharp = relight::edited_backdrop(state_.base->backdrop(), *state_.base->map(),
                                                 *result.environment);
     return result;

@@ -20,7 +20,7 @@ namespace {
 std::optional<long double> long_number(const std::string& text) {
     char* end = nullptr;
     const long double value = std::strtold(text.c_str(), &end);
-    // Hexadecimal numbers are none of ours.
+    // strtold() also takes hexadecimal numbers.
     if (text.empty() || end != text.c_str() + text.size() ||
         text.find_first_of("xX") != std::string::npos)
         return std::nullopt;

@@ -133,10 +133,9 @@ void draw_layers(const ViewState& state, const PixelRectangle& place) {
         const bool chosen = state.desk.selected() == i;
         const cubemap::Region region = turned(layer.region, state.desk.state().rotation_degrees);
         const std::vector<glm::dvec3> rim = outline(region);
-        const bool shines = layer.on && (layer.solo || !is_solo);
-        const ImU32 color = chosen   ? IM_COL32(255, 190, 60, 255)
-                            : shines ? IM_COL32(240, 240, 240, 210)
-                                     : IM_COL32(150, 150, 150, 120);
+        const ImU32 color = chosen                            ? IM_COL32(255, 190, 60, 255)
+                            : cubemap::shines(layer, is_solo) ? IM_COL32(240, 240, 240, 210)
+                                                              : IM_COL32(150, 150, 150, 120);
         draw_line(state, place, rim, IM_COL32(0, 0, 0, 150), chosen ? 5.0f : 3.5f);
         draw_line(state, place, rim, color, chosen ? 2.5f : 1.5f);
         const ImVec2 size = ImGui::CalcTextSize(layer.name.c_str());

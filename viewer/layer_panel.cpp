@@ -28,7 +28,7 @@ cubemap::LightLayer new_layer(const ViewState& state, std::string name, cubemap:
                               cubemap::Effect effect) {
     const glm::dvec3 direction =
         turned(direction_at(state.lat_long.center), -state.desk.state().rotation_degrees);
-    region = moved(region, middle(region), direction);
+    region = centred(std::move(region), direction);
     if (auto* emit = std::get_if<cubemap::Emit>(&effect))
         emit->radiance *= 4.0f * std::exp2(-state.scene_look.exposure_ev);
     return {.name = std::move(name), .region = std::move(region), .effect = std::move(effect)};

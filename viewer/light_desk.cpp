@@ -82,8 +82,8 @@ void change(LightDesk& desk, std::size_t index, const cubemap::LightLayer& layer
 
 void move_middle(LightDesk& desk, std::size_t index, const glm::dvec3& direction) {
     cubemap::LightLayer layer = desk.layers()[index];
-    layer.region = cubemap::moved(layer.region, middle(layer.region),
-                                  cubemap::turned(direction, -desk.state().rotation_degrees));
+    layer.region = cubemap::centred(std::move(layer.region),
+                                    cubemap::turned(direction, -desk.state().rotation_degrees));
     change(desk, index, layer);
 }
 

@@ -166,10 +166,8 @@ void aim(Step& s) {
 }
 
 void add_preset(Step& s) {
-    const auto presets = cubemap::layer_presets();
-    const auto preset = std::find_if(presets.begin(), presets.end(),
-                                     [&](const auto& each) { return each.name == s.command.text; });
-    if (preset == presets.end())
+    const cubemap::LayerPreset* preset = cubemap::find_preset(s.command.text);
+    if (preset == nullptr)
         fail(s.command, fmt::format("expected the name of a preset, got '{}'", s.command.text));
     add(s.state.desk, cubemap::placed(*preset, s.direction()));
 }

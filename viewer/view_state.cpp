@@ -71,7 +71,7 @@ relight::Backdrop backdrop_of(const ViewState& state) {
             };
     // A copy: the environment may change while the picture is drawn.
     const auto now = std::make_shared<const cubemap::CubeMap>(environment_of(state.desk.lit()));
-    if (pixels && light.rotation_degrees == 0.0 && !cubemap::has_solo(light.layers))
+    if (pixels && light.shows_base())
         return [now, base = light.base,
                 edited = relight::edited_backdrop(pixels, *light.base->map(), *now)](
                    const glm::vec3& w) {

@@ -15,6 +15,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "mesh/materials/srgb.h"
+
 namespace relumine::viewer {
 
 namespace {
@@ -78,8 +80,7 @@ void load_font(float scale) {
 }
 
 float linear(std::uint8_t encoded) {
-    const float x = static_cast<float>(encoded) / 255.0f;
-    return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
+    return mesh::linear_of_srgb(static_cast<float>(encoded) / 255.0f);
 }
 
 } // namespace

@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Programs that are answered, and as many that wait until one of them goes.
+/// So many programs are answered. As many more may wait until one of the first goes.
 constexpr std::size_t MaxPeers = 64;
 
 [[noreturn]] void fail_to_serve(const fs::path& path, int error) {

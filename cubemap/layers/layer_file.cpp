@@ -111,21 +111,22 @@ private:
 
     LightLayer from_preset(const files::Json& preset, const files::Json& direction) const {
         const std::string& name = json_.string(preset, "\"preset\"");
-        std::vector<std::string_view> names;
-        for (const LayerPreset& each : layer_presets()) {
-            names.push_back(each.name);
-            glm::dvec3 towards = json_.vector(direction, "\"direction\"");
-            if (each.name != name)
-                continue;
-            try {
-                check(direction_field(towards));
-            } catch (const std::invalid_argument& error) {
-                json_.refuse(direction, error.what());
-            }
-            return placed(each, towards);
+        glm::dvec3 towards = json_.vector(direction, "\"direction\"");
+        const LayerPreset* found = find_preset(name);
+        if (found == nullptr) {
+            std::vector<std::string_view> names;
+            for (const LayerPreset& each : layer_presets())
+                names.push_back(each.name);
+            json_.refuse(preset,
+                         fmt::format("\"preset\" to be one of {}", files::joined(names, ", ")),
+                         fmt::format("\"{}\"{}", name, files::did_you_mean(name, names)));
         }
-        json_.refuse(preset, fmt::format("\"preset\" to be one of {}", files::joined(names, ", ")),
-                     fmt::format("\"{}\"{}", name, files::did_you_mean(name, names)));
+        try {
+            check(direction_field(towards));
+        } catch (const std::invalid_argument& error) {
+            json_.refuse(direction, error.what());
+        }
+        return placed(*found, towards);
     }
 
     LightLayer layer(const files::Json& value, const std::vector<LightLayer>& others) const {

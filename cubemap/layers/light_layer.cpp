@@ -113,6 +113,10 @@ bool has_solo(std::span<const LightLayer> layers) {
                        [](const LightLayer& layer) { return layer.on && layer.solo; });
 }
 
+bool shines(const LightLayer& layer, bool is_solo) {
+    return layer.on && (layer.solo || !is_solo);
+}
+
 std::vector<LightLayer> without_solo(std::span<const LightLayer> layers) {
     std::vector<LightLayer> result;
     const bool is_solo = has_solo(layers);
@@ -124,7 +128,7 @@ std::vector<LightLayer> without_solo(std::span<const LightLayer> layers) {
                               .effect = Gain{0.0f}});
     for (const LightLayer& layer : layers) {
         result.push_back(layer);
-        result.back().on = layer.on && (layer.solo || !is_solo);
+        result.back().on = shines(layer, is_solo);
         result.back().solo = false;
     }
     return result;

@@ -88,8 +88,11 @@ void validate(const LightLayer& layer);
 /// Returns true if a layer that is on has `solo`.
 [[nodiscard]] bool has_solo(std::span<const LightLayer> layers);
 
-/// Returns the layers that give the same light and of which none has `solo`: with has_solo(), all
-/// others are off, and the lowest two make the environment black.
+/// Returns true if a layer gives light; `is_solo`: has_solo() of all layers.
+[[nodiscard]] bool shines(const LightLayer& layer, bool is_solo);
+
+/// Returns layers that give the same light without `solo`. Under has_solo() the layers that do not
+/// shine are off, and two more layers below all others make the environment black.
 [[nodiscard]] std::vector<LightLayer> without_solo(std::span<const LightLayer> layers);
 
 /// Returns "emit", "gain" or "image".

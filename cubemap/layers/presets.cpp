@@ -1,8 +1,10 @@
 #include "cubemap/layers/presets.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cubemap/layers/shapes/sphere_lines.h"
@@ -62,9 +64,16 @@ std::span<const LayerPreset> layer_presets() {
     return all;
 }
 
+const LayerPreset* find_preset(std::string_view name) {
+    const std::span<const LayerPreset> all = layer_presets();
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [&](const LayerPreset& each) { return each.name == name; });
+    return found == all.end() ? nullptr : &*found;
+}
+
 LightLayer placed(const LayerPreset& preset, const glm::dvec3& direction) {
     LightLayer layer = preset.layer;
-    layer.region = moved(layer.region, middle(layer.region), direction);
+    layer.region = centred(std::move(layer.region), direction);
     return layer;
 }
 

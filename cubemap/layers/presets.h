@@ -22,6 +22,9 @@ struct LayerPreset {
 /// Returns all presets.
 [[nodiscard]] std::span<const LayerPreset> layer_presets();
 
+/// Returns the preset of this name, or null.
+[[nodiscard]] const LayerPreset* find_preset(std::string_view name);
+
 /// Returns a preset's layer with its middle at a direction of any length but zero.
 [[nodiscard]] LightLayer placed(const LayerPreset& preset, const glm::dvec3& direction);
 

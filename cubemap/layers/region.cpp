@@ -1,7 +1,7 @@
 #include "cubemap/layers/region.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -20,8 +20,7 @@ glm::dmat3 rotation_between(const glm::dvec3& from, const glm::dvec3& to) {
     const glm::dvec3 axis = glm::cross(a, b);
     const double cosine = glm::dot(a, b);
     if (cosine < -0.999999) { // opposite: no shortest way, half a turn about any axis across
-        const glm::dvec3 across = glm::normalize(glm::cross(
-            a, std::abs(a.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0)));
+        const glm::dvec3 across = any_across(a);
         return 2.0 * glm::outerProduct(across, across) - glm::dmat3(1.0);
     }
     // Rodrigues' formula: R = c I + [axis]x + axis axis^T / (1 + c); columns.
@@ -136,6 +135,11 @@ Region moved(Region region, const glm::dvec3& from, const glm::dvec3& to) {
         return rotation * w;
     });
     return region;
+}
+
+Region centred(Region region, const glm::dvec3& direction) {
+    const glm::dvec3 from = middle(region);
+    return moved(std::move(region), from, direction);
 }
 
 Region resized(Region region, const glm::dvec3& from, const glm::dvec3& to) {

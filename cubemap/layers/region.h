@@ -55,6 +55,9 @@ void validate(const Region& region);
 /// way. Soft boxes stay as upright as they are.
 [[nodiscard]] Region moved(Region region, const glm::dvec3& from, const glm::dvec3& to);
 
+/// Returns the region moved so that its middle is at a direction.
+[[nodiscard]] Region centred(Region region, const glm::dvec3& direction);
+
 /// Returns the region after its rim was dragged. The result is valid if the region was.
 [[nodiscard]] Region resized(Region region, const glm::dvec3& from, const glm::dvec3& to);
 

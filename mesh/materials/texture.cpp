@@ -8,6 +8,7 @@
 
 #include "files/free_memory.h"
 #include "mesh/materials/image_decoder.h"
+#include "mesh/materials/srgb.h"
 
 namespace relumine::mesh {
 
@@ -15,14 +16,10 @@ namespace {
 
 using Channels = std::array<std::uint8_t, 3>;
 
-/// The sRGB curve of IEC 61966-2-1.
 std::array<float, 256> srgb_table() {
     std::array<float, 256> table{};
-    for (std::size_t i = 0; i < table.size(); ++i) {
-        const double s = static_cast<double>(i) / 255.0;
-        table[i] =
-            static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
-    }
+    for (std::size_t i = 0; i < table.size(); ++i)
+        table[i] = static_cast<float>(linear_of_srgb(static_cast<double>(i) / 255.0));
     return table;
 }
 

@@ -65,8 +65,7 @@ BounceSampler::BounceSampler(const mesh::TriangleMesh& mesh, const Receivers& re
                              const Transfer& transfer, const BounceProbes& probes,
                              const RayScene& rays, const BounceOptions& options)
     : mesh_(mesh), receivers_(receivers), transfer_(transfer), probes_(probes), rays_(rays),
-      options_(options), place_of_(mesh.num_vertices(), NoEmitter),
-      twins_(std::make_unique<const TwinTriangles>(mesh)) {
+      options_(options), place_of_(mesh.num_vertices(), NoEmitter), twins_(mesh) {
     for (std::uint32_t place = 0; place < transfer.order.size(); ++place) {
         const std::uint32_t receiver = transfer.order[place];
         if (receivers.points.empty())
@@ -95,7 +94,7 @@ std::uint64_t BounceSampler::look(const PartReceiver& of_part, std::uint32_t num
         const auto met = rays_.closest_hit(origin, glm::vec3(direction));
         if (!met)
             continue;
-        const Hit hit = twins_->facing(*met, glm::vec3(direction));
+        const Hit hit = twins_.facing(*met, glm::vec3(direction));
         const double choice = unit_interval(
             cubemap::SplitMix64((std::uint64_t{receiver} << 32u | i) ^ ChoiceSeed).next());
         hits.halves[i % 2].push_back(emitter_of(hit, glm::vec3(direction), choice));

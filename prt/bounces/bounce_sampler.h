@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -82,7 +81,7 @@ private:
     const BounceOptions& options_;
     /// [num_vertices] place of each vertex.
     std::vector<std::uint32_t> place_of_;
-    std::unique_ptr<const TwinTriangles> twins_;
+    TwinTriangles twins_;
 };
 
 } // namespace relumine::prt

@@ -38,6 +38,7 @@ public:
     PictureRays(const Camera& camera, std::uint32_t width, std::uint32_t height,
                 std::uint32_t samples_per_axis);
 
+    [[nodiscard]] std::uint32_t samples_per_axis() const { return samples_per_axis_; }
     [[nodiscard]] std::uint32_t samples_per_pixel() const {
         return samples_per_axis_ * samples_per_axis_;
     }

@@ -28,6 +28,9 @@ public:
     /// A point that fewer directions reach is hidden, in a solid or under one.
     static constexpr int FewestDirections = 16;
     [[nodiscard]] static int num_lit(const Bits& bits);
+    [[nodiscard]] static bool is_hidden(const Bits& bits) {
+        return num_lit(bits) < FewestDirections;
+    }
 
     /// `light` is the environment that matters most, or null.
     explicit CoarseDirections(const cubemap::CubeMap* light = nullptr);

@@ -67,11 +67,8 @@ mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers
     constexpr std::uint32_t None = ~std::uint32_t{0};
     std::vector<std::uint32_t> back_of(mesh.num_vertices(), None);
     for (std::size_t i = 0; i < bits.size(); i += Points.size()) {
-        const auto is_lit = [](const CoarseDirections::Bits& words) {
-            return CoarseDirections::num_lit(words) >= CoarseDirections::FewestDirections;
-        };
         const auto first = bits.begin() + static_cast<std::ptrdiff_t>(i);
-        if (std::none_of(first, first + Points.size(), is_lit))
+        if (std::all_of(first, first + Points.size(), CoarseDirections::is_hidden))
             continue;
         const std::uint32_t triangle = open[i / Points.size()];
         mesh::Triangle corners = mesh.triangles[triangle];

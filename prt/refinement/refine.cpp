@@ -262,7 +262,7 @@ private:
     }
 
     [[nodiscard]] bool is_hidden(std::uint32_t vertex) const {
-        return CoarseDirections::num_lit(vertex_bits_[vertex]) < CoarseDirections::FewestDirections;
+        return CoarseDirections::is_hidden(vertex_bits_[vertex]);
     }
     [[nodiscard]] bool moves_to(std::uint32_t hidden, std::uint32_t lit) const {
         return is_movable_[hidden] && is_hidden(hidden) && !is_hidden(lit);
@@ -718,7 +718,7 @@ private:
     float bias_;
     CoarseDirections directions_;
     float large_, fine_;
-    /// RefineOptions::error, or that of few.
+    /// RefineOptions::error, or error_of_few while few vertices are added.
     float error_ = 0.0f;
     float min_edge_;
     /// [num_triangles of the beginning].

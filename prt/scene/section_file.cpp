@@ -98,7 +98,8 @@ struct Frame {
 };
 
 /// Finds a section's frames, whose sizes add up to `size`. All but the last have at least
-/// LeastFrame bytes, so that a file cannot have millions of them. Returns none for others.
+/// LeastFrame bytes, so that a file cannot have millions of them. Returns no frames for a section
+/// that breaks these rules.
 std::vector<Frame> frames_of(std::span<const std::byte> stored_bytes, std::uint64_t size) {
     std::vector<Frame> frames;
     std::uint64_t done = 0;

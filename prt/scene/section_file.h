@@ -79,10 +79,11 @@ std::uint64_t write_sections(const std::filesystem::path& path, const NewSection
 /// Bytes of a piece that PackedSections::stream() gives; the last one may have fewer.
 inline constexpr std::size_t SectionPiece = std::size_t{1} << 20;
 
-/// The sections of a file. One is unpacked when it is asked for, so what nobody knows costs no more
-/// than its stored bytes. All of them together unpack to so many bytes at most: 256 for each
-/// byte of the file, 256 MiB for a small file, no more than what memory is free.
+/// The sections of a file. A section is unpacked when it is asked for, so an unknown one costs no
+/// more than its stored bytes. There is one limit on what all sections unpack to: 256 bytes for
+/// each byte of the file, 256 MiB for a small file, and no more than the free memory.
 ///
+/// Threads: one at a time.
 /// Throws:  std::runtime_error "path: expected X, got Y".
 class PackedSections {
 public:

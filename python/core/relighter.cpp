@@ -200,12 +200,8 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
         .def("layers", &layers_text)
         .def("set_rotation",
              [](Lit& own, double degrees) {
-                 return update_of(change(own, [degrees](LitScene& lit) {
-                     if (!has_environment(lit))
-                         throw std::invalid_argument("set_rotation: expected an environment, got "
-                                                     "none");
-                     return relumine::set_rotation(lit, degrees);
-                 }));
+                 return update_of(change(
+                     own, [&](LitScene& lit) { return relumine::set_rotation(lit, degrees); }));
              })
         .def("mark", &mark)
         .def("undo", [](Lit& own) { return update_of(change(own, &relumine::undo)); })

@@ -4,13 +4,18 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
+#include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "cubemap/image/projection.h"
 #include "cubemap/resample/resample.h"
@@ -142,6 +147,24 @@ cubemap::CubeMap blurred(const cubemap::CubeMap& map, double degrees) {
     return result;
 }
 
+/// Returns the mean of a backdrop over a pixel whose corners see nearly the same of it.
+std::optional<glm::vec3> even_backdrop(const prt::PictureRays& rays, std::uint32_t x,
+                                       std::uint32_t y, const Backdrop& backdrop) {
+    const std::uint32_t side = rays.samples_per_axis();
+    if (side <= 2)
+        return std::nullopt;
+    glm::vec3 low(std::numeric_limits<float>::infinity()), high(0.0f), sum(0.0f);
+    for (const std::uint32_t corner : {0u, side - 1, side * (side - 1), side * side - 1}) {
+        const glm::vec3 seen = backdrop(rays.direction(x, y, corner));
+        low = glm::min(low, seen);
+        high = glm::max(high, seen);
+        sum += seen;
+    }
+    constexpr float Alike = 0.9f;
+    return glm::all(glm::greaterThanEqual(low, Alike * high)) ? std::optional(sum / 4.0f)
+                                                              : std::nullopt;
+}
+
 } // namespace
 
 Backdrop plain_backdrop(const glm::vec3& color) {
@@ -204,6 +227,19 @@ Backdrop blurred_backdrop(const cubemap::CubeMap& map, double degrees) {
     return [soft](const glm::vec3& direction) {
         return cubemap::sample(*soft, direction);
     };
+}
+
+glm::vec3 seen_behind(const prt::PictureRays& rays, std::uint32_t x, std::uint32_t y,
+                      std::span<const glm::vec3> passed, const Backdrop& backdrop) {
+    const auto num = static_cast<float>(passed.size());
+    const bool is_open = std::find(passed.begin(), passed.end(), glm::vec3(0.0f)) == passed.end();
+    if (const auto even = is_open ? even_backdrop(rays, x, y, backdrop) : std::nullopt)
+        return std::accumulate(passed.begin(), passed.end(), glm::vec3(0.0f)) / num * *even;
+    glm::vec3 sum(0.0f);
+    for (std::uint32_t i = 0; i < passed.size(); ++i)
+        if (passed[i] != glm::vec3(0.0f))
+            sum += passed[i] * backdrop(rays.direction(x, y, i));
+    return sum / num;
 }
 
 } // namespace relumine::relight

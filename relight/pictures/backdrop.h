@@ -1,8 +1,10 @@
 // What is seen behind a mesh.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
@@ -10,6 +12,7 @@
 #include "cubemap/cube_map.h"
 #include "cubemap/image/environment.h"
 #include "cubemap/image/environment_file.h"
+#include "prt/receivers/camera.h"
 
 namespace relumine::relight {
 
@@ -43,5 +46,13 @@ using Backdrop = std::function<glm::vec3(const glm::vec3& direction)>;
 ///
 /// Cost:    O(1 / degrees^2): a tenth of a second at 5 degrees.
 [[nodiscard]] Backdrop blurred_backdrop(const cubemap::CubeMap& map, double degrees);
+
+/// Returns what a pixel shows of a backdrop: the mean over its samples, of which each lets through
+/// what `passed` says, [samples per pixel].
+///
+/// Where the corners of an open pixel see nearly the same, nothing else is asked: most pixels are
+/// narrower than the photograph's, which has nothing in between then.
+[[nodiscard]] glm::vec3 seen_behind(const prt::PictureRays& rays, std::uint32_t x, std::uint32_t y,
+                                    std::span<const glm::vec3> passed, const Backdrop& backdrop);
 
 } // namespace relumine::relight

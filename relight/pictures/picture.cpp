@@ -13,6 +13,7 @@
 #include "files/extension.h"
 #include "files/output_file.h"
 #include "files/parallel.h"
+#include "mesh/materials/srgb.h"
 #include "relight/pictures/png_file.h"
 
 namespace relumine::relight {
@@ -21,12 +22,7 @@ namespace {
 
 std::uint8_t srgb_byte(float linear) {
     const float x = std::clamp(linear, 0.0f, 1.0f);
-    const float encoded = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
-    return static_cast<std::uint8_t>(std::lround(encoded * 255.0f));
-}
-
-float linear_of(float encoded) {
-    return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+    return static_cast<std::uint8_t>(std::lround(mesh::srgb_of_linear(x) * 255.0f));
 }
 
 /// Puts the colours of some pixels through a tone curve.
@@ -39,7 +35,8 @@ void curve(std::span<glm::vec3> colors, const Development& development) {
     // The display's values are encoded; the file will encode them again.
     development.display->apply(colors);
     for (glm::vec3& color : colors)
-        color = {linear_of(color.r), linear_of(color.g), linear_of(color.b)};
+        color = {mesh::linear_of_srgb(color.r), mesh::linear_of_srgb(color.g),
+                 mesh::linear_of_srgb(color.b)};
 }
 
 /// Exposes the picture and puts its colours through a tone curve.

@@ -5,9 +5,7 @@
 #include <mutex>
 #include <stdexcept>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/vector_relational.hpp>
 
 #include "files/parallel.h"
 #include "prt/glossy/brdf.h"
@@ -173,7 +171,7 @@ public:
                 if (backdrop == nullptr)
                     picture.alpha[pixel] = alpha;
                 else if (alpha < 1.0f || light_.open_floor)
-                    picture.pixels[pixel] += behind(x, y, *backdrop);
+                    picture.pixels[pixel] += seen_behind(view_.grid_, x, y, passed_, *backdrop);
             }
     }
 
@@ -283,41 +281,6 @@ private:
         }
         const auto count = static_cast<float>(samples.size());
         return {.color = sum / count, .alpha = alpha / count};
-    }
-
-    /// Returns what the pixel that was just drawn shows of a backdrop.
-    [[nodiscard]] glm::vec3 behind(std::uint32_t x, std::uint32_t y,
-                                   const Backdrop& backdrop) const {
-        const auto num = static_cast<std::uint32_t>(passed_.size());
-        glm::vec3 passed(0.0f), sum(0.0f);
-        bool is_open = true;
-        for (const glm::vec3& part : passed_) {
-            passed += part;
-            is_open = is_open && part != glm::vec3(0.0f);
-        }
-        // Most pixels are narrower than the photograph's: where the corners are alike, so is all
-        // between them.
-        if (const std::uint32_t side = view_.options_.samples_per_axis; is_open && side > 2) {
-            const std::array<glm::vec3, 4> corners = {
-                backdrop(view_.grid_.direction(x, y, 0)),
-                backdrop(view_.grid_.direction(x, y, side - 1)),
-                backdrop(view_.grid_.direction(x, y, num - side)),
-                backdrop(view_.grid_.direction(x, y, num - 1))};
-            constexpr float Alike = 0.9f;
-            glm::vec3 low = corners[0], high = corners[0];
-            for (const glm::vec3& corner : corners) {
-                low = glm::min(low, corner);
-                high = glm::max(high, corner);
-                sum += corner;
-            }
-            if (glm::all(glm::greaterThanEqual(low, Alike * high)))
-                return passed / static_cast<float>(num) * sum / 4.0f;
-            sum = glm::vec3(0.0f);
-        }
-        for (std::uint32_t i = 0; i < num; ++i)
-            if (passed_[i] != glm::vec3(0.0f))
-                sum += passed_[i] * backdrop(view_.grid_.direction(x, y, i));
-        return sum / static_cast<float>(num);
     }
 
     /// Whether a sample lies on a floor that catches shadows.

@@ -18,8 +18,8 @@ void require_one_per_receiver(std::size_t num_receivers, std::span<const glm::ve
                                                 num_receivers, radiance.size()));
 }
 
-/// Averages the samples of each pixel. `behind(x, y, i)` is the radiance behind a sample that is
-/// not opaque. The mean opacity goes to the picture's alpha if asked for.
+/// Averages the samples of each pixel. `behind(x, y, passed)` is what a pixel shows behind samples
+/// that let so much through. The mean opacity goes to the picture's alpha if asked for.
 template<typename Behind>
 Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
                  std::span<const glm::vec3> opacity, const Behind& behind, bool with_alpha) {
@@ -37,6 +37,7 @@ Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radi
         const auto first =
             std::lower_bound(layout.samples.begin(), layout.samples.end(), pixel * per_pixel);
         auto receiver = static_cast<std::size_t>(first - layout.samples.begin());
+        std::vector<glm::vec3> passed(per_pixel);
         for (std::uint32_t x = 0; x < layout.width; ++x, ++pixel) {
             glm::vec3 sum(0.0f);
             float alpha = 0.0f;
@@ -47,11 +48,10 @@ Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radi
                     own = opacity.empty() ? glm::vec3(1.0f) : opacity[receiver];
                     sum += own * radiance[receiver++];
                 }
-                if (own != glm::vec3(1.0f))
-                    sum += (1.0f - own) * behind(x, y, i);
+                passed[i] = 1.0f - own;
                 alpha += std::clamp((own.r + own.g + own.b) / 3.0f, 0.0f, 1.0f);
             }
-            picture.pixels[pixel] = sum / static_cast<float>(per_pixel);
+            picture.pixels[pixel] = sum / static_cast<float>(per_pixel) + behind(x, y, passed);
             if (with_alpha)
                 picture.alpha[pixel] = alpha / static_cast<float>(per_pixel);
         }
@@ -121,7 +121,7 @@ private:
 Picture compose_cut_out(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
                         std::span<const glm::vec3> opacity) {
     return averaged(
-        layout, radiance, opacity, [](auto, auto, auto) { return glm::vec3(0.0f); }, true);
+        layout, radiance, opacity, [](auto, auto, const auto&) { return glm::vec3(0.0f); }, true);
 }
 
 Picture compose(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
@@ -130,7 +130,10 @@ Picture compose(const prt::PixelLayout& layout, std::span<const glm::vec3> radia
                                 layout.samples_per_axis);
     return averaged(
         layout, radiance, opacity,
-        [&](auto x, auto y, auto i) { return backdrop(rays.direction(x, y, i)); }, false);
+        [&](auto x, auto y, const auto& passed) {
+            return seen_behind(rays, x, y, passed, backdrop);
+        },
+        false);
 }
 
 Picture compose(const prt::TexelLayout& layout, std::span<const glm::vec3> radiance,

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "data_gen/environments.h"
+#include "mesh/materials/srgb.h"
 #include "mesh/normals.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/pixel_receivers.h"
@@ -234,8 +235,7 @@ glm::vec3 shown(const glm::vec3& radiance, double exposure) {
     glm::vec3 color =
         relight::on_screen(ToneCurve::Neutral, static_cast<float>(std::exp2(exposure)) * radiance);
     for (int i = 0; i < 3; ++i)
-        color[i] = color[i] <= 0.0031308f ? 12.92f * color[i]
-                                          : 1.055f * std::pow(color[i], 1.0f / 2.4f) - 0.055f;
+        color[i] = mesh::srgb_of_linear(color[i]);
     return 255.0f * color;
 }
 

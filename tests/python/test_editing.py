@@ -59,17 +59,6 @@ def test_a_drag_and_its_undo(relighter):
     assert relighter.layers == [] and not relighter.can_undo
 
 
-@pytest.mark.parametrize(
-    "layer, message",
-    [
-        ({"name": "a"}, r"^layers\[1\]: expected .*type"),
-        ({**KEY.to_dict(), "name": "a", "radus": 3}, r"^layers\[1\]: expected .*radus"),
-        ({**KEY.to_dict(), "name": "a", "radius_degrees": -1}, r"^layers\[1\]: .*radius"),
-        ({**KEY.to_dict(), "name": "a", "radius_degrees": np.nan}, r"^layers\[1\]: "),
-        ({**KEY.to_dict(), "name": "a", "direction": object()}, r"^layers\[1\]: "),
-        ({**KEY.to_dict()}, r"^layers\[1\]: expected layers of different names"),
-    ],
-)
 def test_rotation_stays_for_other_environments(relighter, sky):
     relighter.set_environment(sky.turned(rotate=90))
     expected = np.array(relighter.radiance)
@@ -83,6 +72,17 @@ def test_rotation_stays_for_other_environments(relighter, sky):
         relighter.set_rotation(float("nan"))
 
 
+@pytest.mark.parametrize(
+    "layer, message",
+    [
+        ({"name": "a"}, r"^layers\[1\]: expected .*type"),
+        ({**KEY.to_dict(), "name": "a", "radus": 3}, r"^layers\[1\]: expected .*radus"),
+        ({**KEY.to_dict(), "name": "a", "radius_degrees": -1}, r"^layers\[1\]: .*radius"),
+        ({**KEY.to_dict(), "name": "a", "radius_degrees": np.nan}, r"^layers\[1\]: "),
+        ({**KEY.to_dict(), "name": "a", "direction": object()}, r"^layers\[1\]: "),
+        ({**KEY.to_dict()}, r"^layers\[1\]: expected layers of different names"),
+    ],
+)
 def test_wrong_layers_are_named_and_change_nothing(relighter, layer, message):
     before = relighter.radiance.copy()
     with pytest.raises(ValueError, match=message):
