@@ -43,7 +43,7 @@ protected:
 };
 
 TEST_F(Resume, KilledAtTwentyMomentsTheFileIsTheSame) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "4000", "-q"});
+    succeed({"generate", "knot", "-o", ".", "--vertices", "1500", "-q"});
     const std::vector<std::string> scene = {"--tolerance", "0.03"};
     const double seconds = succeed(run(scene)).seconds;
     const std::string expected = read("scene.prt");
