@@ -29,8 +29,8 @@ class Baker:
         self._error = None
         self.baked = {}  # key: (height, width, 3); the newest few
 
-    def ask(self, key, world, **job):
-        """Wants a world baked; take() or wait() gives the picture."""
+    def ask(self, key, world, images, **job):
+        """Wants a world baked, which uses images; take() or wait() gives the picture."""
         if key in (self._busy, self._next and self._next[0]):
             return
         self._start()
@@ -38,7 +38,7 @@ class Baker:
         blend = os.path.join(self._folder.name, f"{number}.blend")
         bpy.data.libraries.write(blend, {world}, path_remap="ABSOLUTE", fake_user=True)
         pixels = {}
-        for image in bpy.data.images:
+        for image in images:
             if image.is_dirty and image.size[0] > 0:
                 pixels[image.name] = f"{blend}.{len(pixels)}.npy"
                 values = np.empty(len(image.pixels), dtype=np.float32)

@@ -1,6 +1,7 @@
 """Blender's lamps: suns are the engine's distant lights; lamps near the scene are points whose
 shadows the engine traces."""
 
+import bpy
 import numpy as np
 from mathutils import Vector
 
@@ -131,10 +132,10 @@ def spot_factor(lamp, cosine):
     """How Cycles lets a spot's light fall towards its edge."""
     _, angle, blend = lamp.size
     edge = np.cos(0.5 * angle)
-    if blend <= 0.0:
-        return (cosine > edge).astype(np.float64)
-    x = np.clip((cosine - edge) / ((1.0 - edge) * blend), 0.0, 1.0)
-    return np.where(cosine > edge, x * x * (3.0 - 2.0 * x), 0.0)
+    x = np.clip((cosine - edge) / max((1.0 - edge) * blend, 1e-9), 0.0, 1.0)
+    fall = x * x * (3.0 - 2.0 * x)
+    # Before Blender 4 the cosine counted, too.
+    return np.where(cosine > edge, fall * (cosine if bpy.app.version < (4, 0, 0) else 1.0), 0.0)
 
 
 def radiance_of(lamp, relighter):

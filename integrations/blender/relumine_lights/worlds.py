@@ -91,7 +91,7 @@ class WorldLight:
         world = evaluated.world
         self.kind, self.color, self.path = "color", (0.0, 0.0, 0.0), None
         self.strength, self.turn, self.remarks = 1.0, Matrix.Identity(3), []
-        self.frame = scene.frame_current
+        self.frame, self._images = scene.frame_current, []
         self.world, self._turned_by, self._strength_of = world and world.original, "", ""
         if world is None:
             pass
@@ -129,6 +129,8 @@ class WorldLight:
             self.turn, self._turned_by = rotation_of(mapping).transposed(), mapping.name
         for tree in all_trees(world.node_tree):
             self._remark(tree)
+            images = [getattr(node, "image", None) for node in tree.nodes]
+            self._images += [image for image in images if image is not None]
 
     def _read_image(self, texture):
         """Whether a texture is a file that Relumine reads as Blender does."""
@@ -200,7 +202,7 @@ class WorldLight:
             return relumine.Environment.load(self.path, **options)
         if baker.take(key) is None:
             width = int(np.clip(8 * face_resolution, 512, 8192)) // 32 * 32
-            baker.ask(key, self.world, frame=self.frame, width=width,
+            baker.ask(key, self.world, self._images, frame=self.frame, width=width,
                       turned_by=self._turned_by, strength_of=self._strength_of)  # fmt: skip
         pixels = baker.wait(key) if wait else baker.take(key)
         return None if pixels is None else relumine.Environment(pixels, fix_env=True, **options)
