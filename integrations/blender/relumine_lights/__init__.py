@@ -67,6 +67,7 @@ def on_frame(scene, depsgraph=None):
 
 
 _renders = False
+_said = set()  # lines that a render has printed
 
 
 @persistent
@@ -74,11 +75,11 @@ def on_render(scene, depsgraph=None):
     """Says what is no longer right; a render in the background has no panel."""
     global _renders
     _renders = True
-    for name, state in assets.look_for_changes(scene).items():
-        print(f"Relumine: {name} {state}")
-    for line in (*assets.remarks, scene.relumine.error):
-        if line:
+    lines = [f"{name} {state}" for name, state in assets.look_for_changes(scene).items()]
+    for line in filter(None, (*lines, *assets.remarks, scene.relumine.error)):
+        if line not in _said:
             print(f"Relumine: {line}")
+            _said.add(line)
 
 
 @persistent

@@ -343,8 +343,11 @@ class Precompute:
     def work(self, progress=None):
         """The long part, which touches nothing of Blender's."""
         receivers = f"texels:{self.texels}x{self.texels}" if self.texels else "vertices"
-        relumine.precompute(self.mesh, tolerance=self.tolerance, output=self.absolute,
-                            receivers=receivers, bounces=bool(self.bounces), progress=progress)  # fmt: skip
+        relumine.precompute(
+            self.mesh, tolerance=self.tolerance, output=self.absolute, receivers=receivers,
+            bounces=bool(self.bounces), progress=progress,
+            refine=bool(self.bounces),  # Blender shows its own vertices; bounces gain from more
+        )  # fmt: skip
 
     def tie(self):
         for name, first, count, in_file, (shape, place) in self.places:
