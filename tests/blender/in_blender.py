@@ -117,7 +117,9 @@ def test():
     close(colors(head), in_file(head, of_world(-40)), "mapping as a point")
     mapping.inputs["Rotation"].default_value = (np.radians(70), 0.0, 0.0)
     bpy.context.view_layer.update()
-    tilted = command_line("sky.exr", "--from", "blender", "--tilt", "-70", "--face-resolution", "32")
+    tilted = command_line(
+        "sky.exr", "--from", "blender", "--tilt", "-70", "--face-resolution", "32"
+    )
     close(colors(head), in_file(head, tilted), "turned about X")
     mapping.inputs["Rotation"].default_value = (0.0, 0.0, np.radians(40))
     mapping.vector_type = "TEXTURE"

@@ -44,7 +44,7 @@ def test_assets(tmp_path):
 
 
 def test_worlds(tmp_path):
-    assert in_blender("worlds.py", tmp_path).count("baked  ") == 10
+    assert in_blender("worlds.py", tmp_path).count("baked  ") == 11
 
 
 def test_an_installed_add_on(tmp_path):

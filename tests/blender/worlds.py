@@ -112,6 +112,18 @@ def hue():
     nodes.shine(change)
 
 
+def turned_hue():
+    """A bake that turns live."""
+    hue()
+    nodes = bpy.context.scene.world.node_tree.nodes
+    tree = bpy.context.scene.world.node_tree
+    mapping, coordinates = nodes.new("ShaderNodeMapping"), nodes.new("ShaderNodeTexCoord")
+    tree.links.new(coordinates.outputs["Generated"], mapping.inputs["Vector"])
+    tree.links.new(mapping.outputs["Vector"], nodes["Environment Texture"].inputs["Vector"])
+    bpy.context.view_layer.update()
+    mapping.inputs["Rotation"].default_value = (0.5, -0.4, 1.2)
+
+
 def mirrored():
     nodes, texture = hdri()
     nodes.mapped(texture, scale=(1, -1, 1), rotation=(0, 0, 0.4))
@@ -186,7 +198,8 @@ def video():
 
 
 WORLDS = {"HDRI": hdri, "Sky Texture, sun": sky, "Mix Shader": mix, "Hue/Saturation": hue,
-          "mapping, scale -1": mirrored, "mirror ball": mirror_ball, "packed": packed,
+          "the same, turned live": turned_hue, "mapping, scale -1": mirrored,
+          "mirror ball": mirror_ball, "packed": packed,
           "generated": generated, "sRGB": srgb, "colour": color, "light-path trick": light_path,
           "rotated in X, Y, Z": rotated, "video": video}  # fmt: skip
 
@@ -266,6 +279,25 @@ def under_bake(scene, thing, number):
     return live.radiance.astype(np.float64)
 
 
+def follows_changes(scene, thing):
+    """Another frame, another tree; and what is not followed is said."""
+    before = colors_of(thing, "Relumine")
+    scene.frame_set(3)
+    assert difference(colors_of(thing, "Relumine"), before) > 0.01
+    hue()
+    bpy.context.view_layer.update()
+    before = colors_of(thing, "Relumine")
+    node = scene.world.node_tree.nodes["Hue Saturation Value"]
+    node.inputs["Value"].default_value = 2.0
+    bpy.context.view_layer.update()
+    assert difference(colors_of(thing, "Relumine"), 2.0 * before) < 1e-3
+    tree = scene.world.node_tree
+    coordinates = tree.nodes.new("ShaderNodeTexCoord")
+    tree.links.new(coordinates.outputs["Window"], tree.nodes["Environment Texture"].inputs[0])
+    bpy.context.view_layer.update()
+    assert assets.remarks == ["Texture Coordinate: coordinates of a camera are not followed"]
+
+
 def main():
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
@@ -302,6 +334,7 @@ def main():
         if of_bake > LIMIT or of_cycles > LIMIT_OF_CYCLES:
             wrong.append(name)
     assert not wrong, wrong
+    follows_changes(scene, thing)
     relumine_lights.unregister()
     print("all is well")
 

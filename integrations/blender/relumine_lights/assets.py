@@ -49,16 +49,19 @@ class LiveScene:
         suns = [lamp for lamp in lit_by if lamp.type == "SUN"]
         near = [lamp for lamp in lit_by if lamp.type != "SUN"]
         turn = np.array(world.turn).tobytes()
-        changed = self._part("world", (world.key, turn, face_resolution),
-                             lambda: self._under(self.world, world.environment(face_resolution, wait)))  # fmt: skip
-        changed |= self._part("suns", [sun.key() for sun in suns], lambda: self._under_suns(suns))
-        changed |= self._part("lamps", [lamp.key() for lamp in near], lambda: self._under_near(near))
-        changed |= self._part("strength", world.strength, lambda: np.float32(world.strength))
-        if changed:
+        parts = (
+            ("world", (world.key, turn, face_resolution),
+             lambda: self._under_world(world.environment(face_resolution, wait))),
+            ("suns", [sun.key() for sun in suns], lambda: self._under_suns(suns)),
+            ("lamps", [lamp.key() for lamp in near], lambda: self._under_near(near)),
+            ("strength", world.strength, lambda: np.float32(world.strength)),
+        )  # fmt: skip
+        if any([self._part(*part) for part in parts]):
             np.multiply(self.parts.get("world", 0.0), self.parts["strength"], out=self.radiance)
             self.radiance += self.parts["suns"]
             self.radiance += self.parts["lamps"]
-        return changed
+            return True
+        return False
 
     def _part(self, name, key, compute):
         if name in self.keys and self.keys[name] == key:
@@ -69,11 +72,11 @@ class LiveScene:
         self.keys[name], self.parts[name] = key, part
         return True
 
-    def _under(self, relighter, environment):
+    def _under_world(self, environment):
         if environment is None:
             return None
-        relighter.set_environment(environment)
-        return self._bounced(relighter)
+        self.world.set_environment(environment)
+        return self._bounced(self.world)
 
     def _bounced(self, relighter):
         if self.bounces:
@@ -128,8 +131,10 @@ def copied_from(scene, thing):
     if thing[OWNER] == thing.name:
         return None
     owner = scene.objects.get(thing[OWNER])
-    same = owner is not None and owner != thing and owner.get(PATH) is not None
-    return owner if same and (path_of(owner), owner[FIRST]) == (path_of(thing), thing[FIRST]) else None
+    if owner is None or owner == thing or PATH not in owner:
+        return None
+    is_copy = (path_of(owner), owner[FIRST]) == (path_of(thing), thing[FIRST])
+    return owner if is_copy else None
 
 
 def untie_copies(scene):
@@ -196,7 +201,9 @@ def has_light(thing):
 def write(thing, live, depsgraph):
     """Writes an object's light. Returns whether it could."""
     if not live.holds(thing):
-        raise ValueError(f"{path_of(thing)}: expected the light of {thing.name}, got another mesh's")
+        raise ValueError(
+            f"{path_of(thing)}: expected the light of {thing.name}, got another mesh's"
+        )
     if thing[TEXELS]:
         size = thing[TEXELS]
         key = (path_of(thing), live.stamp)
@@ -303,8 +310,8 @@ class Precompute:
             self._add(thing, thing.evaluated_get(depsgraph), own, extra)
         others, notes = geometry.surroundings_of(depsgraph, self.names, rendered, bounces)
         self.notes |= notes
-        self.notes |= {f"{name} renders but is hidden here: it blocks no light"
-                       for name in geometry.unseen(self.scene, depsgraph, self.names, rendered)}  # fmt: skip
+        hidden = geometry.unseen(self.scene, depsgraph, self.names, rendered)
+        self.notes |= {f"{name} renders but is hidden here: it blocks no light" for name in hidden}
         self.around = geometry.surroundings_key(depsgraph, self.names, rendered)
         if bounces and others.count and not texels:  # what is around sends light, too
             own.extend(others)

@@ -106,9 +106,11 @@ def unseen(scene, depsgraph, names, rendered):
     """Names of objects that would render, but are hidden in the viewport."""
     shown = {instance.object.original.name for instance in depsgraph.object_instances
              if not instance.is_instance}  # fmt: skip
-    return sorted(thing.name for thing in scene.objects
-                  if thing.name in rendered and thing.name not in shown | names
-                  and blocks(thing) and thing.type == "MESH" and len(thing.data.polygons))  # fmt: skip
+    return sorted(
+        thing.name for thing in scene.objects
+        if thing.name in rendered - shown - names and blocks(thing)
+        and thing.type == "MESH" and len(thing.data.polygons)
+    )  # fmt: skip
 
 
 class Pieces:

@@ -41,8 +41,9 @@ class RELUMINE_OT_precompute(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     filepath: bpy.props.StringProperty(
-        subtype="FILE_PATH", description="Empty: the file of the panel, or one named after the object"
-    )  # fmt: skip
+        subtype="FILE_PATH",
+        description="Empty: the file of the panel, or one named after the object",
+    )
     again: bpy.props.BoolProperty(
         description="All objects of the active one's asset, as it was made", options={"HIDDEN"}
     )

@@ -16,7 +16,7 @@ class RelumineScene(bpy.types.PropertyGroup):
         default=64, min=8, max=2048,
     )  # fmt: skip
     tolerance: bpy.props.FloatProperty(
-        name="Tolerance", description="Error of the light that a precompute allows; smaller is finer",
+        name="Tolerance", description="Error of the light that is allowed; smaller is finer",
         default=0.0135, min=0.001, max=1.0, precision=4,
     )  # fmt: skip
     bounces: bpy.props.BoolProperty(

@@ -228,8 +228,10 @@ def orthonormal(matrix):
 
 def described_node(node, skipped):
     """All that a node's picture depends on, as plain values."""
-    inputs = [(each.identifier, plain(each.default_value)) for each in node.inputs
-              if hasattr(each, "default_value") and (node.name, each.name) not in skipped]  # fmt: skip
+    inputs = [
+        (each.identifier, plain(each.default_value)) for each in node.inputs
+        if hasattr(each, "default_value") and (node.name, each.name) not in skipped
+    ]  # fmt: skip
     outputs = [plain(each.default_value) for each in node.outputs
                if node.type in ("VALUE", "RGB", "NORMAL")]  # fmt: skip
     return [inputs, outputs, described(node, 0)]
