@@ -182,6 +182,11 @@ class WorldLight:
                 parts.append(self.frame)
         return repr(parts)
 
+    @property
+    def is_turned_live(self):
+        """Whether a bake is turned after it was made."""
+        return self._turned_by != ""
+
     def environment(self, face_resolution, wait):
         """The relumine.Environment, turned; None while a bake is under way."""
         if self.kind == "color":
