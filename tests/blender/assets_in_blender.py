@@ -122,12 +122,18 @@ def test_changes_are_seen():
     select(floor)
     assert bpy.ops.relumine.precompute(again=True) == {"FINISHED"}
     assert states() == {}
+    # Objects of one asset shadow each other.
+    third = plane("third", location=(0, 3, 0))
+    assert precompute(floor, third) == {"FINISHED"} and states() == {}
+    third.location.z = 1.0
+    assert states() == {"third": "stale: place changed", "floor": "stale: third changed"}
+    third.location.z = 0.0
     # The same after the file was saved and opened.
     bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, "assets.blend"))
     bpy.ops.wm.open_mainfile(filepath=os.path.join(folder, "assets.blend"))
     assert states() == {}
     bpy.data.objects["other"].location.x = 3.0
-    assert states() == {"floor": "stale: what is around changed"}
+    assert set(states().values()) == {"stale: what is around changed"}
 
 
 def test_what_renders_blocks_light():

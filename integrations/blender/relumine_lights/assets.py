@@ -259,7 +259,7 @@ def look_for_changes(scene, depsgraph=None):
     depsgraph = depsgraph or bpy.context.evaluated_depsgraph_get()
     states.clear()
     rendered = geometry.rendered_names(bpy.context.view_layer)
-    around = {}
+    around, stale = {}, {}
     for thing in scene.objects:
         if "relumine_copy_of" in thing and PATH not in thing:
             states[thing.name] = f"a copy of {thing['relumine_copy_of']}: precompute it"
@@ -276,6 +276,10 @@ def look_for_changes(scene, depsgraph=None):
             states[thing.name] = "shares its mesh with another object"
         elif changed:
             states[thing.name] = f"stale: {', '.join(changed)} changed"
+            stale.setdefault(path, thing.name)
+    for thing in lit_objects(scene):  # what moved has left its shadow on the others
+        if path_of(thing) in stale:
+            states.setdefault(thing.name, f"stale: {stale[path_of(thing)]} changed")
     return states
 
 

@@ -24,6 +24,7 @@ class Baker:
         self._process = None
         self._answers = queue.Queue()
         self._folder = None
+        self._number = 0
         self._busy = None  # key that is being baked
         self._next = None  # (key, job)
         self._error = None
@@ -34,8 +35,8 @@ class Baker:
         if key in (self._busy, self._next and self._next[0]):
             return
         self._start()
-        number = len(os.listdir(self._folder.name))
-        blend = os.path.join(self._folder.name, f"{number}.blend")
+        self._number += 1
+        blend = os.path.join(self._folder.name, f"{self._number}.blend")
         bpy.data.libraries.write(blend, {world}, path_remap="ABSOLUTE", fake_user=True)
         pixels = {}
         for image in images:
@@ -44,6 +45,8 @@ class Baker:
                 values = np.empty(len(image.pixels), dtype=np.float32)
                 image.pixels.foreach_get(values)
                 np.save(pixels[image.name], values)
+        if self._next is not None:
+            remove(self._next[1])
         self._next = key, {"blend": blend, "world": world.name, "pixels": pixels,
                            "output": blend + ".world.npy", **job}  # fmt: skip
         self._send()
@@ -117,11 +120,17 @@ class Baker:
             while len(self.baked) >= 4:
                 self.baked.pop(next(iter(self.baked)))
             self.baked[key] = np.load(self._job["output"])
-            for path in (self._job["output"], *self._job["pixels"].values()):
-                os.remove(path)
+            remove(self._job)
         elif answer != "done":
             self._error = answer[len("error ") :]
         self._send()
+
+
+def remove(job):
+    """Removes a job's files."""
+    for path in (job["blend"], job["output"], *job["pixels"].values()):
+        if os.path.exists(path):
+            os.remove(path)
 
 
 baker = Baker()

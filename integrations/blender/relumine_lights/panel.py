@@ -1,5 +1,7 @@
 """The panel and its settings."""
 
+import textwrap
+
 import bpy
 
 from . import assets
@@ -66,9 +68,9 @@ class RELUMINE_PT_panel(bpy.types.Panel):
         if baker.is_busy:
             layout.label(text="The world is being baked", icon="TIME")
         for line in assets.remarks:
-            layout.label(text=line, icon="INFO")
+            said(layout, context, line, "INFO")
         if settings.error:
-            layout.label(text=settings.error, icon="ERROR")
+            said(layout, context, settings.error, "ERROR")
         layout.separator()
         layout.operator("relumine.pull_lights")
         row = layout.operator("relumine.pull_lights", text="Pull lights for this asset")
@@ -80,7 +82,7 @@ class RELUMINE_PT_panel(bpy.types.Panel):
         if thing is not None and PATH in thing:
             layout.label(text=thing[PATH], icon="FILE")
         for name, state in sorted(assets.states.items()):
-            layout.label(text=f"{name} {state}", icon="ERROR")
+            said(layout, context, f"{name} {state}", "ERROR")
         state = assets.states.get(thing.name, "") if thing is not None else ""
         if state.startswith("stale"):
             layout.operator("relumine.precompute", text="Precompute again").again = True
@@ -88,7 +90,17 @@ class RELUMINE_PT_panel(bpy.types.Panel):
                                       for each in context.selected_objects):  # fmt: skip
             layout.operator("relumine.single_user")
         if thing is not None and thing.mode == "EDIT" and PATH in thing:
-            layout.label(text="In Edit Mode: its light follows when you leave", icon="INFO")
+            said(layout, context, "In Edit Mode: its light follows when you leave", "INFO")
+
+
+def said(layout, context, text, icon):
+    """A text as wide as the panel, in several lines where it is long."""
+    scale = context.preferences.system.ui_scale
+    width = max(20, int(context.region.width / (8.0 * scale)) - 5)
+    column = layout.column(align=True)
+    for line in textwrap.wrap(text, width):
+        column.label(text=line, icon=icon)
+        icon = "BLANK1"
 
 
 CLASSES = (RelumineScene, RelumineObject, RELUMINE_PT_panel)
