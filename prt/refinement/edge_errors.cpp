@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "files/parallel.h"
+#include "prt/refinement/large_triangles.h"
 
 namespace relumine::prt {
 
@@ -18,12 +19,6 @@ using Neighbours = CoarseDirections::Neighbours;
 /// Middles that are traced together: 50 MB.
 constexpr std::size_t PointsPerStep = std::size_t{1} << 18;
 
-/// Of the mesh's diagonal. Edges longer than this are asked at once, and triangles with such a side
-/// at points inside that are about as far from each other. What hides between the points is small.
-constexpr float LargeTriangle = 1.0f / 24.0f;
-/// So many parts of a side at most.
-constexpr std::uint32_t MostParts = 24;
-
 /// Of the mesh's diagonal.
 constexpr float ShortestEdge = 1e-3f;
 
@@ -34,8 +29,7 @@ constexpr std::size_t PartsWithBounds = 16;
 
 EdgeErrors::EdgeErrors(LitSurface& surface, const HiddenVertices& hidden,
                        const RefineOptions& options)
-    : surface_(surface), hidden_(hidden),
-      large_(LargeTriangle * mesh::bounds(surface.mesh()).diagonal()),
+    : surface_(surface), hidden_(hidden), large_(large_side(surface.mesh())),
       min_edge_(options.min_edge.value_or(ShortestEdge * mesh::bounds(surface.mesh()).diagonal())),
       is_curved_(options.curved) {}
 
@@ -55,15 +49,15 @@ bool EdgeErrors::is_left_to_move(std::uint32_t edge) {
 }
 
 /// Bounds the errors of the edges that are new: where light changes once along an edge, its
-/// middle is half of the change away from the mean. Long edges are asked at once, since light
-/// may change there and back.
+/// middle is half of the change away from the mean. Edges on which light may change there and back
+/// are asked at once: long ones, and those that other solids hide at both ends.
 void EdgeErrors::bound_new_edges() {
     const auto first = static_cast<std::uint32_t>(errors_.size());
     errors_.resize(surface_.split().num_edges(), 0.0f);
     is_asked_.resize(surface_.split().num_edges(), true);
     is_candidate_.resize(surface_.split().num_edges());
     std::vector<Pair> pairs;
-    std::vector<std::uint32_t> long_edges;
+    std::vector<std::uint32_t> asked;
     for (std::uint32_t edge = first; edge < surface_.split().num_edges(); ++edge) {
         // An edge that a triangle which stays has on its other side is a candidate, too.
         ends_.clear();
@@ -77,8 +71,8 @@ void EdgeErrors::bound_new_edges() {
             });
         if (!may_split(edge))
             continue;
-        if (surface_.split().length(edge) > large_) {
-            long_edges.push_back(edge);
+        if (surface_.split().length(edge) > large_ || hidden_.hides_ends(ends_)) {
+            asked.push_back(edge);
             continue;
         }
         is_asked_[edge] = false;
@@ -92,7 +86,7 @@ void EdgeErrors::bound_new_edges() {
                     2.0f;
     });
     set_errors(pairs, bounds);
-    ask(long_edges);
+    ask(asked);
 }
 
 void EdgeErrors::append_pairs(std::uint32_t edge, std::vector<Pair>& pairs) {
@@ -133,21 +127,6 @@ void EdgeErrors::ask(std::span<const std::uint32_t> edges) {
     }
 }
 
-/// The centres of the k x k triangles that parallels to the sides cut a triangle into.
-void EdgeErrors::append_points(std::uint32_t triangle, std::uint32_t k, std::vector<Inside>& all) {
-    const auto add = [&](std::uint32_t i, std::uint32_t j, float part) {
-        const float b = (static_cast<float>(i) + part) / static_cast<float>(k);
-        const float c = (static_cast<float>(j) + part) / static_cast<float>(k);
-        all.push_back({triangle, {1.0f - b - c, b, c}});
-    };
-    for (std::uint32_t i = 0; i < k; ++i)
-        for (std::uint32_t j = 0; i + j < k; ++j) {
-            add(i, j, 1.0f / 3.0f);
-            if (i + j + 1 < k)
-                add(i, j, 2.0f / 3.0f);
-        }
-}
-
 /// What lies in the middle of a large triangle may throw no shadow on its edges, and light may
 /// fall there where its edges are hidden.
 void EdgeErrors::ask_large_triangles() {
@@ -155,10 +134,8 @@ void EdgeErrors::ask_large_triangles() {
     for (const std::uint32_t triangle : surface_.split().changed_triangles()) {
         const std::uint32_t edge = surface_.split().longest_edge(triangle);
         if (surface_.split().length(edge) > large_ && may_split(edge))
-            append_points(triangle,
-                          std::min(MostParts, static_cast<std::uint32_t>(std::ceil(
-                                                  surface_.split().length(edge) / large_))),
-                          points);
+            for (const glm::vec2& at : points_inside(surface_.split().length(edge) / large_))
+                points.push_back({triangle, {1.0f - at.x - at.y, at.x, at.y}});
     }
     for (std::size_t first = 0; first < points.size(); first += PointsPerStep)
         ask_inside(

@@ -59,7 +59,6 @@ private:
     void set_errors(std::span<const Pair> pairs, std::span<const float> errors);
     void ask(std::span<const std::uint32_t> edges);
     void ask_large_triangles();
-    static void append_points(std::uint32_t triangle, std::uint32_t k, std::vector<Inside>& all);
     void ask_inside(std::span<const Inside> points);
 
     LitSurface& surface_;

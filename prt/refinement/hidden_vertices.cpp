@@ -49,8 +49,13 @@ void HiddenVertices::find_movable() {
 }
 
 bool HiddenVertices::moves_to(std::uint32_t hidden, std::uint32_t lit) const {
-    return is_movable_[hidden] && CoarseDirections::is_hidden(surface_.bits(hidden)) &&
-           !CoarseDirections::is_hidden(surface_.bits(lit));
+    return is_movable_[hidden] && is_hidden(hidden) && !is_hidden(lit);
+}
+
+bool HiddenVertices::hides_ends(std::span<const SplitMesh::Ends> edge) const {
+    return std::any_of(edge.begin(), edge.end(), [this](const SplitMesh::Ends& ends) {
+        return is_hidden(ends.low) && is_hidden(ends.high);
+    });
 }
 
 /// Returns the ways along which hidden vertices may leave, by bisection.
@@ -61,10 +66,18 @@ std::vector<HiddenVertices::Way> HiddenVertices::ways_out() {
     std::vector<Way> ways;
     for (const mesh::Triangle& triangle : mesh.triangles)
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t a = triangle[k], b = triangle[(k + 1) % 3];
+            const std::uint32_t a = triangle[k];
+            const auto add = [&](std::uint32_t b) {
+                if (surface_.is_traced(a) && surface_.is_traced(b) && is_hidden(a) && !is_hidden(b))
+                    ways.push_back({.vertex = a,
+                                    .towards = b,
+                                    .num_hidden = CoarseDirections::num_lit(surface_.bits(a)),
+                                    .num_lit = CoarseDirections::num_lit(surface_.bits(b))});
+            };
+            add(triangle[(k + 1) % 3]);
             // Around a vertex that may move, each edge leaves in one triangle.
-            if (is_movable_[a] && surface_.is_traced(a) && surface_.is_traced(b) && moves_to(a, b))
-                ways.push_back({a, b});
+            if (!is_movable_[a])
+                add(triangle[(k + 2) % 3]);
         }
     for (int i = 0; i < Bisections; ++i) {
         Receivers receivers;
@@ -79,8 +92,10 @@ std::vector<HiddenVertices::Way> HiddenVertices::ways_out() {
             const int least =
                 std::max(CoarseDirections::FewestDirections,
                          CoarseDirections::num_lit(surface_.bits(ways[j].towards)) / 4);
-            (CoarseDirections::num_lit(bits[j]) < least ? ways[j].hidden : ways[j].lit) =
-                0.5f * (ways[j].hidden + ways[j].lit);
+            const int num_lit = CoarseDirections::num_lit(bits[j]);
+            const bool is_hidden = num_lit < least;
+            (is_hidden ? ways[j].hidden : ways[j].lit) = 0.5f * (ways[j].hidden + ways[j].lit);
+            (is_hidden ? ways[j].num_hidden : ways[j].num_lit) = num_lit;
         }
     }
     return ways;
@@ -109,9 +124,22 @@ mesh::TriangleMesh HiddenVertices::moved_out() {
                     around[vertex].push_back(i);
     is_done.assign(around.size(), false);
     for (const auto& [distance, way] : sorted)
-        if (!is_done[way.vertex])
+        if (is_movable_[way.vertex] && !is_done[way.vertex])
             is_done[way.vertex] = move(mesh, way, around[way.vertex]);
+    for (const auto& [distance, way] : sorted)
+        if (!is_done[way.vertex] && way.leaves_a_solid()) {
+            is_done[way.vertex] = true;
+            look_from_the_end(mesh, way);
+        }
     return mesh;
+}
+
+/// The vertex stays, and its rays start at the end of the way.
+void HiddenVertices::look_from_the_end(mesh::TriangleMesh& mesh, const Way& way) {
+    mesh.lifts.resize(mesh.num_vertices(), glm::vec3(0.0f));
+    const glm::vec3 own = mesh.lifts[way.vertex], other = mesh.lifts[way.towards];
+    mesh.lifts[way.vertex] =
+        own + way.lit * (mesh.positions[way.towards] + other - mesh.positions[way.vertex] - own);
 }
 
 /// Moves a vertex of a flat surface, with all that it carries. Returns false where a triangle

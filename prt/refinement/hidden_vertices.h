@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mesh/triangle_mesh.h"
@@ -9,9 +10,9 @@
 
 namespace relumine::prt {
 
-/// Knows which vertices of a surface may move out of a solid that hides them: new ones where the
-/// surface around is flat and goes on to all sides. Their darkness would spread over the triangles
-/// beside them.
+/// Keeps the darkness of vertices that a solid hides from the triangles beside them. New vertices
+/// move out of the solid where the surface around them is flat and goes on to all sides. All others
+/// stay, and look from outside of it.
 class HiddenVertices {
 public:
     explicit HiddenVertices(LitSurface& surface) : surface_(surface) {}
@@ -20,8 +21,10 @@ public:
     void find_movable();
     /// Whether a vertex will move along the edge to another one.
     [[nodiscard]] bool moves_to(std::uint32_t hidden, std::uint32_t lit) const;
+    /// Whether both ends of an edge are hidden, in one of its pairs.
+    [[nodiscard]] bool hides_ends(std::span<const mesh::SplitMesh::Ends> edge) const;
     /// Ends the work: returns the mesh of the surface with all vertices moved that may, each by the
-    /// shortest way to light that turns no triangle over.
+    /// shortest way to light that turns no triangle over. Others get lifts along such ways.
     [[nodiscard]] mesh::TriangleMesh moved_out();
 
 private:
@@ -30,8 +33,16 @@ private:
         std::uint32_t vertex, towards;
         /// The last part of the way that is known to be hidden, and the first that is not.
         float hidden = 0.0f, lit = 1.0f;
+        /// Directions whose light reaches these two places.
+        int num_hidden, num_lit;
+        /// Light begins at once outside of a solid. In a cranny it grows along the way.
+        [[nodiscard]] bool leaves_a_solid() const { return 4 * num_hidden < num_lit; }
     };
+    [[nodiscard]] bool is_hidden(std::uint32_t vertex) const {
+        return CoarseDirections::is_hidden(surface_.bits(vertex));
+    }
     [[nodiscard]] std::vector<Way> ways_out();
+    static void look_from_the_end(mesh::TriangleMesh& mesh, const Way& way);
     static bool move(mesh::TriangleMesh& mesh, const Way& way,
                      const std::vector<std::uint32_t>& triangles);
 

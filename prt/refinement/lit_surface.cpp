@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "prt/receivers/mesh_point.h"
+#include "prt/refinement/large_triangles.h"
 #include "prt/visibility/ray_scene.h"
 
 namespace relumine::prt {
@@ -40,13 +41,6 @@ mesh::TriangleMesh without_lifts(mesh::TriangleMesh mesh) {
 }
 
 } // namespace
-
-float longest_side(const mesh::TriangleMesh& mesh, const mesh::Triangle& triangle) {
-    const auto& [a, b, c] = triangle;
-    const std::vector<glm::vec3>& at = mesh.positions;
-    return std::max(
-        {glm::distance(at[a], at[b]), glm::distance(at[b], at[c]), glm::distance(at[c], at[a])});
-}
 
 LitSurface::LitSurface(const mesh::TriangleMesh& base, const Blockers& blockers,
                        const RefineOptions& options, const Progress& progress)

@@ -15,8 +15,6 @@
 
 namespace relumine::prt {
 
-[[nodiscard]] float longest_side(const mesh::TriangleMesh& mesh, const mesh::Triangle& triangle);
-
 /// The vertices of a mesh::SplitMesh with the bits of CoarseDirections. Vertices alone are traced
 /// that belong to triangles to be refined (RefineOptions::coarse_edge). Rays of new vertices start
 /// on the smooth surface over the mesh of the beginning, unless the mesh will be curved.

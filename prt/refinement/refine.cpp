@@ -13,6 +13,7 @@
 #include "mesh/half_edge/split_mesh.h"
 #include "prt/refinement/edge_errors.h"
 #include "prt/refinement/hidden_vertices.h"
+#include "prt/refinement/large_triangles.h"
 #include "prt/refinement/lit_surface.h"
 
 namespace relumine::prt {
