@@ -150,6 +150,8 @@ void resize_layer(Step& s) {
         if (auto* box = std::get_if<cubemap::Rectangle>(&layer.region))
             box->height_degrees *= degrees / box->width_degrees;
         *size = degrees;
+    } else {
+        fail(s.command, "expected a layer with a radius or a width");
     }
     change(s.state.desk, index, layer);
     if (s.is_last())

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <variant>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -64,6 +65,7 @@ inline LightLayer random_layer(std::mt19937& generator) {
     const double size = std::exp(uniform(std::log(0.01), std::log(80.0)));
     const double softness = uniform(0.0, 1.0) < 0.4 ? 0.0 : uniform(0.0, 1.0);
     LightLayer layer{.name = "random", .gain_ev = uniform(-2.0, 2.0)};
+    static_assert(std::variant_size_v<Region> == 4, "a case for each shape");
     switch (static_cast<int>(uniform(0.0, 3.99))) {
     case 0:
         layer.region = Disc{direction, size, softness};

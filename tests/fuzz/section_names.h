@@ -62,6 +62,7 @@ inline constexpr std::array<std::string_view, 56> SectionNames = {"settings",
                                                                   "bounce_rays_hit",
                                                                   "bounce_rays",
                                                                   "bounce_errors",
-                                                                  "unknown"};
+                                                                  "unknown",
+                                                                  "lifts"};
 
 } // namespace relumine::fuzz

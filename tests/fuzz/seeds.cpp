@@ -1,8 +1,10 @@
 // Writes the binary seeds of the corpus anew, small files by our own writers: fuzz_seeds FOLDER. To
 // be run when a format changed.
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 
 #include <ImfChannelList.h>
@@ -215,14 +217,15 @@ std::string with_raw_frames(const fs::path& path) {
 /// As the target `sections` reads them.
 std::string lettered(const fs::path& path) {
     std::string result;
-    for (const auto& [name, content] : prt::read_sections(path))
-        for (std::size_t i = 0; i < fuzz::SectionNames.size(); ++i)
-            if (fuzz::SectionNames[i] == name) {
-                result += static_cast<char>('A' + i);
-                result += static_cast<char>(content.size() & 0xff);
-                result += static_cast<char>(content.size() >> 8);
-                result.append(reinterpret_cast<const char*>(content.data()), content.size());
-            }
+    for (const auto& [name, content] : prt::read_sections(path)) {
+        const auto known = std::find(fuzz::SectionNames.begin(), fuzz::SectionNames.end(), name);
+        if (known == fuzz::SectionNames.end())
+            throw std::logic_error(name + ": expected a line of tests/fuzz/section_names.h");
+        result += static_cast<char>('A' + (known - fuzz::SectionNames.begin()));
+        result += static_cast<char>(content.size() & 0xff);
+        result += static_cast<char>(content.size() >> 8);
+        result.append(reinterpret_cast<const char*>(content.data()), content.size());
+    }
     return result;
 }
 

@@ -9,8 +9,12 @@
 namespace relumine::relight {
 namespace {
 
-constexpr std::array<ToneCurve, 4> All = {ToneCurve::Neutral, ToneCurve::Agx, ToneCurve::Aces,
-                                          ToneCurve::None};
+constexpr std::array<ToneCurve, ToneCurves.size()> All = [] {
+    std::array<ToneCurve, ToneCurves.size()> all{};
+    for (std::size_t i = 0; i < all.size(); ++i)
+        all[i] = static_cast<ToneCurve>(i);
+    return all;
+}();
 
 TEST(ToneCurve, Names) {
     EXPECT_EQ(tone_curve("neutral"), ToneCurve::Neutral);
