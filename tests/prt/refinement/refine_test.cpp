@@ -502,7 +502,7 @@ TEST(Refine, NewVerticesOfARoundMeshLookFromItsSmoothSurface) {
          CoarseDirections().trace(receivers, rays, automatic_bias(ball), Progress{Work()}))
         EXPECT_GT(CoarseDirections::num_lit(bits), 740) << "of the 768 above its horizon";
     // A flat mesh has no lifts, and a second refinement keeps those of the first.
-    EXPECT_TRUE(refined(box_on_floor(), {.max_vertices = 500}).lifts.empty());
+    EXPECT_TRUE(refine(scenes::floor_grid(2, 8.0f), Wall(), {.max_vertices = 500}).lifts.empty());
     const mesh::TriangleMesh twice =
         refine(fine, rays, {.error = 0.003f, .max_vertices = fine.num_vertices() + 50});
     EXPECT_TRUE(std::equal(fine.lifts.begin(), fine.lifts.end(), twice.lifts.begin()));
