@@ -85,6 +85,8 @@ std::vector<HiddenVertices::Way> HiddenVertices::ways_out() {
             const float part = 0.5f * (way.hidden + way.lit);
             surface_.add_mean(std::array{way.vertex, way.towards}, std::array{1.0f - part, part},
                               receivers);
+            receivers.positions.back() +=
+                (1.0f - part) * surface_.lift(way.vertex) + part * surface_.lift(way.towards);
         }
         const std::vector<Bits> bits = surface_.trace(receivers);
         for (std::size_t j = 0; j < ways.size(); ++j) {
@@ -93,9 +95,9 @@ std::vector<HiddenVertices::Way> HiddenVertices::ways_out() {
                 std::max(CoarseDirections::FewestDirections,
                          CoarseDirections::num_lit(surface_.bits(ways[j].towards)) / 4);
             const int num_lit = CoarseDirections::num_lit(bits[j]);
-            const bool is_hidden = num_lit < least;
-            (is_hidden ? ways[j].hidden : ways[j].lit) = 0.5f * (ways[j].hidden + ways[j].lit);
-            (is_hidden ? ways[j].num_hidden : ways[j].num_lit) = num_lit;
+            const bool is_dark = num_lit < least;
+            (is_dark ? ways[j].hidden : ways[j].lit) = 0.5f * (ways[j].hidden + ways[j].lit);
+            (is_dark ? ways[j].num_hidden : ways[j].num_lit) = num_lit;
         }
     }
     return ways;

@@ -43,6 +43,8 @@ public:
     [[nodiscard]] CoarseDirections::Point vertex(std::uint32_t index, float weight = 1.0f) const {
         return {mesh().normals[index], &vertex_bits_[index], weight};
     }
+    /// Returns the way from a vertex to the smooth surface.
+    [[nodiscard]] const glm::vec3& lift(std::uint32_t vertex) const { return lifts_[vertex]; }
     /// Returns what the ends of an edge tell of its middle.
     [[nodiscard]] Neighbours neighbours(std::uint32_t low, std::uint32_t high) const;
 

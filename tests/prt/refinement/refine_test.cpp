@@ -12,6 +12,7 @@
 #include "cubemap/cube_map.h"
 #include "files/parallel.h"
 #include "mesh/edge_uses.h"
+#include "mesh/normals.h"
 #include "prt/precompute.h"
 #include "prt/refinement/coarse_transfer.h"
 #include "prt/refinement/lit_backs.h"
@@ -427,7 +428,8 @@ TEST(Refine, NewVerticesLeaveTheSolidThatHidesThem) {
 
 TEST(Refine, APostWhoseEndsOtherSolidsHideIsLitBetweenThem) {
     // It is small in the scene, and no corner of it is lit.
-    const mesh::TriangleMesh post = scenes::box({-0.2f, 0.5f, -0.2f}, {0.2f, 2.5f, 0.2f});
+    const mesh::TriangleMesh post =
+        mesh::with_creases(scenes::box({-0.2f, 0.5f, -0.2f}, {0.2f, 2.5f, 0.2f}), 40.0f);
     mesh::TriangleMesh mesh = scenes::joined(post, scenes::box({-1, 0.1f, -1}, {1, 1, 1}));
     mesh = scenes::joined(mesh, scenes::box({-1, 2, -1}, {1, 3, 1}));
     mesh = scenes::joined(mesh, scenes::floor_grid(2, 100.0f));
@@ -502,7 +504,7 @@ TEST(Refine, NewVerticesOfARoundMeshLookFromItsSmoothSurface) {
          CoarseDirections().trace(receivers, rays, automatic_bias(ball), Progress{Work()}))
         EXPECT_GT(CoarseDirections::num_lit(bits), 740) << "of the 768 above its horizon";
     // A flat mesh has no lifts, and a second refinement keeps those of the first.
-    EXPECT_TRUE(refined(box_on_floor(), {.max_vertices = 500}).lifts.empty());
+    EXPECT_TRUE(refine(scenes::floor_grid(2, 8.0f), Wall(), {.max_vertices = 500}).lifts.empty());
     const mesh::TriangleMesh twice =
         refine(fine, rays, {.error = 0.003f, .max_vertices = fine.num_vertices() + 50});
     EXPECT_TRUE(std::equal(fine.lifts.begin(), fine.lifts.end(), twice.lifts.begin()));
