@@ -12,7 +12,7 @@ import sys
 
 import bpy
 import numpy as np
-from mathutils import Matrix, Vector
+from mathutils import Matrix, Vector, kdtree
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import addon
@@ -22,7 +22,7 @@ from relumine_lights import assets, worlds
 
 folder = os.path.abspath(sys.argv[sys.argv.index("--") + 1])
 #: Relative L2, of bakes and of Cycles.
-LIMIT, LIMIT_OF_CYCLES = 0.01, 0.015
+LIMIT = 0.01
 
 
 def picture(name, *, seed=1, width=256, float_buffer=True, path=None, image_format="OPEN_EXR"):
@@ -55,6 +55,8 @@ class Nodes:
     def __init__(self, strength=1.0):
         self.world = bpy.context.scene.world = bpy.data.worlds.new("world")
         self.world.use_nodes = True
+        # How Cycles chooses directions; what it makes by itself takes a second for each picture.
+        self.world.cycles.sampling_method, self.world.cycles.sample_map_resolution = "MANUAL", 256
         self.tree = self.world.node_tree
         self.background = next(node for node in self.tree.nodes if node.type == "BACKGROUND")
         self.background.inputs["Strength"].default_value = strength
@@ -211,8 +213,8 @@ def colors_of(thing, name):
     return values.reshape(-1, 4)[:, :3].astype(np.float64)
 
 
-def ball(name, subdivisions=5):
-    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=subdivisions)
+def ball(name):
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=5)
     thing = bpy.context.object
     thing.name = name
     bpy.ops.object.shade_smooth()
@@ -220,9 +222,9 @@ def ball(name, subdivisions=5):
 
 
 def by_cycles(thing):
-    """Normals (N, 3) and radiance (N, 3) of a white ball as Cycles draws it from six sides."""
+    """Normals (N, 3) and radiance (N, 3) of a white ball as Cycles draws it from four sides."""
     scene, render = bpy.context.scene, bpy.context.scene.render
-    render.engine, scene.cycles.samples = "CYCLES", 64
+    render.engine, scene.cycles.samples = "CYCLES", 256
     scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
     scene.cycles.pixel_filter_type, scene.cycles.film_exposure = "BOX", 1.0
     render.resolution_x = render.resolution_y = size = 24
@@ -235,10 +237,10 @@ def by_cycles(thing):
     for other in scene.objects:
         other.hide_render = other not in (thing, camera)
     y, x = (np.mgrid[0:size, 0:size] + 0.5) / size * 2 - 1
-    inside = np.hypot(x, y) < 0.85
+    inside = np.hypot(x, y) < 0.92
     local = np.stack([x, y, np.sqrt(np.maximum(1 - x * x - y * y, 0))], axis=-1)[inside]
     normals, values = [], []
-    for axis in np.concatenate([np.eye(3), -np.eye(3)]):
+    for axis in np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) / np.sqrt(3):
         camera.rotation_euler = Vector(axis).to_track_quat("Z", "Y").to_euler()
         camera.location = 5.0 * axis
         bpy.context.view_layer.update()
@@ -260,8 +262,19 @@ def harmonics(normals):
     return np.stack([x**i * y**j * z**k for i, j, k in powers], axis=1)
 
 
-def smooth(basis, normals, values):
-    return basis @ np.linalg.lstsq(harmonics(normals), values, rcond=None)[0]
+def smooth(normals, values):
+    basis = harmonics(normals)
+    return basis @ np.linalg.lstsq(basis, values, rcond=None)[0]
+
+
+def at_normals(tree, wanted, values):
+    """Values of a ball's vertices, which a tree has by their normals, at other normals."""
+    result = []
+    for normal in wanted:
+        found = tree.find_n(normal, 3)
+        weights = np.array([1.0 / (distance + 1e-6) for _, _, distance in found])
+        result.append(weights @ values[[index for _, index, _ in found]] / weights.sum())
+    return np.array(result)
 
 
 def difference(a, b):
@@ -312,11 +325,13 @@ def main():
     white.node_tree.links.new(surface.outputs[0], output.inputs["Surface"])
     reference.data.materials.append(white)
     reference.hide_render = True
-    thing = ball("ball", 4)
+    thing = ball("ball")
     reference.select_set(False)
     assert bpy.ops.relumine.precompute(filepath=os.path.join(folder, "ball.prt")) == {"FINISHED"}
-    normals = np.array([vertex.normal for vertex in thing.data.vertices])
-    basis = harmonics(normals)
+    tree = kdtree.KDTree(len(thing.data.vertices))
+    for vertex in thing.data.vertices:
+        tree.insert(vertex.normal, vertex.index)
+    tree.balance()
     wrong = []
     print(f"{'world':22}  {'way':7}  {'against a bake':>14}  {'against Cycles':>14}")
     for number, (name, make) in enumerate(WORLDS.items()):
@@ -329,11 +344,13 @@ def main():
         ours = colors_of(thing, "Relumine")
         is_bake = light.kind == "baked" and not light.is_turned_live
         of_bake = 0.0 if is_bake else difference(ours, under_bake(scene, thing, number))
-        of_cycles = difference(smooth(basis, normals, ours), smooth(basis, *by_cycles(reference)))
+        normals, truth = by_cycles(reference)
+        seen = at_normals(tree, normals, ours)
+        of_cycles = difference(smooth(normals, seen), smooth(normals, truth))
         way = "baked" if light.kind == "baked" else "live"
         against = "is one" if is_bake else f"{100 * of_bake:.3f} %"
         print(f"{name:22}  {way:7}  {against:>14}  {100 * of_cycles:12.2f} %", flush=True)
-        if of_bake > LIMIT or of_cycles > LIMIT_OF_CYCLES:
+        if of_bake > LIMIT or of_cycles > LIMIT:
             wrong.append(name)
     assert not wrong, wrong
     follows_changes(scene, thing)

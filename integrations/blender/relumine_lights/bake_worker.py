@@ -21,7 +21,7 @@ DIFFUSE_RAY = {
 }  # fmt: skip
 SAMPLES = 16
 #: Squares of the panorama whose single pixels hold much of the light are rendered again.
-SQUARE, SQUARES, MUCH, SAMPLES_OF_SQUARE = 16, 24, 5e-4, 4096
+SQUARE, SQUARES, MUCH, SAMPLES_OF_SQUARE = 16, 24, 2e-3, 4096
 
 
 def all_trees(tree, seen=None):

@@ -206,7 +206,7 @@ class WorldLight:
         if self.kind == "image":
             return relumine.Environment.load(self.path, **options)
         if baker.take(key) is None:
-            width = int(np.clip(8 * face_resolution, 512, 8192)) // 32 * 32
+            width = int(np.clip(8 * face_resolution, 256, 8192)) // 32 * 32
             baker.ask(key, self.world, self._images, frame=self.frame, width=width,
                       turned_by=self._turned_by, strength_of=self._strength_of)  # fmt: skip
         pixels = baker.wait(key) if wait else baker.take(key)
