@@ -96,7 +96,7 @@ TEST_F(Resume, KilledWithACheckpointItIsTakenUp) {
 }
 
 TEST_F(Resume, HighlightsAreTakenUpToo) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "3000", "-q"});
+    succeed({"generate", "knot", "-o", ".", "--vertices", "1200", "-q"});
     const std::vector<std::string> scene = {"--tolerance", "0.05",       "--view",
                                             "auto",        "--material", "ggx:roughness=0.4"};
     const double seconds = succeed(run(scene)).seconds;
