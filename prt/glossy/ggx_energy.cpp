@@ -9,7 +9,6 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include "files/parallel.h"
 #include "prt/glossy/ggx_lobe.h"
 
 namespace relumine::prt {
@@ -18,9 +17,9 @@ namespace {
 
 /// Knots of the table for each of its sides. The roughness is even; the cosine is the square of
 /// what is even, since the integrals change fast at grazing views.
-constexpr std::size_t Knots = 48;
-/// Samples of an integral, squared.
-constexpr int Samples = 32;
+constexpr std::size_t Knots = 32;
+/// Samples of an integral.
+constexpr int Rings = 64, Spokes = 16;
 
 /// Lambda of Smith's masking for a cosine.
 double smith(double cosine, double alpha2) {
@@ -35,11 +34,15 @@ GgxAlbedo integrated(double roughness, double n_v) {
     const glm::dvec3 stretched = glm::normalize(glm::dvec3(alpha * v.x, 0.0, v.z));
     const glm::dvec3 t1(0.0, 1.0, 0.0), t2 = glm::cross(stretched, t1);
     const double lambda_v = smith(n_v, alpha * alpha);
-    double all = 0.0, grazing = 0.0;
-    for (int i = 0; i < Samples; ++i)
-        for (int j = 0; j < Samples; ++j) {
-            const double r = std::sqrt((i + 0.5) / Samples);
-            const double phi = 2.0 * std::numbers::pi * (j + 0.5) / Samples;
+    double all = 0.0, grazing = 0.0, weights = 0.0;
+    // The lobe is the same on both sides: half of the disc is enough. Samples are dense at its rim,
+    // where the few steep normals are that decide over rays at the horizon.
+    for (int i = 0; i < Rings; ++i)
+        for (int j = 0; j < Spokes; ++j) {
+            const double rest = 1.0 - (i + 0.5) / Rings, weight = rest * rest;
+            const double r = std::sqrt(1.0 - rest * rest * rest);
+            const double phi = std::numbers::pi * ((j + 0.5) / Spokes - 0.5);
+            weights += weight;
             const double x = r * std::cos(phi), s = 0.5 * (1.0 + stretched.z);
             const double y = (1.0 - s) * std::sqrt(1.0 - x * x) + s * r * std::sin(phi);
             const glm::dvec3 n =
@@ -50,24 +53,25 @@ GgxAlbedo integrated(double roughness, double n_v) {
             const double n_w = 2.0 * v_h * h.z - v.z;
             if (!(n_w > 0.0))
                 continue;
-            const double value = (1.0 + lambda_v) / (1.0 + lambda_v + smith(n_w, alpha * alpha));
+            const double value =
+                weight * (1.0 + lambda_v) / (1.0 + lambda_v + smith(n_w, alpha * alpha));
             all += value;
-            grazing += value * std::pow(std::clamp(1.0 - v_h, 0.0, 1.0), 5.0);
+            const double c = std::clamp(1.0 - v_h, 0.0, 1.0);
+            grazing += value * (c * c) * (c * c) * c;
         }
-    constexpr double Count = Samples * Samples;
-    return {static_cast<float>(all / Count), static_cast<float>(grazing / Count)};
+    return {static_cast<float>(all / weights), static_cast<float>(grazing / weights)};
 }
 
 class Table {
 public:
     Table() {
-        files::parallel_for(std::size_t{0}, Knots, [this](std::size_t row) {
+        // Not in parallel: threads that wait for others would take work that asks for the table.
+        for (std::size_t row = 0; row < Knots; ++row)
             for (std::size_t column = 0; column < Knots; ++column) {
                 const double place = std::max(static_cast<double>(column) / (Knots - 1), 0.01);
                 knots_[row][column] =
                     integrated(static_cast<double>(row) / (Knots - 1), place * place);
             }
-        });
     }
 
     [[nodiscard]] GgxAlbedo at(float roughness, float n_v) const {

@@ -16,8 +16,8 @@ struct GgxAlbedo {
 
 /// Returns the integrals for a cosine between normal and eye, above 0.
 ///
-/// Error:   below 0.003, of a table of 48 x 48.
-/// Cost:    some nanoseconds; the first call makes the table, some 50 ms.
+/// Error:   below 0.003, of a table of 32 x 32.
+/// Cost:    some nanoseconds; the first call makes the table, some 50 ms of processor time.
 /// Threads: any.
 [[nodiscard]] GgxAlbedo ggx_albedo(float roughness, float n_v);
 
