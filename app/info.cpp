@@ -65,6 +65,8 @@ void describe_scene(const InfoArguments& options, const Session& session) {
                                               settings.floor_added)));
     session.say(fmt::format("partly seen         {} of {} (block, cluster) pairs",
                             counts.num_mixed(), counts.num_blocks() * counts.num_leaves));
+    for (const std::string& line : settings.left_out)
+        session.say(fmt::format("left out            {}", line));
     session.say(fmt::format("file                {:.1f} MB{}",
                             static_cast<double>(file_bytes) * 1e-6,
                             options.check ? ", checked: whole and sound" : ""));
@@ -79,6 +81,7 @@ void describe_scene(const InfoArguments& options, const Session& session) {
                      {"face_resolution", settings.face_resolution},
                      {"bias", settings.bias},
                      {"floor", settings.floor_vertices},
+                     {"left_out", settings.left_out},
                      {"file_bytes", file_bytes}};
     if (options.check)
         result.set("checked", true);

@@ -56,6 +56,8 @@ viewer::Shading shading_of(const Scene& scene) {
             .surfaces = scene.receivers.surfaces,
             .textures = relight::SurfaceColors(scene.mesh, scene.receivers.surfaces,
                                                scene.transfer.glossy.has_value()),
+            .eye_cosines = prt::eye_cosines(scene.receivers),
+            .emission = emission_of(scene, glm::vec3(1.0f)),
             .eye = scene.settings.view ? std::optional(scene.settings.view->eye) : std::nullopt,
             .bias = scene.settings.bias};
 }

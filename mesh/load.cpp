@@ -20,11 +20,14 @@ namespace relumine::mesh {
 namespace {
 
 PolygonSoup read_soup(const std::filesystem::path& path, const std::string& extension,
-                      std::span<const std::byte> bytes) {
+                      std::span<const std::byte> bytes, const std::optional<Pose>& pose) {
+    if (extension == ".gltf" || extension == ".glb")
+        return read_gltf(bytes, path.parent_path(), pose);
+    if (pose)
+        throw std::runtime_error(
+            fmt::format("expected .glb or .gltf for a pose, got '{}'", extension));
     if (extension == ".obj")
         return read_obj(bytes, path.parent_path());
-    if (extension == ".gltf" || extension == ".glb")
-        return read_gltf(bytes, path.parent_path());
     if (extension == ".off")
         return read_off(bytes);
     if (extension == ".ply")
@@ -42,7 +45,7 @@ bool has_mesh_extension(const std::filesystem::path& path) {
 }
 
 TriangleMesh load(const std::filesystem::path& path, NormalSource normals, std::uint64_t* hash,
-                  std::optional<Camera>* camera) {
+                  std::optional<Camera>* camera, const std::optional<Pose>& pose) {
     const std::string extension = files::extension_of(path);
     // A name that is not there says so first.
     static_cast<void>(files::size(path));
@@ -54,7 +57,7 @@ TriangleMesh load(const std::filesystem::path& path, NormalSource normals, std::
     if (hash != nullptr)
         *hash = files::hash_of(bytes);
     try {
-        PolygonSoup soup = read_soup(path, extension, bytes);
+        PolygonSoup soup = read_soup(path, extension, bytes, pose);
         if (camera != nullptr)
             *camera = soup.camera;
         return to_mesh(std::move(soup), normals);

@@ -7,6 +7,7 @@
 
 #include "mesh/camera.h"
 #include "mesh/normals.h"
+#include "mesh/pose.h"
 #include "mesh/triangle_mesh.h"
 
 namespace relumine::mesh {
@@ -28,15 +29,19 @@ namespace relumine::mesh {
 /// does not stop it either, nor a material that cannot be read: TriangleMesh::warnings says so, and
 /// the surface is grey or without its texture.
 ///
+/// The skins and morph targets of a glTF file are as its nodes say, or as `pose` does.
+///
 /// `hash` receives the xxHash64 of the file's bytes, `camera` the first perspective camera of a
 /// glTF scene, if there is one.
 /// Throws:  std::runtime_error "path: expected X, got Y" if the file cannot be read, has no face of
 ///          three corners, has an index out of range or a position that is not finite, or declares
-///          more or less than it holds.
+///          more or less than it holds; for a pose of a file that is no glTF, or does not have
+///          the animation.
 [[nodiscard]] TriangleMesh load(const std::filesystem::path& path,
                                 NormalSource normals = NormalSource::File,
                                 std::uint64_t* hash = nullptr,
-                                std::optional<Camera>* camera = nullptr);
+                                std::optional<Camera>* camera = nullptr,
+                                const std::optional<Pose>& pose = {});
 
 /// Returns true if load() knows the path's extension, in capitals or not.
 [[nodiscard]] bool has_mesh_extension(const std::filesystem::path& path);

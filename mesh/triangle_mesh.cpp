@@ -33,4 +33,11 @@ Bounds bounds(std::span<const glm::vec3> points) {
     return box;
 }
 
+std::vector<std::string> left_out(const TriangleMesh& mesh) {
+    std::vector<std::string> lines = mesh.warnings;
+    for (const std::string& name : mesh.missing)
+        lines.push_back("no " + name + " is found");
+    return lines;
+}
+
 } // namespace relumine::mesh

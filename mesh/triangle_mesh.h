@@ -61,6 +61,9 @@ struct TriangleMesh {
     [[nodiscard]] std::size_t num_triangles() const { return triangles.size(); }
 };
 
+/// Returns all that a mesh's file holds or names and the mesh does not have, a line each.
+[[nodiscard]] std::vector<std::string> left_out(const TriangleMesh& mesh);
+
 /// Axis-aligned box around points.
 struct Bounds {
     glm::vec3 min{0.0f};

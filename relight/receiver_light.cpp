@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include <glm/geometric.hpp>
+
 #include "files/parallel.h"
 
 namespace relumine::relight {
@@ -38,6 +40,9 @@ ReceiverLight::ReceiverLight(const prt::Transfer& transfer, const ShadowRays& ra
     if (transfer.glossy) {
         pyramid_.emplace(transfer.glossy->deepest_level());
         glossy_.resize(transfer.counts.num_blocks());
+        eye_cosines_.resize(transfer.num_receivers());
+        for (std::size_t i = 0; i < eye_cosines_.size(); ++i)
+            eye_cosines_[i] = glm::dot(transfer.normals[i], transfer.glossy->to_eye[i]);
     }
 }
 
@@ -167,7 +172,8 @@ double ReceiverLight::write_radiance(std::size_t block, bool with_sharp_lights,
     else
         for (std::size_t i = 0; i < receivers.size(); ++i)
             radiance[receivers[i]] = prt::reflect(
-                transfer_.surfaces[begin + i], lobes_at(begin + i, sums.of(i), with_sharp_lights));
+                transfer_.surfaces[begin + i], lobes_at(begin + i, sums.of(i), with_sharp_lights),
+                eye_cosines_.empty() ? 0.0f : eye_cosines_[begin + i]);
     return brightness;
 }
 

@@ -25,7 +25,10 @@ prt::Surface SurfaceMaterial::applied_to(const prt::Surface& surface) const {
     return {.albedo = albedo.value_or(surface.albedo),
             .specular = specular_color,
             .highlight = highlight,
-            .roughness_or_exponent = roughness_or_exponent};
+            .roughness_or_exponent = roughness_or_exponent,
+            .metallic = highlight == prt::Highlight::GgxWhole && !albedo && !specular
+                            ? surface.metallic
+                            : 0.0f};
 }
 
 prt::SurfaceOverride surface_override(std::span<const SurfaceMaterial> materials,

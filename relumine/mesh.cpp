@@ -153,7 +153,11 @@ OptionTable options_of(MeshOptions& o) {
         row("--up", o.up, "the mesh's axis that points up (y; z for .stl, which comes from CAD)"),
         row("--normals", o.normals,
             "vertex normals: the file's where it has them, or always smooth"),
-        crease_row(o.crease)};
+        crease_row(o.crease),
+        row<PoseText>("--pose", o.pose,
+                      "glTF: the moment of an animation in which skins, morph targets and nodes "
+                      "stand: its name or number, and seconds (they stand as the nodes say)",
+                      {.type = "ANIMATION@SECONDS", .example = "0@0.5"})};
 }
 
 OptionTable options_of(RefineOptions& o) {
@@ -175,7 +179,8 @@ OptionTable options_of(RefineOptions& o) {
 
 Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
     Mesh mesh;
-    mesh.geometry = mesh::load(path, options.normals, &mesh.source_hash, &mesh.camera);
+    mesh.geometry =
+        mesh::load(path, options.normals, &mesh.source_hash, &mesh.camera, options.pose);
     mesh.source = path.string();
     const std::optional<float> crease =
         options.crease || options.normals == mesh::NormalSource::Smooth
@@ -202,6 +207,20 @@ std::uint32_t FloorText::read(const std::string& text) {
 
 std::string FloorText::show(std::uint32_t n) {
     return n == AutomaticFloor ? "auto" : fmt::format("{}", n);
+}
+
+mesh::Pose PoseText::read(const std::string& text) {
+    const std::size_t at = text.rfind('@');
+    const std::optional<double> seconds =
+        at == std::string::npos ? std::nullopt : parse_number(text.substr(at + 1));
+    constexpr double Longest = 1e6;
+    if (at == 0 || !seconds || !(*seconds >= 0.0 && *seconds <= Longest))
+        refuse_text("ANIMATION@SECONDS, such as Walk@1.5", text);
+    return {.animation = text.substr(0, at), .seconds = *seconds};
+}
+
+std::string PoseText::show(const mesh::Pose& pose) {
+    return fmt::format("{}@{}", pose.animation, pose.seconds);
 }
 
 void add_floor(Mesh& mesh, const MeshOptions& options) {

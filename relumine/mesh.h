@@ -50,6 +50,13 @@ struct Mesh {
     Mesh(mesh::TriangleMesh triangles) : geometry(std::move(triangles)) {}
 };
 
+/// "Walk@1.5": an animation of the file by name or number, and seconds (0).
+struct PoseText {
+    static constexpr const char* Type = "TEXT";
+    static mesh::Pose read(const std::string& text);
+    static std::string show(const mesh::Pose& pose);
+};
+
 /// In place of a floor's n.
 inline constexpr std::uint32_t AutomaticFloor = 0;
 
@@ -65,6 +72,8 @@ struct MeshOptions {
     std::optional<mesh::UpAxis> up = {};
     /// Where normals come from: the file if it has them, or always the faces.
     mesh::NormalSource normals = mesh::NormalSource::File;
+    /// Of a glTF file: a moment of one of its animations. Empty: as its nodes say.
+    std::optional<mesh::Pose> pose = {};
     /// Replaces them by mesh::with_creases() of so many degrees.
     std::optional<float> crease = {};
     /// n: adds a floor of n x n vertices under the mesh; 193 gives the scenes of [JN].

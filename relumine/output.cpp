@@ -91,7 +91,25 @@ std::vector<glm::vec3> product(std::span<const glm::vec3> a, std::span<const glm
     return result;
 }
 
+void add(std::span<const glm::vec3> emission, std::vector<glm::vec3>& colors) {
+    for (std::size_t i = 0; i < std::min(emission.size(), colors.size()); ++i)
+        colors[i] += emission[i];
+}
+
 } // namespace
+
+std::vector<glm::vec3> emission_of(const Scene& scene, const glm::vec3& factor) {
+    std::vector<glm::vec3> result;
+    const std::vector<prt::Surface>& surfaces = scene.receivers.surfaces;
+    const auto is_dark = [](const prt::Surface& surface) {
+        return surface.emission == glm::vec3(0.0f);
+    };
+    if (std::all_of(surfaces.begin(), surfaces.end(), is_dark))
+        return result;
+    for (const prt::Surface& surface : surfaces)
+        result.push_back(factor * surface.emission);
+    return result;
+}
 
 std::vector<glm::vec3> picture_albedo(const Scene& scene, const OutputOptions& options) {
     return factors(scene, options, Purpose::Show);
@@ -104,15 +122,18 @@ std::vector<glm::vec3> bounce_albedo(const Scene& scene, const OutputOptions& op
 std::vector<glm::vec3> colors_of(const Scene& scene, std::span<const glm::vec3> radiance,
                                  const Albedo& albedo) {
     require_fit(scene, radiance);
-    return product(radiance, std::holds_alternative<AutomaticAlbedo>(albedo)
-                                 ? factors(scene, OutputOptions{}, Purpose::Compute)
-                                 : factors(scene, albedo));
+    std::vector<glm::vec3> colors =
+        product(radiance, std::holds_alternative<AutomaticAlbedo>(albedo)
+                              ? factors(scene, OutputOptions{}, Purpose::Compute)
+                              : factors(scene, albedo));
+    add(emission_of(scene, glm::vec3(1.0f)), colors);
+    return colors;
 }
 
 struct Painter::Impl {
     Impl(const LitScene& lit, const OutputOptions& given)
         : scene(lit.scene()), rays(lit.rays().of_mesh()), options(given),
-          floor(picture_floor(scene, options)) {
+          emission(emission_of(scene, options.emission)), floor(picture_floor(scene, options)) {
         // The transfer of a scene that processes share has no highlights.
         if (is_on_vertices())
             textures = {scene.mesh, scene.receivers.surfaces,
@@ -124,6 +145,13 @@ struct Painter::Impl {
     /// The part of values of all receivers that pixels or texels show.
     [[nodiscard]] std::span<const glm::vec3> own(std::span<const glm::vec3> values) const {
         return values.first(scene.receivers.num_own());
+    }
+
+    /// What pixels or texels show.
+    [[nodiscard]] std::vector<glm::vec3> own_colors(const Lighting& lighting) {
+        std::vector<glm::vec3> colors = product(own(lighting.radiance), shown_factors());
+        add(emission, colors);
+        return colors;
     }
 
     [[nodiscard]] relight::PictureOptions size() const {
@@ -153,7 +181,10 @@ struct Painter::Impl {
         if (catches(lighting))
             std::copy(radiance.begin() + floor.first_vertex, radiance.end(),
                       colors.begin() + floor.first_vertex);
-        relight::MeshLight light{.radiance = colors};
+        relight::MeshLight light{
+            .radiance = colors, .emission = emission, .emission_factor = options.emission};
+        if (scene.settings.view)
+            light.eye = scene.settings.view->eye;
         // The lobes are those of lights that are traced, or of no lights.
         std::vector<prt::Lobes<glm::vec3>> lobes;
         if (traces || lighting.lights.empty())
@@ -166,8 +197,6 @@ struct Painter::Impl {
         if (traces) {
             light.lights = lighting.lights;
             light.albedo = shown_factors();
-            if (scene.settings.view)
-                light.eye = scene.settings.view->eye;
             light.bias = scene.settings.bias;
         }
         return behind == nullptr ? from.cut_out(light) : from.draw(light, *behind);
@@ -179,7 +208,8 @@ struct Painter::Impl {
         std::vector<prt::Lobes<glm::vec3>> lobes = lighting.lobes;
         if (lobes.empty())
             return lobes;
-        relight::add_rest(radiance, scene.receivers.surfaces, lobes);
+        relight::add_rest(radiance, scene.receivers.surfaces, prt::eye_cosines(scene.receivers),
+                          lobes);
         for (std::size_t i = 0; i < lobes.size(); ++i)
             for (glm::vec3* part : {&lobes[i].diffuse, &lobes[i].diffuse_grazing,
                                     &lobes[i].specular, &lobes[i].specular_grazing})
@@ -277,7 +307,7 @@ struct Painter::Impl {
             const relight::Backdrop behind = is_transparent ? nullptr : backdrop(lighting);
             return drawn(used, lighting, is_transparent ? nullptr : &behind);
         }
-        const std::vector<glm::vec3> colors = product(own(lighting.radiance), shown_factors());
+        const std::vector<glm::vec3> colors = own_colors(lighting);
         return std::visit([&](const auto& layout) { return composed(layout, colors, lighting); },
                           scene.layout);
     }
@@ -304,7 +334,7 @@ struct Painter::Impl {
 
     /// Returns the share of the picture that the mesh covers.
     double meter_receivers(const Lighting& lighting) {
-        const std::vector<glm::vec3> colors = product(own(lighting.radiance), shown_factors());
+        const std::vector<glm::vec3> colors = own_colors(lighting);
         const std::vector<bool> is_floor = floor_receivers(scene);
         const std::size_t before = metered_colors.size();
         for (std::size_t i = 0; i < colors.size(); ++i)
@@ -364,6 +394,7 @@ struct Painter::Impl {
                                    std::span<const glm::vec3> albedo, double ev) const {
         require_fit(scene, radiance);
         std::vector<glm::vec3> values = product(own(radiance), albedo);
+        add(emission, values);
         const auto scale = static_cast<float>(std::exp2(ev));
         for (glm::vec3& value : values)
             value *= scale;
@@ -373,6 +404,8 @@ struct Painter::Impl {
     const Scene& scene;
     const prt::RayScene& rays;
     OutputOptions options;
+    /// [num_receivers] or empty: none.
+    std::vector<glm::vec3> emission;
     /// Null: the tone curve.
     std::unique_ptr<const relight::DisplayTransform> display =
         options.display.config.empty()

@@ -23,13 +23,18 @@ namespace relumine {
 
 using relight::Picture;
 
-/// Returns radiance times albedo, [num_receivers]. The floor has the albedo of the mesh.
+/// Returns radiance times albedo and the emission, [num_receivers]. The floor has the albedo of the
+/// mesh.
 ///
 /// Throws:  std::invalid_argument for another number of radiances, for MeshColors of a mesh without
 ///          colours.
 [[nodiscard]] std::vector<glm::vec3> colors_of(const Scene& scene,
                                                std::span<const glm::vec3> radiance,
                                                const Albedo& albedo = glm::vec3(1.0f));
+
+/// Returns the radiance that surfaces give of their own, times a factor, [num_receivers]; empty
+/// where none does.
+[[nodiscard]] std::vector<glm::vec3> emission_of(const Scene& scene, const glm::vec3& factor);
 
 /// Returns what pictures multiply each receiver's radiance with, [num_receivers].
 ///

@@ -99,7 +99,8 @@ public:
             .source = std::filesystem::path(mesh.source).filename().string(),
             .floor_added = mesh.floor_added,
             .source_hash = mesh.source_hash,
-            .camera = mesh.camera};
+            .camera = mesh.camera,
+            .left_out = mesh::left_out(scene_.mesh)};
     }
 
     /// Chooses the clusters and leaves the counts to the parts.
@@ -345,18 +346,23 @@ private:
                 return options_.surface ? options_.surface(of, triangle, own) : own;
             };
         prt::Receivers& receivers = scene_.receivers;
+        const prt::GgxForm form = receivers.to_eye.empty() ? prt::GgxForm::Published : options_.ggx;
         if (receivers.points.empty()) {
-            receivers.surfaces = prt::vertex_surfaces(mesh, surface_of);
+            receivers.surfaces = prt::vertex_surfaces(mesh, surface_of, form);
             prepare_textures();
         } else {
             receivers.surfaces.clear();
             for (const prt::MeshPoint& point : receivers.points)
                 receivers.surfaces.push_back(
                     surface_of(mesh, point.triangle,
-                               prt::surface_at(mesh, point.triangle, point.barycentric)));
+                               prt::surface_at(mesh, point.triangle, point.barycentric, form)));
         }
         if (receivers.to_eye.empty())
             leave_highlights_out();
+        else if (options_.ggx == prt::GgxForm::Published)
+            for (prt::Surface& surface : receivers.surfaces)
+                if (surface.highlight == prt::Highlight::GgxWhole) // of the options
+                    surface.highlight = prt::Highlight::Ggx;
         // Vertices that only send light on are seen by nobody.
         for (std::size_t i = receivers.num_own(); i < receivers.size(); ++i)
             receivers.surfaces[i].highlight = prt::Highlight::None;
@@ -380,7 +386,8 @@ private:
         }
         constexpr float LeastAlbedo = 1.0f / 255.0f / 12.92f;
         for (prt::Surface& surface : scene_.receivers.surfaces)
-            surface.albedo = glm::max(surface.albedo, LeastAlbedo);
+            if (surface.highlight != prt::Highlight::None || surface.emission == glm::vec3(0.0f))
+                surface.albedo = glm::max(surface.albedo, LeastAlbedo); // not of unlit ones
     }
 
     void leave_highlights_out() {

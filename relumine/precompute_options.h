@@ -117,6 +117,8 @@ struct PrecomputeOptions {
     /// Replaces the mesh's materials; everywhere() makes one surface for the whole mesh. Empty: the
     /// materials stay.
     prt::SurfaceOverride surface = {};
+    /// GGX keeps its energy, or is as glTF publishes it: materials and `surface`.
+    prt::GgxForm ggx = prt::GgxForm::Whole;
     /// The added floor's own surface; `surface` is not asked for it. A white Lambert one takes its
     /// albedo from the options of each picture.
     prt::Surface floor_surface = {};

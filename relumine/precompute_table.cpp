@@ -256,6 +256,9 @@ OptionTable options_of(PrecomputeOptions& o) {
                       "the camera of pixels, and the eye that highlights are for: "
                       "EX,EY,EZ,TX,TY,TZ[,FOV] (eye, target, vertical degrees: 35) or auto",
                       {.example = "0,1,5,0,0,0,40"}),
+        row("--ggx", o.ggx,
+            "highlights of materials with roughness: whole (what scatters between the facets comes "
+            "back, and a white surface stays white), or published (glTF's formula)"),
         row("--glossy-tolerance", o.glossy_tolerance,
             "relative error of a highlight under a small light anywhere", {.min = 1e-4, .max = 1}),
         row<MemoryText>("--max-memory", o.max_memory,

@@ -20,6 +20,10 @@ inline constexpr std::array<std::string_view, 2> EngineWords = {"beam", "embree"
 template<>
 inline constexpr std::span<const std::string_view> WordsOf<Engine> = EngineWords;
 
+inline constexpr std::array<std::string_view, 2> GgxWords = {"whole", "published"};
+template<>
+inline constexpr std::span<const std::string_view> WordsOf<prt::GgxForm> = GgxWords;
+
 /// "vertices", "pixels:WxH", "pixels:WxH:N" or "texels:WxH"
 struct ReceiversText {
     using Value = std::variant<Vertices, Pixels, Texels>;

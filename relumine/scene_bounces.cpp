@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "prt/glossy/brdf.h"
+
 namespace relumine {
 
 relight::SurfaceBounces bounces_of(const Scene& scene, std::span<const glm::vec3> albedo,
@@ -62,8 +64,9 @@ BounceReport SceneBounces::take(const BounceReport& report) {
     const std::span<const glm::vec3> indirect = light_->indirect();
     bounced_.assign(indirect.begin(), indirect.end());
     const std::vector<prt::Surface>& surfaces = scene_->receivers.surfaces;
+    const std::vector<float> cosines = prt::eye_cosines(scene_->receivers);
     for (std::size_t i = 0; i < surfaces.size(); ++i)
-        bounced_[i] *= surfaces[i].albedo;
+        bounced_[i] *= prt::diffuse_albedo(surfaces[i], cosines[i]);
     return report;
 }
 

@@ -22,7 +22,7 @@ relight::Picture drawn(const mesh::TriangleMesh& mesh, const prt::RayScene& rays
         colors[i] *= shading.albedo[i];
     std::vector<prt::Lobes<glm::vec3>> lobes = moment.lobes;
     if (!lobes.empty())
-        relight::add_rest(moment.radiance, shading.surfaces, lobes);
+        relight::add_rest(moment.radiance, shading.surfaces, shading.eye_cosines, lobes);
     const relight::PictureView view(mesh, rays, moment.camera,
                                     {.width = moment.width,
                                      .height = moment.height,
@@ -32,6 +32,7 @@ relight::Picture drawn(const mesh::TriangleMesh& mesh, const prt::RayScene& rays
     const relight::MeshLight light{.radiance = colors,
                                    .lights = moment.lights,
                                    .albedo = shading.albedo,
+                                   .emission = shading.emission,
                                    .surfaces = shading.surfaces,
                                    .textures = &shading.textures,
                                    .lobes = lobes,

@@ -24,6 +24,10 @@ struct Shading {
     /// [num_vertices] or empty; must outlive its user.
     std::span<const prt::Surface> surfaces = {};
     relight::SurfaceColors textures = {};
+    /// [num_vertices] as relight::add_rest() takes them; empty without highlights.
+    std::vector<float> eye_cosines = {};
+    /// [num_vertices] or empty, as relight::MeshLight has it.
+    std::vector<glm::vec3> emission = {};
     /// The eye that highlights are for.
     std::optional<glm::vec3> eye = {};
     /// Lift of shadow rays.

@@ -78,6 +78,8 @@ public:
             for (std::size_t i = 0; i < colors.size(); ++i)
                 if (floor_.look == FloorLook::Grey || i < state.shading.floor.first_vertex)
                     colors[i] *= state.shading.albedo[i];
+            for (std::size_t i = 0; i < state.shading.emission.size(); ++i)
+                colors[i] += state.shading.emission[i];
             scene_.upload_radiance(colors);
             texture_.upload(environment_of(lit), state.desk.take_changed_texels());
         }

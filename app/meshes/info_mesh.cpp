@@ -16,7 +16,7 @@ namespace relumine::app {
 namespace {
 
 /// Model and numbers of a material, as the file has them.
-std::string description(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
+std::string reflection(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
     const auto texture = [&mesh](const std::optional<mesh::TextureSlot>& slot) {
         if (!slot)
             return std::string();
@@ -35,12 +35,28 @@ std::string description(const mesh::TriangleMesh& mesh, const mesh::Material& ma
                            material.specular.r, material.specular.g, material.specular.b,
                            texture(material.specular_texture), material.roughness,
                            texture(material.metallic_roughness_texture));
+    if (material.model == mesh::MaterialModel::Unlit)
+        return fmt::format("unlit, {} {} {}{}", base.r, base.g, base.b,
+                           texture(material.base_color_texture));
     const std::string diffuse =
         fmt::format("Kd {} {} {}{}", base.r, base.g, base.b, texture(material.base_color_texture));
     if (material.specular == glm::vec3(0.0f))
         return fmt::format("Lambert, {}", diffuse);
     return fmt::format("Blinn-Phong, {}, Ks {} {} {}, Ns {}", diffuse, material.specular.r,
                        material.specular.g, material.specular.b, material.exponent);
+}
+
+std::string description(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
+    const glm::vec3& emission = material.emission;
+    if (emission == glm::vec3(0.0f))
+        return reflection(mesh, material);
+    const mesh::Texture* image =
+        material.emission_texture ? &mesh.textures[material.emission_texture->texture] : nullptr;
+    return fmt::format("{}, emission {} {} {}{}", reflection(mesh, material), emission.r,
+                       emission.g, emission.b,
+                       image == nullptr ? ""
+                                        : fmt::format(" x {} ({} x {})", image->name, image->width,
+                                                      image->height));
 }
 
 Report json_of(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
@@ -52,9 +68,16 @@ Report json_of(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
     Report result = {{"name", material.name},
                      {"model", model == Model::Phong               ? "phong"
                                : model == Model::MetallicRoughness ? "metallic-roughness"
+                               : model == Model::Unlit             ? "unlit"
                                                                    : "specular-glossiness"},
                      {"base_color", material.base_color},
                      {"base_color_texture", texture(material.base_color_texture)}};
+    if (material.emission != glm::vec3(0.0f)) {
+        result.set("emission", material.emission);
+        result.set("emission_texture", texture(material.emission_texture));
+    }
+    if (model == Model::Unlit)
+        return result;
     if (model != Model::MetallicRoughness)
         result.set("specular", material.specular);
     if (model == Model::Phong) {

@@ -324,10 +324,8 @@ Mesh made_mesh(const PrecomputeArguments& options, Session& session) {
         session.say(fmt::format("{}: edges over {} degrees are sharp, by the custom of .stl; "
                                 "--normals smooth where they are not",
                                 options.mesh, *crease));
-    for (const std::string& warning : mesh.geometry.warnings)
-        session.warn(fmt::format("{}: {}", options.mesh, warning));
-    for (const std::string& name : mesh.geometry.missing)
-        session.warn(fmt::format("{}: no {} is found", options.mesh, name));
+    for (const std::string& line : mesh::left_out(mesh.geometry))
+        session.warn(fmt::format("{}: {}", options.mesh, line));
     warn_of_winding(mesh.geometry, options.mesh, session);
     session.detail(fmt::format("{}: {} vertices, {} triangles", options.mesh,
                                mesh.geometry.num_vertices(), mesh.geometry.num_triangles()));

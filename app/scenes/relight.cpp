@@ -127,8 +127,11 @@ void light_scene(const RelightArguments& options, Session& session) {
     const UpdateReport times = lit.light(std::move(given.light));
     session.poll();
     const relumine::OutputOptions output = options.output.for_scene(scene);
-    if (session.is_first())
+    if (session.is_first()) {
         options.output.warn_of_eye(scene, session);
+        for (const std::string& line : scene.settings.left_out)
+            session.warn(fmt::format("{}: {}", scene.settings.source, line));
+    }
     const std::optional<BounceReport> bounces =
         options.bounces.bounce(lit, output, options.scene.path);
     Lighting lighting = lit.lighting();

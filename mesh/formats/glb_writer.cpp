@@ -1,11 +1,14 @@
 #include "mesh/formats/glb_writer.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -137,7 +140,7 @@ std::size_t append_indices(Arrays& arrays, std::span<const Triangle> triangles) 
 
 /// A file with one mesh. `extensions` are the names of those that its materials use.
 std::string file_of(const Arrays& arrays, files::Json materials, files::Json primitives,
-                    const char* extension) {
+                    const std::set<std::string>& extensions) {
     using files::Json;
     Json document = {{"asset", {{"generator", "Relumine"}, {"version", "2.0"}}},
                      {"buffers", Json::Array{{{"byteLength", arrays.bytes.size()}}}},
@@ -148,26 +151,43 @@ std::string file_of(const Arrays& arrays, files::Json materials, files::Json pri
                      {"nodes", Json::Array{{{"mesh", 0}}}},
                      {"scenes", Json::Array{{{"nodes", Json::Array{0}}}}},
                      {"scene", 0}};
-    if (extension != nullptr)
-        document.set("extensionsUsed", Json::Array{extension});
+    if (!extensions.empty())
+        document.set("extensionsUsed",
+                     std::vector<std::string>(extensions.begin(), extensions.end()));
     return container(document.text(), arrays.bytes);
 }
 
-/// Phong's exponent becomes a roughness of about the same highlight.
-files::Json material_of(const Material& material) {
+/// Phong's exponent becomes a roughness of about the same highlight. Adds the extensions that the
+/// material needs.
+files::Json material_of(const Material& material, std::set<std::string>& used) {
     using files::Json;
     const bool is_phong = material.model == MaterialModel::Phong;
     const double roughness = !is_phong ? double{material.roughness}
                              : material.specular == glm::vec3(0.0f)
                                  ? 1.0
                                  : std::pow(2.0 / (double{material.exponent} + 2.0), 0.25);
-    return {{"name", material.name},
-            {"pbrMetallicRoughness",
-             {{"baseColorFactor",
-               Json::Array{double{material.base_color.r}, double{material.base_color.g},
-                           double{material.base_color.b}, 1.0}},
-              {"metallicFactor", is_phong ? 0.0 : double{material.metallic}},
-              {"roughnessFactor", roughness}}}};
+    Json result = {{"name", material.name},
+                   {"pbrMetallicRoughness",
+                    {{"baseColorFactor",
+                      Json::Array{double{material.base_color.r}, double{material.base_color.g},
+                                  double{material.base_color.b}, 1.0}},
+                     {"metallicFactor", is_phong ? 0.0 : double{material.metallic}},
+                     {"roughnessFactor", roughness}}}};
+    const glm::vec3& emission = material.emission;
+    // Factors are at most 1; the extension has the rest.
+    const float strength = std::max({emission.r, emission.g, emission.b});
+    Json extensions = Json::Object{};
+    if (strength > 0.0f)
+        result.set("emissiveFactor", emission / std::max(strength, 1.0f));
+    if (strength > 1.0f)
+        extensions.set("KHR_materials_emissive_strength", {{"emissiveStrength", double{strength}}});
+    if (material.model == MaterialModel::Unlit)
+        extensions.set("KHR_materials_unlit", Json::Object{});
+    for (const auto& [name, value] : extensions.members())
+        used.insert(name);
+    if (extensions.size() != 0)
+        result.set("extensions", extensions);
+    return result;
 }
 
 } // namespace
@@ -183,7 +203,7 @@ std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
                    Json::Array{{{"name", "radiance"},
                                 {"doubleSided", true},
                                 {"extensions", {{"KHR_materials_unlit", Json::Object{}}}}}},
-                   Json::Array{primitive(attributes, indices, 0)}, "KHR_materials_unlit");
+                   Json::Array{primitive(attributes, indices, 0)}, {"KHR_materials_unlit"});
 }
 
 std::string glb(const TriangleMesh& mesh) {
@@ -200,12 +220,13 @@ std::string glb(const TriangleMesh& mesh) {
         by_material[mesh.triangle_materials.empty() ? 0 : mesh.triangle_materials[i]].push_back(
             mesh.triangles[i]);
     files::Json::Array descriptions, primitives;
+    std::set<std::string> extensions;
     for (std::size_t i = 0; i < materials.size(); ++i) {
-        descriptions.push_back(material_of(materials[i]));
+        descriptions.push_back(material_of(materials[i], extensions));
         if (!by_material[i].empty())
             primitives.push_back(primitive(attributes, append_indices(arrays, by_material[i]), i));
     }
-    return file_of(arrays, std::move(descriptions), std::move(primitives), nullptr);
+    return file_of(arrays, std::move(descriptions), std::move(primitives), extensions);
 }
 
 } // namespace relumine::mesh

@@ -45,9 +45,12 @@ std::size_t component_size(std::uint64_t type) {
 std::uint32_t num_components_of(const std::string& type) {
     constexpr std::array<const char*, 4> Names = {"SCALAR", "VEC2", "VEC3", "VEC4"};
     const auto found = std::find(Names.begin(), Names.end(), type);
+    if (type == "MAT4")
+        return 16;
     if (found == Names.end())
-        throw std::runtime_error(fmt::format(
-            "expected SCALAR, VEC2, VEC3 or VEC4 as an accessor's type, got {}", excerpt(type)));
+        throw std::runtime_error(
+            fmt::format("expected SCALAR, VEC2, VEC3, VEC4 or MAT4 as an accessor's type, got {}",
+                        excerpt(type)));
     return static_cast<std::uint32_t>(found - Names.begin()) + 1;
 }
 
@@ -143,7 +146,8 @@ Elements elements_of(Document& document, std::uint64_t index, std::uint32_t num_
     const std::string name = fmt::format("accessor {}", index);
     const std::uint64_t component_type = whole(accessor, "componentType");
     const std::uint32_t has = num_components_of(text(accessor, "type"));
-    if (has < num_components || (num_components == 1 && has != 1))
+    if (has < num_components || (num_components == 1 && has != 1) ||
+        (has == 16) != (num_components == 16))
         throw std::runtime_error(fmt::format("expected {} components of accessor {}, got {}",
                                              num_components, index, has));
     const std::uint64_t size = component_size(component_type) * has;

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "files/output_file.h"
+#include "mesh/formats/gltf_left_out.h"
 #include "mesh/formats/meshopt_decoder.h"
 #include "mesh/formats/mtl_reader.h"
 #include "mesh/materials/material.h"
@@ -166,21 +167,10 @@ std::string_view lost_without(std::string_view extension) {
     };
     constexpr std::string_view Images = "its images are left out; without another image, a surface "
                                         "has its factors alone";
-    constexpr std::array<Loss, 20> Losses = {{
+    constexpr std::array<Loss, 9> Losses = {{
         {"EXT_texture_avif", Images},
         {"KHR_lights_punctual", "its lamps give no light"},
-        {"KHR_materials_anisotropy", "highlights are round"},
-        {"KHR_materials_clearcoat", "clear coats are left out"},
-        {"KHR_materials_diffuse_transmission", "no light shines through surfaces"},
-        {"KHR_materials_dispersion", "surfaces are opaque"},
-        {"KHR_materials_emissive_strength", "surfaces give no light of their own"},
-        {"KHR_materials_ior", "the index of refraction is 1.5"},
-        {"KHR_materials_iridescence", "thin films are left out"},
-        {"KHR_materials_sheen", "sheen is left out"},
-        {"KHR_materials_specular", "dielectrics reflect 0.04"},
-        {"KHR_materials_transmission", "surfaces are opaque"},
         {"KHR_materials_variants", "the first look of each surface is shown"},
-        {"KHR_materials_volume", "surfaces are opaque"},
         {"KHR_node_visibility", "hidden nodes are shown"},
         {"KHR_texture_basisu", Images},
         {"KHR_xmp", "its metadata are left out"},
@@ -341,15 +331,10 @@ void Document::split_glb(std::span<const std::byte> file) {
 }
 
 void Document::check_extensions() {
-    constexpr std::array<std::string_view, 9> Understood = {"EXT_mesh_gpu_instancing",
-                                                            "EXT_meshopt_compression",
-                                                            "EXT_texture_webp",
-                                                            "KHR_draco_mesh_compression",
-                                                            "KHR_materials_pbrSpecularGlossiness",
-                                                            "KHR_materials_unlit",
-                                                            "KHR_mesh_quantization",
-                                                            "KHR_meshopt_compression",
-                                                            "KHR_texture_transform"};
+    constexpr std::array<std::string_view, 7> Understood = {
+        "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression", "EXT_texture_webp",
+        "KHR_draco_mesh_compression", "KHR_mesh_quantization",   "KHR_meshopt_compression",
+        "KHR_texture_transform"};
     const auto names = [this](const char* key) {
         std::set<std::string> result;
         for (const Json& name : items(root_, key)) {
@@ -360,7 +345,8 @@ void Document::check_extensions() {
         return result;
     };
     const auto is_understood = [&](const std::string& name) {
-        return std::find(Understood.begin(), Understood.end(), name) != Understood.end();
+        return is_of_materials(name) ||
+               std::find(Understood.begin(), Understood.end(), name) != Understood.end();
     };
     for (const std::string& name : names("extensionsRequired"))
         if (!is_understood(name) && lost_without(name).empty())

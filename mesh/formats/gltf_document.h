@@ -65,7 +65,7 @@ public:
     [[nodiscard]] std::size_t count(const char* array) const { return items(root_, array).size(); }
 
     /// Returns one line for each extension that the file uses and the reader does not: what is
-    /// lost.
+    /// lost. Those of materials are left_out() (mesh/formats/gltf_left_out.h).
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
     /// Returns the bytes of a buffer view, checked against its buffer, and decoded if

@@ -7,8 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "files/counted.h"
-
 namespace relumine::mesh::gltf {
 
 namespace {
@@ -27,8 +25,9 @@ private:
     template<class Decode>
     [[nodiscard]] std::optional<Texture> decoded(std::uint64_t index, const Decode& decode);
     void join_uv_sets(Material& material);
-    void set_mean(Material& material) const;
+    void set_mean(Material& material, std::string_view key) const;
     void read_specular_glossiness(const Json& extension, Material& material);
+    void read_emission(const Json& description, Material& material);
 
     Document& document_;
     Materials result_;
@@ -139,33 +138,41 @@ std::optional<TextureSlot> MaterialReader::slot(const Json& parent, const char* 
 /// A mesh has one uv for each vertex: that of the material's colours. A texture of another set
 /// becomes one number, its mean.
 void MaterialReader::join_uv_sets(Material& material) {
-    if (uv_sets_.empty())
-        return;
-    const bool is_specular = material.model == MaterialModel::SpecularGlossiness;
-    const auto colors = uv_sets_.find(is_specular ? "diffuseTexture" : "baseColorTexture");
-    const auto others =
-        uv_sets_.find(is_specular ? "specularGlossinessTexture" : "metallicRoughnessTexture");
-    const std::uint64_t uv_set = (colors == uv_sets_.end() ? others : colors)->second;
-    result_.uv_sets.back() = uv_set;
-    if (others == uv_sets_.end() || others->second == uv_set)
-        return;
-    set_mean(material);
-    result_.warnings.push_back(
-        fmt::format("the material {} has its colours in TEXCOORD_{} and its {} in TEXCOORD_{}; one "
-                    "set is read: the mean of the second texture stands for it",
-                    material.name, uv_set, others->first, others->second));
+    std::optional<std::uint64_t> uv_set;
+    // The colours come first.
+    for (const char* key : {"baseColorTexture", "diffuseTexture", "metallicRoughnessTexture",
+                            "specularGlossinessTexture", "emissiveTexture"}) {
+        const auto own = uv_sets_.find(key);
+        if (own == uv_sets_.end() || own->second == uv_set)
+            continue;
+        if (!uv_set) {
+            uv_set = result_.uv_sets.back() = own->second;
+            continue;
+        }
+        set_mean(material, key);
+        result_.warnings.push_back(
+            fmt::format("the material {} has its first texture in TEXCOORD_{} and its {} in "
+                        "TEXCOORD_{}; one set is read: the mean of the second texture stands for "
+                        "it",
+                        material.name, *uv_set, key, own->second));
+    }
 }
 
-/// Puts the means of the textures beside the one of colours into the material's numbers.
-void MaterialReader::set_mean(Material& material) const {
-    const auto mean = [&](const std::optional<TextureSlot>& slot) {
+/// Puts the mean of a texture into the material's numbers.
+void MaterialReader::set_mean(Material& material, std::string_view key) const {
+    const auto mean = [&](std::optional<TextureSlot>& slot) {
         const Texture& texture = result_.textures[slot->texture];
         glm::dvec3 sum(0.0);
         for (std::uint32_t y = 0; y < texture.height; ++y)
             for (std::uint32_t x = 0; x < texture.width; ++x)
                 sum += glm::dvec3(texel(texture, x, y, slot->is_srgb));
+        slot.reset();
         return glm::vec3(sum / (static_cast<double>(texture.texels.size())));
     };
+    if (key == "emissiveTexture") {
+        material.emission *= mean(material.emission_texture);
+        return;
+    }
     if (material.metallic_roughness_texture) {
         const glm::vec3 factors = mean(material.metallic_roughness_texture);
         material.roughness *= factors.g;
@@ -173,8 +180,6 @@ void MaterialReader::set_mean(Material& material) const {
     }
     if (material.specular_texture)
         material.specular *= mean(material.specular_texture);
-    material.metallic_roughness_texture.reset();
-    material.specular_texture.reset();
 }
 
 /// Returns factors of a colour, each in [0, 1]. A rounding outside is brought inside.
@@ -219,22 +224,41 @@ void MaterialReader::read_specular_glossiness(const Json& extension, Material& m
     result_.textures.push_back(std::move(*texture));
 }
 
+/// Reads what the surface gives of its own.
+void MaterialReader::read_emission(const Json& description, Material& material) {
+    const std::vector<double> factor = factors(description, "emissiveFactor", {0.0, 0.0, 0.0});
+    const double strength =
+        number(child(child(description, "extensions"), "KHR_materials_emissive_strength"),
+               "emissiveStrength", 1.0);
+    // Pictures of such lamps, with room for exposure, stay within what a float holds.
+    constexpr double Strongest = 1e9;
+    if (!(strength >= 0.0 && strength <= Strongest))
+        throw std::runtime_error(fmt::format("expected 0 to {:g} as \"emissiveStrength\", got {:g}",
+                                             Strongest, strength));
+    material.emission = glm::vec3(strength * factor[0], strength * factor[1], strength * factor[2]);
+    if (material.emission != glm::vec3(0.0f))
+        material.emission_texture = slot(description, "emissiveTexture", true);
+}
+
 Material MaterialReader::material(const Json& description, std::size_t index) {
     const Json& pbr = child(description, "pbrMetallicRoughness");
     const Json& extensions = child(description, "extensions");
     Material material;
     material.name = text(description, "name", fmt::format("material {}", index));
     material.times_vertex_color = true;
+    const bool is_unlit = extensions.find("KHR_materials_unlit") != nullptr;
+    if (!is_unlit)
+        read_emission(description, material);
     if (const Json& specular = child(extensions, "KHR_materials_pbrSpecularGlossiness");
-        extensions.find("KHR_materials_pbrSpecularGlossiness")) {
+        extensions.find("KHR_materials_pbrSpecularGlossiness") && !is_unlit) {
         read_specular_glossiness(specular, material);
         return material;
     }
     const std::vector<double> base = factors(pbr, "baseColorFactor", {1.0, 1.0, 1.0, 1.0});
     material.base_color = glm::vec3(base[0], base[1], base[2]);
     material.base_color_texture = slot(pbr, "baseColorTexture", true);
-    if (extensions.find("KHR_materials_unlit")) {
-        material.times_vertex_color = false; // vertex colours of such a material are radiance
+    if (is_unlit) {
+        material.model = MaterialModel::Unlit;
         return material;
     }
     material.model = MaterialModel::MetallicRoughness;
@@ -245,7 +269,6 @@ Material MaterialReader::material(const Json& description, std::size_t index) {
 }
 
 Materials MaterialReader::read() {
-    std::size_t num_masked = 0, num_blended = 0, num_normals = 0, num_emissive = 0;
     for (std::size_t i = 0; i < document_.count("materials"); ++i) {
         uv_sets_.clear();
         result_.uv_sets.emplace_back();
@@ -256,13 +279,6 @@ Materials MaterialReader::read() {
             Material read = material(description, i);
             join_uv_sets(read);
             result_.materials.push_back(std::move(read));
-            const std::string mode = text(description, "alphaMode", "OPAQUE");
-            num_masked += mode == "MASK" ? 1 : 0;
-            num_blended += mode != "OPAQUE" && mode != "MASK" ? 1 : 0;
-            num_normals += description.find("normalTexture") != nullptr ? 1 : 0;
-            const std::vector<double> emission =
-                numbers(description, "emissiveFactor", {0.0, 0.0, 0.0});
-            num_emissive += *std::max_element(emission.begin(), emission.end()) > 0.0 ? 1 : 0;
         } catch (const std::runtime_error& error) {
             result_.materials.resize(i);
             result_.materials.push_back(unreadable_material(name));
@@ -271,16 +287,6 @@ Materials MaterialReader::read() {
                                                    name, i, error.what()));
         }
     }
-    const auto warn = [this](std::size_t num_materials, const char* kind, const char* instead) {
-        if (num_materials > 0)
-            result_.warnings.push_back(
-                fmt::format("{} {}: {}", files::counted(num_materials, "material"), kind, instead));
-    };
-    warn(num_masked, "cut out by alpha (leaves, fences); alpha is not read",
-         "what is cut out is opaque");
-    warn(num_blended, "transparent by alpha; alpha is not read", "surfaces are opaque");
-    warn(num_normals, "with a normal map, which is not read", "surfaces are as smooth as the mesh");
-    warn(num_emissive, "with emission, which is not read", "surfaces give no light of their own");
     return std::move(result_);
 }
 

@@ -24,10 +24,10 @@ struct Materials {
     std::vector<std::string> warnings;
 };
 
-/// Reads factors, textures, samplers, KHR_texture_transform and EXT_texture_webp. A
-/// KHR_materials_unlit material becomes Lambert, KHR_materials_pbrSpecularGlossiness its own model.
-/// Alpha, emission, normal maps and the other extensions are skipped. A material that cannot be
-/// read becomes grey, an image is left out, each with a warning.
+/// Reads factors, textures, samplers, emission, KHR_texture_transform, EXT_texture_webp,
+/// KHR_materials_emissive_strength, KHR_materials_unlit and KHR_materials_pbrSpecularGlossiness;
+/// left_out() names the rest. A material that cannot be read becomes grey, an image is left out,
+/// each with a warning.
 [[nodiscard]] Materials read_materials(Document& document);
 
 } // namespace relumine::mesh::gltf

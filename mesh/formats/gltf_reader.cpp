@@ -2,27 +2,26 @@
 // their materials.
 //
 // A vertex is repeated for each node and each instance (EXT_mesh_gpu_instancing) that shows it.
-// Points and lines are skipped. Skins and morph targets stay at rest, as the file stores them; as
-// the format demands, a skinned mesh ignores its node's place.
+// Points and lines are skipped. Skins and morph targets are in the pose that the nodes describe, or
+// in a moment of an animation; as the format demands, a skinned mesh ignores its node's place.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <stdexcept>
-#include <type_traits>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
-#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
-#include <glm/matrix.hpp>
 
-#include "mesh/formats/draco_decoder.h"
+#include "files/counted.h"
 #include "mesh/formats/gltf_accessors.h"
+#include "mesh/formats/gltf_deformation.h"
 #include "mesh/formats/gltf_document.h"
+#include "mesh/formats/gltf_left_out.h"
 #include "mesh/formats/gltf_materials.h"
+#include "mesh/formats/gltf_nodes.h"
+#include "mesh/formats/gltf_primitives.h"
 #include "mesh/formats/polygon_soup.h"
 #include "mesh/normals.h"
 
@@ -31,65 +30,7 @@ namespace relumine::mesh {
 namespace {
 
 using gltf::Json;
-
-/// The primitive's arrays as the file has them, before any node places them.
-struct Primitive {
-    std::vector<glm::vec3> positions, normals, colors;
-    std::vector<glm::vec2> uvs;
-    std::vector<Triangle> triangles;
-    std::uint32_t material = 0;
-};
-
-/// A place in the form of nodes and instances: the scale comes first, the translation last.
-struct Placement {
-    std::vector<double> translation = {0.0, 0.0, 0.0};
-    /// A quaternion: x, y, z, w.
-    std::vector<double> rotation = {0.0, 0.0, 0.0, 1.0};
-    std::vector<double> scale = {1.0, 1.0, 1.0};
-};
-
-glm::dmat4 matrix_of(const Placement& placement) {
-    const auto& [t, r, s] = placement;
-    const double length = std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
-    if (!(length > 0.0))
-        throw std::runtime_error("expected a unit quaternion as \"rotation\", got zeros");
-    const glm::dmat3 rotation =
-        glm::mat3_cast(glm::dquat(r[3] / length, r[0] / length, r[1] / length, r[2] / length));
-    return {glm::dvec4(rotation[0] * s[0], 0.0), glm::dvec4(rotation[1] * s[1], 0.0),
-            glm::dvec4(rotation[2] * s[2], 0.0), glm::dvec4(t[0], t[1], t[2], 1.0)};
-}
-
-glm::dmat4 local_transform(const Json& node) {
-    if (node.find("matrix")) {
-        const std::vector<double> m = gltf::numbers(node, "matrix", std::vector<double>(16, 0.0));
-        glm::dmat4 matrix(1.0);
-        for (int i = 0; i < 16; ++i)
-            matrix[i / 4][i % 4] = m[static_cast<std::size_t>(i)];
-        return matrix;
-    }
-    const Placement none;
-    return matrix_of({.translation = gltf::numbers(node, "translation", none.translation),
-                      .rotation = gltf::numbers(node, "rotation", none.rotation),
-                      .scale = gltf::numbers(node, "scale", none.scale)});
-}
-
-/// Returns a perspective camera at a node, with a target one unit ahead; nothing for others, and
-/// for values that no picture can have.
-std::optional<Camera> camera_at(const Json& camera, const glm::dmat4& transform) {
-    const Json* perspective = camera.find("perspective");
-    if (perspective == nullptr)
-        return std::nullopt;
-    const double fov = gltf::number(*perspective, "yfov", 0.0);
-    const glm::dvec3 eye(transform[3]), ahead = -glm::dvec3(transform[2]);
-    const double length = glm::length(ahead);
-    constexpr double Farthest = 1e18;
-    if (!(fov > 0.0 && fov < std::numbers::pi) || !(length > 0.0 && length < Farthest) ||
-        !(glm::length(eye) < Farthest))
-        return std::nullopt;
-    return Camera{.eye = glm::vec3(eye),
-                  .target = glm::vec3(eye + ahead / length),
-                  .fov_degrees = static_cast<float>(fov * 180.0 / std::numbers::pi)};
-}
+using gltf::Primitive;
 
 /// Puts a camera's target as far ahead as the middle of the mesh is.
 Camera looking_at(const std::vector<glm::vec3>& positions, Camera camera) {
@@ -108,42 +49,49 @@ Camera looking_at(const std::vector<glm::vec3>& positions, Camera camera) {
 class GltfReader {
 public:
     GltfReader(std::span<const std::byte> bytes, const std::filesystem::path& folder,
-               std::uint64_t max_bytes)
-        : document_(bytes, folder, max_bytes) {}
+               const std::optional<Pose>& pose, std::uint64_t max_bytes)
+        : document_(bytes, folder, max_bytes), pose_(pose) {}
     PolygonSoup read();
 
 private:
-    [[nodiscard]] std::vector<std::uint64_t> root_nodes() const;
+    [[nodiscard]] std::vector<std::uint64_t> root_nodes(bool all = false) const;
     [[nodiscard]] const std::vector<Primitive>& mesh(std::uint64_t index);
-    [[nodiscard]] std::optional<Primitive> primitive(const Json& description);
-    [[nodiscard]] std::vector<Triangle> triangles(const Json& description, std::uint64_t mode,
-                                                  std::size_t num_vertices);
-    void check_counts(const Json& description, const DracoMesh& mesh);
     [[nodiscard]] std::vector<glm::dmat4> instances(const Json& node);
-    void take_memory(const Primitive& primitive, std::size_t num_times);
-    void append(const Primitive& primitive, const glm::dmat4& transform, std::uint32_t group);
+    /// Places a vertex by `frame_of(vertex)`.
+    template<typename FrameOf>
+    void append(const Primitive& primitive, const FrameOf& frame_of, std::uint32_t group);
+    void append_skinned(const Primitive& primitive, const gltf::Skin& skin, std::uint32_t group);
+    void append_node(std::uint64_t index);
+    [[nodiscard]] std::vector<std::uint64_t> place(const std::vector<std::uint64_t>& roots);
+    [[nodiscard]] std::vector<double> weights(std::uint64_t node) const;
+    void finish();
     [[nodiscard]] std::uint32_t group(const Json& node, std::uint64_t mesh);
-    [[nodiscard]] std::uint32_t default_material();
 
     gltf::Document document_;
+    std::optional<Pose> pose_;
+    gltf::NodePoses moved_;
+    /// [nodes] in the scene; empty: not met yet.
+    std::vector<std::optional<glm::dmat4>> worlds_;
+    std::optional<Camera> camera_;
     gltf::Materials materials_;
+    gltf::PrimitiveReader primitives_{document_, materials_};
     std::vector<std::optional<std::vector<Primitive>>> meshes_;
-    std::optional<std::uint32_t> default_material_;
     std::map<std::string, std::uint32_t> group_indices_;
     PolygonSoup soup_;
-    bool has_colors_ = false, has_uvs_ = false, has_skins_ = false, has_targets_ = false;
+    bool has_colors_ = false, has_uvs_ = false;
+    std::size_t num_odd_weights_ = 0, num_without_joints_ = 0;
 };
 
 /// Returns the roots of the default scene, or of the first one. In a file without scenes, nodes
-/// without parents are the roots.
-std::vector<std::uint64_t> GltfReader::root_nodes() const {
+/// without parents are the roots; so they are of `all` scenes.
+std::vector<std::uint64_t> GltfReader::root_nodes(bool all) const {
     const auto indices = [](const Json& owner, const char* key) {
         std::vector<std::uint64_t> result;
         for (const Json& item : gltf::items(owner, key))
             result.push_back(gltf::whole_value(item, "nodes"));
         return result;
     };
-    if (document_.count("scenes") > 0)
+    if (document_.count("scenes") > 0 && !all)
         return indices(document_.element("scenes", gltf::whole(document_.root(), "scene", 0)),
                        "nodes");
     std::vector<bool> is_child(document_.count("nodes"), false);
@@ -158,176 +106,16 @@ std::vector<std::uint64_t> GltfReader::root_nodes() const {
     return roots;
 }
 
-std::vector<Triangle> GltfReader::triangles(const Json& description, std::uint64_t mode,
-                                            std::size_t num_vertices) {
-    std::vector<std::uint32_t> indices;
-    if (description.find("indices")) {
-        indices = gltf::read_indices(document_, gltf::whole(description, "indices"));
-        for (const std::uint32_t index : indices)
-            if (index >= num_vertices)
-                throw std::runtime_error(
-                    fmt::format("expected vertex indices below {}, got {}", num_vertices, index));
-    } else {
-        indices.resize(num_vertices);
-        for (std::size_t i = 0; i < num_vertices; ++i)
-            indices[i] = static_cast<std::uint32_t>(i);
-    }
-    const std::size_t n = indices.size();
-    if (n < 3 || (mode == 4 && n % 3 != 0))
-        throw std::runtime_error(fmt::format("expected {} indices of triangles, got {}",
-                                             mode == 4 ? "a multiple of 3" : "3 or more", n));
-    std::vector<Triangle> result;
-    if (mode == 4) // triangles
-        for (std::size_t i = 0; i < n; i += 3)
-            result.push_back({indices[i], indices[i + 1], indices[i + 2]});
-    else if (mode == 5) // strip: every second triangle is turned
-        for (std::size_t i = 0; i + 2 < n; ++i)
-            result.push_back({indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]});
-    else // fan
-        for (std::size_t i = 1; i + 1 < n; ++i)
-            result.push_back({indices[i], indices[i + 1], indices[0]});
-    return result;
-}
-
-std::uint32_t GltfReader::default_material() {
-    if (!default_material_) {
-        default_material_ = static_cast<std::uint32_t>(materials_.materials.size());
-        materials_.materials.push_back({.name = "default",
-                                        .model = MaterialModel::MetallicRoughness,
-                                        .metallic = 1.0f,
-                                        .times_vertex_color = true});
-        materials_.uv_sets.emplace_back();
-    }
-    return *default_material_;
-}
-
-template<class Vector>
-std::vector<Vector> vectors(const gltf::Floats& floats) {
-    std::vector<Vector> result(floats.count);
-    for (std::size_t i = 0; i < result.size(); ++i)
-        for (int j = 0; j < Vector::length(); ++j)
-            result[i][j] = floats.values[i * static_cast<std::size_t>(Vector::length()) +
-                                         static_cast<std::size_t>(j)];
-    return result;
-}
-
-/// The arrays of a primitive by name. KHR_draco_mesh_compression holds some or all of them.
-class Attributes {
-public:
-    Attributes(gltf::Document& document, const Json& description);
-
-    [[nodiscard]] bool contains(const std::string& name) const {
-        return accessors_.find(name) != nullptr;
-    }
-    [[nodiscard]] gltf::Floats read(const std::string& name, std::uint32_t num_components);
-    /// Empty: the primitive is not compressed.
-    [[nodiscard]] std::optional<DracoMesh>& draco() { return draco_; }
-
-private:
-    gltf::Document& document_;
-    const Json& accessors_;
-    std::optional<DracoMesh> draco_;
-    /// Places in DracoMesh::values.
-    std::map<std::string, std::size_t> places_;
-};
-
-Attributes::Attributes(gltf::Document& document, const Json& description)
-    : document_(document), accessors_(gltf::child(description, "attributes")) {
-    const Json& extension =
-        gltf::child(gltf::child(description, "extensions"), "KHR_draco_mesh_compression");
-    if (extension.size() == 0)
-        return;
-    const Json& ids = gltf::child(extension, "attributes");
-    std::vector<DracoAttribute> wanted;
-    const auto add = [&](const std::string& name, std::uint32_t num_components) {
-        if (!ids.find(name) || !contains(name))
-            return;
-        const Json& accessor = document.element("accessors", gltf::whole(accessors_, name.c_str()));
-        places_.emplace(name, wanted.size());
-        wanted.push_back({.id = static_cast<std::uint32_t>(gltf::whole(ids, name.c_str())),
-                          .num_components = num_components,
-                          .is_normalized = gltf::flag(accessor, "normalized")});
-    };
-    add("POSITION", 3), add("NORMAL", 3), add("COLOR_0", 3);
-    for (const auto& [name, id] : ids.members())
-        if (name.starts_with("TEXCOORD_"))
-            add(name, 2);
-    draco_ = decode_draco(document.view(gltf::whole(extension, "bufferView")), wanted);
-}
-
-gltf::Floats Attributes::read(const std::string& name, std::uint32_t num_components) {
-    if (const auto place = places_.find(name); place != places_.end())
-        return {.count = draco_->num_vertices, .values = std::move(draco_->values[place->second])};
-    return gltf::read_floats(document_, gltf::whole(accessors_, name.c_str()), num_components);
-}
-
-/// The accessors of compressed arrays say how many elements there are. Some encoders leave the
-/// counts of the mesh before compression; the data govern then, as in other readers.
-void GltfReader::check_counts(const Json& description, const DracoMesh& mesh) {
-    const auto declared = [&](const Json& parent, const char* key, std::uint64_t fallback) {
-        return parent.find(key)
-                   ? gltf::whole(document_.element("accessors", gltf::whole(parent, key)), "count")
-                   : fallback;
-    };
-    const std::uint64_t num_corners = 3 * mesh.triangles.size();
-    const std::uint64_t vertices =
-        declared(gltf::child(description, "attributes"), "POSITION", mesh.num_vertices);
-    // A strip's accessor counts the strip.
-    const std::uint64_t corners = gltf::whole(description, "mode", 4) == 4
-                                      ? declared(description, "indices", num_corners)
-                                      : num_corners;
-    if (vertices != mesh.num_vertices || corners != num_corners)
-        soup_.warnings.push_back(
-            fmt::format("Draco data of {} vertices and {} indices; the accessors say {} and {}",
-                        mesh.num_vertices, num_corners, vertices, corners));
-}
-
-std::optional<Primitive> GltfReader::primitive(const Json& description) {
-    const std::uint64_t mode = gltf::whole(description, "mode", 4);
-    if (mode > 6)
-        throw std::runtime_error(
-            fmt::format("expected a primitive's mode of 0 to 6, got {}", mode));
-    if (mode < 4 || !gltf::child(description, "attributes").find("POSITION"))
-        return std::nullopt;
-    Attributes attributes(document_, description);
-    Primitive result;
-    const auto read = [&](const std::string& name, auto& values) {
-        using Vector = typename std::remove_reference_t<decltype(values)>::value_type;
-        if (!attributes.contains(name))
-            return;
-        values = vectors<Vector>(attributes.read(name, Vector::length()));
-        if (values.size() != result.positions.size())
-            throw std::runtime_error(
-                fmt::format("expected {} elements of {}, as many as of POSITION, got {}",
-                            result.positions.size(), name, values.size()));
-    };
-    read("POSITION", result.positions);
-    read("NORMAL", result.normals);
-    read("COLOR_0", result.colors);
-    if (description.find("material")) {
-        const std::uint64_t material = gltf::whole(description, "material");
-        static_cast<void>(document_.element("materials", material)); // checks the range
-        result.material = static_cast<std::uint32_t>(material);
-    } else {
-        result.material = default_material();
-    }
-    read(fmt::format("TEXCOORD_{}", materials_.uv_sets[result.material].value_or(0)), result.uvs);
-    if (std::optional<DracoMesh>& draco = attributes.draco()) {
-        if (draco->num_vertices != result.positions.size())
-            throw std::runtime_error(fmt::format("expected Draco data of {} vertices, got {}",
-                                                 result.positions.size(), draco->num_vertices));
-        check_counts(description, *draco);
-        result.triangles = std::move(draco->triangles);
-    } else {
-        result.triangles = triangles(description, mode, result.positions.size());
-    }
-    if (result.normals.empty()) {
-        TriangleMesh plain;
-        plain.positions = result.positions;
-        plain.triangles = result.triangles;
-        result.normals = smooth_normals(plain);
-    }
-    return result;
+/// Returns the weights of the morph targets of a node's mesh: of the animation, the node, or the
+/// mesh. Empty: at rest.
+std::vector<double> GltfReader::weights(std::uint64_t index) const {
+    const Json& node = document_.element("nodes", index);
+    if (const auto moved = moved_.find(index); moved != moved_.end() && moved->second.weights)
+        return *moved->second.weights;
+    for (const Json* owner : {&node, &document_.element("meshes", gltf::whole(node, "mesh"))})
+        if (const std::size_t count = gltf::items(*owner, "weights").size(); count > 0)
+            return gltf::numbers(*owner, "weights", std::vector<double>(count, 0.0));
+    return {};
 }
 
 const std::vector<Primitive>& GltfReader::mesh(std::uint64_t index) {
@@ -336,9 +124,8 @@ const std::vector<Primitive>& GltfReader::mesh(std::uint64_t index) {
     if (!mesh) {
         mesh.emplace();
         for (const Json& item : gltf::items(description, "primitives")) {
-            has_targets_ |= gltf::child(item, "targets").size() != 0;
-            if (std::optional<Primitive> read = primitive(item)) {
-                take_memory(*read, 1);
+            if (std::optional<Primitive> read = primitives_.read(item)) {
+                gltf::take_memory(document_, *read, 1);
                 mesh->push_back(std::move(*read));
             }
         }
@@ -378,14 +165,14 @@ std::vector<glm::dmat4> GltfReader::instances(const Json& node) {
                                double fallback) {
             return values.empty() ? fallback : double{values[i * size + j]};
         };
-        Placement placement;
+        gltf::Placement placement;
         for (std::size_t j = 0; j < 4; ++j)
             placement.rotation[j] = value(rotations, 4, j, placement.rotation[j]);
         for (std::size_t j = 0; j < 3; ++j) {
             placement.translation[j] = value(translations, 3, j, 0.0);
             placement.scale[j] = value(scales, 3, j, 1.0);
         }
-        result.push_back(matrix_of(placement));
+        result.push_back(gltf::matrix_of(placement));
     }
     return result;
 }
@@ -404,34 +191,19 @@ std::uint32_t GltfReader::group(const Json& node, std::uint64_t mesh) {
     return place->second;
 }
 
-/// Nodes repeat meshes, and primitives repeat accessors: 64 KB of glTF could make thousands of
-/// millions of vertices.
-void GltfReader::take_memory(const Primitive& primitive, std::size_t num_times) {
-    // A vertex and a triangle of a PolygonSoup take 44 and 28 bytes, of the TriangleMesh that it
-    // becomes 20 more, and vectors that grow have twice that.
-    constexpr std::uint64_t Each = 128;
-    document_.take_memory(Each * num_times *
-                          (primitive.positions.size() + primitive.triangles.size()));
-}
-
-void GltfReader::append(const Primitive& primitive, const glm::dmat4& transform,
-                        std::uint32_t group) {
-    const std::size_t first = soup_.positions.size();
-    if (first + primitive.positions.size() > std::numeric_limits<std::uint32_t>::max())
+template<typename FrameOf>
+void GltfReader::append(const Primitive& primitive, const FrameOf& frame_of, std::uint32_t group) {
+    const std::size_t first = soup_.positions.size(), count = primitive.positions.size();
+    if (first + count > std::numeric_limits<std::uint32_t>::max())
         throw std::runtime_error("expected at most 4294967295 vertices, got more");
-    // Normals are transformed by the cofactors: the transposed inverse times the determinant.
-    // Singular matrices have cofactors too.
-    const glm::dmat3 linear(transform);
-    const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                               glm::cross(linear[0], linear[1]));
-    const bool is_mirrored = glm::dot(linear[0], cofactors[0]) < 0.0;
-    for (std::size_t i = 0; i < primitive.positions.size(); ++i) {
-        soup_.positions.emplace_back(transform * glm::dvec4(primitive.positions[i], 1.0));
-        const glm::dvec3 normal = cofactors * glm::dvec3(primitive.normals[i]);
-        const double length = glm::length(normal);
-        soup_.normals.emplace_back(length > 0.0 ? normal / (is_mirrored ? -length : length)
-                                                : normal);
+    std::size_t num_mirrored = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const gltf::Frame& frame = frame_of(i);
+        soup_.positions.emplace_back(frame.matrix * glm::dvec4(primitive.positions[i], 1.0));
+        soup_.normals.emplace_back(frame.normal(primitive.normals[i]));
+        num_mirrored += frame.is_mirrored ? 1 : 0;
     }
+    const bool is_mirrored = 2 * num_mirrored > count;
     has_colors_ |= !primitive.colors.empty();
     has_uvs_ |= !primitive.uvs.empty();
     soup_.colors.insert(soup_.colors.end(), primitive.colors.begin(), primitive.colors.end());
@@ -447,49 +219,87 @@ void GltfReader::append(const Primitive& primitive, const glm::dmat4& transform,
     }
 }
 
-PolygonSoup GltfReader::read() {
-    materials_ = gltf::read_materials(document_);
-    meshes_.resize(document_.count("meshes"));
-    // Nodes are trees. A node that is met twice has two parents or is its own ancestor.
+void GltfReader::append_skinned(const Primitive& primitive, const gltf::Skin& skin,
+                                std::uint32_t group) {
+    if (primitive.influences.empty()) {
+        ++num_without_joints_;
+        append(
+            primitive, [](std::size_t) { return gltf::Frame(); }, group);
+        return;
+    }
+    num_odd_weights_ += skin.check(primitive.influences);
+    append(
+        primitive, [&](std::size_t vertex) { return skin.frame(primitive.influences, vertex); },
+        group);
+}
+
+/// Appends the mesh of a node, once for each of its instances.
+void GltfReader::append_node(std::uint64_t index) {
+    const Json& node = document_.element("nodes", index);
+    const std::uint64_t of_mesh = gltf::whole(node, "mesh");
+    const std::vector<glm::dmat4> places = instances(node);
+    const std::vector<double> own_weights = weights(index);
+    const auto world = [this](std::uint64_t joint) {
+        if (!worlds_[joint]) // outside of the scene
+            static_cast<void>(place(root_nodes(true)));
+        return worlds_[joint].value_or(glm::dmat4(1.0));
+    };
+    std::optional<gltf::Skin> skin;
+    if (node.find("skin"))
+        skin.emplace(document_, gltf::whole(node, "skin"), world);
+    for (const Primitive& primitive : mesh(of_mesh))
+        gltf::take_memory(document_, primitive, places.size());
+    for (const glm::dmat4& at : places)
+        for (const Primitive& primitive : mesh(of_mesh)) {
+            const std::optional<Primitive> changed =
+                gltf::morphed(document_, primitive, own_weights);
+            const Primitive& shown = changed ? *changed : primitive;
+            if (skin) {
+                append_skinned(shown, *skin, group(node, of_mesh));
+                continue;
+            }
+            const gltf::Frame frame(*worlds_[index] * at);
+            append(
+                shown, [&](std::size_t) -> const gltf::Frame& { return frame; },
+                group(node, of_mesh));
+        }
+}
+
+/// Gives places to the nodes below some roots, and returns them, parents first. Nodes are trees: in
+/// a scene, a node that is met twice has two parents or is its own ancestor.
+std::vector<std::uint64_t> GltfReader::place(const std::vector<std::uint64_t>& roots) {
     struct Visit {
         std::uint64_t node;
         glm::dmat4 parent;
     };
+    const bool is_scene = std::none_of(worlds_.begin(), worlds_.end(),
+                                       [](const auto& world) { return world.has_value(); });
+    std::vector<std::uint64_t> order;
     std::vector<Visit> to_visit;
-    std::vector<bool> visited(document_.count("nodes"), false);
-    std::optional<Camera> camera;
-    const std::vector<std::uint64_t> roots = root_nodes();
     for (auto root = roots.rbegin(); root != roots.rend(); ++root)
         to_visit.push_back({*root, glm::dmat4(1.0)});
     while (!to_visit.empty()) {
         const Visit visit = to_visit.back();
         to_visit.pop_back();
         const Json& node = document_.element("nodes", visit.node);
-        if (visited[visit.node])
+        if (worlds_[visit.node] && is_scene)
             throw std::runtime_error(
                 fmt::format("expected nodes with one parent, got node {} twice", visit.node));
-        visited[visit.node] = true;
-        const glm::dmat4 transform = visit.parent * local_transform(node);
-        if (node.find("mesh")) {
-            const std::uint64_t index = gltf::whole(node, "mesh");
-            has_skins_ |= node.find("skin") != nullptr;
-            const std::vector<glm::dmat4> places = instances(node);
-            for (const Primitive& primitive : mesh(index))
-                take_memory(primitive, places.size());
-            for (const glm::dmat4& place : places)
-                for (const Primitive& primitive : mesh(index))
-                    append(primitive, node.find("skin") ? glm::dmat4(1.0) : transform * place,
-                           group(node, index));
-        }
-        if (!camera && node.find("camera"))
-            camera =
-                camera_at(document_.element("cameras", gltf::whole(node, "camera")), transform);
+        if (worlds_[visit.node])
+            continue;
+        worlds_[visit.node] = visit.parent * gltf::local_transform(node, moved_[visit.node]);
+        order.push_back(visit.node);
         const Json::Array& children = gltf::items(node, "children");
         for (std::size_t i = children.size(); i-- > 0;)
-            to_visit.push_back({gltf::whole_value(children[i], "children"), transform});
+            to_visit.push_back({gltf::whole_value(children[i], "children"), *worlds_[visit.node]});
     }
-    if (camera)
-        soup_.camera = looking_at(soup_.positions, *camera);
+    return order;
+}
+
+/// Puts together what was read, and says what was not.
+void GltfReader::finish() {
+    if (camera_)
+        soup_.camera = looking_at(soup_.positions, *camera_);
     if (!has_colors_)
         soup_.colors.clear();
     if (!has_uvs_)
@@ -498,21 +308,44 @@ PolygonSoup GltfReader::read() {
     soup_.textures = std::move(materials_.textures);
     soup_.missing = std::move(materials_.missing);
     std::vector<std::string> warnings = document_.warnings();
-    warnings.insert(warnings.end(), materials_.warnings.begin(), materials_.warnings.end());
-    if (has_skins_)
-        warnings.emplace_back("skins are at rest: their joints move nothing");
-    if (has_targets_)
-        warnings.emplace_back("morph targets are at rest: their weights are 0");
+    const auto add = [&](const std::vector<std::string>& more) {
+        warnings.insert(warnings.end(), more.begin(), more.end());
+    };
+    add(materials_.warnings);
+    add(gltf::left_out(document_, pose_.has_value()));
+    if (num_odd_weights_ > 0)
+        add({fmt::format("the weights of joints do not sum to 1 at {} vertices: they are scaled",
+                         num_odd_weights_)});
+    if (num_without_joints_ > 0)
+        add({fmt::format("{} of skins have no joints: they are at rest",
+                         files::counted(num_without_joints_, "primitive"))});
     soup_.warnings.insert(soup_.warnings.begin(), warnings.begin(), warnings.end());
+}
+
+PolygonSoup GltfReader::read() {
+    materials_ = gltf::read_materials(document_);
+    meshes_.resize(document_.count("meshes"));
+    worlds_.resize(document_.count("nodes"));
+    if (pose_)
+        moved_ = gltf::read_pose(document_, *pose_);
+    for (const std::uint64_t index : place(root_nodes())) {
+        const Json& node = document_.element("nodes", index);
+        if (node.find("mesh"))
+            append_node(index);
+        if (!camera_ && node.find("camera"))
+            camera_ = gltf::camera_at(document_.element("cameras", gltf::whole(node, "camera")),
+                                      *worlds_[index]);
+    }
+    finish();
     return std::move(soup_);
 }
 
 } // namespace
 
 PolygonSoup read_gltf(std::span<const std::byte> bytes, const std::filesystem::path& folder,
-                      std::uint64_t max_bytes) {
+                      const std::optional<Pose>& pose, std::uint64_t max_bytes) {
     try {
-        return GltfReader(bytes, folder, max_bytes).read();
+        return GltfReader(bytes, folder, pose, max_bytes).read();
     } catch (const files::JsonError&) {
         throw std::runtime_error("expected glTF's JSON, got a value of another type");
     }

@@ -15,6 +15,7 @@
 #include "files/free_memory.h"
 #include "mesh/camera.h"
 #include "mesh/normals.h"
+#include "mesh/pose.h"
 #include "mesh/triangle_mesh.h"
 
 namespace relumine::mesh {
@@ -58,10 +59,11 @@ struct PolygonSoup {
 /// The readers, one per format. They take a whole file's bytes, never read outside them, and
 /// allocate no more than a small multiple of their size. Other files that a file names are looked
 /// up from its `folder`. A glTF mesh of several nodes is repeated for each node, up to `max_bytes`
-/// in all.
+/// in all; its skins and morph targets are as its nodes say, or in the `pose` of an animation.
 /// Throws:  std::runtime_error "expected X, got Y"; load() puts the path in front.
 [[nodiscard]] PolygonSoup read_gltf(std::span<const std::byte> bytes,
                                     const std::filesystem::path& folder,
+                                    const std::optional<Pose>& pose = {},
                                     std::uint64_t max_bytes = files::free_memory() / 2);
 [[nodiscard]] PolygonSoup read_obj(std::span<const std::byte> bytes,
                                    const std::filesystem::path& folder = {});

@@ -39,6 +39,8 @@ enum class MaterialModel : std::uint8_t {
     MetallicRoughness,
     /// KHR_materials_pbrSpecularGlossiness of glTF: GGX with a diffuse colour and F0.
     SpecularGlossiness,
+    /// KHR_materials_unlit of glTF: the base colour is radiance, and light changes nothing.
+    Unlit,
 };
 
 /// Returns true for a number of 0 to 1. A little outside is a rounding: of a float, or of four
@@ -69,6 +71,10 @@ struct Material {
     std::optional<TextureSlot> metallic_roughness_texture = {};
     /// SpecularGlossiness: its RGB multiplies specular.
     std::optional<TextureSlot> specular_texture = {};
+    /// Radiance of its own, >= 0: glTF's factor times KHR_materials_emissive_strength.
+    glm::vec3 emission{0.0f};
+    /// Its RGB multiplies emission.
+    std::optional<TextureSlot> emission_texture = {};
 
     bool operator==(const Material&) const = default;
 };

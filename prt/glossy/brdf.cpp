@@ -4,7 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+
+#include "prt/glossy/ggx_energy.h"
 
 namespace relumine::prt {
 
@@ -31,12 +34,62 @@ Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal,
     const float v_h = std::min(0.5f * std::sqrt(length2), 1.0f);
     const float squared = (1.0f - v_h) * (1.0f - v_h);
     const float c = squared * squared * (1.0f - v_h);
-    lobes.diffuse_grazing = c * lobes.diffuse;
+    if (facts_of(surface.highlight).has_diffuse_grazing)
+        lobes.diffuse_grazing = c * lobes.diffuse;
     lobes.specular_grazing = c * lobes.specular;
     return lobes;
 }
 
-glm::vec3 reflect(const Surface& surface, const Lobes<glm::vec3>& lobes) {
+namespace {
+
+/// A highlight of one F0 whose energy is kept: the factor on its lobe, and its albedo.
+struct KeptEnergy {
+    KeptEnergy(const GgxAlbedo& albedo, const glm::vec3& f0)
+        : factor(1.0f + f0 * ((1.0f - albedo.all) / albedo.all)),
+          reflected(factor * (f0 * (albedo.all - albedo.grazing) + albedo.grazing)) {}
+    glm::vec3 factor, reflected;
+};
+
+/// The two surfaces that a partly metallic one is a mean of. Their F0 have its F0 as mean; the
+/// other one has glTF's 0.04, where that is possible.
+struct MetalAndRest {
+    explicit MetalAndRest(const Surface& surface)
+        : metal(surface.specular), rest(surface.specular), share(surface.metallic) {
+        if (!(share > 0.0f && share < 1.0f))
+            return;
+        metal = glm::clamp((surface.specular - (1.0f - share) * DielectricF0) / share, 0.0f, 1.0f);
+        rest = glm::clamp((surface.specular - share * metal) / (1.0f - share), 0.0f, 1.0f);
+    }
+    glm::vec3 metal, rest;
+    float share;
+};
+
+/// Turquin's factor on the highlight, and the diffuse part in what it leaves.
+glm::vec3 reflect_whole(const Surface& surface, const Lobes<glm::vec3>& lobes, float n_v) {
+    if (n_v <= 0.0f) // no highlight, which takes nothing
+        return surface.albedo * lobes.diffuse;
+    const GgxAlbedo albedo = ggx_albedo(surface.roughness_or_exponent, n_v);
+    const MetalAndRest f0(surface);
+    const KeptEnergy metal(albedo, f0.metal), rest(albedo, f0.rest);
+    const glm::vec3 rising = glm::max(lobes.specular - lobes.specular_grazing, glm::vec3(0.0f));
+    const auto highlight = [&](const KeptEnergy& kept, const glm::vec3& color) {
+        return kept.factor * (color * rising + lobes.specular_grazing);
+    };
+    return surface.albedo * glm::max(1.0f - rest.reflected, glm::vec3(0.0f)) * lobes.diffuse +
+           f0.share * highlight(metal, f0.metal) + (1.0f - f0.share) * highlight(rest, f0.rest);
+}
+
+} // namespace
+
+glm::vec3 diffuse_albedo(const Surface& surface, float n_v) {
+    if (surface.highlight != Highlight::GgxWhole)
+        return surface.albedo;
+    return reflect_whole(surface, {.diffuse = glm::vec3(1.0f)}, n_v);
+}
+
+glm::vec3 reflect(const Surface& surface, const Lobes<glm::vec3>& lobes, float n_v) {
+    if (surface.highlight == Highlight::GgxWhole)
+        return reflect_whole(surface, lobes, n_v);
     if (surface.highlight == Highlight::None)
         return surface.albedo * lobes.diffuse;
     if (!facts_of(surface.highlight).has_fresnel)

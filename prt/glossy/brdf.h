@@ -9,6 +9,14 @@
 // where D = n.w / pi, Dc = c D, S = (GGX distribution) (Smith height-correlated visibility) n.w and
 // Sc = c S. The four scalars depend on n, w, v and the roughness alone. Lambert is albedo D.
 // Normalised Blinn-Phong is albedo D + Ks S with its own S.
+//
+// GGX that keeps its energy has S, Sc and D, with factors that depend on n.v:
+//
+//     albedo (1 - R) D  +  m (F0 (S - Sc) + Sc),   m = 1 + F0 (1 - E) / E,
+//     R = m (F0 (E - Ec) + Ec)
+//
+// where E and Ec are the integrals of S and Sc over all lights (prt/glossy/ggx_energy.h): R is what
+// the highlight reflects of a white sky.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -24,13 +32,19 @@ namespace relumine::prt {
 /// it, and for Highlight::None.
 ///
 /// D and S each reflect at most the light that arrives. So Blinn-Phong reflects at most that light
-/// where albedo + Ks <= 1. The sum of glTF exceeds it at grazing views, up to 1.85 for white under
-/// F0 = 0.04: its diffuse part ignores what the highlight takes.
+/// where albedo + Ks <= 1, and Highlight::GgxWhole reflects what arrives, and never more. The sum
+/// of glTF exceeds it at grazing views, up to 1.85 for white under F0 = 0.04: its diffuse part
+/// ignores what the highlight takes.
 [[nodiscard]] Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal,
                                           const glm::vec3& to_eye, const glm::vec3& w);
 
 /// Puts the colours in. Returns outgoing radiance for sums of radiance times lobe, or BRDF times
-/// cosine for the lobes of a single light.
-[[nodiscard]] glm::vec3 reflect(const Surface& surface, const Lobes<glm::vec3>& lobes);
+/// cosine for the lobes of a single light. `n_v` is the cosine between normal and eye; only
+/// Highlight::GgxWhole asks for it.
+[[nodiscard]] glm::vec3 reflect(const Surface& surface, const Lobes<glm::vec3>& lobes, float n_v);
+
+/// Returns the factor on diffuse light from other surfaces: the albedo, less what the highlight of
+/// a GgxWhole takes.
+[[nodiscard]] glm::vec3 diffuse_albedo(const Surface& surface, float n_v);
 
 } // namespace relumine::prt

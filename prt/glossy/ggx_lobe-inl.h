@@ -17,3 +17,7 @@ inline Vector specular(GgxLobe, const LobeTerms& terms) {
     const auto visibility = hn::Div(hn::Mul(hn::Set(d, 0.5f), terms.n_w), hn::Add(mask_v, mask_w));
     return hn::Mul(distribution, visibility);
 }
+
+inline Vector specular(GgxWholeLobe, const LobeTerms& terms) {
+    return specular(GgxLobe(), terms);
+}

@@ -19,12 +19,13 @@ namespace relumine::prt {
 /// Trowbridge-Reitz distribution and height-correlated Smith visibility. `specular` is F0.
 struct GgxLobe {
     static constexpr Highlight Kind = Highlight::Ggx;
-    static constexpr LobeFacts Facts{.name = "ggx",
+    static constexpr LobeFacts Facts{.name = "ggx-published",
                                      .albedo = "albedo",
                                      .specular = "f0",
                                      .shape = "roughness",
                                      .largest_shape = 1.0f,
                                      .has_fresnel = true,
+                                     .has_diffuse_grazing = true,
                                      .is_roughness = true};
 
     static float narrowness(float roughness) { return 2.0f * ggx_alpha(roughness); }

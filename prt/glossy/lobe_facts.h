@@ -18,9 +18,10 @@ struct LobeFacts {
     float largest_shape = 1e6f;
     /// The specular colour must be given, and with the albedo it is at most 1.
     bool needs_specular = false;
-    /// The specular colour is F0. Fresnel makes the highlight white at grazing angles, and takes
-    /// its light from the diffuse part.
+    /// The specular colour is F0. Fresnel makes the highlight white at grazing angles.
     bool has_fresnel = false;
+    /// Fresnel takes from the diffuse part light by light: the lobe Dc.
+    bool has_diffuse_grazing = false;
     /// The shape is a roughness: cells of the quadtree cannot hold the smallest.
     bool is_roughness = false;
 };

@@ -126,12 +126,13 @@ void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe,
 void evaluate_lobes(const BlockSurfaces& surfaces, const glm::vec3& direction,
                     std::array<BlockSurfaces::Floats, NumGlossyLobes>& values) {
     const std::uint32_t lanes = surfaces.lanes_with(GlossyLobe::SpecularGrazing);
+    const std::uint32_t diffuse_lanes = surfaces.lanes_with(GlossyLobe::DiffuseGrazing);
     for (std::size_t lane = 0; lane < BlockSize; lane += hn::Lanes(Tag())) {
         const LobeTerms terms(surfaces, direction, lane);
         const auto highlight = all_specular(terms);
         hn::StoreU(highlight, Tag(), values[0].data() + lane);
         hn::StoreU(grazing(terms, lanes, highlight), Tag(), values[1].data() + lane);
-        hn::StoreU(grazing(terms, lanes, diffuse(terms)), Tag(), values[2].data() + lane);
+        hn::StoreU(grazing(terms, diffuse_lanes, diffuse(terms)), Tag(), values[2].data() + lane);
     }
 }
 
@@ -163,9 +164,12 @@ void BlockSurfaces::set(std::size_t lane, const Surface& surface, const glm::vec
 
 std::uint32_t BlockSurfaces::lanes_with(GlossyLobe lobe) const {
     std::uint32_t bits = 0;
-    for (std::size_t i = 1; i < NumHighlights; ++i)
-        if (lobe == GlossyLobe::Specular || facts_of(static_cast<Highlight>(i)).has_fresnel)
+    for (std::size_t i = 1; i < NumHighlights; ++i) {
+        const LobeFacts& facts = facts_of(static_cast<Highlight>(i));
+        if (lobe == GlossyLobe::Specular ||
+            (lobe == GlossyLobe::SpecularGrazing ? facts.has_fresnel : facts.has_diffuse_grazing))
             bits |= lanes[i];
+    }
     return bits;
 }
 

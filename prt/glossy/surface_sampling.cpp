@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include <glm/common.hpp>
 
@@ -30,24 +31,33 @@ glm::vec2 uv_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
     return glm::vec2(0.0f);
 }
 
-} // namespace
+/// A point of a mesh, and the material there.
+struct MaterialPoint {
+    const mesh::TriangleMesh& mesh;
+    const mesh::Material& material;
+    MeshPoint at;
+    glm::vec2 uv;
 
-Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
-                   const glm::vec2& barycentric) {
-    if (mesh.triangle_materials.empty())
-        return {};
-    const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
-    const glm::vec2 uv = material.base_color_texture || material.metallic_roughness_texture ||
-                                 material.specular_texture
-                             ? uv_at(mesh, triangle, barycentric)
-                             : glm::vec2(0.0f);
-    glm::vec3 base = material.base_color;
-    if (const auto& slot = material.base_color_texture)
-        base *= mesh::sample(mesh.textures[slot->texture], *slot, uv);
-    if (material.times_vertex_color && !mesh.colors.empty()) {
-        base *= value_at(mesh, mesh.colors, {triangle, barycentric});
-        base = glm::clamp(base, 0.0f, 1.0f);
+    /// Returns a value times its texture, if there is one.
+    [[nodiscard]] glm::vec3 textured(const glm::vec3& value,
+                                     const std::optional<mesh::TextureSlot>& slot) const {
+        return slot ? value * mesh::sample(mesh.textures[slot->texture], *slot, uv) : value;
     }
+    /// Returns the base colour, not limited where vertices are brighter than 1.
+    [[nodiscard]] glm::vec3 base() const {
+        const glm::vec3 base = textured(material.base_color, material.base_color_texture);
+        return material.times_vertex_color && !mesh.colors.empty()
+                   ? base * value_at(mesh, mesh.colors, at)
+                   : base;
+    }
+};
+
+/// A surface without its emission.
+Surface reflecting(const MaterialPoint& point, GgxForm form) {
+    const mesh::Material& material = point.material;
+    glm::vec3 base = point.base();
+    if (material.times_vertex_color)
+        base = glm::clamp(base, 0.0f, 1.0f);
     if (material.model == mesh::MaterialModel::Phong) {
         if (material.specular == glm::vec3(0.0f))
             return {.albedo = base};
@@ -56,25 +66,48 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
                 .highlight = Highlight::BlinnPhong,
                 .roughness_or_exponent = material.exponent};
     }
+    const Highlight highlight = form == GgxForm::Whole ? Highlight::GgxWhole : Highlight::Ggx;
     float metallic = material.metallic, roughness = material.roughness;
     if (const auto& slot = material.metallic_roughness_texture) {
-        const glm::vec3 texel = mesh::sample(mesh.textures[slot->texture], *slot, uv);
+        const glm::vec3 texel = mesh::sample(point.mesh.textures[slot->texture], *slot, point.uv);
         roughness *= texel.g;
         metallic *= texel.b;
     }
     if (material.model == mesh::MaterialModel::SpecularGlossiness) {
-        glm::vec3 specular = material.specular;
-        if (const auto& slot = material.specular_texture)
-            specular *= mesh::sample(mesh.textures[slot->texture], *slot, uv);
-        return {.albedo = base * (1.0f - std::max({specular.r, specular.g, specular.b})),
+        const glm::vec3 specular = point.textured(material.specular, material.specular_texture);
+        const float left = 1.0f - std::max({specular.r, specular.g, specular.b});
+        return {.albedo = form == GgxForm::Whole ? base : base * left,
                 .specular = specular,
-                .highlight = Highlight::Ggx,
+                .highlight = highlight,
                 .roughness_or_exponent = roughness};
     }
     return {.albedo = base * (1.0f - metallic),
             .specular = glm::mix(glm::vec3(DielectricF0), base, metallic),
-            .highlight = Highlight::Ggx,
-            .roughness_or_exponent = roughness};
+            .highlight = highlight,
+            .roughness_or_exponent = roughness,
+            .metallic = form == GgxForm::Whole ? metallic : 0.0f};
+}
+
+} // namespace
+
+Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
+                   const glm::vec2& barycentric, GgxForm form) {
+    if (mesh.triangle_materials.empty())
+        return {};
+    const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
+    const bool has_texture = material.base_color_texture || material.metallic_roughness_texture ||
+                             material.specular_texture || material.emission_texture;
+    const MaterialPoint point{.mesh = mesh,
+                              .material = material,
+                              .at = {triangle, barycentric},
+                              .uv = has_texture ? uv_at(mesh, triangle, barycentric)
+                                                : glm::vec2(0.0f)};
+    if (material.model == mesh::MaterialModel::Unlit)
+        return {.albedo = glm::vec3(0.0f), .emission = glm::max(point.base(), 0.0f)};
+    Surface surface = reflecting(point, form);
+    if (material.emission != glm::vec3(0.0f))
+        surface.emission = point.textured(material.emission, material.emission_texture);
+    return surface;
 }
 
 Surface without_highlight(Surface surface) {
@@ -82,11 +115,12 @@ Surface without_highlight(Surface surface) {
         surface.albedo =
             glm::min(surface.albedo + glm::max(surface.specular - DielectricF0, 0.0f), 1.0f);
     surface.highlight = Highlight::None;
+    surface.metallic = 0.0f;
     return surface;
 }
 
 std::vector<Surface> vertex_surfaces(const mesh::TriangleMesh& mesh,
-                                     const SurfaceOverride& override_surface) {
+                                     const SurfaceOverride& override_surface, GgxForm form) {
     constexpr std::array<glm::vec2, 3> Corners = {glm::vec2(0.0f, 0.0f), glm::vec2(1.0f, 0.0f),
                                                   glm::vec2(0.0f, 1.0f)};
     std::vector<Surface> surfaces(mesh.num_vertices());
@@ -97,7 +131,7 @@ std::vector<Surface> vertex_surfaces(const mesh::TriangleMesh& mesh,
             if (has_surface[vertex])
                 continue;
             has_surface[vertex] = true;
-            surfaces[vertex] = surface_at(mesh, triangle, Corners[corner]);
+            surfaces[vertex] = surface_at(mesh, triangle, Corners[corner], form);
             if (override_surface)
                 surfaces[vertex] = override_surface(mesh, triangle, surfaces[vertex]);
         }

@@ -12,18 +12,23 @@
 
 namespace relumine::prt {
 
+/// How GGX of materials is evaluated: Highlight::GgxWhole, or Highlight::Ggx, glTF's formula as it
+/// is published.
+enum class GgxForm { Whole, Published };
+
 /// Returns the surface at a triangle's point, position a + x (b - a) + y (c - a) for barycentric
 /// (x, y).
 ///
 /// Lambert of albedo 1 where the mesh has no materials. Metallic-roughness materials give GGX with
 /// albedo = base (1 - metallic) and F0 = mix(0.04, base, metallic), specular-glossiness materials
-/// GGX with albedo = base (1 - max F0). Phong materials give Blinn-Phong where Ks > 0, Lambert
-/// otherwise.
+/// GGX with albedo = base, or base (1 - max F0) as published. Phong materials give Blinn-Phong
+/// where Ks > 0, Lambert otherwise. Unlit materials are black and emit their colour.
 [[nodiscard]] Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
-                                 const glm::vec2& barycentric);
+                                 const glm::vec2& barycentric, GgxForm form = GgxForm::Whole);
 
-/// Returns the surface for a scene without a view, where highlights are left out. What a metal
-/// reflects, F0 above the 0.04 of other surfaces, counts as diffuse: otherwise metals were black.
+/// Returns the surface for a scene without a view, where highlights are left out: of one as
+/// published. What a metal reflects, F0 above the 0.04 of other surfaces, counts as diffuse:
+/// otherwise metals were black.
 [[nodiscard]] Surface without_highlight(Surface surface);
 
 /// Replaces the surface of a triangle's points, given its own: materials from the command line.
@@ -33,6 +38,7 @@ using SurfaceOverride = std::function<Surface(const mesh::TriangleMesh& mesh,
 /// Returns one surface per vertex, taken at its corner of the lowest triangle that uses it. A
 /// vertex without a triangle gets Lambert of albedo 1.
 [[nodiscard]] std::vector<Surface> vertex_surfaces(const mesh::TriangleMesh& mesh,
-                                                   const SurfaceOverride& override_surface = {});
+                                                   const SurfaceOverride& override_surface = {},
+                                                   GgxForm form = GgxForm::Whole);
 
 } // namespace relumine::prt

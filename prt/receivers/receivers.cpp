@@ -112,6 +112,13 @@ std::vector<glm::vec3> colors_at(const mesh::TriangleMesh& mesh, const Receivers
     return colors;
 }
 
+std::vector<float> eye_cosines(const Receivers& receivers) {
+    std::vector<float> cosines(receivers.size(), 0.0f);
+    for (std::size_t i = 0; i < receivers.to_eye.size(); ++i)
+        cosines[i] = glm::dot(receivers.normals[i], receivers.to_eye[i]);
+    return cosines;
+}
+
 void look_from(Receivers& receivers, const glm::vec3& eye) {
     receivers.to_eye.clear();
     for (const glm::vec3& position : receivers.positions) {

@@ -57,6 +57,10 @@ void add_vertices(Receivers& receivers, const mesh::TriangleMesh& mesh);
 /// Gives every receiver its direction to an eye. A receiver at the eye itself gets +Y.
 void look_from(Receivers& receivers, const glm::vec3& eye);
 
+/// Returns the cosines between normals and directions to the eye, [num_receivers]; 0 without an
+/// eye.
+[[nodiscard]] std::vector<float> eye_cosines(const Receivers& receivers);
+
 /// Returns the mesh's colours at the receivers: interpolated at their points, or the vertices'
 /// colours.
 ///

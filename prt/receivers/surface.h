@@ -11,10 +11,13 @@ namespace relumine::prt {
 enum class Highlight : std::uint8_t {
     /// Lambert.
     None,
-    /// Metallic-roughness as glTF 2.0 defines it in its Appendix B.
+    /// GGX as glTF 2.0 publishes it in its Appendix B: one scattering, which loses energy.
     Ggx,
     /// Normalised Blinn-Phong, from OBJ materials.
     BlinnPhong,
+    /// GGX that keeps its energy: what one scattering loses comes back, and the diffuse part has
+    /// what the highlight leaves.
+    GgxWhole,
 };
 
 /// Reflection of one receiver. Colours may change after a precompute; the kind and width of the
@@ -28,6 +31,10 @@ struct Surface {
     Highlight highlight = Highlight::None;
     /// GGX: glTF's roughness, 0..1 (alpha is its square). Blinn-Phong: the exponent, >= 0.
     float roughness_or_exponent = 1.0f;
+    /// GgxWhole: the part of the surface that is bare metal, 0..1; specular is the mean of both.
+    float metallic = 0.0f;
+    /// Radiance of its own, >= 0.
+    glm::vec3 emission{0.0f};
 
     bool operator==(const Surface&) const = default;
 };

@@ -32,11 +32,12 @@ private:
 /// Takes the fields that count; a Surface in memory has padding with random bytes.
 std::vector<float> numbers_of(const std::vector<Surface>& surfaces) {
     std::vector<float> numbers;
-    numbers.reserve(surfaces.size() * 2);
-    for (const Surface& surface : surfaces) {
-        numbers.push_back(static_cast<float>(surface.highlight));
-        numbers.push_back(surface.roughness_or_exponent);
-    }
+    numbers.reserve(surfaces.size() * 6);
+    for (const Surface& surface : surfaces)
+        for (const float number :
+             {static_cast<float>(surface.highlight), surface.roughness_or_exponent,
+              surface.metallic, surface.emission.r, surface.emission.g, surface.emission.b})
+            numbers.push_back(number);
     return numbers;
 }
 

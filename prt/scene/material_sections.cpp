@@ -27,21 +27,21 @@ Json json_of(const std::optional<TextureSlot>& slot, const Stored& stored) {
             {"uv", {m[0][0], m[0][1], m[1][0], m[1][1], slot->uv_offset.x, slot->uv_offset.y}}};
 }
 
-/// The textures of a material that its albedo depends on.
-std::vector<std::optional<TextureSlot> Material::*> color_slots(mesh::MaterialModel model) {
-    switch (model) {
-    case mesh::MaterialModel::MetallicRoughness:
-        return {&Material::base_color_texture, &Material::metallic_roughness_texture};
-    case mesh::MaterialModel::SpecularGlossiness:
-        return {&Material::base_color_texture, &Material::specular_texture};
-    default:
-        return {&Material::base_color_texture};
-    }
+/// The textures of a material that its albedo and its emission depend on.
+std::vector<std::optional<TextureSlot> Material::*> color_slots(const Material& material) {
+    std::vector<std::optional<TextureSlot> Material::*> slots = {&Material::base_color_texture};
+    if (material.model == mesh::MaterialModel::MetallicRoughness)
+        slots.push_back(&Material::metallic_roughness_texture);
+    if (material.model == mesh::MaterialModel::SpecularGlossiness)
+        slots.push_back(&Material::specular_texture);
+    if (material.emission != glm::vec3(0.0f))
+        slots.push_back(&Material::emission_texture);
+    return slots;
 }
 
 /// Whether the images of its colours can be stored; textures that were made in code have no file.
 bool has_files(const Material& material, const std::vector<mesh::Texture>& textures) {
-    for (const auto slot : color_slots(material.model))
+    for (const auto slot : color_slots(material))
         if (const auto& used = material.*slot; used && textures[used->texture].file.empty())
             return false;
     return true;
@@ -50,7 +50,8 @@ bool has_files(const Material& material, const std::vector<mesh::Texture>& textu
 const char* name_of(std::optional<TextureSlot> Material::*slot) {
     return slot == &Material::base_color_texture           ? "base_texture"
            : slot == &Material::metallic_roughness_texture ? "metallic_texture"
-                                                           : "specular_texture";
+           : slot == &Material::specular_texture           ? "specular_texture"
+                                                           : "emission_texture";
 }
 
 /// Returns a whole number below a limit.
@@ -98,12 +99,19 @@ std::optional<TextureSlot> slot_of(const Json& json, std::size_t num_textures) {
 
 Material material_of(const Json& json, std::size_t num_textures) {
     Material material;
-    material.model = static_cast<mesh::MaterialModel>(below(json.at("model"), 3));
+    material.model = static_cast<mesh::MaterialModel>(below(json.at("model"), 4));
     material.base_color = color(json.at("base"));
     material.metallic = fraction(json.at("metallic"));
     material.specular = color(json.at("specular"));
     material.times_vertex_color = json.at("times_vertex_color").boolean();
-    for (const auto slot : color_slots(material.model))
+    if (const Json* emission = json.find("emission"))
+        for (int channel = 0; channel < 3; ++channel) {
+            material.emission[channel] =
+                finite(emission->values().at(static_cast<std::size_t>(channel)));
+            if (material.emission[channel] < 0.0f)
+                throw std::out_of_range("expected an emission of 0 or more");
+        }
+    for (const auto slot : color_slots(material))
         material.*slot = slot_of(json.at(name_of(slot)), num_textures);
     return material;
 }
@@ -127,7 +135,8 @@ void add_materials(NewSections& sections, const Scene& scene) {
         return;
     const mesh::TriangleMesh& mesh = scene.mesh;
     const auto has_texture = [&](const Material& material) {
-        return material.base_color_texture && has_files(material, mesh.textures);
+        return (material.base_color_texture || material.emission_texture) &&
+               has_files(material, mesh.textures);
     };
     if (mesh.triangle_materials.empty() ||
         std::none_of(mesh.materials.begin(), mesh.materials.end(), has_texture))
@@ -144,7 +153,9 @@ void add_materials(NewSections& sections, const Scene& scene) {
             {"times_vertex_color", material.times_vertex_color}};
         // A picture takes a material without its textures from the vertices.
         const bool is_kept = has_files(material, mesh.textures);
-        for (const auto slot : color_slots(material.model)) {
+        if (const glm::vec3& emission = material.emission; emission != glm::vec3(0.0f))
+            json.set("emission", {emission.r, emission.g, emission.b});
+        for (const auto slot : color_slots(material)) {
             const auto& used = is_kept ? material.*slot : std::nullopt;
             if (used && !stored.contains(used->texture)) {
                 const mesh::Texture& texture = mesh.textures[used->texture];

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <stdexcept>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -68,6 +69,18 @@ void add_surfaces(NewSections& sections, const std::vector<Surface>& surfaces) {
     sections["r_specular"] = bytes_of(specular);
     sections["r_highlight"] = bytes_of(highlight);
     sections["r_shape"] = bytes_of(shape);
+    const auto add_unusual = [&](const char* name, auto member) {
+        const auto usual = Surface().*member;
+        if (std::all_of(surfaces.begin(), surfaces.end(),
+                        [&](const Surface& surface) { return surface.*member == usual; }))
+            return;
+        std::vector<std::remove_const_t<decltype(usual)>> values;
+        for (const Surface& surface : surfaces)
+            values.push_back(surface.*member);
+        sections[name] = bytes_of(values);
+    };
+    add_unusual("r_metallic", &Surface::metallic);
+    add_unusual("r_emission", &Surface::emission);
 }
 
 std::vector<Surface> read_surfaces(const SectionReader& reader, std::size_t count) {
@@ -85,6 +98,14 @@ std::vector<Surface> read_surfaces(const SectionReader& reader, std::size_t coun
                        .specular = specular[i],
                        .highlight = static_cast<Highlight>(highlight[i]),
                        .roughness_or_exponent = shape[i]};
+    const auto read_unusual = [&](const char* name, auto member) {
+        using Value = std::remove_cvref_t<decltype(Surface().*member)>;
+        const std::vector<Value> values = reader.elements<Value>(name, count, true);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            surfaces[i].*member = values[i];
+    };
+    read_unusual("r_metallic", &Surface::metallic);
+    read_unusual("r_emission", &Surface::emission);
     return surfaces;
 }
 
@@ -127,6 +148,12 @@ void check_surfaces(const SceneCheck& check, const std::vector<Surface>& surface
               [](const Surface& s) { return s.albedo; });
     check.all("surfaces of specular colour 0 to 1", surfaces, is_color,
               [](const Surface& s) { return s.specular; });
+    check.all("surfaces of metallic 0 to 1", surfaces, is_color,
+              [](const Surface& s) { return glm::vec3(s.metallic); });
+    check.all(
+        "surfaces of emission 0 to 1e9", surfaces,
+        [](const glm::vec3& color) { return is_within(color, 0.0f, 1e9f); },
+        [](const Surface& s) { return s.emission; });
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const LobeFacts& lobe = facts_of(surfaces[i].highlight);
         const float shape = surfaces[i].roughness_or_exponent;

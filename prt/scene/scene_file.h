@@ -41,6 +41,8 @@ struct SceneSettings {
     std::optional<Camera> view = {};
     /// The camera of the mesh's file.
     std::optional<Camera> camera = {};
+    /// What the mesh's file holds and the scene does not, a line each.
+    std::vector<std::string> left_out = {};
 };
 
 /// Everything that relighting and drawing need.

@@ -42,6 +42,7 @@ void settings_members(JsonMembers& member, SceneSettings& settings) {
     member.unusual("epsilon", settings.epsilon, {});
     member.unusual("glossy_tolerance", settings.glossy_tolerance, {});
     member.unusual("two_sided_bounces", settings.two_sided_bounces, false);
+    member.unusual("left_out", settings.left_out, {});
     camera_member(member, "view", settings.view);
     camera_member(member, "camera", settings.camera);
 }

@@ -90,6 +90,7 @@ class Mesh:
         up: Optional[str] = None,
         normals: str = "file",
         crease: Optional[float] = None,
+        pose: Optional[str] = None,
         floor: Union[int, str, None] = None,
         floor_scale: float = 4.0,
     ) -> "Mesh":
@@ -99,6 +100,8 @@ class Mesh:
         normals  "file": the file's where it has them; "smooth": always from the faces
         crease   degrees: normals from the faces, smooth over edges up to this angle; vertices are
                  doubled at sharper ones
+        pose     glTF: "ANIMATION@SECONDS", the moment in which skins and morph targets stand; None:
+                 as the file's nodes say
 
         Raises OSError with the file's name.
 
@@ -109,6 +112,7 @@ class Mesh:
             "up": up,
             "normals": normals,
             "crease": crease,
+            "pose": pose,
             "floor": floor,
             "floor_scale": floor_scale,
         }

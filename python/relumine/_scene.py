@@ -77,6 +77,7 @@ def precompute(
     refine: bool = True,
     view: Any = None,
     material: Union[Material, Mapping[str, Material], None] = None,
+    ggx: str = "whole",
     glossy_tolerance: Optional[float] = None,
     bounces: Union[bool, float, None] = None,
     two_sided: bool = False,
@@ -99,6 +100,7 @@ def precompute(
                (eye, target, fov)
     material   Ggx, Blinn or Lambert in place of the mesh's materials, or {group: material};
                "floor" is the added floor
+    ggx        "whole": highlights of GGX keep their energy; "published": glTF's formula
     bounces    light goes on from surface to surface: True, or its standard error; False: direct
                light alone; None: where vertices see other surfaces
     max_memory bytes; work that would take more is refused with MemoryError
@@ -131,6 +133,7 @@ def precompute(
         "no_refine": not refine,
         "view": view,
         "material": _materials(material),
+        "ggx": ggx,
         "glossy_tolerance": glossy_tolerance,
         "bounces": 0.0 if bounces is False else bounces,
         "two_sided": two_sided,

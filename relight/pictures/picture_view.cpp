@@ -208,7 +208,25 @@ private:
                             {.diffuse = between(&Lobes::diffuse),
                              .diffuse_grazing = between(&Lobes::diffuse_grazing),
                              .specular = between(&Lobes::specular),
-                             .specular_grazing = between(&Lobes::specular_grazing)});
+                             .specular_grazing = between(&Lobes::specular_grazing)},
+                            eye_cosine(at));
+    }
+
+    /// Returns the cosine between normal and eye, 0 without an eye.
+    [[nodiscard]] float eye_cosine(const prt::MeshPoint& at) const {
+        if (!light_.eye)
+            return 0.0f;
+        return glm::dot(prt::shading_normal(mesh_, at),
+                        glm::normalize(*light_.eye - prt::value_at(mesh_, mesh_.positions, at)));
+    }
+
+    /// Returns what a sample gives of its own.
+    [[nodiscard]] glm::vec3 emitted(const Sample& sample) const {
+        if (light_.emission.empty())
+            return glm::vec3(0.0f);
+        return has_texture(sample)
+                   ? light_.emission_factor * light_.textures->surface(point(sample)).emission
+                   : prt::value_at(mesh_, light_.emission, point(sample));
     }
 
     /// Finds the lights that reach a sample.
@@ -278,7 +296,7 @@ private:
             passed_[i] = is_caught ? caught(radiance, *light_.open_floor, opacity)
                                    : glm::vec3(1.0f - opacity);
             if (!is_caught)
-                sum += opacity * radiance;
+                sum += opacity * (radiance + emitted(sample));
             alpha += is_caught ? opacity_of(passed_[i]) : opacity;
         }
         const auto count = static_cast<float>(samples.size());
@@ -313,18 +331,19 @@ private:
             return albedo * white(normal);
         const prt::Surface surface = surface_at(sample);
         if (surface.highlight == prt::Highlight::None || !light_.eye)
-            return albedo * prt::reflect(surface, {.diffuse = white(normal)});
+            return albedo * prt::reflect(surface, {.diffuse = white(normal)}, 0.0f);
         const glm::vec3 to_eye =
             glm::normalize(*light_.eye - prt::value_at(mesh_, mesh_.positions, at));
         prt::BlockSurfaces block;
         block.set(0, surface, normal, to_eye);
         prt::Lobes<glm::dvec3> lobes;
         packets_.light_block(block, {&normal, 1}, lanes_, {&lobes, 1});
-        return albedo *
-               prt::reflect(surface, {.diffuse = glm::vec3(lobes.diffuse),
+        return albedo * prt::reflect(surface,
+                                     {.diffuse = glm::vec3(lobes.diffuse),
                                       .diffuse_grazing = glm::vec3(lobes.diffuse_grazing),
                                       .specular = glm::vec3(lobes.specular),
-                                      .specular_grazing = glm::vec3(lobes.specular_grazing)});
+                                      .specular_grazing = glm::vec3(lobes.specular_grazing)},
+                                     glm::dot(normal, to_eye));
     }
 
     /// Returns the surface between the vertices', with the highlight of the nearest and the colours
@@ -338,21 +357,24 @@ private:
             std::max_element(weights.begin(), weights.end()) - weights.begin());
         prt::Surface surface = light_.surfaces[triangle[nearest]];
         surface.albedo = surface.specular = glm::vec3(0.0f);
-        float shape = 0.0f;
+        float shape = 0.0f, metallic = 0.0f;
         bool is_same = true;
         for (std::size_t corner = 0; corner < 3; ++corner) {
             const prt::Surface& own = light_.surfaces[triangle[corner]];
             surface.albedo += weights[corner] * own.albedo;
             surface.specular += weights[corner] * own.specular;
+            metallic += weights[corner] * own.metallic;
             shape += weights[corner] * own.roughness_or_exponent;
             is_same = is_same && own.highlight == surface.highlight;
         }
         if (is_same)
             surface.roughness_or_exponent = shape;
+        surface.metallic = metallic;
         if (has_texture(sample)) {
             const prt::Surface own = light_.textures->surface(at);
             surface.albedo = own.albedo;
             surface.specular = own.specular;
+            surface.metallic = own.metallic;
         }
         return surface;
     }
@@ -380,7 +402,7 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
         return size == 0 || size == mesh_.num_vertices();
     };
     if (light.radiance.size() != mesh_.num_vertices() || !fits(light.albedo.size()) ||
-        !fits(light.surfaces.size()) || !fits(light.lobes.size()))
+        !fits(light.surfaces.size()) || !fits(light.lobes.size()) || !fits(light.emission.size()))
         throw std::invalid_argument("expected one radiance, albedo and surface per vertex");
     const LightPackets packets(light.lights);
     Picture picture{.width = options_.width, .height = options_.height};

@@ -68,6 +68,10 @@ struct MeshLight {
     std::span<const SharpLight> lights = {};
     /// [num_vertices] factor on what the lights give.
     std::span<const glm::vec3> albedo = {};
+    /// [num_vertices] radiance that surfaces give of their own, or empty: none. Triangles with a
+    /// texture take theirs times `emission_factor`.
+    std::span<const glm::vec3> emission = {};
+    glm::vec3 emission_factor{1.0f};
     /// [num_vertices], or empty: Lambert of albedo 1.
     std::span<const prt::Surface> surfaces = {};
     /// Triangles with a texture take its colour at the point, and the light of the vertices. Null:

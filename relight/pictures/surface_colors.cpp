@@ -11,8 +11,13 @@ namespace relumine::relight {
 SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt::Surface> surfaces,
                              bool has_highlights)
     : mesh_(&mesh), has_highlights_(has_highlights) {
+    const auto is_whole = [](const prt::Surface& surface) {
+        return surface.highlight == prt::Highlight::GgxWhole;
+    };
+    form_ = std::any_of(surfaces.begin(), surfaces.end(), is_whole) ? prt::GgxForm::Whole
+                                                                    : prt::GgxForm::Published;
     const auto has_texture = [](const mesh::Material& material) {
-        return material.base_color_texture.has_value();
+        return material.base_color_texture || material.emission_texture;
     };
     if (mesh.triangle_materials.empty() || surfaces.size() != mesh.num_vertices() ||
         std::none_of(mesh.materials.begin(), mesh.materials.end(), has_texture))
@@ -28,7 +33,7 @@ SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt
 }
 
 prt::Surface SurfaceColors::surface(const prt::MeshPoint& point) const {
-    const prt::Surface own = prt::surface_at(*mesh_, point.triangle, point.barycentric);
+    const prt::Surface own = prt::surface_at(*mesh_, point.triangle, point.barycentric, form_);
     return has_highlights_ ? own : prt::without_highlight(own);
 }
 
@@ -45,11 +50,12 @@ glm::vec3 SurfaceColors::radiance(std::span<const glm::vec3> vertex_radiance,
 }
 
 void add_rest(std::span<const glm::vec3> radiance, std::span<const prt::Surface> surfaces,
-              std::span<prt::Lobes<glm::vec3>> lobes) {
+              std::span<const float> eye_cosines, std::span<prt::Lobes<glm::vec3>> lobes) {
     constexpr float LeastDiffuse = 0.02f;
     for (std::size_t i = 0; i < lobes.size(); ++i) {
-        const glm::vec3 rest = radiance[i] - prt::reflect(surfaces[i], lobes[i]);
-        const glm::vec3 share = prt::reflect(surfaces[i], {.diffuse = glm::vec3(1.0f)});
+        const glm::vec3 rest = radiance[i] - prt::reflect(surfaces[i], lobes[i], eye_cosines[i]);
+        const glm::vec3 share =
+            prt::reflect(surfaces[i], {.diffuse = glm::vec3(1.0f)}, eye_cosines[i]);
         for (int channel = 0; channel < 3; ++channel)
             if (share[channel] > LeastDiffuse)
                 lobes[i].diffuse[channel] += rest[channel] / share[channel];

@@ -9,6 +9,7 @@
 
 #include "mesh/triangle_mesh.h"
 #include "prt/glossy/lobes.h"
+#include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/receivers/surface.h"
 
@@ -25,7 +26,7 @@ public:
     SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt::Surface> surfaces,
                   bool has_highlights = false);
 
-    /// Whether a triangle has a texture of its albedo.
+    /// Whether a triangle has a texture of its albedo or its emission.
     [[nodiscard]] bool has(std::uint32_t triangle) const {
         return !is_textured_.empty() && is_textured_[triangle];
     }
@@ -44,15 +45,17 @@ private:
     /// [num_triangles], or empty.
     std::vector<bool> is_textured_;
     bool has_highlights_ = false;
+    prt::GgxForm form_ = prt::GgxForm::Published;
     /// [num_vertices], 1 / albedo; 0 where that is 0.
     std::vector<glm::vec3> light_of_radiance_;
 };
 
 /// Adds to the lobes of vertices what their radiance has beyond them, bounces above all, as diffuse
-/// light; where a surface reflects none, as light of its own colour.
+/// light; where a surface reflects none, as light of its own colour. The cosines are those of
+/// reflect().
 ///
 /// Shape:   all are [num_vertices].
 void add_rest(std::span<const glm::vec3> radiance, std::span<const prt::Surface> surfaces,
-              std::span<prt::Lobes<glm::vec3>> lobes);
+              std::span<const float> eye_cosines, std::span<prt::Lobes<glm::vec3>> lobes);
 
 } // namespace relumine::relight

@@ -89,10 +89,12 @@ public:
     [[nodiscard]] glm::dvec3 radiance(const prt::Lobes<glm::dvec3>& sums) const {
         if (surface_ == prt::Surface())
             return sums.diffuse;
-        return prt::reflect(surface_, {.diffuse = sums.diffuse,
-                                       .diffuse_grazing = sums.diffuse_grazing,
-                                       .specular = sums.specular,
-                                       .specular_grazing = sums.specular_grazing});
+        return prt::reflect(surface_,
+                            {.diffuse = sums.diffuse,
+                             .diffuse_grazing = sums.diffuse_grazing,
+                             .specular = sums.specular,
+                             .specular_grazing = sums.specular_grazing},
+                            glm::dot(normal_, to_eye_));
     }
 
 private:

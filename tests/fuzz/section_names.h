@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 56> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 59> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -63,6 +63,8 @@ inline constexpr std::array<std::string_view, 56> SectionNames = {"settings",
                                                                   "bounce_rays",
                                                                   "bounce_errors",
                                                                   "unknown",
+                                                                  "r_metallic",
+                                                                  "r_emission",
                                                                   "lifts"};
 
 } // namespace relumine::fuzz

@@ -144,14 +144,41 @@ TEST(GlossyRelighting, WhiteFurnaceOfARoughPlane) {
         const auto in_float = [](double value) {
             return glm::vec3(static_cast<float>(value));
         };
-        const glm::vec3 expected = prt::reflect(
-            receivers.surfaces[i], {.diffuse = in_float(sums.diffuse),
-                                    .diffuse_grazing = in_float(sums.diffuse_grazing),
-                                    .specular = in_float(sums.specular),
-                                    .specular_grazing = in_float(sums.specular_grazing)});
+        const glm::vec3 expected =
+            prt::reflect(receivers.surfaces[i],
+                         {.diffuse = in_float(sums.diffuse),
+                          .diffuse_grazing = in_float(sums.diffuse_grazing),
+                          .specular = in_float(sums.specular),
+                          .specular_grazing = in_float(sums.specular_grazing)},
+                         glm::dot(receivers.normals[i], receivers.to_eye[i]));
         EXPECT_NEAR(radiance[i].g, expected.g, 0.01f) << i;
         EXPECT_LT(radiance[i].g, 1.0f);
     }
+}
+
+// A white sky over white surfaces that keep their energy: nothing is lost, at any roughness.
+TEST(GlossyRelighting, WhiteFurnaceOfWholeGgx) {
+    prt::Receivers receivers;
+    for (int i = 0; i < 24; ++i) {
+        receivers.positions.emplace_back(0.01f * static_cast<float>(i), 0.0f, 0.0f);
+        receivers.normals.emplace_back(0.0f, 1.0f, 0.0f);
+        const double angle = 0.19 * (i % 8);
+        receivers.to_eye.emplace_back(std::sin(angle), std::cos(angle), 0.0);
+        const float metallic = i % 2 == 0 ? 0.0f : 1.0f;
+        receivers.surfaces.push_back({.albedo = glm::vec3(1.0f - metallic),
+                                      .specular = glm::vec3(0.04f + 0.96f * metallic),
+                                      .highlight = prt::Highlight::GgxWhole,
+                                      .roughness_or_exponent = i < 8    ? 0.3f
+                                                               : i < 16 ? 0.6f
+                                                                        : 1.0f,
+                                      .metallic = metallic});
+    }
+    const prt::Transfer transfer = glossy_transfer(receivers, 0.02f, 256);
+    cubemap::CubeMap white(16);
+    white.texels.assign(white.texels.size(), glm::vec3(1.0f));
+    const std::vector<glm::vec3> radiance = relight(transfer, white);
+    for (std::size_t i = 0; i < receivers.size(); ++i)
+        EXPECT_NEAR(radiance[i].g, 1.0f, 0.01f) << i;
 }
 
 TEST(GlossyRelighting, CloseToExactIntegration) {
@@ -254,7 +281,8 @@ TEST(GlossyRelighting, LightListsTracedAreExact) {
                                     {.diffuse = lobes.diffuse * e,
                                      .diffuse_grazing = lobes.diffuse_grazing * e,
                                      .specular = lobes.specular * e,
-                                     .specular_grazing = lobes.specular_grazing * e});
+                                     .specular_grazing = lobes.specular_grazing * e},
+                                    glm::dot(normal, scene.receivers.to_eye[i]));
         }
         EXPECT_LT(glm::distance(relighter.radiance()[i], expected),
                   1e-4f * (1.0f + glm::length(expected)));

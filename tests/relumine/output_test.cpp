@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include <glm/geometric.hpp>
+
 #include "cubemap/image/environment.h"
 #include "mesh/floor.h"
 #include "mesh/load.h"
@@ -90,6 +92,39 @@ TEST_F(Output, IsWrittenByExtension) {
     EXPECT_THROW(save(scene, file("lit.jpg")), std::invalid_argument);
     EXPECT_THROW(save(scene, file("absent/lit.png"), {.width = 8, .height = 4}),
                  std::runtime_error);
+}
+
+// What surfaces give of their own comes on top of all light, times a factor that costs nothing.
+TEST_F(Output, EmissionIsAddedAndDimmed) {
+    const glm::vec3 own(3.0f, 0.0f, 0.5f);
+    const PrecomputeOptions glowing{
+        .tolerance = 0.2f, .surface = everywhere({.albedo = glm::vec3(0.5f), .emission = own})};
+    const LitScene scene = lit(glowing);
+    const std::vector<glm::vec3> colors =
+        colors_of(scene.scene(), scene.radiance(), glm::vec3(1.0f));
+    const std::vector<glm::vec3> dimmed =
+        Painter(scene, {.emission = glm::vec3(0.5f, 1.0f, 2.0f)}).values(scene.radiance());
+    for (std::size_t i = 0; i < colors.size(); ++i) {
+        EXPECT_EQ(colors[i], scene.radiance()[i] + own);
+        EXPECT_EQ(dimmed[i], scene.radiance()[i] + glm::vec3(1.5f, 0.0f, 1.0f));
+    }
+    PrecomputeOptions of_pixels = glowing;
+    of_pixels.receivers = Pixels{.width = 9, .height = 5};
+    const LitScene pixels = lit(of_pixels);
+    for (const LitScene* drawn : {&scene, &pixels}) {
+        OutputOptions options{.width = 9, .height = 5, .samples_per_axis = 1};
+        options.background = NothingBehind{};
+        const Picture bright = draw(*drawn, options);
+        options.emission = glm::vec3(0.0f);
+        const Picture plain = draw(*drawn, options);
+        float covered = 0.0f;
+        for (std::size_t i = 0; i < plain.pixels.size(); ++i) {
+            EXPECT_LT(glm::distance(bright.pixels[i], plain.pixels[i] + plain.alpha[i] * own),
+                      1e-5f);
+            covered += plain.alpha[i];
+        }
+        EXPECT_GT(covered, 1.0f);
+    }
 }
 
 TEST_F(Output, OfPixelsIsTheirPicture) {

@@ -35,8 +35,10 @@ TEST(MaterialText, EachModel) {
         MaterialText::read("ggx:roughness=0.3,albedo=0.5,0.25,0.125,f0=0.04").applied_to(Plain),
         (prt::Surface{.albedo = {0.5f, 0.25f, 0.125f},
                       .specular = glm::vec3(0.04f),
-                      .highlight = prt::Highlight::Ggx,
+                      .highlight = prt::Highlight::GgxWhole,
                       .roughness_or_exponent = 0.3f}));
+    EXPECT_EQ(MaterialText::read("ggx-published:roughness=0.3").applied_to(Gold).highlight,
+              prt::Highlight::Ggx);
     EXPECT_EQ(MaterialText::read("blinn:exponent=50,kd=0.5,0.25,0.5,ks=0.5").applied_to(Gold),
               (prt::Surface{.albedo = {0.5f, 0.25f, 0.5f},
                             .specular = glm::vec3(0.5f),

@@ -10,9 +10,11 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "prt/glossy/ggx_energy.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine::prt {
@@ -67,10 +69,12 @@ glm::vec3 eye_at(double degrees) {
 glm::vec3 reflected(const Surface& surface, const glm::vec3& normal, const glm::vec3& v,
                     const glm::vec3& w) {
     const Lobes<float> lobes = evaluate_lobes(surface, normal, v, w);
-    return reflect(surface, {.diffuse = glm::vec3(lobes.diffuse),
-                             .diffuse_grazing = glm::vec3(lobes.diffuse_grazing),
-                             .specular = glm::vec3(lobes.specular),
-                             .specular_grazing = glm::vec3(lobes.specular_grazing)});
+    return reflect(surface,
+                   {.diffuse = glm::vec3(lobes.diffuse),
+                    .diffuse_grazing = glm::vec3(lobes.diffuse_grazing),
+                    .specular = glm::vec3(lobes.specular),
+                    .specular_grazing = glm::vec3(lobes.specular_grazing)},
+                   glm::dot(normal, v));
 }
 
 glm::vec3 brdf(const Surface& surface, const glm::vec3& normal, const glm::vec3& v,
@@ -459,9 +463,9 @@ TEST(Brdf, ReflectOfLambertAndBlinnPhong) {
                                     .diffuse_grazing = glm::vec3(8.0f),
                                     .specular = glm::vec3(16.0f, 32.0f, 64.0f),
                                     .specular_grazing = glm::vec3(128.0f)};
-    EXPECT_EQ(reflect({.albedo = glm::vec3(0.5f, 1.0f, 0.25f)}, lobes),
+    EXPECT_EQ(reflect({.albedo = glm::vec3(0.5f, 1.0f, 0.25f)}, lobes, 0.5f),
               glm::vec3(0.5f, 2.0f, 1.0f));
-    EXPECT_EQ(reflect(blinn_surface(10.0f), lobes), glm::vec3(8.5f, 8.5f, 64.0f));
+    EXPECT_EQ(reflect(blinn_surface(10.0f), lobes, 0.5f), glm::vec3(8.5f, 8.5f, 64.0f));
 }
 
 /// Smoother than the smallest alpha, sharper than the largest exponent: as those, not infinite.
@@ -489,7 +493,61 @@ TEST(Brdf, GrazingPartsTakeNoMoreThanThereIs) {
                                  .diffuse_grazing = glm::vec3(0.6f),
                                  .specular = glm::vec3(2.0f),
                                  .specular_grazing = glm::vec3(3.0f)};
-    EXPECT_EQ(reflect(ggx_surface(0.3f), lobes), glm::vec3(3.0f));
+    EXPECT_EQ(reflect(ggx_surface(0.3f), lobes, 0.5f), glm::vec3(3.0f));
+}
+
+Lobes<double> albedo_of_highlight(const Surface& surface, const glm::vec3& eye) {
+    return integral_over_halves(surface, eye, double{ggx_alpha(surface.roughness_or_exponent)},
+                                250);
+}
+
+/// What a surface sends of a white sky.
+glm::dvec3 of_white_sky(const Surface& surface, const glm::vec3& eye) {
+    const Lobes<double> sum = albedo_of_highlight(surface, eye);
+    return reflect(surface,
+                   {.diffuse = glm::vec3(1.0f),
+                    .specular = glm::vec3(static_cast<float>(sum.specular)),
+                    .specular_grazing = glm::vec3(static_cast<float>(sum.specular_grazing))},
+                   eye.y);
+}
+
+/// A white sky stays white over any white surface, metal or not, and no surface sends more.
+TEST(Brdf, WholeGgxKeepsTheEnergy) {
+    for (const float roughness : {0.0f, 0.1f, 0.27f, 0.5f, 0.73f, 1.0f})
+        for (const double degrees : {0.0, 40.0, 60.0, 75.0, 85.0})
+            for (const float metallic : {0.0f, 0.25f, 0.5f, 0.9f, 1.0f}) {
+                const auto of_base = [&](const glm::vec3& base) {
+                    return Surface{.albedo = base * (1.0f - metallic),
+                                   .specular = 0.04f * (1.0f - metallic) + base * metallic,
+                                   .highlight = Highlight::GgxWhole,
+                                   .roughness_or_exponent = roughness,
+                                   .metallic = metallic};
+                };
+                const std::string where = fmt::format("roughness {}, metallic {}, {} degrees",
+                                                      roughness, metallic, degrees);
+                const glm::dvec3 white = of_white_sky(of_base(glm::vec3(1.0f)), eye_at(degrees));
+                EXPECT_NEAR(white.g, 1.0, 0.01) << where;
+                const glm::dvec3 gold =
+                    of_white_sky(of_base({1.0f, 0.75f, 0.25f}), eye_at(degrees));
+                EXPECT_LE(gold.g, 1.0) << where;
+                EXPECT_LT(gold.b, gold.g) << where;
+            }
+}
+
+/// The table is the integral of the lobe.
+TEST(Brdf, AlbedoOfGgxIsItsIntegral) {
+    for (const float roughness : {0.05f, 0.2f, 0.37f, 0.61f, 0.88f, 1.0f})
+        for (const double degrees : {0.0, 20.0, 48.0, 71.0, 80.0}) {
+            const glm::vec3 eye = eye_at(degrees);
+            const Lobes<double> sum = albedo_of_highlight(
+                {.highlight = Highlight::GgxWhole, .roughness_or_exponent = roughness}, eye);
+            const GgxAlbedo albedo = ggx_albedo(roughness, eye.y);
+            EXPECT_NEAR(double{albedo.all}, sum.specular, 3e-3) << roughness << ' ' << degrees;
+            EXPECT_NEAR(double{albedo.grazing}, sum.specular_grazing, 3e-3)
+                << roughness << ' ' << degrees;
+        }
+    // One scattering at alpha = 1, seen from above: 1 - ln 2.
+    EXPECT_NEAR(double{ggx_albedo(1.0f, 1.0f).all}, 1.0 - std::numbers::ln2, 1e-3);
 }
 
 } // namespace

@@ -44,7 +44,12 @@ TEST(SurfaceSampling, MetallicRoughness) {
                                .metallic = 0.25f,
                                .roughness = 0.375f};
     const Surface surface = surface_at(square(material), 0, {0.0f, 0.0f});
-    EXPECT_EQ(surface.highlight, Highlight::Ggx);
+    EXPECT_EQ(surface.highlight, Highlight::GgxWhole);
+    EXPECT_EQ(surface.metallic, 0.25f);
+    const Surface published = surface_at(square(material), 0, {0.0f, 0.0f}, GgxForm::Published);
+    EXPECT_EQ(published.highlight, Highlight::Ggx);
+    EXPECT_EQ(published.metallic, 0.0f);
+    EXPECT_EQ(published.specular, surface.specular);
     EXPECT_EQ(surface.roughness_or_exponent, 0.375f);
     EXPECT_EQ(surface.albedo, glm::vec3(0.75f, 0.375f, 0.1875f));
     EXPECT_NEAR(glm::distance(surface.specular, glm::vec3(0.28f, 0.155f, 0.0925f)), 0.0f, 1e-6f);
@@ -56,21 +61,45 @@ TEST(SurfaceSampling, MetallicRoughness) {
     EXPECT_EQ(surface_at(square(metal), 0, {}).specular, glm::vec3(0.04f));
 }
 
-/// F0 takes its part of the diffuse colour, as KHR_materials_pbrSpecularGlossiness defines it.
+/// F0 takes its part of the diffuse colour, as KHR_materials_pbrSpecularGlossiness defines it; the
+/// whole form takes what the highlight reflects in its place.
 TEST(SurfaceSampling, SpecularGlossiness) {
     Material material = {.model = MaterialModel::SpecularGlossiness,
                          .base_color = {1.0f, 0.5f, 0.25f},
                          .roughness = 0.375f,
                          .specular = {0.25f, 0.5f, 0.125f}};
-    EXPECT_EQ(surface_at(square(material), 0, {}), (Surface{.albedo = {0.5f, 0.25f, 0.125f},
+    EXPECT_EQ(surface_at(square(material), 0, {}, GgxForm::Published),
+              (Surface{.albedo = {0.5f, 0.25f, 0.125f},
+                       .specular = {0.25f, 0.5f, 0.125f},
+                       .highlight = Highlight::Ggx,
+                       .roughness_or_exponent = 0.375f}));
+    EXPECT_EQ(surface_at(square(material), 0, {}), (Surface{.albedo = {1.0f, 0.5f, 0.25f},
                                                             .specular = {0.25f, 0.5f, 0.125f},
-                                                            .highlight = Highlight::Ggx,
+                                                            .highlight = Highlight::GgxWhole,
                                                             .roughness_or_exponent = 0.375f}));
     mesh::TriangleMesh mesh = square(material);
     mesh.textures = {two_texels({255, 0, 255}, {255, 0, 255})};
     mesh.materials[0].specular_texture = Clamped;
     EXPECT_EQ(surface_at(mesh, 0, {}).specular, glm::vec3(0.25f, 0.0f, 0.125f));
-    EXPECT_EQ(surface_at(mesh, 0, {}).albedo, glm::vec3(0.75f, 0.375f, 0.1875f));
+    EXPECT_EQ(surface_at(mesh, 0, {}, GgxForm::Published).albedo,
+              glm::vec3(0.75f, 0.375f, 0.1875f));
+}
+
+TEST(SurfaceSampling, EmissionAndUnlit) {
+    mesh::TriangleMesh mesh = square({.model = MaterialModel::MetallicRoughness,
+                                      .metallic = 0.0f,
+                                      .emission = {4.0f, 2.0f, 0.0f},
+                                      .emission_texture = Clamped});
+    mesh.textures = {two_texels({255, 0, 255}, {255, 0, 255})};
+    EXPECT_EQ(surface_at(mesh, 0, {}).emission, glm::vec3(4.0f, 0.0f, 0.0f));
+    EXPECT_EQ(surface_at(mesh, 0, {}).albedo, glm::vec3(1.0f)) << "it still reflects";
+    // The colours of vertices multiply it, also where they are brighter than white.
+    mesh.materials[0] = {.model = MaterialModel::Unlit,
+                         .base_color = {1.0f, 0.5f, 0.25f},
+                         .times_vertex_color = true};
+    mesh.colors.assign(mesh.num_vertices(), glm::vec3(1.0f, 4.0f, 1.0f));
+    EXPECT_EQ(surface_at(mesh, 0, {}),
+              (Surface{.albedo = glm::vec3(0.0f), .emission = {1.0f, 2.0f, 0.25f}}));
 }
 
 TEST(SurfaceSampling, PhongIsLambertWithoutKs) {

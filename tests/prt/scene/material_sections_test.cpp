@@ -36,7 +36,10 @@ void expect_same_colors(const mesh::TriangleMesh& a, const mesh::TriangleMesh& b
     for (std::uint32_t triangle = 0; triangle < a.num_triangles(); ++triangle)
         for (int i = 0; i <= 20; ++i) {
             const glm::vec2 point(0.02f * static_cast<float>(i), 0.3f);
-            EXPECT_EQ(surface_at(a, triangle, point).albedo, surface_at(b, triangle, point).albedo);
+            const Surface one = surface_at(a, triangle, point),
+                          other = surface_at(b, triangle, point);
+            EXPECT_EQ(one.albedo, other.albedo);
+            EXPECT_EQ(one.emission, other.emission);
         }
 }
 
@@ -72,6 +75,15 @@ TEST(MaterialSections, KeepTheColoursOfEveryPoint) {
     mesh.materials[1].specular_texture = mesh.materials[1].base_color_texture;
     mesh.materials[1].specular_texture->uv_from_mesh_uv = glm::mat2(0, 1, 2, 0);
     mesh.materials[1].specular_texture->uv_offset = glm::vec2(0.25f, 0.5f);
+    expect_same_colors(read(written(mesh), mesh), mesh);
+
+    // A texture of emission alone is one; unlit colours stay unlit.
+    mesh.materials[1] = {.emission = glm::vec3(4.0f, 0.5f, 0.0f),
+                         .emission_texture = mesh.materials[1].base_color_texture};
+    expect_same_colors(read(written(mesh), mesh), mesh);
+    EXPECT_EQ(read(written(mesh), mesh).materials[1].emission, mesh.materials[1].emission);
+    mesh.materials[1] = {.model = mesh::MaterialModel::Unlit,
+                         .base_color_texture = mesh.materials[1].emission_texture};
     expect_same_colors(read(written(mesh), mesh), mesh);
 }
 
@@ -124,7 +136,7 @@ TEST(MaterialSections, BrokenOnesAreRefused) {
     replaced("\"image\": 0", "\"image\": -1");
     replaced("\"bytes\": 30", "\"bytes\": 4000000000");
     replaced("\"bytes\": 30", "\"bytes\": \"30\"");
-    replaced("\"model\": 0", "\"model\": 3");
+    replaced("\"model\": 0", "\"model\": 4");
     replaced("\"metallic\": 0.0", "\"metallic\": 1.5");
     replaced("0.25", "1e30");
     replaced("\"srgb\": true", "\"srgb\": 1");

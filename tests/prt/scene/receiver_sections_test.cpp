@@ -194,6 +194,21 @@ TEST_F(ReceiverSectionsTest, MissingAndShortSections) {
         refused(good, quoted, [&](Sections& s) { s.at(name).clear(); });
         refused(good, quoted, [&](Sections& s) { s.at(name).resize(s.at(name).size() + 48); });
     }
+    // Those that most scenes do not have.
+    EXPECT_FALSE(good.contains("r_metallic"));
+    EXPECT_FALSE(good.contains("r_emission"));
+    scene.receivers.surfaces[2].metallic = 0.5f;
+    scene.receivers.surfaces[3].emission = glm::vec3(7.0f, 0.0f, 1.0f);
+    save_scene(file_, scene);
+    EXPECT_EQ(load_scene(file_).receivers.surfaces, scene.receivers.surfaces);
+    const Sections unusual = read_sections(file_);
+    for (const char* name : {"r_metallic", "r_emission"})
+        refused(unusual, std::string("'") + name + "'",
+                [&](Sections& s) { s.at(name).pop_back(); });
+    refused(unusual, "metallic 0 to 1",
+            [](Sections& s) { s.at("r_metallic")[3] = std::byte{0x7f}; });
+    refused(unusual, "emission 0 to 1e9",
+            [](Sections& s) { s.at("r_emission")[3] = std::byte{0xbf}; });
     // As if they were the vertices.
     refused(good, "'r_to_eye'", [](Sections& s) { s.erase("layout"); });
     refused(good, "", [](Sections& s) {
@@ -222,7 +237,7 @@ TEST_F(ReceiverSectionsTest, NumbersOutOfRange) {
     refused(good, "r_barycentric", 3, -0.1f);
     refused(good, "r_barycentric", 3, 1.5f);
     refused(good, "r_triangles", 3, static_cast<std::uint32_t>(scene.mesh.num_triangles()));
-    refused(good, "r_highlight", 3, std::uint8_t{3});
+    refused(good, "r_highlight", 3, std::uint8_t{4});
     // A sample more than there are receivers, and bits behind the last sample.
     refused(good, "'r_positions'", [](Sections& s) {
         for (std::byte& byte : s.at("layout_mask"))

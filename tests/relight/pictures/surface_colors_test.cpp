@@ -1,6 +1,10 @@
 #include "prt/glossy/brdf.h"
 #include "relight/pictures/surface_colors.h"
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -106,7 +110,7 @@ TEST(SurfaceColors, HighlightsStayOnTopOfTextures) {
     const std::vector<prt::Surface> surfaces(4, shiny);
     std::vector<prt::Lobes<glm::vec3>> lobes(
         4, {.diffuse = glm::vec3(1.0f), .specular = glm::vec3(5.0f)});
-    std::vector<glm::vec3> radiance(4, prt::reflect(shiny, lobes[0]));
+    std::vector<glm::vec3> radiance(4, prt::reflect(shiny, lobes[0], 1.0f));
     const SurfaceColors textures(mesh, surfaces, true);
     const PictureView view(mesh, rays,
                            {.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = 28.072487f},
@@ -127,9 +131,40 @@ TEST(SurfaceColors, HighlightsStayOnTopOfTextures) {
     metal.albedo = glm::vec3(0.0f);
     for (const prt::Surface& surface : {shiny, metal}) {
         std::vector<prt::Lobes<glm::vec3>> all = lobes;
-        add_rest(radiance, std::vector(4, surface), all);
-        EXPECT_LT(glm::distance(prt::reflect(surface, all[1]), radiance[1]), 1e-5f);
+        add_rest(radiance, std::vector(4, surface), std::vector(4, 1.0f), all);
+        EXPECT_LT(glm::distance(prt::reflect(surface, all[1], 1.0f), radiance[1]), 1e-5f);
     }
+}
+
+// Emission comes on top of all light: by the vertices, or at each pixel by the texture.
+TEST(SurfaceColors, EmissionIsSeen) {
+    mesh::TriangleMesh mesh = scenes::textured_square();
+    const prt::RayScene rays(mesh);
+    const PictureView view(mesh, rays,
+                           {.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = 28.072487f},
+                           {.width = 8, .height = 8, .samples_per_axis = 1});
+    const std::vector<glm::vec3> black(4, glm::vec3(0.0f));
+    std::vector<glm::vec3> emission(4, glm::vec3(3.0f, 0.0f, 0.5f));
+    for (const glm::vec3& pixel : view.cut_out({.radiance = black, .emission = emission}).pixels)
+        EXPECT_LT(glm::distance(pixel, emission[0]), 1e-5f);
+
+    for (mesh::Material& material : mesh.materials) {
+        material.model = mesh::MaterialModel::MetallicRoughness;
+        material.emission = glm::vec3(2.0f);
+        material.emission_texture = std::exchange(material.base_color_texture, {});
+    }
+    const std::vector<prt::Surface> surfaces = prt::vertex_surfaces(mesh);
+    const SurfaceColors textures(mesh, surfaces);
+    ASSERT_TRUE(textures.has(0)) << "a texture of emission is one";
+    const Picture picture = view.cut_out({.radiance = black,
+                                          .emission = emission,
+                                          .emission_factor = glm::vec3(0.5f),
+                                          .textures = &textures});
+    const glm::vec3* row = picture.pixels.data() + 32;
+    EXPECT_GT(row[2].r, row[2].g + 0.5f) << "the textures' colours";
+    EXPECT_GT(row[4].g, row[4].b + 0.5f);
+    for (std::size_t x = 0; x < 8; ++x)
+        EXPECT_LE(std::max({row[x].r, row[x].g, row[x].b}), 1.0f) << "2 times the factor";
 }
 
 } // namespace

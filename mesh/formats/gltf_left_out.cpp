@@ -1,0 +1,223 @@
+#include "mesh/formats/gltf_left_out.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "files/counted.h"
+#include "mesh/text_reader.h"
+
+namespace relumine::mesh::gltf {
+
+namespace {
+
+/// An extension of materials that is not read.
+struct Extension {
+    std::string_view name;
+    /// The property that switches it off, or on, and its value that changes nothing.
+    const char* property;
+    double neutral;
+    std::string_view loss;
+};
+
+constexpr std::array<Extension, 11> Extensions = {{
+    {"KHR_materials_anisotropy", "anisotropyStrength", 0.0, "highlights are round"},
+    {"KHR_materials_clearcoat", "clearcoatFactor", 0.0, "clear coats are left out"},
+    {"KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", 0.0,
+     "no light shines through surfaces"},
+    {"KHR_materials_dispersion", "dispersion", 0.0, "surfaces are opaque"},
+    {"KHR_materials_ior", "ior", 1.5, "the index of refraction is 1.5"},
+    {"KHR_materials_iridescence", "iridescenceFactor", 0.0, "thin films are left out"},
+    {"KHR_materials_sheen", "sheenColorFactor", 0.0, "sheen is left out"},
+    {"KHR_materials_specular", "specularFactor", 1.0, "dielectrics reflect 0.04"},
+    {"KHR_materials_transmission", "transmissionFactor", 0.0, "surfaces are opaque"},
+    {"KHR_materials_volume", "thicknessFactor", 0.0, "surfaces are opaque"},
+    {"KHR_materials_volume_scatter", "multiscatterColor", 0.0, "surfaces are opaque"},
+}};
+
+/// Those that are read.
+constexpr std::array<std::string_view, 3> ReadExtensions = {"KHR_materials_emissive_strength",
+                                                            "KHR_materials_pbrSpecularGlossiness",
+                                                            "KHR_materials_unlit"};
+
+/// Everything that glTF 2.0 gives a material and a texture of it.
+constexpr std::array<std::string_view, 10> MaterialProperties = {
+    "name",        "extras",           "extensions",      "pbrMetallicRoughness", "normalTexture",
+    "alphaCutoff", "occlusionTexture", "emissiveTexture", "emissiveFactor",       "alphaMode"};
+
+bool is_number(const Json& value, double number) {
+    return value.type() == Json::Type::Number && value.number() == number;
+}
+
+/// Whether an extension's object changes nothing: its property, a number or a colour, has the
+/// neutral value, which all extensions but two take by default.
+bool is_neutral(const Extension& extension, const Json& object) {
+    for (const auto& [name, value] : object.members())
+        if (extension.neutral != 0.0 && name != extension.property && name != "extras" &&
+            !(value.type() == Json::Type::Array &&
+              std::all_of(value.values().begin(), value.values().end(),
+                          [](const Json& item) { return is_number(item, 1.0); })))
+            return false; // a texture, or a colour that is not white
+    const Json* value = object.find(extension.property);
+    if (value == nullptr)
+        return true;
+    if (value->type() == Json::Type::Array)
+        return std::all_of(value->values().begin(), value->values().end(),
+                           [&](const Json& item) { return is_number(item, extension.neutral); });
+    return is_number(*value, extension.neutral);
+}
+
+class LeftOut {
+public:
+    LeftOut(const Document& document, bool has_pose) : document_(document), has_pose_(has_pose) {}
+    std::vector<std::string> lines();
+
+private:
+    void material(const Json& description);
+    void material_extensions(const Json& extensions);
+    void texture(const Json& info);
+    void primitives();
+    void scenes();
+    void count(const std::string& kind, std::string_view loss);
+
+    const Document& document_;
+    bool has_pose_;
+    /// How many materials have each kind, what is lost, in the order they were met.
+    std::vector<std::string> order_;
+    std::map<std::string, std::pair<std::size_t, std::string>> kinds_;
+    std::set<std::string> of_this_material_;
+    std::vector<std::string> lines_;
+};
+
+void LeftOut::count(const std::string& kind, std::string_view loss) {
+    if (!of_this_material_.insert(kind).second)
+        return;
+    const auto [place, is_new] = kinds_.try_emplace(kind, 0, loss);
+    if (is_new)
+        order_.push_back(kind);
+    ++place->second.first;
+}
+
+void LeftOut::texture(const Json& info) {
+    for (const auto& [name, value] : child(info, "extensions").members())
+        if (name != "KHR_texture_transform")
+            count("with " + excerpt(name) + " of a texture, which is not read",
+                  "what it describes is left out");
+    if (!info.find("index"))
+        return;
+    const Json& texture = document_.element("textures", whole(info, "index"));
+    constexpr std::uint64_t Nearest = 9728;
+    if (texture.find("sampler") &&
+        whole(document_.element("samplers", whole(texture, "sampler")), "magFilter", 0) == Nearest)
+        count("with textures of hard pixels (NEAREST), which are not kept",
+              "they are sampled bilinearly");
+}
+
+void LeftOut::material_extensions(const Json& extensions) {
+    for (const auto& [name, value] : extensions.members()) {
+        if (std::find(ReadExtensions.begin(), ReadExtensions.end(), name) != ReadExtensions.end())
+            continue;
+        const auto* known =
+            std::find_if(Extensions.begin(), Extensions.end(),
+                         [&name = name](const Extension& one) { return one.name == name; });
+        if (known == Extensions.end())
+            count("with " + excerpt(name) + ", which is not read", "what it describes is left out");
+        else if (!is_neutral(*known, value))
+            count(fmt::format("with {}, which is not read", name), known->loss);
+    }
+}
+
+void LeftOut::material(const Json& description) {
+    of_this_material_.clear();
+    const std::string mode = text(description, "alphaMode", "OPAQUE");
+    if (mode == "MASK")
+        count("cut out by alpha (leaves, fences); alpha is not read", "what is cut out is opaque");
+    else if (mode != "OPAQUE")
+        count("transparent by alpha; alpha is not read", "surfaces are opaque");
+    if (description.find("normalTexture"))
+        count("with a normal map, which is not read", "surfaces are as smooth as the mesh");
+    const std::vector<double> emission = numbers(description, "emissiveFactor", {0.0, 0.0, 0.0});
+    if (*std::max_element(emission.begin(), emission.end()) > 0.0 &&
+        !child(description, "extensions").find("KHR_materials_unlit"))
+        count("with emission", "it is seen, and lights no other surface");
+    if (description.find("occlusionTexture"))
+        count("with an occlusion map, which is not read", "rays find what blocks the light");
+    if (description.find("doubleSided") && !flag(description, "doubleSided"))
+        count("with one side only", "pictures show both");
+    for (const auto& [name, value] : description.members())
+        if (name != "doubleSided" && std::find(MaterialProperties.begin(), MaterialProperties.end(),
+                                               name) == MaterialProperties.end())
+            count("with the property " + excerpt(name) + ", which glTF does not have",
+                  "it is left out");
+    material_extensions(child(description, "extensions"));
+    const Json& pbr = child(description, "pbrMetallicRoughness");
+    const Json& old =
+        child(child(description, "extensions"), "KHR_materials_pbrSpecularGlossiness");
+    for (const auto& [parent, key] : {std::pair{&pbr, "baseColorTexture"},
+                                      {&pbr, "metallicRoughnessTexture"},
+                                      {&old, "diffuseTexture"},
+                                      {&old, "specularGlossinessTexture"},
+                                      {&description, "emissiveTexture"}})
+        texture(child(*parent, key));
+}
+
+void LeftOut::primitives() {
+    std::size_t num_others = 0, num_colored = 0, num_targets = 0;
+    for (std::size_t i = 0; i < document_.count("meshes"); ++i)
+        for (const Json& primitive : items(document_.element("meshes", i), "primitives")) {
+            num_others += whole(primitive, "mode", 4) < 4 ? 1 : 0;
+            num_colored += child(primitive, "attributes").find("COLOR_1") != nullptr ? 1 : 0;
+            for (const Json& target : items(primitive, "targets"))
+                for (const auto& [name, accessor] : target.members())
+                    num_targets += name.starts_with("TEXCOORD_") || name.starts_with("COLOR_");
+        }
+    if (num_others > 0)
+        lines_.push_back(fmt::format("{} of points or lines: only triangles are read",
+                                     files::counted(num_others, "primitive")));
+    if (num_colored > 0)
+        lines_.push_back(fmt::format("{} with a second set of colours: the first is read",
+                                     files::counted(num_colored, "primitive")));
+    if (num_targets > 0)
+        lines_.push_back("morph targets of colours and uvs: only shapes are read");
+}
+
+void LeftOut::scenes() {
+    if (const std::size_t count = document_.count("scenes"); count > 1)
+        lines_.push_back(fmt::format("{} of {} scenes: the default one is read", count - 1, count));
+    if (const std::size_t count = document_.count("animations"); count > 0 && !has_pose_)
+        lines_.push_back(fmt::format("{}: nodes stand as they are; --pose ANIMATION@SECONDS "
+                                     "chooses a moment",
+                                     files::counted(count, "animation")));
+}
+
+std::vector<std::string> LeftOut::lines() {
+    for (std::size_t i = 0; i < document_.count("materials"); ++i)
+        try {
+            material(document_.element("materials", i));
+        } catch (const std::runtime_error&) { // read_materials() names it
+        }
+    for (const std::string& kind : order_) {
+        const auto& [number, loss] = kinds_.at(kind);
+        lines_.push_back(fmt::format("{} {}: {}", files::counted(number, "material"), kind, loss));
+    }
+    primitives();
+    scenes();
+    return std::move(lines_);
+}
+
+} // namespace
+
+std::vector<std::string> left_out(const Document& document, bool has_pose) {
+    return LeftOut(document, has_pose).lines();
+}
+
+bool is_of_materials(std::string_view extension) {
+    return extension.starts_with("KHR_materials_") && extension != "KHR_materials_variants";
+}
+
+} // namespace relumine::mesh::gltf

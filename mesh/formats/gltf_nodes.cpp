@@ -1,0 +1,214 @@
+// Based on: glTF 2.0, Sections 3.5 and 3.11, Appendix C (interpolation of key frames).
+#include "mesh/formats/gltf_nodes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+
+#include "mesh/formats/gltf_accessors.h"
+#include "mesh/text_reader.h"
+
+namespace relumine::mesh::gltf {
+
+namespace {
+
+enum class Interpolation { Step, Linear, Cubic };
+
+/// The keys of one property: `width` numbers each.
+struct Keys {
+    std::vector<float> times, values;
+    Interpolation interpolation = Interpolation::Linear;
+    std::size_t width = 0;
+
+    /// Returns number `part` of a key: 0 its value. Cubic keys have an in-tangent and an
+    /// out-tangent, too, -1 and 1.
+    [[nodiscard]] std::vector<double> at(std::size_t key, int part = 0) const {
+        const std::size_t element = interpolation == Interpolation::Cubic
+                                        ? 3 * key + static_cast<std::size_t>(part + 1)
+                                        : key;
+        const auto first = values.begin() + static_cast<std::ptrdiff_t>(element * width);
+        return {first, first + static_cast<std::ptrdiff_t>(width)};
+    }
+};
+
+Interpolation interpolation_of(const Json& sampler) {
+    const std::string name = text(sampler, "interpolation", "LINEAR");
+    if (name == "LINEAR")
+        return Interpolation::Linear;
+    if (name == "STEP")
+        return Interpolation::Step;
+    if (name == "CUBICSPLINE")
+        return Interpolation::Cubic;
+    throw std::runtime_error(fmt::format(
+        "expected LINEAR, STEP or CUBICSPLINE as an animation's \"interpolation\", got {}",
+        excerpt(name)));
+}
+
+Keys read_keys(Document& document, const Json& sampler, const std::string& path) {
+    Keys keys;
+    keys.interpolation = interpolation_of(sampler);
+    keys.times = read_floats(document, whole(sampler, "input"), 1).values;
+    const auto is_late = [](float a, float b) {
+        return !(a < b);
+    };
+    if (!std::all_of(keys.times.begin(), keys.times.end(),
+                     [](float time) { return std::isfinite(time); }) ||
+        std::adjacent_find(keys.times.begin(), keys.times.end(), is_late) != keys.times.end())
+        throw std::runtime_error("expected ascending times of an animation's keys, got others");
+    const std::uint32_t num_components = path == "weights" ? 1 : path == "rotation" ? 4 : 3;
+    const Floats values = read_floats(document, whole(sampler, "output"), num_components);
+    keys.values = values.values;
+    const std::size_t num_keys =
+        keys.times.size() * (keys.interpolation == Interpolation::Cubic ? 3 : 1);
+    keys.width = path == "weights" ? values.count / num_keys : num_components;
+    if (keys.width == 0 || keys.values.size() != keys.width * num_keys)
+        throw std::runtime_error(
+            fmt::format("expected {} values of an animation's \"{}\", one for each key, got {}",
+                        num_keys, path, values.count));
+    if (!std::all_of(keys.values.begin(), keys.values.end(),
+                     [](float value) { return std::isfinite(value); }))
+        throw std::runtime_error(
+            fmt::format("expected finite values of an animation's \"{}\", got others", path));
+    return keys;
+}
+
+/// Goes from one rotation to the other on the shorter way, at even speed.
+std::vector<double> turned(const std::vector<double>& a, const std::vector<double>& b, double t) {
+    const glm::dquat turned =
+        glm::slerp(glm::dquat(a[3], a[0], a[1], a[2]), glm::dquat(b[3], b[0], b[1], b[2]), t);
+    return {turned.x, turned.y, turned.z, turned.w};
+}
+
+std::vector<double> value_at(const Keys& keys, double seconds, bool is_rotation) {
+    const std::size_t last = keys.times.size() - 1;
+    if (!(seconds > double{keys.times.front()}))
+        return keys.at(0);
+    if (seconds >= double{keys.times.back()})
+        return keys.at(last);
+    const auto next = static_cast<std::size_t>(
+        std::upper_bound(keys.times.begin(), keys.times.end(), seconds) - keys.times.begin());
+    const std::size_t key = next - 1;
+    if (keys.interpolation == Interpolation::Step)
+        return keys.at(key);
+    const double length = double{keys.times[next]} - double{keys.times[key]};
+    const double t = (seconds - double{keys.times[key]}) / length;
+    const std::vector<double> a = keys.at(key), b = keys.at(next);
+    if (keys.interpolation == Interpolation::Linear && is_rotation)
+        return turned(a, b, t);
+    std::vector<double> result(keys.width);
+    if (keys.interpolation == Interpolation::Linear) {
+        for (std::size_t i = 0; i < keys.width; ++i)
+            result[i] = (1.0 - t) * a[i] + t * b[i];
+        return result;
+    }
+    // Hermite's polynomials: Appendix C.5.
+    const std::vector<double> out = keys.at(key, 1), in = keys.at(next, -1);
+    const double t2 = t * t, t3 = t2 * t;
+    for (std::size_t i = 0; i < keys.width; ++i)
+        result[i] = (2.0 * t3 - 3.0 * t2 + 1.0) * a[i] + length * (t3 - 2.0 * t2 + t) * out[i] +
+                    (3.0 * t2 - 2.0 * t3) * b[i] + length * (t3 - t2) * in[i];
+    return result;
+}
+
+/// Finds an animation by its name, or by its number.
+std::uint64_t index_of(const Document& document, const std::string& animation) {
+    const std::size_t count = document.count("animations");
+    std::string names;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::string name =
+            text(document.element("animations", i), "name", fmt::format("{}", i));
+        if (name == animation)
+            return i;
+        constexpr std::size_t MostNames = 8;
+        if (i < MostNames)
+            names += (i == 0 ? "" : ", ") + excerpt(name);
+        else if (i == MostNames)
+            names += " ...";
+    }
+    if (!animation.empty() && animation.size() < 9 &&
+        animation.find_first_not_of("0123456789") == std::string::npos &&
+        std::stoull(animation) < count)
+        return std::stoull(animation);
+    throw std::runtime_error(
+        fmt::format("expected an animation of the file ({}) for its pose, got {}",
+                    count == 0 ? "which has none" : names, excerpt(animation)));
+}
+
+} // namespace
+
+glm::dmat4 matrix_of(const Placement& placement) {
+    const auto& [t, r, s] = placement;
+    const double length = std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
+    if (!(length > 0.0))
+        throw std::runtime_error("expected a unit quaternion as \"rotation\", got zeros");
+    const glm::dmat3 rotation =
+        glm::mat3_cast(glm::dquat(r[3] / length, r[0] / length, r[1] / length, r[2] / length));
+    return {glm::dvec4(rotation[0] * s[0], 0.0), glm::dvec4(rotation[1] * s[1], 0.0),
+            glm::dvec4(rotation[2] * s[2], 0.0), glm::dvec4(t[0], t[1], t[2], 1.0)};
+}
+
+NodePoses read_pose(Document& document, const Pose& pose) {
+    const Json& animation = document.element("animations", index_of(document, pose.animation));
+    const Json::Array& samplers = items(animation, "samplers");
+    NodePoses poses;
+    for (const Json& channel : items(animation, "channels")) {
+        const Json& target = child(channel, "target");
+        const std::string path = text(target, "path");
+        if (!target.find("node") ||
+            (path != "translation" && path != "rotation" && path != "scale" && path != "weights"))
+            continue; // of extensions
+        const std::uint64_t node = whole(target, "node"), sampler = whole(channel, "sampler");
+        static_cast<void>(document.element("nodes", node)); // checks the range
+        if (sampler >= samplers.size())
+            throw std::runtime_error(fmt::format(
+                "expected an animation's samplers below {}, got {}", samplers.size(), sampler));
+        const Keys keys = read_keys(document, samplers[sampler], path);
+        NodePose& moved = poses[node];
+        (path == "translation" ? moved.translation
+         : path == "rotation"  ? moved.rotation
+         : path == "scale"     ? moved.scale
+                               : moved.weights) = value_at(keys, pose.seconds, path == "rotation");
+    }
+    return poses;
+}
+
+glm::dmat4 local_transform(const Json& node, const NodePose& moved) {
+    const bool is_moved = moved.translation || moved.rotation || moved.scale;
+    if (node.find("matrix") && !is_moved) {
+        const std::vector<double> m = numbers(node, "matrix", std::vector<double>(16, 0.0));
+        glm::dmat4 matrix(1.0);
+        for (int i = 0; i < 16; ++i)
+            matrix[i / 4][i % 4] = m[static_cast<std::size_t>(i)];
+        return matrix;
+    }
+    const Placement none;
+    return matrix_of(
+        {.translation = moved.translation.value_or(numbers(node, "translation", none.translation)),
+         .rotation = moved.rotation.value_or(numbers(node, "rotation", none.rotation)),
+         .scale = moved.scale.value_or(numbers(node, "scale", none.scale))});
+}
+
+std::optional<Camera> camera_at(const Json& camera, const glm::dmat4& transform) {
+    const Json* perspective = camera.find("perspective");
+    if (perspective == nullptr)
+        return std::nullopt;
+    const double fov = number(*perspective, "yfov", 0.0);
+    const glm::dvec3 eye(transform[3]), ahead = -glm::dvec3(transform[2]);
+    const double length = glm::length(ahead);
+    constexpr double Farthest = 1e18;
+    if (!(fov > 0.0 && fov < std::numbers::pi) || !(length > 0.0 && length < Farthest) ||
+        !(glm::length(eye) < Farthest))
+        return std::nullopt;
+    return Camera{.eye = glm::vec3(eye),
+                  .target = glm::vec3(eye + ahead / length),
+                  .fov_degrees = static_cast<float>(fov * 180.0 / std::numbers::pi)};
+}
+
+} // namespace relumine::mesh::gltf

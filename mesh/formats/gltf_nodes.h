@@ -1,0 +1,48 @@
+// Places of a glTF file's nodes: as the nodes say, or as an animation moves them.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+
+#include "mesh/camera.h"
+#include "mesh/formats/gltf_document.h"
+#include "mesh/pose.h"
+
+namespace relumine::mesh::gltf {
+
+/// A place in the form of nodes and instances: the scale comes first, the translation last.
+struct Placement {
+    std::vector<double> translation = {0.0, 0.0, 0.0};
+    /// A quaternion: x, y, z, w.
+    std::vector<double> rotation = {0.0, 0.0, 0.0, 1.0};
+    std::vector<double> scale = {1.0, 1.0, 1.0};
+};
+
+/// Throws:  std::runtime_error for a rotation of zeros.
+[[nodiscard]] glm::dmat4 matrix_of(const Placement& placement);
+
+/// What an animation says of a node at one moment. Empty: the node's own value.
+struct NodePose {
+    std::optional<std::vector<double>> translation, rotation, scale, weights;
+};
+
+/// By node.
+using NodePoses = std::map<std::uint64_t, NodePose>;
+
+/// Returns what an animation moves.
+/// Throws:  std::runtime_error "expected X, got Y" for an animation that the file does not have,
+///          and for keys that are broken.
+[[nodiscard]] NodePoses read_pose(Document& document, const Pose& pose);
+
+/// Returns the node's place in its parent.
+[[nodiscard]] glm::dmat4 local_transform(const Json& node, const NodePose& moved);
+
+/// Returns a perspective camera at a node, with a target one unit ahead; nothing for others, and
+/// for values that no picture can have.
+[[nodiscard]] std::optional<Camera> camera_at(const Json& camera, const glm::dmat4& transform);
+
+} // namespace relumine::mesh::gltf

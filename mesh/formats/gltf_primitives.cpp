@@ -1,0 +1,233 @@
+#include "mesh/formats/gltf_primitives.h"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "mesh/formats/draco_decoder.h"
+#include "mesh/formats/gltf_accessors.h"
+#include "mesh/normals.h"
+
+namespace relumine::mesh::gltf {
+
+namespace {
+
+void take_normals_of_faces(Primitive& primitive) {
+    TriangleMesh plain;
+    plain.positions = primitive.positions;
+    plain.triangles = primitive.triangles;
+    primitive.normals = smooth_normals(plain);
+}
+
+template<class Vector>
+std::vector<Vector> vectors(const Floats& floats) {
+    std::vector<Vector> result(floats.count);
+    for (std::size_t i = 0; i < result.size(); ++i)
+        for (int j = 0; j < Vector::length(); ++j)
+            result[i][j] = floats.values[i * static_cast<std::size_t>(Vector::length()) +
+                                         static_cast<std::size_t>(j)];
+    return result;
+}
+
+/// The arrays of a primitive by name. KHR_draco_mesh_compression holds some or all of them.
+class Attributes {
+public:
+    Attributes(Document& document, const Json& description);
+
+    [[nodiscard]] bool contains(const std::string& name) const {
+        return accessors_.find(name) != nullptr;
+    }
+    [[nodiscard]] Floats read(const std::string& name, std::uint32_t num_components);
+    /// Empty: the primitive is not compressed.
+    [[nodiscard]] std::optional<DracoMesh>& draco() { return draco_; }
+
+private:
+    Document& document_;
+    const Json& accessors_;
+    std::optional<DracoMesh> draco_;
+    /// Places in DracoMesh::values.
+    std::map<std::string, std::size_t> places_;
+};
+
+Attributes::Attributes(Document& document, const Json& description)
+    : document_(document), accessors_(child(description, "attributes")) {
+    const Json& extension = child(child(description, "extensions"), "KHR_draco_mesh_compression");
+    if (extension.size() == 0)
+        return;
+    const Json& ids = child(extension, "attributes");
+    std::vector<DracoAttribute> wanted;
+    const auto add = [&](const std::string& name, std::uint32_t num_components) {
+        if (!ids.find(name) || !contains(name))
+            return;
+        const Json& accessor = document.element("accessors", whole(accessors_, name.c_str()));
+        places_.emplace(name, wanted.size());
+        wanted.push_back({.id = static_cast<std::uint32_t>(whole(ids, name.c_str())),
+                          .num_components = num_components,
+                          .is_normalized = flag(accessor, "normalized")});
+    };
+    add("POSITION", 3), add("NORMAL", 3), add("COLOR_0", 3);
+    for (const auto& [name, id] : ids.members())
+        if (name.starts_with("TEXCOORD_"))
+            add(name, 2);
+        else if (name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_"))
+            add(name, 4);
+    draco_ = decode_draco(document.view(whole(extension, "bufferView")), wanted);
+}
+
+Floats Attributes::read(const std::string& name, std::uint32_t num_components) {
+    if (const auto place = places_.find(name); place != places_.end())
+        return {.count = draco_->num_vertices, .values = std::move(draco_->values[place->second])};
+    return read_floats(document_, whole(accessors_, name.c_str()), num_components);
+}
+
+} // namespace
+
+std::vector<Triangle> PrimitiveReader::triangles(const Json& description, std::uint64_t mode,
+                                                 std::size_t num_vertices) {
+    std::vector<std::uint32_t> indices;
+    if (description.find("indices")) {
+        indices = read_indices(document_, whole(description, "indices"));
+        for (const std::uint32_t index : indices)
+            if (index >= num_vertices)
+                throw std::runtime_error(
+                    fmt::format("expected vertex indices below {}, got {}", num_vertices, index));
+    } else {
+        indices.resize(num_vertices);
+        for (std::size_t i = 0; i < num_vertices; ++i)
+            indices[i] = static_cast<std::uint32_t>(i);
+    }
+    const std::size_t n = indices.size();
+    if (n < 3 || (mode == 4 && n % 3 != 0))
+        throw std::runtime_error(fmt::format("expected {} indices of triangles, got {}",
+                                             mode == 4 ? "a multiple of 3" : "3 or more", n));
+    std::vector<Triangle> result;
+    if (mode == 4) // triangles
+        for (std::size_t i = 0; i < n; i += 3)
+            result.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    else if (mode == 5) // strip: every second triangle is turned
+        for (std::size_t i = 0; i + 2 < n; ++i)
+            result.push_back({indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]});
+    else // fan
+        for (std::size_t i = 1; i + 1 < n; ++i)
+            result.push_back({indices[i], indices[i + 1], indices[0]});
+    return result;
+}
+
+std::uint32_t PrimitiveReader::default_material() {
+    if (!default_material_) {
+        default_material_ = static_cast<std::uint32_t>(materials_.materials.size());
+        materials_.materials.push_back({.name = "default",
+                                        .model = MaterialModel::MetallicRoughness,
+                                        .metallic = 1.0f,
+                                        .times_vertex_color = true});
+        materials_.uv_sets.emplace_back();
+    }
+    return *default_material_;
+}
+
+/// The accessors of compressed arrays say how many elements there are. Some encoders leave the
+/// counts of the mesh before compression; the data govern then, as in other readers.
+void PrimitiveReader::check_counts(const Json& description, const DracoMesh& mesh) {
+    const auto declared = [&](const Json& parent, const char* key, std::uint64_t fallback) {
+        return parent.find(key) ? whole(document_.element("accessors", whole(parent, key)), "count")
+                                : fallback;
+    };
+    const std::uint64_t num_corners = 3 * mesh.triangles.size();
+    const std::uint64_t vertices =
+        declared(child(description, "attributes"), "POSITION", mesh.num_vertices);
+    // A strip's accessor counts the strip.
+    const std::uint64_t corners = whole(description, "mode", 4) == 4
+                                      ? declared(description, "indices", num_corners)
+                                      : num_corners;
+    if (vertices != mesh.num_vertices || corners != num_corners)
+        materials_.warnings.push_back(
+            fmt::format("Draco data of {} vertices and {} indices; the accessors say {} and {}",
+                        mesh.num_vertices, num_corners, vertices, corners));
+}
+
+std::optional<Primitive> PrimitiveReader::read(const Json& description) {
+    const std::uint64_t mode = whole(description, "mode", 4);
+    if (mode > 6)
+        throw std::runtime_error(
+            fmt::format("expected a primitive's mode of 0 to 6, got {}", mode));
+    if (mode < 4 || !child(description, "attributes").find("POSITION"))
+        return std::nullopt;
+    Attributes attributes(document_, description);
+    Primitive result;
+    const auto read = [&](const std::string& name, auto& values) {
+        using Vector = typename std::remove_reference_t<decltype(values)>::value_type;
+        if (!attributes.contains(name))
+            return;
+        values = vectors<Vector>(attributes.read(name, Vector::length()));
+        if (values.size() != result.positions.size())
+            throw std::runtime_error(
+                fmt::format("expected {} elements of {}, as many as of POSITION, got {}",
+                            result.positions.size(), name, values.size()));
+    };
+    read("POSITION", result.positions);
+    read("NORMAL", result.normals);
+    read("COLOR_0", result.colors);
+    if (description.find("material")) {
+        const std::uint64_t material = whole(description, "material");
+        static_cast<void>(document_.element("materials", material)); // checks the range
+        result.material = static_cast<std::uint32_t>(material);
+    } else {
+        result.material = default_material();
+    }
+    read(fmt::format("TEXCOORD_{}", materials_.uv_sets[result.material].value_or(0)), result.uvs);
+    for (std::size_t set = 0; attributes.contains(fmt::format("JOINTS_{}", set)) &&
+                              attributes.contains(fmt::format("WEIGHTS_{}", set));
+         ++set) {
+        Influences& influences = result.influences.emplace_back();
+        read(fmt::format("JOINTS_{}", set), influences.joints);
+        read(fmt::format("WEIGHTS_{}", set), influences.weights);
+    }
+    if (std::optional<DracoMesh>& draco = attributes.draco()) {
+        if (draco->num_vertices != result.positions.size())
+            throw std::runtime_error(fmt::format("expected Draco data of {} vertices, got {}",
+                                                 result.positions.size(), draco->num_vertices));
+        check_counts(description, *draco);
+        result.triangles = std::move(draco->triangles);
+    } else {
+        result.triangles = triangles(description, mode, result.positions.size());
+    }
+    result.description = &description;
+    result.has_normals = !result.normals.empty();
+    if (!result.has_normals)
+        take_normals_of_faces(result);
+    return result;
+}
+
+std::optional<Primitive> morphed(Document& document, const Primitive& primitive,
+                                 std::span<const double> weights) {
+    const std::size_t num_targets = items(*primitive.description, "targets").size();
+    if (weights.empty() || num_targets == 0)
+        return std::nullopt;
+    if (weights.size() != num_targets)
+        throw std::runtime_error(fmt::format(
+            "expected {} weights, one for each morph target, got {}", num_targets, weights.size()));
+    if (std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0.0; }))
+        return std::nullopt;
+    take_memory(document, primitive, 1);
+    Primitive result = primitive;
+    add_targets(document, *primitive.description, "POSITION", weights, result.positions);
+    if (result.has_normals)
+        add_targets(document, *primitive.description, "NORMAL", weights, result.normals);
+    else
+        take_normals_of_faces(result);
+    return result;
+}
+
+void take_memory(Document& document, const Primitive& primitive, std::size_t num_times) {
+    // A vertex and a triangle of a PolygonSoup take 44 and 28 bytes, of the TriangleMesh that it
+    // becomes 20 more, and vectors that grow have twice that.
+    constexpr std::uint64_t Each = 128;
+    document.take_memory(Each * num_times *
+                         (primitive.positions.size() + primitive.triangles.size()));
+}
+
+} // namespace relumine::mesh::gltf

@@ -1,0 +1,68 @@
+// Primitives of a glTF file: what a mesh is made of.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "mesh/formats/gltf_deformation.h"
+#include "mesh/formats/gltf_document.h"
+#include "mesh/formats/gltf_materials.h"
+#include "mesh/triangle_mesh.h"
+
+namespace relumine::mesh {
+struct DracoMesh;
+}
+
+namespace relumine::mesh::gltf {
+
+/// A primitive's arrays as the file has them, before any node places them.
+struct Primitive {
+    std::vector<glm::vec3> positions, normals, colors;
+    std::vector<glm::vec2> uvs;
+    std::vector<Triangle> triangles;
+    std::uint32_t material = 0;
+    std::vector<Influences> influences;
+    /// False: the normals are the faces'.
+    bool has_normals = false;
+    const Json* description = nullptr;
+};
+
+/// Reads primitives. Both arguments must outlive it; a primitive without a material adds the
+/// format's default one.
+class PrimitiveReader {
+public:
+    PrimitiveReader(Document& document, Materials& materials)
+        : document_(document), materials_(materials) {}
+
+    /// Returns nothing for points and lines. `description` must outlive the result.
+    /// Throws:  std::runtime_error "expected X, got Y".
+    [[nodiscard]] std::optional<Primitive> read(const Json& description);
+
+private:
+    [[nodiscard]] std::vector<Triangle> triangles(const Json& description, std::uint64_t mode,
+                                                  std::size_t num_vertices);
+    [[nodiscard]] std::uint32_t default_material();
+    void check_counts(const Json& description, const DracoMesh& mesh);
+
+    Document& document_;
+    Materials& materials_;
+    std::optional<std::uint32_t> default_material_;
+};
+
+/// Returns the primitive with its morph targets, each times its weight; nothing where they are at
+/// rest.
+/// Throws:  std::runtime_error "expected X, got Y" for another number of weights.
+[[nodiscard]] std::optional<Primitive> morphed(Document& document, const Primitive& primitive,
+                                               std::span<const double> weights);
+
+/// Counts the memory of a primitive that is shown so often. Nodes repeat meshes, and primitives
+/// repeat accessors: 64 KB of glTF could make thousands of millions of vertices.
+void take_memory(Document& document, const Primitive& primitive, std::size_t num_times);
+
+} // namespace relumine::mesh::gltf

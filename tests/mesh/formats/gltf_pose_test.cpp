@@ -1,0 +1,195 @@
+// Skins, morph targets and animations of glTF files, and broken ones.
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+
+#include "tests/mesh/encoders.h"
+#include "tests/mesh/gltf_model.h"
+
+namespace relumine::mesh {
+namespace {
+
+using testing::ElementsAre;
+
+using GltfPoseTest = MeshFileTest;
+
+/// The square with two joints: the lower edge hangs at the first, the upper one at the second.
+Model skinned_square() {
+    Model model = square();
+    using Joints = std::array<std::uint8_t, 4>;
+    Json& attributes = model.json["meshes"][0]["primitives"][0]["attributes"];
+    const auto joints =
+        model.add<Joints>({{0, 9, 0, 0}, {0, 0, 0, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}}, 5121, "VEC4");
+    const auto weights = model.add<glm::vec4>(
+        {{1, 0, 0, 0}, {1, 0, 0, 0}, {1, 0, 0, 0}, {0.5f, 0.5f, 0, 0}}, 5126, "VEC4");
+    attributes["JOINTS_0"] = joints, attributes["WEIGHTS_0"] = weights;
+    // Joint 1 rests at (0, 1, 0): its inverse bind matrix goes back by that.
+    const auto inverse =
+        model.add<std::array<float, 16>>({{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+                                          {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1}},
+                                         5126, "MAT4");
+    model.json["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", inverse}}};
+    model.json["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"translation", {100, 0, 0}}},
+                           {{"translation", {0, 0, 5}}, {"children", {2}}},
+                           {{"translation", {0, 1, 0}}, {"scale", {2, 1, 1}}}};
+    model.json["scenes"][0]["nodes"] = {0, 1};
+    return model;
+}
+
+TEST_F(GltfPoseTest, SkinsStandAsTheirJointsSay) {
+    Model model = skinned_square();
+    const TriangleMesh mesh = gltf(model.embedded());
+    EXPECT_EQ(defect(mesh), "");
+    // Both joints stand 5 in front; the second one is twice as wide. The node's own place counts
+    // nothing.
+    EXPECT_THAT(mesh.positions, ElementsAre(glm::vec3(0, 0, 5), glm::vec3(1, 0, 5),
+                                            glm::vec3(2, 1, 5), glm::vec3(0, 1, 5)));
+    EXPECT_THAT(mesh.warnings, ElementsAre());
+    // Joints outside of the scene have their place all the same.
+    model.json["scenes"][0]["nodes"] = {0};
+    EXPECT_EQ(gltf(model.embedded()).positions, mesh.positions);
+}
+
+TEST_F(GltfPoseTest, SkinsThatAreBroken) {
+    const auto refused = [](const auto& change, const std::string& part) {
+        Model model = skinned_square();
+        change(model);
+        expect_refusal([&] { return gltf(model.embedded()); }, part);
+    };
+    refused([](Model& m) { m.json["skins"][0]["joints"] = {1, 7}; }, "\"nodes\" below 3, got 7");
+    refused([](Model& m) { m.json["skins"][0]["joints"] = {1}; },
+            "joints of vertices below 1, as many as the skin has, got 1");
+    refused(
+        [](Model& m) {
+            m.json["skins"][0]["joints"] = {1, 2, 1};
+        },
+        "3 inverse bind matrices of skin 0, one for each joint, got 2");
+    refused([](Model& m) { m.json["nodes"][0]["skin"] = 3; }, "\"skins\" below 1, got 3");
+    refused([](Model& m) { m.json["skins"][0]["joints"] = Json::array(); }, "joints of skin 0");
+    const auto with_weights = [](const std::vector<glm::vec4>& weights) {
+        Model model = skinned_square();
+        const auto place = model.add<glm::vec4>(weights, 5126, "VEC4");
+        model.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = place;
+        return model.embedded();
+    };
+    expect_refusal(
+        [&] {
+            return gltf(with_weights(std::vector<glm::vec4>(4, {-1, 2, 0, 0})));
+        },
+        "weights of joints of 0 or more, got -1");
+    expect_refusal(
+        [&] {
+            return gltf(with_weights(std::vector<glm::vec4>(4, {NAN, 0, 0, 0})));
+        },
+        "weights of joints of 0 or more, got nan");
+    // Half of the weights: scaled, with a line.
+    const TriangleMesh half = gltf(with_weights(std::vector<glm::vec4>(4, {0.5f, 0, 0, 0})));
+    EXPECT_EQ(half.positions[2], glm::vec3(2, 1, 5));
+    EXPECT_THAT(half.warnings, ElementsAre("the weights of joints do not sum to 1 at 4 vertices: "
+                                           "they are scaled"));
+}
+
+TEST_F(GltfPoseTest, MorphTargetsHaveTheirWeights) {
+    Model model = square();
+    const auto up =
+        model.add<glm::vec3>({{0, 0, 0}, {0, 0, 0}, {0, 0, 2}, {0, 0, 2}}, 5126, "VEC3");
+    const auto wide =
+        model.add<glm::vec3>({{0, 0, 0}, {4, 0, 0}, {4, 0, 0}, {0, 0, 0}}, 5126, "VEC3");
+    Json& mesh = model.json["meshes"][0];
+    mesh["primitives"][0]["targets"] = {{{"POSITION", up}}, {{"POSITION", wide}}};
+    EXPECT_EQ(gltf(model.embedded()).positions[2], glm::vec3(1, 1, 0)) << "at rest";
+    mesh["weights"] = {0.5, 0.0};
+    const TriangleMesh bent = gltf(model.embedded());
+    EXPECT_EQ(bent.positions[2], glm::vec3(1, 1, 1));
+    EXPECT_LT(glm::distance(bent.normals[0], glm::normalize(glm::vec3(0, -1, 1))), 1e-6f)
+        << "of the new faces";
+    model.json["nodes"][0]["weights"] = {0.0, 0.25};
+    EXPECT_EQ(gltf(model.embedded()).positions[2], glm::vec3(2, 1, 0)) << "the node's come first";
+    model.json["nodes"][0]["weights"] = {1.0};
+    expect_refusal([&] { return gltf(model.embedded()); },
+                   "2 weights, one for each morph target, got 1");
+}
+
+/// Turns the square's node by 90 degrees within two seconds, and lifts it in steps.
+Model turning_square() {
+    Model model = square();
+    const auto times = model.add<float>({1.0f, 3.0f}, 5126, "SCALAR");
+    const float h = std::sqrt(0.5f);
+    const auto turns = model.add<glm::vec4>({{0, 0, 0, 1}, {0, 0, h, h}}, 5126, "VEC4");
+    const auto lifts = model.add<glm::vec3>({{0, 0, 1}, {0, 0, 2}}, 5126, "VEC3");
+    // A spline from 1 to 3 that starts and ends flat: in-tangent, value, out-tangent.
+    const auto scales = model.add<glm::vec3>(
+        {{0, 0, 0}, {1, 1, 1}, {0, 0, 0}, {0, 0, 0}, {3, 3, 1}, {0, 0, 0}}, 5126, "VEC3");
+    model.json["animations"] = {
+        {{"name", "Turn"},
+         {"samplers",
+          {{{"input", times}, {"output", turns}},
+           {{"input", times}, {"output", lifts}, {"interpolation", "STEP"}},
+           {{"input", times}, {"output", scales}, {"interpolation", "CUBICSPLINE"}}}},
+         {"channels",
+          {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "rotation"}}}},
+           {{"sampler", 1}, {"target", {{"node", 0}, {"path", "translation"}}}},
+           {{"sampler", 2}, {"target", {{"node", 0}, {"path", "scale"}}}}}}}};
+    return model;
+}
+
+TEST_F(GltfPoseTest, PosesOfAnimations) {
+    const Model model = turning_square();
+    const auto path = write("turn.gltf", model.embedded());
+    const auto corner = [&](const std::string& animation, double seconds) {
+        return load(path, NormalSource::File, nullptr, nullptr, Pose{animation, seconds})
+            .positions[1];
+    };
+    EXPECT_EQ(load(path).positions[1], glm::vec3(1, 0, 0)) << "the node's own place";
+    EXPECT_EQ(corner("Turn", 0.0), glm::vec3(1, 0, 1)) << "before the first key";
+    EXPECT_LT(glm::distance(corner("Turn", 9.0), glm::vec3(0, 3, 2)), 1e-6f) << "after the last";
+    // Half way: 45 degrees at even speed, the first step, and the middle of the spline.
+    const float h = std::sqrt(0.5f);
+    EXPECT_LT(glm::distance(corner("Turn", 2.0), glm::vec3(2 * h, 2 * h, 1)), 1e-6f);
+    // A quarter: 22.5 degrees; 3 / 16 - 2 / 64 = 5 / 32 of the way from 1 to 3.
+    const float angle = std::numbers::pi_v<float> / 8.0f, scale = 1.0f + 2.0f * 5.0f / 32.0f;
+    EXPECT_LT(glm::distance(corner("0", 1.5),
+                            glm::vec3(scale * std::cos(angle), scale * std::sin(angle), 1)),
+              1e-6f);
+    expect_refusal([&] { static_cast<void>(corner("Jump", 0.0)); },
+                   "expected an animation of the file ('Turn') for its pose, got 'Jump'");
+    expect_refusal([&] { static_cast<void>(corner("1", 0.0)); }, "got '1'");
+    const auto still = write("still.gltf", square().embedded());
+    expect_refusal(
+        [&] {
+            static_cast<void>(load(still, NormalSource::File, nullptr, nullptr, Pose{"Turn", 0.0}));
+        },
+        "which has none");
+    const auto ply_file = write("box.ply", box_ply());
+    expect_refusal(
+        [&] {
+            static_cast<void>(
+                load(ply_file, NormalSource::File, nullptr, nullptr, Pose{"Turn", 0.0}));
+        },
+        "expected .glb or .gltf for a pose, got '.ply'");
+}
+
+TEST_F(GltfPoseTest, AnimationsThatAreBroken) {
+    const auto refused = [&](const auto& change, const std::string& part) {
+        Model model = turning_square();
+        change(model.json["animations"][0]);
+        const auto path = write("broken.gltf", model.embedded());
+        expect_refusal(
+            [&] {
+                static_cast<void>(
+                    load(path, NormalSource::File, nullptr, nullptr, Pose{"Turn", 0.0}));
+            },
+            part);
+    };
+    refused([](Json& a) { a["samplers"][0]["interpolation"] = "SMOOTH"; }, "got 'SMOOTH'");
+    refused([](Json& a) { a["channels"][0]["sampler"] = 5; }, "samplers below 3, got 5");
+    refused([](Json& a) { a["channels"][0]["target"]["node"] = 5; }, "\"nodes\" below 1, got 5");
+    refused([](Json& a) { a["samplers"][2].erase("interpolation"); },
+            "2 values of an animation's \"scale\", one for each key, got 6");
+    refused([](Json& a) { a["samplers"][0]["input"] = 0; }, "1 components");
+}
+
+} // namespace
+} // namespace relumine::mesh
