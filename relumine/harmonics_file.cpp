@@ -102,8 +102,7 @@ void save_npy(const std::filesystem::path& path, std::span<const glm::vec3> ligh
 
 files::Json probe_json(const Scene& scene, std::size_t index, std::span<const glm::vec3> light) {
     const prt::Receivers& receivers = scene.receivers;
-    const glm::vec3& at = receivers.own_positions.empty() ? receivers.positions[index]
-                                                          : receivers.own_positions[index];
+    const glm::vec3& at = receivers.places()[index];
     files::Json::Array sh;
     for (std::size_t k = 0; k < relight::MaxHarmonics; ++k)
         for (int channel = 0; channel < 3; ++channel)

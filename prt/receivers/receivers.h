@@ -39,6 +39,10 @@ struct Receivers {
     [[nodiscard]] std::size_t size() const { return positions.size(); }
     /// Those that were asked for come first: all but the added vertices.
     [[nodiscard]] std::size_t num_own() const { return size() - num_added; }
+    /// Returns the positions that were asked for.
+    [[nodiscard]] const std::vector<glm::vec3>& places() const {
+        return own_positions.empty() ? positions : own_positions;
+    }
     /// Whether a point lies inside of an object.
     [[nodiscard]] bool is_inside(std::size_t receiver) const {
         return !own_positions.empty() && own_positions[receiver] != positions[receiver];

@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 56> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 57> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -62,6 +62,7 @@ inline constexpr std::array<std::string_view, 56> SectionNames = {"settings",
                                                                   "bounce_rays_hit",
                                                                   "bounce_rays",
                                                                   "bounce_errors",
-                                                                  "unknown"};
+                                                                  "unknown",
+                                                                  "r_own_positions"};
 
 } // namespace relumine::fuzz

@@ -1,6 +1,8 @@
 #include "relight/harmonics/harmonic_light.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <random>
 #include <stdexcept>
@@ -20,7 +22,6 @@
 namespace relumine::relight {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
 
 prt::Receivers points_at(const std::vector<glm::vec3>& positions) {
     prt::Receivers receivers;
@@ -86,7 +87,7 @@ TEST(HarmonicLight, ConstantSkyAroundAnOpenPoint) {
     const std::vector<glm::vec3> light = relighter.harmonics();
     ASSERT_EQ(light.size(), 18u);
     for (const glm::vec3& normal : {glm::vec3(0, 1, 0), glm::vec3(0, 0, -1)})
-        EXPECT_NEAR(irradiance(std::span(light).first(9), normal).r, Pi, 1e-4);
+        EXPECT_NEAR(irradiance(std::span(light).first(9), normal).r, std::numbers::pi, 1e-4);
     for (std::size_t k = 1; k < 9; ++k)
         EXPECT_NEAR(light[9 + k].r, 0.0f, 1e-4f) << HarmonicNames[k];
 }
@@ -99,12 +100,12 @@ TEST(HarmonicLight, HalfASky) {
     relighter.set_environment(map_of(128, [](const glm::dvec3& w) { return w.y > 0.0 ? 1.0 : 0.0; }));
     const std::vector<glm::vec3> light = relighter.harmonics();
     // Over the half sphere the integrals of 1, y and 3 y^2 - 1 are 2 pi, pi and 0.
-    EXPECT_NEAR(light[0].r, 0.5 * std::sqrt(1.0 / Pi) * 2.0 * Pi, 1e-3);
-    EXPECT_NEAR(light[1].r, std::sqrt(3.0 / (4.0 * Pi)) * Pi, 1e-3);
+    EXPECT_NEAR(light[0].r, 0.5 * std::sqrt(1.0 / std::numbers::pi) * 2.0 * std::numbers::pi, 1e-3);
+    EXPECT_NEAR(light[1].r, std::sqrt(3.0 / (4.0 * std::numbers::pi)) * std::numbers::pi, 1e-3);
     for (std::size_t k = 2; k < 9; ++k)
         EXPECT_NEAR(light[k].r, 0.0, 2e-3) << HarmonicNames[k];
-    EXPECT_NEAR(irradiance(light, {0, 1, 0}).r, Pi, 2e-3);
-    EXPECT_NEAR(irradiance(light, {1, 0, 0}).r, Pi / 2, 2e-3);
+    EXPECT_NEAR(irradiance(light, {0, 1, 0}).r, std::numbers::pi, 2e-3);
+    EXPECT_NEAR(irradiance(light, {1, 0, 0}).r, std::numbers::pi / 2, 2e-3);
     EXPECT_NEAR(irradiance(light, {0, -1, 0}).r, 0.0, 2e-3);
     EXPECT_NEAR(relighter.radiance()[0].r, 0.5f, 1e-3f);
 }
@@ -128,7 +129,7 @@ TEST(HarmonicLight, OneDistantLightThatASphereMayBlock) {
             EXPECT_NEAR(values[9 + k].r, 2.0 * expected[k], is_traced ? 1e-6 : 6e-3) << k;
             EXPECT_NEAR(values[9 + k].b, 0.5 * expected[k], is_traced ? 1e-6 : 6e-3) << k;
         }
-        EXPECT_NEAR(relighter.radiance()[1].g, 1.0 / (4.0 * Pi), 1e-4);
+        EXPECT_NEAR(relighter.radiance()[1].g, 1.0 / (4.0 * std::numbers::pi), 1e-4);
     }
 }
 
@@ -140,9 +141,9 @@ TEST(HarmonicLight, ASphereHidesItsSolidAngle) {
     Relighter relighter(transfer, {}, 3);
     relighter.set_environment(map_of(64, [](const glm::dvec3&) { return 1.0; }));
     const std::vector<glm::vec3> light = relighter.harmonics();
-    const double c = std::cos(Pi / 6);
+    const double c = std::cos(std::numbers::pi / 6);
     EXPECT_NEAR(relighter.radiance()[0].r, 1.0 - 0.5 * (1.0 - c), 1e-4);
-    EXPECT_NEAR(light[1].r, -std::sqrt(3.0 / (4.0 * Pi)) * Pi * (1.0 - c * c), 1e-3);
+    EXPECT_NEAR(light[1].r, -std::sqrt(3.0 / (4.0 * std::numbers::pi)) * std::numbers::pi * (1.0 - c * c), 1e-3);
 }
 
 TEST(HarmonicLight, PointsAgreeWithExactIntegration) {
@@ -173,7 +174,7 @@ TEST(HarmonicLight, SurfacesAreBoundToTheirRadiance) {
             const glm::dvec3 e = irradiance(std::span(light).subspan(i * count, count),
                                             scene.receivers.normals[i]);
             for (int channel = 0; channel < 3; ++channel)
-                EXPECT_NEAR(e[channel] / Pi, relighter.radiance()[i][channel],
+                EXPECT_NEAR(e[channel] / std::numbers::pi, relighter.radiance()[i][channel],
                             1e-6 * std::max(1.0f, relighter.radiance()[i][channel]));
         }
     }
@@ -234,8 +235,13 @@ void expect_edits_leave_no_trace(const prt::Transfer& transfer, const ShadowRays
     EXPECT_EQ(edited.harmonics(), expected);
 }
 
+TEST(HarmonicLight, EditsLeaveNoTraceOnAnyProcessor) {
+    scenes::on_every_target([] {
+        expect_edits_leave_no_trace(point_scene().transfer, point_scene().shadow_rays());
+    });
+}
+
 TEST(HarmonicLight, EditsLeaveNoTrace) {
-    expect_edits_leave_no_trace(point_scene().transfer, point_scene().shadow_rays());
     expect_edits_leave_no_trace(point_scene().transfer, {});
     expect_edits_leave_no_trace(scenes::relit_scene().transfer, scenes::relit_scene().shadow_rays());
 }
