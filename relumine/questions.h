@@ -114,6 +114,15 @@ struct Share {
 /// Throws:  std::invalid_argument for a region that is not valid; std::logic_error as above.
 [[nodiscard]] Share lit_by(const LitScene& lit, const cubemap::Region& region);
 
+/// Whether the straight way from a receiver to a point in space is free: 1, else 0. A point behind
+/// the receiver's surface is not seen.
+///
+/// Shape:   [num_receivers * points.size()], all points of the first receiver first.
+/// Throws:  std::invalid_argument for a point that is not finite.
+/// Cost:    num_receivers * points.size() rays; points that lie close together are cheap.
+[[nodiscard]] std::vector<std::uint8_t> sees(const LitScene& lit,
+                                             std::span<const glm::vec3> points);
+
 /// Where a light stands for a point that is seen.
 enum class Aim {
     /// In front of the surface: it lights the point most.

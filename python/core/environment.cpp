@@ -1,5 +1,6 @@
 // Environments: arrays and files to maps that light, conversions, findings.
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -65,8 +66,12 @@ EnvironmentPointer from_pixels(const py::buffer& pixels, std::uint32_t width, st
 }
 
 /// The same image, turned by other angles.
-EnvironmentPointer turned_anew(const EnvironmentHandle& own, const py::dict& given) {
+EnvironmentPointer turned_anew(const EnvironmentHandle& own, const py::dict& given,
+                               const std::array<std::array<double, 3>, 3>& turn) {
     auto options = options_from<EnvironmentOptions>(given);
+    for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 3; ++column)
+            options.turn[static_cast<int>(column)][static_cast<int>(row)] = turn[row][column];
     options.from = own.options.from;
     options.layout = own.options.layout;
     options.fix_bad_pixels = own.options.fix_bad_pixels;

@@ -6,7 +6,7 @@ import os
 from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import Floats, Indices, expect, floats, indices, view
@@ -348,6 +348,19 @@ class Relighter:
         chosen = np.atleast_1d(np.asarray(receivers))
         places = indices("receivers", chosen, self._scene.num_receivers, None)
         result: Floats = view(self._core.contribution_map(places))
+        return result
+
+    def sees(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """Whether the way from each receiver to points in space is free: (num_receivers, K).
+
+        points  (K, 3), as of a lamp near the scene; a point behind the receiver is not seen
+
+        >>> relighter.sees([[0, 5, 0], [0, -5, 0]]).shape
+        (6912, 2)
+        """
+        result: NDArray[np.bool_] = view(
+            self._core.sees(floats("points", points, None, 3))
+        ).astype(bool)
         return result
 
     def lit_by(self, region: Union[Region, Mapping[str, Any]]) -> Share:

@@ -17,6 +17,8 @@ namespace relumine::relight::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+namespace {
+
 /// Tiles are walked through in steps of so many words, block by block: the clusters' fluxes and the
 /// words of a step stay in the nearest cache.
 constexpr std::size_t WordsPerStep = 16;
@@ -304,7 +306,9 @@ std::uint64_t update_harmonics(const BlockScene& scene, std::size_t tile,
     return touched;
 }
 
-void light(const BlockScene& scene, std::size_t tile, const ClusterHarmonics& lights,
+} // namespace
+
+void light_by_order(const BlockScene& scene, std::size_t tile, const ClusterHarmonics& lights,
            std::uint64_t chosen, const HarmonicBlocks& blocks) {
     if (lights.order() == 1)
         light_harmonics<1>(scene, tile, lights, chosen, blocks);
@@ -314,7 +318,7 @@ void light(const BlockScene& scene, std::size_t tile, const ClusterHarmonics& li
         light_harmonics<9>(scene, tile, lights, chosen, blocks);
 }
 
-std::uint64_t update(const BlockScene& scene, std::size_t tile, const ClusterHarmonics& lights,
+std::uint64_t update_by_order(const BlockScene& scene, std::size_t tile, const ClusterHarmonics& lights,
                      const HarmonicChanges& changes, const HarmonicBlocks& blocks) {
     if (lights.order() == 1)
         return update_harmonics<1>(scene, tile, lights, changes, blocks);
@@ -330,19 +334,19 @@ HWY_AFTER_NAMESPACE();
 namespace relumine::relight {
 
 namespace {
-HWY_EXPORT(light);
-HWY_EXPORT(update);
+HWY_EXPORT(light_by_order);
+HWY_EXPORT(update_by_order);
 } // namespace
 
 void light_harmonics(const BlockScene& scene, std::size_t tile, const ClusterHarmonics& lights,
                      std::uint64_t chosen, const HarmonicBlocks& blocks) {
-    HWY_DYNAMIC_DISPATCH(light)(scene, tile, lights, chosen, blocks);
+    HWY_DYNAMIC_DISPATCH(light_by_order)(scene, tile, lights, chosen, blocks);
 }
 
 std::uint64_t update_harmonics(const BlockScene& scene, std::size_t tile,
                                const ClusterHarmonics& lights, const HarmonicChanges& changes,
                                const HarmonicBlocks& blocks) {
-    return HWY_DYNAMIC_DISPATCH(update)(scene, tile, lights, changes, blocks);
+    return HWY_DYNAMIC_DISPATCH(update_by_order)(scene, tile, lights, changes, blocks);
 }
 
 } // namespace relumine::relight
