@@ -70,4 +70,13 @@ TriangleMesh load(const std::filesystem::path& path, NormalSource normals, std::
     }
 }
 
+std::vector<glm::vec3> load_points(const std::filesystem::path& path) {
+    const std::vector<std::byte> bytes = files::read(path);
+    try {
+        return read_ply(bytes).positions;
+    } catch (const std::runtime_error& reason) {
+        throw std::runtime_error(fmt::format("{}: {}", path.string(), reason.what()));
+    }
+}
+
 } // namespace relumine::mesh

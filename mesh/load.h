@@ -4,6 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "mesh/camera.h"
 #include "mesh/normals.h"
@@ -42,6 +45,11 @@ namespace relumine::mesh {
                                 std::uint64_t* hash = nullptr,
                                 std::optional<Camera>* camera = nullptr,
                                 const std::optional<Pose>& pose = {});
+
+/// Reads the vertices of a .ply file, which need not have faces or be finite.
+///
+/// Throws:  std::runtime_error "path: expected X, got Y".
+[[nodiscard]] std::vector<glm::vec3> load_points(const std::filesystem::path& path);
 
 /// Returns true if load() knows the path's extension, in capitals or not.
 [[nodiscard]] bool has_mesh_extension(const std::filesystem::path& path);

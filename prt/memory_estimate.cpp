@@ -59,6 +59,7 @@ Receivers trial_receivers(const Receivers& receivers) {
     // At most an eighth of the work.
     const std::size_t num_wanted = std::clamp<std::size_t>(num_blocks / 8, 1, MaxTrialBlocks);
     Receivers trial;
+    trial.have_no_surface = receivers.have_no_surface;
     for (std::size_t i = 0; i < num_wanted; ++i) {
         const std::size_t begin = (2 * i + 1) * num_blocks / (2 * num_wanted) * BlockSize;
         const std::size_t end = std::min(begin + BlockSize, order.size());

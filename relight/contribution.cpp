@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
+
+#include <glm/geometric.hpp>
 
 #include "files/parallel.h"
 #include "relight/sharp/light_packets.h"
@@ -142,11 +145,26 @@ cubemap::CubeMap contribution_map(const Relighter& relighter,
         }
     });
     const ShadowRays& rays = relighter.shadow_rays();
+    // A point in space has the mean over the sphere.
+    const auto on_point = [&](const SharpLight& light, const glm::vec3& position) {
+        prt::DirectionPacket packet;
+        packet.num_directions = prt::PacketSize;
+        for (std::size_t lane = 0; lane < prt::PacketSize; ++lane)
+            packet.set(lane, light.direction);
+        const VectorIrradiance& e = light.irradiance;
+        return rays.blockers->occluded(position, packet, 1u) != 0
+                   ? glm::dvec3(0.0)
+                   : glm::dvec3(glm::length(e.red), glm::length(e.green), glm::length(e.blue)) *
+                         (0.25 * std::numbers::inv_pi);
+    };
     files::parallel_for(std::size_t{0}, sharp.size(), [&](std::size_t i) {
         const LightPackets packets(sharp.subspan(i, 1)); // one for each light, to tell them apart
         for (const auto& [receiver, factor] : counted)
-            from_sharp[i] += factor * packets.radiance(rays.positions[receiver],
-                                                       transfer.normals[place_of[receiver]], rays);
+            from_sharp[i] +=
+                factor * (transfer.have_no_surface
+                              ? on_point(sharp[i], rays.positions[receiver])
+                              : packets.radiance(rays.positions[receiver],
+                                                 transfer.normals[place_of[receiver]], rays));
     });
 
     Spreader spreader(relighter.environment());

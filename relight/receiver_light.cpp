@@ -8,24 +8,15 @@
 #include <stdexcept>
 #include <utility>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "files/parallel.h"
 
 namespace relumine::relight {
 
-/// Returns the light of a cluster: all light of its cell minus the sharp lights in it.
-VectorIrradiance ClusterSums::without_sharp(std::size_t cluster) const {
-    VectorIrradiance rest = all[cluster];
-    const auto first =
-        std::lower_bound(sharp.begin(), sharp.end(), cluster,
-                         [](const SharpLight& light, std::size_t c) { return light.cluster < c; });
-    for (auto light = first; light != sharp.end() && light->cluster == cluster; ++light)
-        rest -= light->irradiance;
-    return rest;
-}
-
-ReceiverLight::ReceiverLight(const prt::Transfer& transfer, const ShadowRays& rays)
+ReceiverLight::ReceiverLight(const prt::Transfer& transfer, const ShadowRays& rays,
+                             std::uint32_t harmonics)
     : transfer_(transfer), traced_(transfer, rays), normals_(block_normals(transfer.normals)),
       words_(tile_words(transfer, normals_)), light_(transfer.counts.num_blocks()),
       lights_(transfer.num_clusters()), radiance_(transfer.num_receivers()),
@@ -44,9 +35,49 @@ ReceiverLight::ReceiverLight(const prt::Transfer& transfer, const ShadowRays& ra
         for (std::size_t i = 0; i < eye_cosines_.size(); ++i)
             eye_cosines_[i] = glm::dot(transfer.normals[i], transfer.glossy->to_eye[i]);
     }
+    if (harmonics > MaxHarmonicOrder)
+        throw std::invalid_argument(
+            fmt::format("expected harmonics of order 1 to {}, got {}", MaxHarmonicOrder, harmonics));
+    // The light of points is the first coefficient.
+    if (harmonics != 0 || transfer.have_no_surface)
+        harmonics_.emplace(transfer, std::max(harmonics, 1u));
+}
+
+std::size_t ReceiverLight::trace(std::span<const SharpLight> lights) {
+    const std::size_t num_fresh = traced_.trace(lights);
+    if (harmonics_)
+        harmonics_->take_traced(lights, traced_);
+    return num_fresh;
+}
+
+void ReceiverLight::write_means() {
+    files::parallel_for(std::size_t{0}, light_.size(), [&](std::size_t block) {
+        const std::size_t begin = block * prt::BlockSize;
+        for (std::size_t place = begin; place < std::min(begin + prt::BlockSize, radiance_.size());
+             ++place)
+            radiance_[transfer_.order[place]] = harmonics_->mean(place);
+    });
+}
+
+std::vector<glm::vec3> ReceiverLight::harmonics() const {
+    if (!harmonics_)
+        throw std::logic_error("expected a Relighter with harmonics, got one without");
+    const std::size_t count = num_harmonics(harmonics_->order());
+    std::vector<glm::vec3> result(radiance_.size() * count);
+    files::parallel_for(std::size_t{0}, light_.size(), [&](std::size_t block) {
+        const std::size_t begin = block * prt::BlockSize;
+        for (std::size_t place = begin; place < std::min(begin + prt::BlockSize, radiance_.size());
+             ++place)
+            harmonics_->read(place, std::span(result).subspan(transfer_.order[place] * count, count));
+    });
+    return result;
 }
 
 void ReceiverLight::sum(const ClusterSums& sums) {
+    if (harmonics_)
+        harmonics_->sum(block_scene(), sums);
+    if (transfer_.have_no_surface)
+        return write_means();
     files::parallel_for(files::IndexRange<std::size_t>(0, lights_.spread.size()),
                         [&](const auto& words) {
                             const std::size_t end = std::min(words.end() * 64, sums.all.size());
@@ -60,13 +91,20 @@ void ReceiverLight::sum(const ClusterSums& sums) {
         for (std::size_t block = transfer_.counts.tile_begin(tile);
              block < transfer_.counts.tile_begin(tile + 1); ++block) {
             light_glossy(block);
-            light_[block].set_summed(write_radiance(block));
+            light_[block].brightness.set_summed(write_radiance(block));
         }
     });
 }
 
 std::size_t ReceiverLight::update(const ClusterSums& sums, std::span<const std::uint32_t> changed,
                                   bool sharp_changed) {
+    const std::size_t num_lit =
+        harmonics_ ? harmonics_->update(block_scene(), sums, changed) : 0;
+    if (transfer_.have_no_surface) {
+        write_means();
+        return std::min((sharp_changed ? light_.size() : num_lit) * prt::BlockSize,
+                        radiance_.size());
+    }
     changes_.clear();
     for (const std::uint32_t cluster : changed)
         changes_.set(lights_, cluster, sums.without_sharp(cluster));
@@ -87,7 +125,7 @@ std::size_t ReceiverLight::update(const ClusterSums& sums, std::span<const std::
             touched = transfer_.counts.tile_blocks(tile);
         for_blocks(tile, touched, [&](std::size_t block, std::uint64_t bit) {
             light_glossy(block);
-            if (light_[block].has_dimmed_to(write_radiance(block)))
+            if (light_[block].brightness.has_dimmed_to(write_radiance(block)))
                 dimmed_[tile] |= bit;
         });
         num_blocks += static_cast<std::size_t>(std::popcount(touched));
@@ -102,7 +140,7 @@ std::size_t ReceiverLight::update(const ClusterSums& sums, std::span<const std::
                 return;
             light_tile(scene, tile, lights_, light_, dimmed_[tile]);
             for_blocks(tile, dimmed_[tile], [&](std::size_t block, std::uint64_t) {
-                light_[block].set_summed(write_radiance(block));
+                light_[block].brightness.set_summed(write_radiance(block));
             });
         });
     }
@@ -114,6 +152,8 @@ glm::dvec3 ReceiverLight::from_cluster(std::size_t place, std::size_t cluster) c
     const double count = counts.count(place, cluster);
     if (count == 0.0)
         return glm::dvec3(0.0);
+    if (transfer_.have_no_surface)
+        return count * harmonics_->mean_from_cluster(cluster);
     const std::size_t block = place / prt::BlockSize, w = cluster / 64;
     const std::size_t tile = block / prt::VisibleCounts::TileBlocks;
     const std::uint64_t whole = counts.visible[counts.word(block, w)] &
@@ -179,6 +219,12 @@ double ReceiverLight::write_radiance(std::size_t block, bool with_sharp_lights,
 
 std::vector<glm::vec3> ReceiverLight::soft_radiance() const {
     std::vector<glm::vec3> radiance(radiance_.size());
+    if (transfer_.have_no_surface) {
+        files::parallel_for(std::size_t{0}, radiance.size(), [&](std::size_t place) {
+            radiance[transfer_.order[place]] = harmonics_->mean(place, false);
+        });
+        return radiance;
+    }
     files::parallel_for(std::size_t{0}, light_.size(),
                         [&](std::size_t block) { write_radiance(block, false, radiance, {}); });
     return radiance;

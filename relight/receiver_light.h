@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include "prt/transfer/transfer.h"
+#include "relight/harmonics/harmonic_light.h"
 #include "relight/kernels/block_kernels.h"
 #include "relight/kernels/block_normals.h"
 #include "relight/kernels/cluster_lights.h"
@@ -17,30 +18,21 @@
 #include "relight/kernels/kernel_lights.h"
 #include "relight/kernels/tile_words.h"
 #include "relight/light_pyramid.h"
+#include "relight/sharp/cluster_sums.h"
 #include "relight/sharp/shadow_rays.h"
 #include "relight/sharp/sharp_lights.h"
 #include "relight/sharp/traced_light.h"
 
 namespace relumine::relight {
 
-/// The light of an environment or a list, by clusters.
-struct ClusterSums {
-    /// [num_clusters] all light of each cluster.
-    std::span<const VectorIrradiance> all;
-    /// The part of it that is traced, clusters ascending.
-    std::span<const SharpLight> sharp;
-
-    [[nodiscard]] VectorIrradiance without_sharp(std::size_t cluster) const;
-};
-
 /// Keeps the radiance of a Relighter's receivers, and what it is summed from.
 class ReceiverLight {
 public:
     /// Arguments and errors as Relighter.
-    ReceiverLight(const prt::Transfer& transfer, const ShadowRays& rays);
+    ReceiverLight(const prt::Transfer& transfer, const ShadowRays& rays, std::uint32_t harmonics);
 
     /// As TracedLight::trace(). sum() or update() put the result into the radiance.
-    std::size_t trace(std::span<const SharpLight> lights) { return traced_.trace(lights); }
+    std::size_t trace(std::span<const SharpLight> lights);
     /// The light of highlights; null where there are none.
     [[nodiscard]] LightPyramid* pyramid() { return pyramid_ ? &*pyramid_ : nullptr; }
 
@@ -59,12 +51,21 @@ public:
     [[nodiscard]] std::vector<glm::vec3> soft_radiance() const;
     [[nodiscard]] std::vector<prt::Lobes<glm::vec3>> lobes(bool with_sharp_lights) const;
     [[nodiscard]] glm::dvec3 from_cluster(std::size_t place, std::size_t cluster) const;
+    /// Returns the arriving light as it was summed, [num_receivers][order^2] in the receivers' own
+    /// order.
+    [[nodiscard]] std::vector<glm::vec3> harmonics() const;
+    /// 0: none are kept.
+    [[nodiscard]] std::uint32_t harmonic_order() const {
+        return harmonics_ ? harmonics_->order() : 0;
+    }
 
 private:
     [[nodiscard]] BlockScene block_scene() const {
         return {.counts = transfer_.counts, .words = words_, .normals = normals_};
     }
     void light_glossy(std::size_t block);
+    /// The radiance of points without a surface.
+    void write_means();
     /// Returns the block's brightness.
     double write_radiance(std::size_t block);
     /// Of radiance for albedo 1 in `diffuse`, too, unless that is empty.
@@ -77,6 +78,8 @@ private:
     TracedLight traced_;
     /// Set where the transfer has a glossy part.
     std::optional<LightPyramid> pyramid_;
+    /// Set where they are asked for, and for points without a surface.
+    std::optional<HarmonicLight> harmonics_;
     /// [num_blocks]; empty without a glossy part.
     std::vector<GlossyLight> glossy_;
     /// [num_receivers] cosines between normal and eye; empty without a glossy part.

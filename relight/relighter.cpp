@@ -14,6 +14,7 @@
 #include <glm/geometric.hpp>
 
 #include "files/parallel.h"
+#include "relight/harmonics/harmonics.h"
 #include "relight/receiver_light.h"
 #include "relight/sharp/light_packets.h"
 
@@ -78,11 +79,12 @@ void require_inside(const TexelRectangle& rectangle, const cubemap::CubeMap& map
 
 } // namespace
 
-Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
+Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays,
+                     std::uint32_t harmonics)
     : transfer_(transfer), rays_(rays), sums_(transfer.num_clusters()),
       powers_(transfer.num_clusters()),
       binner_(transfer, rays.blockers != nullptr ? rays.tolerance : 0.0f),
-      light_(std::make_unique<ReceiverLight>(transfer, rays)) {}
+      light_(std::make_unique<ReceiverLight>(transfer, rays, harmonics)) {}
 Relighter::~Relighter() = default;
 Relighter::Relighter(Relighter&&) noexcept = default;
 
@@ -271,6 +273,14 @@ void Relighter::resum() {
 std::span<const glm::vec3> Relighter::radiance() const {
     return light_->radiance();
 }
+std::vector<glm::vec3> Relighter::harmonics() const {
+    std::vector<glm::vec3> result = light_->harmonics();
+    bind_to(transfer_, diffuse_radiance(), result);
+    return result;
+}
+std::uint32_t Relighter::harmonic_order() const {
+    return light_->harmonic_order();
+}
 std::vector<glm::vec3> Relighter::soft_radiance() const {
     return light_->soft_radiance();
 }
@@ -302,6 +312,23 @@ void require_texels(const TexelRectangle& rectangle, std::span<const glm::vec3> 
     if (radiance.size() != width * (rectangle.y1 - rectangle.y0))
         throw std::invalid_argument("expected one radiance per texel of the rectangle");
     require_radiance(radiance);
+}
+
+void bind_to(const prt::Transfer& transfer, std::span<const glm::vec3> radiance,
+             std::span<glm::vec3> harmonics) {
+    if (transfer.have_no_surface)
+        return;
+    const std::size_t count = harmonics.size() / radiance.size();
+    constexpr std::size_t Grain = 256;
+    files::parallel_for(files::IndexRange<std::size_t>(0, radiance.size(), Grain),
+                        [&](const auto& range) {
+                            for (std::size_t place = range.begin(); place < range.end(); ++place) {
+                                const std::size_t receiver = transfer.order[place];
+                                bind(harmonics.subspan(receiver * count, count),
+                                     transfer.normals[place],
+                                     glm::dvec3(radiance[receiver]) * std::numbers::pi);
+                            }
+                        });
 }
 
 void put_texels(const TexelRectangle& rectangle, std::span<const glm::vec3> radiance,

@@ -59,9 +59,14 @@ public:
     /// their cluster are traced. Without them, all light goes through the clusters.
     ///
     /// Memory:  about 1 KB per block of 16 receivers.
-    explicit Relighter(const prt::Transfer& transfer, const ShadowRays& rays = {});
+    /// With `harmonics`, 1 to 3, the arriving light is kept as spherical harmonics of this order,
+    /// too. Radiance of points without a surface is the mean radiance over the sphere: the fluence
+    /// over 4 pi.
+    explicit Relighter(const prt::Transfer& transfer, const ShadowRays& rays = {},
+                       std::uint32_t harmonics = 0);
     /// Refuses a temporary transfer, which would not outlive the Relighter.
-    explicit Relighter(const prt::Transfer&& transfer, const ShadowRays& rays = {}) = delete;
+    explicit Relighter(const prt::Transfer&& transfer, const ShadowRays& rays = {},
+                       std::uint32_t harmonics = 0) = delete;
     ~Relighter();
     Relighter(Relighter&&) noexcept;
 
@@ -137,6 +142,17 @@ public:
     /// Shape:   [num_receivers] in the receivers' own order.
     [[nodiscard]] std::span<const glm::vec3> diffuse_radiance() const;
 
+    /// Returns the light that arrives at each receiver, as spherical harmonics
+    /// (docs/harmonics.md). Coefficients of surfaces are bound to diffuse_radiance(): at the
+    /// surface's own normal their irradiance() is pi times that, as exactly as floats can say.
+    ///
+    /// Shape:   [num_receivers][order^2], receivers in their own order.
+    /// Throws:  std::logic_error for a Relighter without harmonics.
+    /// Cost:    O(receivers).
+    [[nodiscard]] std::vector<glm::vec3> harmonics() const;
+    /// 0: none are kept. Points have at least 1.
+    [[nodiscard]] std::uint32_t harmonic_order() const;
+
     /// Returns the radiance (albedo 1) of a surface that nothing shades: all light of each cluster,
     /// the sharp lights' included.
     [[nodiscard]] glm::dvec3 open_radiance(const glm::vec3& normal) const;
@@ -175,6 +191,14 @@ private:
     /// Scratch: clusters whose light changes.
     std::vector<std::uint32_t> changed_;
 };
+
+/// Binds coefficients of surfaces to their radiance for albedo 1, as Relighter::harmonics() does;
+/// points stay as they are.
+///
+/// Shape:   radiance is [num_receivers], harmonics [num_receivers][order^2], in the receivers' own
+///          order.
+void bind_to(const prt::Transfer& transfer, std::span<const glm::vec3> radiance,
+             std::span<glm::vec3> harmonics);
 
 /// Checks what is to replace a rectangle of a map.
 ///

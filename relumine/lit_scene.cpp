@@ -13,8 +13,10 @@
 
 #include "files/hash.h"
 #include "prt/clusters/dealt_tiles.h"
+#include "relight/harmonics/harmonics.h"
 #include "relight/sharp/light_packets.h"
 #include "relight/sharp/shadow_rays.h"
+#include "relumine/gathered.h"
 
 namespace relumine {
 
@@ -36,24 +38,6 @@ void require_same_hash(prt::Team& team, const std::filesystem::path& path, std::
                         path.string()));
 }
 
-/// Gives the first process the values of all receivers, by their order. They are [receivers of the
-/// process] in each.
-std::vector<glm::vec3> gathered(prt::Team& team, std::span<const std::uint32_t> order,
-                                std::span<const glm::vec3> own) {
-    const std::vector<std::vector<std::byte>> of_all = team.gather(prt::to_send(own));
-    std::vector<glm::vec3> values(of_all.empty() ? 0 : order.size());
-    for (std::uint32_t process = 0; process < of_all.size(); ++process) {
-        const std::vector<std::uint32_t> places =
-            prt::places_of({process, team.part().count}, order.size());
-        if (of_all[process].size() != places.size() * sizeof(glm::vec3))
-            throw std::runtime_error("expected the light of all receivers");
-        for (std::size_t i = 0; i < places.size(); ++i)
-            std::memcpy(&values[order[places[i]]], of_all[process].data() + i * sizeof(glm::vec3),
-                        sizeof(glm::vec3));
-    }
-    return values;
-}
-
 } // namespace
 
 LitScene::LitScene(Scene scene, const LightOptions& options)
@@ -69,7 +53,10 @@ LitScene::LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::Scen
                    const LightOptions& options)
     : scene_(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(scene)),
       rays_(std::make_unique<const SceneRays>(*scene_)),
-      team_(part && options.team != nullptr ? options.team : &prt::alone()), path_(options.path) {
+      team_(part && options.team != nullptr ? options.team : &prt::alone()), path_(options.path),
+      harmonics_(options.harmonics) {
+    if (harmonics_ != 0)
+        relight::require_order(harmonics_);
     const bool has_clusters = relumine::has_clusters(*scene_);
     if (has_clusters && scene_->receivers.size() != scene_->transfer.num_receivers())
         throw std::invalid_argument(fmt::format("expected the transfer of {} receivers, got {}",
@@ -91,7 +78,7 @@ LitScene::LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::Scen
     part_ = std::move(part);
     if (has_clusters)
         relighter_ = std::make_unique<relight::Relighter>(
-            part_ ? part_->transfer : scene_->transfer, shadow_rays_);
+            part_ ? part_->transfer : scene_->transfer, shadow_rays_, harmonics_);
     else if (options.clusters_only)
         static_cast<void>(relighter());
 }
@@ -160,6 +147,8 @@ LitScene::Added LitScene::light_of_list(std::span<const lights::DistantLight> li
         relighter_->set_lights(lights);
         added.radiance = copy_of(relighter_->radiance());
         added.diffuse = copy_of(relighter_->diffuse_radiance());
+        if (harmonics_ != 0)
+            added.harmonics = relighter_->harmonics();
         const auto traced = relight::picture_lights(*relighter_);
         added.lights.assign(traced.begin(), traced.end());
         if (!traced.empty())

@@ -30,6 +30,8 @@ using relight::UpdateReport;
 struct LightOptions {
     /// Lights the sun through its cluster too, without shadow rays of its own: faster, softer
     bool clusters_only = false;
+    /// Order of the spherical harmonics that LitScene::harmonics() returns: 2 or 3. 0: none.
+    std::uint32_t harmonics = 0;
     /// Of a part: the processes that share the light, each with its own. It must outlive the
     /// LitScene. Null: this one has no others.
     prt::Team* team = nullptr;
@@ -142,6 +144,17 @@ public:
     /// environment's; without materials for albedo 1. Empty before the first light().
     [[nodiscard]] std::span<const glm::vec3> radiance() const;
 
+    /// Returns the light that arrives at the receivers as spherical harmonics (docs/harmonics.md),
+    /// [num_receivers][order^2] in the receivers' order, for any normal. At a surface's own normal
+    /// their irradiance is that of all light, bounces included; away from it the bounces count as
+    /// if they came from around the normal. Bounces do not reach points. Of processes that share
+    /// the light, all call it; the first gets the light of all, the others get none.
+    ///
+    /// Throws:  std::logic_error before the first light() and without LightOptions::harmonics.
+    [[nodiscard]] std::vector<glm::vec3> harmonics() const;
+    /// 0: none.
+    [[nodiscard]] std::uint32_t harmonic_order() const { return harmonics_; }
+
     /// Returns what a picture is drawn of, or its radiance alone. It points into this object, and
     /// is good until the light changes. Of processes that share the light, all call it; the first
     /// gets the light of all, the others get none.
@@ -154,6 +167,8 @@ private:
     struct Added {
         std::vector<glm::vec3> radiance = {};
         std::vector<glm::vec3> diffuse = {};
+        /// [receivers of this process][order^2]
+        std::vector<glm::vec3> harmonics = {};
         /// Of a level floor that nothing shades, for albedo 1.
         glm::dvec3 open_floor{0.0};
         /// As those of Lighting.
@@ -180,6 +195,7 @@ private:
     /// Never null.
     prt::Team* team_;
     std::filesystem::path path_;
+    std::uint32_t harmonics_;
     relight::ShadowRays shadow_rays_;
     /// Null without clusters.
     std::unique_ptr<relight::Relighter> relighter_;

@@ -33,7 +33,13 @@ public:
 /// What there is to say of an option beside its name, its variable and its help.
 struct OptionFacts {
     /// The receivers of scenes, to be joined
-    enum Receivers : unsigned { OnVertices = 1, OnPixels = 2, OnTexels = 4, OnAll = 7 };
+    enum Receivers : unsigned {
+        OnVertices = 1,
+        OnPixels = 2,
+        OnTexels = 4,
+        OnPoints = 8,
+        OnAll = 15
+    };
 
     /// The value names a file, or a folder.
     bool file = false, folder = false;

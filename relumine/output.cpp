@@ -54,7 +54,8 @@ std::vector<glm::vec3> factors(const Scene& scene, const Albedo& albedo) {
 std::vector<glm::vec3> factors(const Scene& scene, const OutputOptions& options, Purpose purpose) {
     const bool is_shown = purpose == Purpose::Bounce ||
                           (purpose == Purpose::Show && prt::kind_of(scene.layout).are_seen);
-    Albedo albedo = options.albedo;
+    // A point in space reflects nothing.
+    Albedo albedo = scene.receivers.have_no_surface ? Albedo(glm::vec3(1.0f)) : options.albedo;
     if (std::holds_alternative<AutomaticAlbedo>(albedo)) {
         if (!is_shown || !scene.receivers.surfaces.empty())
             albedo = glm::vec3(1.0f);
@@ -290,6 +291,14 @@ struct Painter::Impl {
     [[nodiscard]] Picture composed(const prt::TexelLayout& texels,
                                    std::span<const glm::vec3> colors, const Lighting&) const {
         return relight::compose(texels, colors, options.gutter);
+    }
+    [[nodiscard]] Picture composed(const prt::PointLayout& points,
+                                   std::span<const glm::vec3> colors, const Lighting&) const {
+        return relight::compose_rows(points.grid(), colors);
+    }
+    [[nodiscard]] Picture composed(const prt::GridLayout& grid, std::span<const glm::vec3> colors,
+                                   const Lighting&) const {
+        return relight::compose_rows(grid.grid(), colors);
     }
 
     Picture draw(const Lighting& lighting) {

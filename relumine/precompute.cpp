@@ -6,20 +6,26 @@
 #include <cstring>
 #include <ctime>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
+#include "files/extension.h"
 #include "prt/glossy/lobe_list.h"
 #include "prt/parts/part_file.h"
 #include "prt/parts/team_checkpoint.h"
+#include "mesh/load.h"
 #include "prt/receivers/pixel_receivers.h"
+#include "prt/receivers/point_receivers.h"
 #include "prt/receivers/receiver_order.h"
 #include "prt/scene/checkpoint_file.h"
 #include "prt/scene/fingerprint.h"
 #include "prt/visibility/ray_scene.h"
+#include "relight/pictures/array_file.h"
 #include "relight/pictures/framing.h"
+#include "relumine/precompute_table.h"
 #include "relumine/stages.h"
 
 namespace relumine {
@@ -77,6 +83,21 @@ void compute(prt::Plan& plan, const prt::RayScene& rays, const Stages::Options& 
     }
 }
 
+std::vector<glm::vec3> load_points(const std::filesystem::path& path) {
+    if (files::extension_of(path) == ".ply")
+        return mesh::load_points(path);
+    relight::VectorArray array = relight::load_npy(path);
+    if (array.shape.size() != 1)
+        throw std::runtime_error(fmt::format("{}: expected an array of [count, 3], got {} axes",
+                                             path.string(), array.shape.size() + 1));
+    return std::move(array.values);
+}
+
+bool are_in_space(const PrecomputeOptions& options) {
+    return std::holds_alternative<Points>(options.receivers) ||
+           std::holds_alternative<Grid>(options.receivers);
+}
+
 /// One precompute, step by step.
 class Precompute {
 public:
@@ -92,7 +113,8 @@ public:
             .tolerance = options.tolerance.value_or(
                 report_.refined ? ToleranceOfRefined : prt::PrecomputeOptions{}.tolerance),
             .epsilon = options.epsilon,
-            .min_level = options.min_level,
+            .min_level = are_in_space(options) ? std::max(options.min_level, prt::MinLevelOfPoints)
+                                               : options.min_level,
             .face_resolution = options.face_resolution,
             .bias = options.bias.value_or(prt::automatic_bias(scene_.mesh)),
             .floor_vertices = mesh.floor_vertices,
@@ -145,6 +167,7 @@ private:
     }
 
     void check_options() const {
+        check_points(options_);
         if (options_.bounce_tolerance && !(*options_.bounce_tolerance >= 0.0f))
             throw std::invalid_argument(fmt::format("expected a tolerance of bounces >= 0, got {}",
                                                     *options_.bounce_tolerance));
@@ -206,7 +229,7 @@ private:
         if (work_.team.has_others()) {
             // The cells to begin with.
             const std::uint32_t level =
-                std::min(options_.min_level, prt::texel_level(options_.face_resolution));
+                std::min(scene_.settings.min_level, prt::texel_level(options_.face_resolution));
             scene_.transfer.quadtree =
                 prt::Quadtree::of([=](const prt::Cell& cell) { return cell.level < level; });
             scene_.transfer.order = prt::spatial_order(scene_.receivers);
@@ -241,7 +264,7 @@ private:
                                      ? double{*options_.epsilon} * std::sqrt(num_receivers)
                                      : double{scene_.settings.tolerance};
         const double all = 6.0 * options_.face_resolution * options_.face_resolution;
-        const double least = std::min(all, 6.0 * std::exp2(2.0 * options_.min_level));
+        const double least = std::min(all, 6.0 * std::exp2(2.0 * scene_.settings.min_level));
         const bool is_fine = tolerance < FinestTolerance;
         const double clusters = is_fine ? all : least;
         const double pairs = clusters * num_receivers;
@@ -270,6 +293,10 @@ private:
                     place_pixels(*pixels, rays);
             } else if (const auto* texels = std::get_if<Texels>(&options_.receivers)) {
                 place_texels(*texels);
+            } else if (const auto* points = std::get_if<Points>(&options_.receivers)) {
+                place_points(*points, rays);
+            } else if (const auto* grid = std::get_if<Grid>(&options_.receivers)) {
+                place_grid(*grid, rays);
             } else {
                 scene_.receivers = prt::vertex_receivers(scene_.mesh);
             }
@@ -288,6 +315,47 @@ private:
         } catch (const std::invalid_argument& error) {
             throw std::runtime_error(prefix_ + error.what());
         }
+    }
+
+    void place_points(const Points& points, const prt::RayScene& rays) {
+        const std::string name = points.file.empty() ? "" : points.file.string() + ": ";
+        std::vector<glm::vec3> of_file;
+        if (!points.file.empty())
+            of_file = load_points(points.file);
+        try {
+            add_points(points.file.empty() ? points.positions : of_file, rays);
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error(name + error.what());
+        }
+        prt::PointLayout layout{.count = static_cast<std::uint32_t>(scene_.receivers.size())};
+        layout.indices.resize(layout.count);
+        std::iota(layout.indices.begin(), layout.indices.end(), 0u);
+        scene_.layout = std::move(layout);
+    }
+
+    void place_grid(const Grid& grid, const prt::RayScene& rays) {
+        check(grid);
+        const std::size_t num_own = first_floor_vertex(scene_).value_or(scene_.mesh.num_vertices());
+        const mesh::Bounds box = options_.box.value_or(
+            mesh::bounds(std::span(scene_.mesh.positions).first(num_own)));
+        prt::GridLayout layout{
+            .nx = grid.nx, .ny = grid.ny, .nz = grid.nz, .low = box.min, .high = box.max};
+        add_points(prt::grid_points(layout), rays);
+        layout.indices.resize(scene_.receivers.size());
+        std::iota(layout.indices.begin(), layout.indices.end(), 0u);
+        scene_.layout = std::move(layout);
+    }
+
+    void add_points(std::span<const glm::vec3> points, const prt::RayScene& rays) {
+        const prt::Work work{.stop = work_.stop};
+        scene_.receivers =
+            scene_.blockers
+                ? prt::point_receivers(points, scene_.mesh, ray_scene(scene_.mesh, prefix_), work)
+                : prt::point_receivers(points, scene_.mesh, rays, work);
+        if (const std::size_t inside = prt::num_inside(scene_.receivers); inside != 0)
+            note(fmt::format("{} of {} points lie inside of objects: they take the light of the "
+                             "nearest point outside",
+                             inside, points.size()));
     }
 
     void place_pixels(const Pixels& size, const prt::RayScene& rays) {
@@ -334,6 +402,8 @@ private:
     /// its own.
     void set_surfaces() {
         const mesh::TriangleMesh& mesh = scene_.mesh;
+        if (scene_.receivers.have_no_surface)
+            return;
         if (mesh.materials.empty() && !options_.surface && options_.floor_surface == prt::Surface())
             return;
         const std::size_t n = scene_.settings.floor_vertices;

@@ -12,6 +12,9 @@
 #include <variant>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
+#include "mesh/triangle_mesh.h"
 #include "prt/bounces/bounce_precompute.h"
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/glossy/surface_sampling.h"
@@ -43,6 +46,21 @@ struct Texels {
     std::uint32_t width = 1024;
     std::uint32_t height = 1024;
 };
+
+/// Points in space are lit, which have no surface: each sees the whole sphere.
+struct Points {
+    /// A .npy file of [count x 3] numbers, or the vertices of a .ply file. Empty: `positions`.
+    std::filesystem::path file = {};
+    std::vector<glm::vec3> positions = {};
+};
+
+/// The middles of nx x ny x nz cells of a box are lit, as Points.
+struct Grid {
+    std::uint32_t nx = 0, ny = 0, nz = 0;
+};
+
+/// What is lit.
+using ReceiverChoice = std::variant<Vertices, Pixels, Texels, Points, Grid>;
 
 /// A view of the scene.
 struct View {
@@ -107,11 +125,13 @@ struct PrecomputeOptions {
     Engine engine = Engine::Beams;
 
     /// What is lit
-    std::variant<Vertices, Pixels, Texels> receivers = Vertices{};
+    ReceiverChoice receivers = Vertices{};
+    /// Of a Grid; empty: the box around the mesh, without a floor that was added to it.
+    std::optional<mesh::Bounds> box = {};
     /// The mesh keeps its vertices. Otherwise vertices, those behind bounces included, become more
     /// where the mesh is coarse: refined_by_itself().
     bool no_refine = false;
-    /// The camera of pixels, and the eye that highlights are for. Without one, pixels take the
+    /// The camera of pixels, and the eye that highlights are for; of no use to points and grids. Without one, pixels take the
     /// automatic camera; vertices and texels are seen from anywhere and have no highlights.
     std::optional<View> view = {};
     /// Replaces the mesh's materials; everywhere() makes one surface for the whole mesh. Empty: the
@@ -125,7 +145,8 @@ struct PrecomputeOptions {
     /// Relative error of a highlight under a small light anywhere
     float glossy_tolerance = prt::GlossyOptions{}.tolerance;
 
-    /// Light bounces from surface to surface; prt::BounceOptions::tolerance. 0: direct light alone.
+    /// Light bounces from surface to surface; prt::BounceOptions::tolerance. None reaches points and
+    /// grids. 0: direct light alone.
     /// Empty: vertices that see other surfaces bounce light, within 0.01. Surfaces send what their
     /// vertices have, so pixels and texels get the mesh's vertices as receivers behind them
     /// (prt::Receivers::num_added).

@@ -1,6 +1,7 @@
 #include "relumine/precompute_table.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <stdexcept>
@@ -9,8 +10,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "files/extension.h"
 #include "files/joined.h"
 #include "prt/glossy/lobe_list.h"
+#include "prt/receivers/point_receivers.h"
 
 namespace relumine {
 
@@ -114,6 +117,31 @@ struct Parser {
     }
 };
 
+constexpr const char* ReceiversForms =
+    "vertices, pixels:WxH, pixels:WxH:N, texels:WxH, points:FILE or grid:NXxNYxNZ";
+
+Points read_points(const std::string& text) {
+    Points points{.file = text.substr(text.find(':') + 1)};
+    const std::string extension = files::extension_of(points.file);
+    if (extension != ".npy" && extension != ".ply")
+        refuse_text("a .npy or .ply file of points", text);
+    return points;
+}
+
+Grid read_grid(const std::string& text) {
+    const std::vector<std::string> sides = split(text.substr(text.find(':') + 1), 'x');
+    std::array<std::uint32_t, 3> cells{};
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const auto count = sides.size() == cells.size() ? parse_count(sides[i]) : std::nullopt;
+        if (!count)
+            refuse_text(ReceiversForms, text);
+        cells[i] = *count;
+    }
+    const Grid grid{.nx = cells[0], .ny = cells[1], .nz = cells[2]};
+    check(grid);
+    return grid;
+}
+
 bool is_size(std::uint32_t side) {
     return side >= 1 && side <= prt::MaxPictureSize;
 }
@@ -123,6 +151,10 @@ bool is_size(std::uint32_t side) {
 ReceiversText::Value ReceiversText::read(const std::string& text) {
     if (text == "vertices")
         return Vertices{};
+    if (text.starts_with("points:"))
+        return read_points(text);
+    if (text.starts_with("grid:"))
+        return read_grid(text);
     // KIND:SIZE, for pixels also KIND:SIZE:SAMPLES.
     const std::vector<std::string> parts = split(text, ':');
     const bool are_pixels = parts[0] == "pixels";
@@ -130,7 +162,7 @@ ReceiversText::Value ReceiversText::read(const std::string& text) {
     const auto samples = parts.size() > 2 ? parse_count(parts[2]) : std::optional(1u);
     if ((!are_pixels && parts[0] != "texels") || !size || !samples ||
         parts.size() > (are_pixels ? 3 : 2))
-        refuse_text("vertices, pixels:WxH, pixels:WxH:N or texels:WxH", text);
+        refuse_text(ReceiversForms, text);
     const auto [width, height] = *size;
     if (!is_size(width) || !is_size(height))
         refuse_text(fmt::format("a size of 1 to {} a side", prt::MaxPictureSize), text);
@@ -149,7 +181,29 @@ std::string ReceiversText::show(const Value& receivers) {
                            pixels->samples_per_axis);
     if (const auto* texels = std::get_if<Texels>(&receivers))
         return fmt::format("texels:{}x{}", texels->width, texels->height);
+    if (const auto* points = std::get_if<Points>(&receivers))
+        return fmt::format("points:{}", points->file.string());
+    if (const auto* grid = std::get_if<Grid>(&receivers))
+        return fmt::format("grid:{}x{}x{}", grid->nx, grid->ny, grid->nz);
     return "vertices";
+}
+
+mesh::Bounds BoxText::read(const std::string& text) {
+    const auto numbers = parse_numbers(text);
+    if (!numbers || numbers->size() != 6)
+        refuse_text("X0,Y0,Z0,X1,Y1,Z1", text);
+    const std::vector<float> values(numbers->begin(), numbers->end());
+    const mesh::Bounds box{.min = {values[0], values[1], values[2]},
+                           .max = {values[3], values[4], values[5]}};
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(box.min[axis] <= box.max[axis] && box.min[axis] >= -LargestPosition &&
+              box.max[axis] <= LargestPosition))
+            refuse_text(fmt::format("the lower corner first, within {}", LargestPosition), text);
+    return box;
+}
+
+std::string BoxText::show(const mesh::Bounds& box) {
+    return fmt::format("{},{}", PointText::show(box.min), PointText::show(box.max));
 }
 
 View ViewText::read(const std::string& text) {
@@ -247,8 +301,14 @@ OptionTable options_of(PrecomputeOptions& o) {
             "results are the same"),
         row<ReceiversText>("--receivers", o.receivers,
                            "what is lit: vertices, pixels:WxH[:N] (of --view, N x N samples "
-                           "each) or texels:WxH (a lightmap on the mesh's uvs)",
+                           "each), texels:WxH (a lightmap on the mesh's uvs), points:FILE (.npy, "
+                           ".ply: points in space) or grid:NXxNYxNZ (the middles of the cells of "
+                           "--box)",
                            {.example = "texels:64x32"}),
+        row<BoxText>("--box", o.box,
+                     "the box of a grid: X0,Y0,Z0,X1,Y1,Z1; without it the mesh's, without its "
+                     "floor",
+                     {.example = "-1,0,-1,1,2,1"}),
         row("--no-refine", o.no_refine,
             "keep the mesh's vertices; otherwise a coarse mesh gets more where its light needs "
             "them"),
@@ -286,9 +346,33 @@ OptionTable options_of(PrecomputeOptions& o) {
             {.min = 0, .max = 86400})};
 }
 
+void check(const Grid& grid) {
+    const std::size_t num_rows = std::size_t{grid.ny} * grid.nz;
+    if (grid.nx < 1 || num_rows < 1 || grid.nx > prt::MaxPictureSize ||
+        grid.ny > prt::MaxPictureSize || grid.nz > prt::MaxPictureSize ||
+        num_rows > prt::MaxPictureSize || num_rows * grid.nx > prt::MaxPoints)
+        throw std::invalid_argument(
+            fmt::format("expected a grid of 1 to {} points, and at most {} of them along x or in "
+                        "a slice across it, got {} x {} x {}",
+                        prt::MaxPoints, prt::MaxPictureSize, grid.nx, grid.ny, grid.nz));
+}
+
 void check(const PrecomputeOptions& options) {
     if (std::holds_alternative<Pixels>(options.receivers) && !options.view)
         throw OptionError("--receivers", "expected --view (a camera, or auto) with pixels");
+    check_points(options);
+}
+
+void check_points(const PrecomputeOptions& options) {
+    const bool is_grid = std::holds_alternative<Grid>(options.receivers);
+    if (options.box && !is_grid)
+        throw OptionError("--box", "expected --receivers grid:NXxNYxNZ with a box");
+    if (!is_grid && !std::holds_alternative<Points>(options.receivers))
+        return;
+    if (options.view)
+        throw OptionError("--view", "expected none with points, which no eye sees");
+    if (options.bounce_tolerance.value_or(0.0f) > 0.0f)
+        throw OptionError("--bounces", "expected none with points, which bounces do not reach");
 }
 
 void set_materials(PrecomputeOptions& options, std::span<const SurfaceMaterial> materials,

@@ -24,12 +24,19 @@ inline constexpr std::array<std::string_view, 2> GgxWords = {"whole", "published
 template<>
 inline constexpr std::span<const std::string_view> WordsOf<prt::GgxForm> = GgxWords;
 
-/// "vertices", "pixels:WxH", "pixels:WxH:N" or "texels:WxH"
+/// "vertices", "pixels:WxH", "pixels:WxH:N", "texels:WxH", "points:FILE" or "grid:NXxNYxNZ"
 struct ReceiversText {
-    using Value = std::variant<Vertices, Pixels, Texels>;
+    using Value = ReceiverChoice;
     static constexpr const char* Type = "TEXT";
     static Value read(const std::string& text);
     static std::string show(const Value& receivers);
+};
+
+/// "X0,Y0,Z0,X1,Y1,Z1": two corners
+struct BoxText {
+    static constexpr const char* Type = "TEXT";
+    static mesh::Bounds read(const std::string& text);
+    static std::string show(const mesh::Bounds& box);
 };
 
 /// "auto" or "EX,EY,EZ,TX,TY,TZ[,FOV]"
@@ -60,6 +67,10 @@ struct MaterialText {
 
 /// Throws OptionError for options that contradict each other.
 void check(const PrecomputeOptions& options);
+/// The same for points and grids alone.
+void check_points(const PrecomputeOptions& options);
+/// Throws std::invalid_argument for a grid of no cell or of too many.
+void check(const Grid& grid);
 
 /// Gives the mesh's surfaces and the floor's to the options. Later materials win; those of the
 /// group `floor` are the floor's.

@@ -37,7 +37,7 @@ std::optional<std::size_t> first_floor_vertex(const Scene& scene) {
 std::vector<bool> floor_receivers(const Scene& scene) {
     const std::optional<std::size_t> first = first_floor_vertex(scene);
     std::vector<bool> result;
-    if (!first)
+    if (!first || scene.receivers.have_no_surface)
         return result;
     const std::vector<prt::MeshPoint>& points = scene.receivers.points;
     for (std::size_t i = 0; i < scene.receivers.size(); ++i)

@@ -63,8 +63,10 @@ LitScene lit_scene(const SceneOptions& options, prt::Team* team) {
         throw UsageError("SCENE", fmt::format("expected a scene, got the environment {}: the scene "
                                               "stands first, the environment behind it",
                                               options.path));
-    const LightOptions light{
-        .clusters_only = options.clusters_only, .team = team, .path = options.path};
+    const LightOptions light{.clusters_only = options.clusters_only,
+                             .harmonics = options.harmonics,
+                             .team = team,
+                             .path = options.path};
     if (team != nullptr && team->has_others()) {
         prt::ScenePart part = prt::load_scene_part(options.path, team->part());
         recolour(part.scene, options);
@@ -75,7 +77,9 @@ LitScene lit_scene(const SceneOptions& options, prt::Team* team) {
 
 LitScene lit_scene(Scene scene, const SceneOptions& options) {
     recolour(scene, options);
-    const LightOptions light{.clusters_only = options.clusters_only, .path = options.path};
+    const LightOptions light{.clusters_only = options.clusters_only,
+                             .harmonics = options.harmonics,
+                             .path = options.path};
     return naming_scene(options.path, [&] { return LitScene(std::move(scene), light); });
 }
 

@@ -1,6 +1,7 @@
 // A scene file ready to be lit: shared by relight, edit and verify.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "app/command_line/command_line.h"
@@ -12,6 +13,8 @@ namespace relumine::app {
 struct SceneOptions {
     std::string path = {};
     bool clusters_only = false;
+    /// As LightOptions::harmonics
+    std::uint32_t harmonics = 0;
     /// The argument may also be a mesh, which is lit without clusters.
     bool mesh_too = false;
     /// Of all surfaces, in place of those of the precompute

@@ -49,7 +49,9 @@ void OutputOptions::check_fits(const Scene& scene) const {
                         prt::description(scene.layout), path));
     const unsigned receivers = on_vertices                           ? OptionRow::OnVertices
                                : prt::kind_of(scene.layout).are_seen ? OptionRow::OnPixels
-                                                                     : OptionRow::OnTexels;
+                                                                     : std::holds_alternative<prt::TexelLayout>(scene.layout)
+                                   ? OptionRow::OnTexels
+                                   : OptionRow::OnPoints;
     for (const Option& option : options_)
         if (option.is_given() && (option.row().receivers & receivers) == 0)
             throw OptionError(option.name(),

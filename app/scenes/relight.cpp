@@ -23,6 +23,7 @@
 #include "lights/light_file.h"
 #include "mesh/load.h"
 #include "prt/team.h"
+#include "relumine/harmonics_file.h"
 #include "relumine/lit_part.h"
 
 namespace relumine::app {
@@ -37,6 +38,9 @@ struct RelightArguments {
     OutputOptions output;
     BounceOption bounces;
     bool only_bounces = false;
+    /// A file for the arriving light; empty: none
+    std::string harmonics;
+    std::uint32_t harmonics_order = 3;
     bool no_cache = false;
     /// count is 0 until --part is given.
     prt::Part part = {.index = 0, .count = 0};
@@ -107,6 +111,14 @@ std::string name_of(const RelightArguments& options, const LitScene& lit, std::s
                        options.lights.empty() ? "" : " and " + list);
 }
 
+void check_harmonics(const std::string& path, const Scene& scene) {
+    try {
+        require_harmonics_path(path, scene);
+    } catch (const std::invalid_argument& error) {
+        throw UsageError("--harmonics", error.what());
+    }
+}
+
 /// Lights the scene with an environment, a list, or both; alone or with the processes of a team,
 /// whose first one writes the output.
 void light_scene(const RelightArguments& options, Session& session) {
@@ -119,6 +131,8 @@ void light_scene(const RelightArguments& options, Session& session) {
             : lit_scene(options.scene, session.team);
     const Scene& scene = lit.scene();
     options.output.check_fits(scene);
+    if (!options.harmonics.empty())
+        check_harmonics(options.harmonics, scene);
     const double seconds_load_scene = watch.lap();
     session.poll();
     Given given = given_light(options, session);
@@ -136,14 +150,19 @@ void light_scene(const RelightArguments& options, Session& session) {
         options.bounces.bounce(lit, output, options.scene.path);
     Lighting lighting = lit.lighting();
     const double seconds_light = watch.lap();
-    if (!session.is_first())
+    if (!session.is_first()) {
+        if (!options.harmonics.empty())
+            save_harmonics(lit, options.harmonics); // of the first process, with these parts
         return;
+    }
     if (options.only_bounces)
         keep_bounces(lighting, lit.bounces().bounced(), options.scene.path);
     Painter painter(lit, output);
     painter.on_progress(session.progress("picture"));
     painter.save(options.output.path, lighting);
     session.end_progress();
+    if (!options.harmonics.empty())
+        save_harmonics(lit, options.harmonics);
     const double seconds_output = watch.lap();
 
     session.say(fmt::format(
@@ -215,8 +234,11 @@ void run(const RelightArguments& options, const Command& command, Session& sessi
     for (const std::string& path : {options.environment.path, options.lights})
         if (!path.empty())
             inputs.push_back(path);
-    if (session.is_first())
+    if (session.is_first()) {
         options.output.check(inputs);
+        if (!options.harmonics.empty())
+            check_output(options.harmonics, inputs);
+    }
     light_scene(options, session);
 }
 
@@ -243,11 +265,23 @@ void add_relight(Command& program, Session& session) {
     command.add(row("--no-cache", options->no_cache,
                     "SCENE is a mesh: precompute it, whether it was before or not, and do not keep "
                     "the scene"));
+    command.add(row("--harmonics", options->harmonics,
+                    "write the light that arrives at each receiver, for any normal, as spherical "
+                    "harmonics: .npy, .exr (layers; not of vertices), .json (three.js; of points "
+                    "and grids)",
+                    {.file = true}));
+    command.add(row("--harmonics-order", options->harmonics_order,
+                    "2 or 3: 4 or 9 coefficients a channel",
+                    {.min = 2, .max = 3, .needs = "--harmonics"}));
     options->bounces.add_to(command);
     command.add(row("--only-bounces", options->only_bounces,
                     "what surfaces add to the direct light, alone"));
     session.add_common_options(command);
-    command.on_run([options, command, &session] { run(*options, command, session); });
+    command.on_run([options, command, &session] {
+        if (!options->harmonics.empty())
+            options->scene.harmonics = options->harmonics_order;
+        run(*options, command, session);
+    });
 }
 
 } // namespace relumine::app

@@ -1,5 +1,6 @@
 #include "prt/clusters/cluster_kernels.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -55,13 +56,14 @@ void squared_distances(const NormalArrays& normals, const CellSamples& samples,
                 const auto nx = hn::LoadU(d, normals.x.data() + at);
                 const auto ny = hn::LoadU(d, normals.y.data() + at);
                 const auto nz = hn::LoadU(d, normals.z.data() + at);
+                const auto nw = hn::LoadU(d, normals.w.data() + at);
                 Vector transfer[SamplesPerCell]; // T_l [JN, Eq. 2]
                 Vector mean = hn::Zero(d);       // T_C [JN, Eq. 10]
                 for (std::size_t l = 0; l < SamplesPerCell; ++l) {
                     const glm::vec3& w = samples.directions[l];
-                    const auto cosine =
-                        hn::MulAdd(nx, hn::Set(d, w.x),
-                                   hn::MulAdd(ny, hn::Set(d, w.y), hn::Mul(nz, hn::Set(d, w.z))));
+                    const auto along_z = hn::MulAdd(nz, hn::Set(d, w.z), nw);
+                    const auto cosine = hn::MulAdd(nx, hn::Set(d, w.x),
+                                                   hn::MulAdd(ny, hn::Set(d, w.y), along_z));
                     transfer[l] =
                         hn::IfThenElseZero(mask_of(d, samples.lit[l][word], lane), cosine);
                     mean = hn::MulAdd(transfer[l],
@@ -113,11 +115,13 @@ constexpr std::array<std::array<std::uint8_t, FullCount + 1>, FullCount + 1> vis
 
 } // namespace
 
-NormalArrays::NormalArrays(std::span<const glm::vec3> normals) {
+NormalArrays::NormalArrays(std::span<const glm::vec3> normals, bool have_no_surface) {
     const std::size_t num_padded = (normals.size() + WordSize - 1) / WordSize * WordSize;
     x.resize(num_padded);
     y.resize(num_padded);
     z.resize(num_padded);
+    w.resize(num_padded);
+    std::fill_n(w.begin(), normals.size(), have_no_surface ? 1.0f : 0.0f);
     for (std::size_t i = 0; i < normals.size(); ++i) {
         x[i] = normals[i].x;
         y[i] = normals[i].y;

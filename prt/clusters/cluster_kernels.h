@@ -16,13 +16,14 @@
 
 namespace relumine::prt {
 
-/// Normals of the receivers, coordinates apart.
+/// Normals of the receivers, coordinates apart. A direction d has the cosine x dx + y dy + z dz + w:
+/// w is 1 for points without a surface, whose normals are zero, and 0 for all others.
 ///
 /// Shape:   [num_words * 64] each; zero after the last receiver.
 struct NormalArrays {
-    std::vector<float> x, y, z;
+    std::vector<float> x, y, z, w;
     NormalArrays() = default;
-    explicit NormalArrays(std::span<const glm::vec3> normals);
+    explicit NormalArrays(std::span<const glm::vec3> normals, bool have_no_surface = false);
     [[nodiscard]] std::size_t num_words() const { return x.size() / WordSize; }
 };
 
@@ -39,7 +40,7 @@ struct CellSamples {
 inline constexpr double SquaredDistanceUnit = 0x1p-30;
 
 /// Returns ||T_C - T_l||^2 for all nine samples l, where T = V max(n.w, 0), which is the transfer
-/// times pi, and T_C is the weighted mean [JN, Eqs. 9-11].
+/// times pi (V alone for points without a surface), and T_C is the weighted mean [JN, Eqs. 9-11].
 ///
 /// Unit:    SquaredDistanceUnit. Each run of 1,024 receivers contributes a whole number, so sums
 ///          over parts of the receivers that begin at runs add up to the sum over all, exactly.

@@ -68,6 +68,7 @@ Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
                        const PrecomputeOptions& options, const Work& work,
                        const PrecomputeContext& context)
     : options_(options), context_(context), work_(work),
+      have_no_surface_(receivers.have_no_surface),
       order_(context.given != nullptr ? context.given->order : spatial_order(receivers)),
       progress_(work), steps_(
                            work, CheckpointPart, [this] { return content(); },
@@ -86,7 +87,7 @@ Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
         origins_.push_back(
             ray_origin(receivers.positions[order_[place]], normals.back(), options.bias));
     }
-    normals_ = NormalArrays(normals);
+    normals_ = NormalArrays(normals, receivers.have_no_surface);
     const std::size_t num_words = (order_.size() + WordSize - 1) / WordSize;
     max_planes_ =
         static_cast<std::size_t>(options.plane_bytes / (num_words * sizeof(std::uint64_t)));
@@ -348,7 +349,8 @@ Transfer Clustering::result() {
     return {.quadtree = Quadtree::of(is_split),
             .order = std::move(order_),
             .normals = std::move(ordered_normals_),
-            .counts = columns_->take(order)};
+            .counts = columns_->take(order),
+            .have_no_surface = have_no_surface_};
 }
 
 } // namespace relumine::prt

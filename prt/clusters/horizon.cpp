@@ -24,13 +24,15 @@ void directions_above_horizon(const NormalArrays& normals, std::size_t first,
         const auto nx = hn::Set(d, normals.x[first + i]);
         const auto ny = hn::Set(d, normals.y[first + i]);
         const auto nz = hn::Set(d, normals.z[first + i]);
+        const auto nw = hn::Set(d, normals.w[first + i]);
         std::uint64_t above = 0;
         for (std::size_t j = 0; j < patch.num_directions; j += num_lanes) {
             const DirectionPacket& packet = patch.packets[j / PacketSize];
             const std::size_t lane = j % PacketSize;
             const auto xy = hn::Add(hn::Mul(nx, hn::Load(d, packet.x.data() + lane)),
                                     hn::Mul(ny, hn::Load(d, packet.y.data() + lane)));
-            const auto cosine = hn::Add(xy, hn::Mul(nz, hn::Load(d, packet.z.data() + lane)));
+            const auto xyz = hn::Add(xy, hn::Mul(nz, hn::Load(d, packet.z.data() + lane)));
+            const auto cosine = hn::Add(xyz, nw);
             above |= std::uint64_t{bits_of(d, hn::Gt(cosine, hn::Zero(d)))} << j;
         }
         rays[i] = above & used;
@@ -46,10 +48,12 @@ void samples_above_horizon(const NormalArrays& normals, std::size_t first,
         const auto nx = hn::LoadU(d, normals.x.data() + first + i);
         const auto ny = hn::LoadU(d, normals.y.data() + first + i);
         const auto nz = hn::LoadU(d, normals.z.data() + first + i);
+        const auto nw = hn::LoadU(d, normals.w.data() + first + i);
         for (std::size_t l = 0; l < SamplesPerCell; ++l) {
             const glm::vec3& w = directions[l];
             const auto xy = hn::Add(hn::Mul(nx, hn::Set(d, w.x)), hn::Mul(ny, hn::Set(d, w.y)));
-            const auto cosine = hn::Add(xy, hn::Mul(nz, hn::Set(d, w.z)));
+            const auto xyz = hn::Add(xy, hn::Mul(nz, hn::Set(d, w.z)));
+            const auto cosine = hn::Add(xyz, nw);
             above[l] =
                 static_cast<std::uint16_t>(above[l] | bits_of(d, hn::Gt(cosine, hn::Zero(d))) << i);
         }

@@ -56,6 +56,7 @@ private:
 Receivers sample_of(const Receivers& receivers, std::span<const std::uint32_t> order) {
     const Sample blocks(order.size());
     Receivers sample;
+    sample.have_no_surface = receivers.have_no_surface;
     for (std::size_t block = 0; block < blocks.num_blocks(); ++block)
         for (std::size_t place = blocks.begin(block); place < blocks.end(block); ++place) {
             sample.positions.push_back(receivers.positions[order[place]]);
@@ -132,6 +133,7 @@ Transfer plan_clusters(const Receivers& receivers, const Blockers& blockers,
     Transfer sampled =
         precompute(sample_of(receivers, plan.order), blockers, for_sample, work, statistics);
     plan.quadtree = sampled.quadtree;
+    plan.have_no_surface = receivers.have_no_surface;
     for (const std::uint32_t receiver : plan.order)
         plan.normals.push_back(receivers.normals[receiver]);
     if (of_sample != nullptr)

@@ -63,6 +63,7 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     }
     Transfer& transfer = result.transfer;
     transfer.quadtree = whole.transfer.quadtree;
+    transfer.have_no_surface = whole.transfer.have_no_surface;
     for (const std::uint32_t place : places_of(part, num_receivers)) {
         const std::uint32_t receiver = whole.transfer.order[place];
         result.receivers.push_back(receiver);

@@ -23,6 +23,10 @@ bool on_vertices(const ReceiverLayout& layout) {
 }
 
 std::string description(const ReceiverLayout& layout) {
+    if (const auto* points = std::get_if<PointLayout>(&layout))
+        return fmt::format("{} {}", points->Kind.name, points->count);
+    if (const auto* box = std::get_if<GridLayout>(&layout))
+        return fmt::format("{} {} x {} x {}", box->Kind.name, box->nx, box->ny, box->nz);
     const auto [width, height, n] = grid_of(layout);
     std::string text(kind_of(layout).name);
     if (width != 0 || height != 0)

@@ -1,5 +1,5 @@
-// What the receivers of a scene are: vertices of its mesh, pixels of a picture or texels of a
-// lightmap. Each kind answers for itself.
+// What the receivers of a scene are: vertices of its mesh, pixels of a picture, texels of a lightmap,
+// or points in space. Each kind answers for itself.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,8 @@
 #include <string_view>
 #include <variant>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "prt/receivers/camera.h"
 
@@ -27,6 +29,8 @@ struct ReceiverKind {
     bool are_vertices = false;
     /// A picture of them is what an eye sees: in colours, with a background.
     bool are_seen = true;
+    /// They lie on the mesh and have its normals; otherwise they are points in space.
+    bool have_surface = true;
 };
 
 /// The size of a picture or a lightmap; 0 x 0 for vertices.
@@ -105,8 +109,59 @@ struct TexelLayout {
     }
 };
 
+/// Receivers are points in space, in any order. A picture has them row by row.
+struct PointLayout {
+    static constexpr ReceiverKind Kind{.name = "points",
+                                       .one = "point",
+                                       .whole = "the points",
+                                       .are_seen = false,
+                                       .have_surface = false};
+    /// Of a picture.
+    static constexpr std::uint32_t PointsPerRow = 1024;
+    std::uint32_t count = 0;
+    /// [count] 0, 1, 2, ...
+    std::vector<std::uint32_t> indices = {};
+    bool operator==(const PointLayout&) const = default;
+
+    [[nodiscard]] PlaceGrid grid() const {
+        return {count < PointsPerRow ? count : PointsPerRow,
+                count / PointsPerRow + (count % PointsPerRow != 0 ? 1 : 0)};
+    }
+    [[nodiscard]] std::vector<std::uint32_t>* places() { return &indices; }
+    [[nodiscard]] static const Camera* own_camera() { return nullptr; }
+    void members(auto& member) { member("count", count); }
+};
+
+/// Receivers are the middles of the cells that a box is cut into, x fastest, then y, then z. A
+/// picture has nx columns, and ny rows for each z.
+struct GridLayout {
+    static constexpr ReceiverKind Kind{.name = "grid",
+                                       .one = "grid point",
+                                       .whole = "the grid",
+                                       .are_seen = false,
+                                       .have_surface = false};
+    std::uint32_t nx = 0, ny = 0, nz = 0;
+    glm::vec3 low{0.0f};
+    glm::vec3 high{0.0f};
+    /// [nx * ny * nz] 0, 1, 2, ...
+    std::vector<std::uint32_t> indices = {};
+    bool operator==(const GridLayout&) const = default;
+
+    [[nodiscard]] PlaceGrid grid() const { return {nx, ny * nz}; }
+    [[nodiscard]] std::vector<std::uint32_t>* places() { return &indices; }
+    [[nodiscard]] static const Camera* own_camera() { return nullptr; }
+    void members(auto& member) {
+        member("nx", nx);
+        member("ny", ny);
+        member("nz", nz);
+        member("low", low);
+        member("high", high);
+    }
+};
+
 /// The list of kinds.
-using ReceiverLayout = std::variant<VertexLayout, PixelLayout, TexelLayout>;
+using ReceiverLayout =
+    std::variant<VertexLayout, PixelLayout, TexelLayout, PointLayout, GridLayout>;
 
 /// The largest number of samples or texels. It bounds what is allocated. A picture of
 /// 8192 x 8192 with four samples a pixel has as many.
@@ -117,7 +172,8 @@ inline constexpr std::size_t MaxLayoutPlaces = std::size_t{1} << 28;
 /// Whether the receivers are the mesh's vertices.
 [[nodiscard]] bool on_vertices(const ReceiverLayout& layout);
 
-/// Returns "vertices", "pixels 1024 x 768, 3 x 3 samples each" or "texels 512 x 512".
+/// Returns "vertices", "pixels 1024 x 768, 3 x 3 samples each", "texels 512 x 512", "points 2000" or
+/// "grid 16 x 8 x 16".
 [[nodiscard]] std::string description(const ReceiverLayout& layout);
 
 /// Returns how many places for receivers there are: samples or texels. None for vertices.

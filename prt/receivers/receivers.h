@@ -14,7 +14,8 @@
 
 namespace relumine::prt {
 
-/// Points with normals. A receiver with a zero normal (an unreferenced vertex) receives nothing.
+/// Points with normals. A receiver with a zero normal (an unreferenced vertex) receives nothing,
+/// unless receivers are without a surface.
 struct Receivers {
     /// [num_receivers] in the mesh's unit.
     std::vector<glm::vec3> positions;
@@ -28,10 +29,24 @@ struct Receivers {
     std::vector<MeshPoint> points = {};
     /// So many at the end are vertices of the mesh, which pixels or texels get bounced light from.
     std::size_t num_added = 0;
+    /// Points in space: no surface turns them, so their normals are zero and every direction of the
+    /// sphere counts, by 1 in place of a cosine.
+    bool have_no_surface = false;
+    /// [num_receivers] where points were asked for; empty: at `positions`. A point inside of an
+    /// object is blind, so it looks from the position of the nearest point that is not.
+    std::vector<glm::vec3> own_positions = {};
 
     [[nodiscard]] std::size_t size() const { return positions.size(); }
     /// Those that were asked for come first: all but the added vertices.
     [[nodiscard]] std::size_t num_own() const { return size() - num_added; }
+    /// Returns the positions that were asked for.
+    [[nodiscard]] const std::vector<glm::vec3>& places() const {
+        return own_positions.empty() ? positions : own_positions;
+    }
+    /// Whether a point lies inside of an object.
+    [[nodiscard]] bool is_inside(std::size_t receiver) const {
+        return !own_positions.empty() && own_positions[receiver] != positions[receiver];
+    }
 };
 
 /// Returns one receiver per vertex, in the mesh's order: geometry relighting, any view [JN, Section

@@ -25,13 +25,20 @@ void check_fit(const ReceiverLayout& layout, const Receivers& receivers) {
         throw std::invalid_argument(
             fmt::format("expected one place in the layout for each of {} receivers, got {} in {}",
                         receivers.num_own(), own.size(), num_places(layout)));
+    if (receivers.have_no_surface == kind_of(layout).have_surface ||
+        (!receivers.own_positions.empty() && receivers.own_positions.size() != receivers.size()))
+        throw std::invalid_argument(fmt::format(
+            "expected receivers {} a surface, and no or {} positions of points",
+            kind_of(layout).have_surface ? "on" : "without", receivers.size()));
+    if (receivers.have_no_surface)
+        return;
     if (receivers.normals.size() != receivers.size() || receivers.points.size() != receivers.size())
         throw std::invalid_argument(
             fmt::format("expected a normal and a point for each of {} receivers, got {} and {}",
                         receivers.size(), receivers.normals.size(), receivers.points.size()));
 }
 
-/// Of pixels and texels.
+/// Of all but vertices.
 void add_places(NewSections& sections, ReceiverLayout layout, const Receivers& receivers) {
     check_fit(layout, receivers);
     JsonMembers members;
@@ -43,6 +50,10 @@ void add_places(NewSections& sections, ReceiverLayout layout, const Receivers& r
         bits[place] = true;
     sections[Mask] = packed(bits);
     sections["r_positions"] = SectionContent::view(receivers.positions);
+    if (!receivers.own_positions.empty())
+        sections["r_own_positions"] = SectionContent::view(receivers.own_positions);
+    if (receivers.have_no_surface)
+        return;
     sections["r_normals"] = SectionContent::view(receivers.normals);
     std::vector<std::uint32_t> triangles;
     std::vector<glm::vec2> barycentric;
@@ -137,7 +148,7 @@ ReceiverLayout layout_of(const files::Json& json) {
         check_size(layout);
         return layout;
     }
-    throw std::out_of_range("expected pixels or texels");
+    throw std::out_of_range("expected a known kind");
 }
 
 void check_surfaces(const SceneCheck& check, const std::vector<Surface>& surfaces) {
@@ -167,8 +178,9 @@ void check_surfaces(const SceneCheck& check, const std::vector<Surface>& surface
 void check_receivers(const SceneCheck& check, const Scene& scene) {
     const Receivers& receivers = scene.receivers;
     check.all("finite coordinates", receivers.positions, is_finite);
+    check.all("finite coordinates of points", receivers.own_positions, is_finite);
     for (std::size_t i = 0; i < receivers.size(); ++i)
-        if (receivers.normals[i] != glm::vec3(0.0f) &&
+        if ((receivers.have_no_surface || receivers.normals[i] != glm::vec3(0.0f)) &&
             !can_start_rays(scene, receivers.positions[i]))
             check.fail(expected_place(scene), SceneCheck::text_of(receivers.positions[i]));
     if (const Camera* camera = own_camera(scene.layout))
@@ -194,6 +206,14 @@ void add_receivers(NewSections& sections, const Scene& scene) {
         sections["r_to_eye"] = SectionContent::view(receivers.to_eye);
     if (!receivers.surfaces.empty())
         add_surfaces(sections, receivers.surfaces);
+}
+
+void read_points_in_space(const SectionReader& reader, std::size_t num_own, Receivers& receivers) {
+    if (receivers.size() != num_own)
+        reader.fail("r_positions", "the layout's receivers");
+    receivers.have_no_surface = true;
+    receivers.normals.resize(num_own, glm::vec3(0.0f));
+    receivers.own_positions = reader.elements<glm::vec3>("r_own_positions", num_own, true);
 }
 
 /// A file without a layout has vertices.
@@ -225,6 +245,10 @@ void read_receivers(const SectionReader& reader, Scene& scene) {
         const std::size_t num_own = places(scene.layout).size();
         receivers.positions = reader.elements<glm::vec3>("r_positions");
         const std::size_t count = receivers.size();
+        if (!kind_of(scene.layout).have_surface) {
+            read_points_in_space(reader, num_own, receivers);
+            return;
+        }
         // A plan has no bounces yet.
         const bool may_bounce = has_bounces(reader) || reader.has("plan");
         const std::size_t most_added = may_bounce ? mesh.num_vertices() : 0;

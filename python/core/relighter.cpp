@@ -14,8 +14,10 @@
 #include "files/one_of_each.h"
 #include "lights.h"
 #include "options.h"
+#include "relight/harmonics/harmonics.h"
 #include "relight/light_fit/transfer_lights.h"
 #include "relight/pictures/picture.h"
+#include "relumine/harmonics_file.h"
 #include "run.h"
 #include "scene.h"
 
@@ -370,9 +372,11 @@ py::tuple bounce(Lit& own, const std::optional<std::uint32_t>& bounces, const py
 
 void bind_relighters(py::module_& module) {
     py::class_<Lit, LitPointer> type(module, "Relighter");
-    type.def(py::init([](const std::shared_ptr<Scene>& scene, bool clusters_only) {
-            return in_background(py::none(), [scene, clusters_only](const Reins&) {
-                return std::make_shared<Lit>(scene, LightOptions{.clusters_only = clusters_only});
+    type.def(py::init([](const std::shared_ptr<Scene>& scene, bool clusters_only,
+                         std::uint32_t harmonics) {
+            return in_background(py::none(), [=](const Reins&) {
+                return std::make_shared<Lit>(scene, LightOptions{.clusters_only = clusters_only,
+                                                                 .harmonics = harmonics});
             });
         }))
         .def_property_readonly("is_lit", &Lit::is_lit)
@@ -402,6 +406,24 @@ void bind_relighters(py::module_& module) {
                      const std::span<const glm::vec3> bounced = lit.bounces().bounced();
                      return std::vector<glm::vec3>(bounced.begin(), bounced.end());
                  }));
+             })
+        .def("harmonics",
+             [](Lit& own) {
+                 std::size_t count = 0;
+                 std::vector<glm::vec3> light = quickly(own, [&](LitScene& lit) {
+                     count = relight::num_harmonics(lit.harmonic_order());
+                     return lit.harmonics();
+                 });
+                 const auto width = static_cast<py::ssize_t>(count);
+                 const auto height = static_cast<py::ssize_t>(light.size()) / width;
+                 return owned(std::move(light), {height, width});
+             })
+        .def("save_harmonics",
+             [](const LitPointer& own, const Path& path) {
+                 slowly(own, py::none(), [path](LitScene& lit, const Reins&) {
+                     save_harmonics(lit, path);
+                     return true;
+                 });
              })
         .def("environment", [](Lit& own) {
             cubemap::CubeMap map = quickly(own, [](LitScene& lit) { return environment_of(lit); });

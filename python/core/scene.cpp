@@ -144,9 +144,14 @@ std::function<void(Stage, double)> joined(const std::function<void(double)>& on_
     };
 }
 
-/// The options of a precompute with the surfaces of a mesh.
-PrecomputeOptions work_options(const Mesh& mesh, const py::dict& given) {
+/// The options of a precompute with the surfaces of a mesh. Receivers that are an array are points.
+PrecomputeOptions work_options(const Mesh& mesh, const py::dict& all_given) {
     PrecomputeOptions options;
+    const py::dict given(all_given.attr("copy")());
+    if (const py::object receivers = given["receivers"]; py::isinstance<py::buffer>(receivers)) {
+        options.receivers = Points{.positions = vec3s(receivers.cast<py::buffer>())};
+        given.attr("pop")("receivers");
+    }
     std::vector<SurfaceMaterial> materials;
     std::string output;
     OptionTable table = options_of(options);
@@ -290,6 +295,10 @@ void bind_scenes(py::module_& module) {
         .def_property_readonly("num_clusters",
                                [](const Scene& scene) { return scene.transfer.num_clusters(); })
         .def_property_readonly("receiver_positions",
+                               [](const std::shared_ptr<Scene>& scene) {
+                                   return view(scene, scene->receivers.places());
+                               })
+        .def_property_readonly("receiver_origins",
                                [](const std::shared_ptr<Scene>& scene) {
                                    return view(scene, scene->receivers.positions);
                                })

@@ -22,6 +22,7 @@ from typing import Any as _Any
 from . import _core
 from ._environment import Environment
 from ._files import FileError
+from ._harmonics import irradiance
 from ._layers import SHAPES as _SHAPES
 from ._layers import Emit, Gain, Image, Layer, load_layers, save_layers
 from ._lights import LightList
@@ -44,7 +45,7 @@ __all__ = [
     "FACES", "Blinn", "Bounces", "Emit", "Environment", "FileError", "Frame", "Gain", "Ggx",
     "Image", "Lambert", "Layer", "LightList", "Mesh", "Picture",
     "RelightTimes", "Relighter", "RelumineWarning", "Scene", "Share", "Update",
-    "Verification", "join", "load_layers", "plan", "precompute", "precompute_part", "save_layers",
+    "Verification", "irradiance", "join", "load_layers", "plan", "precompute", "precompute_part", "save_layers",
     "set_threads", *_SHAPES,
 ]  # fmt: skip
 # Regions of layers: Disc, Rectangle, ...

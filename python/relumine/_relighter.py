@@ -101,6 +101,7 @@ class Relighter:
     """A scene under light, which may change.
 
     clusters_only  lights the sun through its cluster too, without shadow rays: faster, softer
+    harmonics      2 or 3: keeps the arriving light as `harmonics` of this order; 0: none
     surface_albedo, surface_specular  as Scene.recolored()
 
     Calls release Python's lock, so that threads relight at the same time; two threads on one
@@ -118,6 +119,7 @@ class Relighter:
         scene: Scene,
         *,
         clusters_only: bool = False,
+        harmonics: int = 0,
         surface_albedo: Optional[Color] = None,
         surface_specular: Optional[Color] = None,
     ) -> None:
@@ -127,7 +129,11 @@ class Relighter:
                 surface_albedo=surface_albedo, surface_specular=surface_specular
             )
         self._scene = scene
-        self._lit: Optional[_core.Relighter] = _core.Relighter(scene._core, clusters_only)
+        if harmonics not in (0, 2, 3):
+            raise ValueError(f"harmonics: expected 0, 2 or 3, got {harmonics!r}")
+        self._lit: Optional[_core.Relighter] = _core.Relighter(
+            scene._core, clusters_only, harmonics
+        )
 
     @property
     def scene(self) -> Scene:
@@ -235,6 +241,26 @@ class Relighter:
         """
         result: Floats = view(self._core.bounced())
         return result
+
+    @property
+    def harmonics(self) -> Floats:
+        """(num_receivers, 4 or 9, 3) float32: the light that arrives, for any normal. A copy.
+
+        Spherical harmonics of radiance: real, orthonormal, y z x for the first band. irradiance()
+        makes the light of normals from them.
+
+        >>> with relumine.Relighter(scene, harmonics=3) as lit:
+        ...     _ = lit.set_environment(environment)
+        ...     lit.harmonics.shape
+        (6912, 9, 3)
+        """
+        result: Floats = view(self._core.harmonics())
+        return result
+
+    def save_harmonics(self, path: Path) -> None:
+        """Writes `harmonics`: .npy, .exr (layers; not of vertices), .json (points: three.js)."""
+        with errors(path):
+            self._core.save_harmonics(os.fspath(path))
 
     # Layers
 

@@ -6,10 +6,10 @@ import os
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Floats, Indices, expect, view
+from ._arrays import Floats, Indices, expect, floats, view
 from ._core import Scene as CoreScene
 from ._files import Path, errors
 from ._mesh import Mesh, warn
@@ -63,6 +63,12 @@ def _materials(material: Union[Material, Mapping[str, Material], None]) -> List[
     return result
 
 
+def _receivers(receivers: Union[str, ArrayLike]) -> Any:
+    if isinstance(receivers, str):
+        return receivers
+    return floats("receivers", receivers, None, 3)
+
+
 def precompute(
     mesh: Union[Mesh, ArrayLike],
     triangles: Optional[ArrayLike] = None,
@@ -73,7 +79,8 @@ def precompute(
     face_resolution: Optional[int] = None,
     bias: Optional[float] = None,
     engine: str = "beam",
-    receivers: str = "vertices",
+    receivers: Union[str, ArrayLike] = "vertices",
+    box: Any = None,
     refine: bool = True,
     view: Any = None,
     material: Union[Material, Mapping[str, Material], None] = None,
@@ -93,7 +100,10 @@ def precompute(
     tolerance  RMS error of the transfer allowed within a cluster, in 1/sr (0.0135; 0.025 where
                vertices were added)
     epsilon    the paper's form of it; excludes `tolerance`
-    receivers  "vertices"; "pixels:WxH[:N]", what a fixed camera sees; "texels:WxH", a lightmap
+    receivers  "vertices"; "pixels:WxH[:N]", what a fixed camera sees; "texels:WxH", a lightmap;
+               "grid:NXxNYxNZ", "points:FILE" or an array (N, 3): points in space, which have no
+               surface and see the whole sphere
+    box        of a grid: ((x0, y0, z0), (x1, y1, z1)); None: the mesh's
     refine     a coarse mesh gets more vertices where its light needs them, behind its own; False
                keeps it as it is
     view       the eye of highlights and the camera of pixels: "auto", (eye, target) or
@@ -129,7 +139,8 @@ def precompute(
         "face_resolution": face_resolution,
         "bias": bias,
         "engine": engine,
-        "receivers": receivers,
+        "receivers": _receivers(receivers),
+        "box": box,
         "no_refine": not refine,
         "view": view,
         "material": _materials(material),
@@ -159,7 +170,8 @@ def plan(
     min_depth: Optional[int] = None,
     face_resolution: Optional[int] = None,
     bias: Optional[float] = None,
-    receivers: str = "vertices",
+    receivers: Union[str, ArrayLike] = "vertices",
+    box: Any = None,
     refine: bool = True,
     view: Any = None,
     progress: Optional[Progress] = None,
@@ -182,7 +194,8 @@ def plan(
         "min_depth": min_depth,
         "face_resolution": face_resolution,
         "bias": bias,
-        "receivers": receivers,
+        "receivers": _receivers(receivers),
+        "box": box,
         "no_refine": not refine,
         "view": view,
         "output": os.fspath(output),
@@ -274,6 +287,13 @@ class Scene:
     def positions(self) -> Floats:
         """(num_receivers, 3) float32, read-only: the points that are lit."""
         result: Floats = view(self._core.receiver_positions)
+        return result
+
+    @property
+    def inside(self) -> NDArray[np.bool_]:
+        """(num_receivers,) bool: points inside of an object, which have their neighbour's light."""
+        origins: Floats = view(self._core.receiver_origins)
+        result: NDArray[np.bool_] = (self.positions != origins).any(axis=1)
         return result
 
     @property

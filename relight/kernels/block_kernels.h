@@ -17,6 +17,23 @@
 
 namespace relumine::relight {
 
+/// Whether a block that is updated must be summed anew.
+struct BlockBrightness {
+    /// Brightness when the block was last summed, and the largest since then.
+    double summed = 0.0;
+    double largest = 0.0;
+
+    /// Takes note of the brightness after a sum.
+    void set_summed(double brightness) { summed = largest = brightness; }
+    /// Takes note of the brightness after an update. Returns whether the block has dimmed so far
+    /// that roundings of brighter light may show, and it must be summed anew: to a 64th of what was
+    /// summed in float, or to 2^-30 of what was added in double.
+    [[nodiscard]] bool has_dimmed_to(double brightness) {
+        largest = std::max(largest, brightness);
+        return brightness < summed / 64.0 || brightness < 0x1p-30 * largest;
+    }
+};
+
 /// The light that a block of 16 receivers has received, in two parts. Clusters that all 16 see
 /// whole, above their horizons, add up to one vector. Other clusters add up per receiver.
 ///
@@ -28,19 +45,7 @@ struct alignas(64) BlockLight {
     std::array<std::array<double, prt::BlockSize>, 3> mixed{};
     /// Vector irradiance over 16 pi.
     std::array<double, ClusterLights::Stride> visible{};
-    /// Brightness when light_tile() last summed the block, and the largest since then.
-    double summed = 0.0;
-    double largest = 0.0;
-
-    /// Takes note of the brightness after light_tile().
-    void set_summed(double brightness) { summed = largest = brightness; }
-    /// Takes note of the brightness after update_tile(). Returns whether the block has dimmed so
-    /// far that roundings of brighter light may show, and it must be summed anew: to a 64th of what
-    /// light_tile() summed in float, or to 2^-30 of what update_tile() added in double.
-    [[nodiscard]] bool has_dimmed_to(double brightness) {
-        largest = std::max(largest, brightness);
-        return brightness < summed / 64.0 || brightness < 0x1p-30 * largest;
-    }
+    BlockBrightness brightness = {};
 };
 
 /// Outgoing radiance of a block's receivers for albedo 1, [channel][receiver]. Kernels write all of

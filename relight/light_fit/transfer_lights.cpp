@@ -169,6 +169,8 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
                                                   const TransferLightOptions& options) {
     if (relighter.environment().resolution == 0 || relighter.shadow_rays().blockers == nullptr)
         throw std::invalid_argument("expected a relighter with an environment and shadow rays");
+    if (relighter.transfer().have_no_surface)
+        throw std::invalid_argument("expected receivers on surfaces, got points in space");
     if (count == 0)
         throw std::invalid_argument("expected at least one light");
     std::vector<glm::dvec3> candidates = Candidates(relighter.environment()).directions();

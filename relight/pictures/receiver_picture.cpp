@@ -150,4 +150,13 @@ Picture compose(const prt::TexelLayout& layout, std::span<const glm::vec3> radia
     return picture;
 }
 
+Picture compose_rows(const prt::PlaceGrid& rows, std::span<const glm::vec3> radiance) {
+    Picture picture{.width = rows.width, .height = rows.height};
+    picture.pixels.assign(radiance.begin(), radiance.end());
+    picture.pixels.resize(std::size_t{rows.width} * rows.height, glm::vec3(0.0f));
+    picture.alpha.resize(picture.pixels.size());
+    std::fill_n(picture.alpha.begin(), radiance.size(), 1.0f);
+    return picture;
+}
+
 } // namespace relumine::relight

@@ -41,4 +41,8 @@ using cubemap::Picture;
 [[nodiscard]] Picture compose(const prt::TexelLayout& layout, std::span<const glm::vec3> radiance,
                               std::uint32_t gutter = 16);
 
+/// Composes the picture of points in space: one after the other, row by row. Alpha is 0 behind the
+/// last one.
+[[nodiscard]] Picture compose_rows(const prt::PlaceGrid& rows, std::span<const glm::vec3> radiance);
+
 } // namespace relumine::relight

@@ -61,7 +61,7 @@ Tile tile_at(const cubemap::CubeMap& environment, std::span<const double> solid_
 class ExactReceiver {
 public:
     ExactReceiver(const prt::Receivers& receivers, std::uint32_t index, float bias)
-        : normal_(receivers.normals[index]),
+        : has_surface_(!receivers.have_no_surface), normal_(receivers.normals[index]),
           origin_(prt::ray_origin(receivers.positions[index], normal_, bias)) {
         if (!receivers.surfaces.empty())
             surface_ = receivers.surfaces[index];
@@ -70,6 +70,13 @@ public:
     }
 
     void add(const Tile& tile, const prt::Blockers& blockers, prt::Lobes<glm::dvec3>& sums) const {
+        if (!has_surface_) {
+            constexpr double Part = 0.25 * std::numbers::inv_pi; // of the sphere
+            std::uint32_t reached = tile.lit & ~blockers.occluded(origin_, tile.packet, tile.lit);
+            for (; reached != 0; reached &= reached - 1)
+                sums.diffuse += tile.power[static_cast<std::size_t>(std::countr_zero(reached))] * Part;
+            return;
+        }
         const bool diffuse_only = surface_.highlight == prt::Highlight::None;
         std::uint32_t lit = prt::lit_lanes(blockers, origin_, normal_, tile.packet, tile.lit);
         for (; lit != 0; lit &= lit - 1) {
@@ -98,6 +105,7 @@ public:
     }
 
 private:
+    bool has_surface_;
     glm::vec3 normal_;
     glm::vec3 origin_;
     /// Zero is below every horizon: no highlight.

@@ -64,6 +64,7 @@ std::size_t TracedLight::trace(std::span<const SharpLight> lights) {
         of_light.push_back(place->second.get());
     }
     reached_ = std::move(reached);
+    of_light_.assign(of_light.begin(), of_light.end());
     rays_.blockers->prepare(std::uint64_t{num_fresh} * transfer_.num_receivers());
 
     constexpr std::size_t BlocksPerGroup = prt::ReceiverGroup::MaxSize / prt::BlockSize;
@@ -117,7 +118,9 @@ void TracedLight::find_reached(const FreshPatch& patch, std::size_t first,
         const glm::vec3 direction = patch.directions.direction(j);
         for (std::size_t i = 0; i < of_group.size(); ++i)
             of_group[i] |=
-                static_cast<std::uint64_t>(prt::is_above(transfer_.normals[first + i], direction))
+                static_cast<std::uint64_t>(
+                    transfer_.have_no_surface ||
+                    prt::is_above(transfer_.normals[first + i], direction))
                 << j;
     }
     for (const std::uint64_t bits : of_group)

@@ -39,6 +39,12 @@ public:
     [[nodiscard]] const TracedRadiance* diffuse(std::size_t block) const {
         return diffuse_.empty() ? nullptr : &diffuse_[block];
     }
+    /// Whether lights are traced at all.
+    [[nodiscard]] bool is_traced() const { return rays_.blockers != nullptr; }
+    /// Returns which receivers of a block a light of the last trace() reaches: bit i for receiver i.
+    [[nodiscard]] std::uint16_t reached(std::size_t light, std::size_t block) const {
+        return (*of_light_[light])[block];
+    }
     /// Returns a receiver's radiance through all lobes but the diffuse one, which stays 0.
     [[nodiscard]] prt::Lobes<glm::vec3> highlights(std::size_t place) const {
         return highlights_.empty() ? prt::Lobes<glm::vec3>() : highlights_[place];
@@ -68,6 +74,8 @@ private:
     ShadowRays rays_;
     /// Of the present lights.
     ReachedBlocks reached_;
+    /// By light.
+    std::vector<const Reached*> of_light_;
     /// [num_blocks]; empty where nothing is traced.
     std::vector<TracedRadiance> diffuse_;
     /// [num_receivers] by place; empty without traced highlights.

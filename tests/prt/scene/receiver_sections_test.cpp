@@ -11,6 +11,7 @@
 
 #include "prt/precompute.h"
 #include "prt/receivers/pixel_receivers.h"
+#include "prt/receivers/point_receivers.h"
 #include "prt/receivers/texel_receivers.h"
 #include "prt/scene/scene_file.h"
 #include "prt/visibility/ray_scene.h"
@@ -57,6 +58,27 @@ Scene texel_scene() {
     return scene;
 }
 
+Scene point_scene() {
+    Scene scene;
+    scene.mesh = scenes::box(glm::vec3(-1.0f), glm::vec3(1.0f));
+    const std::vector<glm::vec3> points = {{0, 0, 0}, {0, 2, 0}, {3, 0, 0.5f}};
+    scene.receivers = point_receivers(points, scene.mesh, RayScene(scene.mesh));
+    scene.layout = PointLayout{.count = 3, .indices = {0, 1, 2}};
+    precompute(scene);
+    return scene;
+}
+
+Scene grid_scene() {
+    Scene scene;
+    scene.mesh = scenes::box(glm::vec3(-1.0f), glm::vec3(1.0f));
+    GridLayout grid{.nx = 2, .ny = 1, .nz = 3, .low = {2, 2, 2}, .high = {3, 3, 3}};
+    grid.indices = {0, 1, 2, 3, 4, 5};
+    scene.receivers = point_receivers(grid_points(grid), scene.mesh, RayScene(scene.mesh));
+    scene.layout = std::move(grid);
+    precompute(scene);
+    return scene;
+}
+
 void add_surfaces(Scene& scene) {
     for (std::size_t i = 0; i < scene.receivers.size(); ++i)
         scene.receivers.surfaces.push_back({.albedo = glm::vec3(0.001f * static_cast<float>(i)),
@@ -71,6 +93,8 @@ void expect_same(const Receivers& a, const Receivers& b) {
     EXPECT_EQ(a.to_eye, b.to_eye);
     EXPECT_EQ(a.surfaces, b.surfaces);
     EXPECT_EQ(a.points, b.points);
+    EXPECT_EQ(a.own_positions, b.own_positions);
+    EXPECT_EQ(a.have_no_surface, b.have_no_surface);
 }
 
 class ReceiverSectionsTest : public testing::Test {
@@ -125,6 +149,27 @@ TEST_F(ReceiverSectionsTest, TexelsComeBack) {
     expect_round_trip(scene);
     add_surfaces(scene);
     expect_round_trip(scene);
+}
+
+TEST_F(ReceiverSectionsTest, PointsAndGridsComeBack) {
+    const Scene points = point_scene();
+    ASSERT_TRUE(points.receivers.is_inside(0));
+    expect_round_trip(points);
+    EXPECT_TRUE(load_scene(file_).transfer.have_no_surface);
+    expect_round_trip(grid_scene());
+}
+
+TEST_F(ReceiverSectionsTest, PointsThatDoNotFitAreRefused) {
+    save_scene(file_, point_scene());
+    const Sections good = read_sections(file_);
+    const float none = std::numeric_limits<float>::quiet_NaN();
+    refused(good, "finite coordinates of points", [&](Sections& sections) {
+        std::memcpy(sections.at("r_own_positions").data(), &none, sizeof none);
+    });
+    refused(good, "'r_own_positions'",
+            [](Sections& sections) { sections.at("r_own_positions").resize(12); });
+    refused(good, "'r_positions'",
+            [](Sections& sections) { sections.at("r_positions").resize(24); });
 }
 
 TEST_F(ReceiverSectionsTest, PlainVerticesAddNothing) {

@@ -1,0 +1,149 @@
+// Points in space and grids: `relumine precompute --receivers points:FILE`, `relumine relight
+// --harmonics FILE`.
+#include <algorithm>
+#include <cmath>
+
+#include "tests/app/command.h"
+#include "tests/app/formats.h"
+#include "tests/app/small_files.h"
+
+namespace relumine::app {
+namespace {
+
+class PointsCommand : public AppTest {
+protected:
+    PointsCommand() {
+        write("mesh.obj", octahedron_obj());
+        write("white.hdr", white_hdr());
+        // A .ply without faces: far above, near, and in the octahedron.
+        write("points.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty "
+                            "float y\nproperty float z\nend_header\n0 50 0\n0 1.5 0\n0.1 0 0\n");
+    }
+    Result precompute(const std::string& receivers, const std::vector<std::string>& options = {},
+                      const std::string& output = "scene.prt") const {
+        std::vector<std::string> arguments = {"precompute",  "mesh.obj", "-o", output,
+                                              "--receivers", receivers,  "-v"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        return succeed(arguments);
+    }
+};
+
+TEST_F(PointsCommand, HaveTheMeanRadianceOfTheirSphere) {
+    const Result result = precompute("points:points.ply");
+    EXPECT_NE(result.err.find("1 of 3 points lie inside of objects"), std::string::npos)
+        << result.described();
+    succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.npy", "--harmonics", "sh.npy", "-q"});
+    const auto values = npy_values(read("lit.npy"));
+    ASSERT_EQ(values.size(), 3u);
+    EXPECT_NEAR(values[0][1], 1.0f, 1e-3f);
+    // The octahedron hides a part of the sphere, and the point inside looks from the near one.
+    EXPECT_GT(values[1][1], 0.8f);
+    EXPECT_LT(values[1][1], 0.98f);
+    EXPECT_EQ(values[2], values[1]);
+    const auto light = npy_values(read("sh.npy"));
+    ASSERT_EQ(light.size(), 3u * 9u);
+    EXPECT_NEAR(light[0][0], 2.0 * std::sqrt(3.14159265), 4e-3);
+    EXPECT_LT(light[10][0], -0.05f); // dark where the octahedron is: below
+}
+
+TEST_F(PointsCommand, GridsFillTheirBoxAndBecomePicturesAndProbes) {
+    precompute("grid:3x2x2", {"--box", "-3,2,-3,3,4,3"});
+    const auto info = succeed({"info", "scene.prt", "--json"}).json();
+    EXPECT_EQ(info.at("receivers").at("kind"), "grid") << info;
+    EXPECT_EQ(info.at("receivers").at("nx"), 3);
+    succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.exr", "--harmonics", "sh.exr", "-q"});
+    EXPECT_EQ(exr_size(read("lit.exr")), (Size{3, 4}));
+    const auto channels = exr_channels(folder() / "sh.exr");
+    ASSERT_TRUE(channels.contains("L2p2.B"));
+    EXPECT_EQ(channels.at("L1m1.G").size(), 12u);
+    succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.png", "--harmonics", "sh.json",
+             "--harmonics-order", "2", "-q"});
+    const auto probes = nlohmann::json::parse(read("sh.json")).at("object");
+    EXPECT_EQ(probes.at("type"), "Group");
+    ASSERT_EQ(probes.at("children").size(), 12u);
+    const auto& first = probes.at("children").at(0);
+    EXPECT_EQ(first.at("type"), "LightProbe");
+    ASSERT_EQ(first.at("sh").size(), 27u);
+    EXPECT_EQ(first.at("sh").at(26), 0.0);
+    EXPECT_FLOAT_EQ(first.at("matrix").at(12).get<float>(), -2.0f);
+    EXPECT_FLOAT_EQ(first.at("matrix").at(13).get<float>(), 2.5f);
+    EXPECT_FLOAT_EQ(first.at("matrix").at(14).get<float>(), -1.5f);
+}
+
+TEST_F(PointsCommand, PartsAndThreadsMakeTheSameBytes) {
+    const std::vector<std::string> how = {"mesh.obj", "--receivers", "grid:16x8x10", "--tolerance",
+                                          "0.03",     "-q"};
+    const auto with = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin() + 1, how.begin(), how.end());
+        return arguments;
+    };
+    succeed(with({"precompute", "-o", "one.prt", "--threads", "1"}));
+    succeed(with({"precompute", "-o", "two.prt", "--threads", "2"}));
+    EXPECT_EQ(read("one.prt"), read("two.prt"));
+
+    succeed(with({"plan", "-o", "scene.plan"}));
+    succeed({"precompute", "--plan", "scene.plan", "--part", "1/1", "-o", "all.part", "-q"});
+    succeed({"join", "all.part", "-o", "all.prt", "-q"});
+    for (const char* part : {"1", "2"})
+        succeed({"precompute", "--plan", "scene.plan", "--part", std::string(part) + "/2", "-o",
+                 std::string(part) + ".part", "-q"});
+    succeed({"join", "1.part", "2.part", "-o", "joined.prt", "-q"});
+    EXPECT_EQ(read("all.prt"), read("joined.prt"));
+
+    succeed({"relight", "one.prt", "white.hdr", "-o", "whole.npy", "--harmonics", "a.npy", "-q",
+             "--threads", "1"});
+    succeed({"relight", "one.prt", "white.hdr", "-o", "again.npy", "--harmonics", "b.npy", "-q"});
+    EXPECT_EQ(read("a.npy"), read("b.npy"));
+    for (const char* part : {"1", "2"})
+        succeed({"relight", "one.prt", "white.hdr", "--part", std::string(part) + "/2", "-o",
+                 std::string(part) + ".lit", "-q"});
+    succeed({"join", "1.lit", "2.lit", "-o", "parts.npy", "-q"});
+    EXPECT_EQ(read("parts.npy"), read("whole.npy"));
+}
+
+TEST_F(PointsCommand, VerticesHaveHarmonicsToo) {
+    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "-q", "--no-refine"});
+    succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.npy", "--harmonics", "sh.npy",
+             "--harmonics-order", "2", "-q"});
+    const auto light = npy_values(read("sh.npy"));
+    ASSERT_EQ(light.size(), 6u * 4u);
+    // The irradiance of vertex +X along its normal: pi, by c0 Y0 pi + c3 Y3 2 pi / 3.
+    EXPECT_NEAR(0.886227 * light[0][0] + 1.023328 * light[3][0], 3.14159265, 2e-3);
+    misuse({"relight", "scene.prt", "white.hdr", "-o", "x.png", "--harmonics", "sh.exr"},
+           "--harmonics");
+}
+
+TEST_F(PointsCommand, BadInput) {
+    const auto refuse = [&](const std::string& receivers, const std::string& part,
+                            const std::vector<std::string>& options = {}) {
+        std::vector<std::string> arguments = {"precompute",  "mesh.obj", "-o", "new.prt",
+                                              "--receivers", receivers};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        misuse(arguments, part);
+    };
+    refuse("grid:0x2x2", "expected a grid of 1 to");
+    refuse("grid:2x2", "grid:NXxNYxNZ");
+    refuse("grid:20000x1x1", "expected a grid of 1 to");
+    refuse("points:points.txt", ".npy or .ply");
+    refuse("grid:2x2x2", "--box", {"--box", "1,0,0,0,1,1"});
+    refuse("grid:2x2x2", "--view", {"--view", "auto"});
+    refuse("grid:2x2x2", "--bounces", {"--bounces", "0.01"});
+    refuse("vertices", "--box", {"--box", "0,0,0,1,1,1"});
+    write("nan.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                     "property float z\nend_header\n0 nan 0\n");
+    fail({"precompute", "mesh.obj", "-o", "new.prt", "--receivers", "points:nan.ply"},
+         {"nan.ply: expected points with finite coordinates, got (0, nan, 0)"});
+    fail({"precompute", "mesh.obj", "-o", "new.prt", "--receivers", "points:none.npy"},
+         {"none.npy"});
+    precompute("points:points.ply", {"-q"});
+    for (const char* order : {"1", "7"})
+        misuse({"relight", "scene.prt", "white.hdr", "-o", "x.png", "--harmonics", "sh.npy",
+                "--harmonics-order", order},
+               "--harmonics-order");
+    misuse({"relight", "scene.prt", "white.hdr", "-o", "x.png", "--harmonics", "sh.png"},
+           "--harmonics");
+    misuse({"relight", "scene.prt", "white.hdr", "-o", "x.ply"}, "--output");
+}
+
+} // namespace
+} // namespace relumine::app

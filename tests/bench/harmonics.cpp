@@ -1,0 +1,219 @@
+// Points in space and spherical harmonics: how right they are, and what they take.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "data_gen/environments.h"
+#include "data_gen/scenes.h"
+#include "prt/receivers/point_receivers.h"
+#include "relight/harmonics/harmonics.h"
+#include "relight/reference/exact.h"
+#include "relight/reference/exact_harmonics.h"
+#include "relumine/relumine.h"
+#include "tests/bench/inputs.h"
+#include "tests/bench/times.h"
+
+using namespace relumine;
+
+namespace {
+
+struct Settings {
+    std::uint32_t num_points = 2000;
+    std::uint32_t resolution = 256;
+    /// Of exact integration.
+    std::uint32_t exact_resolution = 128;
+    int passes = 9;
+};
+
+struct NamedMap {
+    std::string name;
+    cubemap::CubeMap map;
+};
+
+/// Five probes, and the sun and sky; generated ones where they are absent.
+std::vector<NamedMap> environments(const bench::Inputs& inputs, std::uint32_t resolution) {
+    std::vector<NamedMap> maps;
+    for (const char* name : {"grace_cross.hdr", "stpeters_cross.hdr", "galileo_cross.hdr",
+                             "beach_cross.hdr", "kitchen_cross.hdr"})
+        maps.push_back({name, inputs.environment(name, resolution)});
+    maps.push_back({"sun and sky", data_gen::sun_and_sky(resolution)});
+    return maps;
+}
+
+double relative_l2(std::span<const glm::dvec3> values, std::span<const glm::dvec3> exact) {
+    double error = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+        error += glm::dot(values[i] - exact[i], values[i] - exact[i]);
+        all += glm::dot(exact[i], exact[i]);
+    }
+    return std::sqrt(error / all);
+}
+
+/// Points anywhere in the mesh's box that are not inside of anything.
+std::vector<glm::vec3> random_points(const mesh::TriangleMesh& mesh, std::size_t count) {
+    const mesh::Bounds box = mesh::bounds(mesh);
+    const prt::RayScene rays(mesh);
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> part(0.02f, 0.98f);
+    std::vector<glm::vec3> points(count);
+    for (glm::vec3& point : points)
+        point = box.min + box.size() * glm::vec3(part(random), part(random), part(random));
+    const prt::Receivers receivers = prt::point_receivers(points, mesh, rays);
+    return receivers.positions;
+}
+
+void measure_points(const Settings& settings, const bench::Inputs& inputs,
+                    const mesh::TriangleMesh& colonnade) {
+    const std::vector<glm::vec3> points = random_points(colonnade, settings.num_points);
+    PrecomputeReport report;
+    const LitScene made(precompute(Mesh(colonnade), {.receivers = Points{.positions = points}}, {},
+                                   &report));
+    const Scene& scene = made.scene();
+    fmt::print("\n{} points in the colonnade: {} clusters, precompute {:.2f} s\n\n| light | "
+               "coefficients against exact integration, relative L2 |\n|---|---|\n",
+               points.size(), report.clusters.num_clusters, report.clusters.seconds);
+    std::vector<std::uint32_t> all(points.size());
+    for (std::uint32_t i = 0; i < all.size(); ++i)
+        all[i] = i;
+    LitScene lit(scene, {.harmonics = 3});
+    for (NamedMap& environment : environments(inputs, settings.exact_resolution)) {
+        const std::vector<glm::dvec3> exact = relight::exact_harmonics(
+            scene.receivers, all, lit.rays().of_mesh(), environment.map, 3, scene.settings.bias);
+        lit.light(std::move(environment.map));
+        const std::vector<glm::vec3> light = lit.harmonics();
+        fmt::print("| {} | {:.5f} |\n", environment.name,
+                   relative_l2(std::vector<glm::dvec3>(light.begin(), light.end()), exact));
+        std::fflush(stdout);
+    }
+}
+
+/// Irradiance of normals that are turned by 30 degrees, and of the surfaces' own.
+void measure_normals(const Settings& settings, const bench::Inputs& inputs, const Scene& bunny) {
+    LitScene lit(bunny, {.harmonics = 3});
+    const std::vector<std::uint32_t> chosen = relight::random_receivers(
+        bunny.transfer, std::min<std::size_t>(settings.num_points, 1000), 5);
+    constexpr float Angle = std::numbers::pi_v<float> / 6.0f;
+    std::vector<glm::vec3> normals;
+    std::mt19937 random(2);
+    std::uniform_real_distribution<float> around(0.0f, 2.0f * std::numbers::pi_v<float>);
+    for (const std::uint32_t i : chosen) {
+        const glm::vec3& n = bunny.receivers.normals[i];
+        const glm::vec3 u = glm::normalize(
+            glm::cross(n, std::abs(n.x) < 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0)));
+        const float angle = around(random);
+        const glm::vec3 side = std::cos(angle) * u + std::sin(angle) * glm::cross(n, u);
+        normals.push_back(std::cos(Angle) * n + std::sin(Angle) * side);
+    }
+    fmt::print("\n| light | irradiance of normals 30 degrees off, bunny, relative L2 | largest "
+               "error at the own normal |\n|---|---|---|\n");
+    std::vector<double> errors;
+    for (NamedMap& environment : environments(inputs, settings.exact_resolution)) {
+        const std::vector<glm::dvec3> exact =
+            relight::exact_irradiance(bunny.receivers, chosen, normals, lit.rays().of_mesh(),
+                                      environment.map, bunny.settings.bias);
+        lit.light(std::move(environment.map));
+        const std::vector<glm::vec3> light = lit.harmonics();
+        std::vector<glm::dvec3> turned;
+        double largest = 0.0;
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            const auto own = std::span(light).subspan(std::size_t{9} * chosen[i], 9);
+            turned.push_back(relight::irradiance(own, normals[i]));
+            const glm::dvec3 at_normal =
+                relight::irradiance(own, bunny.receivers.normals[chosen[i]]) / std::numbers::pi;
+            const glm::dvec3 radiance(lit.radiance()[chosen[i]]);
+            for (int channel = 0; channel < 3; ++channel)
+                largest = std::max(largest, std::abs(at_normal[channel] - radiance[channel]) /
+                                                std::max(radiance[channel], 1e-3));
+        }
+        errors.push_back(relative_l2(turned, exact));
+        fmt::print("| {} | {:.4f} | {:.1e} |\n", environment.name, errors.back(), largest);
+        std::fflush(stdout);
+    }
+    fmt::print("median {:.4f}\n", bench::median(errors));
+}
+
+/// What nine coefficients cost beside radiance.
+void measure_relight(const Settings& settings, const bench::Inputs& inputs, const Scene& bunny) {
+    const cubemap::CubeMap map = inputs.environment("grace_cross.hdr", settings.resolution);
+    std::vector<double> alone, with, alone_sums, with_sums;
+    relight::Relighter radiance(bunny.transfer), both(bunny.transfer, {}, 3);
+    for (int pass = 0; pass < settings.passes; ++pass) {
+        const relight::UpdateReport a = radiance.set_environment(map), b = both.set_environment(map);
+        alone.push_back(1e3 * a.seconds);
+        with.push_back(1e3 * b.seconds);
+        alone_sums.push_back(1e3 * a.seconds_relight);
+        with_sums.push_back(1e3 * b.seconds_relight);
+    }
+    fmt::print("\nbunny, R = {}: radiance alone {:.1f} ms (sums {:.1f}), with 9 coefficients "
+               "{:.1f} (sums {:.1f}): {:.2f} times (sums {:.2f})\n",
+               settings.resolution, bench::median(alone), bench::median(alone_sums),
+               bench::median(with), bench::median(with_sums),
+               bench::median(with) / bench::median(alone),
+               bench::median(with_sums) / bench::median(alone_sums));
+}
+
+/// A grid of probes: what the precompute, a relight and an edit take.
+void measure_grid(const Settings& settings, const bench::Inputs& inputs,
+                  const mesh::TriangleMesh& colonnade) {
+    PrecomputeReport report;
+    const bench::Stopwatch watch;
+    Scene scene = precompute(Mesh(colonnade), {.receivers = Grid{16, 8, 16}}, {}, &report);
+    const double seconds = watch.seconds();
+    LitScene lit(std::move(scene), {.harmonics = 3});
+    const cubemap::CubeMap map = inputs.environment("grace_cross.hdr", settings.resolution);
+    std::vector<double> relight, sums, edit;
+    for (int pass = 0; pass < settings.passes; ++pass) {
+        const UpdateReport times = lit.light(Light(cubemap::CubeMap(map)));
+        relight.push_back(1e3 * times.seconds);
+        sums.push_back(1e3 * times.seconds_relight);
+    }
+    lit.edit(lit.state());
+    for (int pass = 0; pass < settings.passes; ++pass) {
+        const UpdateReport times = set_layers(
+            lit, {bench::disc({1.0, 1.0 + 0.01 * pass, 0.3}, 0.05, 2.0 + 0.1 * pass)});
+        edit.push_back(1e3 * times.seconds);
+    }
+    fmt::print("\ngrid 16 x 8 x 16 in the colonnade: precompute {:.2f} s ({} clusters, {:.0f} M "
+               "rays), {} points inside\nR = {}: relight {:.2f} ms (sums {:.2f}), edit of a disc "
+               "{:.3f} ms\n",
+               seconds, report.clusters.num_clusters,
+               1e-6 * static_cast<double>(report.clusters.num_rays),
+               prt::num_inside(lit.scene().receivers), settings.resolution,
+               bench::median(relight), bench::median(sums), bench::median(edit));
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    Settings settings;
+    bench::Program program("harmonics", "points in space and spherical harmonics");
+    bench::Inputs inputs(program);
+    inputs.add_scene();
+    bool no_exact = false;
+    program.add("--points", settings.num_points, "points that are integrated exactly");
+    program.add("--resolution", settings.resolution, "R of what is timed");
+    program.add("--exact-resolution", settings.exact_resolution, "R of what is integrated exactly");
+    program.add("--passes", settings.passes);
+    program.add_flag("--no-exact", no_exact, "times alone");
+    return program.run(argc, argv, [&] {
+        if (program.is_tiny())
+            settings = {.num_points = 20, .resolution = 16, .exact_resolution = 16, .passes = 2};
+        const mesh::TriangleMesh colonnade = data_gen::colonnade(program.is_tiny() ? 2000 : 100'000);
+        const Scene bunny = inputs.bunny();
+        measure_grid(settings, inputs, colonnade);
+        measure_relight(settings, inputs, bunny);
+        if (no_exact)
+            return;
+        measure_normals(settings, inputs, bunny);
+        measure_points(settings, inputs, colonnade);
+    });
+}
