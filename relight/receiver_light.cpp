@@ -104,21 +104,6 @@ std::size_t ReceiverLight::update(const ClusterSums& sums, std::span<const std::
     return std::min(num_blocks * prt::BlockSize, radiance_.size());
 }
 
-glm::dvec3 ReceiverLight::from_cluster(std::size_t place, std::size_t cluster) const {
-    const prt::VisibleCounts& counts = transfer_.counts;
-    const double count = counts.count(place, cluster);
-    if (count == 0.0)
-        return glm::dvec3(0.0);
-    const std::size_t block = place / prt::BlockSize, w = cluster / 64;
-    const std::size_t tile = block / prt::VisibleCounts::TileBlocks;
-    const std::uint64_t whole = counts.visible[counts.word(block, w)] &
-                                ~words_.across_of(words_.words[tile * counts.words_per_block() + w],
-                                                  block % prt::VisibleCounts::TileBlocks);
-    const glm::vec3& normal = transfer_.normals[place];
-    return count * ((whole >> (cluster % 64) & 1u) != 0 ? lights_.of_vectors(cluster, normal)
-                                                        : lights_.of_directional(cluster, normal));
-}
-
 void ReceiverLight::light_glossy(std::size_t block) {
     if (!pyramid_)
         return;

@@ -58,12 +58,16 @@ public:
     }
     [[nodiscard]] std::vector<glm::vec3> soft_radiance() const;
     [[nodiscard]] std::vector<prt::Lobes<glm::vec3>> lobes(bool with_sharp_lights) const;
-    [[nodiscard]] glm::dvec3 from_cluster(std::size_t place, std::size_t cluster) const;
 
-private:
+    // What the radiance is summed from.
     [[nodiscard]] BlockScene block_scene() const {
         return {.counts = transfer_.counts, .words = words_, .normals = normals_};
     }
+    /// Sharp lights left out.
+    [[nodiscard]] const ClusterLights& cluster_lights() const { return lights_; }
+    [[nodiscard]] const TracedLight& traced() const { return traced_; }
+
+private:
     void light_glossy(std::size_t block);
     /// Returns the block's brightness.
     double write_radiance(std::size_t block);

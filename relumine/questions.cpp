@@ -10,7 +10,8 @@
 
 #include "cubemap/layers/layer_composite.h"
 #include "prt/receivers/pixel_receivers.h"
-#include "relight/contribution.h"
+#include "relight/adjoint/adjoint.h"
+#include "relight/adjoint/contribution.h"
 #include "relight/pictures/framing.h"
 #include "relight/reference/path_tracer.h"
 #include "relight/sharp/light_packets.h"
@@ -233,6 +234,12 @@ cubemap::CubeMap contribution_map(const LitScene& lit, std::span<const std::uint
     return relight::contribution_map(lit.relighter(), receivers,
                                      lit.bounces().bounced().empty() ? nullptr
                                                                      : &lit.bounces().surfaces());
+}
+
+cubemap::CubeMap adjoint(const LitScene& lit, std::span<const glm::vec3> weights) {
+    require_environment(lit);
+    return relight::adjoint(lit.relighter(), weights,
+                            lit.bounces().bounced().empty() ? nullptr : &lit.bounces().surfaces());
 }
 
 Share lit_by(const LitScene& lit, const cubemap::Region& region) {

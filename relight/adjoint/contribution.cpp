@@ -1,13 +1,11 @@
-#include "relight/contribution.h"
+#include "relight/adjoint/contribution.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
-#include "files/parallel.h"
-#include "relight/sharp/light_packets.h"
+#include "relight/adjoint/adjoint.h"
 
 namespace relumine::relight {
 
@@ -108,52 +106,27 @@ cubemap::CubeMap contribution_map(const Relighter& relighter,
     const prt::Transfer& transfer = relighter.transfer();
     if (receivers.empty())
         throw std::invalid_argument("expected at least one receiver");
-    std::vector<std::size_t> place_of(transfer.num_receivers());
-    for (std::size_t place = 0; place < place_of.size(); ++place)
-        place_of[transfer.order[place]] = place;
-
-    // Receivers whose direct light counts, and how much.
-    struct Counted {
-        std::uint32_t receiver = 0;
-        glm::dvec3 factor{0.0};
-    };
-    std::vector<Counted> counted;
-    const double share = 1.0 / static_cast<double>(receivers.size());
+    std::vector<glm::vec3> weights(transfer.num_receivers(), glm::vec3(0.0f));
+    const float share = 1.0f / static_cast<float>(receivers.size());
     for (const std::uint32_t receiver : receivers) {
-        if (receiver >= place_of.size())
+        if (receiver >= weights.size())
             throw std::invalid_argument("expected an index of a receiver");
-        counted.push_back({.receiver = receiver, .factor = glm::dvec3(share)});
+        weights[receiver] += share;
     }
     if (bounces != nullptr) {
-        const std::vector<glm::dvec3> factors = bounce_factors(*bounces, transfer, receivers);
-        for (std::uint32_t receiver = 0; receiver < factors.size(); ++receiver)
-            if (factors[receiver] != glm::dvec3(0.0))
-                counted.push_back({.receiver = receiver, .factor = factors[receiver]});
+        const std::vector<glm::vec3> bounced = bounce_adjoint(*bounces, transfer, weights);
+        for (std::size_t i = 0; i < weights.size(); ++i)
+            weights[i] += bounced[i];
     }
 
+    const LightDerivative derivative = light_derivative(relighter, weights);
     const std::span<const prt::Cell> cells = transfer.quadtree.leaves();
     const std::span<const SharpLight> sharp = relighter.sharp_lights();
-    std::vector<glm::dvec3> from_cluster(cells.size(), glm::dvec3(0.0));
-    std::vector<glm::dvec3> from_sharp(sharp.size(), glm::dvec3(0.0));
-    files::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t cluster) {
-        for (const auto& [receiver, factor] : counted) {
-            const std::size_t place = place_of[receiver];
-            from_cluster[cluster] += factor * relighter.from_cluster(place, cluster);
-        }
-    });
-    const ShadowRays& rays = relighter.shadow_rays();
-    files::parallel_for(std::size_t{0}, sharp.size(), [&](std::size_t i) {
-        const LightPackets packets(sharp.subspan(i, 1)); // one for each light, to tell them apart
-        for (const auto& [receiver, factor] : counted)
-            from_sharp[i] += factor * packets.radiance(rays.positions[receiver],
-                                                       transfer.normals[place_of[receiver]], rays);
-    });
-
     Spreader spreader(relighter.environment());
     for (std::size_t i = 0; i < sharp.size(); ++i)
-        spreader.spread(sharp[i].cell, from_sharp[i], true);
+        spreader.spread(sharp[i].cell, derivative.given_by_sharp[i], true);
     for (std::size_t cluster = 0; cluster < cells.size(); ++cluster)
-        spreader.spread(cells[cluster], from_cluster[cluster], false);
+        spreader.spread(cells[cluster], derivative.given_by_clusters[cluster], false);
     return spreader.take();
 }
 
