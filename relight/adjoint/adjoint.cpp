@@ -111,14 +111,16 @@ VectorIrradiance scaled(const Vectors& vectors, double scale) {
 /// else writes, and goes through all tiles.
 ClusterWeights summed_weights(const BlockScene& scene, const Gates& gates,
                               std::span<const BlockWeights> weights) {
-    // So many words read enough of a tile to be worth its receivers' weights.
-    constexpr std::size_t WordsPerTask = 8;
+    // Few tasks, as each reads the weights of all receivers.
+    constexpr std::size_t TasksPerThread = 4;
     ClusterWeights sums(scene.counts.num_leaves);
+    const std::size_t num_words = scene.counts.words_per_block();
     files::parallel_for(
-        files::IndexRange<std::size_t>(0, scene.counts.words_per_block(), WordsPerTask),
+        files::IndexRange<std::size_t>(
+            0, num_words,
+            std::max<std::size_t>(1, num_words / (TasksPerThread * files::num_threads()))),
         [&](const auto& words) {
-            for (std::size_t tile = 0; tile < scene.counts.num_tiles(); ++tile)
-                add_tile(scene, tile, words.begin(), words.end(), gates, weights, sums);
+            add_receivers(scene, words.begin(), words.end(), gates, weights, sums);
         });
     return sums;
 }

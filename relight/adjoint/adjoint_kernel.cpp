@@ -1,5 +1,6 @@
 #include "relight/adjoint/adjoint_kernel.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "prt/clusters/lattice.h"
@@ -7,8 +8,11 @@
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "relight/adjoint/adjoint_kernel.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "files/parallel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::relight::HWY_NAMESPACE {
@@ -17,9 +21,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = hn::CappedTag<float, prt::BlockSize>;
 
-/// Sums of float for a word's clusters, [cluster][channel x axis][lane]. The lanes are added up at
-/// the end: so vectors of any width give the same bits.
-using LaneSums = std::array<std::array<std::array<float, prt::BlockSize>, BlockWeights::Size>, 64>;
+/// The lanes of a cluster's sums, [channel x axis][lane].
+using LaneSums = std::array<std::array<float, prt::BlockSize>, BlockWeights::Size>;
 
 /// Calls `visit` with the index of each set bit.
 template<typename Visit>
@@ -40,29 +43,144 @@ HWY_INLINE hn::Mask<Floats> is_above(const BlockNormals& normals, std::size_t la
     return hn::Gt(cosine, hn::Zero(d));
 }
 
-/// Adds one pair of block and cluster. Null `counts`: the block sees all of the cluster.
+/// Returns the sum of 16 lanes, in the same order for vectors of any width.
+double sum_of_lanes(const std::array<float, prt::BlockSize>& lanes) {
+    const hn::CappedTag<float, 4> d;
+    const auto even = hn::Add(hn::LoadU(d, lanes.data()), hn::LoadU(d, lanes.data() + 8));
+    const auto odd = hn::Add(hn::LoadU(d, lanes.data() + 4), hn::LoadU(d, lanes.data() + 12));
+    return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, hn::Add(even, odd))));
+}
+
+/// Tiles that are walked through together: so many that adding up lanes takes little time.
+constexpr std::size_t TilesPerGroup = 4;
+
+/// The pairs of a tile and a word that the kernel of lighting adds per receiver, by cluster.
+struct TilePairs {
+    /// [cluster] blocks that see it in part, and whole across a horizon.
+    std::array<std::uint64_t, 64> mixed;
+    std::array<std::uint64_t, 64> across;
+    /// [block] counts of its next mixed cluster
+    std::array<const std::uint8_t*, prt::VisibleCounts::TileBlocks> counts;
+    const BlockNormals* normals;
+    const BlockWeights* weights;
+
+    /// Returns the clusters that have pairs.
+    std::uint64_t set(const BlockScene& scene, std::size_t tile, std::size_t w,
+                      const BlockWeights* of_all) {
+        const std::size_t begin = scene.counts.tile_begin(tile);
+        const TileWord& blocks = scene.words.words[tile * scene.counts.words_per_block() + w];
+        const std::uint64_t* words = scene.counts.mixed.data() + scene.counts.word(begin, w);
+        const std::uint8_t* next =
+            scene.counts.counts.data() + blocks.mixed_before * prt::BlockSize;
+        normals = scene.normals.data() + begin;
+        weights = of_all + begin;
+        mixed = {};
+        across = {};
+        std::uint64_t any = 0;
+        for_bits(blocks.mixed, [&](std::size_t block) {
+            // Clusters go through these counts across the order in which they lie in memory.
+            constexpr std::size_t CacheLine = 64;
+            const std::uint8_t* const end =
+                next + static_cast<std::size_t>(std::popcount(words[block])) * prt::BlockSize;
+            counts[block] = next;
+            for (; next < end; next += CacheLine)
+                hwy::Prefetch(next);
+            next = end;
+            any |= words[block];
+            for_bits(words[block],
+                     [&](std::size_t cluster) { mixed[cluster] |= std::uint64_t{1} << block; });
+        });
+        for_bits(blocks.across, [&](std::size_t block) {
+            const std::uint64_t clusters = scene.words.across_of(blocks, block);
+            any |= clusters;
+            for_bits(clusters,
+                     [&](std::size_t cluster) { across[cluster] |= std::uint64_t{1} << block; });
+        });
+        return any;
+    }
+};
+
+/// Sums of some receivers for a cluster, [channel x axis].
+struct Sums {
+    hn::Vec<Floats> xr, yr, zr, xg, yg, zg, xb, yb, zb;
+
+    // Written out: g++ compiles an implicit constructor without the instruction set of the
+    // functions around it.
+    HWY_INLINE Sums()
+        : xr(hn::Zero(Floats())), yr(xr), zr(xr), xg(xr), yg(xr), zg(xr), xb(xr), yb(xr), zb(xr) {}
+
+    /// Adds products times how much of the cluster each receiver has, by channel.
+    HWY_INLINE void add(const BlockWeights& weights, std::size_t lane, hn::Vec<Floats> red,
+                        hn::Vec<Floats> green, hn::Vec<Floats> blue) {
+        const auto product = [&](std::size_t i) HWY_ATTR {
+            return hn::LoadU(Floats(), weights.products[i].data() + lane);
+        };
+        xr = hn::MulAdd(red, product(0), xr);
+        yr = hn::MulAdd(red, product(1), yr);
+        zr = hn::MulAdd(red, product(2), zr);
+        xg = hn::MulAdd(green, product(3), xg);
+        yg = hn::MulAdd(green, product(4), yg);
+        zg = hn::MulAdd(green, product(5), zg);
+        xb = hn::MulAdd(blue, product(6), xb);
+        yb = hn::MulAdd(blue, product(7), yb);
+        zb = hn::MulAdd(blue, product(8), zb);
+    }
+    HWY_INLINE void store(LaneSums& lanes, std::size_t lane) const {
+        const Floats d;
+        hn::StoreU(xr, d, lanes[0].data() + lane);
+        hn::StoreU(yr, d, lanes[1].data() + lane);
+        hn::StoreU(zr, d, lanes[2].data() + lane);
+        hn::StoreU(xg, d, lanes[3].data() + lane);
+        hn::StoreU(yg, d, lanes[4].data() + lane);
+        hn::StoreU(zg, d, lanes[5].data() + lane);
+        hn::StoreU(xb, d, lanes[6].data() + lane);
+        hn::StoreU(yb, d, lanes[7].data() + lane);
+        hn::StoreU(zb, d, lanes[8].data() + lane);
+    }
+};
+
+/// Adds what some receivers of a block have of a cluster. `count` is how much they see of it.
 template<bool ChannelsDiffer>
-HWY_INLINE void add_pair(const std::uint8_t* counts, const BlockNormals& normals,
-                         const BlockWeights& weights, const float* gates,
-                         std::array<std::array<float, prt::BlockSize>, BlockWeights::Size>& sums) {
+HWY_INLINE void add_inside(hn::Vec<Floats> count, const TilePairs& tile, std::size_t block,
+                           std::size_t lane, const float* gates, Sums& sums) {
+    const BlockNormals& normals = tile.normals[block];
+    const auto red = hn::IfThenElseZero(is_above(normals, lane, gates), count);
+    auto green = red, blue = red;
+    if (ChannelsDiffer) {
+        green = hn::IfThenElseZero(is_above(normals, lane, gates + 3), count);
+        blue = hn::IfThenElseZero(is_above(normals, lane, gates + 6), count);
+    }
+    sums.add(tile.weights[block], lane, red, green, blue);
+}
+
+/// Adds the pairs of a cluster, and goes on to the next one.
+template<bool ChannelsDiffer>
+void add_cluster(std::span<TilePairs> tiles, std::size_t cluster, const float* gates,
+                 ClusterWeights::Sums& result) {
     const Floats d;
     const hn::Rebind<std::uint8_t, Floats> bytes;
     const hn::Rebind<std::int32_t, Floats> integers;
+    LaneSums lanes;
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
-        auto count = hn::Set(d, static_cast<float>(prt::FullCount));
-        if (counts != nullptr)
-            count = hn::ConvertTo(d, hn::PromoteTo(integers, hn::LoadU(bytes, counts + lane)));
-        auto inside = hn::IfThenElseZero(is_above(normals, lane, gates), count);
-        for (std::size_t channel = 0; channel < 3; ++channel) {
-            if (ChannelsDiffer && channel > 0)
-                inside = hn::IfThenElseZero(is_above(normals, lane, gates + 3 * channel), count);
-            for (std::size_t i = 3 * channel; i < 3 * channel + 3; ++i) {
-                const auto product = hn::LoadU(d, weights.products[i].data() + lane);
-                float* sum = sums[i].data() + lane;
-                hn::StoreU(hn::MulAdd(inside, product, hn::LoadU(d, sum)), d, sum);
-            }
+        Sums sums;
+        for (const TilePairs& tile : tiles) {
+            for_bits(tile.mixed[cluster], [&](std::size_t block) HWY_ATTR {
+                const auto count = hn::ConvertTo(
+                    d, hn::PromoteTo(integers, hn::LoadU(bytes, tile.counts[block] + lane)));
+                add_inside<ChannelsDiffer>(count, tile, block, lane, gates, sums);
+            });
+            for_bits(tile.across[cluster], [&](std::size_t block) HWY_ATTR {
+                const auto full = hn::Set(d, static_cast<float>(prt::FullCount));
+                add_inside<ChannelsDiffer>(full, tile, block, lane, gates, sums);
+            });
         }
+        sums.store(lanes, lane);
     }
+    for (std::size_t i = 0; i < BlockWeights::Size; ++i)
+        result[i] += sum_of_lanes(lanes[i]);
+    for (TilePairs& tile : tiles)
+        for_bits(tile.mixed[cluster],
+                 [&](std::size_t block) { tile.counts[block] += prt::BlockSize; });
 }
 
 /// Adds the runs of clusters that blocks see whole: where one begins, and where it has ended.
@@ -97,59 +215,43 @@ std::uint64_t inside_after(const BlockScene& scene, std::size_t tile, std::size_
     return inside;
 }
 
-/// Adds the pairs of a tile and a word that the kernel of lighting adds per receiver.
-void add_pairs(const BlockScene& scene, std::size_t tile, std::size_t w, const Gates& gates,
-               const BlockWeights* weights, LaneSums& lanes, ClusterWeights::Sums* sums) {
+/// Adds a group of tiles to the clusters of words [first_word, last_word).
+void add_tiles(const BlockScene& scene, std::size_t first_tile, std::size_t last_tile,
+               std::size_t first_word, std::size_t last_word, const Gates& gates,
+               const BlockWeights* weights, ClusterWeights& sums) {
     const prt::VisibleCounts& counts = scene.counts;
-    const std::size_t begin = counts.tile_begin(tile);
-    const TileWord& blocks = scene.words.words[tile * counts.words_per_block() + w];
-    const std::uint64_t* mixed_words = counts.mixed.data() + counts.word(begin, w);
-    const std::uint8_t* of_pairs = counts.counts.data() + blocks.mixed_before * prt::BlockSize;
-    const float* gates_of_word = gates.vectors.data() + w * 64 * BlockWeights::Size;
-    const std::uint64_t differ = gates.differ[w];
-    std::uint64_t added = 0;
-    for_bits(blocks.mixed | blocks.across, [&](std::size_t block) {
-        const BlockNormals& normals = scene.normals[begin + block];
-        const auto add = [&](std::size_t cluster, const std::uint8_t* pair) {
-            const float* gate = gates_of_word + cluster * BlockWeights::Size;
-            if ((differ >> cluster & 1u) != 0)
-                add_pair<true>(pair, normals, weights[block], gate, lanes[cluster]);
-            else
-                add_pair<false>(pair, normals, weights[block], gate, lanes[cluster]);
-        };
-        const std::uint64_t across = scene.words.across_of(blocks, block);
-        const std::uint64_t mixed = mixed_words[block];
-        for_bits(across, [&](std::size_t cluster) { add(cluster, nullptr); });
-        for_bits(mixed, [&](std::size_t cluster) {
-            add(cluster, of_pairs);
-            of_pairs += prt::BlockSize;
-        });
-        added |= across | mixed;
-    });
-    for_bits(added, [&](std::size_t cluster) {
-        for (std::size_t i = 0; i < BlockWeights::Size; ++i) {
-            double sum = 0.0;
-            for (const float lane : lanes[cluster][i])
-                sum += static_cast<double>(lane);
-            sums[cluster][i] += sum;
+    std::array<std::uint64_t, TilesPerGroup> inside{};
+    std::array<TilePairs, TilesPerGroup> pairs;
+    const std::span<TilePairs> of_group(pairs.data(), last_tile - first_tile);
+    for (std::size_t tile = first_tile; first_word > 0 && tile < last_tile; ++tile)
+        inside[tile - first_tile] = inside_after(scene, tile, first_word - 1);
+    for (std::size_t w = first_word; w < last_word; ++w) {
+        std::uint64_t any = 0;
+        for (std::size_t tile = first_tile; tile < last_tile; ++tile) {
+            const std::size_t begin = counts.tile_begin(tile);
+            add_runs(scene, scene.words.words[tile * counts.words_per_block() + w],
+                     counts.visible.data() + counts.word(begin, w), weights + begin,
+                     inside[tile - first_tile], sums.whole_steps.data() + w * 64,
+                     counts.num_leaves - w * 64);
+            any |= pairs[tile - first_tile].set(scene, tile, w, weights);
         }
-        lanes[cluster] = {};
-    });
+        for_bits(any, [&](std::size_t cluster) {
+            const float* gate = gates.vectors.data() + (w * 64 + cluster) * BlockWeights::Size;
+            ClusterWeights::Sums& of_cluster = sums.gated[w * 64 + cluster];
+            if ((gates.differ[w] >> cluster & 1u) != 0)
+                add_cluster<true>(of_group, cluster, gate, of_cluster);
+            else
+                add_cluster<false>(of_group, cluster, gate, of_cluster);
+        });
+    }
 }
 
-void add_tile(const BlockScene& scene, std::size_t tile, std::size_t first_word,
-              std::size_t last_word, const Gates& gates, const BlockWeights* weights,
-              ClusterWeights& sums) {
-    const prt::VisibleCounts& counts = scene.counts;
-    const std::size_t begin = counts.tile_begin(tile);
-    alignas(64) LaneSums lanes{};
-    std::uint64_t inside = first_word > 0 ? inside_after(scene, tile, first_word - 1) : 0;
-    for (std::size_t w = first_word; w < last_word; ++w) {
-        add_runs(scene, scene.words.words[tile * counts.words_per_block() + w],
-                 counts.visible.data() + counts.word(begin, w), weights + begin, inside,
-                 sums.whole_steps.data() + w * 64, counts.num_leaves - w * 64);
-        add_pairs(scene, tile, w, gates, weights + begin, lanes, sums.gated.data() + w * 64);
-    }
+void add_receivers(const BlockScene& scene, std::size_t first_word, std::size_t last_word,
+                   const Gates& gates, const BlockWeights* weights, ClusterWeights& sums) {
+    const std::size_t num_tiles = scene.counts.num_tiles();
+    for (std::size_t tile = 0; tile < num_tiles; tile += TilesPerGroup)
+        add_tiles(scene, tile, std::min(tile + TilesPerGroup, num_tiles), first_word, last_word,
+                  gates, weights, sums);
 }
 
 } // namespace relumine::relight::HWY_NAMESPACE
@@ -159,30 +261,33 @@ HWY_AFTER_NAMESPACE();
 namespace relumine::relight {
 
 namespace {
-HWY_EXPORT(add_tile);
+HWY_EXPORT(add_receivers);
 } // namespace
 
-void add_tile(const BlockScene& scene, std::size_t tile, std::size_t first_word,
-              std::size_t last_word, const Gates& gates, std::span<const BlockWeights> weights,
-              ClusterWeights& sums) {
-    HWY_DYNAMIC_DISPATCH(add_tile)
-    (scene, tile, first_word, last_word, gates, weights.data(), sums);
+void add_receivers(const BlockScene& scene, std::size_t first_word, std::size_t last_word,
+                   const Gates& gates, std::span<const BlockWeights> weights,
+                   ClusterWeights& sums) {
+    HWY_DYNAMIC_DISPATCH(add_receivers)
+    (scene, first_word, last_word, gates, weights.data(), sums);
 }
 
 std::vector<BlockWeights> block_weights(std::span<const glm::vec3> weights,
                                         std::span<const glm::vec3> normals) {
     std::vector<BlockWeights> blocks((weights.size() + prt::BlockSize - 1) / prt::BlockSize);
-    for (std::size_t place = 0; place < weights.size(); ++place)
-        for (int channel = 0; channel < 3; ++channel)
-            for (int axis = 0; axis < 3; ++axis) {
-                BlockWeights& block = blocks[place / prt::BlockSize];
-                const auto i = static_cast<std::size_t>(3 * channel + axis);
-                const float product = weights[place][channel] * normals[place][axis];
-                block.products[i][place % prt::BlockSize] = product;
-                block.whole[i] += static_cast<double>(prt::FullCount) *
-                                  static_cast<double>(weights[place][channel]) *
-                                  static_cast<double>(normals[place][axis]);
-            }
+    files::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t index) {
+        BlockWeights& block = blocks[index];
+        const std::size_t begin = index * prt::BlockSize;
+        const std::size_t end = std::min(begin + prt::BlockSize, weights.size());
+        for (std::size_t place = begin; place < end; ++place)
+            for (int channel = 0; channel < 3; ++channel)
+                for (int axis = 0; axis < 3; ++axis) {
+                    const auto i = static_cast<std::size_t>(3 * channel + axis);
+                    const double product = static_cast<double>(weights[place][channel]) *
+                                           static_cast<double>(normals[place][axis]);
+                    block.products[i][place - begin] = static_cast<float>(product);
+                    block.whole[i] += static_cast<double>(prt::FullCount) * product;
+                }
+    });
     return blocks;
 }
 

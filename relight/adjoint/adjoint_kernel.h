@@ -49,10 +49,9 @@ struct ClusterWeights {
         : whole_steps(num_clusters), gated(num_clusters) {}
 };
 
-/// Adds a tile's receivers to the clusters of words [first_word, last_word). Tiles that are added
-/// in the same order give the same bits, however the words are divided among calls.
-void add_tile(const BlockScene& scene, std::size_t tile, std::size_t first_word,
-              std::size_t last_word, const Gates& gates, std::span<const BlockWeights> weights,
-              ClusterWeights& sums);
+/// Adds all receivers to the clusters of words [first_word, last_word). The bits depend neither on
+/// how words are divided among calls, nor on the width of vectors.
+void add_receivers(const BlockScene& scene, std::size_t first_word, std::size_t last_word,
+                   const Gates& gates, std::span<const BlockWeights> weights, ClusterWeights& sums);
 
 } // namespace relumine::relight
