@@ -60,7 +60,7 @@ Gates gates_of(const ClusterLights& lights, std::span<const prt::Cell> cells) {
             if (gate == glm::vec3(0.0f))
                 gate = centre;
             for (int axis = 0; axis < 3; ++axis)
-                gates.vectors[cluster * BlockWeights::Size + 3 * channel +
+                gates.vectors[cluster * NumWeightSums + 3 * channel +
                               static_cast<std::size_t>(axis)] = gate[axis];
         }
     });
@@ -69,7 +69,7 @@ Gates gates_of(const ClusterLights& lights, std::span<const prt::Cell> cells) {
 
 using Vectors = std::array<glm::dvec3, 3>;
 
-Vectors vectors_of(const ClusterWeights::Sums& sums) {
+Vectors vectors_of(const WeightSums& sums) {
     Vectors result;
     for (std::size_t channel = 0; channel < 3; ++channel)
         result[channel] = {sums[3 * channel], sums[3 * channel + 1], sums[3 * channel + 2]};
@@ -110,7 +110,7 @@ VectorIrradiance scaled(const Vectors& vectors, double scale) {
 /// Sums the weights of all receivers into clusters. A thread has words of clusters, which nobody
 /// else writes, and goes through all tiles.
 ClusterWeights summed_weights(const BlockScene& scene, const Gates& gates,
-                              std::span<const BlockWeights> weights) {
+                              const BlockWeights& weights) {
     // Few tasks, as each reads the weights of all receivers.
     constexpr std::size_t TasksPerThread = 4;
     ClusterWeights sums(scene.counts.num_leaves);
@@ -160,9 +160,9 @@ LightDerivative light_derivative(const Relighter& relighter, std::span<const glm
         by_place[place] = weights[transfer.order[place]];
 
     ClusterWeights sums = summed_weights(light.block_scene(), gates_of(lights, cells),
-                                         block_weights(by_place, transfer.normals));
+                                         BlockWeights(by_place, transfer.normals));
     for (std::size_t cluster = 1; cluster < cells.size(); ++cluster)
-        for (std::size_t i = 0; i < BlockWeights::Size; ++i)
+        for (std::size_t i = 0; i < NumWeightSums; ++i)
             sums.whole_steps[cluster][i] += sums.whole_steps[cluster - 1][i];
 
     LightDerivative result;

@@ -22,7 +22,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, prt::BlockSize>;
 
 /// The lanes of a cluster's sums, [channel x axis][lane].
-using LaneSums = std::array<std::array<float, prt::BlockSize>, BlockWeights::Size>;
+using LaneSums = std::array<std::array<float, prt::BlockSize>, NumWeightSums>;
 
 /// Calls `visit` with the index of each set bit.
 template<typename Visit>
@@ -62,18 +62,18 @@ struct TilePairs {
     /// [block] counts of its next mixed cluster
     std::array<const std::uint8_t*, prt::VisibleCounts::TileBlocks> counts;
     const BlockNormals* normals;
-    const BlockWeights* weights;
+    const BlockWeights::Block* weights;
 
     /// Returns the clusters that have pairs.
     std::uint64_t set(const BlockScene& scene, std::size_t tile, std::size_t w,
-                      const BlockWeights* of_all) {
+                      const BlockWeights& of_all) {
         const std::size_t begin = scene.counts.tile_begin(tile);
         const TileWord& blocks = scene.words.words[tile * scene.counts.words_per_block() + w];
         const std::uint64_t* words = scene.counts.mixed.data() + scene.counts.word(begin, w);
         const std::uint8_t* next =
             scene.counts.counts.data() + blocks.mixed_before * prt::BlockSize;
         normals = scene.normals.data() + begin;
-        weights = of_all + begin;
+        weights = of_all.blocks.data() + begin;
         mixed = {};
         across = {};
         std::uint64_t any = 0;
@@ -109,21 +109,22 @@ struct Sums {
     HWY_INLINE Sums()
         : xr(hn::Zero(Floats())), yr(xr), zr(xr), xg(xr), yg(xr), zg(xr), xb(xr), yb(xr), zb(xr) {}
 
-    /// Adds products times how much of the cluster each receiver has, by channel.
-    HWY_INLINE void add(const BlockWeights& weights, std::size_t lane, hn::Vec<Floats> red,
+    /// Adds weights of the channels times normals.
+    HWY_INLINE void add(const BlockNormals& normals, std::size_t lane, hn::Vec<Floats> red,
                         hn::Vec<Floats> green, hn::Vec<Floats> blue) {
-        const auto product = [&](std::size_t i) HWY_ATTR {
-            return hn::LoadU(Floats(), weights.products[i].data() + lane);
-        };
-        xr = hn::MulAdd(red, product(0), xr);
-        yr = hn::MulAdd(red, product(1), yr);
-        zr = hn::MulAdd(red, product(2), zr);
-        xg = hn::MulAdd(green, product(3), xg);
-        yg = hn::MulAdd(green, product(4), yg);
-        zg = hn::MulAdd(green, product(5), zg);
-        xb = hn::MulAdd(blue, product(6), xb);
-        yb = hn::MulAdd(blue, product(7), yb);
-        zb = hn::MulAdd(blue, product(8), zb);
+        const Floats d;
+        const auto x = hn::LoadU(d, normals.axes[0].data() + lane);
+        const auto y = hn::LoadU(d, normals.axes[1].data() + lane);
+        const auto z = hn::LoadU(d, normals.axes[2].data() + lane);
+        xr = hn::MulAdd(red, x, xr);
+        yr = hn::MulAdd(red, y, yr);
+        zr = hn::MulAdd(red, z, zr);
+        xg = hn::MulAdd(green, x, xg);
+        yg = hn::MulAdd(green, y, yg);
+        zg = hn::MulAdd(green, z, zg);
+        xb = hn::MulAdd(blue, x, xb);
+        yb = hn::MulAdd(blue, y, yb);
+        zb = hn::MulAdd(blue, z, zb);
     }
     HWY_INLINE void store(LaneSums& lanes, std::size_t lane) const {
         const Floats d;
@@ -150,13 +151,17 @@ HWY_INLINE void add_inside(hn::Vec<Floats> count, const TilePairs& tile, std::si
         green = hn::IfThenElseZero(is_above(normals, lane, gates + 3), count);
         blue = hn::IfThenElseZero(is_above(normals, lane, gates + 6), count);
     }
-    sums.add(tile.weights[block], lane, red, green, blue);
+    const auto weight = [&](std::size_t channel) HWY_ATTR {
+        return hn::LoadU(Floats(), tile.weights[block].channels[channel].data() + lane);
+    };
+    sums.add(normals, lane, hn::Mul(red, weight(0)), hn::Mul(green, weight(1)),
+             hn::Mul(blue, weight(2)));
 }
 
 /// Adds the pairs of a cluster, and goes on to the next one.
 template<bool ChannelsDiffer>
 void add_cluster(std::span<TilePairs> tiles, std::size_t cluster, const float* gates,
-                 ClusterWeights::Sums& result) {
+                 WeightSums& result) {
     const Floats d;
     const hn::Rebind<std::uint8_t, Floats> bytes;
     const hn::Rebind<std::int32_t, Floats> integers;
@@ -176,7 +181,7 @@ void add_cluster(std::span<TilePairs> tiles, std::size_t cluster, const float* g
         }
         sums.store(lanes, lane);
     }
-    for (std::size_t i = 0; i < BlockWeights::Size; ++i)
+    for (std::size_t i = 0; i < NumWeightSums; ++i)
         result[i] += sum_of_lanes(lanes[i]);
     for (TilePairs& tile : tiles)
         for_bits(tile.mixed[cluster],
@@ -186,11 +191,11 @@ void add_cluster(std::span<TilePairs> tiles, std::size_t cluster, const float* g
 /// Adds the runs of clusters that blocks see whole: where one begins, and where it has ended.
 /// `inside` has the blocks that see the word before up to its end.
 void add_runs(const BlockScene& scene, const TileWord& blocks, const std::uint64_t* visible_words,
-              const BlockWeights* weights, std::uint64_t& inside, ClusterWeights::Sums* steps,
+              const WeightSums* wholes, std::uint64_t& inside, WeightSums* steps,
               std::size_t num_clusters) {
     for_bits(blocks.edges, [&](std::size_t block) {
         const std::uint64_t visible = visible_words[block] & ~scene.words.across_of(blocks, block);
-        const ClusterWeights::Sums& whole = weights[block].whole;
+        const WeightSums& whole = wholes[block];
         const std::uint64_t edges = visible ^ (visible << 1 | (inside >> block & 1u));
         for_bits(edges, [&](std::size_t cluster) {
             if (cluster >= num_clusters)
@@ -218,7 +223,7 @@ std::uint64_t inside_after(const BlockScene& scene, std::size_t tile, std::size_
 /// Adds a group of tiles to the clusters of words [first_word, last_word).
 void add_tiles(const BlockScene& scene, std::size_t first_tile, std::size_t last_tile,
                std::size_t first_word, std::size_t last_word, const Gates& gates,
-               const BlockWeights* weights, ClusterWeights& sums) {
+               const BlockWeights& weights, ClusterWeights& sums) {
     const prt::VisibleCounts& counts = scene.counts;
     std::array<std::uint64_t, TilesPerGroup> inside{};
     std::array<TilePairs, TilesPerGroup> pairs;
@@ -230,14 +235,14 @@ void add_tiles(const BlockScene& scene, std::size_t first_tile, std::size_t last
         for (std::size_t tile = first_tile; tile < last_tile; ++tile) {
             const std::size_t begin = counts.tile_begin(tile);
             add_runs(scene, scene.words.words[tile * counts.words_per_block() + w],
-                     counts.visible.data() + counts.word(begin, w), weights + begin,
+                     counts.visible.data() + counts.word(begin, w), weights.whole.data() + begin,
                      inside[tile - first_tile], sums.whole_steps.data() + w * 64,
                      counts.num_leaves - w * 64);
             any |= pairs[tile - first_tile].set(scene, tile, w, weights);
         }
         for_bits(any, [&](std::size_t cluster) {
-            const float* gate = gates.vectors.data() + (w * 64 + cluster) * BlockWeights::Size;
-            ClusterWeights::Sums& of_cluster = sums.gated[w * 64 + cluster];
+            const float* gate = gates.vectors.data() + (w * 64 + cluster) * NumWeightSums;
+            WeightSums& of_cluster = sums.gated[w * 64 + cluster];
             if ((gates.differ[w] >> cluster & 1u) != 0)
                 add_cluster<true>(of_group, cluster, gate, of_cluster);
             else
@@ -247,7 +252,7 @@ void add_tiles(const BlockScene& scene, std::size_t first_tile, std::size_t last
 }
 
 void add_receivers(const BlockScene& scene, std::size_t first_word, std::size_t last_word,
-                   const Gates& gates, const BlockWeights* weights, ClusterWeights& sums) {
+                   const Gates& gates, const BlockWeights& weights, ClusterWeights& sums) {
     const std::size_t num_tiles = scene.counts.num_tiles();
     for (std::size_t tile = 0; tile < num_tiles; tile += TilesPerGroup)
         add_tiles(scene, tile, std::min(tile + TilesPerGroup, num_tiles), first_word, last_word,
@@ -265,30 +270,27 @@ HWY_EXPORT(add_receivers);
 } // namespace
 
 void add_receivers(const BlockScene& scene, std::size_t first_word, std::size_t last_word,
-                   const Gates& gates, std::span<const BlockWeights> weights,
-                   ClusterWeights& sums) {
+                   const Gates& gates, const BlockWeights& weights, ClusterWeights& sums) {
     HWY_DYNAMIC_DISPATCH(add_receivers)
-    (scene, first_word, last_word, gates, weights.data(), sums);
+    (scene, first_word, last_word, gates, weights, sums);
 }
 
-std::vector<BlockWeights> block_weights(std::span<const glm::vec3> weights,
-                                        std::span<const glm::vec3> normals) {
-    std::vector<BlockWeights> blocks((weights.size() + prt::BlockSize - 1) / prt::BlockSize);
-    files::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t index) {
-        BlockWeights& block = blocks[index];
-        const std::size_t begin = index * prt::BlockSize;
+BlockWeights::BlockWeights(std::span<const glm::vec3> weights, std::span<const glm::vec3> normals)
+    : blocks((weights.size() + prt::BlockSize - 1) / prt::BlockSize), whole(blocks.size()) {
+    files::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t block) {
+        const std::size_t begin = block * prt::BlockSize;
         const std::size_t end = std::min(begin + prt::BlockSize, weights.size());
         for (std::size_t place = begin; place < end; ++place)
-            for (int channel = 0; channel < 3; ++channel)
-                for (int axis = 0; axis < 3; ++axis) {
-                    const auto i = static_cast<std::size_t>(3 * channel + axis);
-                    const double product = static_cast<double>(weights[place][channel]) *
-                                           static_cast<double>(normals[place][axis]);
-                    block.products[i][place - begin] = static_cast<float>(product);
-                    block.whole[i] += static_cast<double>(prt::FullCount) * product;
-                }
+            for (int channel = 0; channel < 3; ++channel) {
+                const auto c = static_cast<std::size_t>(channel);
+                blocks[block].channels[c][place - begin] = weights[place][channel];
+                for (int axis = 0; axis < 3; ++axis)
+                    whole[block][3 * c + static_cast<std::size_t>(axis)] +=
+                        static_cast<double>(prt::FullCount) *
+                        static_cast<double>(weights[place][channel]) *
+                        static_cast<double>(normals[place][axis]);
+            }
     });
-    return blocks;
 }
 
 } // namespace relumine::relight

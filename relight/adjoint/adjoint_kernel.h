@@ -14,19 +14,24 @@
 
 namespace relumine::relight {
 
-/// Weights of a block's receivers times their normals, [channel x axis][receiver].
-struct alignas(64) BlockWeights {
-    static constexpr std::size_t Size = 9;
-    std::array<std::array<float, prt::BlockSize>, Size> products{};
-    /// [channel x axis] sums over the receivers, times prt::FullCount.
-    std::array<double, Size> whole{};
-};
+/// Sums of weights times normals over some receivers, [channel x axis].
+inline constexpr std::size_t NumWeightSums = 9;
+using WeightSums = std::array<double, NumWeightSums>;
 
-/// Returns the weights in blocks.
-///
-/// Shape:   `weights` and `normals` are [num_receivers] by place; the result is [num_blocks].
-[[nodiscard]] std::vector<BlockWeights> block_weights(std::span<const glm::vec3> weights,
-                                                      std::span<const glm::vec3> normals);
+/// Weights of receivers, in blocks.
+struct BlockWeights {
+    struct alignas(64) Block {
+        /// [channel][receiver], padded with zeros
+        std::array<std::array<float, prt::BlockSize>, 3> channels{};
+    };
+    /// [num_blocks]
+    std::vector<Block> blocks;
+    /// [num_blocks] sums over the block's receivers, times prt::FullCount.
+    std::vector<WeightSums> whole;
+
+    /// `weights` and `normals` are [num_receivers] by place.
+    BlockWeights(std::span<const glm::vec3> weights, std::span<const glm::vec3> normals);
+};
 
 /// Which receivers a cluster's light reaches from above: those with n . gate > 0.
 struct Gates {
@@ -38,12 +43,11 @@ struct Gates {
 
 /// Sums of weights times normals over the receivers that a cluster reaches, [channel x axis].
 struct ClusterWeights {
-    using Sums = std::array<double, BlockWeights::Size>;
     /// [num_clusters] of blocks that see the cluster whole, above their horizons: minus those of
     /// the cluster before. Runs of clusters that a block sees so are two entries.
-    std::vector<Sums> whole_steps;
+    std::vector<WeightSums> whole_steps;
     /// [num_clusters] of other blocks: counts times weights, of receivers inside the gate.
-    std::vector<Sums> gated;
+    std::vector<WeightSums> gated;
 
     explicit ClusterWeights(std::size_t num_clusters)
         : whole_steps(num_clusters), gated(num_clusters) {}
@@ -52,6 +56,6 @@ struct ClusterWeights {
 /// Adds all receivers to the clusters of words [first_word, last_word). The bits depend neither on
 /// how words are divided among calls, nor on the width of vectors.
 void add_receivers(const BlockScene& scene, std::size_t first_word, std::size_t last_word,
-                   const Gates& gates, std::span<const BlockWeights> weights, ClusterWeights& sums);
+                   const Gates& gates, const BlockWeights& weights, ClusterWeights& sums);
 
 } // namespace relumine::relight
