@@ -12,6 +12,7 @@
 #include "prt/receivers/pixel_receivers.h"
 #include "relight/adjoint/adjoint.h"
 #include "relight/adjoint/contribution.h"
+#include "relight/batch.h"
 #include "relight/pictures/framing.h"
 #include "relight/reference/path_tracer.h"
 #include "relight/sharp/light_packets.h"
@@ -240,6 +241,11 @@ cubemap::CubeMap adjoint(const LitScene& lit, std::span<const glm::vec3> weights
     require_environment(lit);
     return relight::adjoint(lit.relighter(), weights,
                             lit.bounces().bounced().empty() ? nullptr : &lit.bounces().surfaces());
+}
+
+void relight_batch(const LitScene& lit, std::span<const cubemap::CubeMap> environments,
+                   std::span<glm::vec3> radiance) {
+    relight::relight_batch(lit.relighter(), environments, radiance);
 }
 
 Share lit_by(const LitScene& lit, const cubemap::Region& region) {

@@ -90,12 +90,12 @@ FitTarget read_target(const FitArguments& options, const Command& command, const
 }
 
 /// Lights whose gains are asked for, and how they are written with them.
-struct Given {
+struct GivenLights {
     std::vector<Light> lights;
     lights::LightList list;
     cubemap::LightLayers layers;
 
-    Given(const std::string& path, std::uint32_t face_resolution) {
+    GivenLights(const std::string& path, std::uint32_t face_resolution) {
         const files::JsonReader reader(path);
         const files::Json json = reader.parse(files::read(path));
         if (json.find("layers") == nullptr) {
@@ -158,7 +158,7 @@ std::string find_light(const FitArguments& options, LitScene& lit, const FitTarg
     }
     // Fine enough for the layers' edges.
     constexpr std::uint32_t LayerResolution = 256;
-    Given given(options.given, LayerResolution);
+    GivenLights given(options.given, LayerResolution);
     const std::vector<double> gains = fit_gains(lit, target, given.lights, work);
     Light sum;
     std::optional<cubemap::CubeMap> map;

@@ -258,6 +258,14 @@ Array contribution_map(const LitPointer& own, const py::buffer& receivers) {
     return owned(std::move(map.texels), {6, r, r});
 }
 
+Array adjoint(const LitPointer& own, const py::buffer& weights) {
+    const std::vector<glm::vec3> values = vec3s(weights);
+    cubemap::CubeMap map =
+        quickly(*own, [&](LitScene& lit) { return relumine::adjoint(lit, values); });
+    const auto r = static_cast<py::ssize_t>(map.resolution);
+    return owned(std::move(map.texels), {6, r, r});
+}
+
 LightArrays transfer_lights(const LitPointer& own, std::size_t number, const py::object& progress) {
     return arrays_of(slowly(own, progress, [number](LitScene& lit, const Reins& reins) {
         return relight::transfer_lights(lit.relighter(), number,
@@ -269,6 +277,7 @@ void bind_questions(py::class_<Lit, LitPointer>& type) {
     type.def("verify", &verify)
         .def("lit_by", &lit_by)
         .def("contribution_map", &contribution_map)
+        .def("adjoint", &adjoint)
         .def("transfer_lights", &transfer_lights);
 }
 

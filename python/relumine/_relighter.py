@@ -324,6 +324,30 @@ class Relighter:
         result: Floats = view(self._core.contribution_map(places))
         return result
 
+    def adjoint(self, weights: ArrayLike) -> Floats:
+        """The transpose of a relight: (6, R, R, 3), the derivative of a loss by each texel.
+
+        weights  (num_receivers, 3), or (num_receivers,) for all channels alike: the derivative of
+                 the loss by `radiance`
+
+        It takes about as long as a relight. After bounce() light that bounces counts. For the
+        present environment, (environment * adjoint(w)).sum() is (radiance * w).sum().
+
+        >>> gradient = relighter.adjoint(np.ones(scene.num_receivers))
+        >>> total = (relighter.environment * gradient).sum(dtype=float)
+        >>> bool(np.isclose(total, relighter.radiance.sum(dtype=float), rtol=1e-4))
+        True
+        """
+        count = self._scene.num_receivers
+        if np.ndim(weights) == 1:
+            weights = np.repeat(np.asarray(weights)[:, None], 3, axis=1)
+        values = floats("weights", weights, count, 3)
+        if not self._core.is_lit:
+            raise RuntimeError("expected a scene that is lit, got one without light")
+        with errors():
+            result: Floats = view(self._core.adjoint(values))
+        return result
+
     def lit_by(self, region: Union[Region, Mapping[str, Any]]) -> Share:
         """What a region gives to the scene, as if the rest of the environment were black.
 

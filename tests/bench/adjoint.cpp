@@ -1,4 +1,5 @@
 // What the derivative by the environment costs beside a relight. See `./dev bench adjoint --help`.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
@@ -44,12 +45,35 @@ void measure_adjoint(const cubemap::CubeMap& environment, const char* name, LitS
                std::abs(left - right) / std::abs(left));
 }
 
+/// So many environments at once, against one by one.
+void measure_batch(const cubemap::CubeMap& environment, std::size_t count, LitScene& lit) {
+    std::vector<cubemap::CubeMap> environments(count, environment);
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t texel = 0; texel < environment.texels.size(); ++texel)
+            environments[i].texels[texel] =
+                environment.texels[(texel + 977 * i) % environment.texels.size()];
+    std::vector<glm::vec3> radiance(count * lit.scene().receivers.size());
+    const double single = bench::seconds_of([&] {
+        for (std::size_t i = 0; i < count; ++i) {
+            lit.light(environments[i]);
+            std::copy(lit.radiance().begin(), lit.radiance().end(),
+                      radiance.begin() + static_cast<std::ptrdiff_t>(i * lit.radiance().size()));
+        }
+    });
+    const double batch = bench::seconds_of([&] { relight_batch(lit, environments, radiance); });
+    fmt::print(
+        "\n{} environments at R = {}: {:.0f} ms one by one, {:.0f} ms at once, ratio {:.2f}\n",
+        count, environment.resolution, 1e3 * single, 1e3 * batch, batch / single);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
     std::uint32_t resolution = 256;
-    bench::Program program("bench_adjoint", "the derivative by the environment against a relight; "
-                                            "Markdown on stdout");
+    bench::Program program(
+        "bench_adjoint",
+        "the derivative by the environment, and many environments, against a relight; "
+        "Markdown on stdout");
     bench::Inputs inputs(program);
     inputs.add_scene();
     program.add("--face-resolution", resolution, "R");
@@ -67,5 +91,9 @@ int main(int argc, char** argv) {
                     fmt::format("{}{}", file, clusters_only ? "" : ", sharp lights traced").c_str(),
                     lit);
         }
+        LitScene lit(scene, {.clusters_only = true});
+        const cubemap::CubeMap beach = inputs.environment("beach_cross.hdr", 64);
+        for (int round = 0; round < 3; ++round)
+            measure_batch(beach, inputs.is_tiny() ? 4 : 64, lit);
     });
 }
