@@ -88,6 +88,45 @@ FitTarget target_of_places(const Picture& picture, const Picture& size,
     return gathered.target();
 }
 
+/// What a pixel of a picture of vertices shows.
+struct SeenPoint {
+    std::size_t pixel = 0;
+    prt::MeshPoint point;
+};
+
+/// Returns the fronts that pixels show, but for an added floor. Pixels at an outline are left out,
+/// because they show the background, too.
+std::vector<SeenPoint> seen_points(const LitScene& lit, const Picture& picture,
+                                   const OutputOptions& options) {
+    const Scene& scene = lit.scene();
+    const mesh::TriangleMesh& mesh = scene.mesh;
+    const prt::PixelReceivers seen = prt::pixel_receivers(
+        mesh, lit.rays().of_mesh(),
+        {.camera = camera_of(scene, options), .width = picture.width, .height = picture.height});
+    std::vector<bool> is_seen(picture.pixels.size());
+    for (const std::uint32_t sample : seen.layout.samples)
+        is_seen[sample] = true;
+    const auto is_inside = [&](std::size_t pixel) {
+        const std::size_t x = pixel % picture.width, y = pixel / picture.width;
+        if (x == 0 || y == 0 || x + 1 == picture.width || y + 1 == picture.height)
+            return false;
+        return is_seen[pixel - 1] && is_seen[pixel + 1] && is_seen[pixel - picture.width] &&
+               is_seen[pixel + picture.width];
+    };
+    const std::size_t floor = first_floor_vertex(scene).value_or(mesh.num_vertices());
+    std::vector<SeenPoint> result;
+    for (std::size_t i = 0; i < seen.receivers.size(); ++i) {
+        const prt::MeshPoint& point = seen.receivers.points[i];
+        const mesh::Triangle& corners = mesh.triangles[point.triangle];
+        const bool is_front =
+            glm::dot(seen.receivers.normals[i], prt::shading_normal(mesh, point)) > 0.0f;
+        if (is_front && std::max({corners[0], corners[1], corners[2]}) < floor &&
+            is_inside(seen.layout.samples[i]))
+            result.push_back({.pixel = seen.layout.samples[i], .point = point});
+    }
+    return result;
+}
+
 /// Pairs of texels that are neighbours, across the edges of faces, too.
 std::vector<std::pair<std::size_t, std::size_t>> neighbours_of_texels(std::uint32_t resolution) {
     const cubemap::CubeMap map(resolution);
@@ -229,38 +268,37 @@ FitTarget target_of_picture(const LitScene& lit, const Picture& picture,
         throw std::invalid_argument("expected a scene of which there are pictures");
     Gathered gathered(scene.receivers.size());
     const mesh::TriangleMesh& mesh = scene.mesh;
-    const prt::PixelReceivers seen = prt::pixel_receivers(
-        mesh, lit.rays().of_mesh(),
-        {.camera = camera_of(scene, options), .width = picture.width, .height = picture.height});
-    const std::size_t floor = first_floor_vertex(scene).value_or(mesh.num_vertices());
-    for (std::size_t i = 0; i < seen.receivers.size(); ++i) {
-        const prt::MeshPoint& point = seen.receivers.points[i];
-        const mesh::Triangle& corners = mesh.triangles[point.triangle];
-        const bool is_front =
-            glm::dot(seen.receivers.normals[i], prt::shading_normal(mesh, point)) > 0.0f;
-        if (!is_front || std::max({corners[0], corners[1], corners[2]}) >= floor)
-            continue;
-        const glm::vec3& value = picture.pixels[seen.layout.samples[i]];
-        const std::array<float, 3> parts = {1.0f - point.barycentric.x - point.barycentric.y,
-                                            point.barycentric.x, point.barycentric.y};
+    for (const SeenPoint& seen : seen_points(lit, picture, options)) {
+        const mesh::Triangle& corners = mesh.triangles[seen.point.triangle];
+        const glm::vec2& b = seen.point.barycentric;
+        const std::array<float, 3> parts = {1.0f - b.x - b.y, b.x, b.y};
         for (std::size_t corner = 0; corner < 3; ++corner)
-            gathered.add(corners[corner], value, albedo[corners[corner]],
+            gathered.add(corners[corner], picture.pixels[seen.pixel], albedo[corners[corner]],
                          std::max(0.0, static_cast<double>(parts[corner])));
     }
     return gathered.target();
 }
 
-double distance_to(const FitTarget& target, const LitScene& lit) {
-    require_fitting(target, lit);
+namespace {
+
+/// Relative L2 of radiance against a target.
+double distance_between(const FitTarget& target, std::span<const glm::vec3> radiance) {
     double distance = 0.0, size = 0.0;
     for (std::size_t i = 0; i < target.radiance.size(); ++i) {
         const glm::dvec3 wanted(target.radiance[i]);
-        const glm::dvec3 error = glm::dvec3(lit.radiance()[i]) - wanted;
+        const glm::dvec3 error = glm::dvec3(radiance[i]) - wanted;
         const auto weight = static_cast<double>(target.weights[i]);
         distance += weight * glm::dot(error, error);
         size += weight * glm::dot(wanted, wanted);
     }
     return std::sqrt(distance / size);
+}
+
+} // namespace
+
+double distance_to(const FitTarget& target, const LitScene& lit) {
+    require_fitting(target, lit);
+    return distance_between(target, lit.radiance());
 }
 
 cubemap::CubeMap fit_environment(LitScene& lit, const FitTarget& target,
@@ -300,6 +338,50 @@ std::vector<lights::DistantLight> fit_lights(LitScene& lit, const FitTarget& tar
     std::vector<lights::DistantLight> result =
         relight::fit_lights(lit.relighter(), {.radiance = radiance, .weights = weights}, count,
                             {.stop = work.stop, .on_progress = work.on_progress});
+    lit.light(Light(result));
+    return result;
+}
+
+std::vector<lights::DistantLight> fit_lights_to_picture(LitScene& lit, const Picture& picture,
+                                                        const OutputOptions& options,
+                                                        std::size_t count, double& distance,
+                                                        const FitWork& work) {
+    require_diffuse(lit);
+    const Scene& scene = lit.scene();
+    if (!prt::on_vertices(scene.layout))
+        throw std::invalid_argument("expected a scene of vertices");
+    std::vector<glm::vec3> of_vertices = picture_albedo(scene, options);
+    for (std::size_t i = 0; i < scene.receivers.surfaces.size(); ++i)
+        of_vertices[i] *= scene.receivers.surfaces[i].albedo;
+    const std::vector<SeenPoint> points = seen_points(lit, picture, options);
+    std::vector<glm::vec3> positions;
+    // Receivers of their own, in the order of the pixels, which see no clusters.
+    prt::Transfer transfer;
+    Gathered gathered(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const prt::MeshPoint& point = points[i].point;
+        positions.push_back(prt::smooth_position(scene.mesh, point));
+        transfer.normals.push_back(prt::shading_normal(scene.mesh, point));
+        transfer.order.push_back(static_cast<std::uint32_t>(i));
+        gathered.add(i, picture.pixels[points[i].pixel],
+                     prt::value_at(scene.mesh, of_vertices, point), 1.0);
+    }
+    transfer.counts.num_receivers = points.size();
+    transfer.counts.num_leaves = transfer.num_clusters();
+    const std::size_t num_words = transfer.counts.num_blocks() * transfer.counts.words_per_block();
+    transfer.counts.visible.resize(num_words);
+    transfer.counts.mixed.resize(num_words);
+    transfer.counts.index();
+    const FitTarget target = gathered.target();
+    relight::Relighter relighter(transfer, {.blockers = &lit.rays().for_moving_lights(),
+                                            .positions = positions,
+                                            .bias = scene.settings.bias,
+                                            .tolerance = rms_tolerance(scene)});
+    std::vector<lights::DistantLight> result =
+        relight::fit_lights(relighter, {.radiance = target.radiance, .weights = target.weights},
+                            count, {.stop = work.stop, .on_progress = work.on_progress});
+    relighter.set_lights(result);
+    distance = distance_between(target, relighter.radiance());
     lit.light(Light(result));
     return result;
 }

@@ -52,6 +52,17 @@ struct FitWork {
     std::function<void(double)> on_progress = {};
 };
 
+/// Returns so many distant lights whose direct light on what a picture of a mesh shows comes
+/// nearest to it: each pixel's point is a receiver of its own, so shadows are as sharp as the
+/// picture's. The scene has vertices, and is lit with the lights afterwards. `distance` receives
+/// how far the pixels are from the picture: relative L2.
+///
+/// Throws:  as target_of_picture() and fit_lights().
+std::vector<lights::DistantLight> fit_lights_to_picture(LitScene& lit, const Picture& picture,
+                                                        const OutputOptions& options,
+                                                        std::size_t count, double& distance,
+                                                        const FitWork& work = {});
+
 struct EnvironmentFit {
     /// R of the environment: 6 x R x R texels.
     std::uint32_t face_resolution = 16;

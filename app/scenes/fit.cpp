@@ -1,6 +1,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -58,29 +59,36 @@ bool is_picture(const std::string& path) {
     return extension == ".exr" || extension == ".hdr";
 }
 
+float brightness_of(const FitArguments& options) {
+    return static_cast<float>(std::exp2(-options.shown.exposure_ev.value_or(0.0)));
+}
+
+/// The picture before its exposure. Refuses one whose camera is not known.
+Picture read_picture(const FitArguments& options, const Command& command, const Scene& scene) {
+    bool has_camera = !prt::on_vertices(scene.layout) || own_camera(scene).has_value();
+    for (const std::string& name : command.given_options())
+        has_camera = has_camera || name == "--camera" || name == "--eye" || name == "--fov";
+    if (!has_camera)
+        throw UsageError("TARGET", "expected the camera of the picture, --camera or --eye and "
+                                   "--target, got none");
+    Picture picture = cubemap::load_picture(options.target);
+    for (glm::vec3& pixel : picture.pixels)
+        pixel *= brightness_of(options);
+    return picture;
+}
+
 FitTarget read_target(const FitArguments& options, const Command& command, const LitScene& lit) {
     relumine::OutputOptions shown = options.shown;
-    const auto factor = static_cast<float>(std::exp2(-shown.exposure_ev.value_or(0.0)));
     const Scene& scene = lit.scene();
-    if (is_picture(options.target)) {
-        bool has_camera = !prt::on_vertices(scene.layout) || own_camera(scene).has_value();
-        for (const std::string& name : command.given_options())
-            has_camera = has_camera || name == "--camera" || name == "--eye" || name == "--fov";
-        if (!has_camera)
-            throw UsageError("TARGET", "expected the camera of the picture, --camera or --eye and "
-                                       "--target, got none");
-        Picture picture = cubemap::load_picture(options.target);
-        for (glm::vec3& pixel : picture.pixels)
-            pixel *= factor;
-        return target_of_picture(lit, picture, shown);
-    }
+    if (is_picture(options.target))
+        return target_of_picture(lit, read_picture(options, command, scene), shown);
     const bool are_numbers = extension_of(options.target) == ".npy";
     std::vector<glm::vec3> values =
         are_numbers ? relight::load_npy(options.target).values : mesh::load(options.target).colors;
     if (!are_numbers && values.empty())
         throw std::invalid_argument("expected vertex colours, got none");
     for (glm::vec3& value : values)
-        value *= factor;
+        value *= brightness_of(options);
     // Numbers are radiance, unless something else is said.
     if (are_numbers && std::holds_alternative<AutomaticAlbedo>(shown.albedo)) {
         shown.albedo = glm::vec3(1.0f);
@@ -139,16 +147,20 @@ private:
     }
 };
 
+void save_list(const FitArguments& options, const std::vector<lights::DistantLight>& list) {
+    if (list.empty())
+        throw std::invalid_argument("expected a target that lights can reach, got one that is "
+                                    "100 % off under every light");
+    lights::save_lights(options.output, {.lights = list, .method = "fit"});
+}
+
 /// Finds the light and writes it. Returns what was found, for people.
 std::string find_light(const FitArguments& options, LitScene& lit, const FitTarget& target,
                        const FitWork& work) {
     if (options.num_lights != 0) {
         const std::vector<lights::DistantLight> list =
             fit_lights(lit, target, options.num_lights, work);
-        if (list.empty())
-            throw std::invalid_argument("expected a target that lights can reach, got one that is "
-                                        "100 % off under every light");
-        lights::save_lights(options.output, {.lights = list, .method = "fit"});
+        save_list(options, list);
         return files::counted(list.size(), "light");
     }
     if (options.given.empty()) {
@@ -199,6 +211,32 @@ void check(const FitArguments& options) {
     check_output(options.output, inputs);
 }
 
+/// Says what was found and how near it comes.
+void tell(const FitArguments& options, const std::string& found, double distance, double seconds,
+          Session& session) {
+    session.say(fmt::format("{}: {} in {:.1f} s; the light is off by {:.3g} % of {}",
+                            options.output, found, seconds, 100.0 * distance, options.target));
+    constexpr double Far = 0.25;
+    if (distance > Far)
+        session.warn(fmt::format("{}: no such light comes nearer than {:.3g} %", options.target,
+                                 100.0 * distance));
+    session.report({{"relative_l2", distance}, {"seconds", seconds}});
+}
+
+/// Finds lights for the points that a picture of vertices shows.
+void fit_to_picture(const FitArguments& options, const Command& command, LitScene& lit,
+                    Session& session) {
+    Stopwatch watch;
+    const Picture picture = read_picture(options, command, lit.scene());
+    double distance = 0.0;
+    const std::vector<lights::DistantLight> list = fit_lights_to_picture(
+        lit, picture, options.shown, options.num_lights, distance,
+        {.stop = session.stop(), .on_progress = session.progress("light that fits")});
+    session.end_progress();
+    save_list(options, list);
+    tell(options, files::counted(list.size(), "light"), distance, watch.total(), session);
+}
+
 void run(FitArguments& options, const Command& command, Session& session) {
     check(options);
     // An environment changes from step to step, and with it what would be traced.
@@ -207,6 +245,9 @@ void run(FitArguments& options, const Command& command, Session& session) {
     LitScene lit = lit_scene(options.scene);
     Stopwatch watch;
     try {
+        if (options.num_lights != 0 && is_picture(options.target) &&
+            prt::on_vertices(lit.scene().layout))
+            return fit_to_picture(options, command, lit, session);
         const FitTarget target = read_target(options, command, lit);
         if (options.num_lights == 0 &&
             options.bounces.applies_to(lit.scene(), options.scene.path)) {
@@ -217,15 +258,7 @@ void run(FitArguments& options, const Command& command, Session& session) {
             options, lit, target,
             {.stop = session.stop(), .on_progress = session.progress("light that fits")});
         session.end_progress();
-        const double distance = distance_to(target, lit);
-        const double seconds = watch.total();
-        session.say(fmt::format("{}: {} in {:.1f} s; the light is off by {:.3g} % of {}",
-                                options.output, found, seconds, 100.0 * distance, options.target));
-        constexpr double Far = 0.25;
-        if (distance > Far)
-            session.warn(fmt::format("{}: no such light comes nearer than {:.3g} %", options.target,
-                                     100.0 * distance));
-        session.report({{"relative_l2", distance}, {"seconds", seconds}});
+        tell(options, found, distance_to(target, lit), watch.total(), session);
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(fmt::format("{}: {}", options.target, error.what()));
     }
