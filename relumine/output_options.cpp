@@ -77,6 +77,7 @@ std::string ExposureText::show(const std::optional<double>& stops) {
 CameraPlace CameraText::read(const std::string& text) {
     std::vector<std::string> words = split(text, ',');
     std::vector<std::optional<double>> numbers;
+    numbers.reserve(words.size());
     for (const std::string& word : words)
         numbers.push_back(parse_number(word));
     // The distance may be empty where a field of view follows.

@@ -230,6 +230,7 @@ prt::BounceSamples Stages::bounces(const prt::RayScene& rays) {
         prt::places_of(work_.team.part(), transfer.num_receivers());
     const std::vector<prt::ProbeRadiance> own = own_probes(transfer, places);
     std::vector<float> open_parts;
+    open_parts.reserve(own.size());
     for (const prt::ProbeRadiance& probe : own)
         open_parts.push_back(probe[0]);
     std::vector<prt::ProbeRadiance> of_all;

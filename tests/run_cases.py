@@ -5,7 +5,7 @@ run_cases.py PROGRAM NAME SHARE OF TIMEOUT RESULTS
 SHARE of OF: suites are dealt to so many shares, so that several processors have work.
 A case that crashes, or is silent for TIMEOUT seconds, fails; the remaining cases run in a new process.
 RELUMINE_CASES: a regular expression; only cases whose NAME/Suite.Case has it run.
-RESULTS: a file to write, with a line for each case: passed, failed or skipped, and its name.
+RESULTS: a file to write, with a line for each case: passed, failed or skipped, milliseconds, and its name.
 Prints the output of cases that fail, why cases are skipped, and the sums. Exit code 1 when a case fails.
 """
 
@@ -16,7 +16,7 @@ import signal
 import subprocess
 import sys
 
-STEP = re.compile(r"\[( RUN      |       OK |  FAILED  |  SKIPPED )\] ([\w/]+\.[\w/]+)")
+STEP = re.compile(r"\[( RUN      |       OK |  FAILED  |  SKIPPED )\] ([\w/]+\.[\w/]+)(?:.* \((\d+) ms\))?")
 
 
 def cases_of(program):
@@ -57,9 +57,11 @@ class Run:
 
     def __init__(self):
         self.results = {}
+        self.milliseconds = {}
 
-    def set(self, case, result):
+    def set(self, case, result, milliseconds=0):
         self.results[case] = result
+        self.milliseconds[case] = int(milliseconds)
 
     def count(self, result):
         return sum(1 for each in self.results.values() if each == result)
@@ -83,7 +85,8 @@ class Run:
                     print("\n".join([*output, line]), flush=True)
                 elif step[1] == "  SKIPPED ":
                     print("skipped: " + current + ": " + " ".join(each.strip() for each in output[1:] or output))
-                self.set(current, {"OK": "passed", "FAILED": "failed", "SKIPPED": "skipped"}[step[1].strip()])
+                self.set(current, {"OK": "passed", "FAILED": "failed", "SKIPPED": "skipped"}[step[1].strip()],
+                         step[3] or 0)
                 current, output = None, []
             else:
                 output.append(line)
@@ -109,7 +112,7 @@ def main():
         run.process(program, left, float(timeout))
     with open(results, "w", encoding="utf-8") as file:
         for case in cases:
-            file.write(f"{run.results[case]} {name}/{case}\n")
+            file.write(f"{run.results[case]} {run.milliseconds[case]} {name}/{case}\n")
     print(f"{run.count('passed')} passed, {run.count('failed')} failed, {run.count('skipped')} skipped")
     return 1 if run.count("failed") else 0
 

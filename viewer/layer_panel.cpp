@@ -125,7 +125,7 @@ void add_buttons(ViewState& state) {
 std::string kind(const cubemap::LightLayer& layer) {
     if (std::holds_alternative<cubemap::ImagePatch>(layer.effect))
         return "image";
-    const std::string label(words(layer.region).label);
+    std::string label(words(layer.region).label);
     if (std::holds_alternative<cubemap::Gain>(layer.effect))
         return "gain " + label.substr(label.rfind(' ') + 1);
     return label;

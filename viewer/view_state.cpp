@@ -224,7 +224,7 @@ bool save_picture(ViewState& state, const PixelRectangle& viewport,
 }
 
 std::filesystem::path new_picture(const ViewState& state) {
-    const std::filesystem::path named(state.path);
+    std::filesystem::path named(state.path);
     if ((named.extension() == ".png" || named.extension() == ".exr") &&
         !std::filesystem::exists(named))
         return named;

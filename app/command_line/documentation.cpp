@@ -75,8 +75,9 @@ void add_man(CommandLine& program) {
         "man", "print a page of the manual: relumine man edit | man -l -");
     auto options = std::make_shared<ManOptions>();
     std::vector<std::string> names;
-    for (const ManPage& page : man_pages(program.table(), ""))
-        names.push_back(short_name(page, program.table().name));
+    const CommandTable commands = program.table();
+    for (const ManPage& page : man_pages(commands, ""))
+        names.push_back(short_name(page, commands.name));
     command.add(row("PAGE", options->page, "a command, or relumine", {.choices = names}));
     command.add(row("-o,--output", options->folder, "write all pages to a folder instead",
                     {.folder = true}));

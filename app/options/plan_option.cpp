@@ -4,6 +4,8 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <span>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -11,6 +13,7 @@
 
 #include "app/commands.h"
 #include "app/options/output_options.h"
+#include "prt/parts/part_check.h"
 #include "relumine/lit_part.h"
 
 namespace relumine::app {
@@ -65,10 +68,65 @@ void PlanOption::run(const Command& command, const std::string& output, Engine e
                     {"seconds", seconds}});
 }
 
+namespace {
+
+/// Rising numbers as job arrays take them: "2,5-7".
+std::string ranges_of(std::span<const std::uint32_t> numbers) {
+    std::string text;
+    for (std::size_t i = 0; i < numbers.size();) {
+        std::size_t last = i;
+        while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1)
+            ++last;
+        text += fmt::format("{}{}", text.empty() ? "" : ",", numbers[i]);
+        if (last > i)
+            text += fmt::format("-{}", numbers[last]);
+        i = last + 1;
+    }
+    return text;
+}
+
+/// Says which parts are missing or cannot be joined.
+void check_parts(std::span<const std::filesystem::path> parts, const Session& session) {
+    const prt::PartCheck check = prt::check_parts(parts);
+    std::vector<std::uint32_t> missing = check.missing;
+    for (std::uint32_t& part : missing)
+        ++part;
+    for (const std::string& fault : check.faults)
+        session.say(fault);
+    session.report({{"parts", check.num_parts}, {"missing", missing}, {"faults", check.faults}});
+    if (!check.missing.empty())
+        throw std::runtime_error(fmt::format("expected all {} parts, got none that is part {}",
+                                             check.num_parts, ranges_of(missing)));
+    if (!check.is_whole())
+        throw std::runtime_error(fmt::format(
+            "expected parts that can be joined, got {} that cannot", check.faults.size()));
+    session.say(fmt::format("all {} parts are there and whole", check.num_parts));
+}
+
+void join_files(const std::vector<std::filesystem::path>& parts, const std::string& output,
+                const Session& session) {
+    Stopwatch watch;
+    if (extension_of(output) == ".npy")
+        join_light(parts, output);
+    else
+        join(parts, output);
+    const std::uintmax_t file_bytes = std::filesystem::file_size(output);
+    const double seconds = watch.total();
+    session.say(fmt::format("{}: {} parts in {:.1f} s, {:.1f} MB", output, parts.size(), seconds,
+                            static_cast<double>(file_bytes) * 1e-6));
+    session.report({{"parts", parts.size()},
+                    {"peak_bytes", peak_bytes()},
+                    {"file_bytes", file_bytes},
+                    {"seconds", seconds}});
+}
+
+} // namespace
+
 void add_join(Command& program, Session& session) {
     struct Options {
         std::vector<std::string> parts;
         std::string output;
+        bool check = false;
     };
     Command command = program.add_command(
         "join", "put parts together: of a planned precompute -> SCENE.prt, of light -> OUT.npy");
@@ -78,27 +136,22 @@ void add_join(Command& program, Session& session) {
                     "wrote, in any order",
                     {.file = true, .required = true}));
     command.add(row("-o,--output", options->output,
-                    "the scene file to write, .prt; of light the numbers, .npy",
-                    {.file = true, .required = true}));
+                    "the scene file to write, .prt; of light the numbers, .npy", {.file = true}));
+    command.add(row("--check", options->check,
+                    "say which parts are missing or damaged, and write nothing"));
     session.add_common_options(command);
     command.on_run([options, &session] {
-        Stopwatch watch;
-        require_extension("--output", options->output, {".prt", ".npy"});
-        check_output(options->output, options->parts);
         const std::vector<std::filesystem::path> parts(options->parts.begin(),
                                                        options->parts.end());
-        if (extension_of(options->output) == ".npy")
-            join_light(parts, options->output);
-        else
-            join(parts, options->output);
-        const std::uintmax_t file_bytes = std::filesystem::file_size(options->output);
-        const double seconds = watch.total();
-        session.say(fmt::format("{}: {} parts in {:.1f} s, {:.1f} MB", options->output,
-                                parts.size(), seconds, static_cast<double>(file_bytes) * 1e-6));
-        session.report({{"parts", parts.size()},
-                        {"peak_bytes", peak_bytes()},
-                        {"file_bytes", file_bytes},
-                        {"seconds", seconds}});
+        if (options->check) {
+            check_parts(parts, session);
+            return;
+        }
+        if (options->output.empty())
+            throw UsageError("--output", "expected a file to write, or --check");
+        require_extension("--output", options->output, {".prt", ".npy"});
+        check_output(options->output, options->parts);
+        join_files(parts, options->output, session);
     });
 }
 

@@ -1,6 +1,6 @@
 // The highlight of blinn_phong_lobe.h, 16 receivers at a time. A part of lobe_kernel.cpp.
 
-Vector specular(BlinnPhongLobe, const LobeTerms& terms) {
+inline Vector specular(BlinnPhongLobe, const LobeTerms& terms) {
     const Tag d;
     // log1p keeps digits that 1 - sin^2 would round away.
     const auto sin2 = hn::Min(terms.sin2, hn::Set(d, 1.0f - 6e-8f));

@@ -1,7 +1,7 @@
 // The highlight of ggx_lobe.h, 16 receivers at a time. A part of lobe_kernel.cpp.
 
 /// Returns D V n.w of glTF 2.0, Appendix B.
-Vector specular(GgxLobe, const LobeTerms& terms) {
+inline Vector specular(GgxLobe, const LobeTerms& terms) {
     const Tag d;
     const auto one = hn::Set(d, 1.0f);
     const auto a2 = terms.parameter(0);

@@ -54,51 +54,77 @@ inline PartHead read_head(const SectionReader& reader, const std::string& sectio
     return head;
 }
 
+/// Which parts of a whole are there. The first one says what the whole is.
+class PartList {
+public:
+    /// Takes a part. `whole_name` is what it is a part of.
+    ///
+    /// Throws:  std::runtime_error that names a part that is of another whole or number of parts,
+    ///          or given twice; nothing has changed then.
+    void add(const std::filesystem::path& path, const PartHead& head,
+             const std::string& whole_name) {
+        if (paths_.empty()) {
+            paths_.resize(head.part.count);
+            first_ = path;
+            whole_ = head.whole;
+        }
+        const auto refuse = [&](const std::string& expected, const std::string& got) {
+            throw std::runtime_error(
+                fmt::format("{}: expected {}, got {}", path.string(), expected, got));
+        };
+        if (head.whole != whole_)
+            refuse(fmt::format("a part of the same {} as {}", whole_name, first_.string()),
+                   fmt::format("another {}'s", whole_name));
+        if (head.part.count != paths_.size())
+            refuse(fmt::format("one of {} parts as {}", paths_.size(), first_.string()),
+                   fmt::format("one of {}", head.part.count));
+        std::filesystem::path& own = paths_[head.part.index];
+        if (!own.empty())
+            refuse("every part once",
+                   fmt::format("part {} of {} again, after {}", head.part.index + 1, paths_.size(),
+                               own.string()));
+        own = path;
+    }
+
+    /// 0 before the first part.
+    [[nodiscard]] std::size_t count() const { return paths_.size(); }
+    /// Returns the indices of the parts that are not there.
+    [[nodiscard]] std::vector<std::uint32_t> missing() const {
+        std::vector<std::uint32_t> result;
+        for (std::uint32_t i = 0; i < paths_.size(); ++i)
+            if (paths_[i].empty())
+                result.push_back(i);
+        return result;
+    }
+
+private:
+    /// By index; empty for a part that is not there.
+    std::vector<std::filesystem::path> paths_;
+    std::filesystem::path first_;
+    std::string whole_;
+};
+
 /// Reads files by read(path), which returns a value with a `head`. Returns them by index.
 /// `whole_name` is what they are parts of.
 ///
-/// Throws:  std::runtime_error that names a part that is of another whole or number of parts, given
-///          twice or missing; as read() does.
+/// Throws:  as PartList::add() and read() do; std::runtime_error that names a part that is missing.
 template<typename Read>
 auto all_parts_of(const std::string& whole_name, std::span<const std::filesystem::path> paths,
                   const Read& read) {
-    using Stored = decltype(read(paths[0]));
-    std::vector<std::optional<Stored>> parts;
-    std::vector<std::filesystem::path> path_of;
-    std::string whole;
-    const auto refuse = [](const std::filesystem::path& path, const std::string& expected,
-                           const std::string& got) {
-        throw std::runtime_error(
-            fmt::format("{}: expected {}, got {}", path.string(), expected, got));
-    };
+    std::vector<std::optional<decltype(read(paths[0]))>> parts;
+    PartList list;
     for (const std::filesystem::path& path : paths) {
-        Stored stored = read(path);
-        const Part part = stored.head.part;
-        if (parts.empty()) {
-            parts.resize(part.count);
-            path_of.resize(part.count);
-            whole = stored.head.whole;
-        }
-        if (stored.head.whole != whole)
-            refuse(path, fmt::format("a part of the same {} as {}", whole_name, paths[0].string()),
-                   fmt::format("another {}'s", whole_name));
-        if (part.count != parts.size())
-            refuse(path, fmt::format("one of {} parts as {}", parts.size(), paths[0].string()),
-                   fmt::format("one of {}", part.count));
-        if (parts[part.index])
-            refuse(path, "every part once",
-                   fmt::format("part {} of {} again, after {}", part.index + 1, part.count,
-                               path_of[part.index].string()));
-        parts[part.index] = std::move(stored);
-        path_of[part.index] = path;
+        auto stored = read(path);
+        list.add(path, stored.head, whole_name);
+        parts.resize(list.count());
+        parts[stored.head.part.index] = std::move(stored);
     }
     if (parts.empty())
         throw std::runtime_error("expected parts, got none");
-    for (std::size_t i = 0; i < parts.size(); ++i)
-        if (!parts[i])
-            throw std::runtime_error(fmt::format("expected all {0} parts, got none that is part "
-                                                 "{1} of {0}",
-                                                 parts.size(), i + 1));
+    if (const std::vector<std::uint32_t> missing = list.missing(); !missing.empty())
+        throw std::runtime_error(fmt::format("expected all {0} parts, got none that is part {1} of "
+                                             "{0}",
+                                             parts.size(), missing.front() + 1));
     return parts;
 }
 

@@ -130,8 +130,10 @@ const std::array<const char*, 12> Places = {
     "{},0,0,0,0,1", "0,0,3,0,0,0,{}",  "pixels:1x1:{}", "texels:{}x1", "0,1,0,{}",
     "0-{}",         "ggx:roughness={}"};
 
-/// Options with a value that is no file.
-OptionTable numeric_options(const app::CommandLine& program, const Words& line) {
+/// Options of a line with a value that is no file.
+OptionTable find_numeric_options(const Words& line) {
+    app::CommandLine program("relumine", "", "");
+    app::add_commands(program, fresh_session());
     app::CommandTable table = program.table();
     for (std::size_t i = 0; i < line.size() && !table.commands.empty(); ++i)
         for (const app::CommandTable& command : std::vector(table.commands))
@@ -143,6 +145,17 @@ OptionTable numeric_options(const app::CommandLine& program, const Words& line) 
             option.choices.empty())
             result.push_back(option);
     return result;
+}
+
+/// The same, found once: the tables of all commands take longer than a run of most.
+const OptionTable& numeric_options(std::size_t line) {
+    static const std::vector<OptionTable> All = [] {
+        std::vector<OptionTable> all;
+        for (const Words& each : working_lines())
+            all.push_back(find_numeric_options(each));
+        return all;
+    }();
+    return All[line];
 }
 
 void set(Words& line, const OptionRow& option, const std::string& value) {
@@ -175,8 +188,9 @@ void run_at_edges(std::span<const std::uint8_t> draws) {
     fs::current_path(working_folder());
     app::CommandLine program("relumine", "", "");
     app::add_commands(program, fresh_session());
-    Words line = working_lines()[draws[0] % working_lines().size()];
-    const OptionTable options = numeric_options(program, line);
+    const std::size_t number = draws[0] % working_lines().size();
+    Words line = working_lines()[number];
+    const OptionTable& options = numeric_options(number);
     for (std::size_t i = 1; i + 3 <= draws.size() && i < 7; i += 3)
         set(line, options[draws[i] % options.size()],
             fmt::format(fmt::runtime(Places[draws[i + 2] % Places.size()]),
@@ -199,9 +213,7 @@ std::vector<std::string> working_commands() {
 
 std::size_t run_all_edges(std::size_t command) {
     std::size_t count = 0;
-    app::CommandLine program("relumine", "", "");
-    app::add_commands(program, fresh_session());
-    const OptionTable options = numeric_options(program, working_lines()[command]);
+    const OptionTable& options = numeric_options(command);
     for (std::size_t option = 0; option < options.size(); ++option) {
         const bool is_number = options[option].type == "UINT" || options[option].type == "FLOAT";
         // In text, the fuzzer tries the other numbers.

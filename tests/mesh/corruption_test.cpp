@@ -14,6 +14,8 @@ struct Sample {
     TriangleMesh (*load)(std::string_view, NormalSource);
     /// Truncations to this many bytes or fewer must be refused
     std::size_t last_refused_end;
+    /// A byte becomes every so manieth value, the next byte the values beside them.
+    int step = 1;
 };
 
 std::string small_obj() {
@@ -63,7 +65,7 @@ std::vector<Sample> samples() {
     };
     return {
         {"obj", small_obj(), obj, small_obj().find("f 1") + 1},
-        {"gltf", small_gltf(), gltf, without_tail(small_gltf(), 1)},
+        {"gltf", small_gltf(), gltf, without_tail(small_gltf(), 1), 6},
         {"off", small_off(), off, without_tail(small_off(), 3)},
         {"ply_ascii", small_ply("ascii"), ply, without_tail(small_ply("ascii"), 5)},
         {"ply_little", small_ply("binary_little_endian"), ply,
@@ -109,9 +111,11 @@ TEST_P(CorruptionTest, EveryTruncationIsRefusedOrHarmless) {
 
 TEST_P(CorruptionTest, EveryChangedByteIsRefusedOrHarmless) {
     std::string content = GetParam().content;
+    int first = 0;
     for (char& byte : content) {
         const char original = byte;
-        for (int value = 0; value < 256; ++value) {
+        first = (first + 1) % GetParam().step;
+        for (int value = first; value < 256; value += GetParam().step) {
             byte = static_cast<char>(value);
             if (byte != original)
                 is_refused(GetParam(), content);

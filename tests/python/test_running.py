@@ -231,7 +231,7 @@ def test_nothing_leaks(tmp_path):
 
 
 def relight_and_load():
-    """10,000 relights and 1,000 loads of everything: within 1 % of the memory."""
+    """4,000 relights and 400 loads of everything: within 1 % of the memory."""
     scene = relumine.precompute(*boulder_arrays(12), tolerance=0.2)
     sky = relumine.Environment(sky_pixels(8), face_resolution=4)
     scene.save("small.prt")
@@ -265,8 +265,8 @@ def relight_and_load():
     turns = []
     for _ in range(3):
         before = resident_bytes()
-        relights(10000)
-        loads(1000)
+        relights(4000)
+        loads(400)
         turns.append((before, resident_bytes()))
         if turns[-1][1] < 1.01 * before:
             return

@@ -15,7 +15,9 @@ def run(cases=""):
         done = subprocess.run(
             [sys.executable, HERE.parent / "run_cases.py", HERE / "fake_program.py", "fake", "1", "1", "1", results],
             stdout=subprocess.PIPE, text=True, env=dict(os.environ, RELUMINE_CASES=cases), check=False)
-        return done.returncode, done.stdout, results.read_text().splitlines()
+        lines = [line.split() for line in results.read_text().splitlines()]
+        assert all(int(milliseconds) >= 0 for _, milliseconds, _ in lines), lines
+        return done.returncode, done.stdout, [f"{result} {case}" for result, _, case in lines]
 
 
 code, output, lines = run()

@@ -25,7 +25,7 @@ protected:
         {"precompute", "mesh.obj", "-o", "new.prt", "--face-resolution", "16", "--no-refine"},
         {"relight", "scene.prt", "env.hdr", "-o", "new.npy"},
         {"edit", "scene.prt", "env.hdr", "-o", "new.npy", "--disc", "0,1,0"},
-        {"verify", "scene.prt", "env.hdr", "--surface", "100"},
+        {"verify", "scene.prt", "env.hdr", "--surface", "10"},
         {"info", "scene.prt"},
         {"info", "mesh.obj"},
         {"info", "env.hdr"},

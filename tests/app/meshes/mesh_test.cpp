@@ -174,8 +174,8 @@ TEST_F(MeshCommand, GlbIsWrittenToo) {
 TEST_F(MeshCommand, SurfaceErrorsAreSeeded) {
     succeed({"precompute", "box.obj", "-o", "scene.prt", "--face-resolution", "16", "--no-refine"});
     const auto verified = [&](const std::string& seed) {
-        return succeed({"verify", "scene.prt", "lamp.hdr", "--surface", "100", "--seed", seed,
-                        "--json"})
+        return succeed(
+                   {"verify", "scene.prt", "lamp.hdr", "--surface", "20", "--seed", seed, "--json"})
             .json()["surface"];
     };
     EXPECT_EQ(verified("1"), verified("1"));
@@ -183,7 +183,8 @@ TEST_F(MeshCommand, SurfaceErrorsAreSeeded) {
     EXPECT_FALSE(succeed({"verify", "scene.prt", "lamp.hdr", "--surface", "0", "--json"})
                      .json()
                      .contains("surface"));
-    EXPECT_NE(succeed({"verify", "scene.prt", "white.hdr"}).out.find("between the vertices"),
+    EXPECT_NE(succeed({"verify", "scene.prt", "white.hdr", "--surface", "10"})
+                  .out.find("between the vertices"),
               std::string::npos);
 }
 

@@ -79,8 +79,8 @@ TEST_F(Bounces, AgreeWithAPathTracer) {
     precompute("scene.prt", {"--bounces", "0.01", "--tolerance", "0.01"});
     const auto verify = [&](const std::vector<std::string>& more) {
         std::vector<std::string> arguments = {"verify", "scene.prt", "white.hdr", "--samples",
-                                              "300",    "--albedo",  "0.8",       "--paths",
-                                              "1000",   "--json"};
+                                              "120",    "--albedo",  "0.8",       "--paths",
+                                              "1000",   "--surface", "0",         "--json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return succeed(arguments).json();
     };

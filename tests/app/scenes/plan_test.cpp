@@ -207,10 +207,28 @@ TEST_F(PlanTest, APartThatIsMissingDoubledForeignOrDamagedIsNamed) {
     fail(join({"first", "third"}), {"third: expected one of 2 parts"});
     fail(join({"first", "scene.plan"}), {"scene.plan: expected a part, got a plan"});
     fail(join({"first", "none"}), {"none"});
+    const auto check = [](std::vector<std::string> parts) {
+        parts.insert(parts.begin(), {"join", "--check"});
+        return parts;
+    };
+    EXPECT_NE(succeed(check({"second", "first"})).out.find("all 2 parts"), std::string::npos);
+    fail(check({"third"}), {"expected all 3 parts, got none that is part 2-3"});
+    // What was found is on stdout, in a line each.
+    const Result foreign = relumine(check({"second", "foreign"})),
+                 none = relumine(check({"scene.plan"}));
+    EXPECT_EQ(foreign.exit_code, 1);
+    EXPECT_EQ(foreign.out.find("foreign: expected a part of the same plan as second"), 0u);
+    EXPECT_EQ(foreign.err, "relumine: expected all 2 parts, got none that is part 1\n");
+    EXPECT_EQ(none.exit_code, 1);
+    EXPECT_EQ(none.err, "relumine: expected parts that can be joined, got 1 that cannot\n");
+    misuse({"join", "first", "second"}, "--output");
     std::string bytes = read("second");
     bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
     write("second", bytes);
     fail(join({"first", "second"}), {"second: expected"});
+    const nlohmann::json checked = relumine(check({"first", "second", "first", "--json"})).json();
+    EXPECT_EQ(checked["missing"], (std::vector<int>{2}));
+    EXPECT_EQ(checked["faults"].size(), 2u);
     fail(part("1/2", "part", "first"), {"first: expected a plan, got a part"});
     std::filesystem::copy(folder() / "first", folder() / "first.prt");
     fail({"info", "first.prt"}, {"first.prt: expected a scene, got a part"});

@@ -43,7 +43,7 @@ protected:
 };
 
 TEST_F(Resume, KilledAtTwentyMomentsTheFileIsTheSame) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "4000", "-q"});
+    succeed({"generate", "knot", "-o", ".", "--vertices", "1500", "-q"});
     const std::vector<std::string> scene = {"--tolerance", "0.03"};
     const double seconds = succeed(run(scene)).seconds;
     const std::string expected = read("scene.prt");
@@ -96,7 +96,7 @@ TEST_F(Resume, KilledWithACheckpointItIsTakenUp) {
 }
 
 TEST_F(Resume, HighlightsAreTakenUpToo) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "3000", "-q"});
+    succeed({"generate", "knot", "-o", ".", "--vertices", "1200", "-q"});
     const std::vector<std::string> scene = {"--tolerance", "0.05",       "--view",
                                             "auto",        "--material", "ggx:roughness=0.4"};
     const double seconds = succeed(run(scene)).seconds;
