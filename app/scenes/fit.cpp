@@ -259,6 +259,8 @@ void run(FitArguments& options, const Command& command, Session& session) {
             {.stop = session.stop(), .on_progress = session.progress("light that fits")});
         session.end_progress();
         tell(options, found, distance_to(target, lit), watch.total(), session);
+    } catch (const OptionError&) { // names the option already
+        throw;
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(fmt::format("{}: {}", options.target, error.what()));
     }
