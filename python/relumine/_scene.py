@@ -257,11 +257,12 @@ class Scene:
         return self
 
     def __reduce__(self) -> Any:
-        if self.num_clusters == 0:
-            raise TypeError("scene: expected clusters, got a scene without, which has no file")
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "scene.prt")
-            self.save(path)
+            try:
+                self.save(path)
+            except ValueError:
+                raise TypeError("scene: expected clusters, got a scene without") from None
             with open(path, "rb") as file:
                 return _scene_from, (file.read(), self.report)
 

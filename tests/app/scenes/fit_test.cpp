@@ -79,7 +79,8 @@ TEST_F(Fit, RefusesWhatCannotBeFitted) {
     succeed(
         {"relight", "c.prt", "--lights", "lamps.json", "-o", "lit.exr", "--size", "64x48", "-q"});
     misuse({"fit", "c.prt", "lit.exr", "-o", "env.exr"}, "the camera of the picture");
-    fail({"fit", "c.prt", "colonnade.ply", "-o", "env.exr"}, {"colonnade.ply", "vertex colours"});
+    write("mesh.obj", octahedron_obj());
+    fail({"fit", "c.prt", "mesh.obj", "-o", "env.exr"}, {"mesh.obj", "vertex colours"});
     misuse({"fit", "c.prt", "lit.npy", "--gains", "lamps.json", "--lights", "2", "-o", "x.json"},
            "--gains");
     misuse({"fit", "c.prt", "lit.npy", "--lights", "2", "-o", "x.exr"}, ".json");
