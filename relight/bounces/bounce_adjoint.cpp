@@ -88,11 +88,13 @@ std::vector<glm::vec3> bounce_adjoint(const SurfaceBounces& bounces, const prt::
             counts[place] *= albedo[place];
             sum[place] += counts[place];
         }
-        // The rest is a geometric series, or less.
-        const double size = size_of(counts), ratio = size / std::max(size_before, 1e-300);
-        if (size == 0.0 ||
-            (!bounces.limits.num_bounces && ratio < 1.0 &&
-             size * ratio / (1.0 - ratio) <= bounces.limits.tolerance * size_of(sum)))
+        // The rest is a geometric series, or less. The first terms may fall faster than the others.
+        constexpr double LeastRatio = 0.5, PartOfTolerance = 0.1;
+        const double size = size_of(counts);
+        const double ratio = std::max(LeastRatio, size / std::max(size_before, 1e-300));
+        if (size == 0.0 || (!bounces.limits.num_bounces && ratio < 1.0 &&
+                            size * ratio / (1.0 - ratio) <=
+                                PartOfTolerance * bounces.limits.tolerance * size_of(sum)))
             break;
         size_before = size;
     }
