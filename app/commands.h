@@ -17,6 +17,7 @@ void add_relight(Command& program, Session& session);
 void add_animate(Command& program, Session& session);
 void add_edit(Command& program, Session& session);
 void add_verify(Command& program, Session& session);
+void add_fit(Command& program, Session& session);
 void add_lights(Command& program, Session& session);
 void add_info(Command& program, Session& session);
 void add_generate(Command& program, Session& session);

@@ -20,6 +20,7 @@ void add_commands(CommandLine& line, Session& session) {
     add_animate(program, session);
     add_edit(program, session);
     add_verify(program, session);
+    add_fit(program, session);
     add_lights(program, session);
     add_info(program, session);
     add_generate(program, session);

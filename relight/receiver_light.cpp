@@ -36,8 +36,8 @@ ReceiverLight::ReceiverLight(const prt::Transfer& transfer, const ShadowRays& ra
             eye_cosines_[i] = glm::dot(transfer.normals[i], transfer.glossy->to_eye[i]);
     }
     if (harmonics > MaxHarmonicOrder)
-        throw std::invalid_argument(
-            fmt::format("expected harmonics of order 1 to {}, got {}", MaxHarmonicOrder, harmonics));
+        throw std::invalid_argument(fmt::format("expected harmonics of order 1 to {}, got {}",
+                                                MaxHarmonicOrder, harmonics));
     // The light of points is the first coefficient.
     if (harmonics != 0 || transfer.have_no_surface)
         harmonics_.emplace(transfer, std::max(harmonics, 1u));
@@ -68,7 +68,8 @@ std::vector<glm::vec3> ReceiverLight::harmonics() const {
         const std::size_t begin = block * prt::BlockSize;
         for (std::size_t place = begin; place < std::min(begin + prt::BlockSize, radiance_.size());
              ++place)
-            harmonics_->read(place, std::span(result).subspan(transfer_.order[place] * count, count));
+            harmonics_->read(place,
+                             std::span(result).subspan(transfer_.order[place] * count, count));
     });
     return result;
 }
@@ -98,8 +99,7 @@ void ReceiverLight::sum(const ClusterSums& sums) {
 
 std::size_t ReceiverLight::update(const ClusterSums& sums, std::span<const std::uint32_t> changed,
                                   bool sharp_changed) {
-    const std::size_t num_lit =
-        harmonics_ ? harmonics_->update(block_scene(), sums, changed) : 0;
+    const std::size_t num_lit = harmonics_ ? harmonics_->update(block_scene(), sums, changed) : 0;
     if (transfer_.have_no_surface) {
         write_means();
         return std::min((sharp_changed ? light_.size() : num_lit) * prt::BlockSize,
@@ -147,21 +147,8 @@ std::size_t ReceiverLight::update(const ClusterSums& sums, std::span<const std::
     return std::min(num_blocks * prt::BlockSize, radiance_.size());
 }
 
-glm::dvec3 ReceiverLight::from_cluster(std::size_t place, std::size_t cluster) const {
-    const prt::VisibleCounts& counts = transfer_.counts;
-    const double count = counts.count(place, cluster);
-    if (count == 0.0)
-        return glm::dvec3(0.0);
-    if (transfer_.have_no_surface)
-        return count * harmonics_->mean_from_cluster(cluster);
-    const std::size_t block = place / prt::BlockSize, w = cluster / 64;
-    const std::size_t tile = block / prt::VisibleCounts::TileBlocks;
-    const std::uint64_t whole = counts.visible[counts.word(block, w)] &
-                                ~words_.across_of(words_.words[tile * counts.words_per_block() + w],
-                                                  block % prt::VisibleCounts::TileBlocks);
-    const glm::vec3& normal = transfer_.normals[place];
-    return count * ((whole >> (cluster % 64) & 1u) != 0 ? lights_.of_vectors(cluster, normal)
-                                                        : lights_.of_directional(cluster, normal));
+glm::dvec3 ReceiverLight::of_point_from_cluster(std::size_t place, std::size_t cluster) const {
+    return transfer_.counts.count(place, cluster) * harmonics_->mean_from_cluster(cluster);
 }
 
 void ReceiverLight::light_glossy(std::size_t block) {

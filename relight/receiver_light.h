@@ -50,7 +50,8 @@ public:
     }
     [[nodiscard]] std::vector<glm::vec3> soft_radiance() const;
     [[nodiscard]] std::vector<prt::Lobes<glm::vec3>> lobes(bool with_sharp_lights) const;
-    [[nodiscard]] glm::dvec3 from_cluster(std::size_t place, std::size_t cluster) const;
+    /// Returns what a point in space has from one cluster, without its sharp lights.
+    [[nodiscard]] glm::dvec3 of_point_from_cluster(std::size_t place, std::size_t cluster) const;
     /// Returns the arriving light as it was summed, [num_receivers][order^2] in the receivers' own
     /// order.
     [[nodiscard]] std::vector<glm::vec3> harmonics() const;
@@ -59,10 +60,15 @@ public:
         return harmonics_ ? harmonics_->order() : 0;
     }
 
-private:
+    // What the radiance is summed from.
     [[nodiscard]] BlockScene block_scene() const {
         return {.counts = transfer_.counts, .words = words_, .normals = normals_};
     }
+    /// Sharp lights left out.
+    [[nodiscard]] const ClusterLights& cluster_lights() const { return lights_; }
+    [[nodiscard]] const TracedLight& traced() const { return traced_; }
+
+private:
     void light_glossy(std::size_t block);
     /// The radiance of points without a surface.
     void write_means();

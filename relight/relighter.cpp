@@ -301,9 +301,6 @@ glm::dvec3 Relighter::open_radiance(const glm::vec3& normal) const {
         sum += cluster.on(normal);
     return sum / std::numbers::pi;
 }
-glm::dvec3 Relighter::from_cluster(std::size_t place, std::size_t cluster) const {
-    return light_->from_cluster(place, cluster);
-}
 
 void require_texels(const TexelRectangle& rectangle, std::span<const glm::vec3> radiance,
                     const cubemap::CubeMap& map) {

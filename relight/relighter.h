@@ -161,9 +161,10 @@ public:
     [[nodiscard]] const cubemap::CubeMap& environment() const { return *environment_; }
 
     [[nodiscard]] const prt::Transfer& transfer() const { return transfer_; }
-    /// Returns the radiance of the receiver at a place of the transfer for albedo 1, as far as it
-    /// comes from one cluster without its sharp lights.
-    [[nodiscard]] glm::dvec3 from_cluster(std::size_t place, std::size_t cluster) const;
+    /// What the radiance is summed from: for the other rooms of this folder.
+    [[nodiscard]] const ReceiverLight& receiver_light() const { return *light_; }
+    /// How environment() is summed into clusters; null where there is none.
+    [[nodiscard]] const LightBinning* binning() const { return binning_.get(); }
     [[nodiscard]] std::span<const SharpLight> sharp_lights() const { return sharp_lights_; }
     [[nodiscard]] const ShadowRays& shadow_rays() const { return rays_; }
 

@@ -12,7 +12,9 @@
 #include "cubemap/layers/layer_composite.h"
 #include "files/parallel.h"
 #include "prt/receivers/pixel_receivers.h"
-#include "relight/contribution.h"
+#include "relight/adjoint/adjoint.h"
+#include "relight/adjoint/contribution.h"
+#include "relight/batch.h"
 #include "relight/pictures/framing.h"
 #include "relight/reference/path_tracer.h"
 #include "relight/sharp/light_packets.h"
@@ -235,6 +237,17 @@ cubemap::CubeMap contribution_map(const LitScene& lit, std::span<const std::uint
     return relight::contribution_map(lit.relighter(), receivers,
                                      lit.bounces().bounced().empty() ? nullptr
                                                                      : &lit.bounces().surfaces());
+}
+
+cubemap::CubeMap adjoint(const LitScene& lit, std::span<const glm::vec3> weights) {
+    require_environment(lit);
+    return relight::adjoint(lit.relighter(), weights,
+                            lit.bounces().bounced().empty() ? nullptr : &lit.bounces().surfaces());
+}
+
+void relight_batch(const LitScene& lit, std::span<const cubemap::CubeMap> environments,
+                   std::span<glm::vec3> radiance) {
+    relight::relight_batch(lit.relighter(), environments, radiance);
 }
 
 Share lit_by(const LitScene& lit, const cubemap::Region& region) {

@@ -109,6 +109,24 @@ struct Share {
 [[nodiscard]] cubemap::CubeMap contribution_map(const LitScene& lit,
                                                 std::span<const std::uint32_t> receivers);
 
+/// Returns the derivative of a number by the environment's texels, given its derivative by
+/// radiance(): the transpose T* of a relight, at two to three times its cost. After bounce() light
+/// that bounces counts. The environment is environment_of(): with its layers and its turn.
+/// docs/operator.md
+///
+/// Shape:   weights is [num_receivers] in the receivers' order.
+/// Throws:  std::invalid_argument for another number of weights, weights that are not finite, and
+///          receivers with highlights; std::logic_error unless an environment lights the scene.
+[[nodiscard]] cubemap::CubeMap adjoint(const LitScene& lit, std::span<const glm::vec3> weights);
+
+/// Lights the scene with one environment after the other, and leaves its own light as it is. Direct
+/// light, as it is after LitScene::light() of the map.
+///
+/// Shape:   radiance is [environments][num_receivers] in the receivers' order.
+/// Throws:  as relight::relight_batch(), and std::invalid_argument for a scene without clusters.
+void relight_batch(const LitScene& lit, std::span<const cubemap::CubeMap> environments,
+                   std::span<glm::vec3> radiance);
+
 /// Returns what a region gives to the scene, as if the rest of the environment were black.
 ///
 /// Throws:  std::invalid_argument for a region that is not valid; std::logic_error as above.

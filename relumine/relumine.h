@@ -14,6 +14,7 @@
 // IWYU pragma: begin_exports
 #include "cubemap/layers/layer_file.h"
 #include "relumine/environment.h"
+#include "relumine/fit.h"
 #include "relumine/harmonics_file.h"
 #include "relumine/light.h"
 #include "relumine/light_mix.h"

@@ -89,17 +89,20 @@ glm::dvec3 ImagePyramid::sample(std::size_t level, const glm::dvec2& position) c
     return glm::mix(glm::mix(at(x0, y0), at(x1, y0), fx), glm::mix(at(x0, y1), at(x1, y1), fx), fy);
 }
 
-std::shared_ptr<const ImagePyramid> load_image_pyramid(const std::filesystem::path& path) {
+Picture load_picture(const std::filesystem::path& path) {
     const std::vector<std::byte> bytes = files::read(path);
     const std::string name = path.string();
     if (!is_exr(bytes) && !is_hdr(bytes))
         throw std::runtime_error(
             fmt::format("{}: expected an OpenEXR or Radiance .hdr file, got neither", name));
-    ImageFile file = is_exr(bytes) ? decode_exr(bytes, name) : decode_hdr(bytes, name);
+    return is_exr(bytes) ? decode_exr(bytes, name) : decode_hdr(bytes, name);
+}
+
+std::shared_ptr<const ImagePyramid> load_image_pyramid(const std::filesystem::path& path) {
     try {
-        return std::make_shared<const ImagePyramid>(static_cast<Picture&&>(file));
+        return std::make_shared<const ImagePyramid>(load_picture(path));
     } catch (const std::invalid_argument& error) {
-        throw std::runtime_error(fmt::format("{}: {}", name, error.what()));
+        throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));
     }
 }
 

@@ -35,6 +35,11 @@ private:
     std::vector<Picture> levels_;
 };
 
+/// Reads the pixels of an .exr or .hdr file, without alpha.
+///
+/// Throws:  std::runtime_error "path: expected X, got Y".
+[[nodiscard]] Picture load_picture(const std::filesystem::path& path);
+
 /// Reads an .exr or .hdr file of any shape as a picture.
 /// Throws:  std::runtime_error "path: expected X, got Y".
 [[nodiscard]] std::shared_ptr<const ImagePyramid>

@@ -65,6 +65,42 @@ EnvironmentPointer from_pixels(const py::buffer& pixels, std::uint32_t width, st
                          });
 }
 
+/// All that an environment is made of, for pickles: shape, layout, sampling, what was assumed, and
+/// the angles. The pixels are a property of their own.
+py::tuple state_of(const EnvironmentHandle& own) {
+    const cubemap::EnvironmentImage& image = *own.made.file.image;
+    std::array<double, 9> turn{};
+    for (std::size_t i = 0; i < turn.size(); ++i)
+        turn[i] = own.options.turn[static_cast<int>(i / 3)][static_cast<int>(i % 3)];
+    return py::make_tuple(image.width, image.height, static_cast<int>(image.layout),
+                          static_cast<int>(image.sampling), image.assumptions, own.options.from,
+                          own.made.map.resolution, static_cast<int>(own.options.flip),
+                          own.options.tilt_degrees, own.options.rotate_degrees, turn);
+}
+
+EnvironmentPointer from_state(const py::buffer& pixels, const py::tuple& state) {
+    cubemap::EnvironmentImage image;
+    image.width = state[0].cast<std::uint32_t>();
+    image.height = state[1].cast<std::uint32_t>();
+    image.layout = static_cast<cubemap::Layout>(state[2].cast<int>());
+    image.sampling = static_cast<cubemap::Sampling>(state[3].cast<int>());
+    image.assumptions = state[4].cast<std::string>();
+    image.pixels = vec3s(pixels);
+    if (image.pixels.size() != std::size_t{image.width} * image.height)
+        throw py::value_error("expected the state of an environment");
+    EnvironmentOptions options{.from = state[5].cast<std::string>(),
+                               .face_resolution = state[6].cast<std::uint32_t>(),
+                               .flip = static_cast<char>(state[7].cast<int>()),
+                               .tilt_degrees = state[8].cast<double>(),
+                               .rotate_degrees = state[9].cast<double>()};
+    const auto turn = state[10].cast<std::array<double, 9>>();
+    for (std::size_t i = 0; i < turn.size(); ++i)
+        options.turn[static_cast<int>(i / 3)][static_cast<int>(i % 3)] = turn[i];
+    return in_background(
+        py::none(), [image = std::make_shared<const cubemap::EnvironmentImage>(std::move(image)),
+                     options](const Reins&) { return made_of(image, options); });
+}
+
 /// The same image, turned by other angles.
 EnvironmentPointer turned_anew(const EnvironmentHandle& own, const py::dict& given,
                                const std::array<std::array<double, 3>, 3>& turn) {
@@ -349,10 +385,12 @@ void bind_environments(py::module_& module) {
         .def_property_readonly("face_resolution",
                                [](const Handle& own) { return own.made.map.resolution; })
         .def("turned", &turned_anew)
+        .def("state", &state_of)
         .def("findings", &findings)
         .def("without_sun", &without_sun);
     module.def("load_environment", &loaded_environment);
     module.def("environment_from_pixels", &from_pixels);
+    module.def("environment_from_state", &from_state);
     module.def("convert_to_array", &convert_to_array);
     module.def("convert_to_file", &convert_to_file);
     module.def("irradiance", [](const Handle& own, const std::array<double, 3>& n) {

@@ -260,6 +260,33 @@ Array contribution_map(const LitPointer& own, const py::buffer& receivers) {
     return owned(std::move(map.texels), {6, r, r});
 }
 
+Array adjoint(const LitPointer& own, const py::buffer& weights) {
+    const std::vector<glm::vec3> values = vec3s(weights);
+    cubemap::CubeMap map =
+        quickly(*own, [&](LitScene& lit) { return relumine::adjoint(lit, values); });
+    const auto r = static_cast<py::ssize_t>(map.resolution);
+    return owned(std::move(map.texels), {6, r, r});
+}
+
+/// `cubes` is [B, 6, R, R, 3]; returns [B, num_receivers, 3].
+Array relight_batch(const LitPointer& own, const py::buffer& cubes, std::size_t count,
+                    std::uint32_t resolution) {
+    const std::vector<glm::vec3> texels = vec3s(cubes);
+    std::vector<cubemap::CubeMap> maps(count, cubemap::CubeMap(resolution));
+    const auto per_map = static_cast<std::ptrdiff_t>(texels.size() / count);
+    for (std::size_t i = 0; i < count; ++i)
+        std::copy_n(texels.begin() + static_cast<std::ptrdiff_t>(i) * per_map, per_map,
+                    maps[i].texels.begin());
+    const std::size_t num_receivers = own->scene().receivers.size();
+    std::vector<glm::vec3> radiance(count * num_receivers);
+    quickly(*own, [&](LitScene& lit) {
+        relumine::relight_batch(lit, maps, radiance);
+        return true;
+    });
+    return owned(std::move(radiance),
+                 {static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(num_receivers)});
+}
+
 /// [num_receivers, num_points]: 1 where a point is seen.
 Array sees(const LitPointer& own, const py::buffer& points) {
     std::vector<glm::vec3> places = vec3s(points);
@@ -283,6 +310,8 @@ void bind_questions(py::class_<Lit, LitPointer>& type) {
     type.def("verify", &verify)
         .def("lit_by", &lit_by)
         .def("contribution_map", &contribution_map)
+        .def("adjoint", &adjoint)
+        .def("relight_batch", &relight_batch)
         .def("sees", &sees)
         .def("transfer_lights", &transfer_lights);
 }

@@ -96,6 +96,12 @@ class Environment:
         environment._core = core
         return environment
 
+    def __reduce__(self) -> Any:
+        return _environment_from, (np.array(self.pixels), self._core.state())
+
+    def __deepcopy__(self, memo: Any) -> "Environment":
+        return self
+
     def turned(
         self,
         *,
@@ -268,3 +274,8 @@ def _options(
         "tilt": tilt,
         "rotate": rotate,
     }
+
+
+def _environment_from(pixels: Floats, state: Tuple[Any, ...]) -> Environment:
+    """The environment of a picture: what pickles call."""
+    return Environment._of(_core.environment_from_state(pixels, state))

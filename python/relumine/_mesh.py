@@ -128,6 +128,9 @@ class Mesh:
         mesh.report = {}
         return mesh
 
+    def __deepcopy__(self, memo: Any) -> "Mesh":
+        return self
+
     @property
     def vertices(self) -> Floats:
         """(N, 3) float32, read-only, the floor's included."""

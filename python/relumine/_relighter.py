@@ -21,6 +21,9 @@ from ._scene import Color, Progress, Scene
 #: Names of the cube's faces, in the order of `Environment.cube`.
 FACES = ("+x", "-x", "+y", "-y", "+z", "-z")
 
+# Environments that are in memory at once.
+_BATCH = 32
+
 
 class RelightTimes(NamedTuple):
     """What a relight took."""
@@ -348,6 +351,61 @@ class Relighter:
         chosen = np.atleast_1d(np.asarray(receivers))
         places = indices("receivers", chosen, self._scene.num_receivers, None)
         result: Floats = view(self._core.contribution_map(places))
+        return result
+
+    def relight_batch(
+        self, environments: ArrayLike, out: Optional[NDArray[Any]] = None
+    ) -> NDArray[Any]:
+        """The radiance under many environments: (B, num_receivers, 3) float32.
+
+        environments  (B, 6, R, R, 3): cube faces as Environment.cube has them
+        out           an array of that shape to write to, float32, float16 or any other float
+
+        The relighter's own light stays as it is, and layers do not count. Direct light alone.
+
+        >>> relighter.relight_batch(np.ones((2, 6, 8, 8, 3))).shape
+        (2, 6912, 3)
+        """
+        shape = np.shape(environments)
+        if len(shape) != 5 or shape[2] != shape[3]:
+            raise ValueError(f"environments: expected shape (B, 6, R, R, 3), got {shape}")
+        result_shape = (shape[0], self._scene.num_receivers, 3)
+        if out is None:
+            out = np.empty(result_shape, np.float32)
+        elif not isinstance(out, np.ndarray) or out.dtype.kind != "f":
+            raise ValueError(f"out: expected an array of floats, got {type(out).__name__}")
+        elif out.shape != result_shape:
+            raise ValueError(f"out: expected shape {result_shape}, got {out.shape}")
+        for first in range(0, shape[0], _BATCH):
+            part = np.asarray(environments)[first : first + _BATCH]
+            cubes = floats("environments", part, None, 6, shape[2], shape[2], 3)
+            with errors():
+                core = self._core.relight_batch(cubes, len(cubes), shape[2])
+            out[first : first + _BATCH] = view(core)
+        return out
+
+    def adjoint(self, weights: ArrayLike) -> Floats:
+        """The transpose of a relight: (6, R, R, 3), the derivative of a loss by each texel.
+
+        weights  (num_receivers, 3), or (num_receivers,) for all channels alike: the derivative of
+                 the loss by `radiance`
+
+        It takes two to three relights. After bounce() light that bounces counts. For the
+        present environment, (environment * adjoint(w)).sum() is (radiance * w).sum().
+
+        >>> gradient = relighter.adjoint(np.ones(scene.num_receivers))
+        >>> total = (relighter.environment * gradient).sum(dtype=float)
+        >>> bool(np.isclose(total, relighter.radiance.sum(dtype=float), rtol=1e-4))
+        True
+        """
+        count = self._scene.num_receivers
+        if np.ndim(weights) == 1:
+            weights = np.repeat(np.asarray(weights)[:, None], 3, axis=1)
+        values = floats("weights", weights, count, 3)
+        if not self._core.is_lit:
+            raise RuntimeError("expected a scene that is lit, got one without light")
+        with errors():
+            result: Floats = view(self._core.adjoint(values))
         return result
 
     def sees(self, points: ArrayLike) -> NDArray[np.bool_]:

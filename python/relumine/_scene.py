@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -268,6 +269,19 @@ class Scene:
         expect("mesh", mesh, Mesh)
         return cls._of(_core.unclustered_scene(mesh._core))
 
+    def __deepcopy__(self, memo: Any) -> "Scene":
+        return self
+
+    def __reduce__(self) -> Any:
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "scene.prt")
+            try:
+                self.save(path)
+            except ValueError:
+                raise TypeError("scene: expected clusters, got a scene without") from None
+            with open(path, "rb") as file:
+                return _scene_from, (file.read(), self.report)
+
     def save(self, path: Path) -> int:
         """Writes a .prt file, whole or not at all. Returns its size in bytes."""
         with errors(path):
@@ -358,3 +372,14 @@ class Scene:
             f"<relumine.Scene: {self.settings['receivers']}, {self.num_receivers} receivers, "
             f"{self.num_clusters} clusters>"
         )
+
+
+def _scene_from(content: bytes, report: Dict[str, Any]) -> Scene:
+    """The scene that a .prt file's bytes hold: what pickles call."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "scene.prt")
+        with open(path, "wb") as file:
+            file.write(content)
+        scene = Scene.load(path)
+    scene.report = report
+    return scene

@@ -80,7 +80,7 @@ public:
                     largest = std::max(largest, value[channel]);
             }
         }
-        const float safe = largest_safe_albedo();
+        const float safe = largest_safe_albedo(matrix_);
         if (largest > safe && largest > 1.0f)
             throw std::invalid_argument(
                 fmt::format("expected an albedo up to {:.4g}, beyond which bounces grow for ever, "
@@ -161,12 +161,6 @@ private:
 
     static double seconds_since(std::chrono::steady_clock::time_point start) {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    }
-
-    [[nodiscard]] float largest_safe_albedo() const {
-        constexpr float Margin = 0.999f;
-        return matrix_.spectral_radius > 0.0f ? Margin / matrix_.spectral_radius
-                                              : std::numeric_limits<float>::max();
     }
 
     void set_direct(std::span<const glm::vec3> direct) {

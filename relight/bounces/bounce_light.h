@@ -109,15 +109,16 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Returns how much of each receiver's direct light reaches the chosen receivers from other
-/// surfaces: the transpose of BounceLight, its mean over them. The sum of these factors times the
-/// direct light is the mean of indirect().
+/// Returns the derivative of a number by each receiver's direct light, as far as this light reaches
+/// receivers from other surfaces, given the derivative by their indirect(): the transpose of
+/// BounceLight. All bounces are found to the limits' tolerance.
 ///
-/// Shape:   [num_receivers] in the receivers' order.
-/// Cost:    as many products with the matrix as light has bounces, on one thread.
-/// Throws:  std::invalid_argument as BounceLight, for no receivers, or an index out of range.
-[[nodiscard]] std::vector<glm::dvec3> bounce_factors(const SurfaceBounces& bounces,
-                                                     const prt::Transfer& transfer,
-                                                     std::span<const std::uint32_t> receivers);
+/// Shape:   weights and result are [num_receivers] in the receivers' order.
+/// Cost:    as many products with the matrix as light has bounces.
+/// Threads: parallel; the same bits for any number of threads.
+/// Throws:  std::invalid_argument for bounces or weights of other receivers.
+[[nodiscard]] std::vector<glm::vec3> bounce_adjoint(const SurfaceBounces& bounces,
+                                                    const prt::Transfer& transfer,
+                                                    std::span<const glm::vec3> weights);
 
 } // namespace relumine::relight

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,13 @@ void for_rows(std::size_t first, std::size_t last, const Function& function) {
                             const std::size_t begin = first + task * RowsPerTask;
                             function(begin, std::min(last, begin + RowsPerTask));
                         });
+}
+
+/// Returns an albedo under which light does not grow for ever, nearly the largest.
+[[nodiscard]] inline float largest_safe_albedo(const prt::BounceMatrix& matrix) {
+    constexpr float Margin = 0.999f;
+    return matrix.spectral_radius > 0.0f ? Margin / matrix.spectral_radius
+                                         : std::numeric_limits<float>::max();
 }
 
 /// Multiplies with a matrix of bounces. Where processes share the rows, all multiply together, and

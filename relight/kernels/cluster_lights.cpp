@@ -53,16 +53,62 @@ void add_whole(const TexelSums& whole, std::uint32_t x, std::uint32_t y, double 
     sums.v += whole.y * step + whole.one * ((y + 0.5) * step - 1.0);
 }
 
+/// The axes of 1, u and v: cube_point() is linear in (1, u, v) = (1, 2s - 1, 2t - 1) for a face.
+struct FaceAxes {
+    glm::dvec3 centre, right, down;
+
+    explicit FaceAxes(cubemap::Face face)
+        : centre(cubemap::cube_point(face, 0.5, 0.5)),
+          right(cubemap::cube_point(face, 1.0, 0.5) - centre),
+          down(cubemap::cube_point(face, 0.5, 1.0) - centre) {}
+};
+
 /// Turns sums in the coordinates of a face to the world.
 VectorIrradiance to_world(cubemap::Face face, const FaceSums& sums) {
-    // cube_point is linear in (2s - 1, 2t - 1, 1) for a fixed face.
-    const glm::dvec3 centre = cubemap::cube_point(face, 0.5, 0.5);
-    const glm::dvec3 right = cubemap::cube_point(face, 1.0, 0.5) - centre;
-    const glm::dvec3 down = cubemap::cube_point(face, 0.5, 1.0) - centre;
+    const FaceAxes axes(face);
     const auto channel = [&](int i) {
-        return sums.one[i] * centre + sums.u[i] * right + sums.v[i] * down;
+        return sums.one[i] * axes.centre + sums.u[i] * axes.right + sums.v[i] * axes.down;
     };
     return {.red = channel(0), .green = channel(1), .blue = channel(2)};
+}
+
+/// Visits the texels of a cell. Parts of texels lie around a rectangle of whole ones; without whole
+/// ones, all texels are parts. Calls `part(x, y, u, v, weight)`, where weight times (u, v, 1) is
+/// the part's solid angle times its direction, then `whole(columns, rows)` once where there are
+/// some.
+template<typename Part, typename Whole>
+void for_texels(const prt::Cell& cell, std::uint32_t resolution, const Part& part,
+                const Whole& whole) {
+    const double r = resolution;
+    const double s0 = cell.x * cell.size() * r; // in texels
+    const double t0 = cell.y * cell.size() * r;
+    const double s1 = s0 + cell.size() * r;
+    const double t1 = t0 + cell.size() * r;
+    const TexelRange columns = texel_range(s0, s1);
+    const TexelRange rows = texel_range(t0, t1);
+    const auto visit_part = [&](std::uint32_t x, std::uint32_t y) {
+        const double part_s0 = std::max(s0, static_cast<double>(x)) / r;
+        const double part_s1 = std::min(s1, x + 1.0) / r;
+        const double part_t0 = std::max(t0, static_cast<double>(y)) / r;
+        const double part_t1 = std::min(t1, y + 1.0) / r;
+        const double u = part_s0 + part_s1 - 1.0;
+        const double v = part_t0 + part_t1 - 1.0;
+        part(x, y, u, v,
+             cubemap::solid_angle(part_s0, part_t0, part_s1, part_t1) /
+                 std::sqrt(u * u + v * v + 1.0));
+    };
+    const bool any_whole =
+        columns.whole_begin < columns.whole_end && rows.whole_begin < rows.whole_end;
+    for (std::uint32_t y = rows.begin; y < rows.end; ++y) {
+        const bool whole_row = any_whole && y >= rows.whole_begin && y < rows.whole_end;
+        for (std::uint32_t x = columns.begin; x < (whole_row ? columns.whole_begin : columns.end);
+             ++x)
+            visit_part(x, y);
+        for (std::uint32_t x = columns.whole_end; whole_row && x < columns.end; ++x)
+            visit_part(x, y);
+    }
+    if (any_whole)
+        whole(columns, rows);
 }
 
 } // namespace
@@ -97,48 +143,46 @@ LightBinning::LightBinning(std::uint32_t face_resolution) : resolution_(face_res
 
 VectorIrradiance LightBinning::sum(const cubemap::CubeMap& environment,
                                    const prt::Cell& cell) const {
-    const double r = resolution_;
-    const double s0 = cell.x * cell.size() * r; // in texels
-    const double t0 = cell.y * cell.size() * r;
-    const double s1 = s0 + cell.size() * r;
-    const double t1 = t0 + cell.size() * r;
-    const TexelRange columns = texel_range(s0, s1);
-    const TexelRange rows = texel_range(t0, t1);
-    const double step = 2.0 / r;
     FaceSums sums;
-
-    const auto add_part = [&](std::uint32_t x, std::uint32_t y) {
-        const double part_s0 = std::max(s0, static_cast<double>(x)) / r;
-        const double part_s1 = std::min(s1, x + 1.0) / r;
-        const double part_t0 = std::max(t0, static_cast<double>(y)) / r;
-        const double part_t1 = std::min(t1, y + 1.0) / r;
-        const double u = part_s0 + part_s1 - 1.0;
-        const double v = part_t0 + part_t1 - 1.0;
-        const double weight = cubemap::solid_angle(part_s0, part_t0, part_s1, part_t1) /
-                              std::sqrt(u * u + v * v + 1.0);
-        sums.add(glm::dvec3(environment.at(cell.face, x, y)) * weight, u, v);
-    };
-    // Parts of texels lie around a rectangle of whole ones. Without whole ones, all texels are
-    // parts.
-    const bool any_whole =
-        columns.whole_begin < columns.whole_end && rows.whole_begin < rows.whole_end;
-    for (std::uint32_t y = rows.begin; y < rows.end; ++y) {
-        const bool whole_row = any_whole && y >= rows.whole_begin && y < rows.whole_end;
-        for (std::uint32_t x = columns.begin; x < (whole_row ? columns.whole_begin : columns.end);
-             ++x)
-            add_part(x, y);
-        for (std::uint32_t x = columns.whole_end; whole_row && x < columns.end; ++x)
-            add_part(x, y);
-    }
-    if (any_whole) {
-        const TexelSums whole = texel_sums(
-            &environment.at(cell.face, columns.whole_begin, rows.whole_begin),
-            weights_.data() + std::size_t{rows.whole_begin} * resolution_ + columns.whole_begin,
-            resolution_, columns.whole_end - columns.whole_begin,
-            rows.whole_end - rows.whole_begin);
-        add_whole(whole, columns.whole_begin, rows.whole_begin, step, sums);
-    }
+    for_texels(
+        cell, resolution_,
+        [&](std::uint32_t x, std::uint32_t y, double u, double v, double weight) {
+            sums.add(glm::dvec3(environment.at(cell.face, x, y)) * weight, u, v);
+        },
+        [&](const TexelRange& columns, const TexelRange& rows) {
+            const TexelSums whole = texel_sums(
+                &environment.at(cell.face, columns.whole_begin, rows.whole_begin),
+                weights_.data() + std::size_t{rows.whole_begin} * resolution_ + columns.whole_begin,
+                resolution_, columns.whole_end - columns.whole_begin,
+                rows.whole_end - rows.whole_begin);
+            add_whole(whole, columns.whole_begin, rows.whole_begin, 2.0 / resolution_, sums);
+        });
     return to_world(cell.face, sums);
+}
+
+void LightBinning::add_derivative(const prt::Cell& cell, const VectorIrradiance& derivative,
+                                  cubemap::CubeMap& texels) const {
+    const FaceAxes axes(cell.face);
+    const auto along = [&](const glm::dvec3& axis) {
+        return glm::dvec3(glm::dot(derivative.red, axis), glm::dot(derivative.green, axis),
+                          glm::dot(derivative.blue, axis));
+    };
+    const glm::dvec3 one = along(axes.centre), of_u = along(axes.right), of_v = along(axes.down);
+    for_texels(
+        cell, resolution_,
+        [&](std::uint32_t x, std::uint32_t y, double u, double v, double weight) {
+            texels.at(cell.face, x, y) += glm::vec3(weight * (one + u * of_u + v * of_v));
+        },
+        [&](const TexelRange& columns, const TexelRange& rows) {
+            const double step = 2.0 / resolution_;
+            for (std::uint32_t y = rows.whole_begin; y < rows.whole_end; ++y) {
+                const glm::dvec3 of_row = one + ((y + 0.5) * step - 1.0) * of_v;
+                for (std::uint32_t x = columns.whole_begin; x < columns.whole_end; ++x)
+                    texels.at(cell.face, x, y) +=
+                        glm::vec3(static_cast<double>(weights_[std::size_t{y} * resolution_ + x]) *
+                                  (of_row + ((x + 0.5) * step - 1.0) * of_u));
+            }
+        });
 }
 
 std::vector<VectorIrradiance> LightBinning::sums(const cubemap::CubeMap& environment,

@@ -65,6 +65,13 @@ public:
     [[nodiscard]] std::vector<VectorIrradiance> sums(const cubemap::CubeMap& environment,
                                                      std::span<const prt::Cell> cells) const;
 
+    /// Adds to the cell's texels the derivative of a number by their radiance, given its derivative
+    /// by the cell's vector irradiance: the transpose of sum().
+    ///
+    /// Shape:   `texels` has this object's resolution.
+    void add_derivative(const prt::Cell& cell, const VectorIrradiance& derivative,
+                        cubemap::CubeMap& texels) const;
+
 private:
     std::uint32_t resolution_;
     /// [R * R] solid angle over the length of (u, v, 1). The weight times L (u, v, 1) is L dw w.

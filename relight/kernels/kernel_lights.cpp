@@ -49,23 +49,6 @@ void ClusterLights::sum_prefix() {
         prefix[i + Stride] = prefix[i] + static_cast<double>(vectors[i]);
 }
 
-glm::dvec3 ClusterLights::of_vectors(std::size_t cluster, const glm::vec3& normal) const {
-    const float* vector = vectors.data() + cluster * Stride;
-    const auto on = [&](const float* e) {
-        return std::max(0.0, glm::dot(glm::dvec3(normal), glm::dvec3(e[0], e[1], e[2])));
-    };
-    return {on(vector), on(vector + 3), on(vector + 6)};
-}
-
-glm::dvec3 ClusterLights::of_directional(std::size_t cluster, const glm::vec3& normal) const {
-    if (is_spread(cluster))
-        return of_vectors(cluster, normal);
-    const float* directional = directionals.data() + cluster * DirectionalStride;
-    return std::max(0.0, glm::dot(glm::dvec3(normal),
-                                  glm::dvec3(directional[0], directional[1], directional[2]))) *
-           glm::dvec3(directional[3], directional[4], directional[5]);
-}
-
 void LightChanges::clear() {
     words.clear();
     vectors.clear();

@@ -38,11 +38,6 @@ struct ClusterLights {
     void set(std::size_t cluster, const VectorIrradiance& irradiance);
     /// Fills `prefix`, which only light_tile() reads.
     void sum_prefix();
-    /// Returns the light on a receiver that counts 1 of a cluster and sees it in part: of the
-    /// cluster's directional lights.
-    [[nodiscard]] glm::dvec3 of_directional(std::size_t cluster, const glm::vec3& normal) const;
-    /// Returns the light on a receiver that counts 1 of a cluster and sees it whole: max(n.E, 0).
-    [[nodiscard]] glm::dvec3 of_vectors(std::size_t cluster, const glm::vec3& normal) const;
     [[nodiscard]] bool is_spread(std::size_t cluster) const {
         return (spread[cluster / 64] >> (cluster % 64) & 1u) != 0;
     }

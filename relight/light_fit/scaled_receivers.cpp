@@ -87,8 +87,8 @@ ScaledReceivers choose_receivers(const prt::Transfer& transfer, std::span<const 
     return chosen;
 }
 
-void add_squared_errors(const Relighter& relighter, std::span<const lights::DistantLight> lights,
-                        std::span<double> errors) {
+void add_squared_errors(const Relighter& relighter, const LightGoal& goal,
+                        std::span<const lights::DistantLight> lights, std::span<double> errors) {
     const prt::Transfer& transfer = relighter.transfer();
     std::vector<glm::vec3> normals(transfer.num_receivers());
     for (std::size_t place = 0; place < normals.size(); ++place)
@@ -99,8 +99,10 @@ void add_squared_errors(const Relighter& relighter, std::span<const lights::Dist
     for (std::size_t place = 0; place < squares.size(); ++place) {
         const std::uint32_t receiver = transfer.order[place];
         const glm::dvec3 difference =
-            glm::dvec3(radiance[receiver]) - glm::dvec3(relighter.radiance()[receiver]);
-        squares[place] = glm::dot(difference, difference);
+            glm::dvec3(radiance[receiver]) - glm::dvec3(goal.radiance[receiver]);
+        const double weight =
+            goal.weights.empty() ? 1.0 : static_cast<double>(goal.weights[receiver]);
+        squares[place] = weight * glm::dot(difference, difference);
     }
     const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
     if (sum > 0.0)

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include "relight/relighter.h"
 
 namespace relumine::relight {
@@ -19,6 +21,14 @@ struct ScaledReceivers {
     std::vector<float> scales;
 };
 
+/// How receivers should be lit.
+struct LightGoal {
+    /// [num_receivers] radiance for albedo 1, in the receivers' order.
+    std::span<const glm::vec3> radiance;
+    /// [num_receivers] factors of their squared errors, >= 0. Empty: all 1.
+    std::span<const float> weights = {};
+};
+
 /// Chooses about `count` receivers, or all of them where there are no more. Each is chosen with a
 /// probability p, then scaled by 1/sqrt(p).
 ///
@@ -30,10 +40,9 @@ struct ScaledReceivers {
 [[nodiscard]] ScaledReceivers choose_receivers(const prt::Transfer& transfer,
                                                std::span<const double> expected, std::size_t count);
 
-/// Adds to `errors`, by place, the squared difference between the lights' radiance and the
-/// relighter's, divided by the sum of all differences where it is not 0. The relighter needs shadow
-/// rays.
-void add_squared_errors(const Relighter& relighter, std::span<const lights::DistantLight> lights,
-                        std::span<double> errors);
+/// Adds to `errors`, by place, the squared difference between the lights' radiance and the goal's,
+/// divided by the sum of all differences where it is not 0. The relighter needs shadow rays.
+void add_squared_errors(const Relighter& relighter, const LightGoal& goal,
+                        std::span<const lights::DistantLight> lights, std::span<double> errors);
 
 } // namespace relumine::relight

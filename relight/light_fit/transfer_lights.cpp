@@ -98,13 +98,16 @@ void append_around(const glm::dvec3& direction, double degrees,
 
 /// Some receivers and the radiance they should get, both scaled.
 struct Wanted {
-    Wanted(const Relighter& relighter, std::span<const double> expected_errors, std::size_t count)
+    Wanted(const Relighter& relighter, const LightGoal& goal,
+           std::span<const double> expected_errors, std::size_t count)
         : receivers(choose_receivers(relighter.transfer(), expected_errors, count)) {
         radiance.reserve(receivers.places.size());
-        for (std::size_t i = 0; i < receivers.places.size(); ++i)
-            radiance.push_back(
-                receivers.scales[i] *
-                relighter.radiance()[relighter.transfer().order[receivers.places[i]]]);
+        for (std::size_t i = 0; i < receivers.places.size(); ++i) {
+            const std::uint32_t receiver = relighter.transfer().order[receivers.places[i]];
+            if (!goal.weights.empty())
+                receivers.scales[i] *= std::sqrt(goal.weights[receiver]);
+            radiance.push_back(receivers.scales[i] * goal.radiance[receiver]);
+        }
     }
     ScaledReceivers receivers;
     std::vector<glm::vec3> radiance;
@@ -117,8 +120,8 @@ std::vector<double> errors_of_cuts(const Relighter& relighter, std::size_t count
     std::vector<double> errors(relighter.transfer().num_receivers());
     for (const lights::Method method : {lights::Method::VarianceCut, lights::Method::MedianCut})
         add_squared_errors(
-            relighter, lights::place(method, image, std::min(count, image.pixels.size())).lights,
-            errors);
+            relighter, {.radiance = relighter.radiance()},
+            lights::place(method, image, std::min(count, image.pixels.size())).lights, errors);
     return errors;
 }
 
@@ -163,22 +166,14 @@ std::vector<lights::DistantLight> moved(const Relighter& relighter,
     return list_of(pursuit.lights(), nearby);
 }
 
-} // namespace
-
-std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, std::size_t count,
-                                                  const TransferLightOptions& options) {
-    if (relighter.environment().resolution == 0 || relighter.shadow_rays().blockers == nullptr)
-        throw std::invalid_argument("expected a relighter with an environment and shadow rays");
-    if (relighter.transfer().have_no_surface)
-        throw std::invalid_argument("expected receivers on surfaces, got points in space");
-    if (count == 0)
-        throw std::invalid_argument("expected at least one light");
-    std::vector<glm::dvec3> candidates = Candidates(relighter.environment()).directions();
-    if (candidates.empty())
-        return {};
-    std::vector<double> errors = errors_of_cuts(relighter, count);
-    const Wanted wanted(relighter, errors, options.num_receivers);
-    if (wanted.receivers.places.empty())
+/// Chooses lights among candidates, and moves them. `errors` is, by place, how much of the squared
+/// error is expected there.
+std::vector<lights::DistantLight> chosen_lights(const Relighter& relighter, const LightGoal& goal,
+                                                std::span<const glm::dvec3> candidates,
+                                                std::vector<double> errors, std::size_t count,
+                                                const TransferLightOptions& options) {
+    const Wanted wanted(relighter, goal, errors, options.num_receivers);
+    if (wanted.receivers.places.empty() || candidates.empty())
         return {};
     const auto poll = [&](double progress) {
         if (options.stop.stop_requested())
@@ -201,8 +196,8 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
     }
     // There are far fewer directions now, so more receivers take part; most of the added ones are
     // where this list is wrong.
-    add_squared_errors(relighter, list_of(chosen, candidates), errors);
-    const Wanted all_over(relighter, errors, RefiningFactor * options.num_receivers);
+    add_squared_errors(relighter, goal, list_of(chosen, candidates), errors);
+    const Wanted all_over(relighter, goal, errors, RefiningFactor * options.num_receivers);
     std::vector<glm::dvec3> directions;
     directions.reserve(chosen.size());
     for (const LightPursuit::Light& light : chosen)
@@ -215,6 +210,54 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
         result = moved(relighter, directions, RefiningSteps[i], all_over);
     }
     return result;
+}
+
+/// The centres of all cells of CandidateLevel.
+std::vector<glm::dvec3> even_candidates() {
+    std::vector<glm::dvec3> directions;
+    const prt::Quadtree cells =
+        prt::Quadtree::of([](const prt::Cell& cell) { return cell.level < CandidateLevel; });
+    for (const prt::Cell& cell : cells.leaves())
+        directions.push_back(cubemap::direction(cell.face, (cell.x + 0.5) * cell.size(),
+                                                (cell.y + 0.5) * cell.size()));
+    return directions;
+}
+
+} // namespace
+
+std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, std::size_t count,
+                                                  const TransferLightOptions& options) {
+    if (relighter.environment().resolution == 0 || relighter.shadow_rays().blockers == nullptr)
+        throw std::invalid_argument("expected a relighter with an environment and shadow rays");
+    if (relighter.transfer().have_no_surface)
+        throw std::invalid_argument("expected receivers on surfaces, got points in space");
+    if (count == 0)
+        throw std::invalid_argument("expected at least one light");
+    const std::vector<glm::dvec3> candidates = Candidates(relighter.environment()).directions();
+    if (candidates.empty())
+        return {};
+    return chosen_lights(relighter, {.radiance = relighter.radiance()}, candidates,
+                         errors_of_cuts(relighter, count), count, options);
+}
+
+std::vector<lights::DistantLight> fit_lights(const Relighter& relighter, const LightGoal& goal,
+                                             std::size_t count,
+                                             const TransferLightOptions& options) {
+    const std::size_t num_receivers = relighter.transfer().num_receivers();
+    if (relighter.shadow_rays().blockers == nullptr)
+        throw std::invalid_argument("expected a relighter with shadow rays");
+    if (relighter.transfer().have_no_surface)
+        throw std::invalid_argument("expected receivers on surfaces, got points in space");
+    if (goal.radiance.size() != num_receivers ||
+        (!goal.weights.empty() && goal.weights.size() != num_receivers))
+        throw std::invalid_argument("expected a radiance for each receiver");
+    if (count == 0)
+        throw std::invalid_argument("expected at least one light");
+    // Receivers count alike, where they count.
+    std::vector<double> errors(num_receivers);
+    for (std::size_t place = 0; place < num_receivers && !goal.weights.empty(); ++place)
+        errors[place] = static_cast<double>(goal.weights[relighter.transfer().order[place]]);
+    return chosen_lights(relighter, goal, even_candidates(), std::move(errors), count, options);
 }
 
 } // namespace relumine::relight

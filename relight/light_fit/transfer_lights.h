@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lights/light_list.h"
+#include "relight/light_fit/scaled_receivers.h"
 #include "relight/relighter.h"
 
 namespace relumine::relight {
@@ -20,6 +21,18 @@ struct TransferLightOptions {
     /// Receives the fraction done, in [0, 1].
     std::function<void(double)> on_progress = {};
 };
+
+/// Chooses `count` lights, each anywhere in the sky, that light receivers as they should be.
+/// Directions are traced on a grid of 2.8 degrees, then moved by small steps; irradiances are never
+/// negative. Returns fewer lights where more would not help. Deterministic for any number of
+/// threads.
+///
+/// Cost:    as transfer_lights().
+/// Throws:  std::invalid_argument for a relighter without shadow rays, a goal for other receivers,
+///          or count 0; prt::Cancelled when stopped.
+[[nodiscard]] std::vector<lights::DistantLight>
+fit_lights(const Relighter& relighter, const LightGoal& goal, std::size_t count,
+           const TransferLightOptions& options = {});
 
 /// Chooses `count` lights for the scene of a relighter that has an environment and shadow rays.
 /// Returns fewer lights where more would not help. Deterministic for any number of threads.

@@ -94,6 +94,11 @@ std::size_t TracedLight::trace(std::span<const SharpLight> lights) {
     return num_fresh;
 }
 
+std::span<const std::uint16_t> TracedLight::reached(const SharpLight& light) const {
+    const glm::vec3 direction(light.direction);
+    return *reached_.at({direction.x, direction.y, direction.z});
+}
+
 /// Lights of neighbouring clusters follow each other.
 void TracedLight::add(std::vector<FreshPatch>& patches, const glm::vec3& direction,
                       Reached* reached) {

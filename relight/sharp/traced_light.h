@@ -50,6 +50,10 @@ public:
         return highlights_.empty() ? prt::Lobes<glm::vec3>() : highlights_[place];
     }
 
+    /// Returns which receivers one of the present lights reaches, above their horizons or not:
+    /// [num_blocks], bit i stands for the block's receiver i.
+    [[nodiscard]] std::span<const std::uint16_t> reached(const SharpLight& light) const;
+
 private:
     /// [num_blocks] bit i is set where a light reaches the block's receiver i.
     using Reached = std::vector<std::uint16_t>;

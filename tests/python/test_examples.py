@@ -33,6 +33,8 @@ def files(tmp_path_factory):
         (["relight.py", "boulder.ply", "sky.exr", "out.png"], (640, 480)),
         (["turntable.py", "boulder.prt", "sky.exr", "out.png", "2"], (480, 360)),
         (["fit_lights.py", "boulder.ply", "out.png"], (640, 240)),
+        (["gradient.py", "boulder.prt", "sky.exr", "out.png"], (320, 240)),
+        (["torch_gradient.py", "boulder.prt", "out.png"], (320, 240)),
         (["error_plot.py", "boulder.ply", "sky.exr", "out.png", "20"], (720, 480)),
     ],
     ids=lambda value: value[0] if isinstance(value[0], str) else "",
@@ -40,6 +42,8 @@ def files(tmp_path_factory):
 def test_runs(files, arguments, size):
     if arguments[0] == "error_plot.py":
         pytest.importorskip("matplotlib")
+    if arguments[0] == "torch_gradient.py":
+        pytest.importorskip("torch")
     script = os.path.join(EXAMPLES, arguments[0])
     done = subprocess.run(
         [sys.executable, script, *arguments[1:]], cwd=files, capture_output=True, text=True

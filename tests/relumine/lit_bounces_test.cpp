@@ -189,18 +189,19 @@ TEST_F(LitBounces, FactorsAreTheTransposeOfTheBounces) {
     const relight::SurfaceBounces& all = lit.bounces().surfaces();
     const auto num_receivers = static_cast<std::uint32_t>(scene->receivers.size());
     const std::vector<std::uint32_t> receivers = {5, num_receivers / 2, num_receivers - 1};
-    const auto factors = relight::bounce_factors(all, scene->transfer, receivers);
+    Colors weights(num_receivers, glm::vec3(0.0f));
+    for (const std::uint32_t receiver : receivers)
+        weights[receiver] = glm::vec3(1.0f / 3.0f);
+    const auto factors = relight::bounce_adjoint(all, scene->transfer, weights);
     glm::dvec3 sum(0.0), expected(0.0);
     for (std::size_t i = 0; i < factors.size(); ++i)
-        sum += factors[i] * glm::dvec3(lit.relighter().diffuse_radiance()[i]);
+        sum += glm::dvec3(factors[i]) * glm::dvec3(lit.relighter().diffuse_radiance()[i]);
     for (const std::uint32_t receiver : receivers)
         expected += glm::dvec3(lit.bounces().bounced()[receiver]) / 3.0;
     for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(sum[c], expected[c], 1e-4 * expected[c]);
-    EXPECT_THROW(static_cast<void>(relight::bounce_factors(all, scene->transfer, {})),
-                 std::invalid_argument);
-    const std::uint32_t none = num_receivers;
-    EXPECT_THROW(static_cast<void>(relight::bounce_factors(all, scene->transfer, {&none, 1})),
+    weights.pop_back();
+    EXPECT_THROW(static_cast<void>(relight::bounce_adjoint(all, scene->transfer, weights)),
                  std::invalid_argument);
 }
 

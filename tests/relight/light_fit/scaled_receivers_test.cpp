@@ -87,7 +87,7 @@ TEST(ScaledReceivers, ErrorsAreSquaredDifferencesOverTheirSum) {
         {.direction = glm::normalize(glm::dvec3(1.0, 2.0, 3.0)), .irradiance = {3.0, 2.0, 1.0}},
         {.direction = {0.0, 1.0, 0.0}, .irradiance = {1.0, 1.0, 2.0}}};
     std::vector<double> errors(relit_scene().transfer.num_receivers(), 0.0);
-    add_squared_errors(relighter, lights, errors);
+    add_squared_errors(relighter, {.radiance = relighter.radiance()}, lights, errors);
     const std::vector<glm::vec3> lit =
         radiance_under(lights, relit_scene().receivers.normals, relit_scene().shadow_rays());
     double sum = 0.0;

@@ -1,7 +1,6 @@
-#include "relight/contribution.h"
+#include "relight/adjoint/contribution.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -10,7 +9,8 @@
 #include <glm/geometric.hpp>
 
 #include "files/parallel.h"
-#include "relight/sharp/light_packets.h"
+#include "relight/adjoint/adjoint.h"
+#include "relight/receiver_light.h"
 
 namespace relumine::relight {
 
@@ -103,6 +103,48 @@ private:
     std::vector<double> solid_angles_;
 };
 
+/// What clusters and sharp lights give to the weighted sum of radiance.
+struct Given {
+    std::vector<glm::dvec3> by_clusters;
+    std::vector<glm::dvec3> by_sharp;
+};
+
+/// Of points in space, whose radiance is the mean over the sphere.
+Given given_to_points(const Relighter& relighter, std::span<const glm::vec3> weights) {
+    const ReceiverLight& light = relighter.receiver_light();
+    const std::span<const std::uint32_t> order = relighter.transfer().order;
+    const std::span<const SharpLight> sharp = relighter.sharp_lights();
+    std::vector<std::size_t> places;
+    for (std::size_t place = 0; place < order.size(); ++place)
+        if (weights[order[place]] != glm::vec3(0.0f))
+            places.push_back(place);
+    Given given{std::vector<glm::dvec3>(relighter.transfer().num_clusters()),
+                std::vector<glm::dvec3>(sharp.size())};
+    files::parallel_for(std::size_t{0}, given.by_clusters.size(), [&](std::size_t cluster) {
+        for (const std::size_t place : places)
+            given.by_clusters[cluster] +=
+                glm::dvec3(weights[order[place]]) * light.of_point_from_cluster(place, cluster);
+    });
+    for (std::size_t i = 0; i < sharp.size(); ++i) {
+        const std::span<const std::uint16_t> reached = light.traced().reached(sharp[i]);
+        const VectorIrradiance& e = sharp[i].irradiance;
+        for (const std::size_t place : places)
+            if ((reached[place / prt::BlockSize] >> (place % prt::BlockSize) & 1u) != 0)
+                given.by_sharp[i] += glm::dvec3(weights[order[place]]);
+        given.by_sharp[i] *=
+            glm::dvec3(glm::length(e.red), glm::length(e.green), glm::length(e.blue)) *
+            (0.25 * std::numbers::inv_pi);
+    }
+    return given;
+}
+
+Given given_to(const Relighter& relighter, std::span<const glm::vec3> weights) {
+    if (relighter.transfer().have_no_surface)
+        return given_to_points(relighter, weights);
+    LightDerivative derivative = light_derivative(relighter, weights);
+    return {std::move(derivative.given_by_clusters), std::move(derivative.given_by_sharp)};
+}
+
 } // namespace
 
 cubemap::CubeMap contribution_map(const Relighter& relighter,
@@ -111,67 +153,27 @@ cubemap::CubeMap contribution_map(const Relighter& relighter,
     const prt::Transfer& transfer = relighter.transfer();
     if (receivers.empty())
         throw std::invalid_argument("expected at least one receiver");
-    std::vector<std::size_t> place_of(transfer.num_receivers());
-    for (std::size_t place = 0; place < place_of.size(); ++place)
-        place_of[transfer.order[place]] = place;
-
-    // Receivers whose direct light counts, and how much.
-    struct Counted {
-        std::uint32_t receiver = 0;
-        glm::dvec3 factor{0.0};
-    };
-    std::vector<Counted> counted;
-    const double share = 1.0 / static_cast<double>(receivers.size());
+    std::vector<glm::vec3> weights(transfer.num_receivers(), glm::vec3(0.0f));
+    const float share = 1.0f / static_cast<float>(receivers.size());
     for (const std::uint32_t receiver : receivers) {
-        if (receiver >= place_of.size())
+        if (receiver >= weights.size())
             throw std::invalid_argument("expected an index of a receiver");
-        counted.push_back({.receiver = receiver, .factor = glm::dvec3(share)});
+        weights[receiver] += share;
     }
     if (bounces != nullptr) {
-        const std::vector<glm::dvec3> factors = bounce_factors(*bounces, transfer, receivers);
-        for (std::uint32_t receiver = 0; receiver < factors.size(); ++receiver)
-            if (factors[receiver] != glm::dvec3(0.0))
-                counted.push_back({.receiver = receiver, .factor = factors[receiver]});
+        const std::vector<glm::vec3> bounced = bounce_adjoint(*bounces, transfer, weights);
+        for (std::size_t i = 0; i < weights.size(); ++i)
+            weights[i] += bounced[i];
     }
 
+    const Given given = given_to(relighter, weights);
     const std::span<const prt::Cell> cells = transfer.quadtree.leaves();
     const std::span<const SharpLight> sharp = relighter.sharp_lights();
-    std::vector<glm::dvec3> from_cluster(cells.size(), glm::dvec3(0.0));
-    std::vector<glm::dvec3> from_sharp(sharp.size(), glm::dvec3(0.0));
-    files::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t cluster) {
-        for (const auto& [receiver, factor] : counted) {
-            const std::size_t place = place_of[receiver];
-            from_cluster[cluster] += factor * relighter.from_cluster(place, cluster);
-        }
-    });
-    const ShadowRays& rays = relighter.shadow_rays();
-    // A point in space has the mean over the sphere.
-    const auto on_point = [&](const SharpLight& light, const glm::vec3& position) {
-        prt::DirectionPacket packet;
-        packet.num_directions = prt::PacketSize;
-        for (std::size_t lane = 0; lane < prt::PacketSize; ++lane)
-            packet.set(lane, light.direction);
-        const VectorIrradiance& e = light.irradiance;
-        return rays.blockers->occluded(position, packet, 1u) != 0
-                   ? glm::dvec3(0.0)
-                   : glm::dvec3(glm::length(e.red), glm::length(e.green), glm::length(e.blue)) *
-                         (0.25 * std::numbers::inv_pi);
-    };
-    files::parallel_for(std::size_t{0}, sharp.size(), [&](std::size_t i) {
-        const LightPackets packets(sharp.subspan(i, 1)); // one for each light, to tell them apart
-        for (const auto& [receiver, factor] : counted)
-            from_sharp[i] +=
-                factor * (transfer.have_no_surface
-                              ? on_point(sharp[i], rays.positions[receiver])
-                              : packets.radiance(rays.positions[receiver],
-                                                 transfer.normals[place_of[receiver]], rays));
-    });
-
     Spreader spreader(relighter.environment());
     for (std::size_t i = 0; i < sharp.size(); ++i)
-        spreader.spread(sharp[i].cell, from_sharp[i], true);
+        spreader.spread(sharp[i].cell, given.by_sharp[i], true);
     for (std::size_t cluster = 0; cluster < cells.size(); ++cluster)
-        spreader.spread(cells[cluster], from_cluster[cluster], false);
+        spreader.spread(cells[cluster], given.by_clusters[cluster], false);
     return spreader.take();
 }
 

@@ -1,4 +1,4 @@
-#include "relight/contribution.h"
+#include "relight/adjoint/contribution.h"
 
 #include <cmath>
 #include <numeric>

@@ -20,7 +20,7 @@ namespace relumine::relight {
 /// surfaces, too.
 ///
 /// Unit:    radiance per sr.
-/// Cost:    O(clusters times receivers + 6 R^2); with bounces all receivers count, a second or two.
+/// Cost:    as light_derivative() and, with bounces, as bounce_adjoint().
 /// Throws:  std::invalid_argument for no receivers, or an index out of range.
 [[nodiscard]] cubemap::CubeMap contribution_map(const Relighter& relighter,
                                                 std::span<const std::uint32_t> receivers,

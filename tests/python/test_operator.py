@@ -1,0 +1,91 @@
+"""The operator itself: its transpose, batches, and what workers get."""
+
+import copy
+import multiprocessing
+import pickle
+
+import numpy as np
+import pytest
+
+import relumine
+
+
+def inner(a, b):
+    return np.sum(np.asarray(a, np.float64) * np.asarray(b, np.float64))
+
+
+def test_the_adjoint_is_the_transpose(scene):
+    random = np.random.default_rng(3)
+    relighter = relumine.Relighter(scene, clusters_only=True)
+    for _ in range(5):
+        relighter.set_environment(relumine.Environment(random.random((6, 16, 16, 3))))
+        weights = random.uniform(-0.5, 1, (scene.num_receivers, 3))
+        gradient = relighter.adjoint(weights)
+        assert gradient.shape == (6, 16, 16, 3)
+        forward = inner(relighter.radiance, weights)
+        assert inner(relighter.environment, gradient) == pytest.approx(forward, rel=1e-5)
+
+
+def test_the_adjoint_refuses_wrong_weights(scene):
+    relighter = relumine.Relighter(scene)
+    with pytest.raises(RuntimeError, match="expected a scene that is lit"):
+        relighter.adjoint(np.ones(scene.num_receivers))
+    relighter.set_environment(relumine.Environment(np.ones((6, 4, 4, 3))))
+    with pytest.raises(ValueError, match="weights: expected shape"):
+        relighter.adjoint(np.ones((5, 3)))
+    with pytest.raises(ValueError, match="weights: expected finite numbers"):
+        relighter.adjoint(np.full((scene.num_receivers, 3), np.nan))
+    relighter.set_lights(relumine.LightList([(0, 1, 0)], [(1, 1, 1)]))
+    with pytest.raises(RuntimeError, match="lit by an environment"):
+        relighter.adjoint(np.ones(scene.num_receivers))
+
+
+def test_a_batch_is_what_single_environments_give(scene):
+    random = np.random.default_rng(4)
+    cubes = random.random((5, 6, 8, 8, 3)).astype(np.float32)
+    relighter = relumine.Relighter(scene)
+    radiance = relighter.relight_batch(cubes)
+    assert not relighter._core.is_lit
+    half = np.empty(radiance.shape, np.float16)
+    assert relighter.relight_batch(cubes, out=half) is half
+    for i, cube in enumerate(cubes):
+        relighter.set_environment(relumine.Environment(cube, face_resolution=8))
+        assert np.allclose(radiance[i], relighter.radiance, rtol=1e-5)
+        assert np.array_equal(half[i], radiance[i].astype(np.float16))
+
+
+def test_a_batch_refuses_other_shapes(scene):
+    relighter = relumine.Relighter(scene)
+    with pytest.raises(ValueError, match="environments: expected shape"):
+        relighter.relight_batch(np.ones((6, 8, 8, 3)))
+    with pytest.raises(ValueError, match="out: expected shape"):
+        relighter.relight_batch(np.ones((2, 6, 8, 8, 3)), out=np.empty((1, 2, 3)))
+    with pytest.raises(ValueError, match="out: expected an array of floats"):
+        relighter.relight_batch(np.ones((1, 6, 8, 8, 3)), out=[])
+
+
+def mean_radiance(arguments):
+    scene, environment, layer = arguments
+    relighter = relumine.Relighter(scene)
+    relighter.set_environment(environment)
+    relighter.set_layers([layer])
+    return relighter.radiance.copy()
+
+
+def test_spawned_workers_get_scenes_environments_and_layers(scene, sky):
+    layer = relumine.Layer("key", relumine.Disc((1, 1, 1), 20), relumine.Emit((4, 3, 2)))
+    work = (scene, sky.turned(rotate=30, tilt=5), layer)
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        (there,) = pool.map(mean_radiance, [work])
+    assert np.array_equal(there, mean_radiance(work))
+
+
+def test_copies_are_equal(scene, sky):
+    again = pickle.loads(pickle.dumps(sky))
+    assert np.array_equal(again.cube, sky.cube) and repr(again) == repr(sky)
+    assert np.array_equal(again.turned(rotate=20).cube, sky.turned(rotate=20).cube)
+    assert pickle.loads(pickle.dumps(scene)).num_clusters == scene.num_clusters
+    for each in (scene, sky):
+        assert copy.deepcopy([each])[0] is each
+    with pytest.raises(TypeError, match="scene without"):
+        pickle.dumps(relumine.Scene.unclustered(relumine.Mesh(np.eye(3), [[0, 1, 2]])))
