@@ -62,6 +62,8 @@ void relight_batch(const Relighter& relighter, std::span<const cubemap::CubeMap>
                                                 radiance.size()));
     if (transfer.glossy)
         throw std::invalid_argument("expected receivers without highlights, got some with");
+    if (transfer.have_no_surface)
+        throw std::invalid_argument("expected receivers on surfaces, got points in space");
     const BlockScene scene = relighter.receiver_light().block_scene();
     EnvironmentBinner binner = binner_of(relighter);
     std::vector<BlockLight> scratch(scene.counts.num_blocks());

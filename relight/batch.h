@@ -18,7 +18,7 @@ namespace relumine::relight {
 /// Memory:  some megabytes for each of at most 8 environments.
 /// Threads: parallel inside; the same bits for any number of threads.
 /// Throws:  std::invalid_argument as Relighter::set_environment(), for another size of `radiance`,
-///          and for receivers with highlights.
+///          for receivers with highlights, and for points in space.
 void relight_batch(const Relighter& relighter, std::span<const cubemap::CubeMap> environments,
                    std::span<glm::vec3> radiance);
 

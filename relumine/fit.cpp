@@ -31,6 +31,8 @@ void require_fitting(const FitTarget& target, const LitScene& lit) {
 void require_diffuse(const LitScene& lit) {
     if (lit.scene().transfer.glossy)
         throw std::invalid_argument("expected a scene without highlights, got one with");
+    if (lit.scene().transfer.have_no_surface)
+        throw std::invalid_argument("expected a scene of surfaces, got points in space");
 }
 
 /// Gathers what receivers should look like.

@@ -32,7 +32,8 @@ struct LightDerivative {
 /// Shape:   weights is [num_receivers] in the receivers' own order.
 /// Cost:    about a relight without the binning.
 /// Threads: parallel; the same bits for any number of threads.
-/// Throws:  std::invalid_argument for another number of weights, or weights that are not finite.
+/// Throws:  std::invalid_argument for another number of weights, weights that are not finite, and
+///          points in space.
 [[nodiscard]] LightDerivative light_derivative(const Relighter& relighter,
                                                std::span<const glm::vec3> weights);
 
