@@ -46,7 +46,7 @@ void write_block(const prt::Transfer& transfer, const BlockRadiance& sums, std::
         glm::vec3& value = radiance[transfer.order[place]];
         value = sums.of(place - begin);
         if (!transfer.surfaces.empty())
-            value = prt::reflect(transfer.surfaces[place], {.diffuse = value});
+            value = prt::reflect(transfer.surfaces[place], {.diffuse = value}, 0.0f);
     }
 }
 

@@ -148,7 +148,8 @@ std::size_t ReceiverLight::update(const ClusterSums& sums, std::span<const std::
 }
 
 glm::dvec3 ReceiverLight::of_point_from_cluster(std::size_t place, std::size_t cluster) const {
-    return transfer_.counts.count(place, cluster) * harmonics_->mean_from_cluster(cluster);
+    return static_cast<double>(transfer_.counts.count(place, cluster)) *
+           harmonics_->mean_from_cluster(cluster);
 }
 
 void ReceiverLight::light_glossy(std::size_t block) {

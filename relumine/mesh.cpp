@@ -16,6 +16,7 @@
 #include "prt/refinement/lit_backs.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
+#include "relight/pictures/framing.h"
 #include "relumine/stages.h"
 
 namespace relumine {
