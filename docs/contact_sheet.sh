@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Draws every scene under every environment, without an option but the size, and puts the pictures on one page,
-# FOLDER/index.html, with the exposure that was chosen under each.
+# Draws every mesh or scene under every environment, without an option but the size, and puts the pictures on one page,
+# FOLDER/index.html, with the exposure that was chosen under each. Scenes of meshes are kept in the cache of
+# `relumine relight`.
 #
-#     docs/contact_sheet.sh build/release/app/relumine FOLDER SCENE.prt... -- ENV...
+#     docs/contact_sheet.sh build/release/app/relumine FOLDER MESH|SCENE.prt... -- ENV...
 set -euo pipefail
 relumine=$1
 folder=$2
@@ -19,10 +20,10 @@ mkdir -p "$folder"
     for environment in "$@"; do
         echo '<tr>'
         for scene in "${scenes[@]}"; do
-            name=$(basename "$scene" .prt)_$(basename "${environment%.*}")
-            exposure=$("$relumine" relight "$scene" "$environment" -o "$folder/$name.png" --size 320x240 --json |
+            name=$(basename "${scene%.*}")_$(basename "${environment%.*}")
+            exposure=$("$relumine" relight "$scene" "$environment" -o "$folder/$name.png" --size 240x180 --json |
                 sed -n 's/.*"exposure": \([-0-9.]*\).*/\1/p')
-            echo "<td><img src=\"$name.png\" width=320 height=240><br>$name, $exposure EV</td>"
+            echo "<td><img src=\"$name.png\" width=240 height=180><br>$name, $exposure EV</td>"
         done
         echo '</tr>'
     done

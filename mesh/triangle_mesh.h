@@ -36,8 +36,8 @@ struct TriangleMesh {
     std::vector<glm::vec3> colors;
     /// [num_vertices], or empty.
     std::vector<glm::vec2> uvs;
-    /// [num_vertices] from each vertex to the smooth surface that the normals pretend, or empty:
-    /// the vertices lie on it. Rays start there, and the shape stays what it is.
+    /// [num_vertices] from each vertex to where its rays start: on the smooth surface that the
+    /// normals pretend, or outside of a solid that hides it. Empty: all rays start at the vertices.
     std::vector<glm::vec3> lifts;
 
     /// [num_triangles], or empty. Used instead of uvs if a vertex has several (seams).

@@ -152,7 +152,7 @@ cubemap::EnvironmentImage environment_image(cubemap::Picture picture,
 }
 
 glm::dmat3 world_from_image(cubemap::Layout layout, const EnvironmentOptions& options) {
-    return cubemap::turn_about_y(options.rotate_degrees) *
+    return options.turn * cubemap::turn_about_y(options.rotate_degrees) *
            cubemap::turn_about_x(options.tilt_degrees) * flipped(options.flip) *
            convention_of(options).world_from(layout);
 }

@@ -37,8 +37,10 @@ struct EnvironmentOptions {
     char flip = 0;
     /// Turns the environment about +X, degrees: light from +Y comes from +Z at 90; applied second
     double tilt_degrees = 0.0;
-    /// Turns the environment about +Y, degrees: light from +Z comes from +X at 90; applied last
+    /// Turns the environment about +Y, degrees: light from +Z comes from +X at 90; applied third
     double rotate_degrees = 0.0;
+    /// A rotation about any axis, for programs; applied last
+    glm::dmat3 turn{1.0};
 };
 
 /// The words of layouts, conventions and axes

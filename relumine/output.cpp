@@ -283,14 +283,12 @@ struct Painter::Impl {
     }
 
     /// Adds what is seen of the mesh, and behind it, to the light meter. An added floor is no part
-    /// of either.
+    /// of either. What is seen through the windows of a room does not count: it may burn out.
     void meter(const Lighting& lighting) {
         require_fit(scene, lighting.radiance);
-        if (!is_on_vertices())
-            meter_receivers(lighting);
-        else
-            meter_picture(lighting);
-        if (!prt::kind_of(scene.layout).are_seen ||
+        constexpr double ShareOfRooms = 0.85;
+        const double share = is_on_vertices() ? meter_picture(lighting) : meter_receivers(lighting);
+        if (share > ShareOfRooms || !prt::kind_of(scene.layout).are_seen ||
             !std::holds_alternative<EnvironmentBehind>(options.background) ||
             lighting.environment == nullptr)
             return;
@@ -304,17 +302,24 @@ struct Painter::Impl {
                 metered_behind.push_back(behind(rays_behind.direction(x, y, 0)));
     }
 
-    void meter_receivers(const Lighting& lighting) {
+    /// Returns the share of the picture that the mesh covers.
+    double meter_receivers(const Lighting& lighting) {
         const std::vector<glm::vec3> colors = product(own(lighting.radiance), shown_factors());
         const std::vector<bool> is_floor = floor_receivers(scene);
+        const std::size_t before = metered_colors.size();
         for (std::size_t i = 0; i < colors.size(); ++i)
             if (is_floor.empty() || !is_floor[i]) {
                 metered_colors.push_back(colors[i]);
                 metered_weights.push_back(1.0f);
             }
+        const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout);
+        return pixels != nullptr ? static_cast<double>(metered_colors.size() - before) /
+                                       static_cast<double>(pixels->num_samples())
+                                 : 0.0;
     }
 
-    void meter_picture(const Lighting& lighting) {
+    /// Returns the share of the picture that the mesh covers.
+    double meter_picture(const Lighting& lighting) {
         if (!small) {
             constexpr float Pixels = 256.0f * 192.0f;
             const float width = std::sqrt(Pixels * size().aspect());
@@ -330,11 +335,14 @@ struct Painter::Impl {
                           gone);
         }
         const Picture seen = drawn(*small, lighting, nullptr);
+        double covered = 0.0;
         for (std::size_t i = 0; i < seen.pixels.size(); ++i)
             if (seen.alpha[i] > 0.0f) {
                 metered_colors.push_back(seen.pixels[i] / seen.alpha[i]);
                 metered_weights.push_back(seen.alpha[i]);
+                covered += static_cast<double>(seen.alpha[i]);
             }
+        return covered / static_cast<double>(seen.pixels.size());
     }
 
     double exposure(const Lighting& lighting) {

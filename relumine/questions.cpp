@@ -1,6 +1,7 @@
 #include "relumine/questions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -9,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "cubemap/layers/layer_composite.h"
+#include "files/parallel.h"
 #include "prt/receivers/pixel_receivers.h"
 #include "relight/adjoint/adjoint.h"
 #include "relight/adjoint/contribution.h"
@@ -274,6 +276,44 @@ Share lit_by(const LitScene& lit, const cubemap::Region& region) {
     }
     const double all = sum_of(lit.radiance());
     result.share = all > 0.0 ? sum_of(result.radiance) / all : 0.0;
+    return result;
+}
+
+std::vector<std::uint8_t> sees(const LitScene& lit, std::span<const glm::vec3> points) {
+    for (const glm::vec3& point : points)
+        if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z))
+            throw std::invalid_argument("points: expected finite numbers");
+    const Scene& scene = lit.scene();
+    const prt::RayScene& rays = lit.rays().blockers();
+    std::vector<std::uint8_t> result(scene.receivers.size() * points.size(), 0);
+    files::parallel_for(std::size_t{0}, scene.receivers.size(), [&](std::size_t i) {
+        const glm::vec3 normal = scene.receivers.normals[i];
+        const glm::vec3 origin = scene.receivers.positions[i] + scene.settings.bias * normal;
+        for (std::size_t begin = 0; begin < points.size(); begin += prt::PacketSize) {
+            const std::size_t count = std::min(points.size() - begin, prt::PacketSize);
+            prt::DirectionPacket packet;
+            packet.num_directions = static_cast<std::uint32_t>(count);
+            std::array<float, prt::PacketSize> distance{};
+            std::uint32_t active = 0;
+            for (std::size_t lane = 0; lane < prt::PacketSize; ++lane) {
+                const std::size_t used = lane < count ? lane : 0;
+                const glm::vec3 way = points[begin + used] - origin;
+                distance[lane] = glm::length(way);
+                packet.set(lane, distance[lane] > 0.0f ? way / distance[lane] : normal);
+                if (lane < count && glm::dot(way, normal) > 0.0f)
+                    active |= 1u << lane;
+            }
+            std::array<prt::Hit, prt::PacketSize> hits;
+            const std::uint32_t met =
+                active == 0 ? 0 : rays.closest_hits(origin, packet, active, hits);
+            for (std::size_t lane = 0; lane < count; ++lane) {
+                const bool is_blocked =
+                    (met >> lane & 1u) != 0 && hits[lane].distance < distance[lane];
+                result[i * points.size() + begin + lane] =
+                    (active >> lane & 1u) != 0 && !is_blocked ? 1 : 0;
+            }
+        }
+    });
     return result;
 }
 

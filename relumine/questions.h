@@ -110,8 +110,9 @@ struct Share {
                                                 std::span<const std::uint32_t> receivers);
 
 /// Returns the derivative of a number by the environment's texels, given its derivative by
-/// radiance(): the transpose T* of a relight, at about its cost. After bounce() light that bounces
-/// counts. The environment is environment_of(): with its layers and its turn. docs/operator.md
+/// radiance(): the transpose T* of a relight, at two to three times its cost. After bounce() light
+/// that bounces counts. The environment is environment_of(): with its layers and its turn.
+/// docs/operator.md
 ///
 /// Shape:   weights is [num_receivers] in the receivers' order.
 /// Throws:  std::invalid_argument for another number of weights, weights that are not finite, and
@@ -130,6 +131,15 @@ void relight_batch(const LitScene& lit, std::span<const cubemap::CubeMap> enviro
 ///
 /// Throws:  std::invalid_argument for a region that is not valid; std::logic_error as above.
 [[nodiscard]] Share lit_by(const LitScene& lit, const cubemap::Region& region);
+
+/// Whether the straight way from a receiver to a point in space is free: 1, else 0. A point behind
+/// the receiver's surface is not seen.
+///
+/// Shape:   [num_receivers * points.size()], all points of the first receiver first.
+/// Throws:  std::invalid_argument for a point that is not finite.
+/// Cost:    num_receivers * points.size() rays; points that lie close together are cheap.
+[[nodiscard]] std::vector<std::uint8_t> sees(const LitScene& lit,
+                                             std::span<const glm::vec3> points);
 
 /// Where a light stands for a point that is seen.
 enum class Aim {

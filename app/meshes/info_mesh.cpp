@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/options/output_options.h"
+#include "files/counted.h"
 #include "mesh/half_edge/diagnosis.h"
 #include "mesh/load.h"
 #include "relight/pictures/mesh_picture.h"
@@ -150,8 +151,8 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
     const mesh::TriangleMesh mesh = mesh::load(options.path);
     const mesh::Bounds box = mesh::bounds(mesh);
     const mesh::Diagnosis diagnosis = mesh::diagnose(mesh);
-    session.say(fmt::format("mesh                {} vertices, {} triangles", mesh.num_vertices(),
-                            mesh.num_triangles()));
+    session.say(fmt::format("mesh                {} vertices, {}", mesh.num_vertices(),
+                            files::counted(mesh.num_triangles(), "triangle")));
     session.say(fmt::format("box                 ({}, {}, {}) to ({}, {}, {})", box.min.x,
                             box.min.y, box.min.z, box.max.x, box.max.y, box.max.z));
     session.say(fmt::format("colours, uvs        {}, {}", mesh.colors.empty() ? "no" : "yes",

@@ -10,6 +10,7 @@
 #include "app/commands.h"
 #include "app/options/output_options.h"
 #include "app/options/refine_options.h"
+#include "files/counted.h"
 #include "mesh/half_edge/repair.h"
 #include "mesh/load.h"
 #include "mesh/normals.h"
@@ -52,8 +53,8 @@ struct MeshFiles {
     void save(const mesh::TriangleMesh& mesh, const Session& session) const {
         for (const std::string& what : mesh::save(output, mesh))
             session.warn(fmt::format("{}: left out: {}", output, what));
-        session.say(fmt::format("{}: {} vertices, {} triangles", output, mesh.num_vertices(),
-                                mesh.num_triangles()));
+        session.say(fmt::format("{}: {} vertices, {}", output, mesh.num_vertices(),
+                                files::counted(mesh.num_triangles(), "triangle")));
         session.add_to_report("vertices", mesh.num_vertices());
         session.add_to_report("triangles", mesh.num_triangles());
     }

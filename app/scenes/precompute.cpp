@@ -19,6 +19,7 @@
 #include "app/options/receiver_options.h"
 #include "app/options/refine_options.h"
 #include "app/scenes/first_scene.h"
+#include "files/counted.h"
 #include "mesh/customs.h"
 #include "mesh/floor.h"
 #include "mesh/half_edge/winding.h"
@@ -348,9 +349,10 @@ void write_report(const PrecomputeArguments& options, const PrecomputeOptions& w
                                    : fmt::format(", {} receivers ({})", scene.receivers.num_own(),
                                                  prt::description(scene.layout));
     const prt::PrecomputeStatistics& clusters = facts.clusters;
-    session.say(fmt::format("{}: {} vertices, {} triangles{} -> {} clusters in {:.1f} s ({}; "
+    session.say(fmt::format("{}: {} vertices, {}{} -> {} clusters in {:.1f} s ({}; "
                             "{:.1f} M rays/s), {:.1f} MB",
-                            options.output, facts.num_vertices, facts.num_triangles, others,
+                            options.output, facts.num_vertices,
+                            files::counted(facts.num_triangles, "triangle"), others,
                             clusters.num_clusters, seconds, where_time_went(facts, seconds),
                             static_cast<double>(clusters.num_rays) / clusters.seconds * 1e-6,
                             static_cast<double>(facts.file_bytes) * 1e-6));

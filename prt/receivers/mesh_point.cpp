@@ -1,6 +1,7 @@
 #include "prt/receivers/mesh_point.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -15,6 +16,13 @@ namespace {
 glm::vec3 unit_or_zero(const glm::dvec3& v) {
     const double length = glm::length(v);
     return length > 0.0 ? glm::vec3(v / length) : glm::vec3(0.0f);
+}
+
+/// Whether a lift leads to the smooth surface. Lifts along the surface lead a vertex out of another
+/// solid, and points beside it do not follow.
+bool leads_outwards(const glm::vec3& lift, const glm::vec3& normal) {
+    constexpr float LeastCosine = 0.8f;
+    return glm::dot(lift, normal) > LeastCosine * glm::length(lift);
 }
 
 } // namespace
@@ -44,24 +52,35 @@ glm::vec3 shading_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point)
 
 glm::vec3 smooth_position(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
     const mesh::Triangle& triangle = mesh.triangles[point.triangle];
-    const glm::vec3 flat = value_at(mesh, mesh.positions, point);
-    const glm::vec3 lifted = mesh.lifts.empty() ? flat : flat + value_at(mesh, mesh.lifts, point);
-    const glm::vec3 weights(1.0f - point.barycentric.x - point.barycentric.y, point.barycentric.x,
-                            point.barycentric.y);
+    const std::array<float, 3> weights = {1.0f - point.barycentric.x - point.barycentric.y,
+                                          point.barycentric.x, point.barycentric.y};
     const glm::vec3 facing = face_normal(mesh, point.triangle);
-    glm::vec3 moved(0.0f);
-    for (int corner = 0; corner < 3; ++corner) {
-        const std::uint32_t vertex = triangle[static_cast<std::size_t>(corner)];
-        const glm::vec3& normal = mesh.normals[vertex];
-        // A normal so far from the face's is that of an edge, not of a smooth surface.
-        constexpr float Smooth = 0.7f;
-        if (std::abs(glm::dot(normal, facing)) < Smooth)
-            return lifted;
-        // Onto the plane through the corner, where the point lies below it.
-        const float below = std::min(0.0f, glm::dot(flat - mesh.positions[vertex], normal));
-        moved -= weights[corner] * below * normal;
+    // Hanika's points lie twice as high as the surface that has the normals: half of a lift leads
+    // there. From it, the triangles between lifted vertices get what they would get unsplit.
+    std::array<glm::vec3, 3> corners{};
+    glm::vec3 position(0.0f), lift(0.0f);
+    float least_cosine = 1.0f;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t vertex = triangle[i];
+        corners[i] = mesh.positions[vertex];
+        if (!mesh.lifts.empty() && leads_outwards(mesh.lifts[vertex], mesh.normals[vertex])) {
+            corners[i] += 0.5f * mesh.lifts[vertex];
+            lift += weights[i] * mesh.lifts[vertex];
+        }
+        position += weights[i] * corners[i];
+        least_cosine = std::min(least_cosine, std::abs(glm::dot(mesh.normals[vertex], facing)));
     }
-    return lifted + moved;
+    glm::vec3 moved(0.0f);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::vec3& normal = mesh.normals[triangle[i]];
+        // Onto the plane through the corner, where the point lies below it.
+        moved -= weights[i] * std::min(0.0f, glm::dot(position - corners[i], normal)) * normal;
+    }
+    // A normal far from the face's is that of an edge, not of a smooth surface: those of a cube's
+    // corners are 55 degrees off. Between the bounds neighbours differ little.
+    constexpr float Edge = 0.6f, Smooth = 0.75f;
+    const float part = std::clamp((least_cosine - Edge) / (Smooth - Edge), 0.0f, 1.0f);
+    return value_at(mesh, mesh.positions, point) + lift + part * moved;
 }
 
 std::vector<MeshPoint> random_points(const mesh::TriangleMesh& mesh, std::size_t count,

@@ -7,7 +7,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "mesh/edge_uses.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/refinement/coarse_transfer.h"
 #include "prt/visibility/twin_triangles.h"
@@ -16,26 +15,13 @@ namespace relumine::prt {
 
 namespace {
 
-/// Returns the triangles of surfaces with a rim that have no twin.
-std::vector<std::uint32_t> open_triangles(const mesh::TriangleMesh& mesh) {
-    const std::vector<mesh::Triangle> joined =
-        mesh::renamed(mesh.triangles, mesh::first_at_place(mesh.positions));
-    mesh::DisjointSets surfaces(mesh.num_vertices());
-    std::vector<std::uint32_t> rims;
-    mesh::for_each_edge(mesh::edge_uses(joined), [&](const auto& uses) {
-        surfaces.join(uses[0].low, uses[0].high);
-        if (uses.size() == 1)
-            rims.push_back(uses[0].low);
-    });
-    std::vector<bool> is_open(mesh.num_vertices());
-    for (const std::uint32_t rim : rims)
-        is_open[surfaces.first(rim)] = true;
+/// Returns the triangles with an area that the mesh has for one side only.
+std::vector<std::uint32_t> triangles_without_twin(const mesh::TriangleMesh& mesh) {
     const TwinTriangles twins(mesh);
     std::vector<std::uint32_t> result;
     for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i)
         if (const glm::vec3 normal = face_normal(mesh, i);
-            is_open[surfaces.first(joined[i][0])] && normal != glm::vec3(0.0f) &&
-            twins.facing({.triangle = i}, normal).triangle == i)
+            normal != glm::vec3(0.0f) && twins.facing({.triangle = i}, normal).triangle == i)
             result.push_back(i);
     return result;
 }
@@ -44,18 +30,27 @@ std::vector<std::uint32_t> open_triangles(const mesh::TriangleMesh& mesh) {
 
 mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers& blockers,
                                   float bias, const Work& work) {
-    constexpr std::array<glm::vec2, 4> Points = {
-        {{0.33f, 0.33f}, {0.1f, 0.1f}, {0.8f, 0.1f}, {0.1f, 0.8f}}};
-    const std::vector<std::uint32_t> open = open_triangles(mesh);
+    const std::vector<std::uint32_t> single = triangles_without_twin(mesh);
+    const float large = large_side(mesh);
     Receivers receivers;
-    for (const std::uint32_t triangle : open)
-        for (const glm::vec2& at : Points) {
-            const glm::vec3 face = face_normal(mesh, triangle);
+    /// Those of each triangle end here.
+    std::vector<std::size_t> ends;
+    for (const std::uint32_t triangle : single) {
+        const glm::vec3 face = face_normal(mesh, triangle);
+        const auto add = [&](const glm::vec2& at) {
             const bool is_turned =
                 glm::dot(face, value_at(mesh, mesh.normals, {triangle, at})) < 0.0f;
             receivers.positions.push_back(value_at(mesh, mesh.positions, {triangle, at}));
             receivers.normals.push_back(is_turned ? face : -face);
-        }
+        };
+        for (const glm::vec2& near_corner :
+             {glm::vec2(0.1f, 0.1f), glm::vec2(0.8f, 0.1f), glm::vec2(0.1f, 0.8f)})
+            add(near_corner);
+        for (const glm::vec2& at :
+             points_inside(longest_side(mesh, mesh.triangles[triangle]) / large))
+            add(at);
+        ends.push_back(receivers.size());
+    }
     const auto bits = CoarseDirections().trace(receivers, blockers, bias, Progress(work));
     mesh::TriangleMesh result = mesh;
     const auto repeat = [](auto& values, std::uint32_t index) {
@@ -66,11 +61,13 @@ mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers
     };
     constexpr std::uint32_t None = ~std::uint32_t{0};
     std::vector<std::uint32_t> back_of(mesh.num_vertices(), None);
-    for (std::size_t i = 0; i < bits.size(); i += Points.size()) {
-        const auto first = bits.begin() + static_cast<std::ptrdiff_t>(i);
-        if (std::all_of(first, first + Points.size(), CoarseDirections::is_hidden))
+    for (std::size_t i = 0; i < single.size(); ++i) {
+        const auto at = [&](std::size_t place) {
+            return bits.begin() + static_cast<std::ptrdiff_t>(place);
+        };
+        if (std::all_of(at(i == 0 ? 0 : ends[i - 1]), at(ends[i]), CoarseDirections::is_hidden))
             continue;
-        const std::uint32_t triangle = open[i / Points.size()];
+        const std::uint32_t triangle = single[i];
         mesh::Triangle corners = mesh.triangles[triangle];
         for (std::uint32_t& corner : corners) {
             if (back_of[corner] == None) {

@@ -9,10 +9,12 @@ namespace relumine::prt {
 
 /// Appends the backs of triangles that light from outside reaches from behind: the same corners as
 /// vertices of their own, with normals turned over. Vertices and triangles of the mesh come first.
-/// A closed surface gets none, nor do triangles that the mesh has for both sides
-/// (prt::TwinTriangles).
+/// A leaf of one triangle has a back, too: it is seen from both sides. So has a closed surface that
+/// is wound the wrong way round. One that faces outwards gets none, nor do triangles that the mesh
+/// has for both sides (prt::TwinTriangles).
 ///
-/// Cost:    O(n log n), and four points to trace for each triangle of an open surface.
+/// Cost:    O(n log n), and four points to trace for each triangle, more where it is large in the
+///          scene.
 /// Threads: parallel inside; the result is the same for any number of threads.
 /// Throws:  Cancelled.
 [[nodiscard]] mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh,

@@ -102,6 +102,10 @@ Array owned(std::vector<float> values, Shape shape) {
     return kept(std::move(values), "f", sizeof(float), std::move(shape));
 }
 
+Array owned(std::vector<std::uint8_t> values, Shape shape) {
+    return kept(std::move(values), "B", sizeof(std::uint8_t), std::move(shape));
+}
+
 std::vector<glm::vec3> vec3s(const py::buffer& array) {
     return copied<glm::vec3>(array, "f", sizeof(float));
 }

@@ -26,7 +26,7 @@ using Shape = std::vector<py::ssize_t>;
 struct Array {
     std::shared_ptr<const void> owner;
     const void* data = nullptr;
-    /// As in Python's struct module: "f", "d" or "I".
+    /// As in Python's struct module: "f", "d", "I" or "B".
     std::string format;
     std::size_t item_size = 0;
     Shape shape;
@@ -44,6 +44,7 @@ struct Array {
 [[nodiscard]] Array owned(std::vector<double> values);
 [[nodiscard]] Array owned(std::vector<std::uint32_t> values);
 [[nodiscard]] Array owned(std::vector<float> values, Shape shape);
+[[nodiscard]] Array owned(std::vector<std::uint8_t> values, Shape shape);
 
 /// Copies of what Python gives: contiguous arrays of float32, float64 and uint32.
 ///

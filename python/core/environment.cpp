@@ -1,5 +1,6 @@
 // Environments: arrays and files to maps that light, conversions, findings.
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -68,10 +69,13 @@ EnvironmentPointer from_pixels(const py::buffer& pixels, std::uint32_t width, st
 /// the angles. The pixels are a property of their own.
 py::tuple state_of(const EnvironmentHandle& own) {
     const cubemap::EnvironmentImage& image = *own.made.file.image;
+    std::array<double, 9> turn{};
+    for (std::size_t i = 0; i < turn.size(); ++i)
+        turn[i] = own.options.turn[static_cast<int>(i / 3)][static_cast<int>(i % 3)];
     return py::make_tuple(image.width, image.height, static_cast<int>(image.layout),
                           static_cast<int>(image.sampling), image.assumptions, own.options.from,
                           own.made.map.resolution, static_cast<int>(own.options.flip),
-                          own.options.tilt_degrees, own.options.rotate_degrees);
+                          own.options.tilt_degrees, own.options.rotate_degrees, turn);
 }
 
 EnvironmentPointer from_state(const py::buffer& pixels, const py::tuple& state) {
@@ -89,14 +93,21 @@ EnvironmentPointer from_state(const py::buffer& pixels, const py::tuple& state) 
                                .flip = static_cast<char>(state[7].cast<int>()),
                                .tilt_degrees = state[8].cast<double>(),
                                .rotate_degrees = state[9].cast<double>()};
+    const auto turn = state[10].cast<std::array<double, 9>>();
+    for (std::size_t i = 0; i < turn.size(); ++i)
+        options.turn[static_cast<int>(i / 3)][static_cast<int>(i % 3)] = turn[i];
     return in_background(
         py::none(), [image = std::make_shared<const cubemap::EnvironmentImage>(std::move(image)),
                      options](const Reins&) { return made_of(image, options); });
 }
 
 /// The same image, turned by other angles.
-EnvironmentPointer turned_anew(const EnvironmentHandle& own, const py::dict& given) {
+EnvironmentPointer turned_anew(const EnvironmentHandle& own, const py::dict& given,
+                               const std::array<std::array<double, 3>, 3>& turn) {
     auto options = options_from<EnvironmentOptions>(given);
+    for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 3; ++column)
+            options.turn[static_cast<int>(column)][static_cast<int>(row)] = turn[row][column];
     options.from = own.options.from;
     options.layout = own.options.layout;
     options.fix_bad_pixels = own.options.fix_bad_pixels;

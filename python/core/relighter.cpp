@@ -285,6 +285,18 @@ Array relight_batch(const LitPointer& own, const py::buffer& cubes, std::size_t 
                  {static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(num_receivers)});
 }
 
+/// [num_receivers, num_points]: 1 where a point is seen.
+Array sees(const LitPointer& own, const py::buffer& points) {
+    std::vector<glm::vec3> places = vec3s(points);
+    const Shape shape = {static_cast<py::ssize_t>(own->scene().receivers.size()),
+                         static_cast<py::ssize_t>(places.size())};
+    return owned(slowly(own, py::none(),
+                        [places = std::move(places)](LitScene& lit, const Reins&) {
+                            return relumine::sees(lit, places);
+                        }),
+                 shape);
+}
+
 LightArrays transfer_lights(const LitPointer& own, std::size_t number, const py::object& progress) {
     return arrays_of(slowly(own, progress, [number](LitScene& lit, const Reins& reins) {
         return relight::transfer_lights(lit.relighter(), number,
@@ -298,6 +310,7 @@ void bind_questions(py::class_<Lit, LitPointer>& type) {
         .def("contribution_map", &contribution_map)
         .def("adjoint", &adjoint)
         .def("relight_batch", &relight_batch)
+        .def("sees", &sees)
         .def("transfer_lights", &transfer_lights);
 }
 

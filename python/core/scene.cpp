@@ -19,10 +19,26 @@ namespace {
 using Path = std::filesystem::path;
 using MeshPointer = std::shared_ptr<Mesh>;
 
+/// The triangles of both meshes.
+mesh::TriangleMesh together(const mesh::TriangleMesh& mesh, const mesh::TriangleMesh& others) {
+    mesh::TriangleMesh result;
+    result.positions = mesh.positions;
+    result.positions.insert(result.positions.end(), others.positions.begin(),
+                            others.positions.end());
+    result.triangles = mesh.triangles;
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const mesh::Triangle& triangle : others.triangles)
+        result.triangles.push_back({triangle[0] + first, triangle[1] + first, triangle[2] + first});
+    return result;
+}
+
+/// Other triangles that block the light: (vertices, triangles).
+using OtherBlockers = std::optional<std::pair<py::buffer, py::buffer>>;
+
 /// Optional arrays are None.
 MeshPointer make_mesh(const py::buffer& vertices, const py::buffer& triangle_indices,
                       const py::object& normals, const py::object& colors, const py::object& uvs,
-                      const py::dict& given) {
+                      const OtherBlockers& blockers, const py::dict& given) {
     mesh::TriangleMesh geometry;
     geometry.positions = vec3s(vertices);
     geometry.triangles = triangles(triangle_indices);
@@ -32,6 +48,11 @@ MeshPointer make_mesh(const py::buffer& vertices, const py::buffer& triangle_ind
         geometry.colors = vec3s(colors.cast<py::buffer>());
     if (!uvs.is_none())
         geometry.uvs = vec2s(uvs.cast<py::buffer>());
+    mesh::TriangleMesh others;
+    if (blockers) {
+        others.positions = vec3s(blockers->first);
+        others.triangles = triangles(blockers->second);
+    }
     const MeshOptions options = options_from<MeshOptions>(given);
     const Release release;
     if (geometry.normals.empty())
@@ -39,6 +60,10 @@ MeshPointer make_mesh(const py::buffer& vertices, const py::buffer& triangle_ind
     mesh::turn_up(geometry, options.up.value_or(mesh::UpAxis::Y));
     auto result = std::make_shared<Mesh>(std::move(geometry));
     add_floor(*result, options);
+    if (!others.triangles.empty()) {
+        mesh::turn_up(others, options.up.value_or(mesh::UpAxis::Y));
+        result->blockers = together(result->geometry, others);
+    }
     return result;
 }
 
@@ -271,6 +296,11 @@ void bind_scenes(py::module_& module) {
         .def_property_readonly("receiver_normals",
                                [](const std::shared_ptr<Scene>& scene) {
                                    return view(scene, scene->receivers.normals);
+                               })
+        .def_property_readonly("places",
+                               [](const std::shared_ptr<Scene>& scene) {
+                                   const auto places = prt::places(scene->layout);
+                                   return owned(std::vector(places.begin(), places.end()));
                                })
         .def_property_readonly("settings", &settings_of)
         .def("nearest_receiver", [](const Scene& scene, const std::array<float, 3>& p) {

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._arrays import Floats, floats, view
+from ._arrays import Floats, doubles, floats, view
 from ._files import Path, errors
 from ._lights import LightList
 from ._mesh import warn
@@ -108,12 +108,20 @@ class Environment:
         flip: Optional[str] = None,
         tilt: float = 0.0,
         rotate: float = 0.0,
+        turn: Optional[ArrayLike] = None,
         face_resolution: Optional[int] = None,
     ) -> "Environment":
-        """The same picture with other angles, counted from the picture, not from these."""
+        """The same picture with other angles, counted from the picture, not from these.
+
+        turn  (3, 3): a rotation about any axis, which takes directions of the picture to those of
+              the world; after flip, tilt and rotate
+        """
+        matrix = doubles("turn", np.eye(3) if turn is None else turn, 3, 3)
+        if np.abs(matrix @ matrix.T - np.eye(3)).max() > 1e-5:
+            raise ValueError("turn: expected the matrix of a rotation, which keeps lengths")
         resolution = self.face_resolution if face_resolution is None else face_resolution
         options = {"flip": flip, "tilt": tilt, "rotate": rotate, "face_resolution": resolution}
-        return Environment._of(self._core.turned(options))
+        return Environment._of(self._core.turned(options, matrix.tolist()))
 
     @property
     def cube(self) -> Floats:

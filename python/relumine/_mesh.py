@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import Any, Callable, Dict, List, Optional, Union
+from typing import Any, Callable, Dict, List, Optional, Tuple, Union
 
 from numpy.typing import ArrayLike
 
@@ -31,6 +31,7 @@ class Mesh:
     normals    (N, 3) of unit length; computed from the triangles where not given
     colors     (N, 3) linear RGB
     uvs        (N, 2), for lightmaps
+    blockers   (vertices, triangles) of other things that block the light and are not lit
     up         "x", "y" or "z": the axis of the arrays that points up
     floor      n: adds a floor of n x n vertices under the mesh, after its own vertices; "auto": a
                coarse one, which precompute() refines where shadows fall
@@ -56,6 +57,7 @@ class Mesh:
         normals: Optional[ArrayLike] = None,
         colors: Optional[ArrayLike] = None,
         uvs: Optional[ArrayLike] = None,
+        blockers: Optional[Tuple[ArrayLike, ArrayLike]] = None,
         up: str = "y",
         floor: Union[int, str, None] = None,
         floor_scale: float = 4.0,
@@ -64,12 +66,19 @@ class Mesh:
         points = floats("vertices", vertices, None, 3)
         count = len(points)
         corners = indices("triangles", triangles, count, None, 3)
+        others = None
+        if blockers is not None:
+            if len(blockers) != 2:
+                raise ValueError("blockers: expected (vertices, triangles)")
+            corner = floats("blockers[0]", blockers[0], None, 3)
+            others = corner, indices("blockers[1]", blockers[1], len(corner), None, 3)
         self._core = _core.make_mesh(
             points,
             corners,
             None if normals is None else floats("normals", normals, count, 3),
             None if colors is None else floats("colors", colors, count, 3),
             None if uvs is None else floats("uvs", uvs, count, 2),
+            others,
             {"up": up, "floor": floor, "floor_scale": floor_scale},
         )
 

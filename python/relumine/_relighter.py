@@ -364,7 +364,7 @@ class Relighter:
         weights  (num_receivers, 3), or (num_receivers,) for all channels alike: the derivative of
                  the loss by `radiance`
 
-        It takes about as long as a relight. After bounce() light that bounces counts. For the
+        It takes two to three relights. After bounce() light that bounces counts. For the
         present environment, (environment * adjoint(w)).sum() is (radiance * w).sum().
 
         >>> gradient = relighter.adjoint(np.ones(scene.num_receivers))
@@ -380,6 +380,19 @@ class Relighter:
             raise RuntimeError("expected a scene that is lit, got one without light")
         with errors():
             result: Floats = view(self._core.adjoint(values))
+        return result
+
+    def sees(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """Whether the way from each receiver to points in space is free: (num_receivers, K).
+
+        points  (K, 3), as of a lamp near the scene; a point behind the receiver is not seen
+
+        >>> relighter.sees([[0, 5, 0], [0, -5, 0]]).shape
+        (6912, 2)
+        """
+        result: NDArray[np.bool_] = view(
+            self._core.sees(floats("points", points, None, 3))
+        ).astype(bool)
         return result
 
     def lit_by(self, region: Union[Region, Mapping[str, Any]]) -> Share:

@@ -294,6 +294,15 @@ class Scene:
         return result
 
     @property
+    def places(self) -> Indices:
+        """(num_receivers,) uint32: the texel or sample of each, row by row from the top.
+
+        (0,) where the receivers are vertices.
+        """
+        result: Indices = view(self._core.places)
+        return result
+
+    @property
     def vertices(self) -> Floats:
         """(N, 3) float32, read-only: the mesh."""
         result: Floats = view(self._core.vertices)

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/QR>
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
@@ -22,39 +22,38 @@ namespace relumine::relight {
 
 namespace {
 
-/// Differences of earlier iterates that an accelerated step combines.
-constexpr std::size_t AndersonDepth = 2;
+/// Earlier steps that an accelerated one is combined with. Most scenes need fewer.
+constexpr std::size_t AndersonDepth = 5;
 
 /// More products than any scene needs whose light does not grow for ever.
 constexpr std::uint32_t MaxBounces = 1000;
 
-/// Steps are assumed to shrink by no more than this, whatever the last ones did; where light stays
-/// long, by no more than the second.
-constexpr double LeastRatio = 0.5, LeastRatioOfRooms = 0.75;
+/// Steps are assumed to shrink by no more than this, whatever the last ones did.
+constexpr double LeastRatio = 0.5;
 
-/// The error of receivers with less direct light than this part of the mean counts a third: light
-/// in gaps that are nearly closed is found late.
-constexpr double LeastDirect = 1e-3, WeightWithout = 1.0 / 3.0;
-
-using AndersonMatrix = Eigen::Matrix<double, AndersonDepth, AndersonDepth>;
-using AndersonVector = Eigen::Matrix<double, AndersonDepth, 1>;
-
-/// Solves normal equations. An unknown whose column depends on those before is 0.
-AndersonVector least_squares(AndersonMatrix matrix, AndersonVector right) {
-    static_assert(AndersonDepth == 2);
-    constexpr double SmallestPivot = 1e-12;
-    const auto leave_out = [&](Eigen::Index i) {
-        matrix.row(i).setZero();
-        matrix.col(i).setZero();
-        matrix(i, i) = 1.0;
-        right[i] = 0.0;
-    };
-    if (!(matrix(0, 0) > 0.0))
-        leave_out(0);
-    const double pivot = matrix(1, 1) - matrix(1, 0) * matrix(1, 0) / matrix(0, 0);
-    if (!(pivot > SmallestPivot * matrix(1, 1)))
-        leave_out(1);
-    return matrix.llt().solve(right);
+/// Returns the weights, with the sum 1, of changes whose sum is smallest, from the products of each
+/// with each. Changes that depend on others share their weights.
+Eigen::VectorXd weights_of(const Eigen::MatrixXd& products) {
+    constexpr double SmallestPivot = 1e-9;
+    const Eigen::Index size = products.rows(), last = size - 1;
+    // Unknown are the weights of all but the last, of differences to the last.
+    Eigen::MatrixXd matrix(last, last);
+    Eigen::VectorXd right(last), scale(last);
+    for (Eigen::Index a = 0; a < last; ++a) {
+        right[a] = products(last, last) - products(last, a);
+        for (Eigen::Index b = 0; b < last; ++b)
+            matrix(a, b) = right[a] - products(last, b) + products(a, b);
+        scale[a] = matrix(a, a) > 0.0 ? 1.0 / std::sqrt(matrix(a, a)) : 0.0;
+    }
+    if (last == 0)
+        return Eigen::VectorXd::Ones(1);
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> equations;
+    equations.setThreshold(SmallestPivot);
+    equations.compute(scale.asDiagonal() * matrix * scale.asDiagonal());
+    Eigen::VectorXd weights(size);
+    weights.head(last) = scale.asDiagonal() * equations.solve(scale.asDiagonal() * right);
+    weights[last] = 1.0 - weights.head(last).sum();
+    return weights;
 }
 
 } // namespace
@@ -110,15 +109,13 @@ public:
                 light_the_rest();
         } else if (sends_) {
             forget_steps();
-            send();
-            for (;;) {
+            do {
+                send();
                 bounce(first_, size_);
                 ++report.num_bounces;
-                report.error = error_after(correct());
-                if (report.error <= limits.tolerance || report.num_bounces == MaxBounces)
-                    break;
-                accelerate();
-            }
+                correct();
+                report.error = error_after(combine());
+            } while (report.error > limits.tolerance && report.num_bounces < MaxBounces);
             take_result();
         }
         publish();
@@ -134,7 +131,8 @@ public:
             forget_steps();
             send();
             bounce(first_, size_);
-            report.error = correct();
+            correct();
+            report.error = combine();
             report.num_bounces = 1;
             take_result();
         } else {
@@ -156,13 +154,9 @@ private:
     using ColorSums = std::array<double, 3>;
 
     void forget_steps() {
-        num_before_ = 0;
+        num_steps_ = 0;
         last_step_ = 0.0;
         last_ratio_ = 0.0;
-        for (Step& step : history_) {
-            step.change.resize(size_);
-            step.result.resize(size_);
-        }
     }
 
     static double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -173,20 +167,10 @@ private:
         if (direct.size() != size_)
             throw std::invalid_argument(fmt::format(
                 "expected the direct light of {} receivers, got {}", size_, direct.size()));
-        std::vector<PaddedRgb> sums((size_ + RowsPerTask - 1) / RowsPerTask);
         for_rows(0, size_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t place = begin; place < end; ++place) {
+            for (std::size_t place = begin; place < end; ++place)
                 direct_[place] = padded(direct[transfer_.order[place]]);
-                for (std::size_t c = 0; c < 3; ++c)
-                    sums[begin / RowsPerTask].rgb[c] += direct_[place].rgb[c];
-            }
         });
-        for (std::size_t c = 0; c < 3; ++c) {
-            double sum = 0.0;
-            for (const PaddedRgb& part : sums)
-                sum += static_cast<double>(part.rgb[c]);
-            least_direct_[c] = static_cast<float>(LeastDirect * sum / static_cast<double>(size_));
-        }
     }
 
     /// sent_ = rho (B + indirect_).
@@ -221,15 +205,15 @@ private:
 
     /// Makes a step of next_: adds what the change next_ - indirect_ becomes in all further
     /// bounces, as the groups of receivers tell. Places without any light stay black, whatever
-    /// group they are in. Returns the size of the step, relative to all light.
-    double correct() {
-        newest_ = (newest_ + 1) % history_.size();
+    /// group they are in.
+    void correct() {
         const std::span<const PaddedRgb> more = bounces_of_change();
-        Step& now = newest();
-        // Of each colour: products of the change with itself and with those before; what is waited
-        // for of the change; all light.
-        constexpr std::size_t WaitedFor = AndersonDepth + 1, AllLight = AndersonDepth + 2;
-        constexpr std::size_t NumSums = AndersonDepth + 3;
+        newest_ = num_steps_++ % (AndersonDepth + 1);
+        if (newest_ == steps_.size())
+            steps_.push_back({std::vector<PaddedRgb>(size_), std::vector<PaddedRgb>(size_)});
+        Step& now = steps_[newest_];
+        // Of each colour: products of the change with itself and with those before; all light.
+        constexpr std::size_t AllLight = AndersonDepth + 1, NumSums = AndersonDepth + 2;
         std::vector<std::array<ColorSums, NumSums>> parts((size_ - first_ + RowsPerTask - 1) /
                                                           RowsPerTask);
         for_rows(first_, size_, [&](std::size_t begin, std::size_t end) {
@@ -238,19 +222,15 @@ private:
                 const PaddedRgb& of_group = more[coarse_->group_of()[i - first_]];
                 for (std::size_t c = 0; c < 4; ++c) {
                     const float plain = next_[i].rgb[c];
-                    const float result = plain + (plain > 0.0f ? of_group.rgb[c] : 0.0f);
-                    const float change = result - indirect_[i].rgb[c];
+                    const float result = plain + (plain != 0.0f ? of_group.rgb[c] : 0.0f);
                     const float light = result + direct_[i].rgb[c];
                     now.result[i].rgb[c] = result;
-                    now.change[i].rgb[c] = change;
-                    sums[0].rgb[c] += change * change;
+                    now.change[i].rgb[c] = result - indirect_[i].rgb[c];
                     sums[AllLight].rgb[c] += light * light;
-                    if (direct_[i].rgb[c] > least_direct_[c])
-                        sums[WaitedFor].rgb[c] += change * change;
                 }
-                for (std::size_t age = 1; age <= num_before_; ++age)
+                for (std::size_t k = 0; k < num_kept(); ++k)
                     for (std::size_t c = 0; c < 4; ++c)
-                        sums[age].rgb[c] += now.change[i].rgb[c] * before(age).change[i].rgb[c];
+                        sums[k].rgb[c] += now.change[i].rgb[c] * steps_[k].change[i].rgb[c];
             }
             for (std::size_t k = 0; k < NumSums; ++k)
                 for (std::size_t c = 0; c < 3; ++c)
@@ -262,16 +242,44 @@ private:
             for (std::size_t k = 0; k < NumSums; ++k)
                 for (std::size_t c = 0; c < 3; ++c)
                     all[k][c] += part[k][c];
-        for (std::size_t age = 0; age <= num_before_; ++age)
-            products_[newest_][index_before(age)] = products_[index_before(age)][newest_] =
-                all[age];
-        const auto sum_of = [](const ColorSums& sums) {
-            return sums[0] + sums[1] + sums[2];
-        };
-        const double light = sum_of(all[AllLight]);
-        const double change =
-            std::max(sum_of(all[WaitedFor]), WeightWithout * WeightWithout * sum_of(all[0]));
-        return light > 0.0 ? std::sqrt(change / light) : 0.0;
+        for (std::size_t k = 0; k < num_kept(); ++k)
+            products_[newest_][k] = products_[k][newest_] = all[k];
+        all_light_ = all[AllLight][0] + all[AllLight][1] + all[AllLight][2];
+    }
+
+    /// Sets indirect_ to the sum of the last results whose changes add up to the smallest one
+    /// [Anderson 1965], for each channel by itself. Returns the size of that change, relative to
+    /// all light.
+    double combine() {
+        std::array<PaddedRgb, AndersonDepth + 1> factors{};
+        double change = 0.0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const auto size = static_cast<Eigen::Index>(num_kept());
+            Eigen::MatrixXd products(size, size);
+            for (Eigen::Index a = 0; a < size; ++a)
+                for (Eigen::Index b = 0; b < size; ++b)
+                    products(a, b) = products_[kept(a)][kept(b)][c];
+            const Eigen::VectorXd weights = weights_of(products);
+            for (Eigen::Index a = 0; a < size; ++a)
+                factors[kept(a)].rgb[c] = static_cast<float>(weights[a]);
+            change += std::max(weights.dot(products * weights), 0.0);
+        }
+        for_rows(first_, size_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                indirect_[i] = {};
+                for (std::size_t k = 0; k < num_kept(); ++k)
+                    for (std::size_t c = 0; c < 4; ++c)
+                        indirect_[i].rgb[c] += factors[k].rgb[c] * steps_[k].result[i].rgb[c];
+            }
+        });
+        return all_light_ > 0.0 ? std::sqrt(change / all_light_) : 0.0;
+    }
+
+    /// How many of steps_ are of this iteration.
+    [[nodiscard]] std::size_t num_kept() const { return std::min(num_steps_, AndersonDepth + 1); }
+    /// The index of each, the newest last.
+    [[nodiscard]] std::size_t kept(Eigen::Index i) const {
+        return (newest_ + 1 + static_cast<std::size_t>(i)) % num_kept();
     }
 
     /// Estimates the error after a step: steps go on becoming smaller by the larger one of the last
@@ -279,10 +287,9 @@ private:
     /// that never comes back has none.
     double error_after(double step) {
         double ratio = std::max(contraction_, LeastRatio);
-        if (last_step_ > 0.0) {
-            const double newest = step / last_step_;
-            ratio = std::max(
-                {last_ratio_, newest, std::clamp(contraction_, LeastRatio, LeastRatioOfRooms)});
+        if (num_steps_ > 1) {
+            const double newest = last_step_ > 0.0 ? step / last_step_ : 0.0;
+            ratio = std::max({last_ratio_, newest, LeastRatio});
             last_ratio_ = newest;
         }
         last_step_ = step;
@@ -290,61 +297,8 @@ private:
         return step * ratio / (1.0 - ratio);
     }
 
-    /// Takes the next iterate: the newest result, corrected by the least squares of the last steps
-    /// [Anderson 1965], for each channel by itself. Makes sent_ of it.
-    void accelerate() {
-        const Step& now = newest();
-        std::array<PaddedRgb, AndersonDepth> factors = least_squares_of_changes();
-        for_rows(first_, size_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                PaddedRgb value = now.result[i];
-                for (std::size_t a = 0; a < num_before_; ++a)
-                    for (std::size_t c = 0; c < 4; ++c)
-                        value.rgb[c] -= factors[a].rgb[c] *
-                                        (now.result[i].rgb[c] - before(a + 1).result[i].rgb[c]);
-                indirect_[i] = value;
-                for (std::size_t c = 0; c < 4; ++c)
-                    sent_[i].rgb[c] = albedo_[i].rgb[c] * (direct_[i].rgb[c] + value.rgb[c]);
-            }
-        });
-        num_before_ = std::min(num_before_ + 1, AndersonDepth);
-    }
-
-    /// Returns the factors of the differences to the steps before that make the change smallest.
-    [[nodiscard]] std::array<PaddedRgb, AndersonDepth> least_squares_of_changes() const {
-        std::array<PaddedRgb, AndersonDepth> factors{};
-        for (std::size_t c = 0; c < 3; ++c) {
-            // Products of changes, the newest first.
-            const auto product = [&](std::size_t a, std::size_t b) {
-                return products_[index_before(a)][index_before(b)][c];
-            };
-            AndersonMatrix matrix = AndersonMatrix::Zero();
-            AndersonVector vector = AndersonVector::Zero();
-            for (std::size_t a = 0; a < num_before_; ++a) {
-                const auto row = static_cast<Eigen::Index>(a);
-                vector[row] = product(0, 0) - product(0, a + 1);
-                for (std::size_t b = 0; b < num_before_; ++b)
-                    matrix(row, static_cast<Eigen::Index>(b)) = product(0, 0) - product(0, a + 1) -
-                                                                product(0, b + 1) +
-                                                                product(a + 1, b + 1);
-            }
-            const AndersonVector solution = least_squares(matrix, vector);
-            for (std::size_t a = 0; a < num_before_; ++a)
-                factors[a].rgb[c] = static_cast<float>(solution[static_cast<Eigen::Index>(a)]);
-        }
-        return factors;
-    }
-
-    [[nodiscard]] Step& newest() { return history_[newest_]; }
-    /// The index of the step `age` before the newest.
-    [[nodiscard]] std::size_t index_before(std::size_t age) const {
-        return (newest_ + history_.size() - age) % history_.size();
-    }
-    [[nodiscard]] const Step& before(std::size_t age) const { return history_[index_before(age)]; }
-
-    /// Ends the iteration with the newest step.
+    /// Ends the iteration.
     void take_result() {
-        indirect_.swap(newest().result);
         if (first_ > 0) {
             send();
             light_the_rest();
@@ -385,20 +339,21 @@ private:
     /// Of the albedo, once it is needed: a number of bounces asks for none.
     std::optional<CoarseBounces> coarse_;
     std::vector<PaddedRgb> of_groups_;
-    /// Of each colour; receivers with more direct light are waited for.
-    std::array<float, 4> least_direct_{};
     /// All by place.
     std::vector<PaddedRgb> albedo_;
     std::vector<PaddedRgb> direct_;
     std::vector<PaddedRgb> sent_;
     std::vector<PaddedRgb> indirect_;
     std::vector<PaddedRgb> next_;
-    std::array<Step, AndersonDepth + 1> history_;
-    /// Of the changes of two steps in history_.
-    std::array<std::array<ColorSums, AndersonDepth + 1>, AndersonDepth + 1> products_{};
+    /// Made as they are needed; those of this iteration come first.
+    std::vector<Step> steps_;
     std::size_t newest_ = 0;
-    /// Steps before the newest that count.
-    std::size_t num_before_ = 0;
+    /// Of this iteration, also those that are no longer kept.
+    std::size_t num_steps_ = 0;
+    /// Of the changes of two steps.
+    std::array<std::array<ColorSums, AndersonDepth + 1>, AndersonDepth + 1> products_{};
+    /// The sum of squares.
+    double all_light_ = 0.0;
     /// Relative to all light; of this iteration.
     double last_step_ = 0.0;
     double last_ratio_ = 0.0;

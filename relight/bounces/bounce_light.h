@@ -19,9 +19,8 @@ namespace relumine::relight {
 struct BounceLimits {
     /// Exactly so many bounces; empty: as many as `tolerance` asks for.
     std::optional<std::uint32_t> num_bounces = {};
-    /// Relative error of the sum of all bounces, L2 over the receivers that have direct light, and
-    /// three times as much over all: light that fills a white box through a crack is not waited
-    /// for.
+    /// Relative error of the sum of all bounces, L2 over all receivers, as the steps of the solver
+    /// tell. Light that fills a nearly closed gap over hundreds of bounces is not waited for.
     double tolerance = 1e-3;
 
     bool operator==(const BounceLimits&) const = default;
@@ -67,7 +66,7 @@ class BounceLight {
 public:
     /// Matrix and transfer must outlive this object. Albedo is 0 at first.
     ///
-    /// Memory:  some 100 bytes per receiver.
+    /// Memory:  some 100 bytes per receiver, and 32 for each of the last six steps.
     /// Throws:  std::invalid_argument for a matrix of other receivers.
     ///
     /// Where processes share the rows, all call the same functions in the same order, with the same

@@ -207,10 +207,13 @@ std::vector<Meeting> meetings(const mesh::TriangleMesh& mesh, const glm::dvec3& 
     return result;
 }
 
+/// The upward part of the steepest directions.
+constexpr double Steep = 0.9;
+
 /// Directions around the horizon, and some above and below it.
 std::vector<glm::dvec3> ways_around(std::uint32_t num_around, bool level) {
     std::vector<glm::dvec3> ways;
-    for (const double up : {0.0, 0.5, -0.5, 0.9, -0.9}) {
+    for (const double up : {0.0, 0.5, -0.5, Steep, -Steep}) {
         if (level && up != 0.0)
             break;
         for (std::uint32_t i = 0; i < num_around; ++i) {
@@ -237,11 +240,15 @@ double way_out(const mesh::Bounds& box, const glm::dvec3& from, const glm::dvec3
 /// Whether most rays from a point meet fronts, far away in the box. Strictness 1 takes many rays.
 bool is_inside_room(const mesh::TriangleMesh& mesh, const mesh::Bounds& box, const glm::dvec3& from,
                     std::uint32_t num_around, double strictness) {
-    constexpr double Met = 0.7, Fronts = 0.65, NearBox = 0.55, Closed = 0.6;
+    constexpr double Met = 0.7, Fronts = 0.65, NearBox = 0.55, Closed = 0.6, Height = 0.5;
     const std::vector<glm::dvec3> ways = ways_around(num_around, false);
     const std::vector<Meeting> around = meetings(mesh, from, ways);
     double met = 0.0, fronts = 0.0, near_box = 0.0, closed = 0.0, level_or_up = 0.0;
+    double height = 0.0;
     for (std::size_t i = 0; i < ways.size(); ++i) {
+        if (std::abs(ways[i].y) == Steep)
+            height += std::min(around[i].distance, way_out(box, from, ways[i])) * Steep /
+                      static_cast<double>(num_around);
         if (ways[i].y >= 0.0) { // below, there may be a floor
             level_or_up += 1.0;
             closed += around[i].is_closed ? 1.0 : 0.0;
@@ -252,8 +259,8 @@ bool is_inside_room(const mesh::TriangleMesh& mesh, const mesh::Bounds& box, con
         fronts += around[i].is_front ? 1.0 : 0.0;
         near_box += around[i].distance > 0.6 * way_out(box, from, ways[i]) ? 1.0 : 0.0;
     }
-    // A chest has an inside, too, but it is closed to the outside.
-    if (closed > Closed * level_or_up)
+    // A chest has an inside, too, but it is closed to the outside; a shelf has low ceilings.
+    if (closed > Closed * level_or_up || height < strictness * Height * double{box.size().y})
         return false;
     return met >= strictness * Met * static_cast<double>(ways.size()) &&
            fronts >= strictness * Fronts * met && near_box >= strictness * NearBox * met;

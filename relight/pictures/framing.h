@@ -43,7 +43,8 @@ struct Framing {
 
 /// Returns a camera inside of a mesh that is a room, at eye height, with its back to an open side
 /// or the farthest wall; nothing for other meshes. In a room most rays from the middle meet the
-/// front of something, near the bounding box rather than near the middle.
+/// front of something, near the bounding box rather than near the middle, and its floor and ceiling
+/// are at least half of the box apart.
 ///
 /// Cost:    O(triangles).
 [[nodiscard]] std::optional<Camera> inside_room(const mesh::TriangleMesh& mesh,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <mutex>
+#include <numbers>
 #include <stdexcept>
 
 #include <glm/geometric.hpp>
@@ -271,7 +272,8 @@ private:
             if (traces && !is_dark) {
                 if (!even)
                     look(sample, lanes_);
-                radiance += is_caught ? traced_white(sample) : traced(sample);
+                radiance +=
+                    is_caught ? white(prt::shading_normal(mesh_, point(sample))) : traced(sample);
             }
             passed_[i] = is_caught ? caught(radiance, *light_.open_floor, opacity)
                                    : glm::vec3(1.0f - opacity);
@@ -288,13 +290,18 @@ private:
         return light_.open_floor && view_.floor_.has(mesh_.triangles[sample.triangle]);
     }
 
-    /// Returns what the lights in lanes_ give to a white Lambert surface.
-    [[nodiscard]] glm::vec3 traced_white(const Sample& sample) const {
-        return glm::vec3(packets_.radiance(prt::shading_normal(mesh_, point(sample)), lanes_));
+    /// Returns what the lights in lanes_ give to a white Lambert surface. Samples beside each other
+    /// mostly see the same lights.
+    [[nodiscard]] glm::vec3 white(const glm::vec3& normal) {
+        if (lanes_ != summed_) {
+            summed_ = lanes_;
+            sum_ = packets_.irradiance(lanes_);
+        }
+        return glm::vec3(sum_.on(normal) / std::numbers::pi);
     }
 
     /// Returns what a sample sends on of the lights in lanes_.
-    [[nodiscard]] glm::vec3 traced(const Sample& sample) const {
+    [[nodiscard]] glm::vec3 traced(const Sample& sample) {
         if (std::all_of(lanes_.begin(), lanes_.end(),
                         [](std::uint16_t lanes) { return lanes == 0; }))
             return glm::vec3(0.0f);
@@ -303,11 +310,10 @@ private:
         const glm::vec3 albedo =
             light_.albedo.empty() ? glm::vec3(1.0f) : prt::value_at(mesh_, light_.albedo, at);
         if (light_.surfaces.empty())
-            return albedo * glm::vec3(packets_.radiance(normal, lanes_));
+            return albedo * white(normal);
         const prt::Surface surface = surface_at(sample);
         if (surface.highlight == prt::Highlight::None || !light_.eye)
-            return albedo *
-                   prt::reflect(surface, {.diffuse = glm::vec3(packets_.radiance(normal, lanes_))});
+            return albedo * prt::reflect(surface, {.diffuse = white(normal)});
         const glm::vec3 to_eye =
             glm::normalize(*light_.eye - prt::value_at(mesh_, mesh_.positions, at));
         prt::BlockSurfaces block;
@@ -362,6 +368,9 @@ private:
     Lanes middles_;
     /// Scratch: [packets]
     Lanes lanes_;
+    /// The lanes whose lights were summed last, and their sum.
+    Lanes summed_;
+    VectorIrradiance sum_;
     /// [samples of a pixel] what passes of the light behind.
     std::vector<glm::vec3> passed_;
 };

@@ -66,15 +66,12 @@ void LightPackets::visible(const glm::vec3& position, const glm::vec3& normal,
         lanes[p] = static_cast<std::uint16_t>(visible(p, position, normal, rays));
 }
 
-glm::dvec3 LightPackets::radiance(const glm::vec3& normal,
-                                  std::span<const std::uint16_t> lanes) const {
-    glm::dvec3 irradiance(0.0);
+VectorIrradiance LightPackets::irradiance(std::span<const std::uint16_t> lanes) const {
+    VectorIrradiance sum;
     for (std::size_t p = 0; p < packets_.size(); ++p)
         for (std::uint32_t lights = lanes[p]; lights != 0; lights &= lights - 1)
-            irradiance +=
-                packets_[p].irradiance[static_cast<std::size_t>(std::countr_zero(lights))].on(
-                    normal);
-    return irradiance / std::numbers::pi;
+            sum += packets_[p].irradiance[static_cast<std::size_t>(std::countr_zero(lights))];
+    return sum;
 }
 
 void LightPackets::light_block(const prt::BlockSurfaces& surfaces,

@@ -41,9 +41,8 @@ public:
     void visible(const glm::vec3& position, const glm::vec3& normal, const ShadowRays& rays,
                  std::span<std::uint16_t> lanes) const;
 
-    /// Returns the radiance (albedo 1) that these lights give to a surface.
-    [[nodiscard]] glm::dvec3 radiance(const glm::vec3& normal,
-                                      std::span<const std::uint16_t> lanes) const;
+    /// Returns the irradiance of these lights, for surfaces that they all stand above.
+    [[nodiscard]] VectorIrradiance irradiance(std::span<const std::uint16_t> lanes) const;
 
     /// Computes the radiance through each lobe, without colours, of a block of up to 16 receivers
     /// with highlights. A light is a point.

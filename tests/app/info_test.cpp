@@ -20,6 +20,8 @@ TEST_F(Info, Mesh) {
     EXPECT_EQ(info["diagnosis"]["isolated_vertices"], 0);
     EXPECT_EQ(info["colors"], false);
     EXPECT_NE(succeed({"info", "mesh.obj"}).out.find("6 vertices, 8 triangles"), std::string::npos);
+    write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_NE(succeed({"info", "one.obj"}).out.find("3 vertices, 1 triangle\n"), std::string::npos);
 }
 
 TEST_F(Info, NamesInFilesDoNotCommandTheTerminal) {

@@ -11,13 +11,24 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "../python"))
 
 
-def test_in_blender(tmp_path):
-    import relumine
-    from conftest import sky_pixels
-
+def in_blender(script, *arguments):
+    """Runs a script, which says in the end that all is well. Returns what it printed."""
     blender = shutil.which("blender")
     if blender is None:
         pytest.skip("there is no Blender: apt install blender")
+    done = subprocess.run(
+        [blender, "-b", "--factory-startup", "--python-use-system-env", "--python-exit-code", "1",
+         "--python", os.path.join(HERE, script), "--", *map(str, arguments)],
+        capture_output=True, text=True,
+    )  # fmt: skip
+    assert done.returncode == 0 and "all is well" in done.stdout, done.stdout + done.stderr
+    return done.stdout
+
+
+def test_equals_the_command_line(tmp_path):
+    import relumine
+    from conftest import sky_pixels
+
     program = os.environ.get("RELUMINE_PROGRAM", "")
     if not os.path.exists(program):
         pytest.skip("the program was not built")
@@ -25,10 +36,25 @@ def test_in_blender(tmp_path):
     relumine.Environment(sky_pixels(128)).save(
         tmp_path / "sky.exr", layout="latlong", to="blender", size=(256, 128)
     )
-    addon = os.path.join(HERE, "../../integrations/blender/relumine_lights.py")
-    done = subprocess.run(
-        [blender, "-b", "--factory-startup", "--python-use-system-env", "--python-exit-code", "1",
-         "--python", os.path.join(HERE, "in_blender.py"), "--", addon, program, str(tmp_path)],
-        capture_output=True, text=True,
+    in_blender("in_blender.py", program, tmp_path)
+
+
+def test_assets(tmp_path):
+    in_blender("assets_in_blender.py", tmp_path)
+
+
+def test_worlds(tmp_path):
+    assert in_blender("worlds.py", tmp_path).count("baked  ") == 11
+
+
+def test_an_installed_add_on(tmp_path):
+    """A zip of the folder, in a clean profile, as docs/blender.md has it."""
+    archive = shutil.make_archive(
+        str(tmp_path / "relumine_lights"), "zip",
+        os.path.join(HERE, "../../integrations/blender"), "relumine_lights",
     )  # fmt: skip
-    assert done.returncode == 0 and "all is well" in done.stdout, done.stdout + done.stderr
+    os.environ["BLENDER_USER_RESOURCES"] = str(tmp_path / "profile")
+    try:
+        in_blender("installed.py", archive, tmp_path)
+    finally:
+        del os.environ["BLENDER_USER_RESOURCES"]

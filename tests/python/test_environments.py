@@ -121,3 +121,20 @@ def test_the_sun_comes_off():
 def test_notebooks_show_environments(sky):
     assert sky._repr_png_().startswith(b"\x89PNG")
     assert repr(sky) == "<relumine.Environment: latlong 64 x 32, lights as 6 x 16 x 16>"
+
+
+def test_turns_about_any_axis(sky):
+    """A turn about +Y is a rotation; any other takes the light of a direction to the turned one."""
+    c, s = np.cos(0.7), np.sin(0.7)
+    about_y = [[c, 0, s], [0, 1, 0], [-s, 0, c]]
+    assert sky.turned(turn=about_y).cube == pytest.approx(
+        sky.turned(rotate=np.degrees(0.7)).cube, abs=1e-4
+    )
+    axes = np.array([[0, 1, 0], [0, 0, 1], [1, 0, 0]])  # +X to +Z, +Y to +X, +Z to +Y
+    turned = sky.turned(turn=axes)
+    for normal in (np.eye(3)[0], [0.6, 0, 0.8]):
+        assert turned.irradiance(axes @ normal) == pytest.approx(sky.irradiance(normal), rel=1e-3)
+    with pytest.raises(ValueError, match="^turn: expected the matrix of a rotation"):
+        sky.turned(turn=2 * np.eye(3))
+    with pytest.raises(ValueError, match="^turn: expected shape"):
+        sky.turned(turn=[1, 2, 3])

@@ -200,3 +200,47 @@ def test_order_of_calls(scene):
         relumine.Relighter(relumine.Scene.unclustered(mesh)).set_environment(
             relumine.Environment(np.ones((6, 2, 2, 3)))
         )
+
+
+def test_other_things_block_the_light():
+    """A large plane over a small one takes all light from above."""
+    x, z = np.meshgrid([-1.0, 0.0, 1.0], [-1.0, 0.0, 1.0], indexing="ij")
+    vertices = np.stack([x.ravel(), np.zeros(9), z.ravel()], axis=1)
+    triangles = [[i, i + 1, i + 3] for i in (0, 1, 3, 4)] + [
+        [i + 1, i + 4, i + 3] for i in (0, 1, 3, 4)
+    ]
+    roof = (vertices * 100 + [0, 0.5, 0], triangles)
+    lit = {}
+    for name, blockers in (("open", None), ("closed", roof)):
+        mesh = relumine.Mesh(vertices, triangles, blockers=blockers)
+        scene = relumine.precompute(mesh, refine=False)
+        assert len(scene.vertices) == 9
+        lit[name] = relumine.Relighter(scene)
+        lit[name].set_environment(relumine.Environment(np.ones((6, 8, 8, 3))))
+    assert lit["open"].radiance == pytest.approx(np.ones((9, 3)), abs=0.02)
+    assert lit["closed"].radiance.max() < 0.02
+    # A lamp below the roof is seen, one above it is not; one below the plane neither.
+    points = [[0, 0.4, 0], [0, 0.6, 0], [0, -0.4, 0]]
+    assert (lit["closed"].sees(points) == [True, False, False]).all()
+    assert (lit["open"].sees(points) == [True, True, False]).all()
+    many = np.column_stack([np.zeros(40), np.linspace(0.1, 0.9, 40), np.zeros(40)])
+    assert (lit["closed"].sees(many) == (many[:, 1] < 0.5)).all()
+    with pytest.raises(ValueError, match=r"^points: expected shape \(N, 3\)"):
+        lit["open"].sees([1, 2, 3])
+    with pytest.raises(ValueError, match=r"^blockers: expected \(vertices, triangles\)"):
+        relumine.Mesh(vertices, triangles, blockers=(vertices,))
+    with pytest.raises(ValueError, match=r"^blockers\[1\]: expected whole numbers from 0 to 8"):
+        relumine.Mesh(vertices, triangles, blockers=(vertices, [[0, 1, 9]]))
+
+
+def test_places_of_texels(arrays):
+    vertices, triangles = arrays
+    mesh = relumine.Mesh(vertices[-2304:], triangles[-4418:] - 4608,
+                         uvs=vertices[-2304:, [0, 2]] / 6 + 0.5)  # fmt: skip
+    scene = relumine.precompute(mesh, tolerance=0.1, receivers="texels:16x16", bounces=False)
+    assert len(scene.places) == scene.num_receivers == 256
+    row, column = scene.places // 16, scene.places % 16
+    # u runs along +X, v upwards along +Z.
+    assert scene.positions[:, 0] == pytest.approx((column + 0.5) / 16 * 6 - 3, abs=1e-3)
+    assert scene.positions[:, 2] == pytest.approx(3 - (row + 0.5) / 16 * 6, abs=1e-3)
+    assert relumine.precompute(mesh, tolerance=0.1, refine=False).places.shape == (0,)

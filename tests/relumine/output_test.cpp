@@ -225,6 +225,27 @@ TEST_F(Output, ExposureIsThatOfTheMeshAndNotOfItsFloor) {
     EXPECT_EQ(exposure(0.05f), exposure(5.0f));
 }
 
+// What a window shows may burn out, or the room would be dark.
+TEST_F(Output, ExposureOfARoomIsThatOfItsWalls) {
+    const mesh::TriangleMesh room = data_gen::painted_room(2000);
+    const cubemap::CubeMap white(8, glm::vec3(1.0f));
+    const auto exposure = [&](const Scene& scene, const Background& background) {
+        LitScene lit(scene);
+        lit.light(white);
+        return Painter(lit, {.background = background}).choose_exposure_ev(lit.lighting());
+    };
+    const Scene vertices = precompute(room, {.tolerance = 0.1f, .no_refine = true});
+    const double of_walls = exposure(vertices, glm::vec3(0.0f));
+    EXPECT_EQ(exposure(vertices, EnvironmentBehind{}), of_walls);
+    EXPECT_GT(of_walls, 0.6);
+    const Scene pixels =
+        precompute(room, {.tolerance = 0.1f,
+                          .receivers = Pixels{.width = 32, .height = 24},
+                          .no_refine = true,
+                          .view = View{.camera = camera_of(vertices, OutputOptions{})}});
+    EXPECT_EQ(exposure(pixels, EnvironmentBehind{}), exposure(pixels, glm::vec3(0.0f)));
+}
+
 TEST_F(Output, TheCameraIsThatOfTheFileOrInsideOfARoom) {
     Mesh mesh(scenes::corner(3));
     mesh.camera = Camera{.eye = {5, 6, 7}, .target = {0, 1, 0}, .fov_degrees = 41.0f};

@@ -425,6 +425,32 @@ TEST(Refine, NewVerticesLeaveTheSolidThatHidesThem) {
     EXPECT_LT(dark, 0.4);
 }
 
+TEST(Refine, APostWhoseEndsOtherSolidsHideIsLitBetweenThem) {
+    // It is small in the scene, and no corner of it is lit.
+    const mesh::TriangleMesh post = scenes::box({-0.2f, 0.5f, -0.2f}, {0.2f, 2.5f, 0.2f});
+    mesh::TriangleMesh mesh = scenes::joined(post, scenes::box({-1, 0.1f, -1}, {1, 1, 1}));
+    mesh = scenes::joined(mesh, scenes::box({-1, 2, -1}, {1, 3, 1}));
+    mesh = scenes::joined(mesh, scenes::floor_grid(2, 100.0f));
+    const mesh::TriangleMesh fine =
+        refined(mesh, {.coarse_edge = 1.9f, .min_edge = 0.1f, .max_vertices = 4000});
+    EXPECT_TRUE(std::equal(mesh.positions.begin(), mesh.positions.end(), fine.positions.begin()));
+    const std::vector<CoarseDirections::Bits> bits = CoarseDirections().trace(
+        vertex_receivers(fine), RayScene(mesh), automatic_bias(mesh), Progress{Work()});
+    int num_between = 0;
+    for (const mesh::Triangle& triangle : fine.triangles) {
+        const glm::vec3 centre = (fine.positions[triangle[0]] + fine.positions[triangle[1]] +
+                                  fine.positions[triangle[2]]) /
+                                 3.0f;
+        if (std::max(std::abs(centre.x), std::abs(centre.z)) > 0.25f || centre.y < 1.05f ||
+            centre.y > 1.95f)
+            continue;
+        ++num_between;
+        for (const std::uint32_t vertex : triangle)
+            EXPECT_FALSE(CoarseDirections::is_hidden(bits[vertex])) << fine.positions[vertex].y;
+    }
+    EXPECT_GT(num_between, 8 * 4) << "of four sides";
+}
+
 TEST(Refine, CurvedVerticesLieOnTheBall) {
     const mesh::TriangleMesh coarse = scenes::icosphere(1, 1.0f, glm::vec3(0.0f));
     const mesh::TriangleMesh fine =
@@ -510,6 +536,36 @@ TEST(LitBacks, OpenSurfacesGetThoseThatLightReaches) {
         EXPECT_EQ(open.normals[back[0]], -box.normals[box.triangles[i][0]]);
     }
     EXPECT_EQ(backs(open).num_triangles(), open.num_triangles()) << "both sides are there";
+}
+
+TEST(LitBacks, LightThroughASmallHoleOfALargeSurfaceIsFound) {
+    // The floor of a box, under a thick lid with a hole away from the middle.
+    mesh::TriangleMesh mesh = scenes::floor_grid(2, 10.0f);
+    for (mesh::Triangle& triangle : mesh.triangles)
+        std::swap(triangle[1], triangle[2]);
+    for (glm::vec3& normal : mesh.normals)
+        normal = -normal;
+    const auto add = [&](glm::vec2 min, glm::vec2 max, float low, float high) {
+        mesh = scenes::joined(mesh, scenes::box({min.x, low, min.y}, {max.x, high, max.y}));
+    };
+    for (const float side : {-5.5f, 5.5f}) {
+        add({side - 0.49f, -6}, {side + 0.49f, 6}, -0.5f, 0.3f);
+        add({-6, side - 0.49f}, {6, side + 0.49f}, -0.5f, 0.3f);
+    }
+    add({-6, -6}, {6, 0.8f}, 0.05f, 0.6f);
+    add({-6, 1.8f}, {6, 6}, 0.05f, 0.6f);
+    add({-6, 0.7f}, {2.5f, 1.9f}, 0.05f, 0.6f);
+    add({3.5f, 0.7f}, {6, 1.9f}, 0.05f, 0.6f);
+    const mesh::TriangleMesh both = with_lit_backs(mesh, RayScene(mesh), automatic_bias(mesh));
+    EXPECT_EQ(both.num_triangles() - mesh.num_triangles(), 1u);
+}
+
+TEST(LitBacks, ALeafIsLitFromBothSides) {
+    mesh::TriangleMesh leaf = scenes::floor_grid(2, 1.0f);
+    leaf.triangles.pop_back();
+    const mesh::TriangleMesh both = with_lit_backs(leaf, RayScene(leaf), automatic_bias(leaf));
+    EXPECT_EQ(both.num_triangles(), 2u);
+    EXPECT_EQ(both.num_vertices(), leaf.num_vertices() + 3);
 }
 
 TEST(Refine, OptionsOutOfRangeAreRefused) {

@@ -166,5 +166,21 @@ TEST(Framing, RoomsAreSeenFromInside) {
     EXPECT_FALSE(inside_room({}));
 }
 
+TEST(Framing, AShelfIsSeenFromOutside) {
+    mesh::TriangleMesh shelf =
+        scenes::box(glm::vec3(-0.5f, 0.0f, -0.5f), glm::vec3(0.5f, 4.0f, 0.5f));
+    std::erase_if(shelf.triangles, [&](const mesh::Triangle& triangle) {
+        return std::all_of(triangle.begin(), triangle.end(),
+                           [&](std::uint32_t v) { return shelf.positions[v].z == 0.5f; });
+    });
+    for (mesh::Triangle& triangle : shelf.triangles)
+        std::swap(triangle[1], triangle[2]);
+    EXPECT_TRUE(inside_room(shelf)) << "a high room";
+    for (const float y : {1.0f, 2.0f, 3.0f})
+        shelf = scenes::joined(
+            shelf, scenes::box(glm::vec3(-0.5f, y - 0.02f, -0.5f), glm::vec3(0.5f, y, 0.5f)));
+    EXPECT_FALSE(inside_room(shelf));
+}
+
 } // namespace
 } // namespace relumine::relight
