@@ -15,7 +15,7 @@ using scenes::corner;
 
 constexpr Camera View45{.eye = {0.5f, 1.2f, 2.5f}, .target = {0.5f, 0.3f, 0.3f}, .fov_degrees = 30};
 
-PrecomputeOptions options(std::variant<Vertices, Pixels, Texels> receivers) {
+PrecomputeOptions options(ReceiverChoice receivers) {
     PrecomputeOptions result{
         .tolerance = 0.03f, .receivers = receivers, .no_refine = true, .bounce_tolerance = 0.01f};
     if (std::holds_alternative<Pixels>(receivers))
@@ -58,7 +58,7 @@ TEST(Bounces, OfPixelsAndTexelsComeFromTheVertices) {
     const mesh::TriangleMesh mesh = corner(33);
     LitScene vertices(precompute(mesh, options(Vertices{})));
     const std::vector<glm::vec3> of_vertices = bounced(vertices);
-    for (const auto& receivers : std::initializer_list<std::variant<Vertices, Pixels, Texels>>{
+    for (const auto& receivers : std::initializer_list<ReceiverChoice>{
              Pixels{.width = 40, .height = 30}, Texels{.width = 64, .height = 32}}) {
         LitScene lit(precompute(mesh, options(receivers)));
         const prt::Receivers& own = lit.scene().receivers;

@@ -24,7 +24,7 @@ constexpr std::uint32_t Side = 54;
 class SharedWork : public scenes::InFolder {
 protected:
     [[nodiscard]] static PrecomputeOptions
-    options(const std::variant<Vertices, Pixels, Texels>& receivers,
+    options(const ReceiverChoice& receivers,
             const std::filesystem::path& output) {
         PrecomputeOptions result{.tolerance = 0.05f,
                                  .receivers = receivers,
@@ -36,7 +36,7 @@ protected:
                 Camera{.eye = {0.5f, 1.2f, 2.5f}, .target = {0.5f, 0.3f, 0.3f}, .fov_degrees = 30}};
         return result;
     }
-    [[nodiscard]] static std::vector<std::variant<Vertices, Pixels, Texels>> all_receivers() {
+    [[nodiscard]] static std::vector<ReceiverChoice> all_receivers() {
         return {Vertices{}, Pixels{.width = 60, .height = 40}, Texels{.width = 48, .height = 48}};
     }
     [[nodiscard]] static Mesh mesh() { return scenes::corner(Side); }

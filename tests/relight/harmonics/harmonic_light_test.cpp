@@ -13,6 +13,7 @@
 #include "files/parallel.h"
 #include "relight/reference/exact.h"
 #include "relight/reference/exact_harmonics.h"
+#include "relight/receiver_light.h"
 #include "relight/relighter.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"
