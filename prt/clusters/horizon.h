@@ -11,7 +11,8 @@
 
 namespace relumine::prt {
 
-/// Sets bit j of rays[i] where the cosine of NormalArrays is above 0 for receiver first + i and the patch's direction j.
+/// Sets bit j of rays[i] where the cosine of NormalArrays is above 0 for receiver first + i and the
+/// patch's direction j.
 ///
 /// The cosine is ((nx wx + ny wy) + nz wz) + nw in float, each operation rounded, on every processor. So a
 /// cluster's bits never depend on the machine.

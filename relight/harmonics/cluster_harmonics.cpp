@@ -11,9 +11,8 @@ namespace relumine::relight {
 
 namespace {
 
-/// Groups are cells of this level (2.8 degrees), or leaves that are larger. Measured on points in a
-/// colonnade and on the bunny: finer groups cost time and change the coefficients by less than
-/// 0.001.
+/// Groups are cells of this level (2.8 degrees), or leaves that are larger. A choice that is not
+/// measured yet: light moves by 1.4 degrees at most, and finer groups cost more products.
 constexpr std::uint32_t GroupLevel = 5;
 
 struct CellMiddle {

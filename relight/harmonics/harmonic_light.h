@@ -23,7 +23,7 @@ namespace relumine::relight {
 ///
 /// Accuracy: as radiance. Updates add differences in double, and a block that dims much is summed
 ///           anew, as ReceiverLight does.
-/// Memory:   30 bytes a coefficient, channel and receiver, and as much again under sharp lights.
+/// Memory:   26 bytes a coefficient and receiver, and 24 more under sharp lights.
 class HarmonicLight {
 public:
     /// The transfer must outlive this object. `order` is 1, 2 or 3.
