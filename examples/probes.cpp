@@ -28,10 +28,9 @@ std::array<glm::vec3, Count> light_at(const prt::GridLayout& grid, std::span<con
         const auto i = static_cast<std::size_t>(axis);
         const auto count = static_cast<float>(counts[i]);
         // Probes stand in the middles of their cells. Outside of the outermost ones theirs holds.
-        const float at = std::clamp((place[axis] - grid.low[axis]) /
-                                            (grid.high[axis] - grid.low[axis]) * count -
-                                        0.5f,
-                                    0.0f, count - 1.0f);
+        const float at = std::clamp(
+            (place[axis] - grid.low[axis]) / (grid.high[axis] - grid.low[axis]) * count - 0.5f,
+            0.0f, count - 1.0f);
         low[i] = std::min(static_cast<std::uint32_t>(at), counts[i] - std::min(2u, counts[i]));
         part[i] = at - static_cast<float>(low[i]);
     }

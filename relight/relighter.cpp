@@ -79,8 +79,7 @@ void require_inside(const TexelRectangle& rectangle, const cubemap::CubeMap& map
 
 } // namespace
 
-Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays,
-                     std::uint32_t harmonics)
+Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays, std::uint32_t harmonics)
     : transfer_(transfer), rays_(rays), sums_(transfer.num_clusters()),
       powers_(transfer.num_clusters()),
       binner_(transfer, rays.blockers != nullptr ? rays.tolerance : 0.0f),
@@ -317,15 +316,14 @@ void bind_to(const prt::Transfer& transfer, std::span<const glm::vec3> radiance,
         return;
     const std::size_t count = harmonics.size() / radiance.size();
     constexpr std::size_t Grain = 256;
-    files::parallel_for(files::IndexRange<std::size_t>(0, radiance.size(), Grain),
-                        [&](const auto& range) {
-                            for (std::size_t place = range.begin(); place < range.end(); ++place) {
-                                const std::size_t receiver = transfer.order[place];
-                                bind(harmonics.subspan(receiver * count, count),
-                                     transfer.normals[place],
-                                     glm::dvec3(radiance[receiver]) * std::numbers::pi);
-                            }
-                        });
+    files::parallel_for(
+        files::IndexRange<std::size_t>(0, radiance.size(), Grain), [&](const auto& range) {
+            for (std::size_t place = range.begin(); place < range.end(); ++place) {
+                const std::size_t receiver = transfer.order[place];
+                bind(harmonics.subspan(receiver * count, count), transfer.normals[place],
+                     glm::dvec3(radiance[receiver]) * std::numbers::pi);
+            }
+        });
 }
 
 void put_texels(const TexelRectangle& rectangle, std::span<const glm::vec3> radiance,

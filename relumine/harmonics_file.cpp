@@ -111,7 +111,8 @@ files::Json probe_json(const Scene& scene, std::size_t index, std::span<const gl
     probe.set("type", "LightProbe");
     probe.set("uuid", fmt::format("00000000-0000-4000-8000-{:012x}", index + 1));
     probe.set("name", fmt::format("probe {}", index));
-    probe.set("matrix", files::Json::Array{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, at.x, at.y, at.z, 1});
+    probe.set("matrix",
+              files::Json::Array{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, at.x, at.y, at.z, 1});
     probe.set("intensity", 1);
     probe.set("sh", std::move(sh));
     if (receivers.is_inside(index)) {

@@ -13,10 +13,10 @@
 #include <glm/common.hpp>
 
 #include "files/extension.h"
+#include "mesh/load.h"
 #include "prt/glossy/lobe_list.h"
 #include "prt/parts/part_file.h"
 #include "prt/parts/team_checkpoint.h"
-#include "mesh/load.h"
 #include "prt/receivers/pixel_receivers.h"
 #include "prt/receivers/point_receivers.h"
 #include "prt/receivers/receiver_order.h"
@@ -336,8 +336,8 @@ private:
     void place_grid(const Grid& grid, const prt::RayScene& rays) {
         check(grid);
         const std::size_t num_own = first_floor_vertex(scene_).value_or(scene_.mesh.num_vertices());
-        const mesh::Bounds box = options_.box.value_or(
-            mesh::bounds(std::span(scene_.mesh.positions).first(num_own)));
+        const mesh::Bounds box =
+            options_.box.value_or(mesh::bounds(std::span(scene_.mesh.positions).first(num_own)));
         prt::GridLayout layout{
             .nx = grid.nx, .ny = grid.ny, .nz = grid.nz, .low = box.min, .high = box.max};
         add_points(prt::grid_points(layout), rays);

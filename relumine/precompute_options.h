@@ -131,8 +131,9 @@ struct PrecomputeOptions {
     /// The mesh keeps its vertices. Otherwise vertices, those behind bounces included, become more
     /// where the mesh is coarse: refined_by_itself().
     bool no_refine = false;
-    /// The camera of pixels, and the eye that highlights are for; of no use to points and grids. Without one, pixels take the
-    /// automatic camera; vertices and texels are seen from anywhere and have no highlights.
+    /// The camera of pixels, and the eye that highlights are for; of no use to points and grids.
+    /// Without one, pixels take the automatic camera; vertices and texels are seen from anywhere
+    /// and have no highlights.
     std::optional<View> view = {};
     /// Replaces the mesh's materials; everywhere() makes one surface for the whole mesh. Empty: the
     /// materials stay.
@@ -145,11 +146,10 @@ struct PrecomputeOptions {
     /// Relative error of a highlight under a small light anywhere
     float glossy_tolerance = prt::GlossyOptions{}.tolerance;
 
-    /// Light bounces from surface to surface; prt::BounceOptions::tolerance. None reaches points and
-    /// grids. 0: direct light alone.
-    /// Empty: vertices that see other surfaces bounce light, within 0.01. Surfaces send what their
-    /// vertices have, so pixels and texels get the mesh's vertices as receivers behind them
-    /// (prt::Receivers::num_added).
+    /// Light bounces from surface to surface; prt::BounceOptions::tolerance. None reaches points
+    /// and grids. 0: direct light alone. Empty: vertices that see other surfaces bounce light,
+    /// within 0.01. Surfaces send what their vertices have, so pixels and texels get the mesh's
+    /// vertices as receivers behind them (prt::Receivers::num_added).
     std::optional<float> bounce_tolerance = {};
     /// Backs of surfaces send the bounced light that their fronts do; otherwise they are black.
     bool two_sided_bounces = false;

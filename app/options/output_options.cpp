@@ -49,7 +49,7 @@ void OutputOptions::check_fits(const Scene& scene) const {
                         prt::description(scene.layout), path));
     const unsigned receivers = on_vertices                           ? OptionRow::OnVertices
                                : prt::kind_of(scene.layout).are_seen ? OptionRow::OnPixels
-                                                                     : std::holds_alternative<prt::TexelLayout>(scene.layout)
+                               : std::holds_alternative<prt::TexelLayout>(scene.layout)
                                    ? OptionRow::OnTexels
                                    : OptionRow::OnPoints;
     for (const Option& option : options_)

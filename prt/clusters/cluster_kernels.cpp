@@ -62,8 +62,8 @@ void squared_distances(const NormalArrays& normals, const CellSamples& samples,
                 for (std::size_t l = 0; l < SamplesPerCell; ++l) {
                     const glm::vec3& w = samples.directions[l];
                     const auto along_z = hn::MulAdd(nz, hn::Set(d, w.z), nw);
-                    const auto cosine = hn::MulAdd(nx, hn::Set(d, w.x),
-                                                   hn::MulAdd(ny, hn::Set(d, w.y), along_z));
+                    const auto cosine =
+                        hn::MulAdd(nx, hn::Set(d, w.x), hn::MulAdd(ny, hn::Set(d, w.y), along_z));
                     transfer[l] =
                         hn::IfThenElseZero(mask_of(d, samples.lit[l][word], lane), cosine);
                     mean = hn::MulAdd(transfer[l],

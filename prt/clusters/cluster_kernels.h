@@ -16,8 +16,8 @@
 
 namespace relumine::prt {
 
-/// Normals of the receivers, coordinates apart. A direction d has the cosine x dx + y dy + z dz + w:
-/// w is 1 for points without a surface, whose normals are zero, and 0 for all others.
+/// Normals of the receivers, coordinates apart. A direction d has the cosine x dx + y dy + z dz +
+/// w: w is 1 for points without a surface, whose normals are zero, and 0 for all others.
 ///
 /// Shape:   [num_words * 64] each; zero after the last receiver.
 struct NormalArrays {

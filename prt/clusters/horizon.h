@@ -14,8 +14,8 @@ namespace relumine::prt {
 /// Sets bit j of rays[i] where the cosine of NormalArrays is above 0 for receiver first + i and the
 /// patch's direction j.
 ///
-/// The cosine is ((nx wx + ny wy) + nz wz) + nw in float, each operation rounded, on every processor. So a
-/// cluster's bits never depend on the machine.
+/// The cosine is ((nx wx + ny wy) + nz wz) + nw in float, each operation rounded, on every
+/// processor. So a cluster's bits never depend on the machine.
 void directions_above_horizon(const NormalArrays& normals, std::size_t first,
                               const DirectionPatch& patch, std::span<std::uint64_t> rays);
 

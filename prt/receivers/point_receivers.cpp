@@ -47,10 +47,9 @@ bool meets_mostly_backs(const glm::vec3& point, const mesh::TriangleMesh& mesh,
         for (std::uint32_t hit = rays.closest_hits(point, packet, All, hits); hit != 0;
              hit &= hit - 1) {
             const auto i = static_cast<std::uint32_t>(std::countr_zero(hit));
-            num_backs += meets_front(mesh, {hits[i].triangle, hits[i].barycentric},
-                                     packet.direction(i))
-                             ? 0
-                             : 1;
+            num_backs +=
+                meets_front(mesh, {hits[i].triangle, hits[i].barycentric}, packet.direction(i)) ? 0
+                                                                                                : 1;
         }
     }
     return 2 * num_backs > NumRays;
@@ -92,8 +91,7 @@ private:
     }
 
     /// Of equally near points the one with the lowest index is taken.
-    void find(std::size_t begin, std::size_t end, int axis, const glm::vec3& to,
-              Best& best) const {
+    void find(std::size_t begin, std::size_t end, int axis, const glm::vec3& to, Best& best) const {
         if (begin == end)
             return;
         const std::size_t middle = begin + (end - begin) / 2;

@@ -1,5 +1,5 @@
-// What the receivers of a scene are: vertices of its mesh, pixels of a picture, texels of a lightmap,
-// or points in space. Each kind answers for itself.
+// What the receivers of a scene are: vertices of its mesh, pixels of a picture, texels of a
+// lightmap, or points in space. Each kind answers for itself.
 #pragma once
 
 #include <cstddef>
@@ -172,8 +172,8 @@ inline constexpr std::size_t MaxLayoutPlaces = std::size_t{1} << 28;
 /// Whether the receivers are the mesh's vertices.
 [[nodiscard]] bool on_vertices(const ReceiverLayout& layout);
 
-/// Returns "vertices", "pixels 1024 x 768, 3 x 3 samples each", "texels 512 x 512", "points 2000" or
-/// "grid 16 x 8 x 16".
+/// Returns "vertices", "pixels 1024 x 768, 3 x 3 samples each", "texels 512 x 512", "points 2000"
+/// or "grid 16 x 8 x 16".
 [[nodiscard]] std::string description(const ReceiverLayout& layout);
 
 /// Returns how many places for receivers there are: samples or texels. None for vertices.

@@ -27,9 +27,9 @@ void check_fit(const ReceiverLayout& layout, const Receivers& receivers) {
                         receivers.num_own(), own.size(), num_places(layout)));
     if (receivers.have_no_surface == kind_of(layout).have_surface ||
         (!receivers.own_positions.empty() && receivers.own_positions.size() != receivers.size()))
-        throw std::invalid_argument(fmt::format(
-            "expected receivers {} a surface, and no or {} positions of points",
-            kind_of(layout).have_surface ? "on" : "without", receivers.size()));
+        throw std::invalid_argument(
+            fmt::format("expected receivers {} a surface, and no or {} positions of points",
+                        kind_of(layout).have_surface ? "on" : "without", receivers.size()));
     if (receivers.have_no_surface)
         return;
     if (receivers.normals.size() != receivers.size() || receivers.points.size() != receivers.size())

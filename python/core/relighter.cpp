@@ -404,8 +404,8 @@ void bind_relighters(py::module_& module) {
     type.def(py::init([](const std::shared_ptr<Scene>& scene, bool clusters_only,
                          std::uint32_t harmonics) {
             return in_background(py::none(), [=](const Reins&) {
-                return std::make_shared<Lit>(scene, LightOptions{.clusters_only = clusters_only,
-                                                                 .harmonics = harmonics});
+                return std::make_shared<Lit>(
+                    scene, LightOptions{.clusters_only = clusters_only, .harmonics = harmonics});
             });
         }))
         .def_property_readonly("is_lit", &Lit::is_lit)

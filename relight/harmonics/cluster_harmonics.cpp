@@ -26,7 +26,8 @@ struct CellMiddle {
 /// edge's normal: Lambert's formula for polygons.
 CellMiddle middle_of(const prt::Cell& cell) {
     const auto corner = [&](double x, double y) {
-        return cubemap::direction(cell.face, (cell.x + x) * cell.size(), (cell.y + y) * cell.size());
+        return cubemap::direction(cell.face, (cell.x + x) * cell.size(),
+                                  (cell.y + y) * cell.size());
     };
     const std::array<glm::dvec3, 4> corners = {corner(0, 0), corner(1, 0), corner(1, 1),
                                                corner(0, 1)};
@@ -38,8 +39,7 @@ CellMiddle middle_of(const prt::Cell& cell) {
                sine * cross;
     }
     const double s0 = cell.x * cell.size(), t0 = cell.y * cell.size();
-    const double solid_angle =
-        cubemap::solid_angle(s0, t0, s0 + cell.size(), t0 + cell.size());
+    const double solid_angle = cubemap::solid_angle(s0, t0, s0 + cell.size(), t0 + cell.size());
     const glm::dvec3 centre = corner(0.5, 0.5);
     const double length = glm::length(sum);
     // Corners run one way around on some faces and the other way on others.

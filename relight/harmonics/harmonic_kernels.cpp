@@ -120,8 +120,8 @@ public:
                     const float* basis = groups_[group_[i]].basis.data();
 #pragma GCC unroll 9
                     for (std::size_t k = 0; k < Count; ++k)
-                        products[k] = hn::MulAdd(flux, hn::Set(d, static_cast<T>(basis[k])),
-                                                 products[k]);
+                        products[k] =
+                            hn::MulAdd(flux, hn::Set(d, static_cast<T>(basis[k])), products[k]);
                 }
 #pragma GCC unroll 9
                 for (std::size_t k = 0; k < Count; ++k)
@@ -231,12 +231,13 @@ void light_harmonics(const BlockScene& scene, std::size_t tile, const ClusterHar
                 const std::uint64_t mixed = counts.mixed[word];
                 if ((mixed | across) == 0)
                     continue;
-                groups.add({.bits = mixed | across,
-                            .mixed = mixed,
-                            .counts = counts_of(counts, word),
-                            .normals = scene.normals[begin + block]},
-                           [&](std::size_t i) { return group_of[w * 64 + i]; },
-                           [&](std::size_t i) { return fluxes + (w * 64 + i) * 3; });
+                groups.add(
+                    {.bits = mixed | across,
+                     .mixed = mixed,
+                     .counts = counts_of(counts, word),
+                     .normals = scene.normals[begin + block]},
+                    [&](std::size_t i) { return group_of[w * 64 + i]; },
+                    [&](std::size_t i) { return fluxes + (w * 64 + i) * 3; });
                 if (groups.is_full())
                     groups.template multiply<Count>(mixed_sum);
             }
@@ -288,15 +289,15 @@ std::uint64_t update_harmonics(const BlockScene& scene, std::size_t tile,
             // One by one: the counts of mixed clusters that did not change lie between.
             for_bits(mixed | across, [&](std::size_t i) {
                 const std::uint64_t bit = std::uint64_t{1} << i;
-                const auto before =
-                    static_cast<std::size_t>(std::popcount(all_mixed & (bit - 1)));
+                const auto before = static_cast<std::size_t>(std::popcount(all_mixed & (bit - 1)));
                 const std::size_t index = index_of(i);
-                groups.add({.bits = bit,
-                            .mixed = mixed & bit,
-                            .counts = counts_of(counts, word) + before * prt::BlockSize,
-                            .normals = scene.normals[begin + block]},
-                           [&](std::size_t) { return changes.groups[index]; },
-                           [&](std::size_t) { return changes.fluxes.data() + index * 3; });
+                groups.add(
+                    {.bits = bit,
+                     .mixed = mixed & bit,
+                     .counts = counts_of(counts, word) + before * prt::BlockSize,
+                     .normals = scene.normals[begin + block]},
+                    [&](std::size_t) { return changes.groups[index]; },
+                    [&](std::size_t) { return changes.fluxes.data() + index * 3; });
                 if (groups.is_full())
                     groups.template multiply<Count>(mixed_sum);
             });
@@ -309,7 +310,7 @@ std::uint64_t update_harmonics(const BlockScene& scene, std::size_t tile,
 } // namespace
 
 void light_by_order(const BlockScene& scene, std::size_t tile, const ClusterHarmonics& lights,
-           std::uint64_t chosen, const HarmonicBlocks& blocks) {
+                    std::uint64_t chosen, const HarmonicBlocks& blocks) {
     if (lights.order() == 1)
         light_harmonics<1>(scene, tile, lights, chosen, blocks);
     else if (lights.order() == 2)
@@ -318,8 +319,9 @@ void light_by_order(const BlockScene& scene, std::size_t tile, const ClusterHarm
         light_harmonics<9>(scene, tile, lights, chosen, blocks);
 }
 
-std::uint64_t update_by_order(const BlockScene& scene, std::size_t tile, const ClusterHarmonics& lights,
-                     const HarmonicChanges& changes, const HarmonicBlocks& blocks) {
+std::uint64_t update_by_order(const BlockScene& scene, std::size_t tile,
+                              const ClusterHarmonics& lights, const HarmonicChanges& changes,
+                              const HarmonicBlocks& blocks) {
     if (lights.order() == 1)
         return update_harmonics<1>(scene, tile, lights, changes, blocks);
     if (lights.order() == 2)

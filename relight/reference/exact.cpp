@@ -74,7 +74,8 @@ public:
             constexpr double Part = 0.25 * std::numbers::inv_pi; // of the sphere
             std::uint32_t reached = tile.lit & ~blockers.occluded(origin_, tile.packet, tile.lit);
             for (; reached != 0; reached &= reached - 1)
-                sums.diffuse += tile.power[static_cast<std::size_t>(std::countr_zero(reached))] * Part;
+                sums.diffuse +=
+                    tile.power[static_cast<std::size_t>(std::countr_zero(reached))] * Part;
             return;
         }
         const bool diffuse_only = surface_.highlight == prt::Highlight::None;

@@ -30,8 +30,8 @@ struct ExactOptions {
 
 /// Returns the outgoing radiance of the chosen receivers: B = 1/pi sum over all 6 R^2 texels of L_j
 /// dw_j V(w_j) max(n.w_j, 0), lights at texel centres, sums in double [JN, Eq. 1]. Albedo is 1
-/// where receivers have no surfaces; otherwise the lobes and colours of their surfaces count. Points
-/// in space get their mean radiance over the sphere: B = 1/(4 pi) sum of L_j dw_j V(w_j).
+/// where receivers have no surfaces; otherwise the lobes and colours of their surfaces count.
+/// Points in space get their mean radiance over the sphere: B = 1/(4 pi) sum of L_j dw_j V(w_j).
 ///
 /// Shape:   [receiver_indices.size()].
 /// Cost:    a ray per receiver and texel that is not black and above the horizon.

@@ -123,9 +123,8 @@ void TracedLight::find_reached(const FreshPatch& patch, std::size_t first,
         const glm::vec3 direction = patch.directions.direction(j);
         for (std::size_t i = 0; i < of_group.size(); ++i)
             of_group[i] |=
-                static_cast<std::uint64_t>(
-                    transfer_.have_no_surface ||
-                    prt::is_above(transfer_.normals[first + i], direction))
+                static_cast<std::uint64_t>(transfer_.have_no_surface ||
+                                           prt::is_above(transfer_.normals[first + i], direction))
                 << j;
     }
     for (const std::uint64_t bits : of_group)

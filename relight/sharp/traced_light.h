@@ -41,7 +41,8 @@ public:
     }
     /// Whether lights are traced at all.
     [[nodiscard]] bool is_traced() const { return rays_.blockers != nullptr; }
-    /// Returns which receivers of a block a light of the last trace() reaches: bit i for receiver i.
+    /// Returns which receivers of a block a light of the last trace() reaches: bit i for receiver
+    /// i.
     [[nodiscard]] std::uint16_t reached(std::size_t light, std::size_t block) const {
         return (*of_light_[light])[block];
     }

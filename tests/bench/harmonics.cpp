@@ -75,8 +75,8 @@ void measure_points(const Settings& settings, const bench::Inputs& inputs,
                     const mesh::TriangleMesh& colonnade) {
     const std::vector<glm::vec3> points = random_points(colonnade, settings.num_points);
     PrecomputeReport report;
-    const LitScene made(precompute(Mesh(colonnade), {.receivers = Points{.positions = points}}, {},
-                                   &report));
+    const LitScene made(
+        precompute(Mesh(colonnade), {.receivers = Points{.positions = points}}, {}, &report));
     const Scene& scene = made.scene();
     fmt::print("\n{} points in the colonnade: {} clusters, precompute {:.2f} s\n\n| light | "
                "coefficients against exact integration, relative L2 |\n|---|---|\n",
@@ -147,7 +147,8 @@ void measure_relight(const Settings& settings, const bench::Inputs& inputs, cons
     std::vector<double> alone, with, alone_sums, with_sums;
     relight::Relighter radiance(bunny.transfer), both(bunny.transfer, {}, 3);
     for (int pass = 0; pass < settings.passes; ++pass) {
-        const relight::UpdateReport a = radiance.set_environment(map), b = both.set_environment(map);
+        const relight::UpdateReport a = radiance.set_environment(map),
+                                    b = both.set_environment(map);
         alone.push_back(1e3 * a.seconds);
         with.push_back(1e3 * b.seconds);
         alone_sums.push_back(1e3 * a.seconds_relight);
@@ -178,8 +179,8 @@ void measure_grid(const Settings& settings, const bench::Inputs& inputs,
     }
     lit.edit(lit.state());
     for (int pass = 0; pass < settings.passes; ++pass) {
-        const UpdateReport times = set_layers(
-            lit, {bench::disc({1.0, 1.0 + 0.01 * pass, 0.3}, 0.05, 2.0 + 0.1 * pass)});
+        const UpdateReport times =
+            set_layers(lit, {bench::disc({1.0, 1.0 + 0.01 * pass, 0.3}, 0.05, 2.0 + 0.1 * pass)});
         edit.push_back(1e3 * times.seconds);
     }
     fmt::print("\ngrid 16 x 8 x 16 in the colonnade: precompute {:.2f} s ({} clusters, {:.0f} M "
@@ -187,8 +188,8 @@ void measure_grid(const Settings& settings, const bench::Inputs& inputs,
                "{:.3f} ms\n",
                seconds, report.clusters.num_clusters,
                1e-6 * static_cast<double>(report.clusters.num_rays),
-               prt::num_inside(lit.scene().receivers), settings.resolution,
-               bench::median(relight), bench::median(sums), bench::median(edit));
+               prt::num_inside(lit.scene().receivers), settings.resolution, bench::median(relight),
+               bench::median(sums), bench::median(edit));
 }
 
 } // namespace
@@ -207,7 +208,8 @@ int main(int argc, char** argv) {
     return program.run(argc, argv, [&] {
         if (program.is_tiny())
             settings = {.num_points = 20, .resolution = 16, .exact_resolution = 16, .passes = 2};
-        const mesh::TriangleMesh colonnade = data_gen::colonnade(program.is_tiny() ? 2000 : 100'000);
+        const mesh::TriangleMesh colonnade =
+            data_gen::colonnade(program.is_tiny() ? 2000 : 100'000);
         const Scene bunny = inputs.bunny();
         measure_grid(settings, inputs, colonnade);
         measure_relight(settings, inputs, bunny);

@@ -23,9 +23,8 @@ constexpr std::uint32_t Side = 54;
 
 class SharedWork : public scenes::InFolder {
 protected:
-    [[nodiscard]] static PrecomputeOptions
-    options(const ReceiverChoice& receivers,
-            const std::filesystem::path& output) {
+    [[nodiscard]] static PrecomputeOptions options(const ReceiverChoice& receivers,
+                                                   const std::filesystem::path& output) {
         PrecomputeOptions result{.tolerance = 0.05f,
                                  .receivers = receivers,
                                  .bounce_tolerance = 0.02f,

@@ -71,8 +71,8 @@ TEST_F(PointsCommand, GridsFillTheirBoxAndBecomePicturesAndProbes) {
 }
 
 TEST_F(PointsCommand, PartsAndThreadsMakeTheSameBytes) {
-    const std::vector<std::string> how = {"mesh.obj", "--receivers", "grid:16x8x10", "--tolerance",
-                                          "0.03",     "-q"};
+    const std::vector<std::string> how = {"mesh.obj",    "--receivers", "grid:16x8x10",
+                                          "--tolerance", "0.03",        "-q"};
     const auto with = [&](std::vector<std::string> arguments) {
         arguments.insert(arguments.begin() + 1, how.begin(), how.end());
         return arguments;
@@ -116,8 +116,8 @@ TEST_F(PointsCommand, VerticesHaveHarmonicsToo) {
 TEST_F(PointsCommand, BadInput) {
     const auto refuse = [&](const std::string& receivers, const std::string& part,
                             const std::vector<std::string>& options = {}) {
-        std::vector<std::string> arguments = {"precompute",  "mesh.obj", "-o", "new.prt",
-                                              "--receivers", receivers};
+        std::vector<std::string> arguments = {"precompute", "mesh.obj",    "-o",
+                                              "new.prt",    "--receivers", receivers};
         arguments.insert(arguments.end(), options.begin(), options.end());
         misuse(arguments, part);
     };

@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "files/parallel.h"
+#include "relight/receiver_light.h"
 #include "relight/reference/exact.h"
 #include "relight/reference/exact_harmonics.h"
-#include "relight/receiver_light.h"
 #include "relight/relighter.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"
@@ -22,7 +22,6 @@
 
 namespace relumine::relight {
 namespace {
-
 
 prt::Receivers points_at(const std::vector<glm::vec3>& positions) {
     prt::Receivers receivers;
@@ -64,8 +63,8 @@ cubemap::CubeMap map_of(std::uint32_t resolution,
     for (const cubemap::Face face : cubemap::AllFaces)
         for (std::uint32_t y = 0; y < resolution; ++y)
             for (std::uint32_t x = 0; x < resolution; ++x)
-                map.at(face, x, y) = glm::vec3(static_cast<float>(
-                    radiance(cubemap::texel_direction(face, x, y, resolution))));
+                map.at(face, x, y) = glm::vec3(
+                    static_cast<float>(radiance(cubemap::texel_direction(face, x, y, resolution))));
     return map;
 }
 
@@ -98,7 +97,8 @@ TEST(HarmonicLight, HalfASky) {
     const prt::Receivers points = points_at({{0, 0, 0}});
     const prt::Transfer transfer = prt::precompute(points, scenes::no_blockers(), {.min_level = 4});
     Relighter relighter(transfer, {}, 3);
-    relighter.set_environment(map_of(128, [](const glm::dvec3& w) { return w.y > 0.0 ? 1.0 : 0.0; }));
+    relighter.set_environment(
+        map_of(128, [](const glm::dvec3& w) { return w.y > 0.0 ? 1.0 : 0.0; }));
     const std::vector<glm::vec3> light = relighter.harmonics();
     // Over the half sphere the integrals of 1, y and 3 y^2 - 1 are 2 pi, pi and 0.
     EXPECT_NEAR(light[0].r, 0.5 * std::sqrt(1.0 / std::numbers::pi) * 2.0 * std::numbers::pi, 1e-3);
@@ -144,7 +144,9 @@ TEST(HarmonicLight, ASphereHidesItsSolidAngle) {
     const std::vector<glm::vec3> light = relighter.harmonics();
     const double c = std::cos(std::numbers::pi / 6);
     EXPECT_NEAR(relighter.radiance()[0].r, 1.0 - 0.5 * (1.0 - c), 1e-4);
-    EXPECT_NEAR(light[1].r, -std::sqrt(3.0 / (4.0 * std::numbers::pi)) * std::numbers::pi * (1.0 - c * c), 1e-3);
+    EXPECT_NEAR(light[1].r,
+                -std::sqrt(3.0 / (4.0 * std::numbers::pi)) * std::numbers::pi * (1.0 - c * c),
+                1e-3);
 }
 
 TEST(HarmonicLight, PointsAgreeWithExactIntegration) {
@@ -172,8 +174,8 @@ TEST(HarmonicLight, SurfacesAreBoundToTheirRadiance) {
         const std::vector<glm::vec3> light = relighter.harmonics();
         const std::size_t count = num_harmonics(order);
         for (std::size_t i = 0; i < scene.receivers.size(); ++i) {
-            const glm::dvec3 e = irradiance(std::span(light).subspan(i * count, count),
-                                            scene.receivers.normals[i]);
+            const glm::dvec3 e =
+                irradiance(std::span(light).subspan(i * count, count), scene.receivers.normals[i]);
             for (int channel = 0; channel < 3; ++channel)
                 EXPECT_NEAR(e[channel] / std::numbers::pi, relighter.radiance()[i][channel],
                             1e-6 * std::max(1.0f, relighter.radiance()[i][channel]));
@@ -214,12 +216,10 @@ void expect_edits_leave_no_trace(const prt::Transfer& transfer, const ShadowRays
     edited.set_environment(environment);
     std::mt19937 random(3);
     for (int i = 0; i < 12; ++i) {
-        const auto x = static_cast<std::uint32_t>(random() % 28), y = static_cast<std::uint32_t>(random() % 28);
-        const TexelRectangle rectangle{.face = cubemap::AllFaces[random() % 6],
-                                       .x0 = x,
-                                       .y0 = y,
-                                       .x1 = x + 4,
-                                       .y1 = y + 4};
+        const auto x = static_cast<std::uint32_t>(random() % 28),
+                   y = static_cast<std::uint32_t>(random() % 28);
+        const TexelRectangle rectangle{
+            .face = cubemap::AllFaces[random() % 6], .x0 = x, .y0 = y, .x1 = x + 4, .y1 = y + 4};
         const std::vector<glm::vec3> texels(16, glm::vec3(i % 3 == 0 ? 1e5f : 0.1f));
         put_texels(rectangle, texels, environment);
         update_region(edited, rectangle, texels);
@@ -237,14 +237,14 @@ void expect_edits_leave_no_trace(const prt::Transfer& transfer, const ShadowRays
 }
 
 TEST(HarmonicLight, EditsLeaveNoTraceOnAnyProcessor) {
-    scenes::on_every_target([] {
-        expect_edits_leave_no_trace(point_scene().transfer, point_scene().shadow_rays());
-    });
+    scenes::on_every_target(
+        [] { expect_edits_leave_no_trace(point_scene().transfer, point_scene().shadow_rays()); });
 }
 
 TEST(HarmonicLight, EditsLeaveNoTrace) {
     expect_edits_leave_no_trace(point_scene().transfer, {});
-    expect_edits_leave_no_trace(scenes::relit_scene().transfer, scenes::relit_scene().shadow_rays());
+    expect_edits_leave_no_trace(scenes::relit_scene().transfer,
+                                scenes::relit_scene().shadow_rays());
 }
 
 TEST(HarmonicLight, FramesAreAsIfSet) {
@@ -272,11 +272,12 @@ TEST(HarmonicLight, IsTheSameForAnyNumberOfThreads) {
 
 TEST(HarmonicLight, RadianceOfSurfacesDoesNotDependOnIt) {
     const scenes::RelitScene& scene = scenes::relit_scene();
-    Relighter with(scene.transfer, scene.shadow_rays(), 3), without(scene.transfer, scene.shadow_rays());
+    Relighter with(scene.transfer, scene.shadow_rays(), 3),
+        without(scene.transfer, scene.shadow_rays());
     with.set_environment(scenes::random_environment(32, 8));
     without.set_environment(scenes::random_environment(32, 8));
-    EXPECT_TRUE(std::equal(with.radiance().begin(), with.radiance().end(),
-                           without.radiance().begin()));
+    EXPECT_TRUE(
+        std::equal(with.radiance().begin(), with.radiance().end(), without.radiance().begin()));
     EXPECT_THROW(static_cast<void>(without.harmonics()), std::logic_error);
     EXPECT_THROW(Relighter(scene.transfer, {}, 4), std::invalid_argument);
 }

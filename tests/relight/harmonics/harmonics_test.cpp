@@ -53,19 +53,26 @@ TEST(Harmonics, IrradianceOfAConstantSkyIsPi) {
     light[0] = glm::vec3(static_cast<float>(2.0 * std::sqrt(Pi)));
     for (const glm::vec3& normal : {glm::vec3(0, 1, 0), glm::vec3(0.6f, 0, -0.8f)})
         for (const std::uint32_t order : {1u, 2u, 3u})
-            EXPECT_NEAR(irradiance(std::span(light).first(num_harmonics(order)), normal).g, Pi, 1e-6);
+            EXPECT_NEAR(irradiance(std::span(light).first(num_harmonics(order)), normal).g, Pi,
+                        1e-6);
     EXPECT_NEAR(mean_radiance(light[0]).r, 1.0f, 1e-6f);
 }
 
 TEST(Harmonics, IrradianceHasThePublishedMatrix) {
     // Ramamoorthi and Hanrahan 2001, Eqs. 12 and 13: c1 to c5, as renderers have them.
-    const std::array<double, MaxHarmonics> c = {0.886227, 2 * 0.511664, 2 * 0.511664,
+    const std::array<double, MaxHarmonics> c = {0.886227,     2 * 0.511664, 2 * 0.511664,
                                                 2 * 0.511664, 2 * 0.429043, 2 * 0.429043,
-                                                0.743125, 2 * 0.429043, 0.429043};
+                                                0.743125,     2 * 0.429043, 0.429043};
     const glm::dvec3 n = glm::normalize(glm::dvec3(-0.2, 0.7, 0.4));
-    const std::array<double, MaxHarmonics> polynomials = {
-        1.0, n.y, n.z, n.x, n.x * n.y, n.y * n.z, n.z * n.z - 0.247708 / 0.743125,
-        n.x * n.z, n.x * n.x - n.y * n.y};
+    const std::array<double, MaxHarmonics> polynomials = {1.0,
+                                                          n.y,
+                                                          n.z,
+                                                          n.x,
+                                                          n.x * n.y,
+                                                          n.y * n.z,
+                                                          n.z * n.z - 0.247708 / 0.743125,
+                                                          n.x * n.z,
+                                                          n.x * n.x - n.y * n.y};
     for (std::size_t k = 0; k < MaxHarmonics; ++k) {
         std::array<glm::vec3, MaxHarmonics> light{};
         light[k] = glm::vec3(1.0f);
