@@ -45,7 +45,11 @@ std::vector<std::array<float, 3>> npy_values(const std::string& bytes) {
     require(header.find("'fortran_order': False") != std::string::npos, "not in C order");
     const std::size_t shape = header.find("'shape': (");
     require(shape != std::string::npos, "no shape");
-    const std::size_t count = std::stoull(header.substr(shape + 10));
+    // All but the last length of the shape.
+    std::size_t count = 1;
+    for (std::size_t at = shape + 10; header.find(')', at) > header.find(',', at);
+         at = header.find(',', at) + 1)
+        count *= std::stoull(header.substr(at));
     require(header.find(", 3)", shape) != std::string::npos, "not rows of three");
     require(bytes.size() == 10 + header_bytes + count * 12,
             "another number of values than the header says");

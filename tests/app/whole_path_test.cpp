@@ -102,7 +102,7 @@ TEST_F(WholePath, GeneratePrecomputeInfoRelightEditVerify) {
 }
 
 TEST_F(WholePath, ErrorIsSmallUnderEveryGeneratedEnvironment) {
-    precompute("blob", 600, "0.0135");
+    precompute("blob", 1000, "0.0135");
     for (const char* name : {"sun_sky", "soft_boxes", "small_light", "constant"}) {
         generate(name, 64);
         for (const char* file : {"", "_latlong"}) {

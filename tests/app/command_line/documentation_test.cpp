@@ -59,7 +59,7 @@ protected:
     [[nodiscard]] std::vector<std::string> commands() const {
         return {"precompute", "plan",       "join", "relight",  "animate", "edit",
                 "verify",     "lights",     "info", "generate", "env",     "mesh",
-                "view",       "completion", "man",  "serve",    "help"};
+                "view",       "completion", "man",  "serve",    "help",    "fit"};
     }
 };
 

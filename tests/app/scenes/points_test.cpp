@@ -30,7 +30,7 @@ protected:
 
 TEST_F(PointsCommand, HaveTheMeanRadianceOfTheirSphere) {
     const Result result = precompute("points:points.ply");
-    EXPECT_NE(result.err.find("1 of 3 points lie inside of objects"), std::string::npos)
+    EXPECT_NE(result.out.find("1 of 3 points lie inside of objects"), std::string::npos)
         << result.described();
     succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.npy", "--harmonics", "sh.npy", "-q"});
     const auto values = npy_values(read("lit.npy"));
@@ -49,8 +49,8 @@ TEST_F(PointsCommand, HaveTheMeanRadianceOfTheirSphere) {
 TEST_F(PointsCommand, GridsFillTheirBoxAndBecomePicturesAndProbes) {
     precompute("grid:3x2x2", {"--box", "-3,2,-3,3,4,3"});
     const auto info = succeed({"info", "scene.prt", "--json"}).json();
-    EXPECT_EQ(info.at("receivers").at("kind"), "grid") << info;
-    EXPECT_EQ(info.at("receivers").at("nx"), 3);
+    EXPECT_EQ(info.at("layout").at("kind"), "grid") << info;
+    EXPECT_EQ(info.at("layout").at("nx"), 3);
     succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.exr", "--harmonics", "sh.exr", "-q"});
     EXPECT_EQ(exr_size(read("lit.exr")), (Size{3, 4}));
     const auto channels = exr_channels(folder() / "sh.exr");
