@@ -320,8 +320,8 @@ void bind_to(const prt::Transfer& transfer, std::span<const glm::vec3> radiance,
         files::IndexRange<std::size_t>(0, radiance.size(), Grain), [&](const auto& range) {
             for (std::size_t place = range.begin(); place < range.end(); ++place) {
                 const std::size_t receiver = transfer.order[place];
-                bind(harmonics.subspan(receiver * count, count), transfer.normals[place],
-                     glm::dvec3(radiance[receiver]) * std::numbers::pi);
+                bind_irradiance(harmonics.subspan(receiver * count, count), transfer.normals[place],
+                                glm::dvec3(radiance[receiver]) * std::numbers::pi);
             }
         });
 }

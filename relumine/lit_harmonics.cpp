@@ -29,8 +29,8 @@ std::vector<glm::vec3> LitScene::harmonics() const {
             }
             const std::span<glm::vec3> light = std::span(result).subspan(receiver * width, width);
             const glm::vec3& normal = transfer.normals[place];
-            relight::bind(light, normal,
-                          relight::irradiance(light, normal) + std::numbers::pi * arriving);
+            relight::bind_irradiance(
+                light, normal, relight::irradiance(light, normal) + std::numbers::pi * arriving);
         }
     }
     return team_->has_others() ? gathered(*team_, scene_->transfer.order, result, width) : result;

@@ -44,7 +44,7 @@ glm::dvec3 irradiance(std::span<const glm::vec3> light, const glm::vec3& normal)
     return sum;
 }
 
-void bind(std::span<glm::vec3> light, const glm::vec3& normal, const glm::dvec3& known) {
+void bind_irradiance(std::span<glm::vec3> light, const glm::vec3& normal, const glm::dvec3& known) {
     if (normal == glm::vec3(0.0f))
         return;
     const std::array<double, MaxHarmonics> values = irradiance_harmonics(normal);

@@ -51,7 +51,8 @@ inline constexpr std::array<std::string_view, MaxHarmonics> HarmonicNames = {
 /// known to be. A zero normal changes nothing.
 ///
 /// Shape:   light is [order^2].
-void bind(std::span<glm::vec3> light, const glm::vec3& normal, const glm::dvec3& irradiance);
+void bind_irradiance(std::span<glm::vec3> light, const glm::vec3& normal,
+                     const glm::dvec3& irradiance);
 
 /// Returns the mean radiance over the sphere, which the first coefficient tells: the fluence over
 /// 4 pi.

@@ -82,7 +82,8 @@ TEST(HarmonicLight, ConstantSkyAroundAnOpenPoint) {
     const prt::Receivers points = points_at({{0, 0, 0}, {3, 1, 2}});
     const prt::Transfer transfer = prt::precompute(points, scenes::no_blockers(), {.min_level = 2});
     Relighter relighter(transfer, {}, 3);
-    relighter.set_environment(map_of(32, [](const glm::dvec3&) { return 1.0; }));
+    // Texels count as their centres: so much narrower than they are at R = 256 that 3e-6 is left.
+    relighter.set_environment(map_of(256, [](const glm::dvec3&) { return 1.0; }));
     EXPECT_NEAR(relighter.radiance()[1].g, 1.0f, 1e-5f);
     const std::vector<glm::vec3> light = relighter.harmonics();
     ASSERT_EQ(light.size(), 18u);
@@ -125,10 +126,13 @@ TEST(HarmonicLight, OneDistantLightThatASphereMayBlock) {
         relighter.set_lights(std::span(&light, 1));
         const std::vector<glm::vec3> values = relighter.harmonics();
         const auto expected = harmonics(light.direction);
+        // A block sees the light in part, so it comes from the middle of a group 2.8 degrees wide:
+        // at most 2 degrees off, where Y changes by 1.1 a radian at most.
+        const double allowed = is_traced ? 1e-6 : 1.1 * 0.035;
         for (std::size_t k = 0; k < 9; ++k) {
             EXPECT_EQ(values[k], glm::vec3(0.0f)) << k;
-            EXPECT_NEAR(values[9 + k].r, 2.0 * expected[k], is_traced ? 1e-6 : 6e-3) << k;
-            EXPECT_NEAR(values[9 + k].b, 0.5 * expected[k], is_traced ? 1e-6 : 6e-3) << k;
+            EXPECT_NEAR(values[9 + k].r, 2.0 * expected[k], 2.0 * allowed) << k;
+            EXPECT_NEAR(values[9 + k].b, 0.5 * expected[k], 0.5 * allowed) << k;
         }
         EXPECT_NEAR(relighter.radiance()[1].g, 1.0 / (4.0 * std::numbers::pi), 1e-4);
     }

@@ -106,17 +106,17 @@ TEST(Harmonics, BoundLightHasTheKnownIrradianceAndChangesLittle) {
     for (const std::uint32_t order : {2u, 3u}) {
         std::vector<glm::vec3> bound(light.begin(),
                                      light.begin() + static_cast<long>(num_harmonics(order)));
-        bind(bound, normal, known);
+        bind_irradiance(bound, normal, known);
         const glm::dvec3 e = irradiance(bound, normal);
         for (int channel = 0; channel < 3; ++channel)
             EXPECT_NEAR(e[channel], known[channel], 1e-6 * known[channel]);
         const std::vector<glm::vec3> before = bound;
-        bind(bound, normal, known);
+        bind_irradiance(bound, normal, known);
         for (std::size_t k = 0; k < bound.size(); ++k)
             EXPECT_NEAR(glm::distance(bound[k], before[k]), 0.0f, 1e-6f);
     }
     std::vector<glm::vec3> same(light.begin(), light.end());
-    bind(same, glm::vec3(0.0f), known);
+    bind_irradiance(same, glm::vec3(0.0f), known);
     EXPECT_TRUE(std::equal(same.begin(), same.end(), light.begin()));
 }
 
