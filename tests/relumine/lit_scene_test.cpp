@@ -240,7 +240,7 @@ TEST(LitScene, BouncesUntilTheLightChanges) {
     EXPECT_GT(scene.bounce({.albedo = std::vector(albedo.size(), glm::vec3(0.4f))}).seconds, 0.0);
     EXPECT_GT(scene.bounce({.albedo = albedo}).seconds, 0.0);
 
-    const Verification check = verify(scene, {.num_samples = 50, .num_paths = 256});
+    const Verification check = verify(scene, {.num_samples = 500, .num_paths = 64});
     EXPECT_GT(check.noise, 0.0);
     EXPECT_LT(check.error.relative_l2, 0.1);
     LitScene without(boulder_scene());
