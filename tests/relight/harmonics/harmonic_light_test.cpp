@@ -126,8 +126,8 @@ TEST(HarmonicLight, OneDistantLightThatASphereMayBlock) {
         relighter.set_lights(std::span(&light, 1));
         const std::vector<glm::vec3> values = relighter.harmonics();
         const auto expected = harmonics(light.direction);
-        // A block sees the light in part, so it comes from the middle of a group at most 3.6 degrees wide:
-        // at most 2.53 degrees off, where Y changes by 1.1 a radian at most.
+        // A block sees the light in part, so it comes from the middle of a group at most 3.6
+        // degrees wide: at most 2.53 degrees off, where Y changes by 1.1 a radian at most.
         const double allowed = is_traced ? 1e-6 : 1.1 * 0.0442;
         for (std::size_t k = 0; k < 9; ++k) {
             EXPECT_EQ(values[k], glm::vec3(0.0f)) << k;
