@@ -43,9 +43,17 @@ void HiddenVertices::find_movable() {
                 angles[vertex] = std::numeric_limits<double>::infinity();
         }
     }
-    for (const SplitMesh::Middle& middle : surface_.split().new_vertices())
-        is_movable_[middle.vertex] =
-            std::abs(angles[middle.vertex] - 2.0 * std::numbers::pi) < LargestGap;
+    // Where an edge has vertices of its own on both sides of a surface, or of a seam, the others
+    // would stay behind.
+    const std::span<const SplitMesh::Middle> middles = surface_.split().new_vertices();
+    std::vector<bool> is_alone(middles.size(), true);
+    for (std::size_t i = 0; i < middles.size(); ++i)
+        if (middles[i].next != SplitMesh::None)
+            is_alone[i] = is_alone[middles[i].next] = false;
+    for (std::size_t i = 0; i < middles.size(); ++i)
+        is_movable_[middles[i].vertex] =
+            is_alone[i] &&
+            std::abs(angles[middles[i].vertex] - 2.0 * std::numbers::pi) < LargestGap;
 }
 
 bool HiddenVertices::moves_to(std::uint32_t hidden, std::uint32_t lit) const {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -12,6 +14,7 @@
 #include "mesh/normals.h"
 #include "mesh/save.h"
 #include "prt/scene/scene_file.h"
+#include "tests/prt/scenes.h"
 #include "tests/relumine/small_scenes.h"
 
 namespace relumine {
@@ -235,6 +238,26 @@ TEST(RefinedByItself, AWallWhoseCornersAreHiddenIsLit) {
     EXPECT_LT(bad.error.relative_l2, 0.05);
     EXPECT_GT(worst_of(bad).relative_l2, 0.2);
     EXPECT_NE(worst_of(bad).place, VerifiedPlaces[0]);
+}
+
+TEST(RefinedByItself, BothSidesOfASheetStayOnOneAnother) {
+    // A sheet that stands out over a block: its back is hidden where the block is.
+    mesh::TriangleMesh mesh = scenes::box({-1.0f, -1.0f, -1.0f}, {0.1f, -1e-3f, 1.0f});
+    const auto first = static_cast<std::uint32_t>(mesh.num_vertices());
+    for (const float x : {-1.2f, 1.0f})
+        for (const float z : {-1.2f, 1.2f}) {
+            mesh.positions.emplace_back(x, 0.0f, z);
+            mesh.normals.emplace_back(0.0f, 1.0f, 0.0f);
+        }
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first + 1, first + 3, first + 2});
+    const Mesh fine = refined_by_itself(Mesh(std::move(mesh)));
+    std::multiset<std::pair<float, float>> fronts, backs;
+    for (std::size_t i = 0; i < fine.geometry.num_vertices(); ++i)
+        if (const glm::vec3& at = fine.geometry.positions[i]; at.y == 0.0f)
+            (fine.geometry.normals[i].y > 0.0f ? fronts : backs).insert({at.x, at.z});
+    EXPECT_GT(backs.size(), 100u);
+    EXPECT_EQ(fronts, backs);
 }
 
 TEST(RefinedByItself, AFineMeshAndChosenVerticesStay) {
