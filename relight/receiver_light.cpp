@@ -50,12 +50,9 @@ std::size_t ReceiverLight::trace(std::span<const SharpLight> lights) {
     return num_fresh;
 }
 
-void ReceiverLight::write_means() {
-    files::parallel_for(std::size_t{0}, light_.size(), [&](std::size_t block) {
-        const std::size_t begin = block * prt::BlockSize;
-        for (std::size_t place = begin; place < std::min(begin + prt::BlockSize, radiance_.size());
-             ++place)
-            radiance_[transfer_.order[place]] = harmonics_->mean(place);
+void ReceiverLight::write_means(bool with_sharp_lights, std::span<glm::vec3> radiance) const {
+    files::parallel_for(std::size_t{0}, radiance.size(), [&](std::size_t place) {
+        radiance[transfer_.order[place]] = harmonics_->mean(place, with_sharp_lights);
     });
 }
 
@@ -78,7 +75,7 @@ void ReceiverLight::sum(const ClusterSums& sums) {
     if (harmonics_)
         harmonics_->sum(block_scene(), sums);
     if (transfer_.have_no_surface)
-        return write_means();
+        return write_means(true, radiance_);
     files::parallel_for(files::IndexRange<std::size_t>(0, lights_.spread.size()),
                         [&](const auto& words) {
                             const std::size_t end = std::min(words.end() * 64, sums.all.size());
@@ -101,7 +98,7 @@ std::size_t ReceiverLight::update(const ClusterSums& sums, std::span<const std::
                                   bool sharp_changed) {
     const std::size_t num_lit = harmonics_ ? harmonics_->update(block_scene(), sums, changed) : 0;
     if (transfer_.have_no_surface) {
-        write_means();
+        write_means(true, radiance_);
         return std::min((sharp_changed ? light_.size() : num_lit) * prt::BlockSize,
                         radiance_.size());
     }
@@ -208,9 +205,7 @@ double ReceiverLight::write_radiance(std::size_t block, bool with_sharp_lights,
 std::vector<glm::vec3> ReceiverLight::soft_radiance() const {
     std::vector<glm::vec3> radiance(radiance_.size());
     if (transfer_.have_no_surface) {
-        files::parallel_for(std::size_t{0}, radiance.size(), [&](std::size_t place) {
-            radiance[transfer_.order[place]] = harmonics_->mean(place, false);
-        });
+        write_means(false, radiance);
         return radiance;
     }
     files::parallel_for(std::size_t{0}, light_.size(),

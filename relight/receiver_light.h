@@ -71,7 +71,7 @@ public:
 private:
     void light_glossy(std::size_t block);
     /// The radiance of points without a surface.
-    void write_means();
+    void write_means(bool with_sharp_lights, std::span<glm::vec3> radiance) const;
     /// Returns the block's brightness.
     double write_radiance(std::size_t block);
     /// Of radiance for albedo 1 in `diffuse`, too, unless that is empty.

@@ -89,11 +89,11 @@ struct LightState {
     std::vector<cubemap::LightLayer> layers = {};
     /// About +Y.
     double rotation_degrees = 0.0;
-    /// Compares bases by their address.
     /// Whether the base's own pixels show behind the scene, changed by layers at most.
     [[nodiscard]] bool shows_base() const {
         return rotation_degrees == 0.0 && !cubemap::has_solo(layers);
     }
+    /// Compares bases by their address.
     bool operator==(const LightState&) const = default;
 };
 

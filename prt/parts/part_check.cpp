@@ -2,8 +2,6 @@
 
 #include <stdexcept>
 
-#include <fmt/format.h>
-
 #include "prt/parts/part_list.h"
 #include "prt/scene/section_reader.h"
 
@@ -15,9 +13,7 @@ PartCheck check_parts(std::span<const std::filesystem::path> paths) {
     for (const std::filesystem::path& path : paths)
         try {
             const SectionReader reader(path);
-            if (!reader.has("part"))
-                throw std::runtime_error(fmt::format("{}: expected a part, got {}", path.string(),
-                                                     reader.has("plan") ? "a plan" : "a scene"));
+            require_part(reader);
             const std::string whole_name = reader.has("lit") ? "light" : "plan";
             list.add(path, read_head(reader, "part", whole_name), whole_name);
         } catch (const std::runtime_error& error) {

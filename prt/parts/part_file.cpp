@@ -39,9 +39,7 @@ struct StoredPart {
 
 StoredPart read_part(const std::filesystem::path& path) {
     StoredPart stored{.reader = SectionReader(path)};
-    if (!stored.reader.has("part"))
-        throw std::runtime_error(fmt::format("{}: expected a part, got {}", path.string(),
-                                             stored.reader.has("plan") ? "a plan" : "a scene"));
+    require_part(stored.reader);
     stored.head = read_head(stored.reader, "part", "plan");
     return stored;
 }

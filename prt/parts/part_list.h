@@ -35,6 +35,13 @@ inline files::Json json_of(const PartHead& head, const std::string& whole_name) 
             {whole_name, head.whole}};
 }
 
+/// Throws:  std::runtime_error that says what the file is, unless it is a part.
+inline void require_part(const SectionReader& reader) {
+    if (!reader.has("part"))
+        throw std::runtime_error(fmt::format("{}: expected a part, got {}", reader.path().string(),
+                                             reader.has("plan") ? "a plan" : "a scene"));
+}
+
 /// Reads a head.
 ///
 /// Throws:  as SectionReader.
