@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <span>
 #include <string>
@@ -32,6 +33,9 @@ struct Settings {
     /// Of exact integration.
     std::uint32_t exact_resolution = 128;
     int passes = 9;
+    /// Of points.
+    std::vector<float> tolerances = {0.1f, 0.06f, 0.04f, 0.03f};
+    std::vector<std::string> parts = {"grid", "relight", "normals", "points"};
 };
 
 struct NamedMap {
@@ -71,27 +75,39 @@ std::vector<glm::vec3> random_points(const mesh::TriangleMesh& mesh, std::size_t
     return receivers.positions;
 }
 
+/// How right the coefficients of points are, by tolerance.
 void measure_points(const Settings& settings, const bench::Inputs& inputs,
                     const mesh::TriangleMesh& colonnade) {
     const std::vector<glm::vec3> points = random_points(colonnade, settings.num_points);
-    PrecomputeReport report;
-    const LitScene made(
-        precompute(Mesh(colonnade), {.receivers = Points{.positions = points}}, {}, &report));
-    const Scene& scene = made.scene();
-    fmt::print("\n{} points in the colonnade: {} clusters, precompute {:.2f} s\n\n| light | "
-               "coefficients against exact integration, relative L2 |\n|---|---|\n",
-               points.size(), report.clusters.num_clusters, report.clusters.seconds);
+    const prt::RayScene rays(colonnade);
+    const prt::Receivers receivers = prt::point_receivers(points, colonnade, rays);
     std::vector<std::uint32_t> all(points.size());
-    for (std::uint32_t i = 0; i < all.size(); ++i)
-        all[i] = i;
-    LitScene lit(scene, {.harmonics = 3});
-    for (NamedMap& environment : environments(inputs, settings.exact_resolution)) {
-        const std::vector<glm::dvec3> exact = relight::exact_harmonics(
-            scene.receivers, all, lit.rays().of_mesh(), environment.map, 3, scene.settings.bias);
-        lit.light(std::move(environment.map));
-        const std::vector<glm::vec3> light = lit.harmonics();
-        fmt::print("| {} | {:.5f} |\n", environment.name,
-                   relative_l2(std::vector<glm::dvec3>(light.begin(), light.end()), exact));
+    std::iota(all.begin(), all.end(), 0u);
+    std::vector<NamedMap> maps = environments(inputs, settings.exact_resolution);
+    std::vector<std::vector<glm::dvec3>> exact;
+    for (const NamedMap& map : maps)
+        exact.push_back(relight::exact_harmonics(receivers, all, rays, map.map, 3, 0.0f));
+    fmt::print("\n{} points in the colonnade, coefficients against exact integration, relative "
+               "L2\n\n| tolerance | clusters | precompute, s |",
+               points.size());
+    for (const NamedMap& map : maps)
+        fmt::print(" {} |", map.name);
+    fmt::print("\n|{}\n", fmt::join(std::vector<std::string>(maps.size() + 3, "---|"), ""));
+    for (const float tolerance : settings.tolerances) {
+        PrecomputeReport report;
+        LitScene lit(precompute(Mesh(colonnade),
+                                {.tolerance = tolerance, .receivers = Points{.positions = points}},
+                                {}, &report),
+                     {.harmonics = 3});
+        fmt::print("| {} | {} | {:.2f} |", lit.scene().settings.tolerance,
+                   report.clusters.num_clusters, report.clusters.seconds);
+        for (std::size_t i = 0; i < maps.size(); ++i) {
+            lit.light(Light(cubemap::CubeMap(maps[i].map)));
+            const std::vector<glm::vec3> light = lit.harmonics();
+            fmt::print(" {:.5f} |",
+                       relative_l2(std::vector<glm::dvec3>(light.begin(), light.end()), exact[i]));
+        }
+        fmt::print("\n");
         std::fflush(stdout);
     }
 }
@@ -199,23 +215,35 @@ int main(int argc, char** argv) {
     bench::Program program("harmonics", "points in space and spherical harmonics");
     bench::Inputs inputs(program);
     inputs.add_scene();
-    bool no_exact = false;
     program.add("--points", settings.num_points, "points that are integrated exactly");
     program.add("--resolution", settings.resolution, "R of what is timed");
     program.add("--exact-resolution", settings.exact_resolution, "R of what is integrated exactly");
     program.add("--passes", settings.passes);
-    program.add_flag("--no-exact", no_exact, "times alone");
+    program.add("--tolerances", settings.tolerances, "of points");
+    program.add("--parts", settings.parts);
     return program.run(argc, argv, [&] {
         if (program.is_tiny())
-            settings = {.num_points = 20, .resolution = 16, .exact_resolution = 16, .passes = 2};
+            settings = {.num_points = 20,
+                        .resolution = 16,
+                        .exact_resolution = 16,
+                        .passes = 2,
+                        .tolerances = {0.1f}};
+        const auto is_asked = [&](const char* part) {
+            return std::find(settings.parts.begin(), settings.parts.end(), part) !=
+                   settings.parts.end();
+        };
         const mesh::TriangleMesh colonnade =
             data_gen::colonnade(program.is_tiny() ? 2000 : 100'000);
-        const Scene bunny = inputs.bunny();
-        measure_grid(settings, inputs, colonnade);
-        measure_relight(settings, inputs, bunny);
-        if (no_exact)
-            return;
-        measure_normals(settings, inputs, bunny);
-        measure_points(settings, inputs, colonnade);
+        if (is_asked("grid"))
+            measure_grid(settings, inputs, colonnade);
+        if (is_asked("relight") || is_asked("normals")) {
+            const Scene bunny = inputs.bunny();
+            if (is_asked("relight"))
+                measure_relight(settings, inputs, bunny);
+            if (is_asked("normals"))
+                measure_normals(settings, inputs, bunny);
+        }
+        if (is_asked("points"))
+            measure_points(settings, inputs, colonnade);
     });
 }
