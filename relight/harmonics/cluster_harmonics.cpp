@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include <glm/geometric.hpp>
 
@@ -12,9 +11,10 @@ namespace relumine::relight {
 
 namespace {
 
-/// Groups are cells of this level, 5.6 degrees wide at most, or leaves that are larger. TODO
-const std::uint32_t GroupLevel =
-    std::getenv("GL") ? static_cast<std::uint32_t>(std::atoi(std::getenv("GL"))) : 4;
+/// Groups are cells of this level, 5.6 degrees wide at most, or leaves that are larger. Measured on
+/// points in the colonnade: finer groups take a seventh longer and help no error (0.0128 and 0.0128
+/// under grace); coarser ones add 4 % to 20 % to errors and save next to nothing.
+constexpr std::uint32_t GroupLevel = 4;
 
 struct CellMiddle {
     /// Unit length.
