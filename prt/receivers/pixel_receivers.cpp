@@ -26,6 +26,20 @@ glm::vec2 inside(const glm::vec2& barycentric) {
     return positive / std::max(positive.x + positive.y, 1.0f);
 }
 
+/// Returns the normal of a normal map on the side of the receiver's normal, bent to face the eye
+/// where it turns away: such facets would hide behind others.
+glm::vec3 mapped_towards(const mesh::TriangleMesh& mesh, const MeshPoint& point,
+                         const glm::vec3& normal, bool is_front, const glm::vec3& to_eye) {
+    if (mesh.corner_tangents.empty())
+        return normal;
+    const glm::vec3 mapped = (is_front ? 1.0f : -1.0f) * mapped_normal(mesh, point);
+    constexpr float LeastCosine = 0.02f;
+    const float cosine = glm::dot(mapped, to_eye);
+    if (mapped == normal || cosine >= LeastCosine)
+        return mapped;
+    return glm::normalize(mapped + (LeastCosine - cosine) * to_eye);
+}
+
 /// Returns the normal on the eye's side of the surface.
 glm::vec3 normal_towards(const mesh::TriangleMesh& mesh, const MeshPoint& point,
                          const glm::vec3& to_eye) {
@@ -93,7 +107,8 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
             // The smooth surface is before the facets as seen from its front.
             const bool is_front = normal == shading_normal(mesh, seen.point);
             receivers.positions[receiver] = is_front ? smooth_position(mesh, seen.point) : position;
-            receivers.normals[receiver] = normal;
+            receivers.normals[receiver] =
+                mapped_towards(mesh, seen.point, normal, is_front, to_eye);
             receivers.to_eye[receiver] = to_eye;
             receivers.points[receiver] = seen.point;
             result.layout.samples[receiver] = seen.sample;

@@ -24,6 +24,7 @@ Json json_of(const std::optional<TextureSlot>& slot, const Stored& stored) {
     return {{"image", stored.at(slot->texture)},
             {"srgb", slot->is_srgb},
             {"wrap", {static_cast<int>(slot->wrap[0]), static_cast<int>(slot->wrap[1])}},
+            {"uv_set", slot->uv_set},
             {"uv", {m[0][0], m[0][1], m[1][0], m[1][1], slot->uv_offset.x, slot->uv_offset.y}}};
 }
 
