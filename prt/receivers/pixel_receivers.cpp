@@ -3,6 +3,7 @@
 #include "prt/receivers/pixel_receivers.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
@@ -26,18 +27,37 @@ glm::vec2 inside(const glm::vec2& barycentric) {
     return positive / std::max(positive.x + positive.y, 1.0f);
 }
 
-/// Returns the normal of a normal map on the side of the receiver's normal, bent to face the eye
-/// where it turns away: such facets would hide behind others.
+/// Turns a mapped normal as little as it takes for a mirror to reflect the eye's ray to the outside
+/// of the surface, whose normal is given: a steeper facet would hide behind others.
+///
+/// Based on: Blender's Cycles, ensure_valid_specular_reflection() (the equation).
+glm::vec3 reflecting_outwards(const glm::vec3& mapped, const glm::vec3& normal,
+                              const glm::vec3& to_eye) {
+    const float eye_z = glm::dot(to_eye, normal);
+    const float least = std::min(0.9f * eye_z, 0.025f);
+    const glm::vec3 mirrored = 2.0f * glm::dot(mapped, to_eye) * mapped - to_eye;
+    const glm::vec3 across = mapped - glm::dot(mapped, normal) * normal;
+    const float tilt = glm::length(across);
+    if (!(eye_z > 0.0f) || !(tilt > 0.0f) || glm::dot(normal, mirrored) >= least)
+        return mapped;
+    // In the plane of both normals, a normal (x, z) mirrors the eye to the height 2 z (x eye_x + z
+    // eye_z) - eye_z, which shall be `least`: an equation of second degree for z^2.
+    const glm::vec3 axis = across / tilt;
+    const float eye_x = glm::dot(to_eye, axis);
+    const float a = eye_x * eye_x + eye_z * eye_z, b = 2.0f * (a + eye_z * least);
+    const float c = (least + eye_z) * (least + eye_z);
+    const float root = std::sqrt(std::max(b * b - 4.0f * a * c, 0.0f));
+    const float z2 = std::clamp(0.25f * (eye_x < 0.0f ? b + root : b - root) / a, 0.0f, 1.0f);
+    return std::sqrt(1.0f - z2) * axis + std::sqrt(z2) * normal;
+}
+
+/// Returns the normal of a normal map on the side of the receiver's normal.
 glm::vec3 mapped_towards(const mesh::TriangleMesh& mesh, const MeshPoint& point,
                          const glm::vec3& normal, bool is_front, const glm::vec3& to_eye) {
     if (mesh.corner_tangents.empty())
         return normal;
     const glm::vec3 mapped = (is_front ? 1.0f : -1.0f) * mapped_normal(mesh, point);
-    constexpr float LeastCosine = 0.02f;
-    const float cosine = glm::dot(mapped, to_eye);
-    if (mapped == normal || cosine >= LeastCosine)
-        return mapped;
-    return glm::normalize(mapped + (LeastCosine - cosine) * to_eye);
+    return mapped == normal ? normal : glm::normalize(reflecting_outwards(mapped, normal, to_eye));
 }
 
 /// Returns the normal on the eye's side of the surface.
