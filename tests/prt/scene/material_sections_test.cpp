@@ -64,7 +64,8 @@ TEST(MaterialSections, KeepNormalMaps) {
     EXPECT_EQ(same.materials[0].normal_texture, mesh.materials[0].normal_texture);
     EXPECT_EQ(same.materials[0].normal_scale, 0.5f);
     const std::filesystem::path path = "scene.prt";
-    Scene scene{.mesh = mesh};
+    Scene scene;
+    scene.mesh = mesh;
     scene.mesh.corner_tangents[1][2].w = NAN;
     scenes::expect_refused(path, "finite tangents, got element 1",
                            [&] { MaterialSections.check(SceneCheck(path), scene); });
