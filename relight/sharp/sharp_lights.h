@@ -56,4 +56,11 @@ struct SharpLight {
 find_sharp_lights(const cubemap::CubeMap& environment, const LightBinning& binning,
                   const prt::Transfer& transfer, std::span<const double> powers, float tolerance);
 
+/// Returns at most `most` lights of the same light: those of one small cell become one, in the
+/// middle of their power, where there are more. Returns none where cells of 0.7 degrees are not
+/// enough: shadows of such lights are soft.
+///
+/// Shape:   `lights` as find_sharp_lights() returns them.
+[[nodiscard]] std::vector<SharpLight> merged(std::span<const SharpLight> lights, std::size_t most);
+
 } // namespace relumine::relight
