@@ -22,6 +22,7 @@ SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt
     if (mesh.triangle_materials.empty() || surfaces.size() != mesh.num_vertices() ||
         std::none_of(mesh.materials.begin(), mesh.materials.end(), has_texture))
         return;
+    maps_ = std::make_shared<const mesh::MipMaps>(mesh.textures);
     for (const std::uint32_t material : mesh.triangle_materials)
         is_textured_.push_back(has_texture(mesh.materials[material]));
     for (const prt::Surface& surface : surfaces) {
@@ -32,13 +33,16 @@ SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt
     }
 }
 
-prt::Surface SurfaceColors::surface(const prt::MeshPoint& point) const {
-    const prt::Surface own = prt::surface_at(*mesh_, point.triangle, point.barycentric, form_);
+prt::Surface SurfaceColors::surface(const prt::MeshPoint& point,
+                                    const prt::TextureView* view) const {
+    const prt::Surface own =
+        prt::surface_at(*mesh_, point.triangle, point.barycentric, form_, view);
     return has_highlights_ ? own : prt::without_highlight(own);
 }
 
 glm::vec3 SurfaceColors::radiance(std::span<const glm::vec3> vertex_radiance,
-                                  const prt::MeshPoint& point, const glm::vec3& change) const {
+                                  const prt::MeshPoint& point, const glm::vec3& change,
+                                  const prt::TextureView* view) const {
     const mesh::Triangle& triangle = mesh_->triangles[point.triangle];
     const std::array<float, 3> weights = {1.0f - point.barycentric.x - point.barycentric.y,
                                           point.barycentric.x, point.barycentric.y};
@@ -46,7 +50,7 @@ glm::vec3 SurfaceColors::radiance(std::span<const glm::vec3> vertex_radiance,
     for (std::size_t corner = 0; corner < 3; ++corner)
         light += weights[corner] * vertex_radiance[triangle[corner]] *
                  light_of_radiance_[triangle[corner]];
-    return glm::max(light + change, 0.0f) * albedo(point);
+    return glm::max(light + change, 0.0f) * surface(point, view).albedo;
 }
 
 std::vector<glm::vec3> scaled(std::span<const glm::vec3> harmonics,
@@ -59,7 +63,8 @@ std::vector<glm::vec3> scaled(std::span<const glm::vec3> harmonics,
 }
 
 void add_rest(std::span<const glm::vec3> radiance, std::span<const prt::Surface> surfaces,
-              std::span<const float> eye_cosines, std::span<prt::Lobes<glm::vec3>> lobes) {
+              std::span<const prt::EyeCosines> eye_cosines,
+              std::span<prt::Lobes<glm::vec3>> lobes) {
     constexpr float LeastDiffuse = 0.02f;
     for (std::size_t i = 0; i < lobes.size(); ++i) {
         const glm::vec3 rest = radiance[i] - prt::reflect(surfaces[i], lobes[i], eye_cosines[i]);
