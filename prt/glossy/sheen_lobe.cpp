@@ -9,21 +9,21 @@ namespace relumine::prt {
 
 namespace {
 
-/// Knots of the table for each of its sides: even in roughness and in the square root of the
+/// SheenKnots of the table for each of its sides: even in roughness and in the square root of the
 /// cosine.
-constexpr std::size_t Knots = 32;
+constexpr std::size_t SheenKnots = 32;
 /// Samples of an integral: rings of equal height, and steps of half a turn.
-constexpr int Rings = 40, Spokes = 20;
+constexpr int SheenRings = 40, SheenSpokes = 20;
 
-float integrated(float roughness, float n_v) {
+float integrated_sheen(float roughness, float n_v) {
     const glm::vec3 v(std::sqrt(std::max(1.0f - n_v * n_v, 0.0f)), 0.0f, n_v);
     double sum = 0.0;
     // Dense at the horizon, where smooth fibres send their light.
-    for (int i = 0; i < Rings; ++i)
-        for (int j = 0; j < Spokes; ++j) {
-            const double t = (i + 0.5) / Rings;
+    for (int i = 0; i < SheenRings; ++i)
+        for (int j = 0; j < SheenSpokes; ++j) {
+            const double t = (i + 0.5) / SheenRings;
             const auto z = static_cast<float>(t * t);
-            const double phi = std::numbers::pi * (j + 0.5) / Spokes;
+            const double phi = std::numbers::pi * (j + 0.5) / SheenSpokes;
             const float across = std::sqrt(std::max(1.0f - z * z, 0.0f));
             const glm::vec3 w(across * static_cast<float>(std::cos(phi)),
                               across * static_cast<float>(std::sin(phi)), z);
@@ -31,27 +31,27 @@ float integrated(float roughness, float n_v) {
             const float sin2 = (h.x * h.x + h.y * h.y) / std::max(glm::dot(h, h), 1e-12f);
             sum += 2.0 * t * double{SheenLobe::unlimited(roughness, {z, n_v, sin2})};
         }
-    return static_cast<float>(sum * 2.0 * std::numbers::pi / (Rings * Spokes));
+    return static_cast<float>(sum * 2.0 * std::numbers::pi / (SheenRings * SheenSpokes));
 }
 
-class Table {
+class SheenTable {
 public:
-    Table() {
-        for (std::size_t row = 0; row < Knots; ++row)
-            for (std::size_t column = 0; column < Knots; ++column) {
-                const float place =
-                    std::max(static_cast<float>(column) / static_cast<float>(Knots - 1), 0.02f);
-                knots_[row][column] = integrated(
-                    static_cast<float>(row) / static_cast<float>(Knots - 1), place * place);
+    SheenTable() {
+        for (std::size_t row = 0; row < SheenKnots; ++row)
+            for (std::size_t column = 0; column < SheenKnots; ++column) {
+                const float place = std::max(
+                    static_cast<float>(column) / static_cast<float>(SheenKnots - 1), 0.02f);
+                knots_[row][column] = integrated_sheen(
+                    static_cast<float>(row) / static_cast<float>(SheenKnots - 1), place * place);
             }
     }
 
     [[nodiscard]] float at(float roughness, float n_v) const {
-        const float last = Knots - 1;
+        const float last = SheenKnots - 1;
         const float y = std::clamp(roughness, 0.0f, 1.0f) * last;
         const float x = std::sqrt(std::clamp(n_v, 0.0f, 1.0f)) * last;
-        const auto row = std::min(static_cast<std::size_t>(y), Knots - 2);
-        const auto column = std::min(static_cast<std::size_t>(x), Knots - 2);
+        const auto row = std::min(static_cast<std::size_t>(y), SheenKnots - 2);
+        const auto column = std::min(static_cast<std::size_t>(x), SheenKnots - 2);
         const float t = y - static_cast<float>(row), s = x - static_cast<float>(column);
         const auto of_row = [&](std::size_t r) {
             return (1.0f - s) * knots_[r][column] + s * knots_[r][column + 1];
@@ -60,11 +60,11 @@ public:
     }
 
 private:
-    std::array<std::array<float, Knots>, Knots> knots_{};
+    std::array<std::array<float, SheenKnots>, SheenKnots> knots_{};
 };
 
 float from_table(float roughness, float n_v) {
-    static const Table table;
+    static const SheenTable table;
     return table.at(roughness, n_v);
 }
 
