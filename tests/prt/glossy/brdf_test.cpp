@@ -534,7 +534,7 @@ glm::dvec3 layers_of_white_sky(const Surface& surface, const glm::vec3& eye) {
     sum.coat =
         integral_over_halves(surface, eye, double{ggx_alpha(surface.coat_roughness)}, 150).coat;
     sum.sheen = integral_over_lights(surface, eye, 150).sheen;
-    return reflect(surface, converted<glm::vec3>(sum), eye.y);
+    return reflect(surface, converted<glm::vec3>(converted<float>(sum)), eye.y);
 }
 
 /// A coat and white sheen leave a white surface white, and coloured sheen takes light away.

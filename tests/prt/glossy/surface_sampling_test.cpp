@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/prt/textured_square.h"
+
 namespace relumine::prt {
 namespace {
 
