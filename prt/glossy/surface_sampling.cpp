@@ -88,6 +88,12 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
     return surface;
 }
 
+bool has_highlight(const mesh::Material& material) {
+    if (material.model == mesh::MaterialModel::Phong)
+        return material.specular != glm::vec3(0.0f);
+    return material.model != mesh::MaterialModel::Unlit;
+}
+
 Surface without_highlight(Surface surface) {
     if (facts_of(surface.highlight).has_fresnel)
         surface.albedo =

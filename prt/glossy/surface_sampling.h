@@ -26,6 +26,9 @@ enum class GgxForm { Whole, Published };
 [[nodiscard]] Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
                                  const glm::vec2& barycentric, GgxForm form = GgxForm::Whole);
 
+/// Whether surfaces of a material have a highlight.
+[[nodiscard]] bool has_highlight(const mesh::Material& material);
+
 /// Returns the surface for a scene without a view, where highlights are left out: of one as
 /// published. What a metal reflects, F0 above the 0.04 of other surfaces, counts as diffuse:
 /// otherwise metals were black.
