@@ -51,13 +51,20 @@ glm::vec3 reflecting_outwards(const glm::vec3& mapped, const glm::vec3& normal,
     return std::sqrt(1.0f - z2) * axis + std::sqrt(z2) * normal;
 }
 
+bool has_highlight(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
+    const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
+    return material.model != mesh::MaterialModel::Phong || material.specular != glm::vec3(0.0f);
+}
+
 /// Returns the normal of a normal map on the side of the receiver's normal.
 glm::vec3 mapped_towards(const mesh::TriangleMesh& mesh, const MeshPoint& point,
                          const glm::vec3& normal, bool is_front, const glm::vec3& to_eye) {
     if (mesh.corner_tangents.empty())
         return normal;
     const glm::vec3 mapped = (is_front ? 1.0f : -1.0f) * mapped_normal(mesh, point);
-    return mapped == normal ? normal : glm::normalize(reflecting_outwards(mapped, normal, to_eye));
+    if (mapped == normal || !has_highlight(mesh, point.triangle))
+        return mapped;
+    return glm::normalize(reflecting_outwards(mapped, normal, to_eye));
 }
 
 /// Returns the normal on the eye's side of the surface.

@@ -218,7 +218,7 @@ TEST_F(GltfTest, TextureTransformAndOtherUvSets) {
     model.json["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = 0.5;
     const TriangleMesh mixed = gltf(model.embedded());
     EXPECT_EQ(mixed.uvs, mesh.uvs) << "the colours' set";
-    EXPECT_EQ(mixed.second_uvs[2], glm::vec2(1.0f, 1.0f));
+    EXPECT_EQ(mixed.second_uvs[2], glm::vec2(1.0f, 0.0f));
     EXPECT_EQ(mixed.materials[0].base_color_texture, mesh.materials[0].base_color_texture);
     EXPECT_EQ(mixed.materials[0].base_color_texture->uv_set, 0u);
     EXPECT_EQ(mixed.materials[0].metallic_roughness_texture->uv_set, 1u);
@@ -495,7 +495,7 @@ TEST_F(GltfTest, SaysWhatIsLeftOut) {
             "1 material with 'VENDOR_fur', which is not read: what it describes is left out",
             "1 material with an occlusion map, which is not read: rays find what blocks the light",
             "1 material transparent by alpha; alpha is not read: surfaces are opaque",
-            "1 material with textures of hard pixels (NEAREST), which are not kept: they are "
+            "2 materials with textures of hard pixels (NEAREST), which are not kept: they are "
             "sampled bilinearly",
             "1 material with emission: it is seen, and lights no other surface",
             "1 material with the property 'shiny', which glTF does not have: it is left out",
