@@ -15,20 +15,22 @@ namespace {
 /// Whether two points of a pixel mirror nearly the same: normals that differ by a fraction of what
 /// the lobe blurs.
 bool are_alike(const Mirror& a, const Mirror& b) {
-    constexpr float LargestStep = 0.1f, LeastTurn = 0.02f, ShareOfLobe = 0.5f;
+    constexpr float LargestStep = 0.1f, LeastTurn = 0.02f, LargestTurn = 0.1f, ShareOfLobe = 0.25f;
     if (a.surface.highlight != b.surface.highlight ||
         std::abs(a.surface.roughness_or_exponent - b.surface.roughness_or_exponent) >
             LargestStep * std::max(a.surface.roughness_or_exponent, LargestStep))
         return false;
-    const float turn = std::max(LeastTurn, ShareOfLobe * lobe_alpha(a.surface));
+    const float turn = std::clamp(ShareOfLobe * lobe_alpha(a.surface), LeastTurn, LargestTurn);
     const glm::vec3 difference = a.normal - b.normal;
     return glm::dot(difference, difference) < turn * turn;
 }
 
 } // namespace
 
-void Mirrors::begin_pixel(std::uint32_t x, std::uint32_t y) {
+void Mirrors::begin_pixel(std::uint32_t x, std::uint32_t y,
+                          const std::optional<prt::MeshPoint>& middle) {
     traced_.clear();
+    middle_ = middle;
     // Roberts' R2 sequence: neighbouring pixels get shifts that are far apart.
     const auto i = static_cast<double>(x), j = static_cast<double>(y);
     shift_ = glm::vec2(glm::fract(glm::dvec2(0.75487766624669276 * i + 0.56984029099805327 * j,
@@ -55,35 +57,44 @@ glm::vec3 Mirrors::soft(const Mirror& mirror, const prt::MeshPoint& point,
                         const glm::vec3& diffuse) {
     const glm::vec3 factor =
         light_.albedo.empty() ? glm::vec3(1.0f) : prt::value_at(mesh_, light_.albedo, point);
-    const prt::Lobes<glm::vec3>& own = lobes(mirror, point);
+    const float n_v = glm::dot(mirror.normal, mirror.to_eye);
+    const prt::Lobes<glm::vec3> own = lobes_of(mirror.surface, light(mirror, point), n_v);
     return prt::reflect(mirror.surface,
                         {.diffuse = diffuse,
                          .diffuse_grazing = glm::vec3(0.0f),
                          .specular = factor * own.specular,
                          .specular_grazing = factor * own.specular_grazing},
-                        glm::dot(mirror.normal, mirror.to_eye));
+                        n_v);
 }
 
-const prt::Lobes<glm::vec3>& Mirrors::lobes(const Mirror& mirror, const prt::MeshPoint& point) {
+MirroredLight Mirrors::light(const Mirror& mirror, const prt::MeshPoint& point) {
+    if (traced_.empty() && middle_)
+        if (const std::optional<Mirror> middle = at(*middle_); middle && are_alike(*middle, mirror))
+            trace(*middle, *middle_);
     const auto found = std::find_if(traced_.begin(), traced_.end(), [&](const Traced& traced) {
         return are_alike(traced.mirror, mirror);
     });
     if (found != traced_.end())
-        return found->lobes;
+        return found->light;
+    trace(mirror, point);
+    return traced_.back().light;
+}
+
+void Mirrors::trace(const Mirror& mirror, const prt::MeshPoint& point) {
     const auto surfaces = [this](const prt::Hit& hit, const glm::vec3& direction,
                                  const glm::vec3& sky) {
         return seen(hit, direction, sky);
     };
     // A pixel of several normals sums their rays.
-    const std::uint32_t num_rays = light_.reflections->num_rays();
-    traced_.push_back({mirror, light_.reflections->lobes(
-                                   mirror.surface,
-                                   {.position = prt::smooth_position(mesh_, point),
-                                    .normal = mirror.normal,
-                                    .to_eye = mirror.to_eye,
-                                    .shift = shift_},
-                                   traced_.empty() ? num_rays : (num_rays + 1) / 2, surfaces)});
-    return traced_.back().lobes;
+    const std::uint32_t all = light_.reflections->num_rays();
+    const std::uint32_t num_rays = traced_.empty() ? all : (all + 1) / 2;
+    traced_.push_back(
+        {mirror, light_.reflections->light(mirror.surface,
+                                           {.position = prt::smooth_position(mesh_, point),
+                                            .normal = mirror.normal,
+                                            .to_eye = mirror.to_eye,
+                                            .shift = shift_},
+                                           num_rays, surfaces)});
 }
 
 /// Returns the radiance of a surface that a ray meets. A floor that catches shadows shows what is

@@ -27,7 +27,8 @@ public:
             const FadingFloor& floor, const Backdrop* backdrop)
         : mesh_(mesh), twins_(twins), light_(light), floor_(floor), backdrop_(backdrop) {}
 
-    void begin_pixel(std::uint32_t x, std::uint32_t y);
+    /// `middle` is what the middle of the pixel sees: the first to be shared.
+    void begin_pixel(std::uint32_t x, std::uint32_t y, const std::optional<prt::MeshPoint>& middle);
 
     /// Returns the mirror at a point; none where nothing mirrors, or the point looks away from the
     /// eye.
@@ -41,11 +42,12 @@ public:
 private:
     struct Traced {
         Mirror mirror;
-        prt::Lobes<glm::vec3> lobes;
+        MirroredLight light;
     };
 
-    [[nodiscard]] const prt::Lobes<glm::vec3>& lobes(const Mirror& mirror,
-                                                     const prt::MeshPoint& point);
+    [[nodiscard]] MirroredLight light(const Mirror& mirror, const prt::MeshPoint& point);
+    /// Traces the rays of a mirror, for the samples that are like it.
+    void trace(const Mirror& mirror, const prt::MeshPoint& point);
     [[nodiscard]] glm::vec3 seen(const prt::Hit& hit, const glm::vec3& direction,
                                  const glm::vec3& sky) const;
 
@@ -55,7 +57,8 @@ private:
     const FadingFloor& floor_;
     const Backdrop* backdrop_;
     glm::vec2 shift_{0.0f};
-    /// Of this pixel.
+    // Of this pixel
+    std::optional<prt::MeshPoint> middle_;
     std::vector<Traced> traced_;
 };
 

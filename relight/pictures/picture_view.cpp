@@ -313,7 +313,11 @@ private:
         glm::vec3 sum(0.0f);
         float alpha = 0.0f;
         passed_.assign(samples.size(), glm::vec3(1.0f));
-        mirrors_.begin_pixel(x, y);
+        const Sample& in_middle = middle(samples);
+        mirrors_.begin_pixel(x, y,
+                             in_middle.triangle == NoTriangle
+                                 ? std::nullopt
+                                 : std::optional<prt::MeshPoint>(point(in_middle)));
         for (std::size_t i = 0; i < samples.size(); ++i) {
             const Sample& sample = samples[i];
             const float opacity = view_.opacity(sample);

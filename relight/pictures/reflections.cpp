@@ -83,10 +83,7 @@ struct Weighted {
         weight += w;
         sum += w * radiance;
     }
-    /// Returns the sum for weights whose sum is known.
-    [[nodiscard]] glm::vec3 times(float whole) const {
-        return weight > 0.0f ? sum * (whole / weight) : glm::vec3(0.0f);
-    }
+    [[nodiscard]] glm::vec3 mean() const { return weight > 0.0f ? sum / weight : glm::vec3(0.0f); }
 };
 
 } // namespace
@@ -152,12 +149,11 @@ glm::vec3 Reflections::sky(const glm::vec3& direction, float solid_angle) const 
                            direction);
 }
 
-prt::Lobes<glm::vec3> Reflections::lobes(const prt::Surface& surface, const MirrorPoint& point,
-                                         std::uint32_t num_rays, const Surfaces& surfaces) const {
-    prt::Lobes<glm::vec3> result;
+MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint& point,
+                                 std::uint32_t num_rays, const Surfaces& surfaces) const {
     const float n_v = glm::dot(point.normal, point.to_eye);
     if (surface.highlight == prt::Highlight::None || n_v <= 0.0f)
-        return result;
+        return {};
     const glm::mat3 frame = frame_of(point.normal);
     const glm::vec3 to_eye = point.to_eye * frame;
     const float alpha = lobe_alpha(surface);
@@ -192,15 +188,18 @@ prt::Lobes<glm::vec3> Reflections::lobes(const prt::Surface& surface, const Mirr
             grazing.add(lobe.specular_grazing / densities[lane], radiance);
         }
     }
-    if (!prt::facts_of(surface.highlight).is_roughness) {
-        result.specular = all.sum / static_cast<float>(num_rays);
-        return result;
-    }
-    // What the lobe sends of a white sky is known: the weights' noise goes.
-    const prt::GgxAlbedo albedo = prt::ggx_albedo(surface.roughness_or_exponent, n_v);
-    result.specular = all.times(albedo.all);
-    result.specular_grazing = grazing.times(albedo.grazing);
-    return result;
+    return {.all = all.mean(),
+            .grazing = grazing.mean(),
+            .whole = all.weight / static_cast<float>(num_rays)};
+}
+
+prt::Lobes<glm::vec3> lobes_of(const prt::Surface& surface, const MirroredLight& light, float n_v) {
+    if (n_v <= 0.0f)
+        return {};
+    const bool is_known = prt::facts_of(surface.highlight).is_roughness;
+    const prt::GgxAlbedo albedo = is_known ? prt::ggx_albedo(surface.roughness_or_exponent, n_v)
+                                           : prt::GgxAlbedo{.all = light.whole};
+    return {.specular = albedo.all * light.all, .specular_grazing = albedo.grazing * light.grazing};
 }
 
 } // namespace relumine::relight

@@ -32,6 +32,19 @@ struct MirrorPoint {
     glm::vec2 shift;
 };
 
+/// Mean radiance in a highlight's lobes, which points of nearly the same normal share.
+struct MirroredLight {
+    /// Weighted by S and by Sc (prt/glossy/brdf.h).
+    glm::vec3 all{0.0f}, grazing{0.0f};
+    /// What S sends of a white sky, as the rays found it.
+    float whole = 0.0f;
+};
+
+/// Returns the light through a highlight's lobes: `specular` and `specular_grazing`. Exact for GGX
+/// under a sky of one radiance: what its lobes send of it is known.
+[[nodiscard]] prt::Lobes<glm::vec3> lobes_of(const prt::Surface& surface,
+                                             const MirroredLight& light, float n_v);
+
 class Reflections {
 public:
     /// Returns the radiance of a surface that a ray meets; `sky` is what lies behind it.
@@ -46,15 +59,13 @@ public:
     Reflections(const prt::RayScene& rays, float bias, std::uint32_t num_rays,
                 const cubemap::CubeMap& environment, std::span<const SharpLight> without);
 
-    /// Returns the light through the highlight's lobes: `specular` and `specular_grazing`. Under a
-    /// sky of one radiance it is exact for GGX, otherwise it has the noise of its rays. Highlights
-    /// without roughness (Highlight::None), and points that look away from the eye, have none.
+    /// Returns what the highlight mirrors: black for Highlight::None, and for points that look away
+    /// from the eye.
     ///
     /// Cost:    num_rays rays.
     /// Threads: any.
-    [[nodiscard]] prt::Lobes<glm::vec3> lobes(const prt::Surface& surface, const MirrorPoint& point,
-                                              std::uint32_t num_rays,
-                                              const Surfaces& surfaces) const;
+    [[nodiscard]] MirroredLight light(const prt::Surface& surface, const MirrorPoint& point,
+                                      std::uint32_t num_rays, const Surfaces& surfaces) const;
 
     [[nodiscard]] std::uint32_t num_rays() const { return num_rays_; }
 
