@@ -28,6 +28,7 @@
 #include "relight/pictures/array_file.h"
 #include "relight/pictures/framing.h"
 #include "relumine/precompute_table.h"
+#include "relumine/scene_materials.h"
 #include "relumine/stages.h"
 
 namespace relumine {
@@ -421,7 +422,8 @@ private:
         const prt::GgxForm form = receivers.to_eye.empty() ? prt::GgxForm::Published : options_.ggx;
         if (receivers.points.empty()) {
             receivers.surfaces = prt::vertex_surfaces(mesh, surface_of, form);
-            prepare_textures();
+            keep_materials(scene_.mesh, receivers, surface_of,
+                           options_.surface || options_.floor_surface != prt::Surface());
         } else {
             const mesh::MipMaps maps(mesh.textures);
             const std::optional<prt::TextureView> view = texture_view(maps);
@@ -468,28 +470,6 @@ private:
         }
     }
 
-    /// Pictures take the light of the vertices and the colours of the textures. So the option's
-    /// surfaces lose their textures, and black vertices keep a trace by which their light is known:
-    /// the lowest value that an image of 8 bits has.
-    void prepare_textures() {
-        mesh::TriangleMesh& mesh = scene_.mesh;
-        if (mesh.textures.empty() || mesh.triangle_materials.empty())
-            return;
-        if (options_.surface) {
-            const auto plain = static_cast<std::uint32_t>(mesh.materials.size());
-            mesh.materials.push_back({.name = "option"});
-            for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i) {
-                const prt::Surface own = prt::surface_at(mesh, i, glm::vec2(1.0f / 3.0f));
-                if (options_.surface(mesh, i, own) != own)
-                    mesh.triangle_materials[i] = plain;
-            }
-        }
-        constexpr float LeastAlbedo = 1.0f / 255.0f / 12.92f;
-        for (prt::Surface& surface : scene_.receivers.surfaces)
-            if (surface.highlight != prt::Highlight::None || surface.emission == glm::vec3(0.0f))
-                surface.albedo = glm::max(surface.albedo, LeastAlbedo); // not of unlit ones
-    }
-
     void leave_highlights_out() {
         for (prt::Surface& surface : scene_.receivers.surfaces) {
             report_.num_highlights_left_out += surface.highlight != prt::Highlight::None ? 1 : 0;
@@ -497,8 +477,8 @@ private:
         }
         if (report_.num_highlights_left_out != 0)
             warn(Warning::HighlightsWithoutView,
-                 fmt::format("{} receivers have highlights, which need a view: left out, the scene "
-                             "is diffuse",
+                 fmt::format("{} receivers have highlights, and there is no view: pictures trace "
+                             "them, all else is diffuse",
                              report_.num_highlights_left_out));
     }
 
