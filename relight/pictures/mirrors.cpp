@@ -37,7 +37,7 @@ void Mirrors::begin_pixel(std::uint32_t x, std::uint32_t y,
                                              0.56984029099805327 * i + 0.75487766624669276 * j)));
 }
 
-std::optional<Mirror> Mirrors::at(const prt::MeshPoint& point, const prt::TextureView& view) const {
+std::optional<Mirror> Mirrors::at(const prt::MeshPoint& point) const {
     if (light_.reflections == nullptr || light_.textures == nullptr || !light_.eye ||
         !light_.textures->mirrors(point.triangle))
         return std::nullopt;
@@ -50,7 +50,7 @@ std::optional<Mirror> Mirrors::at(const prt::MeshPoint& point, const prt::Textur
     constexpr float LeastCosine = 0.01f;
     if (const float cosine = glm::dot(normal, to_eye); cosine < LeastCosine)
         normal = glm::normalize(normal + (LeastCosine - cosine) * to_eye);
-    return Mirror{light_.textures->mirror(point, &view), normal, to_eye};
+    return Mirror{light_.textures->mirror(point, &view_), normal, to_eye};
 }
 
 glm::vec3 Mirrors::soft(const Mirror& mirror, const prt::MeshPoint& point,

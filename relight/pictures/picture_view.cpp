@@ -147,7 +147,8 @@ public:
          const Backdrop* backdrop)
         : view_(view), mesh_(view.mesh_), light_(light),
           packets_(packets), rays_{.blockers = &view.rays_, .bias = light.bias},
-          backdrop_(backdrop), mirrors_(mesh_, *view.twins_, light, view.floor_, backdrop),
+          backdrop_(backdrop),
+          mirrors_(mesh_, *view.twins_, light, view.floor_, backdrop, texture_view_),
           lanes_(packets.num_packets()) {
         if (light.textures != nullptr && light.textures->maps() != nullptr)
             texture_view_ = {*light.textures->maps(), view.camera_.eye, view.grid_};
@@ -323,7 +324,7 @@ private:
             if (opacity == 0.0f)
                 continue;
             const bool is_caught = catches(sample);
-            const std::optional<Mirror> mirror = mirrors_.at(point(sample), texture_view_);
+            const std::optional<Mirror> mirror = mirrors_.at(point(sample));
             glm::vec3 radiance = soft(sample, mirror);
             if (traces && !is_dark) {
                 if (!even)

@@ -283,7 +283,7 @@ TEST_F(GltfTest, SpecularCoatAndSheen) {
         EXPECT_THAT(gltf(model.embedded()).warnings, ElementsAre(testing::HasSubstr(message)));
     };
     refused("KHR_materials_ior", {{"ior", 0.5}}, "expected 0, or 1 to 1e6, as \"ior\", got 0.5");
-    refused("KHR_materials_clearcoat", {{"clearcoatFactor", 2}}, "\"clearcoatFactor\", got 2");
+    refused("KHR_materials_clearcoat", {{"clearcoatFactor", 2}}, "\"clearcoatFactor\", got '2'");
     refused("KHR_materials_sheen", {{"sheenColorFactor", {-1, 0, 0}}},
             "expected numbers of 0 to 1 as \"sheenColorFactor\", got -1");
     refused("KHR_materials_specular", {{"specularColorFactor", {-1, 0, 0}}},
