@@ -11,10 +11,12 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "files/extension.h"
 #include "mesh/load.h"
 #include "prt/glossy/lobe_list.h"
+#include "prt/glossy/sheen_lobe.h"
 #include "prt/parts/part_file.h"
 #include "prt/parts/team_checkpoint.h"
 #include "prt/receivers/pixel_receivers.h"
@@ -26,6 +28,7 @@
 #include "relight/pictures/array_file.h"
 #include "relight/pictures/framing.h"
 #include "relumine/precompute_table.h"
+#include "relumine/scene_materials.h"
 #include "relumine/stages.h"
 
 namespace relumine {
@@ -421,14 +424,19 @@ private:
         const prt::GgxForm form = receivers.to_eye.empty() ? prt::GgxForm::Published : options_.ggx;
         if (receivers.points.empty()) {
             receivers.surfaces = prt::vertex_surfaces(mesh, surface_of, form);
-            prepare_textures();
+            keep_materials(scene_.mesh, receivers, surface_of,
+                           options_.surface || options_.floor_surface != prt::Surface());
         } else {
+            const mesh::MipMaps maps(mesh.textures);
+            const std::optional<prt::TextureView> view = texture_view(maps);
             receivers.surfaces.clear();
             for (const prt::MeshPoint& point : receivers.points)
                 receivers.surfaces.push_back(
                     surface_of(mesh, point.triangle,
-                               prt::surface_at(mesh, point.triangle, point.barycentric, form)));
+                               prt::surface_at(mesh, point.triangle, point.barycentric, form,
+                                               view ? &*view : nullptr)));
         }
+        set_coat_normals();
         if (receivers.to_eye.empty())
             leave_highlights_out();
         else if (options_.ggx == prt::GgxForm::Published)
@@ -440,26 +448,28 @@ private:
             receivers.surfaces[i].highlight = prt::Highlight::None;
     }
 
-    /// Pictures take the light of the vertices and the colours of the textures. So the option's
-    /// surfaces lose their textures, and black vertices keep a trace by which their light is known:
-    /// the lowest value that an image of 8 bits has.
-    void prepare_textures() {
-        mesh::TriangleMesh& mesh = scene_.mesh;
-        if (mesh.textures.empty() || mesh.triangle_materials.empty())
+    /// How pixels see the textures.
+    [[nodiscard]] std::optional<prt::TextureView> texture_view(const mesh::MipMaps& maps) const {
+        const auto* pixels = std::get_if<prt::PixelLayout>(&scene_.layout);
+        if (pixels == nullptr)
+            return std::nullopt;
+        return prt::TextureView(
+            maps, pixels->camera.eye,
+            {pixels->camera, pixels->width, pixels->height, pixels->samples_per_axis});
+    }
+
+    /// Coats are as smooth as the mesh, or have normal maps of their own.
+    void set_coat_normals() {
+        prt::Receivers& receivers = scene_.receivers;
+        if (receivers.points.empty() || scene_.mesh.corner_tangents.empty())
             return;
-        if (options_.surface) {
-            const auto plain = static_cast<std::uint32_t>(mesh.materials.size());
-            mesh.materials.push_back({.name = "option"});
-            for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i) {
-                const prt::Surface own = prt::surface_at(mesh, i, glm::vec2(1.0f / 3.0f));
-                if (options_.surface(mesh, i, own) != own)
-                    mesh.triangle_materials[i] = plain;
-            }
+        for (std::size_t i = 0; i < receivers.num_own(); ++i) {
+            if (!prt::has_coat(receivers.surfaces[i]))
+                continue;
+            const glm::vec3 normal = prt::coat_normal(scene_.mesh, receivers.points[i]);
+            receivers.surfaces[i].coat_normal =
+                glm::dot(normal, receivers.normals[i]) < 0.0f ? -normal : normal;
         }
-        constexpr float LeastAlbedo = 1.0f / 255.0f / 12.92f;
-        for (prt::Surface& surface : scene_.receivers.surfaces)
-            if (surface.highlight != prt::Highlight::None || surface.emission == glm::vec3(0.0f))
-                surface.albedo = glm::max(surface.albedo, LeastAlbedo); // not of unlit ones
     }
 
     void leave_highlights_out() {
@@ -469,8 +479,8 @@ private:
         }
         if (report_.num_highlights_left_out != 0)
             warn(Warning::HighlightsWithoutView,
-                 fmt::format("{} receivers have highlights, which need a view: left out, the scene "
-                             "is diffuse",
+                 fmt::format("{} receivers have highlights, and there is no view: pictures trace "
+                             "them, all else is diffuse",
                              report_.num_highlights_left_out));
     }
 

@@ -68,6 +68,21 @@ inline constexpr std::array<std::string_view, 60> SectionNames = {"settings",
                                                                   "lifts",
                                                                   "r_own_positions",
                                                                   "second_uvs",
-                                                                  "corner_tangents"};
+                                                                  "corner_tangents",
+                                                                  "r_f0",
+                                                                  "r_f90",
+                                                                  "r_coat",
+                                                                  "r_coat_rough",
+                                                                  "r_coat_normal",
+                                                                  "r_sheen",
+                                                                  "r_sheen_rough",
+                                                                  "g_coat_b",
+                                                                  "g_coat_c",
+                                                                  "g_coat_s",
+                                                                  "g_coat_v",
+                                                                  "g_sheen_b",
+                                                                  "g_sheen_c",
+                                                                  "g_sheen_s",
+                                                                  "g_sheen_v"};
 
 } // namespace relumine::fuzz
