@@ -93,8 +93,8 @@ private:
 struct BlockWork {
     /// Its name in a checkpoint
     std::string part = {};
-    /// Of this process, and of the one with the most
-    std::size_t num_blocks = 0, most_blocks = 0;
+    /// Of this process. Tiles of VisibleCounts have them together in a checkpoint.
+    std::size_t num_blocks = 0;
     /// Between two looks at the checkpoint
     std::size_t blocks_per_step = 1;
     /// Does a block. Threads: any number at a time.

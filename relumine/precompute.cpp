@@ -498,11 +498,10 @@ private:
             if (std::exchange(last, message) != message)
                 warn(Warning::Checkpoint, message);
         };
-        prt::Fingerprint fingerprint = prt::fingerprint(
-            scene_, plan_.bounces ? std::optional(plan_.bounces->tolerance) : std::nullopt);
-        fingerprint.emplace_back("number of processes", fmt::format("{}", work_.team.part().count));
         checkpoint_ = std::make_unique<prt::CheckpointFile>(
-            options_.output, std::move(fingerprint),
+            options_.output,
+            prt::fingerprint(scene_, plan_.bounces ? std::optional(plan_.bounces->tolerance)
+                                                   : std::nullopt),
             prt::CheckpointFile::Options{
                 .resume = options_.resume,
                 .interval = std::chrono::duration<double>(

@@ -131,8 +131,10 @@ survives() { # NAME "DELAYS" OPTIONS...: of precompute
     shift 2
     "$relumine" precompute "$@" -o longer.prt -q
     rm -f killed.prt
+    local ranks=0
     for delay in $delays; do
-        start 3 precompute "$@" --checkpoint-seconds 0.05 -o killed.prt --threads 1 --resume -q >kill.log 2>&1 &
+        ranks=$((ranks % 3 + 1)) # another number goes on
+        start "$ranks" precompute "$@" --checkpoint-seconds 0.05 -o killed.prt --threads 1 --resume -q >kill.log 2>&1 &
         run=$!
         sleep "$delay"
         rank=$(ranks_of "$run" | sort -R | head -n 1)

@@ -190,7 +190,9 @@ TEST(Parts, HighlightsAreThoseOfAllReceivers) {
 }
 
 /// Gives each run what an earlier one had saved up to some save: a kill between any two saves.
-TEST(Parts, ProcessesGoOnFromTheCheckpointOfAll) {
+/// Other numbers of processes go on, one without a team, too, and each from what the one before
+/// left.
+TEST(Parts, AnyNumberOfProcessesGoesOnFromTheCheckpointOfAll) {
     const mesh::TriangleMesh mesh = several_tiles();
     const RayScene rays(mesh);
     Receivers receivers = vertex_receivers(mesh);
@@ -201,12 +203,11 @@ TEST(Parts, ProcessesGoOnFromTheCheckpointOfAll) {
     Transfer whole = precompute(receivers, rays, options);
     whole.glossy = precompute_glossy(receivers, rays, whole, glossy);
 
-    constexpr std::uint32_t Count = 3;
-    const auto shared = [&](Checkpoint& store, std::uint64_t* num_rays) {
-        std::vector<PartLight> parts(Count);
-        ThreadTeam::run(Count, [&](Team& team, std::uint32_t index) {
-            TeamCheckpoint checkpoint(team, index == 0 ? &store : nullptr);
-            const Work work{.team = team, .checkpoint = &checkpoint};
+    const auto shared = [&](std::uint32_t count, Checkpoint& store, std::uint64_t* num_rays) {
+        std::vector<PartLight> parts(count);
+        ThreadTeam::run(count, [&](Team& team, std::uint32_t index) {
+            TeamCheckpoint of_team(team, index == 0 ? &store : nullptr);
+            const Work work{.team = team, .checkpoint = count == 1 ? &store : &of_team};
             PrecomputeStatistics statistics;
             Transfer transfer = precompute(receivers, rays, options, work, &statistics);
             if (index == 0)
@@ -221,14 +222,21 @@ TEST(Parts, ProcessesGoOnFromTheCheckpointOfAll) {
     };
     CheckpointHistory history;
     std::uint64_t num_rays = 0, num_rays_again = 0;
-    shared(history, &num_rays);
+    shared(3, history, &num_rays);
     ASSERT_GT(history.after.size(), 3u);
-    for (std::size_t i = 0; i < history.after.size(); i += 1 + i / 4) {
-        MemoryCheckpoint store;
-        store.parts = history.after[i];
-        shared(store, &num_rays_again);
-        EXPECT_EQ(num_rays_again, num_rays);
-    }
+    for (std::size_t i = 0; i < history.after.size(); i += 1 + i / 4)
+        for (const std::uint32_t count : {3u, 1u, 2u, 8u}) {
+            CheckpointHistory next;
+            next.parts = history.after[i];
+            shared(count, next, &num_rays_again);
+            EXPECT_EQ(num_rays_again, num_rays);
+            if (next.after.empty())
+                continue;
+            MemoryCheckpoint last;
+            last.parts = next.after[next.after.size() / 2];
+            shared(5 - count % 4, last, &num_rays_again);
+            EXPECT_EQ(num_rays_again, num_rays);
+        }
 }
 
 TEST(Parts, SingleTexelsCountByTheirCentre) {
