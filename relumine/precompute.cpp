@@ -586,7 +586,7 @@ void precompute_part(const PartOptions& options, const PrecomputeWork& work,
 
 std::uint64_t join(std::span<const std::filesystem::path> parts,
                    const std::filesystem::path& output) {
-    return prt::save_scene(output, prt::join_parts(parts));
+    return prt::join_parts(parts, output);
 }
 
 prt::SurfaceOverride everywhere(const prt::Surface& surface) {

@@ -352,11 +352,11 @@ TEST_F(PartFiles, JoinInAnyOrderToTheSameFile) {
     std::vector<fs::path> four;
     for (const std::uint32_t i : {2u, 0u, 3u, 1u})
         four.push_back(part(i, 4, "part." + std::to_string(i)));
-    save_scene(folder_ / "one.prt", join_parts(one));
-    save_scene(folder_ / "four.prt", join_parts(four));
+    join_parts(one, folder_ / "one.prt");
+    join_parts(four, folder_ / "four.prt");
     EXPECT_EQ(files::read(folder_ / "one.prt"), files::read(folder_ / "four.prt"));
     std::reverse(four.begin(), four.end());
-    save_scene(folder_ / "reverse.prt", join_parts(four));
+    join_parts(four, folder_ / "reverse.prt");
     EXPECT_EQ(files::read(folder_ / "one.prt"), files::read(folder_ / "reverse.prt"));
     const Scene scene = load_scene(folder_ / "one.prt");
     EXPECT_EQ(scene.transfer.num_receivers(), scene_.mesh.num_vertices());
@@ -365,20 +365,21 @@ TEST_F(PartFiles, JoinInAnyOrderToTheSameFile) {
 
 TEST_F(PartFiles, NameWhatIsWrong) {
     const fs::path first = part(0, 2, "first"), second = part(1, 2, "second");
-    expect_refusal([&] { (void)join_parts(std::vector{first}); }, "got none that is part 2 of 2");
+    expect_refusal([&] { (void)join_parts(std::vector{first}, folder_ / "joined.prt"); },
+                   "got none that is part 2 of 2");
     expect_refusal(
         [&] {
-            (void)join_parts(std::vector{first, second, first});
+            (void)join_parts(std::vector{first, second, first}, folder_ / "joined.prt");
         },
         "expected every part once, got part 1 of 2 again");
     expect_refusal(
         [&] {
-            (void)join_parts(std::vector{first, part(2, 3, "third")});
+            (void)join_parts(std::vector{first, part(2, 3, "third")}, folder_ / "joined.prt");
         },
         "third: expected one of 2 parts");
     expect_refusal(
         [&] {
-            (void)join_parts(std::vector{first, folder_ / "scene.plan"});
+            (void)join_parts(std::vector{first, folder_ / "scene.plan"}, folder_ / "joined.prt");
         },
         "scene.plan: expected a part, got a plan");
     expect_refusal([&] { (void)load_scene(folder_ / "scene.plan"); },
@@ -391,7 +392,7 @@ TEST_F(PartFiles, NameWhatIsWrong) {
     const fs::path foreign = part(1, 2, "foreign", "other.plan");
     expect_refusal(
         [&] {
-            (void)join_parts(std::vector{first, foreign});
+            (void)join_parts(std::vector{first, foreign}, folder_ / "joined.prt");
         },
         "foreign: expected a part of the same plan as");
 
@@ -399,7 +400,12 @@ TEST_F(PartFiles, NameWhatIsWrong) {
     bytes[bytes.size() / 2] ^= std::byte{1};
     files::save_text(second,
                      std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-    expect_refusal([&] { (void)join_parts(std::vector{first, second}); }, "second: expected");
+    expect_refusal(
+        [&] {
+            (void)join_parts(std::vector{first, second}, folder_ / "joined.prt");
+        },
+        "second: expected");
+    EXPECT_FALSE(fs::exists(folder_ / "joined.prt"));
 }
 
 } // namespace
