@@ -273,9 +273,12 @@ std::span<const glm::vec3> Relighter::radiance() const {
     return light_->radiance();
 }
 std::vector<glm::vec3> Relighter::harmonics() const {
-    std::vector<glm::vec3> result = light_->harmonics();
+    std::vector<glm::vec3> result = light_->harmonics(true);
     bind_to(transfer_, diffuse_radiance(), result);
     return result;
+}
+std::vector<glm::vec3> Relighter::summed_harmonics(bool with_sharp_lights) const {
+    return light_->harmonics(with_sharp_lights);
 }
 std::uint32_t Relighter::harmonic_order() const {
     return light_->harmonic_order();
@@ -342,12 +345,12 @@ UpdateReport update_region(Relighter& relighter, const TexelRectangle& rectangle
     });
 }
 
-std::span<const SharpLight> picture_lights(const Relighter& relighter) {
+std::vector<SharpLight> picture_lights(const Relighter& relighter) {
     constexpr std::size_t Most = 64;
-    const bool is_traced =
-        relighter.shadow_rays().blockers != nullptr &&
-        (relighter.environment().resolution == 0 || relighter.sharp_lights().size() <= Most);
-    return is_traced ? relighter.sharp_lights() : std::span<const SharpLight>();
+    const std::span<const SharpLight> lights = relighter.sharp_lights();
+    if (relighter.shadow_rays().blockers == nullptr)
+        return {};
+    return merged(lights, relighter.environment().resolution == 0 ? lights.size() : Most);
 }
 
 EnvironmentBinner binner_of(const Relighter& relighter) {

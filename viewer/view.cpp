@@ -50,6 +50,7 @@ Moment moment_of(const ViewState& state, const PixelRectangle& size) {
     const FloorLook look = floor_look(scene, lighting, state.picture);
     moment.open_floor = open_floor(scene, lighting, look, camera.eye());
     moment.lobes = std::move(lighting.lobes);
+    moment.harmonics = std::move(lighting.harmonics);
     moment.lights = std::move(lighting.lights);
     moment.radiance = std::move(lighting.soft);
     if (moment.lights.empty())
@@ -211,6 +212,14 @@ private:
     int idle_frames_ = 0;
 };
 
+void panels(ViewState& state, const PanelLayout& layout) {
+    scene_panel(state, layout);
+    environment_panel(state, layout);
+    layer_panel(state, layout);
+    status_panel(state, layout);
+    drop_dialogue(state);
+}
+
 } // namespace
 
 ViewReport view(ViewState& state, const ViewOptions& options) {
@@ -241,11 +250,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
 
         // The panels come first, so that this frame shows what the pointer does in it.
         const PanelLayout layout = window.layout();
-        scene_panel(state, layout);
-        environment_panel(state, layout);
-        layer_panel(state, layout);
-        status_panel(state, layout);
-        drop_dialogue(state);
+        panels(state, layout);
         idleness.count();
         const bool is_kept =
             !scripted.screenshot.empty() || (is_last && !options.screenshot.empty());

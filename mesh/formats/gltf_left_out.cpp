@@ -139,8 +139,6 @@ void LeftOut::material(const Json& description) {
         count("cut out by alpha (leaves, fences); alpha is not read", "what is cut out is opaque");
     else if (mode != "OPAQUE")
         count("transparent by alpha; alpha is not read", "surfaces are opaque");
-    if (description.find("normalTexture"))
-        count("with a normal map, which is not read", "surfaces are as smooth as the mesh");
     const std::vector<double> emission = numbers(description, "emissiveFactor", {0.0, 0.0, 0.0});
     if (*std::max_element(emission.begin(), emission.end()) > 0.0 &&
         !child(description, "extensions").find("KHR_materials_unlit"))
@@ -162,7 +160,8 @@ void LeftOut::material(const Json& description) {
                                       {&pbr, "metallicRoughnessTexture"},
                                       {&old, "diffuseTexture"},
                                       {&old, "specularGlossinessTexture"},
-                                      {&description, "emissiveTexture"}})
+                                      {&description, "emissiveTexture"},
+                                      {&description, "normalTexture"}})
         texture(child(*parent, key));
 }
 

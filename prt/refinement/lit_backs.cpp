@@ -26,22 +26,23 @@ std::vector<std::uint32_t> triangles_without_twin(const mesh::TriangleMesh& mesh
     return result;
 }
 
-} // namespace
-
-mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers& blockers,
-                                  float bias, const Work& work) {
-    const std::vector<std::uint32_t> single = triangles_without_twin(mesh);
-    const float large = large_side(mesh);
+/// The backs of single triangles, seen at several points each.
+struct Backs {
     Receivers receivers;
     /// Those of each triangle end here.
     std::vector<std::size_t> ends;
-    for (const std::uint32_t triangle : single) {
+};
+
+Backs backs_of(const mesh::TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
+    const float large = large_side(mesh);
+    Backs backs;
+    for (const std::uint32_t triangle : triangles) {
         const glm::vec3 face = face_normal(mesh, triangle);
         const auto add = [&](const glm::vec2& at) {
             const bool is_turned =
                 glm::dot(face, value_at(mesh, mesh.normals, {triangle, at})) < 0.0f;
-            receivers.positions.push_back(value_at(mesh, mesh.positions, {triangle, at}));
-            receivers.normals.push_back(is_turned ? face : -face);
+            backs.receivers.positions.push_back(value_at(mesh, mesh.positions, {triangle, at}));
+            backs.receivers.normals.push_back(is_turned ? face : -face);
         };
         for (const glm::vec2& near_corner :
              {glm::vec2(0.1f, 0.1f), glm::vec2(0.8f, 0.1f), glm::vec2(0.1f, 0.8f)})
@@ -49,8 +50,17 @@ mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers
         for (const glm::vec2& at :
              points_inside(longest_side(mesh, mesh.triangles[triangle]) / large))
             add(at);
-        ends.push_back(receivers.size());
+        backs.ends.push_back(backs.receivers.size());
     }
+    return backs;
+}
+
+} // namespace
+
+mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers& blockers,
+                                  float bias, const Work& work) {
+    const std::vector<std::uint32_t> single = triangles_without_twin(mesh);
+    const auto [receivers, ends] = backs_of(mesh, single);
     const auto bits = CoarseDirections().trace(receivers, blockers, bias, Progress(work));
     mesh::TriangleMesh result = mesh;
     const auto repeat = [](auto& values, std::uint32_t index) {
@@ -72,12 +82,9 @@ mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers
         for (std::uint32_t& corner : corners) {
             if (back_of[corner] == None) {
                 back_of[corner] = static_cast<std::uint32_t>(result.num_vertices());
-                repeat(result.positions, corner);
-                repeat(result.normals, corner);
+                mesh::for_each_vertex_array(result,
+                                            [&](auto& values) { repeat(values, corner); });
                 result.normals.back() = -result.normals.back();
-                repeat(result.colors, corner);
-                repeat(result.uvs, corner);
-                repeat(result.lifts, corner);
             }
             corner = back_of[corner];
         }
@@ -86,6 +93,13 @@ mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers
         repeat(result.corner_uvs, triangle);
         if (!result.corner_uvs.empty())
             std::swap(result.corner_uvs.back()[1], result.corner_uvs.back()[2]);
+        repeat(result.corner_tangents, triangle);
+        if (!result.corner_tangents.empty()) {
+            // The mapped normal is that of the front, reversed.
+            for (glm::vec4& tangent : result.corner_tangents.back())
+                tangent = -tangent;
+            std::swap(result.corner_tangents.back()[1], result.corner_tangents.back()[2]);
+        }
         repeat(result.triangle_materials, triangle);
         repeat(result.triangle_groups, triangle);
     }

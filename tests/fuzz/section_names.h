@@ -66,6 +66,8 @@ inline constexpr std::array<std::string_view, 60> SectionNames = {"settings",
                                                                   "r_metallic",
                                                                   "r_emission",
                                                                   "lifts",
-                                                                  "r_own_positions"};
+                                                                  "r_own_positions",
+                                                                  "second_uvs",
+                                                                  "corner_tangents"};
 
 } // namespace relumine::fuzz
