@@ -12,7 +12,6 @@
 
 #include "files/packed_parts.h"
 #include "files/parallel.h"
-#include "prt/transfer/visible_counts.h"
 
 namespace relumine::prt {
 
@@ -97,19 +96,19 @@ void Steps::run(const std::function<void()>& work) {
 
 namespace {
 
-constexpr std::size_t TileBlocks = VisibleCounts::TileBlocks;
-
 /// Writes some blocks, in rising order, tile by tile.
 std::vector<std::byte> record_of(const BlockWork& work, std::span<const std::size_t> blocks) {
-    const std::size_t num_tiles = (work.num_blocks + TileBlocks - 1) / TileBlocks;
+    const std::size_t num_tiles =
+        (work.num_blocks + work.blocks_per_tile - 1) / work.blocks_per_tile;
     return files::pack(1 + num_tiles, [&](std::size_t part) {
         files::ByteWriter writer;
         if (part == 0)
             return writer.take();
         const std::size_t tile = part - 1;
-        for (auto block = std::lower_bound(blocks.begin(), blocks.end(), tile * TileBlocks);
-             block != blocks.end() && *block < part * TileBlocks; ++block) {
-            writer.add<std::uint64_t>(*block % TileBlocks);
+        for (auto block =
+                 std::lower_bound(blocks.begin(), blocks.end(), tile * work.blocks_per_tile);
+             block != blocks.end() && *block < part * work.blocks_per_tile; ++block) {
+            writer.add<std::uint64_t>(*block % work.blocks_per_tile);
             work.write(*block, writer);
         }
         return writer.take();
@@ -123,8 +122,9 @@ void read_blocks(const BlockWork& work, std::span<const std::byte> record,
     files::unpack(record, [&](std::span<const std::byte> bytes) {
         for (files::ByteReader reader(bytes); !reader.at_end();) {
             const auto in_tile = reader.next<std::uint64_t>();
-            const std::size_t block = (part - 1) * TileBlocks + in_tile;
-            if (part == 0 || in_tile >= TileBlocks || block >= work.num_blocks || is_done[block])
+            const std::size_t block = (part - 1) * work.blocks_per_tile + in_tile;
+            if (part == 0 || in_tile >= work.blocks_per_tile || block >= work.num_blocks ||
+                is_done[block])
                 throw std::runtime_error("checkpoint: expected each block once");
             is_done[block] = true;
             work.read(block, reader);

@@ -194,6 +194,7 @@ void GlossyPrecompute::do_all_blocks() {
     std::atomic<std::uint64_t> num_entries = 0;
     BlockWork blocks{.part = "highlights",
                      .num_blocks = blocks_.size(),
+                     .blocks_per_tile = VisibleCounts::TileBlocks,
                      .blocks_per_step = BlocksPerThreadAndStep * files::num_threads()};
     blocks.work = [&](std::size_t block) {
         blocks_[block] = refine(block);
