@@ -60,6 +60,7 @@ struct Shared {
     /// True once the main thread has said how the work ended after a signal.
     bool is_said = false;
     std::string cancelled_message = "cancelled; nothing was written";
+    std::function<std::string()> waiting_message = {};
 };
 Shared& shared() {
     static auto& all = *new Shared;
@@ -76,6 +77,15 @@ Shared& shared() {
     text += fmt::format("relumine: {}\n", shared().cancelled_message);
     static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
     ::_exit(1);
+}
+
+/// Says once that this process waits for others.
+void say_waiting() {
+    const std::scoped_lock lock(shared().mutex);
+    const auto message = std::exchange(shared().waiting_message, {});
+    const std::string text = message && !shared().is_said ? message() : "";
+    if (!text.empty())
+        fmt::print(stderr, "relumine-mpi: {}\n", text);
 }
 
 } // namespace
@@ -99,10 +109,15 @@ Session::Session() {
         // `timeout` and batch systems signal a process and then its whole group: the same wish
         // twice, not impatience.
         constexpr double SameWish = 1.0; // seconds
+        // mpirun kills a second after its first signal.
+        constexpr double WaitingSeconds = 0.3;
         constexpr timespec Tick = {.tv_sec = 0, .tv_nsec = 10'000'000};
         bool is_impatient = false;
-        while (!is_impatient && (shared().num_patient > 0 || now() - first < MostPatience))
+        while (!is_impatient && (shared().num_patient > 0 || now() - first < MostPatience)) {
+            if (now() - first >= WaitingSeconds)
+                say_waiting();
             is_impatient = sigtimedwait(&signals, nullptr, &Tick) > 0 && now() - first >= SameWish;
+        }
         end_now();
     };
     try {
@@ -116,6 +131,11 @@ Session::Session() {
 void Session::set_cancelled_message(const std::string& message) {
     const std::scoped_lock lock(shared().mutex);
     shared().cancelled_message = message;
+}
+
+void Session::set_waiting_message(std::function<std::string()> message) {
+    const std::scoped_lock lock(shared().mutex);
+    shared().waiting_message = std::move(message);
 }
 
 Patience::Patience() {

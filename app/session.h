@@ -46,6 +46,9 @@ public:
     void poll() const;
     /// What is said when the work is ended from outside, at first "cancelled; nothing was written".
     static void set_cancelled_message(const std::string& message);
+    /// For processes that share work: what one says that was told to end and waits for the others,
+    /// since one of them may be gone. Its starter kills it soon. An empty message is not said.
+    static void set_waiting_message(std::function<std::string()> message);
 
     /// Shows a bar with the time left on a terminal, a line every tenth elsewhere, nothing in the
     /// first second or with -q. To be called with fractions in [0, 1].

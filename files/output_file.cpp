@@ -219,12 +219,15 @@ void append_text(const std::filesystem::path& path, std::string_view text) {
     write_at(path, file.get(), size, std::as_bytes(std::span(text)), text.size(), size);
 }
 
-std::vector<std::byte> read(const std::filesystem::path& path) {
-    const auto [file, num_bytes] = open_for_reading(path);
-    std::vector<std::byte> bytes(num_bytes);
+namespace {
+
+std::vector<std::byte> read_from(const std::filesystem::path& path, const Descriptor& file,
+                                 std::uint64_t offset, std::size_t size) {
+    std::vector<std::byte> bytes(size);
     std::size_t done = 0;
-    while (done < num_bytes) {
-        const ssize_t got = ::read(file.get(), bytes.data() + done, num_bytes - done);
+    while (done < size) {
+        const ssize_t got = ::pread(file.get(), bytes.data() + done, size - done,
+                                    static_cast<off_t>(offset + done));
         if (got < 0 && errno == EINTR)
             continue;
         if (got < 0)
@@ -235,6 +238,19 @@ std::vector<std::byte> read(const std::filesystem::path& path) {
     }
     bytes.resize(done);
     return bytes;
+}
+
+} // namespace
+
+std::vector<std::byte> read(const std::filesystem::path& path) {
+    const auto [file, num_bytes] = open_for_reading(path);
+    return read_from(path, file, 0, num_bytes);
+}
+
+std::vector<std::byte> read(const std::filesystem::path& path, std::uint64_t offset,
+                            std::size_t size) {
+    const auto [file, num_bytes] = open_for_reading(path);
+    return read_from(path, file, offset, size);
 }
 
 std::size_t size(const std::filesystem::path& path) {

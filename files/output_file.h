@@ -86,6 +86,11 @@ void append_text(const std::filesystem::path& path, std::string_view text);
 ///          unreadable, and for a folder.
 [[nodiscard]] std::vector<std::byte> read(const std::filesystem::path& path);
 
+/// Returns `size` bytes of a file from `offset` on; fewer where it ends before.
+/// Throws:  as read().
+[[nodiscard]] std::vector<std::byte> read(const std::filesystem::path& path, std::uint64_t offset,
+                                          std::size_t size);
+
 /// Returns the size of a file in bytes.
 /// Throws:  as read().
 [[nodiscard]] std::size_t size(const std::filesystem::path& path);

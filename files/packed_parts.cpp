@@ -20,8 +20,12 @@ std::vector<std::byte> pack(std::size_t num_parts,
     std::vector<std::vector<std::byte>> parts(num_parts);
     files::parallel_for(std::size_t{0}, num_parts,
                         [&](std::size_t i) { parts[i] = compressed(part(i), CompressionLevel); });
-    std::size_t num_bytes = sizeof(std::uint64_t) * (1 + num_parts);
-    for (const std::vector<std::byte>& bytes : parts)
+    return joined_parts(std::vector<std::span<const std::byte>>(parts.begin(), parts.end()));
+}
+
+std::vector<std::byte> joined_parts(std::span<const std::span<const std::byte>> parts) {
+    std::size_t num_bytes = sizeof(std::uint64_t) * (1 + parts.size());
+    for (const std::span<const std::byte> bytes : parts)
         num_bytes += bytes.size();
     std::vector<std::byte> result(num_bytes);
     std::byte* at = result.data();
@@ -30,20 +34,18 @@ std::vector<std::byte> pack(std::size_t num_parts,
             std::memcpy(at, bytes, size);
         at += size;
     };
-    const std::uint64_t count = num_parts;
+    const std::uint64_t count = parts.size();
     put(&count, sizeof count);
-    for (std::vector<std::byte>& bytes : parts) {
+    for (const std::span<const std::byte> bytes : parts) {
         const std::uint64_t size = bytes.size();
         put(&size, sizeof size);
         put(bytes.data(), bytes.size());
-        bytes = {};
     }
     return result;
 }
 
-void unpack(std::span<const std::byte> packed,
-            const std::function<void(std::span<const std::byte>)>& on_part) {
-    const auto take = [&packed](std::size_t size) {
+std::vector<std::span<const std::byte>> packed_parts(std::span<const std::byte> packed) {
+    const auto take = [&packed](std::uint64_t size) {
         if (size > packed.size())
             throw std::runtime_error("expected more bytes");
         const std::span<const std::byte> taken = packed.first(size);
@@ -55,10 +57,18 @@ void unpack(std::span<const std::byte> packed,
         std::memcpy(&value, take(sizeof value).data(), sizeof value);
         return value;
     };
-    const std::uint64_t num_parts = number();
+    std::vector<std::span<const std::byte>> parts;
+    for (std::uint64_t count = number(); count > 0; --count)
+        parts.push_back(take(number()));
+    if (!packed.empty())
+        throw std::runtime_error("expected fewer bytes");
+    return parts;
+}
+
+void unpack(std::span<const std::byte> packed,
+            const std::function<void(std::span<const std::byte>)>& on_part) {
     std::vector<std::byte> part;
-    for (std::uint64_t i = 0; i < num_parts; ++i) {
-        const std::span<const std::byte> stored = take(number());
+    for (const std::span<const std::byte> stored : packed_parts(packed)) {
         const std::uint64_t size = ZSTD_getFrameContentSize(stored.data(), stored.size());
         if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN ||
             size / MaxCompressionRatio > stored.size())
@@ -68,8 +78,6 @@ void unpack(std::span<const std::byte> packed,
             throw std::runtime_error("expected zstd data");
         on_part(part);
     }
-    if (!packed.empty())
-        throw std::runtime_error("expected fewer bytes");
 }
 
 } // namespace relumine::files

@@ -24,6 +24,15 @@ pack(std::size_t num_parts, const std::function<std::vector<std::byte>(std::size
 void unpack(std::span<const std::byte> packed,
             const std::function<void(std::span<const std::byte>)>& on_part);
 
+/// Returns the parts of what pack() made, as they lie there.
+/// Throws:  as unpack(), where the bytes are no list of parts.
+[[nodiscard]] std::vector<std::span<const std::byte>>
+packed_parts(std::span<const std::byte> packed);
+
+/// The inverse of packed_parts().
+[[nodiscard]] std::vector<std::byte>
+joined_parts(std::span<const std::span<const std::byte>> parts);
+
 /// Writes numbers one after the other, as they lie in memory.
 class ByteWriter {
 public:

@@ -12,7 +12,9 @@ namespace relumine::prt {
 /// A store of checkpoints.
 ///
 /// Work has named parts. Each part has a growing list of records (the finished results) and one
-/// state (what the remaining work needs). Every save() replaces the state.
+/// state (what the remaining work needs). Every save() replaces the state. Both are bytes of
+/// files::pack(): a part that is the same in all processes, then one for each tile of receivers. So
+/// they can be dealt out to any number of processes.
 ///
 /// Threads: called from one thread at a time.
 class Checkpoint {

@@ -94,35 +94,69 @@ void Steps::run(const std::function<void()>& work) {
         save_if_worthwhile();
 }
 
+namespace {
+
+/// Writes some blocks, in rising order, tile by tile.
+std::vector<std::byte> record_of(const BlockWork& work, std::span<const std::size_t> blocks) {
+    const std::size_t num_tiles =
+        (work.num_blocks + work.blocks_per_tile - 1) / work.blocks_per_tile;
+    return files::pack(1 + num_tiles, [&](std::size_t part) {
+        files::ByteWriter writer;
+        if (part == 0)
+            return writer.take();
+        const std::size_t tile = part - 1;
+        for (auto block =
+                 std::lower_bound(blocks.begin(), blocks.end(), tile * work.blocks_per_tile);
+             block != blocks.end() && *block < part * work.blocks_per_tile; ++block) {
+            writer.add<std::uint64_t>(*block % work.blocks_per_tile);
+            work.write(*block, writer);
+        }
+        return writer.take();
+    });
+}
+
+/// Reads the blocks of a record.
+void read_blocks(const BlockWork& work, std::span<const std::byte> record,
+                 std::vector<bool>& is_done) {
+    std::size_t part = 0;
+    files::unpack(record, [&](std::span<const std::byte> bytes) {
+        for (files::ByteReader reader(bytes); !reader.at_end();) {
+            const auto in_tile = reader.next<std::uint64_t>();
+            const std::size_t block = (part - 1) * work.blocks_per_tile + in_tile;
+            if (part == 0 || in_tile >= work.blocks_per_tile || block >= work.num_blocks ||
+                is_done[block])
+                throw std::runtime_error("checkpoint: expected each block once");
+            is_done[block] = true;
+            work.read(block, reader);
+        }
+        ++part;
+    });
+}
+
+} // namespace
+
 void do_blocks(const Work& work, const BlockWork& blocks, Progress& progress) {
+    // In rising order; the numbers below count in it. They are the same in all processes, of which
+    // some have less to do.
+    std::vector<std::size_t> to_do;
     std::size_t num_done = 0, num_saved = 0;
-    // Blocks of this process below a number of blocks of all.
-    const auto own = [&](std::size_t block) {
-        return std::min(block, blocks.num_blocks);
+    const auto own = [&](std::size_t number) {
+        return std::min(number, to_do.size());
     };
     const auto content = [&] {
-        return Steps::Content{.record = files::pack(1, [&](std::size_t) {
-                                  files::ByteWriter writer;
-                                  for (std::size_t block = own(num_saved); block < own(num_done);
-                                       ++block)
-                                      blocks.write(block, writer);
-                                  return writer.take();
-                              })};
+        return Steps::Content{
+            .record = record_of(
+                blocks, std::span(to_do).subspan(own(num_saved), own(num_done) - own(num_saved)))};
     };
     Steps steps(work, blocks.part, content, [&] { num_saved = num_done; });
-    std::size_t num_loaded = 0;
+    std::vector<bool> is_done(blocks.num_blocks);
     for (const std::vector<std::byte>& record : steps.load(false).records)
-        files::unpack(record, [&](std::span<const std::byte> bytes) {
-            for (files::ByteReader reader(bytes); !reader.at_end(); ++num_loaded) {
-                if (num_loaded == blocks.num_blocks)
-                    throw std::runtime_error("checkpoint: expected fewer blocks");
-                blocks.read(num_loaded, reader);
-            }
-        });
-    num_done = num_saved = static_cast<std::size_t>(largest_of_all(work.team, num_loaded));
-    if (num_loaded != own(num_done))
-        throw std::runtime_error("checkpoint: expected as many blocks of all processes");
-    std::atomic<std::size_t> num_reported = num_loaded;
+        read_blocks(blocks, record, is_done);
+    for (std::size_t block = 0; block < blocks.num_blocks; ++block)
+        if (!is_done[block])
+            to_do.push_back(block);
+    const auto most_to_do = static_cast<std::size_t>(largest_of_all(work.team, to_do.size()));
+    std::atomic<std::size_t> num_reported = blocks.num_blocks - to_do.size();
     const auto check = [&] {
         if (blocks.check)
             blocks.check();
@@ -130,10 +164,10 @@ void do_blocks(const Work& work, const BlockWork& blocks, Progress& progress) {
     const auto blocks_per_step =
         static_cast<std::size_t>(work.step_size.value_or(blocks.blocks_per_step));
     steps.run([&] {
-        for (check(); num_done < blocks.most_blocks; check()) {
-            const std::size_t end = std::min(num_done + blocks_per_step, blocks.most_blocks);
-            files::parallel_for(own(num_done), own(end), [&](std::size_t block) {
-                blocks.work(block);
+        for (check(); num_done < most_to_do; check()) {
+            const std::size_t end = std::min(num_done + blocks_per_step, most_to_do);
+            files::parallel_for(own(num_done), own(end), [&](std::size_t i) {
+                blocks.work(to_do[i]);
                 progress.report(static_cast<double>(++num_reported) /
                                 static_cast<double>(blocks.num_blocks));
             });

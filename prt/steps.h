@@ -93,8 +93,10 @@ private:
 struct BlockWork {
     /// Its name in a checkpoint
     std::string part = {};
-    /// Of this process, and of the one with the most
-    std::size_t num_blocks = 0, most_blocks = 0;
+    /// Of this process
+    std::size_t num_blocks = 0;
+    /// A checkpoint has so many together, as processes share them out.
+    std::size_t blocks_per_tile = 1;
     /// Between two looks at the checkpoint
     std::size_t blocks_per_step = 1;
     /// Does a block. Threads: any number at a time.

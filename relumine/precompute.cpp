@@ -510,11 +510,10 @@ private:
             if (std::exchange(last, message) != message)
                 warn(Warning::Checkpoint, message);
         };
-        prt::Fingerprint fingerprint = prt::fingerprint(
-            scene_, plan_.bounces ? std::optional(plan_.bounces->tolerance) : std::nullopt);
-        fingerprint.emplace_back("number of processes", fmt::format("{}", work_.team.part().count));
         checkpoint_ = std::make_unique<prt::CheckpointFile>(
-            options_.output, std::move(fingerprint),
+            options_.output,
+            prt::fingerprint(scene_, plan_.bounces ? std::optional(plan_.bounces->tolerance)
+                                                   : std::nullopt),
             prt::CheckpointFile::Options{
                 .resume = options_.resume,
                 .interval = std::chrono::duration<double>(
@@ -599,7 +598,7 @@ void precompute_part(const PartOptions& options, const PrecomputeWork& work,
 
 std::uint64_t join(std::span<const std::filesystem::path> parts,
                    const std::filesystem::path& output) {
-    return prt::save_scene(output, prt::join_parts(parts));
+    return prt::join_parts(parts, output);
 }
 
 prt::SurfaceOverride everywhere(const prt::Surface& surface) {

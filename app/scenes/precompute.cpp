@@ -23,6 +23,7 @@
 #include "mesh/customs.h"
 #include "mesh/floor.h"
 #include "mesh/half_edge/winding.h"
+#include "prt/scene/checkpoint_file.h"
 #include "relumine/precompute_table.h"
 #include "relumine/scene_cache.h"
 
@@ -368,6 +369,20 @@ void write_report(const PrecomputeArguments& options, const PrecomputeOptions& w
     session.report(report);
 }
 
+/// Where one of several processes was killed, mpirun ends the others before they can meet again.
+/// The first two name the checkpoint: one of them is left.
+void say_how_to_go_on(const std::filesystem::path& output, const prt::Team& team) {
+    if (!team.has_others() || team.part().index > 1)
+        return;
+    Session::set_waiting_message([folder = prt::CheckpointFile::folder_for(output)] {
+        return std::filesystem::exists(folder)
+                   ? fmt::format("ended before the work was done; the same command with --resume "
+                                 "goes on from {}",
+                                 folder.string())
+                   : std::string();
+    });
+}
+
 void run(const PrecomputeArguments& options, const Command& command, Session& session) {
     if (options.parts.is_given() && session.team != nullptr)
         throw UsageError("--plan", "expected a mesh: parts of a plan share nothing, `relumine "
@@ -377,6 +392,7 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
         return options.parts.run(command, options.output, options.precompute.engine, work, session);
     if (options.mesh.empty())
         throw UsageError("MESH", "expected a mesh, got none");
+    say_how_to_go_on(options.output, work.team);
     if (!work.team.is_first()) {
         const Patience for_checkpoints;
         return assist(work);

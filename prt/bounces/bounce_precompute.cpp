@@ -92,7 +92,7 @@ private:
               std::span<const std::uint32_t> factors) {
         BlockWork blocks{.part = part,
                          .num_blocks = blocks_.size(),
-                         .most_blocks = most_blocks(work_.team.part(), transfer_.num_receivers()),
+                         .blocks_per_tile = VisibleCounts::TileBlocks,
                          // Of all processes: about a tenth of a second.
                          .blocks_per_step =
                              std::max<std::size_t>(256 / work_.team.part().count, 16)};

@@ -108,9 +108,12 @@ void Clustering::start() {
 void Clustering::resume(const Checkpoint::Saved& saved) {
     for (const std::vector<std::byte>& record : saved.records) {
         std::vector<Cluster> clusters;
-        read_clusters(record, origins_.size(), clusters);
-        for (const Cluster& cluster : clusters)
+        read_clusters(record, clusters);
+        for (const Cluster& cluster : clusters) {
+            if (cluster.column.visible.size() != columns_->num_tiles())
+                throw std::runtime_error("checkpoint: expected the clusters of all tiles");
             add_cluster(cluster);
+        }
     }
     read_work(saved.state, batch_, pending_, *planes_);
     // The cells must cover the sphere, each place once.

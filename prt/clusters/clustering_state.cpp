@@ -8,15 +8,14 @@
 
 #include "files/packed_parts.h"
 #include "prt/transfer/cell_index.h"
+#include "prt/transfer/visible_counts.h"
 
 namespace relumine::prt {
 
 namespace {
 
-/// Columns and planes of some 100 kB to some MB go into one part: large enough for a thread, and
-/// small beside the whole.
-constexpr std::size_t ColumnsPerPart = 16;
-constexpr std::size_t PlanesPerPart = 16;
+/// Words of a plane for a tile of VisibleCounts.
+constexpr std::size_t TileWords = VisibleCounts::TileBlocks * BlockSize / 64;
 
 Cell next_cell(files::ByteReader& reader) {
     const auto index = reader.next<std::uint32_t>();
@@ -42,37 +41,39 @@ std::vector<Cell> next_cells(files::ByteReader& reader) {
 
 std::vector<std::byte> clusters_record(std::span<const Cell> cells, const ColumnStore& columns,
                                        std::size_t first) {
-    const std::size_t num_parts = (cells.size() - first + ColumnsPerPart - 1) / ColumnsPerPart;
-    return files::pack(num_parts, [&](std::size_t part) {
-        const std::size_t begin = first + part * ColumnsPerPart;
+    return files::pack(1 + columns.num_tiles(), [&](std::size_t part) {
         files::ByteWriter writer;
-        for (std::size_t i = begin; i < std::min(begin + ColumnsPerPart, cells.size()); ++i) {
-            const LeafColumn column = columns.column(i);
-            writer.add(cell_index(cells[i]));
-            writer.add_all(std::span(column.visible));
-            writer.add_all(std::span(column.mixed));
-            writer.add_all(std::span(column.counts));
+        for (std::size_t i = first; i < cells.size(); ++i) {
+            if (part == 0) {
+                writer.add(cell_index(cells[i]));
+                continue;
+            }
+            const TileColumn column = columns.tile(i, part - 1);
+            writer.add(column.visible);
+            writer.add(column.mixed);
+            writer.add_all(column.counts);
         }
         return writer.take();
     });
 }
 
-void read_clusters(std::span<const std::byte> record, std::size_t num_receivers,
-                   std::vector<Cluster>& clusters) {
-    const std::size_t num_blocks = (num_receivers + BlockSize - 1) / BlockSize;
-    const std::size_t num_words = (num_blocks + 63) / 64;
+void read_clusters(std::span<const std::byte> record, std::vector<Cluster>& clusters) {
+    const std::size_t first = clusters.size();
+    bool is_first = true;
     files::unpack(record, [&](std::span<const std::byte> part) {
         files::ByteReader reader(part);
-        while (!reader.at_end()) {
-            Cluster cluster{.cell = next_cell(reader), .column = {}};
-            LeafColumn& column = cluster.column;
-            column.visible = reader.next_all<std::uint64_t>(num_words);
-            column.mixed = reader.next_all<std::uint64_t>(num_words);
-            std::size_t num_mixed = 0;
-            for (const std::uint64_t word : column.mixed)
-                num_mixed += static_cast<std::size_t>(std::popcount(word));
-            column.counts = reader.next_all<std::uint8_t>(num_mixed * BlockSize);
-            clusters.push_back(std::move(cluster));
+        if (std::exchange(is_first, false)) {
+            while (!reader.at_end())
+                clusters.push_back({.cell = next_cell(reader), .column = {}});
+            return;
+        }
+        for (std::size_t i = first; i < clusters.size(); ++i) {
+            LeafColumn& column = clusters[i].column;
+            column.visible.push_back(reader.next<std::uint64_t>());
+            column.mixed.push_back(reader.next<std::uint64_t>());
+            const auto num_mixed = static_cast<std::size_t>(std::popcount(column.mixed.back()));
+            const auto counts = reader.next_all<std::uint8_t>(num_mixed * BlockSize);
+            column.counts.insert(column.counts.end(), counts.begin(), counts.end());
         }
     });
 }
@@ -80,27 +81,32 @@ void read_clusters(std::span<const std::byte> record, std::size_t num_receivers,
 std::vector<std::byte> work_state(const std::vector<Cell>& batch, const PendingCells& pending,
                                   const VisibilityPlanes& planes) {
     const std::vector<LatticePoint> points = planes.points();
-    const std::size_t num_parts = 1 + (points.size() + PlanesPerPart - 1) / PlanesPerPart;
-    return files::pack(num_parts, [&](std::size_t part) {
+    const std::size_t num_tiles = (planes.num_words() + TileWords - 1) / TileWords;
+    return files::pack(1 + num_tiles, [&](std::size_t part) {
         files::ByteWriter writer;
         if (part == 0) {
             add_cells(writer, batch);
             add_cells(writer, pending.cells());
             writer.add<std::uint64_t>(planes.num_directions());
-            writer.add<std::uint64_t>(planes.num_rays());
+            writer.add_all(std::span(points));
             return writer.take();
         }
-        const std::size_t begin = (part - 1) * PlanesPerPart;
-        for (std::size_t i = begin; i < std::min(begin + PlanesPerPart, points.size()); ++i) {
-            writer.add(points[i]);
-            writer.add_all(std::span(planes.plane(points[i]), planes.num_words()));
-        }
+        // The rays of all tiles stand in the first one of each process.
+        writer.add<std::uint64_t>(part == 1 ? planes.num_rays() : 0);
+        const std::size_t begin = (part - 1) * TileWords;
+        const std::size_t size = std::min(TileWords, planes.num_words() - begin);
+        for (const LatticePoint point : points)
+            writer.add_all(std::span(planes.plane(point) + begin, size));
         return writer.take();
     });
 }
 
 void read_work(std::span<const std::byte> state, std::vector<Cell>& batch, PendingCells& pending,
                VisibilityPlanes& planes) {
+    std::vector<LatticePoint> points;
+    std::vector<std::vector<std::uint64_t>> words;
+    std::uint64_t num_directions = 0, num_rays = 0;
+    std::size_t num_words = 0;
     bool is_first = true;
     files::unpack(state, [&](std::span<const std::byte> part) {
         files::ByteReader reader(part);
@@ -108,17 +114,26 @@ void read_work(std::span<const std::byte> state, std::vector<Cell>& batch, Pendi
             batch = next_cells(reader);
             for (const Cell& cell : next_cells(reader))
                 pending.push(cell);
-            const auto num_directions = reader.next<std::uint64_t>();
-            planes.restore_counts(num_directions, reader.next<std::uint64_t>());
+            num_directions = reader.next<std::uint64_t>();
+            while (!reader.at_end())
+                points.push_back(reader.next<LatticePoint>());
+            words.resize(points.size());
             return;
         }
-        while (!reader.at_end()) {
-            const auto point = reader.next<LatticePoint>();
-            planes.restore(point, reader.next_all<std::uint64_t>(planes.num_words()));
+        num_rays += reader.next<std::uint64_t>();
+        const std::size_t size =
+            std::min(TileWords, planes.num_words() - std::min(num_words, planes.num_words()));
+        num_words += size;
+        for (std::vector<std::uint64_t>& plane : words) {
+            const auto of_tile = reader.next_all<std::uint64_t>(size);
+            plane.insert(plane.end(), of_tile.begin(), of_tile.end());
         }
     });
-    if (is_first)
-        throw std::runtime_error("expected cells");
+    if (is_first || num_words != planes.num_words())
+        throw std::runtime_error("expected cells and all tiles of their planes");
+    planes.restore_counts(num_directions, num_rays);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        planes.restore(points[i], std::move(words[i]));
 }
 
 } // namespace relumine::prt

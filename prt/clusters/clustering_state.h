@@ -22,11 +22,10 @@ struct Cluster {
 /// Packs the clusters from `first` on into one record.
 [[nodiscard]] std::vector<std::byte> clusters_record(std::span<const Cell> cells,
                                                      const ColumnStore& columns, std::size_t first);
-/// Appends the clusters of a record, made for `num_receivers` receivers.
+/// Appends the clusters of a record. Their columns have the tiles that the record has.
 ///
 /// Throws:  std::runtime_error for bytes that are no such record.
-void read_clusters(std::span<const std::byte> record, std::size_t num_receivers,
-                   std::vector<Cluster>& clusters);
+void read_clusters(std::span<const std::byte> record, std::vector<Cluster>& clusters);
 
 /// Packs the remaining work: cells being tested, cells waiting, and the known planes.
 [[nodiscard]] std::vector<std::byte> work_state(const std::vector<Cell>& batch,

@@ -76,22 +76,27 @@ void ColumnStore::add(const LeafColumn& column) {
     ++size_;
 }
 
-LeafColumn ColumnStore::column(std::size_t index) const {
-    LeafColumn column;
-    for (const Run& run : runs_) {
-        const std::byte* const entry = run.entries[index];
-        const std::size_t num_words = run.num_words();
-        std::size_t num_mixed = 0;
-        for (std::size_t word = 0; word < num_words; ++word) {
-            column.visible.push_back(word_at(entry, word));
-            column.mixed.push_back(word_at(entry, num_words + word));
-            num_mixed += static_cast<std::size_t>(std::popcount(column.mixed.back()));
-        }
-        const auto* counts =
-            reinterpret_cast<const std::uint8_t*>(entry + 2 * num_words * sizeof(std::uint64_t));
-        column.counts.insert(column.counts.end(), counts, counts + num_mixed * BlockSize);
-    }
-    return column;
+std::size_t ColumnStore::num_tiles() const {
+    return (num_receivers_ + VisibleCounts::TileBlocks * BlockSize - 1) /
+           (VisibleCounts::TileBlocks * BlockSize);
+}
+
+TileColumn ColumnStore::tile(std::size_t index, std::size_t tile) const {
+    constexpr std::size_t TilesPerRun = BlocksPerRun / VisibleCounts::TileBlocks;
+    const Run& run = runs_[tile / TilesPerRun];
+    const std::byte* const entry = run.entries[index];
+    const std::size_t num_words = run.num_words(), own = tile % TilesPerRun;
+    const auto num_counts = [&](std::size_t word) {
+        return static_cast<std::size_t>(std::popcount(word_at(entry, num_words + word))) *
+               BlockSize;
+    };
+    const auto* counts =
+        reinterpret_cast<const std::uint8_t*>(entry + 2 * num_words * sizeof(std::uint64_t));
+    for (std::size_t word = 0; word < own; ++word)
+        counts += num_counts(word);
+    return {.visible = word_at(entry, own),
+            .mixed = word_at(entry, num_words + own),
+            .counts = {counts, num_counts(own)}};
 }
 
 VisibleCounts ColumnStore::take(std::span<const std::uint32_t> order) {

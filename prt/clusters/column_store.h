@@ -11,6 +11,13 @@
 
 namespace relumine::prt {
 
+/// What a column has of a tile.
+struct TileColumn {
+    std::uint64_t visible = 0;
+    std::uint64_t mixed = 0;
+    std::span<const std::uint8_t> counts = {};
+};
+
 /// Keeps columns in the order in which they come, and joins them at the end.
 ///
 /// Columns are cut into runs of receivers, and each run has memory of its own. So the memory of a
@@ -22,8 +29,9 @@ public:
 
     void add(const LeafColumn& column);
     [[nodiscard]] std::size_t size() const { return size_; }
-    /// Returns the column that came as number `index`.
-    [[nodiscard]] LeafColumn column(std::size_t index) const;
+    [[nodiscard]] std::size_t num_tiles() const;
+    /// Returns a tile of the column that came as number `index`. It is a view of the store.
+    [[nodiscard]] TileColumn tile(std::size_t index, std::size_t tile) const;
 
     /// Joins the columns, and leaves none: column number order[leaf] becomes that leaf's.
     ///

@@ -22,10 +22,6 @@ std::vector<std::uint32_t> places_of(const Part& part, std::size_t num_receivers
     return places;
 }
 
-std::size_t most_blocks(const Part& part, std::size_t num_receivers) {
-    return (places_of({0, part.count}, num_receivers).size() + BlockSize - 1) / BlockSize;
-}
-
 OwnPlace own_place(std::size_t place, std::size_t num_parts) {
     const std::size_t tile = place / Width;
     return {.part = static_cast<std::uint32_t>(tile % num_parts),

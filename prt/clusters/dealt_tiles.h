@@ -18,9 +18,6 @@ namespace relumine::prt {
 /// same in any number of parts.
 [[nodiscard]] std::vector<std::uint32_t> places_of(const Part& part, std::size_t num_receivers);
 
-/// Returns the number of blocks of receivers of the part that has the most.
-[[nodiscard]] std::size_t most_blocks(const Part& part, std::size_t num_receivers);
-
 /// Where a receiver is among those of its part.
 struct OwnPlace {
     std::uint32_t part = 0;

@@ -204,7 +204,7 @@ void GlossyPrecompute::do_all_blocks() {
     std::atomic<std::uint64_t> num_entries = 0;
     BlockWork blocks{.part = "highlights",
                      .num_blocks = blocks_.size(),
-                     .most_blocks = most_blocks(work_.team.part(), transfer_.num_receivers()),
+                     .blocks_per_tile = VisibleCounts::TileBlocks,
                      .blocks_per_step = BlocksPerThreadAndStep * files::num_threads()};
     blocks.work = [&](std::size_t block) {
         blocks_[block] = refine(block);

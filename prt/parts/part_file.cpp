@@ -18,6 +18,7 @@
 #include "prt/scene/bounce_sections.h"
 #include "prt/scene/count_sections.h"
 #include "prt/scene/glossy_sections.h"
+#include "prt/scene/joined_counts.h"
 #include "prt/scene/json_members.h"
 #include "prt/scene/section_file.h"
 #include "prt/scene/section_group.h"
@@ -31,17 +32,17 @@ std::vector<std::byte> text_section(const files::Json& json) {
     return bytes_of(json.text(2));
 }
 
-/// A part as its file has it.
-struct StoredPart {
-    SectionReader reader;
+/// A part, and where it lies.
+struct KnownPart {
+    std::filesystem::path path = {};
     PartHead head = {};
 };
 
-StoredPart read_part(const std::filesystem::path& path) {
-    StoredPart stored{.reader = SectionReader(path)};
-    require_part(stored.reader);
-    stored.head = read_head(stored.reader, "part", "plan");
-    return stored;
+/// Checks the file, and reads what it says of itself.
+KnownPart read_part_head(const std::filesystem::path& path) {
+    const SectionReader reader(path);
+    require_part(reader);
+    return {.path = path, .head = read_head(reader, "part", "plan")};
 }
 
 /// Parts of other processors would make a scene that none of them makes alone.
@@ -181,21 +182,29 @@ std::uint64_t save_part(const std::filesystem::path& path, const Plan& plan, con
     return write_sections(path, sections);
 }
 
-Scene join_parts(std::span<const std::filesystem::path> paths) {
-    auto parts = all_parts_of("plan", paths, read_part);
-    const std::filesystem::path first = parts.front()->reader.path();
-    Scene scene = plan_of(parts.front()->reader);
+std::uint64_t join_parts(std::span<const std::filesystem::path> paths,
+                         const std::filesystem::path& output) {
+    const auto parts = all_parts_of("plan", paths, read_part_head);
+    const std::filesystem::path& first = parts.front()->path;
+    Scene scene = plan_of(SectionReader(first));
+    JoinedCounts counts(scene.transfer.num_receivers(), scene.transfer.num_clusters(),
+                        parts.size());
     std::vector<PartLight> light;
-    for (std::optional<StoredPart>& part : parts) {
-        light.push_back(light_of(part->reader, part->head.num_receivers, scene.transfer));
-        part.reset();
-    }
     try {
-        join_light(scene, light);
+        for (const std::optional<KnownPart>& part : parts) {
+            const SectionReader reader(part->path);
+            light.push_back(light_of(reader, part->head.num_receivers, scene.transfer));
+            counts.add(reader, part->head.part, std::exchange(light.back().counts, {}));
+        }
+        join_highlights_and_bounces(scene, light);
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(fmt::format("{}: {}", first.string(), error.what()));
     }
-    return scene;
+    NewSections sections = sections_without_light(output, scene);
+    counts.add_to(sections);
+    if (scene.transfer.glossy)
+        add_glossy_sections(sections, *scene.transfer.glossy);
+    return write_sections(output, sections);
 }
 
 std::vector<PartLight> gather_light(Team& team, const Scene& scene, PartLight&& own) {

@@ -62,12 +62,15 @@ void share_plan(Team& team, Plan& plan);
 std::uint64_t save_part(const std::filesystem::path& path, const Plan& plan, const Part& part,
                         const PartLight& light);
 
-/// Reads all parts of a plan, in any order, and returns the scene.
+/// Reads all parts of a plan, in any order, and writes the scene, whole or not at all. Returns the
+/// file's size in bytes.
 ///
-/// Memory:  twice the light of the scene, and twice its bounces.
+/// Memory:  the mesh and the receivers, the largest part by itself, 32 MiB and some 2 MiB for each
+///          part; highlights and bounces twice.
 /// Throws:  std::runtime_error that names the file that is damaged, no part, of another plan or of
-///          another number of parts, given twice or missing.
-[[nodiscard]] Scene join_parts(std::span<const std::filesystem::path> paths);
+///          another number of parts, given twice or missing; as save_scene() does.
+std::uint64_t join_parts(std::span<const std::filesystem::path> paths,
+                         const std::filesystem::path& output);
 
 /// Gives the first process the light of all processes, by index, and leaves the others without.
 /// `scene` has the quadtree.

@@ -183,7 +183,8 @@ VisibleCounts part_counts(const Receivers& receivers, const Transfer& plan,
         .counts;
 }
 
-void join_light(Scene& scene, std::span<PartLight> parts, BounceStatistics* statistics) {
+void join_highlights_and_bounces(Scene& scene, std::span<PartLight> parts,
+                                 BounceStatistics* statistics) {
     if (parts.empty())
         throw std::invalid_argument("expected parts, got none");
     const bool has_highlights = parts.front().glossy.has_value();
@@ -192,22 +193,31 @@ void join_light(Scene& scene, std::span<PartLight> parts, BounceStatistics* stat
         if (part.glossy.has_value() != has_highlights || part.bounces.has_value() != has_bounces)
             throw std::invalid_argument("expected the same light in all parts");
     Transfer& transfer = scene.transfer;
-    transfer.counts = joined_counts(transfer, parts);
     if (has_highlights) {
+        const VisibleCounts shape{.num_receivers = transfer.num_receivers(),
+                                  .num_leaves = transfer.num_clusters()};
         GlossyTransfer& glossy = transfer.glossy.emplace();
         for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe)
-            glossy.lobes[lobe] = joined_cuts(transfer.counts, parts, lobe);
+            glossy.lobes[lobe] = joined_cuts(shape, parts, lobe);
     }
     std::vector<BounceSamples> samples;
     for (PartLight& part : parts) {
-        part.counts = {};
         part.glossy.reset();
         if (has_bounces)
             samples.push_back(std::exchange(part.bounces, {}).value());
     }
     if (has_bounces)
         scene.bounces = join_bounces(scene.receivers, transfer, std::move(samples), statistics);
-    set_surfaces(transfer, scene.receivers);
+}
+
+void join_light(Scene& scene, std::span<PartLight> parts, BounceStatistics* statistics) {
+    if (parts.empty())
+        throw std::invalid_argument("expected parts, got none");
+    scene.transfer.counts = joined_counts(scene.transfer, parts);
+    for (PartLight& part : parts)
+        part.counts = {};
+    join_highlights_and_bounces(scene, parts, statistics);
+    set_surfaces(scene.transfer, scene.receivers);
 }
 
 } // namespace relumine::prt

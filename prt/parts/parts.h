@@ -65,6 +65,10 @@ struct PartLight {
     std::optional<BounceSamples> bounces = {};
 };
 
+/// Does what join_light() does, but for the counts.
+void join_highlights_and_bounces(Scene& scene, std::span<PartLight> parts,
+                                 BounceStatistics* statistics = nullptr);
+
 /// Gives a scene without light the counts, highlights and bounces of all parts. Frees what the
 /// parts have.
 ///

@@ -1,7 +1,6 @@
 #include "prt/parts/team_checkpoint.h"
 
 #include <cstdint>
-#include <stdexcept>
 #include <utility>
 
 #include "files/packed_parts.h"
@@ -22,15 +21,33 @@ Bytes next_bytes(files::ByteReader& reader) {
     return reader.next_all<std::byte>(static_cast<std::size_t>(reader.next<std::uint64_t>()));
 }
 
-/// Puts what each process has of one record or state into one.
+/// Puts what each process has of one record or state into one: the tiles in their order.
 Bytes together(const std::vector<Bytes>& of_processes) {
-    files::ByteWriter writer;
-    bool is_empty = true;
-    for (const Bytes& bytes : of_processes) {
-        add_bytes(writer, bytes);
-        is_empty = is_empty && bytes.empty();
+    if (of_processes.empty() || of_processes.front().empty())
+        return {};
+    std::vector<std::vector<std::span<const std::byte>>> parts;
+    std::size_t num_tiles = 0;
+    for (const Bytes& bytes : of_processes)
+        num_tiles += parts.emplace_back(files::packed_parts(bytes)).size() - 1;
+    std::vector<std::span<const std::byte>> all = {parts[0].at(0)};
+    for (std::size_t tile = 0; tile < num_tiles; ++tile)
+        all.push_back(parts[tile % parts.size()].at(1 + tile / parts.size()));
+    return files::joined_parts(all);
+}
+
+/// The inverse: gives each process its tiles.
+void deal(std::span<const std::byte> bytes, std::span<files::ByteWriter> processes) {
+    std::vector<std::span<const std::byte>> all;
+    if (!bytes.empty())
+        all = files::packed_parts(bytes);
+    for (std::size_t i = 0; i < processes.size(); ++i) {
+        std::vector<std::span<const std::byte>> own;
+        if (!all.empty())
+            own.push_back(all[0]);
+        for (std::size_t part = 1 + i; part < all.size(); part += processes.size())
+            own.push_back(all[part]);
+        add_bytes(processes[i], own.empty() ? Bytes() : files::joined_parts(own));
     }
-    return is_empty ? Bytes() : writer.take();
 }
 
 } // namespace
@@ -43,17 +60,10 @@ Checkpoint::Saved TeamCheckpoint::load(const std::string& part, bool with_state)
     std::vector<Bytes> to_each;
     if (team_.is_first()) { // it may have no store
         std::vector<files::ByteWriter> writers(team_.part().count);
-        const auto deal = [&writers](std::span<const std::byte> bytes) {
-            files::ByteReader reader(bytes);
-            for (files::ByteWriter& writer : writers)
-                add_bytes(writer, bytes.empty() ? Bytes() : next_bytes(reader));
-            if (!reader.at_end())
-                throw std::runtime_error("checkpoint: expected one of as many processes");
-        };
         const Saved saved = store_ != nullptr ? store_->load(part, with_state) : Saved();
-        deal(saved.state);
+        deal(saved.state, writers);
         for (const Bytes& record : saved.records)
-            deal(record);
+            deal(record, writers);
         for (files::ByteWriter& writer : writers)
             to_each.push_back(writer.take());
     }

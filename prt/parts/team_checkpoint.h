@@ -6,9 +6,9 @@
 
 namespace relumine::prt {
 
-/// Passes each process's records and states to the first process, which stores all of them as one:
-/// so a checkpoint has all processes at the same place, whichever of them is killed when. Goes on
-/// with as many processes as before; the store's owner sees to it.
+/// Passes each process's records and states to the first process, which stores all of them as one
+/// process would that does all work: so a checkpoint has all processes at the same place, whichever
+/// of them is killed when, and any number of processes goes on from it.
 ///
 /// All processes call the same functions in the same order.
 class TeamCheckpoint final : public Checkpoint {

@@ -16,11 +16,7 @@ namespace relumine::prt {
 
 namespace {
 
-// Counts are codes of four bits, two in a byte. Counts are 0 to 16, and hardly ever 14: so the code
-// 14 stands for 16, and a list names the entries that are 14 after all. Beside bytes, the file of
-// the Stanford bunny is 7 % smaller for it.
-const std::string Visible = "visible", Mixed = "mixed", Codes = "count_codes", Rare = "counts_14";
-constexpr std::uint8_t RareCount = 14;
+using CountNames::Visible, CountNames::Mixed, CountNames::Codes, CountNames::Rare;
 
 /// Entries [begin, end) of a scene's counts, even numbers.
 using EntryRange = SectionPicker::Range;

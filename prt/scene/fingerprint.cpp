@@ -14,7 +14,7 @@ namespace {
 
 /// Version of the algorithm and of a checkpoint's content. Raise it when a change of either makes
 /// old checkpoints worthless.
-constexpr int FingerprintVersion = 3;
+constexpr int FingerprintVersion = 4;
 
 class Hash {
 public:

@@ -142,6 +142,7 @@ public:
                                   .begin = begin,
                                   .size = size,
                                   .is_last = begin + size == content.size()});
+                content.take_next(size, batch_.back().made);
                 begin += size;
                 if (batch_.size() == BatchFrames)
                     write_batch();
@@ -165,6 +166,7 @@ private:
         std::uint64_t begin;
         std::size_t size;
         bool is_last;
+        std::vector<std::byte> made = {};
         std::vector<std::byte> stored = {};
     };
 
@@ -187,9 +189,9 @@ private:
     void write_batch() {
         files::parallel_for(std::size_t{0}, batch_.size(), [&](std::size_t i) {
             Frame& frame = batch_[i];
-            std::vector<std::byte> made;
-            frame.stored = files::compressed(frame.content->bytes(frame.begin, frame.size, made),
-                                             compression_level_);
+            frame.stored = files::compressed(
+                frame.content->bytes(frame.begin, frame.size, frame.made), compression_level_);
+            frame.made = {};
         });
         for (const Frame& frame : batch_) {
             num_packed_ += frame.size;
@@ -264,6 +266,8 @@ std::span<const std::byte> SectionContent::bytes(std::uint64_t begin, std::size_
         return std::span(*own).subspan(at, size);
     if (const auto* view = std::get_if<std::span<const std::byte>>(&content_))
         return view->subspan(at, size);
+    if (std::holds_alternative<InOrder>(content_))
+        return made;
     made.resize(size);
     if (size != 0)
         std::get<Maker>(content_).fill(begin, made);
@@ -275,7 +279,16 @@ std::uint64_t SectionContent::size() const {
         return own->size();
     if (const auto* view = std::get_if<std::span<const std::byte>>(&content_))
         return view->size();
+    if (const auto* in_order = std::get_if<InOrder>(&content_))
+        return in_order->size;
     return std::get<Maker>(content_).size;
+}
+
+void SectionContent::take_next(std::size_t size, std::vector<std::byte>& made) const {
+    if (const auto* in_order = std::get_if<InOrder>(&content_)) {
+        made.resize(size);
+        in_order->next(made);
+    }
 }
 
 NewSections to_write(Sections sections) {
@@ -349,7 +362,8 @@ PackedSections::PackedSections(std::filesystem::path path, std::vector<std::byte
             fail("names of sections in ascending order", "a damaged section table");
         last_name = name;
         entries_[name] = {.stored = std::span(bytes_).subspan(entry.offset, entry.stored_size),
-                          .size = entry.size};
+                          .size = entry.size,
+                          .checksum = entry.checksum};
     }
     if (end != bytes_.size())
         fail("sections that fill the file", "a damaged section table");
@@ -371,6 +385,15 @@ std::vector<std::string> PackedSections::names() const {
     return names;
 }
 
+StoredSection PackedSections::stored(const std::string& name) const {
+    const Entry& of_name = entry(name, 1);
+    return {.path = path_,
+            .offset = static_cast<std::uint64_t>(of_name.stored.data() - bytes_.data()),
+            .stored_size = of_name.stored.size(),
+            .size = of_name.size,
+            .checksum = of_name.checksum};
+}
+
 const PackedSections::Entry& PackedSections::entry(const std::string& name,
                                                    std::uint64_t cost) const {
     const auto found = entries_.find(name);
@@ -383,7 +406,7 @@ const PackedSections::Entry& PackedSections::entry(const std::string& name,
 }
 
 std::vector<std::byte> PackedSections::bytes(const std::string& name, std::uint64_t cost) const {
-    const auto& [stored, size] = entry(name, cost);
+    const auto& [stored, size, checksum] = entry(name, cost);
     budget_ -= size * cost;
     const std::vector<Frame> frames = frames_of(stored, size);
     const auto fail_unpacking = [&] {
@@ -404,7 +427,7 @@ std::vector<std::byte> PackedSections::bytes(const std::string& name, std::uint6
 
 void PackedSections::stream(const std::string& name, std::optional<std::uint64_t> wanted_size,
                             const std::function<void(std::span<const std::byte>)>& on_piece) const {
-    const auto& [stored, whole_size] = entry(name, 1);
+    const auto& [stored, whole_size, checksum] = entry(name, 1);
     if (wanted_size && whole_size != *wanted_size)
         fail(fmt::format("a section '{}' of {} bytes", name, *wanted_size), "another");
     const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(),

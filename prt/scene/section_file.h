@@ -32,6 +32,9 @@ public:
     /// same time.
     using Fill = std::function<void(std::uint64_t begin, std::span<std::byte> piece)>;
 
+    /// Fills `piece` with the bytes that follow those of the call before.
+    using Next = std::function<void(std::span<std::byte> piece)>;
+
     SectionContent() = default;
     SectionContent(std::vector<std::byte> own) : content_(std::move(own)) {}
     SectionContent(std::uint64_t size, Fill fill) : content_(Maker{size, std::move(fill)}) {}
@@ -47,7 +50,16 @@ public:
     template<typename Element>
     static SectionContent view(std::vector<Element>&&) = delete;
 
+    /// Bytes that can only be had from the first to the last, once.
+    [[nodiscard]] static SectionContent in_order(std::uint64_t size, Next next) {
+        SectionContent content;
+        content.content_ = InOrder{size, std::move(next)};
+        return content;
+    }
+
     [[nodiscard]] std::uint64_t size() const;
+    /// For bytes that come in order: puts the next `size` into `made`, for bytes() to return.
+    void take_next(std::size_t size, std::vector<std::byte>& made) const;
     /// Returns `size` bytes from `begin` on. `made` keeps them if the function makes them.
     [[nodiscard]] std::span<const std::byte> bytes(std::uint64_t begin, std::size_t size,
                                                    std::vector<std::byte>& made) const;
@@ -57,7 +69,11 @@ private:
         std::uint64_t size;
         Fill fill;
     };
-    std::variant<std::vector<std::byte>, std::span<const std::byte>, Maker> content_;
+    struct InOrder {
+        std::uint64_t size;
+        Next next;
+    };
+    std::variant<std::vector<std::byte>, std::span<const std::byte>, Maker, InOrder> content_;
 };
 
 /// Sections to write, by name.
@@ -75,6 +91,16 @@ std::uint64_t write_sections(const std::filesystem::path& path, const NewSection
 
 /// Returns the bytes of a file of sections, to send them to another process.
 [[nodiscard]] std::vector<std::byte> packed_sections(const NewSections& sections);
+
+/// Where the packed bytes of a section lie.
+struct StoredSection {
+    std::filesystem::path path = {};
+    std::uint64_t offset = 0;
+    std::uint64_t stored_size = 0;
+    std::uint64_t size = 0;
+    /// xxHash64 of the packed bytes
+    std::uint64_t checksum = 0;
+};
 
 /// Bytes of a piece that PackedSections::stream() gives; the last one may have fewer.
 inline constexpr std::size_t SectionPiece = std::size_t{1} << 20;
@@ -98,6 +124,8 @@ public:
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     [[nodiscard]] bool has(const std::string& name) const { return entries_.contains(name); }
     [[nodiscard]] std::vector<std::string> names() const;
+    /// Returns where a section lies in the file. Fails where there is none.
+    [[nodiscard]] StoredSection stored(const std::string& name) const;
 
     /// Unpacks a section. Fails where there is none. `cost` is the memory that the caller makes of
     /// each byte.
@@ -116,6 +144,7 @@ private:
     struct Entry {
         std::span<const std::byte> stored;
         std::uint64_t size;
+        std::uint64_t checksum;
     };
     /// Returns a section. Fails where the ones before left fewer than `cost` bytes for each of its.
     [[nodiscard]] const Entry& entry(const std::string& name, std::uint64_t cost) const;

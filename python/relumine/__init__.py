@@ -19,7 +19,7 @@ import atexit as _atexit
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
 
-from . import _core
+from . import _arrays, _core
 from ._environment import Environment
 from ._files import FileError
 from ._harmonics import irradiance
@@ -57,9 +57,7 @@ if _TYPE_CHECKING:
 
 def set_threads(count: int) -> None:
     """Limits the threads that all calls use together; 0: all."""
-    if count < 0:
-        raise ValueError(f"count: expected 0 or more threads, got {count}")
-    _core.set_threads(count)
+    _core.set_threads(_arrays.whole("count", count, most=2**31 - 1))
 
 
 # The modules below are an inner matter.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from typing import Any, Optional, Tuple
 
 import numpy as np
@@ -17,6 +18,32 @@ def expect(name: str, value: Any, wanted: type, hint: str = "") -> None:
     if not isinstance(value, wanted):
         got = type(value).__name__
         raise TypeError(f"{name}: expected a relumine.{wanted.__name__}, got {got}{hint}")
+
+
+def whole(name: str, value: Any, least: int = 0, most: int = 2**32 - 1) -> int:
+    """A whole number from `least` to `most`."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        got = type(value).__name__
+        raise TypeError(f"{name}: expected a whole number, got {got}") from None
+    if not least <= number <= most:
+        raise ValueError(f"{name}: expected a whole number from {least} to {most}, got {number}")
+    return number
+
+
+def real(name: str, value: Any) -> float:
+    """A number."""
+    if isinstance(value, str) or not hasattr(value, "__float__"):
+        raise TypeError(f"{name}: expected a number, got {type(value).__name__}")
+    return float(value)
+
+
+def word(name: str, value: Any) -> str:
+    """A word, as the name of a method."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: expected a name, got {type(value).__name__}")
+    return value
 
 
 def view(array: Any) -> Any:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._arrays import Floats, doubles, floats, view
+from ._arrays import Floats, doubles, floats, view, whole, word
 from ._files import Path, errors
 from ._lights import LightList
 from ._mesh import warn
@@ -228,9 +228,12 @@ class Environment:
         >>> len(environment.place_lights(16, method="median-cut"))
         16
         """
-        if number < 1:
-            raise ValueError(f"number: expected at least one light, got {number}")
-        w, e, a = _core.place_lights(self._core, number, method, seed)
+        w, e, a = _core.place_lights(
+            self._core,
+            whole("number", number, 1),
+            word("method", method),
+            whole("seed", seed, most=2**64 - 1),
+        )
         return LightList(view(w), view(e), view(a), method=method)
 
     def median_cut(self, number: int = 64) -> LightList:

@@ -53,7 +53,10 @@ def errors(path: Path = "", *, only: bool = False) -> Iterator[None]:
 
     With `only`, errors that do not begin with the path stay what they are.
     """
-    name = os.fspath(path)
+    try:
+        name = os.fspath(path)
+    except TypeError:
+        raise TypeError(f"path: expected a path, got {type(path).__name__}") from None
     try:
         yield
     except RuntimeError as error:

@@ -13,6 +13,7 @@ from typing import (
     Any,
     ClassVar,
     Dict,
+    Iterable,
     Iterator,
     List,
     Mapping,
@@ -162,8 +163,15 @@ def text_of(layers: Sequence[Union[Layer, Mapping[str, Any]]]) -> str:
     """Layers as JSON, one a line: the line number in a message is the place of the layer."""
     if isinstance(layers, (Layer, Mapping)):
         raise ValueError("layers: expected a list of layers, got one")
-    lines = []
+    if isinstance(layers, str) or not isinstance(layers, Iterable):
+        raise TypeError(f"layers: expected a list of layers, got {type(layers).__name__}")
+    lines: List[str] = []
     for layer in layers:
+        if not isinstance(layer, (Layer, Mapping)):
+            raise TypeError(
+                f"layers[{len(lines)}]: expected a relumine.Layer or a dictionary, "
+                f"got {type(layer).__name__}"
+            )
         values = layer.to_dict() if isinstance(layer, Layer) else layer
         try:
             lines.append(json.dumps(dict(values), default=_plain, allow_nan=False))
@@ -190,6 +198,9 @@ def region_text(region: Union[Region, Mapping[str, Any]]) -> str:
     values: Dict[str, Any]
     if isinstance(region, Mapping):
         values = dict(region)
+    elif not hasattr(region, "type"):
+        got = type(region).__name__
+        raise TypeError(f"region: expected a region as relumine.Disc, or a dictionary, got {got}")
     else:
         values = {"type": region.type, **asdict(region)}
     return text_of([{"name": "region", "effect": "emit", "radiance": [1, 1, 1], **values}])

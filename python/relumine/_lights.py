@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._arrays import Doubles, doubles, view
+from ._arrays import Doubles, doubles, real, view, word
 from ._files import Path, errors
 
 
@@ -74,7 +74,12 @@ class LightList:
         """
         with errors(path):
             _core.save_lights(
-                os.fspath(path), *self._arrays(), self.method, format, soft, lumens_per_watt
+                os.fspath(path),
+                *self._arrays(),
+                self.method,
+                None if format is None else word("format", format),
+                bool(soft),
+                real("lumens_per_watt", lumens_per_watt),
             )
 
     def _arrays(self) -> Tuple[Doubles, Doubles, Doubles]:

@@ -10,7 +10,7 @@ from typing import Any, Callable, Dict, List, Optional, Tuple, Union
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._arrays import Floats, Indices, floats, indices, view
+from ._arrays import Floats, Indices, floats, indices, view, whole
 from ._core import Mesh as CoreMesh
 from ._files import Path, errors, in_python
 
@@ -231,10 +231,7 @@ class Mesh:
         >>> relumine.Mesh.load("boulder.ply").simplified(1000)
         <relumine.Mesh: 1000 vertices, 1524 triangles>
         """
-        if not 3 <= num_vertices <= len(self.vertices):
-            raise ValueError(
-                f"num_vertices: expected 3 to {len(self.vertices)}, got {num_vertices}"
-            )
+        num_vertices = whole("num_vertices", num_vertices, 3, len(self.vertices))
         with errors():
             return Mesh._of(_core.simplified(self._core, num_vertices))
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._arrays import Floats, floats
+from ._arrays import Floats, floats, real, word
 from ._files import Path, errors, in_python
 
 
@@ -74,20 +74,23 @@ class Picture(np.ndarray[Any, np.dtype[np.float32]]):
         with errors():
             return _core.picture_png(
                 *self._parts(),
-                self.exposure if exposure is None else exposure,
-                self.tone_map if tone_map is None else tone_map,
+                real("exposure", self.exposure if exposure is None else exposure),
+                word("tone_map", self.tone_map if tone_map is None else tone_map),
             )
 
     def save(
         self, path: Path, *, exposure: Optional[float] = None, tone_map: Optional[str] = None
     ) -> None:
         """Writes .png as png(), or .exr: linear, without exposure unless it is given."""
-        name = os.fspath(path)
-        if exposure is None:
-            exposure = 0.0 if name.lower().endswith(".exr") else self.exposure
         with errors(path):
+            name = os.fspath(path)
+            if exposure is None:
+                exposure = 0.0 if name.lower().endswith(".exr") else self.exposure
             _core.save_picture(
-                name, *self._parts(), exposure, self.tone_map if tone_map is None else tone_map
+                name,
+                *self._parts(),
+                real("exposure", exposure),
+                word("tone_map", self.tone_map if tone_map is None else tone_map),
             )
 
     def _repr_png_(self) -> Optional[bytes]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Floats, Indices, expect, floats, indices, view
+from ._arrays import Floats, Indices, expect, floats, indices, real, view, whole
 from ._environment import Environment, _options
 from ._files import Path, errors
 from ._layers import Layer, Region, naming_layers, parsed, region_text, text_of
@@ -192,8 +192,7 @@ class Relighter:
             face = FACES.index(face)
         values = floats("radiance", radiance, None, None, 3)
         height, width, _ = values.shape
-        if face < 0 or x < 0 or y < 0:
-            raise ValueError("face, x, y: expected numbers that are not negative")
+        face, x, y = whole("face", face, most=5), whole("x", x), whole("y", y)
         return Update(*self._core.update_region(face, x, y, width, height, values))
 
     @property
@@ -233,6 +232,8 @@ class Relighter:
         Raises ValueError for a scene that was made without `bounces`.
         """
         options = {"albedo": albedo, "floor_albedo": floor_albedo}
+        if bounces is not None:
+            bounces = whole("bounces", bounces)
         with errors():
             return Bounces(*self._core.bounce(bounces, options))
 
@@ -284,7 +285,7 @@ class Relighter:
 
     def set_layer(self, index: int, layer: Union[Layer, Mapping[str, Any]]) -> Update:
         """Replaces one layer, as while it is dragged."""
-        if index < 0:
+        if whole("index", index, -(2**31)) < 0:
             raise IndexError(f"index: expected the place of a layer, got {index}")
         with naming_layers():
             return Update(*self._core.set_layer(index, text_of([layer])))
@@ -294,7 +295,7 @@ class Relighter:
 
         It stays for environments that are set later.
         """
-        return Update(*self._core.set_rotation(degrees))
+        return Update(*self._core.set_rotation(real("degrees", degrees)))
 
     def mark(self) -> None:
         """Marks the present layers and environment as a state that undo() comes back to."""
@@ -335,7 +336,12 @@ class Relighter:
         >>> relighter.verify(20).relative_l2 < 0.2
         True
         """
-        found = self._core.verify(samples, seed, paths, progress)
+        found = self._core.verify(
+            whole("samples", samples),
+            whole("seed", seed, most=2**64 - 1),
+            whole("paths", paths),
+            progress,
+        )
         found["receivers"] = view(found["receivers"])
         return Verification(**found)
 
@@ -438,7 +444,7 @@ class Relighter:
 
         Takes about a minute for 64 lights; fewer come back where more would not help.
         """
-        w, e, a = self._core.transfer_lights(number, progress)
+        w, e, a = self._core.transfer_lights(whole("number", number, 1), progress)
         return LightList(view(w), view(e), view(a), method="transfer")
 
     # Outputs

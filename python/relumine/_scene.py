@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Floats, Indices, expect, floats, view
+from ._arrays import Floats, Indices, expect, floats, view, whole
 from ._core import Scene as CoreScene
 from ._files import Path, errors
 from ._mesh import Mesh, warn
@@ -221,6 +221,8 @@ def precompute_part(
 
     Parts know nothing of each other: they run in any order, anywhere, and again if one is lost.
     """
+    count = whole("count", count, 1)
+    part = whole("part", part, 0, count - 1)
     with errors(plan, only=True):
         _core.precompute_part(
             os.fspath(plan), part, count, os.fspath(output), {"engine": engine}, progress

@@ -83,12 +83,15 @@ Costs measured(std::size_t num_vertices, float tolerance, const fs::path& folder
     const prt::VisibleCounts& counts = light[0].counts;
     costs.light_bytes =
         static_cast<double>(8 * 3 * counts.visible.size() + counts.counts.size()) / pairs;
+    const std::vector<fs::path> parts = {folder / "scale.part"};
+    prt::save_part(parts[0], plan, {}, light[0]);
+    light.clear();
     lap();
-    prt::join_light(plan.scene, light);
-    const std::uint64_t scene_bytes = prt::save_scene(folder / "scale.prt", plan.scene);
+    const std::uint64_t scene_bytes = prt::join_parts(parts, folder / "scale.prt");
     costs.join_seconds = lap() / pairs;
     costs.file_bytes = static_cast<double>(scene_bytes) / pairs;
     fs::remove(plan_file);
+    fs::remove(parts[0]);
     fs::remove(folder / "scale.prt");
     return costs;
 }
@@ -179,10 +182,14 @@ void print_row(const Costs& costs, double receivers, double cores, double networ
     const double fixed_bytes =
         receivers * BytesPerReceiver + receivers / TexelsPerTriangle * BytesPerTriangle;
     const double task_bytes = fixed_bytes + (2.0 * light + Planes * receivers / 8.0) / tasks;
-    const double join_bytes = fixed_bytes + 2.0 * light;
+    // The join has one part by itself, then a frame of each, and those that it packs.
+    constexpr double FrameBytes = 2.2e6, PackedBytes = 34e6;
+    const double join_bytes =
+        fixed_bytes + (light + pairs * costs.file_bytes) / tasks + tasks * FrameBytes + PackedBytes;
     const double plan_file = receivers * costs.plan_bytes;
-    // All tasks read the plan from one store; parts go there and back.
-    const double network = plan_file * tasks + 3.0 * pairs * costs.file_bytes;
+    // All tasks read the plan from one store; parts go there, are read three times, and come back
+    // as the scene.
+    const double network = plan_file * tasks + 5.0 * pairs * costs.file_bytes;
 
     const double plan_seconds =
         pairs / 16.0 * costs.plan_seconds_per_pair / machines.cores_per_host;
@@ -193,7 +200,7 @@ void print_row(const Costs& costs, double receivers, double cores, double networ
         reading + pairs * costs.seconds_per_pair / tasks / machines.cores_per_host;
     const Outcome parts = simulated(num_tasks, task_seconds, machines);
     const double join_seconds =
-        pairs * costs.join_seconds + 2.0 * pairs * costs.file_bytes / network_speed;
+        pairs * costs.join_seconds + 4.0 * pairs * costs.file_bytes / network_speed;
     const auto first_limit = [&] {
         constexpr double Memory = 256e9;
         if (task_bytes > Memory)

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -49,6 +50,11 @@ std::vector<fs::path> files_below(const fs::path& folder) {
     return result;
 }
 
+std::vector<std::uint8_t> content_of(const fs::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 class Corpus : public testing::TestWithParam<Target> {};
 
 TEST_P(Corpus, IsReadOrRefused) {
@@ -57,13 +63,10 @@ TEST_P(Corpus, IsReadOrRefused) {
     ASSERT_FALSE(files.empty());
     num_accepted = 0;
     for (const fs::path& path : files) {
-        std::ifstream stream(path, std::ios::binary);
-        const std::vector<char> content(std::istreambuf_iterator<char>(stream), {});
+        const std::vector<std::uint8_t> content = content_of(path);
         const std::size_t before = num_accepted;
         std::fprintf(stderr, "%s", path.c_str()); // the last one is the culprit
-        EXPECT_EQ(
-            GetParam().run(reinterpret_cast<const std::uint8_t*>(content.data()), content.size()),
-            0);
+        EXPECT_EQ(GetParam().run(content.data(), content.size()), 0);
         std::fprintf(stderr, ": %s\n", num_accepted > before ? "read" : "refused");
     }
     // Otherwise the seeds are of an old format, and fuzzing would begin at nothing.
@@ -72,6 +75,29 @@ TEST_P(Corpus, IsReadOrRefused) {
 
 INSTANTIATE_TEST_SUITE_P(Fuzz, Corpus, testing::ValuesIn(targets()),
                          [](const auto& each) { return each.param.name; });
+
+/// Readers share nothing: as a program reads files that loads several at once. Arguments and
+/// requests belong to one session of a process.
+TEST(Fuzz, ReadersOfAllKindsWorkInSeveralThreads) {
+    std::vector<std::thread> threads;
+    for (std::size_t first = 0; first < 3; ++first)
+        threads.emplace_back([first] {
+            const std::vector<Target> all = targets();
+            for (std::size_t i = 0; i < all.size(); ++i) {
+                const Target& target = all[(first * 5 + i) % all.size()];
+                if (target.name == "command_line" || target.name == "requests")
+                    continue;
+                const auto files = files_below(fs::path(RELUMINE_FUZZ_CORPUS) / target.name);
+                // Every third is enough to meet the others, in another place of each thread.
+                for (std::size_t file = first; file < files.size(); file += 3) {
+                    const std::vector<std::uint8_t> content = content_of(files[file]);
+                    EXPECT_EQ(target.run(content.data(), content.size()), 0);
+                }
+            }
+        });
+    for (std::thread& thread : threads)
+        thread.join();
+}
 
 class CommandLine : public testing::TestWithParam<std::size_t> {};
 

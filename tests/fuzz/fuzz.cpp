@@ -56,7 +56,7 @@ public:
 
 } // namespace
 
-std::size_t num_accepted = 0;
+std::atomic<std::size_t> num_accepted = 0;
 
 std::span<const std::byte> bytes(const std::uint8_t* data, std::size_t size) {
     return std::as_bytes(std::span(data, size));
@@ -81,7 +81,7 @@ void require_message(const std::runtime_error& error) {
 }
 
 const fs::path& folder() {
-    static const Folder instance;
+    thread_local const Folder instance;
     return instance.path;
 }
 

@@ -3,6 +3,7 @@
 // "expected X, got Y"; no crash, leak, other exception or endless loop.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -15,7 +16,7 @@
 namespace relumine::fuzz {
 
 /// Inputs that a reader took so far. The corpus test wants some in every folder.
-extern std::size_t num_accepted;
+extern std::atomic<std::size_t> num_accepted;
 
 /// An input as the readers take it.
 [[nodiscard]] std::span<const std::byte> bytes(const std::uint8_t* data, std::size_t size);
@@ -39,9 +40,8 @@ auto accepted(const Read& read) -> std::optional<std::invoke_result_t<Read>> {
     }
 }
 
-/// A folder of this process, below the system's folder for temporary files, that goes away with it.
-/// Holds the files that inputs may name: four_colors.png, pixel.exr, mesh.mtl, buffer.bin. One
-/// thread calls these.
+/// A folder of this thread, below the system's folder for temporary files, that goes away with it.
+/// Holds the files that inputs may name: four_colors.png, pixel.exr, mesh.mtl, buffer.bin.
 [[nodiscard]] const std::filesystem::path& folder();
 
 /// Writes an input to a file of that folder, for readers that take paths.

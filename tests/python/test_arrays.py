@@ -120,9 +120,26 @@ def test_wrong_classes_are_named(relighter, scene):
         (lambda: relumine.precompute(scene), "mesh: expected a relumine.Mesh, got Scene"),
         (lambda: relumine.plan(scene, "a.plan"), "mesh: expected a relumine.Mesh, got Scene"),
         (lambda: relumine.Scene.unclustered(5), "mesh: expected a relumine.Mesh, got int"),
+        (lambda: relighter.set_rotation("x"), "degrees: expected a number, got str"),
+        (lambda: relighter.bounce("x"), "bounces: expected a whole number, got str"),
+        (lambda: relighter.verify(1.5), "samples: expected a whole number, got float"),
+        (lambda: relighter.set_layers(3), "layers: expected a list of layers, got int"),
+        (lambda: relighter.set_layers([3]), r"layers\[0\]: expected a relumine.Layer or a dict"),
+        (lambda: relighter.lit_by("disc"), "region: expected a region as relumine.Disc"),
+        (lambda: relighter.picture(size="8x8").png(exposure="x"), "exposure: expected a number"),
+        (lambda: relighter.picture(size="8x8").save(5), "path: expected a path, got int"),
+        (lambda: relumine.Mesh.load(5), "path: expected a path, got int"),
+        (lambda: relumine.set_threads("all"), "count: expected a whole number, got str"),
     ]:
         with pytest.raises(TypeError, match=message):
             call()
+    for number, message in [
+        (lambda: relighter.verify(-1), "samples: expected a whole number from 0 to"),
+        (lambda: relumine.set_threads(-1), "count: expected a whole number from 0 to"),
+        (lambda: relumine.precompute_part("a.plan", 2, 2, "b"), "part: expected .* 0 to 1, got 2"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            number()
     with pytest.raises(ValueError, match=r"expected shape \(N, M, 3\), got \(4, 8\)"):
         relumine.Environment(pixels[..., 0])
 

@@ -54,7 +54,7 @@ f 1/1 3/3 4/4
 f 5/5 6/6 7/7
 f 5/5 7/7 8/8
 OBJ
-vertices=(knot.ply --floor 30 --tolerance 0.03)
+vertices=(knot.ply --floor 30 --tolerance 0.03 --bounces 0)
 glossy=(knot.ply --tolerance 0.06 --view auto --material ggx:roughness=0.4,f0=0.04 --glossy-tolerance 0.2)
 texels=(squares.obj --receivers texels:96x96 --tolerance 0.03)
 bouncing=(knot.ply --floor 50 --tolerance 0.05 --bounces)
@@ -131,8 +131,10 @@ survives() { # NAME "DELAYS" OPTIONS...: of precompute
     shift 2
     "$relumine" precompute "$@" -o longer.prt -q
     rm -f killed.prt
+    local ranks=0
     for delay in $delays; do
-        start 3 precompute "$@" --checkpoint-seconds 0.05 -o killed.prt --threads 1 --resume -q >kill.log 2>&1 &
+        ranks=$((ranks % 3 + 1)) # another number goes on
+        start "$ranks" precompute "$@" --checkpoint-seconds 0.05 -o killed.prt --threads 1 --resume -q >kill.log 2>&1 &
         run=$!
         sleep "$delay"
         rank=$(ranks_of "$run" | sort -R | head -n 1)
@@ -144,6 +146,15 @@ survives() { # NAME "DELAYS" OPTIONS...: of precompute
 }
 survives "among clusters" "0.6 0.8 1.0 1.2 1.4 1.6 1.8 2.0 2.3 2.6" knot.ply --floor 60 --tolerance 0.012
 survives "among bounces" "0.8 1.2 1.6 2.0 2.4" knot.ply --floor 60 --tolerance 0.05 --bounces 0.004
+# Whoever survives says how to go on.
+start 3 precompute knot.ply --floor 60 --tolerance 0.012 --checkpoint-seconds 0.05 -o killed.prt --threads 1 -q >kill.log 2>&1 &
+run=$!
+until [ -e killed.prt.checkpoint/run.json ] || ! kill -0 "$run" 2>/dev/null; do sleep 0.1; done
+kill -9 "$(ranks_of "$run" | tail -n 1)"
+wait "$run" || true
+check "a survivor names --resume: $(grep -m 1 '^relumine-mpi: ' kill.log || true)" \
+    grep -q '^relumine-mpi: .* --resume goes on from killed.prt.checkpoint' kill.log
+rm -rf killed.prt.checkpoint
 check "no checkpoint is left" test ! -e killed.prt.checkpoint
 
 refuses() { # NAME CODE TEXT COMMAND...: one line of relumine-mpi, which has the text; nothing written

@@ -190,7 +190,9 @@ TEST(Parts, HighlightsAreThoseOfAllReceivers) {
 }
 
 /// Gives each run what an earlier one had saved up to some save: a kill between any two saves.
-TEST(Parts, ProcessesGoOnFromTheCheckpointOfAll) {
+/// Other numbers of processes go on, one without a team, too, and each from what the one before
+/// left.
+TEST(Parts, AnyNumberOfProcessesGoesOnFromTheCheckpointOfAll) {
     const mesh::TriangleMesh mesh = several_tiles();
     const RayScene rays(mesh);
     Receivers receivers = vertex_receivers(mesh);
@@ -201,12 +203,11 @@ TEST(Parts, ProcessesGoOnFromTheCheckpointOfAll) {
     Transfer whole = precompute(receivers, rays, options);
     whole.glossy = precompute_glossy(receivers, rays, whole, glossy);
 
-    constexpr std::uint32_t Count = 3;
-    const auto shared = [&](Checkpoint& store, std::uint64_t* num_rays) {
-        std::vector<PartLight> parts(Count);
-        ThreadTeam::run(Count, [&](Team& team, std::uint32_t index) {
-            TeamCheckpoint checkpoint(team, index == 0 ? &store : nullptr);
-            const Work work{.team = team, .checkpoint = &checkpoint};
+    const auto shared = [&](std::uint32_t count, Checkpoint& store, std::uint64_t* num_rays) {
+        std::vector<PartLight> parts(count);
+        ThreadTeam::run(count, [&](Team& team, std::uint32_t index) {
+            TeamCheckpoint of_team(team, index == 0 ? &store : nullptr);
+            const Work work{.team = team, .checkpoint = count == 1 ? &store : &of_team};
             PrecomputeStatistics statistics;
             Transfer transfer = precompute(receivers, rays, options, work, &statistics);
             if (index == 0)
@@ -221,12 +222,19 @@ TEST(Parts, ProcessesGoOnFromTheCheckpointOfAll) {
     };
     CheckpointHistory history;
     std::uint64_t num_rays = 0, num_rays_again = 0;
-    shared(history, &num_rays);
+    shared(3, history, &num_rays);
     ASSERT_GT(history.after.size(), 3u);
-    for (std::size_t i = 0; i < history.after.size(); i += 1 + i / 4) {
-        MemoryCheckpoint store;
-        store.parts = history.after[i];
-        shared(store, &num_rays_again);
+    std::uint32_t count = 0;
+    for (std::size_t i = 0; i < history.after.size(); i += 2 + i / 2) {
+        CheckpointHistory next;
+        next.parts = history.after[i];
+        shared(1 + count++ % 4, next, &num_rays_again);
+        EXPECT_EQ(num_rays_again, num_rays);
+        if (next.after.empty())
+            continue;
+        MemoryCheckpoint last;
+        last.parts = next.after[next.after.size() / 2];
+        shared(1 + count++ % 4, last, &num_rays_again);
         EXPECT_EQ(num_rays_again, num_rays);
     }
 }
@@ -344,11 +352,11 @@ TEST_F(PartFiles, JoinInAnyOrderToTheSameFile) {
     std::vector<fs::path> four;
     for (const std::uint32_t i : {2u, 0u, 3u, 1u})
         four.push_back(part(i, 4, "part." + std::to_string(i)));
-    save_scene(folder_ / "one.prt", join_parts(one));
-    save_scene(folder_ / "four.prt", join_parts(four));
+    join_parts(one, folder_ / "one.prt");
+    join_parts(four, folder_ / "four.prt");
     EXPECT_EQ(files::read(folder_ / "one.prt"), files::read(folder_ / "four.prt"));
     std::reverse(four.begin(), four.end());
-    save_scene(folder_ / "reverse.prt", join_parts(four));
+    join_parts(four, folder_ / "reverse.prt");
     EXPECT_EQ(files::read(folder_ / "one.prt"), files::read(folder_ / "reverse.prt"));
     const Scene scene = load_scene(folder_ / "one.prt");
     EXPECT_EQ(scene.transfer.num_receivers(), scene_.mesh.num_vertices());
@@ -357,20 +365,21 @@ TEST_F(PartFiles, JoinInAnyOrderToTheSameFile) {
 
 TEST_F(PartFiles, NameWhatIsWrong) {
     const fs::path first = part(0, 2, "first"), second = part(1, 2, "second");
-    expect_refusal([&] { (void)join_parts(std::vector{first}); }, "got none that is part 2 of 2");
+    expect_refusal([&] { (void)join_parts(std::vector{first}, folder_ / "joined.prt"); },
+                   "got none that is part 2 of 2");
     expect_refusal(
         [&] {
-            (void)join_parts(std::vector{first, second, first});
+            (void)join_parts(std::vector{first, second, first}, folder_ / "joined.prt");
         },
         "expected every part once, got part 1 of 2 again");
     expect_refusal(
         [&] {
-            (void)join_parts(std::vector{first, part(2, 3, "third")});
+            (void)join_parts(std::vector{first, part(2, 3, "third")}, folder_ / "joined.prt");
         },
         "third: expected one of 2 parts");
     expect_refusal(
         [&] {
-            (void)join_parts(std::vector{first, folder_ / "scene.plan"});
+            (void)join_parts(std::vector{first, folder_ / "scene.plan"}, folder_ / "joined.prt");
         },
         "scene.plan: expected a part, got a plan");
     expect_refusal([&] { (void)load_scene(folder_ / "scene.plan"); },
@@ -383,7 +392,7 @@ TEST_F(PartFiles, NameWhatIsWrong) {
     const fs::path foreign = part(1, 2, "foreign", "other.plan");
     expect_refusal(
         [&] {
-            (void)join_parts(std::vector{first, foreign});
+            (void)join_parts(std::vector{first, foreign}, folder_ / "joined.prt");
         },
         "foreign: expected a part of the same plan as");
 
@@ -391,7 +400,12 @@ TEST_F(PartFiles, NameWhatIsWrong) {
     bytes[bytes.size() / 2] ^= std::byte{1};
     files::save_text(second,
                      std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-    expect_refusal([&] { (void)join_parts(std::vector{first, second}); }, "second: expected");
+    expect_refusal(
+        [&] {
+            (void)join_parts(std::vector{first, second}, folder_ / "joined.prt");
+        },
+        "second: expected");
+    EXPECT_FALSE(fs::exists(folder_ / "joined.prt"));
 }
 
 } // namespace

@@ -87,7 +87,15 @@ TEST(VisibleCounts, ColumnsComeBackAsTheyWere) {
         for (const auto& leaf : table)
             columns.add(column_of(leaf));
         for (std::size_t i = 0; i < table.size(); ++i) {
-            const LeafColumn expected = column_of(table[i]), column = columns.column(i);
+            const LeafColumn expected = column_of(table[i]);
+            LeafColumn column;
+            for (std::size_t tile = 0; tile < columns.num_tiles(); ++tile) {
+                const TileColumn of_tile = columns.tile(i, tile);
+                column.visible.push_back(of_tile.visible);
+                column.mixed.push_back(of_tile.mixed);
+                column.counts.insert(column.counts.end(), of_tile.counts.begin(),
+                                     of_tile.counts.end());
+            }
             EXPECT_EQ(column.visible, expected.visible);
             EXPECT_EQ(column.mixed, expected.mixed);
             EXPECT_EQ(column.counts, expected.counts);

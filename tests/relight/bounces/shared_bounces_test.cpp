@@ -102,25 +102,25 @@ TEST(SharedBounces, PartsOfDifferentKindsAreRefused) {
     refuses({damaged});
 }
 
-/// Gives each run what an earlier one had saved up to some save.
-TEST(SharedBounces, ProcessesGoOnFromTheCheckpointOfAll) {
+/// Gives each run what an earlier one had saved up to some save; other numbers of processes go on.
+TEST(SharedBounces, AnyNumberOfProcessesGoesOnFromTheCheckpointOfAll) {
     prt::CheckpointHistory history;
-    const auto run = [&](prt::MemoryCheckpoint& store) {
-        constexpr std::uint32_t Count = 3;
-        std::vector<prt::BounceSamples> parts(Count);
-        prt::ThreadTeam::run(Count, [&](prt::Team& team, std::uint32_t index) {
+    const auto run = [&](std::uint32_t count, prt::MemoryCheckpoint& store) {
+        std::vector<prt::BounceSamples> parts(count);
+        prt::ThreadTeam::run(count, [&](prt::Team& team, std::uint32_t index) {
             prt::TeamCheckpoint checkpoint(team, index == 0 ? &store : nullptr);
             parts[index] = samples({.team = team, .checkpoint = &checkpoint});
         });
         EXPECT_EQ(prt::join_bounces(scene().receivers, scene().transfer, std::move(parts)),
                   scene().matrix);
     };
-    run(history);
+    run(3, history);
     ASSERT_GT(history.after.size(), 3u);
+    std::uint32_t count = 0;
     for (const auto& saved : history.after) {
         prt::MemoryCheckpoint store;
         store.parts = saved;
-        run(store);
+        run(1 + count++ % 4, store);
     }
 }
 
