@@ -404,6 +404,7 @@ private:
         const mesh::TriangleMesh& mesh = scene_.mesh;
         if (scene_.receivers.have_no_surface)
             return;
+        scene_.lamps.lights = mesh.lights;
         if (mesh.materials.empty() && !options_.surface && options_.floor_surface == prt::Surface())
             return;
         const std::size_t n = scene_.settings.floor_vertices;
@@ -415,6 +416,7 @@ private:
                     return options_.floor_surface;
                 return options_.surface ? options_.surface(of, triangle, own) : own;
             };
+        scene_.lamps = prt::lamps_of(mesh, surface_of);
         prt::Receivers& receivers = scene_.receivers;
         const prt::GgxForm form = receivers.to_eye.empty() ? prt::GgxForm::Published : options_.ggx;
         if (receivers.points.empty()) {

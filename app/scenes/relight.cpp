@@ -138,9 +138,10 @@ void light_scene(const RelightArguments& options, Session& session) {
     Given given = given_light(options, session);
     const std::size_t num_lights = given.light.lights.size();
     watch.lap();
+    const relumine::OutputOptions output = options.output.for_scene(scene);
+    lit.dim(output.emission);
     const UpdateReport times = lit.light(std::move(given.light));
     session.poll();
-    const relumine::OutputOptions output = options.output.for_scene(scene);
     if (session.is_first()) {
         options.output.warn_of_eye(scene, session);
         for (const std::string& line : scene.settings.left_out)
@@ -155,8 +156,9 @@ void light_scene(const RelightArguments& options, Session& session) {
             save_harmonics(lit, options.harmonics); // of the first process, with these parts
         return;
     }
+    const std::vector<glm::vec3> bounced = lit.bounced();
     if (options.only_bounces)
-        keep_bounces(lighting, lit.bounces().bounced(), options.scene.path);
+        keep_bounces(lighting, bounced, options.scene.path);
     Painter painter(lit, output);
     painter.on_progress(session.progress("picture"));
     painter.save(options.output.path, lighting);

@@ -232,10 +232,12 @@ void Service::Impl::declare_picture(Command& command) {
     auto options = std::make_shared<OutputOptions>();
     options->add_to(command);
     command.on_run([this, options] {
-        const LitScene& source = lit_by_environment();
+        static_cast<void>(lit_by_environment());
+        LitScene& source = lit();
         options->check({scene_path});
         options->check_fits(source.scene());
-        Painter painter(source, options->for_scene(source.scene()));
+        source.dim(options->for_scene(source.scene()).emission);
+        Painter painter(source, options->picture);
         painter.save(options->path, source.lighting());
         report = {{"output", options->path}, {"exposure", painter.exposure_ev(options->path)}};
     });

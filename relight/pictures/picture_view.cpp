@@ -224,9 +224,11 @@ private:
     [[nodiscard]] glm::vec3 emitted(const Sample& sample) const {
         if (light_.emission.empty())
             return glm::vec3(0.0f);
-        return has_texture(sample)
-                   ? light_.emission_factor * light_.textures->surface(point(sample)).emission
-                   : prt::value_at(mesh_, light_.emission, point(sample));
+        if (!has_texture(sample))
+            return prt::value_at(mesh_, light_.emission, point(sample));
+        const glm::vec3 emission = light_.textures->surface(point(sample)).emission;
+        return light_.emission_gains.empty() ? emission
+                                             : light_.emission_gains[sample.triangle] * emission;
     }
 
     /// Finds the lights that reach a sample.
