@@ -141,10 +141,6 @@ void LeftOut::material(const Json& description) {
         count("transparent by alpha; alpha is not read", "surfaces are opaque");
     if (description.find("normalTexture"))
         count("with a normal map, which is not read", "surfaces are as smooth as the mesh");
-    const std::vector<double> emission = numbers(description, "emissiveFactor", {0.0, 0.0, 0.0});
-    if (*std::max_element(emission.begin(), emission.end()) > 0.0 &&
-        !child(description, "extensions").find("KHR_materials_unlit"))
-        count("with emission", "it is seen, and lights no other surface");
     if (description.find("occlusionTexture"))
         count("with an occlusion map, which is not read", "rays find what blocks the light");
     if (description.find("doubleSided") && !flag(description, "doubleSided"))

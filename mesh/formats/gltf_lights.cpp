@@ -49,9 +49,8 @@ void read_cones(const Json& spot, PunctualLight& light) {
                  RightAngle);
     const double inner = in_range(spot, "innerConeAngle", 0.0, 0.0, RightAngle);
     if (!(inner < outer))
-        throw std::runtime_error(
-            fmt::format("expected an \"innerConeAngle\" below the outer one ({:g}), got {:g}",
-                        outer, inner));
+        throw std::runtime_error(fmt::format(
+            "expected an \"innerConeAngle\" below the outer one ({:g}), got {:g}", outer, inner));
     light.inner_cone = static_cast<float>(inner);
     light.outer_cone = static_cast<float>(outer);
 }
@@ -63,8 +62,7 @@ std::optional<PunctualLight> light_at(const Document& document, const Json& node
     const Json& own = child(child(node, "extensions"), Name);
     if (own.find("light") == nullptr)
         return std::nullopt;
-    const Json::Array& lights =
-        items(child(child(document.root(), "extensions"), Name), "lights");
+    const Json::Array& lights = items(child(child(document.root(), "extensions"), Name), "lights");
     const std::uint64_t index = whole(own, "light");
     if (index >= lights.size())
         throw std::runtime_error(

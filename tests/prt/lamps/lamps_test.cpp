@@ -91,9 +91,8 @@ TEST(Lamps, HaveTheGroupsThatGlow) {
                 ElementsAre(Emitter{.triangle = 1, .radiance = glm::vec3(1, 2, 3)}));
     EXPECT_THAT(lamp_groups(mesh, lamps), ElementsAre(NoGroup, 0u, NoGroup));
     // Another material in its place glows no more.
-    const Lamps none = lamps_of(mesh, [](const auto&, std::uint32_t, const Surface&) {
-        return Surface{};
-    });
+    const Lamps none =
+        lamps_of(mesh, [](const auto&, std::uint32_t, const Surface&) { return Surface{}; });
     EXPECT_TRUE(none.empty());
 }
 

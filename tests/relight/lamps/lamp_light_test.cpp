@@ -150,8 +150,7 @@ TEST(PunctualLight, SpotsHaveCones) {
     };
     EXPECT_NEAR(part(0.0), 1.0, 1e-6);
     EXPECT_NEAR(part(0.299), 1.0, 1e-3);
-    const double between =
-        (std::cos(0.45) - std::cos(0.6)) / (std::cos(0.3) - std::cos(0.6));
+    const double between = (std::cos(0.45) - std::cos(0.6)) / (std::cos(0.3) - std::cos(0.6));
     EXPECT_NEAR(part(0.45), between * between, 1e-5);
     EXPECT_EQ(part(0.61), 0.0);
 }
