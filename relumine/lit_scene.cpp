@@ -308,8 +308,11 @@ BounceReport LitScene::bounce(const Bouncing& how) {
     if (surfaces)
         bounces_.set(*scene_, std::move(*surfaces), rows);
     lamps_.set_bounces(bounces_.surfaces(), rows);
-    const BounceReport report = find_bounces(how.is_step);
+    BounceReport report = find_bounces(how.is_step);
     finish();
+    report.num_bounces = std::max(report.num_bounces, lamps_.report().num_bounces);
+    report.error = std::max(report.error, lamps_.report().error);
+    report.seconds += lamps_.report().seconds;
     return report;
 }
 

@@ -61,13 +61,17 @@ std::vector<glm::vec3> SceneLamps::light_of(const Source& source) const {
 }
 
 void SceneLamps::find() {
+    report_ = {};
     if (sources_.empty())
         return;
     for (Source& source : sources_) {
         if (source.light.empty())
             source.light = light_of(source);
         if (bounces_now_ && source.bounced.empty()) {
-            bounces_.find(source.light);
+            const BounceReport found = bounces_.find(source.light);
+            report_.num_bounces = std::max(report_.num_bounces, found.num_bounces);
+            report_.error = std::max(report_.error, found.error);
+            report_.seconds += found.seconds;
             source.bounced.assign(bounces_.bounced().begin(), bounces_.bounced().end());
         }
     }

@@ -36,6 +36,9 @@ public:
     /// Cost:    some 20 rays a receiver and a solution of bounces for each new name; otherwise
     ///          O(receivers) for each name.
     void find();
+    /// Of the bounces that the last find() had to find, of all names: the most products, and all
+    /// seconds.
+    [[nodiscard]] const BounceReport& report() const { return report_; }
     /// Lets the light of lamps bounce as that of an environment does. The next find() finds it.
     void set_bounces(const relight::SurfaceBounces& surfaces, const relight::SharedRows& rows);
     /// Ends the bounces until the next set_bounces().
@@ -65,6 +68,7 @@ private:
     std::vector<Source> sources_;
     SceneBounces bounces_;
     bool bounces_now_ = false;
+    BounceReport report_;
     std::vector<glm::vec3> direct_, bounced_;
 };
 

@@ -236,10 +236,14 @@ void Service::Impl::declare_picture(Command& command) {
         LitScene& source = lit();
         options->check({scene_path});
         options->check_fits(source.scene());
+        Stopwatch watch;
         source.dim(options->for_scene(source.scene()).emission);
+        const double seconds_dim = watch.total();
         Painter painter(source, options->picture);
         painter.save(options->path, source.lighting());
-        report = {{"output", options->path}, {"exposure", painter.exposure_ev(options->path)}};
+        report = {{"output", options->path},
+                  {"exposure", painter.exposure_ev(options->path)},
+                  {"seconds_dim", seconds_dim}};
     });
 }
 

@@ -105,9 +105,21 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
     if (material.model == mesh::MaterialModel::Unlit)
         return {.albedo = glm::vec3(0.0f), .emission = glm::max(point.base(), 0.0f)};
     Surface surface = reflecting(point, form);
-    if (material.emission != glm::vec3(0.0f))
-        surface.emission = point.textured(material.emission, material.emission_texture);
+    surface.emission = emission_at(mesh, triangle, barycentric);
     return surface;
+}
+
+glm::vec3 emission_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
+                      const glm::vec2& barycentric) {
+    if (mesh.triangle_materials.empty())
+        return glm::vec3(0.0f);
+    const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
+    if (material.model == mesh::MaterialModel::Unlit || material.emission == glm::vec3(0.0f))
+        return glm::vec3(0.0f);
+    const std::optional<mesh::TextureSlot>& slot = material.emission_texture;
+    return slot ? material.emission * mesh::sample(mesh.textures[slot->texture], *slot,
+                                                   uv_at(mesh, triangle, barycentric))
+                : material.emission;
 }
 
 Surface without_highlight(Surface surface) {

@@ -26,6 +26,11 @@ enum class GgxForm { Whole, Published };
 [[nodiscard]] Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
                                  const glm::vec2& barycentric, GgxForm form = GgxForm::Whole);
 
+/// Returns what surface_at() gives as emission, at less cost; none for unlit materials, which give
+/// no light.
+[[nodiscard]] glm::vec3 emission_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
+                                    const glm::vec2& barycentric);
+
 /// Returns the surface for a scene without a view, where highlights are left out: of one as
 /// published. What a metal reflects, F0 above the 0.04 of other surfaces, counts as diffuse:
 /// otherwise metals were black.

@@ -44,8 +44,6 @@ std::array<Point, 3> part_of(std::array<Point, 3> corners, std::uint32_t part) {
 
 /// Returns how many texels of its emission's texture a triangle covers.
 double texels_of(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
-    if (mesh.triangle_materials.empty())
-        return 0.0;
     const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
     if (!material.emission_texture || (mesh.corner_uvs.empty() && mesh.uvs.empty()))
         return 0.0;
@@ -68,7 +66,7 @@ public:
 
     Lamps run() {
         for (std::uint32_t i = 0; i < mesh_.num_triangles(); ++i)
-            if (glows(i) && front_of(mesh_, i) != glm::dvec3(0.0))
+            if (front_of(mesh_, i) != glm::dvec3(0.0))
                 add(i);
         leave_dark_ones_out();
         lamps_.lights = mesh_.lights;
@@ -81,21 +79,17 @@ private:
     static constexpr std::uint32_t MostLevels = 4;
     static_assert(LastPart == 1u << (2 * MostLevels + 2));
 
-    /// Whether a triangle is no unlit one, and may glow.
-    [[nodiscard]] bool glows(std::uint32_t triangle) const {
-        constexpr glm::vec2 Middle(1.0f / 3.0f);
-        if (override_) {
-            const Surface own = surface_at(mesh_, triangle, Middle);
-            if (const Surface given = override_(mesh_, triangle, own); given != own)
-                return given.emission != glm::vec3(0.0f);
-        }
-        if (mesh_.triangle_materials.empty())
-            return false;
-        const mesh::Material& material = mesh_.materials[mesh_.triangle_materials[triangle]];
-        return material.emission != glm::vec3(0.0f) && material.model != mesh::MaterialModel::Unlit;
-    }
-
     void add(std::uint32_t triangle) {
+        if (override_) {
+            const Surface own = surface_at(mesh_, triangle, glm::vec2(1.0f / 3.0f));
+            if (const Surface given = override_(mesh_, triangle, own); given != own) {
+                add(triangle, 1, given.emission);
+                return;
+            }
+        }
+        if (mesh_.triangle_materials.empty() ||
+            mesh_.materials[mesh_.triangle_materials[triangle]].emission == glm::vec3(0.0f))
+            return;
         const double texels = texels_of(mesh_, triangle);
         std::uint32_t level = 0;
         while (level < MostLevels && texels > TexelsOfPart * std::exp2(2.0 * level))
@@ -105,12 +99,15 @@ private:
         const auto steps = static_cast<std::uint32_t>(
             std::clamp(std::ceil(0.5 * std::sqrt(2.0 * texels / count)), 1.0, 64.0));
         for (std::uint32_t part = count; part < 2 * count; ++part)
-            if (const glm::vec3 mean = mean_emission(triangle, part, steps);
-                mean != glm::vec3(0.0f))
-                lamps_.emitters.push_back({.triangle = triangle,
-                                           .part = part,
-                                           .group = group_of(triangle),
-                                           .radiance = mean});
+            add(triangle, part, mean_emission(triangle, part, steps));
+    }
+
+    void add(std::uint32_t triangle, std::uint32_t part, const glm::vec3& radiance) {
+        if (radiance != glm::vec3(0.0f))
+            lamps_.emitters.push_back({.triangle = triangle,
+                                       .part = part,
+                                       .group = group_of(triangle),
+                                       .radiance = radiance});
     }
 
     /// The mean over the middles of steps x steps equal triangles.
@@ -123,10 +120,7 @@ private:
         glm::dvec3 sum(0.0);
         const auto add_at = [&](double x, double y) {
             const glm::vec2 at(corners[0] + x * u + y * v);
-            Surface surface = surface_at(mesh_, triangle, at);
-            if (override_)
-                surface = override_(mesh_, triangle, surface);
-            sum += glm::dvec3(surface.emission);
+            sum += glm::dvec3(emission_at(mesh_, triangle, at));
         };
         for (std::uint32_t i = 0; i < steps; ++i)
             for (std::uint32_t j = 0; j + i < steps; ++j) {
