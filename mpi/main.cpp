@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -28,6 +29,51 @@ namespace relumine::mpi {
 namespace {
 
 constexpr std::array<const char*, 4> Commands = {"precompute", "relight", "animate", "verify"};
+
+/// Returns what to say of processors that nobody uses, after all processes have said that they are
+/// of one program and one call.
+std::string meet(const std::vector<std::string>& arguments, Communicator& team) {
+    const Greeting own = greeting(arguments);
+    const std::string differs = difference(unpacked(team.broadcast(packed(own))), own);
+    if (!differs.empty())
+        throw std::runtime_error(differs);
+    team.meet();
+    std::vector<Processors> all;
+    for (const std::vector<std::byte>& bytes : team.gather(packed(processors())))
+        all.push_back(unpacked_processors(bytes));
+    return idle_processors(all);
+}
+
+/// Throws for a command that `relumine` has and this program does not.
+void require_command(const std::vector<std::string>& arguments) {
+    if (!arguments.empty() && !arguments[0].empty() && arguments[0][0] != '-' &&
+        std::find(Commands.begin(), Commands.end(), arguments[0]) == Commands.end())
+        throw app::UsageError(arguments[0],
+                              fmt::format("expected {}: the other commands are those of "
+                                          "`relumine`, without mpirun",
+                                          files::joined(Commands, ", ")));
+}
+
+/// Does the work and returns the exit code. Of processes that fail for the same reason one
+/// complains.
+int code_of(const app::CommandLine& program, Communicator& team, const std::function<void()>& work,
+            const std::function<void(const std::string&)>& complain) {
+    bool has_other_failed = false;
+    const int code = app::exit_code_of(
+        program,
+        [&] {
+            try {
+                work();
+            } catch (const OtherFailed&) {
+                has_other_failed = true;
+            }
+        },
+        [&](const std::string& message) {
+            if (team.fail())
+                complain(message);
+        });
+    return has_other_failed ? 1 : code;
+}
 
 int run(const std::vector<std::string>& arguments, app::Session& session, Communicator& team) {
     const bool is_first = team.part().index == 0;
@@ -70,41 +116,14 @@ int run(const std::vector<std::string>& arguments, app::Session& session, Commun
         team.set_timeout(timeout, complain);
     });
     const auto work = [&] {
-        const Greeting own = greeting(arguments);
-        const std::string differs = difference(unpacked(team.broadcast(packed(own))), own);
-        if (!differs.empty())
-            throw std::runtime_error(differs);
-        team.meet();
-        std::vector<Processors> all;
-        for (const std::vector<std::byte>& bytes : team.gather(packed(processors())))
-            all.push_back(unpacked_processors(bytes));
-        idle = idle_processors(all);
-        if (!arguments.empty() && !arguments[0].empty() && arguments[0][0] != '-' &&
-            std::find(Commands.begin(), Commands.end(), arguments[0]) == Commands.end())
-            throw app::UsageError(arguments[0],
-                                  fmt::format("expected {}: the other commands are those of "
-                                              "`relumine`, without mpirun",
-                                              files::joined(Commands, ", ")));
+        idle = meet(arguments, team);
+        require_command(arguments);
         const std::string text = program.run(arguments);
         if (is_first)
             std::fputs(text.c_str(), stdout);
         team.meet();
     };
-    bool has_other_failed = false;
-    const int code = app::exit_code_of(
-        program,
-        [&] {
-            try {
-                work();
-            } catch (const OtherFailed&) {
-                has_other_failed = true;
-            }
-        },
-        [&](const std::string& message) {
-            if (team.fail())
-                complain(message);
-        });
-    return has_other_failed ? 1 : code;
+    return code_of(program, team, work, complain);
 }
 
 } // namespace

@@ -211,6 +211,14 @@ private:
     int idle_frames_ = 0;
 };
 
+void panels(ViewState& state, const PanelLayout& layout) {
+    scene_panel(state, layout);
+    environment_panel(state, layout);
+    layer_panel(state, layout);
+    status_panel(state, layout);
+    drop_dialogue(state);
+}
+
 } // namespace
 
 ViewReport view(ViewState& state, const ViewOptions& options) {
@@ -241,11 +249,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
 
         // The panels come first, so that this frame shows what the pointer does in it.
         const PanelLayout layout = window.layout();
-        scene_panel(state, layout);
-        environment_panel(state, layout);
-        layer_panel(state, layout);
-        status_panel(state, layout);
-        drop_dialogue(state);
+        panels(state, layout);
         idleness.count();
         const bool is_kept =
             !scripted.screenshot.empty() || (is_last && !options.screenshot.empty());

@@ -57,6 +57,21 @@ Report surface_report(std::string_view place, const mesh::TriangleMesh& mesh,
             {"worst_position", worst}};
 }
 
+/// The error at the receivers, for people.
+void say_receivers(const Verification& check, const Scene& scene, std::uint32_t resolution,
+                   double seconds, const Session& session) {
+    const relight::ErrorReport& error = check.error;
+    const std::string_view name = prt::kind_of(scene.layout).one;
+    session.say(headline(check, name));
+    session.say(
+        fmt::format("{} receivers, R = {}, exact integration of the file's pixels in {:.1f} s",
+                    check.receivers.size(), resolution, seconds));
+    session.say(fmt::format("relative L2 {:.5f}, mean error {:.3f} %, largest {:.2f} %, bias "
+                            "{:+.3f} % of the mean radiance {:.4g}",
+                            error.relative_l2, 100.0 * error.mean_abs, 100.0 * error.max_abs,
+                            100.0 * error.bias, error.mean_radiance));
+}
+
 void run(const VerifyArguments& options, Session& session) {
     LitScene lit = lit_scene(options.scene);
     lit.light(load_environment(options.environment, session));
@@ -81,14 +96,7 @@ void run(const VerifyArguments& options, Session& session) {
 
     const glm::vec3& worst = lit.scene().receivers.positions[error.worst_receiver];
     const std::string name(prt::kind_of(lit.scene().layout).one);
-    session.say(headline(check, name));
-    session.say(
-        fmt::format("{} receivers, R = {}, exact integration of the file's pixels in {:.1f} s",
-                    check.receivers.size(), environment_of(lit).resolution, seconds));
-    session.say(fmt::format("relative L2 {:.5f}, mean error {:.3f} %, largest {:.2f} %, bias "
-                            "{:+.3f} % of the mean radiance {:.4g}",
-                            error.relative_l2, 100.0 * error.mean_abs, 100.0 * error.max_abs,
-                            100.0 * error.bias, error.mean_radiance));
+    say_receivers(check, lit.scene(), environment_of(lit).resolution, seconds, session);
     if (bounces)
         session.say(
             fmt::format("with {} bounces at albedo {}, against {} paths per receiver, whose "

@@ -26,22 +26,23 @@ std::vector<std::uint32_t> triangles_without_twin(const mesh::TriangleMesh& mesh
     return result;
 }
 
-} // namespace
-
-mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers& blockers,
-                                  float bias, const Work& work) {
-    const std::vector<std::uint32_t> single = triangles_without_twin(mesh);
-    const float large = large_side(mesh);
+/// The backs of single triangles, seen at several points each.
+struct Backs {
     Receivers receivers;
     /// Those of each triangle end here.
     std::vector<std::size_t> ends;
-    for (const std::uint32_t triangle : single) {
+};
+
+Backs backs_of(const mesh::TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
+    const float large = large_side(mesh);
+    Backs backs;
+    for (const std::uint32_t triangle : triangles) {
         const glm::vec3 face = face_normal(mesh, triangle);
         const auto add = [&](const glm::vec2& at) {
             const bool is_turned =
                 glm::dot(face, value_at(mesh, mesh.normals, {triangle, at})) < 0.0f;
-            receivers.positions.push_back(value_at(mesh, mesh.positions, {triangle, at}));
-            receivers.normals.push_back(is_turned ? face : -face);
+            backs.receivers.positions.push_back(value_at(mesh, mesh.positions, {triangle, at}));
+            backs.receivers.normals.push_back(is_turned ? face : -face);
         };
         for (const glm::vec2& near_corner :
              {glm::vec2(0.1f, 0.1f), glm::vec2(0.8f, 0.1f), glm::vec2(0.1f, 0.8f)})
@@ -49,8 +50,17 @@ mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers
         for (const glm::vec2& at :
              points_inside(longest_side(mesh, mesh.triangles[triangle]) / large))
             add(at);
-        ends.push_back(receivers.size());
+        backs.ends.push_back(backs.receivers.size());
     }
+    return backs;
+}
+
+} // namespace
+
+mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers& blockers,
+                                  float bias, const Work& work) {
+    const std::vector<std::uint32_t> single = triangles_without_twin(mesh);
+    const auto [receivers, ends] = backs_of(mesh, single);
     const auto bits = CoarseDirections().trace(receivers, blockers, bias, Progress(work));
     mesh::TriangleMesh result = mesh;
     const auto repeat = [](auto& values, std::uint32_t index) {
