@@ -228,8 +228,7 @@ void LitScene::begin_edits() {
     if (bounces_.bounced().empty()) {
         bounces_.unset();
         lamps_.forget_bounces();
-    }
-    else {
+    } else {
         find_bounces(false);
     }
 }
