@@ -336,7 +336,13 @@ void Service::Impl::perform(const JsonReader& reader, const Report& root) {
             words.emplace_back("--layers=a list");
             continue;
         }
-        if (option.is_flag) {
+        const bool is_list = option.repeats && value.type() == Report::Type::Array &&
+                             !value.values().empty() &&
+                             value.values().front().type() == Report::Type::String;
+        if (is_list) {
+            for (const Report& each : value.values())
+                words.push_back(fmt::format("--{}={}", member, value_text(reader, each, member)));
+        } else if (option.is_flag) {
             if (reader.boolean(value, fmt::format("\"{}\"", member)))
                 words.push_back("--" + member);
         } else if (const std::string text = value_text(reader, value, member);

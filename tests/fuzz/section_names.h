@@ -66,6 +66,9 @@ inline constexpr std::array<std::string_view, 60> SectionNames = {"settings",
                                                                   "r_metallic",
                                                                   "r_emission",
                                                                   "lifts",
-                                                                  "r_own_positions"};
+                                                                  "r_own_positions",
+                                                                  "lamps",
+                                                                  "emitters",
+                                                                  "e_radiance"};
 
 } // namespace relumine::fuzz
