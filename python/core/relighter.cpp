@@ -393,7 +393,6 @@ void bind_pictures(py::module_& module, py::class_<Lit, LitPointer>& type) {
 py::tuple bounce(Lit& own, const std::optional<std::uint32_t>& bounces, const py::dict& given) {
     const OutputOptions options = options_from<OutputOptions>(given);
     const BounceReport report = change(own, [&](LitScene& lit) {
-        lit.dim(options.emission);
         const std::vector<glm::vec3> albedo = bounce_albedo(lit.scene(), options);
         return lit.bounce({.albedo = albedo, .limits = {.num_bounces = bounces}});
     });
