@@ -139,8 +139,6 @@ void LeftOut::material(const Json& description) {
         count("cut out by alpha (leaves, fences); alpha is not read", "what is cut out is opaque");
     else if (mode != "OPAQUE")
         count("transparent by alpha; alpha is not read", "surfaces are opaque");
-    if (description.find("normalTexture"))
-        count("with a normal map, which is not read", "surfaces are as smooth as the mesh");
     if (description.find("occlusionTexture"))
         count("with an occlusion map, which is not read", "rays find what blocks the light");
     if (description.find("doubleSided") && !flag(description, "doubleSided"))
@@ -158,7 +156,8 @@ void LeftOut::material(const Json& description) {
                                       {&pbr, "metallicRoughnessTexture"},
                                       {&old, "diffuseTexture"},
                                       {&old, "specularGlossinessTexture"},
-                                      {&description, "emissiveTexture"}})
+                                      {&description, "emissiveTexture"},
+                                      {&description, "normalTexture"}})
         texture(child(*parent, key));
 }
 

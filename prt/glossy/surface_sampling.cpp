@@ -13,35 +13,19 @@ namespace relumine::prt {
 
 namespace {
 
-/// Interpolates an attribute of the corners at a point.
-template<class Value>
-Value interpolate(const std::array<Value, 3>& corners, const glm::vec2& barycentric) {
-    return corners[0] * (1.0f - barycentric.x - barycentric.y) + corners[1] * barycentric.x +
-           corners[2] * barycentric.y;
-}
-
-glm::vec2 uv_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
-                const glm::vec2& barycentric) {
-    const mesh::Triangle& t = mesh.triangles[triangle];
-    if (!mesh.corner_uvs.empty())
-        return interpolate(mesh.corner_uvs[triangle], barycentric);
-    if (!mesh.uvs.empty())
-        return interpolate<glm::vec2>({mesh.uvs[t[0]], mesh.uvs[t[1]], mesh.uvs[t[2]]},
-                                      barycentric);
-    return glm::vec2(0.0f);
-}
-
 /// A point of a mesh, and the material there.
 struct MaterialPoint {
     const mesh::TriangleMesh& mesh;
     const mesh::Material& material;
     MeshPoint at;
-    glm::vec2 uv;
 
+    [[nodiscard]] glm::vec3 texel(const mesh::TextureSlot& slot) const {
+        return mesh::sample(mesh.textures[slot.texture], slot, uv_at(mesh, at, slot.uv_set));
+    }
     /// Returns a value times its texture, if there is one.
     [[nodiscard]] glm::vec3 textured(const glm::vec3& value,
                                      const std::optional<mesh::TextureSlot>& slot) const {
-        return slot ? value * mesh::sample(mesh.textures[slot->texture], *slot, uv) : value;
+        return slot ? value * texel(*slot) : value;
     }
     /// Returns the base colour, not limited where vertices are brighter than 1.
     [[nodiscard]] glm::vec3 base() const {
@@ -69,7 +53,7 @@ Surface reflecting(const MaterialPoint& point, GgxForm form) {
     const Highlight highlight = form == GgxForm::Whole ? Highlight::GgxWhole : Highlight::Ggx;
     float metallic = material.metallic, roughness = material.roughness;
     if (const auto& slot = material.metallic_roughness_texture) {
-        const glm::vec3 texel = mesh::sample(point.mesh.textures[slot->texture], *slot, point.uv);
+        const glm::vec3 texel = point.texel(*slot);
         roughness *= texel.g;
         metallic *= texel.b;
     }
@@ -95,13 +79,7 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
     if (mesh.triangle_materials.empty())
         return {};
     const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
-    const bool has_texture = material.base_color_texture || material.metallic_roughness_texture ||
-                             material.specular_texture || material.emission_texture;
-    const MaterialPoint point{.mesh = mesh,
-                              .material = material,
-                              .at = {triangle, barycentric},
-                              .uv = has_texture ? uv_at(mesh, triangle, barycentric)
-                                                : glm::vec2(0.0f)};
+    const MaterialPoint point{.mesh = mesh, .material = material, .at = {triangle, barycentric}};
     if (material.model == mesh::MaterialModel::Unlit)
         return {.albedo = glm::vec3(0.0f), .emission = glm::max(point.base(), 0.0f)};
     Surface surface = reflecting(point, form);
@@ -117,8 +95,9 @@ glm::vec3 emission_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
     if (material.model == mesh::MaterialModel::Unlit || material.emission == glm::vec3(0.0f))
         return glm::vec3(0.0f);
     const std::optional<mesh::TextureSlot>& slot = material.emission_texture;
-    return slot ? material.emission * mesh::sample(mesh.textures[slot->texture], *slot,
-                                                   uv_at(mesh, triangle, barycentric))
+    return slot ? material.emission *
+                      mesh::sample(mesh.textures[slot->texture], *slot,
+                                   uv_at(mesh, {triangle, barycentric}, slot->uv_set))
                 : material.emission;
 }
 

@@ -45,15 +45,16 @@ std::array<Point, 3> part_of(std::array<Point, 3> corners, std::uint32_t part) {
 /// Returns how many texels of its emission's texture a triangle covers.
 double texels_of(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
     const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
-    if (!material.emission_texture || (mesh.corner_uvs.empty() && mesh.uvs.empty()))
+    const std::optional<mesh::TextureSlot>& slot = material.emission_texture;
+    if (!slot)
         return 0.0;
     std::array<glm::vec2, 3> uvs{};
-    for (std::size_t i = 0; i < 3; ++i)
-        uvs[i] = material.emission_texture->uv_from_mesh_uv *
-                 (mesh.corner_uvs.empty() ? mesh.uvs[mesh.triangles[triangle][i]]
-                                          : mesh.corner_uvs[triangle][i]);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::vec2 corner(i == 1 ? 1.0f : 0.0f, i == 2 ? 1.0f : 0.0f);
+        uvs[i] = slot->uv_from_mesh_uv * uv_at(mesh, {triangle, corner}, slot->uv_set);
+    }
     const glm::dvec2 u(uvs[1] - uvs[0]), v(uvs[2] - uvs[0]);
-    const mesh::Texture& texture = mesh.textures[material.emission_texture->texture];
+    const mesh::Texture& texture = mesh.textures[slot->texture];
     return 0.5 * std::abs(u.x * v.y - u.y * v.x) * texture.width * texture.height;
 }
 

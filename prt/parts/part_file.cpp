@@ -130,8 +130,9 @@ PartLight light_of(const SectionReader& reader, std::size_t num_own, const Trans
 }
 
 /// What concerns the colours of a mesh. They are in the receivers' surfaces already.
-constexpr std::array<const char*, 6> ColorSections = {"colors", "uvs",         "materials",
-                                                      "images", "t_materials", "corner_uvs"};
+constexpr std::array<const char*, 8> ColorSections = {"colors",          "uvs",       "second_uvs",
+                                                      "corner_tangents", "materials", "images",
+                                                      "t_materials",     "corner_uvs"};
 
 } // namespace
 

@@ -21,13 +21,17 @@ Json json_of(const std::optional<TextureSlot>& slot, const Stored& stored) {
     if (!slot)
         return nullptr;
     const glm::mat2& m = slot->uv_from_mesh_uv;
-    return {{"image", stored.at(slot->texture)},
-            {"srgb", slot->is_srgb},
-            {"wrap", {static_cast<int>(slot->wrap[0]), static_cast<int>(slot->wrap[1])}},
-            {"uv", {m[0][0], m[0][1], m[1][0], m[1][1], slot->uv_offset.x, slot->uv_offset.y}}};
+    Json json = {
+        {"image", stored.at(slot->texture)},
+        {"srgb", slot->is_srgb},
+        {"wrap", {static_cast<int>(slot->wrap[0]), static_cast<int>(slot->wrap[1])}},
+        {"uv", {m[0][0], m[0][1], m[1][0], m[1][1], slot->uv_offset.x, slot->uv_offset.y}}};
+    if (slot->uv_set != 0)
+        json.set("uv_set", slot->uv_set);
+    return json;
 }
 
-/// The textures of a material that its albedo and its emission depend on.
+/// The textures of a material that its picture depends on.
 std::vector<std::optional<TextureSlot> Material::*> color_slots(const Material& material) {
     std::vector<std::optional<TextureSlot> Material::*> slots = {&Material::base_color_texture};
     if (material.model == mesh::MaterialModel::MetallicRoughness)
@@ -36,6 +40,8 @@ std::vector<std::optional<TextureSlot> Material::*> color_slots(const Material& 
         slots.push_back(&Material::specular_texture);
     if (material.emission != glm::vec3(0.0f))
         slots.push_back(&Material::emission_texture);
+    if (material.normal_texture)
+        slots.push_back(&Material::normal_texture);
     return slots;
 }
 
@@ -48,10 +54,9 @@ bool has_files(const Material& material, const std::vector<mesh::Texture>& textu
 }
 
 const char* name_of(std::optional<TextureSlot> Material::*slot) {
-    return slot == &Material::base_color_texture           ? "base_texture"
-           : slot == &Material::metallic_roughness_texture ? "metallic_texture"
-           : slot == &Material::specular_texture           ? "specular_texture"
-                                                           : "emission_texture";
+    return std::find_if(mesh::TextureSlots.begin(), mesh::TextureSlots.end(),
+                        [&](const mesh::SlotName& entry) { return entry.slot == slot; })
+        ->name;
 }
 
 /// Returns a whole number below a limit.
@@ -92,6 +97,7 @@ std::optional<TextureSlot> slot_of(const Json& json, std::size_t num_textures) {
     return TextureSlot{.texture = below(json.at("image"), static_cast<std::uint32_t>(num_textures)),
                        .is_srgb = json.at("srgb").boolean(),
                        .wrap = {wrap(0), wrap(1)},
+                       .uv_set = json.find("uv_set") ? below(json.at("uv_set"), 2) : 0,
                        .uv_from_mesh_uv = glm::mat2(finite(uv.at(0)), finite(uv.at(1)),
                                                     finite(uv.at(2)), finite(uv.at(3))),
                        .uv_offset = glm::vec2(finite(uv.at(4)), finite(uv.at(5)))};
@@ -113,6 +119,10 @@ Material material_of(const Json& json, std::size_t num_textures) {
         }
     for (const auto slot : color_slots(material))
         material.*slot = slot_of(json.at(name_of(slot)), num_textures);
+    if (const Json* normals = json.find(name_of(&Material::normal_texture))) {
+        material.normal_texture = slot_of(*normals, num_textures);
+        material.normal_scale = finite(json.at("normal_scale"));
+    }
     return material;
 }
 
@@ -135,7 +145,8 @@ void add_materials(NewSections& sections, const Scene& scene) {
         return;
     const mesh::TriangleMesh& mesh = scene.mesh;
     const auto has_texture = [&](const Material& material) {
-        return (material.base_color_texture || material.emission_texture) &&
+        return (material.base_color_texture || material.emission_texture ||
+                material.normal_texture) &&
                has_files(material, mesh.textures);
     };
     if (mesh.triangle_materials.empty() ||
@@ -155,6 +166,8 @@ void add_materials(NewSections& sections, const Scene& scene) {
         const bool is_kept = has_files(material, mesh.textures);
         if (const glm::vec3& emission = material.emission; emission != glm::vec3(0.0f))
             json.set("emission", {emission.r, emission.g, emission.b});
+        if (material.normal_texture)
+            json.set("normal_scale", material.normal_scale);
         for (const auto slot : color_slots(material)) {
             const auto& used = is_kept ? material.*slot : std::nullopt;
             if (used && !stored.contains(used->texture)) {
@@ -174,6 +187,8 @@ void add_materials(NewSections& sections, const Scene& scene) {
     sections["t_materials"] = SectionContent::view(mesh.triangle_materials);
     if (!mesh.corner_uvs.empty())
         sections["corner_uvs"] = SectionContent::view(mesh.corner_uvs);
+    if (!mesh.corner_tangents.empty())
+        sections["corner_tangents"] = SectionContent::view(mesh.corner_tangents);
 }
 
 void read_materials(const SectionReader& reader, Scene& scene) {
@@ -200,12 +215,20 @@ void read_materials(const SectionReader& reader, Scene& scene) {
         reader.fail("t_materials", "indices of materials");
     mesh.corner_uvs =
         reader.elements<std::array<glm::vec2, 3>>("corner_uvs", mesh.num_triangles(), true);
+    mesh.corner_tangents =
+        reader.elements<std::array<glm::vec4, 3>>("corner_tangents", mesh.num_triangles(), true);
 }
 
 void check_materials(const SceneCheck& check, const Scene& scene) {
-    for (std::size_t corner = 0; corner < 3; ++corner)
+    const auto is_tangent = [](const glm::vec4& tangent) {
+        return is_within(glm::vec3(tangent), -2.0f, 2.0f) && std::abs(tangent.w) <= 2.0f;
+    };
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+        check.all("finite tangents", scene.mesh.corner_tangents, is_tangent,
+                  [&](const auto& tangents) { return tangents[corner]; });
         check.all("finite uvs of corners", scene.mesh.corner_uvs, is_finite_uv,
                   [&](const auto& uvs) { return uvs[corner]; });
+    }
 }
 
 } // namespace

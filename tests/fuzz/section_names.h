@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 63> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 65> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -67,6 +67,8 @@ inline constexpr std::array<std::string_view, 63> SectionNames = {"settings",
                                                                   "r_emission",
                                                                   "lifts",
                                                                   "r_own_positions",
+                                                                  "second_uvs",
+                                                                  "corner_tangents",
                                                                   "lamps",
                                                                   "emitters",
                                                                   "e_radiance"};
