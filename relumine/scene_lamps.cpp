@@ -22,17 +22,22 @@ void SceneLamps::set(std::vector<EmissionGain> gains) {
     for (const EmissionGain& gain : gains_)
         if (std::find(names.begin(), names.end(), gain.name) == names.end())
             names.push_back(gain.name);
+    const auto source_of = [&](const std::string& name) {
+        return std::find_if(sources_.begin(), sources_.end(),
+                            [&](const Source& source) { return source.name == name; });
+    };
+    // The lamps without a name in the factors are others where the names are.
+    const bool has_same_names =
+        names.size() == sources_.size() &&
+        std::all_of(names.begin(), names.end(),
+                    [&](const std::string& name) { return source_of(name) != sources_.end(); });
     std::vector<Source> sources;
-    const bool has_same_names = names.size() == sources_.size();
-    for (const std::string& name : names) {
-        const auto found = std::find_if(sources_.begin(), sources_.end(),
-                                        [&](const Source& source) { return source.name == name; });
-        // The lamps without a name in the factors are others where the names are.
-        if (found != sources_.end() && (!name.empty() || has_same_names))
+    for (const std::string& name : names)
+        if (const auto found = source_of(name);
+            found != sources_.end() && (!name.empty() || has_same_names))
             sources.push_back(std::move(*found));
         else
             sources.push_back({.name = name});
-    }
     sources_ = std::move(sources);
 }
 
