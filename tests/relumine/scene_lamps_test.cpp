@@ -46,101 +46,100 @@ Scene closed_room() {
                       {.name = "bulb", .base_color = grey, .emission = {9, 6, 3}},
                       {.name = "screen", .base_color = grey, .emission = {0, 1, 4}}};
     const glm::vec3 x(2, 0, 0), y(0, 2, 0), z(0, 0, 2), low(-1.0f), high(1.0f);
-    for (const auto& [corner, u, v] : {std::initializer_list<std::array<glm::vec3, 3>>{
-             {low, z, x}, {low, y, z}, {low, x, y}, {high, -x, -z}, {high, -z, -y}, {high, -y, -x}})
+    const std::array<std::array<glm::vec3, 3>, 6> walls = {
+        {{low, z, x}, {low, y, z}, {low, x, y}, {high, -x, -z}, {high, -z, -y}, {high, -y, -x}}};
+    for (const auto& [corner, u, v] : walls)
         add_wall(mesh, 25, corner, u, v, 0);
-        add_wall(mesh, 3, {-0.4f, 0.9f, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f}, 1);
-        add_wall(mesh, 3, {-0.98f, -0.5f, -0.3f}, {0, 0.4f, 0}, {0, 0, 0.6f}, 2);
-        add_wall(mesh, 9, {-0.2f, -0.6f, -0.2f}, {0, 0, 0.8f}, {0.8f, 0, 0}, 0);
-        PrecomputeOptions options{.tolerance = 0.05f, .min_level = 2, .no_refine = true};
-        options.bounce_tolerance = 0.01f;
-        return precompute(std::move(mesh), options);
+    add_wall(mesh, 3, {-0.4f, 0.9f, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f}, 1);
+    add_wall(mesh, 3, {-0.98f, -0.5f, -0.3f}, {0, 0.4f, 0}, {0, 0, 0.6f}, 2);
+    add_wall(mesh, 9, {-0.2f, -0.6f, -0.2f}, {0, 0, 0.8f}, {0.8f, 0, 0}, 0);
+    PrecomputeOptions options{.tolerance = 0.05f, .min_level = 2, .no_refine = true};
+    options.bounce_tolerance = 0.01f;
+    return precompute(std::move(mesh), options);
 }
 
 const Scene& room() {
-        static const Scene scene = closed_room();
-        return scene;
+    static const Scene scene = closed_room();
+    return scene;
 }
 
 LitScene lit_room(const std::vector<EmissionGain>& gains = {}) {
-        LitScene lit(room());
-        lit.dim(gains);
-        lit.light(cubemap::CubeMap(8));
-        lit.bounce({.albedo = bounce_albedo(lit.scene())});
-        return lit;
+    LitScene lit(room());
+    lit.dim(gains);
+    lit.light(cubemap::CubeMap(8));
+    lit.bounce({.albedo = bounce_albedo(lit.scene())});
+    return lit;
 }
 
 std::vector<glm::vec3> light_of(const std::vector<EmissionGain>& gains) {
-        const LitScene lit = lit_room(gains);
-        return {lit.radiance().begin(), lit.radiance().end()};
+    const LitScene lit = lit_room(gains);
+    return {lit.radiance().begin(), lit.radiance().end()};
 }
 
 TEST(SceneLamps, ARoomIsThatOfThePathTracer) {
-        const Verification check =
-            verify(lit_room(), {.num_samples = 60, .num_surface_points = 0, .num_paths = 600});
-        EXPECT_GT(check.error.mean_radiance, 0.1);
-        EXPECT_LT(std::sqrt(check.error.relative_l2 * check.error.relative_l2 -
-                            check.noise * check.noise),
-                  0.02);
-        EXPECT_LT(check.noise, 0.02);
+    const Verification check =
+        verify(lit_room(), {.num_samples = 60, .num_surface_points = 0, .num_paths = 600});
+    EXPECT_GT(check.error.mean_radiance, 0.1);
+    EXPECT_LT(
+        std::sqrt(check.error.relative_l2 * check.error.relative_l2 - check.noise * check.noise),
+        0.02);
+    EXPECT_LT(check.noise, 0.02);
 }
 
 TEST(SceneLamps, FactorsAreWeightsOfASum) {
-        const std::vector<glm::vec3> all = light_of({});
-        const std::vector<glm::vec3> lamp = light_of({{"screen", glm::vec3(0.0f)}});
-        const std::vector<glm::vec3> screen = light_of({{"lamp", glm::vec3(0.0f)}});
-        LitScene lit = lit_room();
-        lit.dim({{"lamp", {2, 1, 0}}, {"", glm::vec3(0.5f)}});
-        double error = 0.0;
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            EXPECT_LT(glm::distance(lamp[i] + screen[i], all[i]),
-                      0.05f * glm::length(all[i]) + 0.02f);
-            const glm::vec3 expected = glm::vec3(1.0f, 0.5f, 0.0f) * lamp[i] + 0.5f * screen[i];
-            error = std::max(error, double{glm::distance(lit.radiance()[i], expected)});
-        }
-        EXPECT_LT(error, 2e-3);
-        lit.dim({{.gain = glm::vec3(0.0f)}});
-        for (const glm::vec3& value : lit.radiance())
-            EXPECT_EQ(value, glm::vec3(0.0f));
+    const std::vector<glm::vec3> all = light_of({});
+    const std::vector<glm::vec3> lamp = light_of({{"screen", glm::vec3(0.0f)}});
+    const std::vector<glm::vec3> screen = light_of({{"lamp", glm::vec3(0.0f)}});
+    LitScene lit = lit_room();
+    lit.dim({{"lamp", {2, 1, 0}}, {"", glm::vec3(0.5f)}});
+    double error = 0.0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        EXPECT_LT(glm::distance(lamp[i] + screen[i], all[i]), 0.05f * glm::length(all[i]) + 0.02f);
+        const glm::vec3 expected = glm::vec3(1.0f, 0.5f, 0.0f) * lamp[i] + 0.5f * screen[i];
+        error = std::max(error, double{glm::distance(lit.radiance()[i], expected)});
+    }
+    EXPECT_LT(error, 2e-3);
+    lit.dim({{.gain = glm::vec3(0.0f)}});
+    for (const glm::vec3& value : lit.radiance())
+        EXPECT_EQ(value, glm::vec3(0.0f));
 }
 
 // Dimming there and back is no change, bit by bit, and a factor leaves no trace of others.
 TEST(SceneLamps, AFactorIsTheSameOnAnyWay) {
-        const std::vector<EmissionGain> half = {{"lamp", glm::vec3(0.5f)}};
-        LitScene lit = lit_room();
-        lit.dim(half);
-        lit.dim({{"screen", glm::vec3(3.0f)}});
-        lit.dim(half);
-        EXPECT_THAT(lit.radiance(), testing::ElementsAreArray(light_of(half)));
-        EXPECT_THROW(lit.dim({{"lmap", glm::vec3(2.0f)}}), std::invalid_argument);
-        EXPECT_THAT(lit.radiance(), testing::ElementsAreArray(light_of(half)));
+    const std::vector<EmissionGain> half = {{"lamp", glm::vec3(0.5f)}};
+    LitScene lit = lit_room();
+    lit.dim(half);
+    lit.dim({{"screen", glm::vec3(3.0f)}});
+    lit.dim(half);
+    EXPECT_THAT(lit.radiance(), testing::ElementsAreArray(light_of(half)));
+    EXPECT_THROW(lit.dim({{"lmap", glm::vec3(2.0f)}}), std::invalid_argument);
+    EXPECT_THAT(lit.radiance(), testing::ElementsAreArray(light_of(half)));
 }
 
 TEST(SceneLamps, StayInTheFile) {
-        const std::filesystem::path path =
-            std::filesystem::path(testing::TempDir()) / "scene_lamps.prt";
-        Scene scene = room();
-        scene.lamps.lights = {{.name = "spot",
-                               .kind = mesh::PunctualLight::Kind::Spot,
-                               .intensity = {1, 2, 3},
-                               .range = 4.0f,
-                               .inner_cone = 0.1f,
-                               .outer_cone = 0.2f},
-                              {.name = "sun", .kind = mesh::PunctualLight::Kind::Directional}};
-        save_scene(path, scene);
-        EXPECT_EQ(load_scene(path).lamps, scene.lamps);
-        scene.lamps.lights[0].range = -1.0f;
-        EXPECT_THROW(save_scene(path, scene), std::runtime_error);
-        std::filesystem::remove(path);
+    const std::filesystem::path path =
+        std::filesystem::path(testing::TempDir()) / "scene_lamps.prt";
+    Scene scene = room();
+    scene.lamps.lights = {{.name = "spot",
+                           .kind = mesh::PunctualLight::Kind::Spot,
+                           .intensity = {1, 2, 3},
+                           .range = 4.0f,
+                           .inner_cone = 0.1f,
+                           .outer_cone = 0.2f},
+                          {.name = "sun", .kind = mesh::PunctualLight::Kind::Directional}};
+    save_scene(path, scene);
+    EXPECT_EQ(load_scene(path).lamps, scene.lamps);
+    scene.lamps.lights[0].range = -1.0f;
+    EXPECT_THROW(save_scene(path, scene), std::runtime_error);
+    std::filesystem::remove(path);
 }
 
 TEST(Emission, IsReadAndShown) {
-        for (const char* text : {"0.5", "1,2,3", "lamp=0.5", "a=b=1,0.25,0.5,2"})
-            EXPECT_EQ(EmissionText::show(EmissionText::read(text)), text);
-        EXPECT_EQ(EmissionText::read("neon=2,1,0.5,0"), (EmissionGain{"neon", {2, 1, 0}}));
-        for (const char* text : {"", "lamp=", "=1", "lamp=1,2,3", "lamp=-1", "lamp=x"})
-            EXPECT_THROW(static_cast<void>(EmissionText::read(text)), std::invalid_argument)
-                << text;
+    for (const char* text : {"0.5", "1,2,3", "lamp=0.5", "a=b=1,0.25,0.5,2"})
+        EXPECT_EQ(EmissionText::show(EmissionText::read(text)), text);
+    EXPECT_EQ(EmissionText::read("neon=2,1,0.5,0"), (EmissionGain{"neon", {2, 1, 0}}));
+    for (const char* text : {"", "lamp=", "=1", "lamp=1,2,3", "lamp=-1", "lamp=x"})
+        EXPECT_THROW(static_cast<void>(EmissionText::read(text)), std::invalid_argument) << text;
 }
 
 } // namespace
