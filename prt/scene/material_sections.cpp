@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 
+#include "prt/glossy/surface_sampling.h"
 #include "prt/scene/json_members.h"
 #include "prt/scene/section_group.h"
 
@@ -110,6 +111,12 @@ Material material_of(const Json& json, std::size_t num_textures) {
     material.metallic = fraction(json.at("metallic"));
     material.specular = color(json.at("specular"));
     material.times_vertex_color = json.at("times_vertex_color").boolean();
+    if (const Json* roughness = json.find("roughness")) {
+        material.roughness = fraction(*roughness);
+        material.exponent = finite(json.at("exponent"));
+        if (material.exponent < 0.0f)
+            throw std::out_of_range("expected an exponent of 0 or more");
+    }
     if (const Json* emission = json.find("emission"))
         for (int channel = 0; channel < 3; ++channel) {
             material.emission[channel] =
@@ -149,8 +156,15 @@ void add_materials(NewSections& sections, const Scene& scene) {
                 material.normal_texture) &&
                has_files(material, mesh.textures);
     };
+    // Without an eye pictures find the highlights by rays.
+    const auto mirrors = [&](const Material& material) {
+        return scene.receivers.to_eye.empty() && has_highlight(material);
+    };
+    const auto is_needed = [&](const Material& material) {
+        return has_texture(material) || mirrors(material);
+    };
     if (mesh.triangle_materials.empty() ||
-        std::none_of(mesh.materials.begin(), mesh.materials.end(), has_texture))
+        std::none_of(mesh.materials.begin(), mesh.materials.end(), is_needed))
         return;
     Json textures = Json::Array{}, materials = Json::Array{};
     std::vector<std::byte> images;
@@ -162,6 +176,10 @@ void add_materials(NewSections& sections, const Scene& scene) {
             {"metallic", material.metallic},
             {"specular", {material.specular.r, material.specular.g, material.specular.b}},
             {"times_vertex_color", material.times_vertex_color}};
+        if (mirrors(material)) {
+            json.set("roughness", material.roughness);
+            json.set("exponent", material.exponent);
+        }
         // A picture takes a material without its textures from the vertices.
         const bool is_kept = has_files(material, mesh.textures);
         if (const glm::vec3& emission = material.emission; emission != glm::vec3(0.0f))

@@ -12,6 +12,7 @@
 #include "prt/glossy/brdf.h"
 #include "prt/receivers/mesh_point.h"
 #include "relight/harmonics/harmonics.h"
+#include "relight/pictures/mirrors.h"
 #include "relight/sharp/light_packets.h"
 
 namespace relumine::relight {
@@ -142,14 +143,15 @@ private:
 /// Draws a square of pixels.
 class PictureView::Tile {
 public:
-    Tile(const PictureView& view, const MeshLight& light, const LightPackets& packets)
+    Tile(const PictureView& view, const MeshLight& light, const LightPackets& packets,
+         const Backdrop* backdrop)
         : view_(view), mesh_(view.mesh_), light_(light),
           packets_(packets), rays_{.blockers = &view.rays_, .bias = light.bias},
+          backdrop_(backdrop), mirrors_(mesh_, *view.twins_, light, view.floor_, backdrop),
           lanes_(packets.num_packets()) {}
 
     /// Draws the mesh alone, with its alpha, where there is no backdrop.
-    void draw(std::uint32_t x_begin, std::uint32_t y_begin, const Backdrop* backdrop,
-              Picture& picture) {
+    void draw(std::uint32_t x_begin, std::uint32_t y_begin, Picture& picture) {
         const std::uint32_t x_end = std::min(x_begin + TileSize, picture.width);
         const std::uint32_t y_end = std::min(y_begin + TileSize, picture.height);
         // The tile and, for the lights, a ring of pixels around it.
@@ -170,10 +172,10 @@ public:
                 const std::size_t pixel = std::size_t{y} * picture.width + x;
                 const auto [color, alpha] = drawn(x, y, right, bottom);
                 picture.pixels[pixel] = color;
-                if (backdrop == nullptr)
+                if (backdrop_ == nullptr)
                     picture.alpha[pixel] = alpha;
                 else if (alpha < 1.0f || light_.open_floor)
-                    picture.pixels[pixel] += seen_behind(view_.grid_, x, y, passed_, *backdrop);
+                    picture.pixels[pixel] += seen_behind(view_.grid_, x, y, passed_, *backdrop_);
             }
     }
 
@@ -192,8 +194,11 @@ private:
     }
 
     /// Returns what a sample sends on of the light of the vertices.
-    [[nodiscard]] glm::vec3 soft(const Sample& sample) const {
+    [[nodiscard]] glm::vec3 soft(const Sample& sample, const std::optional<Mirror>& mirror) {
         const prt::MeshPoint at = point(sample);
+        if (mirror)
+            return mirrors_.soft(*mirror, at,
+                                 light_.textures->light(light_.radiance, at, tilted(at)));
         if (!has_texture(sample))
             return prt::value_at(mesh_, light_.radiance, at);
         const glm::vec3 change = tilted(at);
@@ -246,14 +251,15 @@ private:
     }
 
     /// Returns what a sample gives of its own.
-    [[nodiscard]] glm::vec3 emitted(const Sample& sample) const {
+    [[nodiscard]] glm::vec3 emitted(const Sample& sample,
+                                    const std::optional<Mirror>& mirror) const {
         if (light_.emission.empty())
             return glm::vec3(0.0f);
-        if (!has_texture(sample))
-            return prt::value_at(mesh_, light_.emission, point(sample));
-        const glm::vec3 emission = light_.textures->surface(point(sample)).emission;
-        return light_.emission_gains.empty() ? emission
-                                             : light_.emission_gains[sample.triangle] * emission;
+        const glm::vec3 gain = light_.emission_gain(sample.triangle);
+        if (mirror)
+            return gain * mirror->surface.emission;
+        return has_texture(sample) ? gain * light_.textures->surface(point(sample)).emission
+                                   : prt::value_at(mesh_, light_.emission, point(sample));
     }
 
     /// Finds the lights that reach a sample.
@@ -307,23 +313,29 @@ private:
         glm::vec3 sum(0.0f);
         float alpha = 0.0f;
         passed_.assign(samples.size(), glm::vec3(1.0f));
+        const Sample& in_middle = middle(samples);
+        mirrors_.begin_pixel(x, y,
+                             in_middle.triangle == NoTriangle
+                                 ? std::nullopt
+                                 : std::optional<prt::MeshPoint>(point(in_middle)));
         for (std::size_t i = 0; i < samples.size(); ++i) {
             const Sample& sample = samples[i];
             const float opacity = view_.opacity(sample);
             if (opacity == 0.0f)
                 continue;
             const bool is_caught = catches(sample);
-            glm::vec3 radiance = soft(sample);
+            const std::optional<Mirror> mirror = mirrors_.at(point(sample));
+            glm::vec3 radiance = soft(sample, mirror);
             if (traces && !is_dark) {
                 if (!even)
                     look(sample, lanes_);
-                radiance +=
-                    is_caught ? white(prt::shading_normal(mesh_, point(sample))) : traced(sample);
+                radiance += is_caught ? white(prt::shading_normal(mesh_, point(sample)))
+                                      : traced(sample, mirror);
             }
             passed_[i] = is_caught ? caught(radiance, *light_.open_floor, opacity)
                                    : glm::vec3(1.0f - opacity);
             if (!is_caught)
-                sum += opacity * (radiance + emitted(sample));
+                sum += opacity * (radiance + emitted(sample, mirror));
             alpha += is_caught ? opacity_of(passed_[i]) : opacity;
         }
         const auto count = static_cast<float>(samples.size());
@@ -346,7 +358,7 @@ private:
     }
 
     /// Returns what a sample sends on of the lights in lanes_.
-    [[nodiscard]] glm::vec3 traced(const Sample& sample) {
+    [[nodiscard]] glm::vec3 traced(const Sample& sample, const std::optional<Mirror>& mirror) {
         if (std::all_of(lanes_.begin(), lanes_.end(),
                         [](std::uint16_t lanes) { return lanes == 0; }))
             return glm::vec3(0.0f);
@@ -356,21 +368,34 @@ private:
             light_.albedo.empty() ? glm::vec3(1.0f) : prt::value_at(mesh_, light_.albedo, at);
         if (light_.surfaces.empty())
             return albedo * white(normal);
+        if (mirror) {
+            prt::Surface surface = mirror->surface;
+            if (prt::facts_of(surface.highlight).is_roughness)
+                surface.roughness_or_exponent =
+                    std::max(surface.roughness_or_exponent, light_.reflections->least_roughness());
+            return albedo * reflected(surface, mirror->normal, mirror->to_eye);
+        }
         const prt::Surface surface = surface_at(sample);
         if (surface.highlight == prt::Highlight::None || !light_.eye)
             return albedo * prt::reflect(surface, {.diffuse = white(normal)}, 0.0f);
-        const glm::vec3 to_eye =
-            glm::normalize(*light_.eye - prt::value_at(mesh_, mesh_.positions, at));
+        return albedo *
+               reflected(surface, normal,
+                         glm::normalize(*light_.eye - prt::value_at(mesh_, mesh_.positions, at)));
+    }
+
+    /// Returns what a surface sends to the eye of the lights in lanes_.
+    [[nodiscard]] glm::vec3 reflected(const prt::Surface& surface, const glm::vec3& normal,
+                                      const glm::vec3& to_eye) const {
         prt::BlockSurfaces block;
         block.set(0, surface, normal, to_eye);
         prt::Lobes<glm::dvec3> lobes;
         packets_.light_block(block, {&normal, 1}, lanes_, {&lobes, 1});
-        return albedo * prt::reflect(surface,
-                                     {.diffuse = glm::vec3(lobes.diffuse),
-                                      .diffuse_grazing = glm::vec3(lobes.diffuse_grazing),
-                                      .specular = glm::vec3(lobes.specular),
-                                      .specular_grazing = glm::vec3(lobes.specular_grazing)},
-                                     glm::dot(normal, to_eye));
+        return prt::reflect(surface,
+                            {.diffuse = glm::vec3(lobes.diffuse),
+                             .diffuse_grazing = glm::vec3(lobes.diffuse_grazing),
+                             .specular = glm::vec3(lobes.specular),
+                             .specular_grazing = glm::vec3(lobes.specular_grazing)},
+                            glm::dot(normal, to_eye));
     }
 
     /// Returns the surface between the vertices', with the highlight of the nearest and the colours
@@ -411,6 +436,8 @@ private:
     const MeshLight& light_;
     const LightPackets& packets_;
     ShadowRays rays_;
+    const Backdrop* backdrop_;
+    Mirrors mirrors_;
     std::uint32_t left_ = 0, top_ = 0, width_ = 0;
     std::vector<Row> rows_;
     /// [pixels of the tile and its ring x packets]
@@ -430,6 +457,7 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
     };
     if (light.radiance.size() != mesh_.num_vertices() || !fits(light.albedo.size()) ||
         !fits(light.surfaces.size()) || !fits(light.lobes.size()) || !fits(light.emission.size()) ||
+        (light.reflections != nullptr && light.mirrored.size() != mesh_.num_vertices()) ||
         light.harmonics.size() % mesh_.num_vertices() != 0 ||
         light.harmonics.size() / mesh_.num_vertices() > MaxHarmonics)
         throw std::invalid_argument("expected one radiance, albedo and surface per vertex");
@@ -446,8 +474,8 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
     files::parallel_for(std::uint32_t{0}, num_tiles, [&](std::uint32_t tile) {
         if (options_.stop.stop_requested())
             return;
-        Tile(*this, light, packets)
-            .draw(tile % num_columns * TileSize, tile / num_columns * TileSize, backdrop, picture);
+        Tile(*this, light, packets, backdrop)
+            .draw(tile % num_columns * TileSize, tile / num_columns * TileSize, picture);
         if (!options_.on_progress)
             return;
         const std::scoped_lock lock(mutex);
