@@ -45,11 +45,8 @@ mesh::PunctualLight light_of(const Json& json) {
         light.range = real(*range);
     light.inner_cone = real(json.at("cones").values().at(0));
     light.outer_cone = real(json.at("cones").values().at(1));
-    constexpr float RightAngle = 1.5708f;
-    if (light.kind > Kind::Directional || !(light.range > 0.0f) || !(light.inner_cone >= 0.0f) ||
-        !(light.inner_cone < light.outer_cone) || !(light.outer_cone <= RightAngle) ||
-        !is_unit(light.direction) || !is_finite(light.position))
-        throw std::out_of_range("expected a light");
+    if (light.kind > Kind::Directional)
+        throw std::out_of_range("expected a kind of light");
     return light;
 }
 
@@ -99,6 +96,12 @@ void read_lamps(const SectionReader& reader, Scene& scene) {
     }
 }
 
+bool is_light(const mesh::PunctualLight& light) {
+    constexpr float RightAngle = 1.5708f;
+    return light.range > 0.0f && light.inner_cone >= 0.0f && light.inner_cone < light.outer_cone &&
+           light.outer_cone <= RightAngle && is_unit(light.direction) && is_finite(light.position);
+}
+
 void check_lamps(const SceneCheck& check, const Scene& scene) {
     constexpr float MaxRadiance = 1e9f;
     const auto is_good = [](const glm::vec3& v) {
@@ -108,6 +111,9 @@ void check_lamps(const SceneCheck& check, const Scene& scene) {
               [](const Emitter& emitter) { return emitter.radiance; });
     check.all("lights of intensity 0 to 1e9", scene.lamps.lights, is_good,
               [](const mesh::PunctualLight& light) { return light.intensity; });
+    for (const mesh::PunctualLight& light : scene.lamps.lights)
+        check.that(is_light(light), "lights with a place, a direction, a range and cones",
+                   "another: " + light.name);
 }
 
 } // namespace
