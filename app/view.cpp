@@ -50,14 +50,15 @@ cubemap::CubeMap plain_grey() {
     return cubemap::CubeMap(Resolution, glm::vec3(0.25f));
 }
 
-viewer::Shading shading_of(const Scene& scene) {
+viewer::Shading shading_of(const Scene& scene, std::span<const EmissionGain> gains) {
     return {.albedo = picture_albedo(scene),
             .floor = picture_floor(scene),
             .surfaces = scene.receivers.surfaces,
             .textures = relight::SurfaceColors(scene.mesh, scene.receivers.surfaces,
                                                scene.transfer.glossy.has_value()),
             .eye_cosines = prt::eye_cosines(scene.receivers),
-            .emission = emission_of(scene, glm::vec3(1.0f)),
+            .emission = emission_of(scene, gains),
+            .emission_gains = triangle_gains(scene, gains),
             .eye = scene.settings.view ? std::optional(scene.settings.view->eye) : std::nullopt,
             .bias = scene.settings.bias};
 }
@@ -107,6 +108,7 @@ void run(const Options& options, Session& session) {
 
     LitScene lit = lit_scene(options.scene);
     require_vertices(lit.scene(), options.scene.path);
+    lit.dim(options.picture.emission);
     session.poll();
     const auto load = [&](const std::filesystem::path& path) {
         EnvironmentOptions environment = options.environment;
@@ -124,7 +126,7 @@ void run(const Options& options, Session& session) {
     viewer::ViewState state{.mesh = lit.scene().mesh,
                             .rays = lit.rays().of_mesh(),
                             .desk = desk,
-                            .shading = shading_of(lit.scene()),
+                            .shading = shading_of(lit.scene(), options.picture.emission),
                             .picture = options.picture,
                             .load_environment = load};
     if (!options.layers.empty() && !viewer::open(state, options.layers))
@@ -153,7 +155,8 @@ void add_view(Command& program, Session& session) {
         row("--layers", options->layers, "light layers to begin with, .json", {.file = true}));
     for (OptionRow& each : options_of(options->picture))
         if ((each.part == "camera" && each.name != "--size") || each.name == "--exposure" ||
-            each.name == "--tone-map" || each.name == "--floor" || each.name == "--photo-height")
+            each.name == "--tone-map" || each.name == "--floor" || each.name == "--photo-height" ||
+            each.name == "--emission")
             command.add(std::move(each));
     command.add(size_row(options->picture.width, options->picture.height, "the window's size",
                          {.min = 320}));

@@ -102,6 +102,8 @@ std::vector<std::string> save(const std::filesystem::path& path, const TriangleM
     std::vector<std::string> left_out;
     if (!mesh.textures.empty())
         left_out.emplace_back("images of textures");
+    if (!mesh.lights.empty())
+        left_out.emplace_back("lights");
     if (extension == ".ply" || extension == ".glb") {
         const auto leave_out = [&](bool has, const char* what) {
             if (has)

@@ -14,6 +14,7 @@
 
 #include "files/plain_glm.h"
 #include "mesh/materials/material.h"
+#include "mesh/materials/punctual_light.h"
 #include "mesh/materials/texture.h"
 
 namespace relumine::mesh {
@@ -58,6 +59,8 @@ struct TriangleMesh {
     std::vector<std::uint32_t> triangle_groups;
     /// Textures of the materials.
     std::vector<Texture> textures;
+    /// Lights of the file that have no surface.
+    std::vector<PunctualLight> lights;
     /// Material and image files that the file names but that do not exist.
     std::vector<std::string> missing;
     /// What the file holds and the mesh does not, a line each.

@@ -18,6 +18,10 @@ void turn_up(TriangleMesh& mesh, UpAxis axis) {
     for (std::vector<glm::vec3>* vectors : {&mesh.positions, &mesh.normals})
         for (glm::vec3& v : *vectors)
             v = turned(v, axis);
+    for (PunctualLight& light : mesh.lights) {
+        light.position = turned(light.position, axis);
+        light.direction = turned(light.direction, axis);
+    }
 }
 
 void turn_up(Camera& camera, UpAxis axis) {

@@ -16,9 +16,9 @@ std::vector<glm::vec3> LitScene::harmonics() const {
         result[i] += added_.harmonics[i];
     const prt::Transfer& transfer = relighter().transfer();
     const std::size_t width = relight::num_harmonics(harmonics_);
-    if (!bounces_.bounced().empty()) {
+    if (!bounces_.bounced().empty() || !lamps_.direct().empty()) {
         std::vector<glm::vec3> bounced(transfer.num_receivers(), glm::vec3(0.0f));
-        add_bounced(bounced);
+        add_surfaces(bounced);
         for (std::size_t place = 0; place < transfer.num_receivers(); ++place) {
             const std::uint32_t receiver = transfer.order[place];
             glm::dvec3 arriving(bounced[receiver]);

@@ -59,7 +59,7 @@ LitScene::LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::Scen
     : scene_(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(scene)),
       rays_(std::make_unique<const SceneRays>(*scene_)),
       team_(part && options.team != nullptr ? options.team : &prt::alone()), path_(options.path),
-      harmonics_(options.harmonics) {
+      harmonics_(options.harmonics), lamps_(*scene_, *rays_) {
     if (harmonics_ != 0)
         relight::require_order(harmonics_);
     const bool has_clusters = relumine::has_clusters(*scene_);
@@ -137,6 +137,7 @@ UpdateReport LitScene::light(Light light) {
     }
     added_ = std::move(added);
     bounces_.forget();
+    lamps_.forget_bounces();
     is_lit_ = true;
     finish();
     report.seconds =
@@ -231,10 +232,12 @@ void LitScene::begin_edits() {
     history_.restart(first);
     // As if the environment had just been set.
     relighter_->resum();
-    if (bounces_.bounced().empty())
+    if (bounces_.bounced().empty()) {
         bounces_.unset();
-    else
+        lamps_.forget_bounces();
+    } else {
         find_bounces(false);
+    }
 }
 
 UpdateReport LitScene::edit(LightState next, Ending ending) {
@@ -258,6 +261,7 @@ UpdateReport LitScene::edit(LightState next, Ending ending) {
     if (is_whole) {
         report = relight_all(next);
         bounces_.forget();
+        lamps_.forget_bounces();
     } else if (ending == Ending::Quick || next != state_) {
         report = update(next);
     }
@@ -301,16 +305,28 @@ BounceReport LitScene::bounce(const Bouncing& how) {
         surfaces = bounces_of(*scene_, how.albedo, how.limits);
     if (!is_lit_ || (!surfaces && !bounces_.is_set()))
         throw std::logic_error("expected a scene that is lit, and an albedo");
+    relight::SharedRows rows;
+    if (part_ && part_->bounces)
+        rows = {.team = team_,
+                .first = part_->bounces->first,
+                .num_emitters = part_->bounces->num_emitters};
     if (surfaces)
-        bounces_.set(*scene_, std::move(*surfaces),
-                     part_ && part_->bounces
-                         ? relight::SharedRows{.team = team_,
-                                               .first = part_->bounces->first,
-                                               .num_emitters = part_->bounces->num_emitters}
-                         : relight::SharedRows{});
-    const BounceReport report = find_bounces(how.is_step);
+        bounces_.set(*scene_, std::move(*surfaces), rows);
+    lamps_.set_bounces(bounces_.surfaces(), rows);
+    BounceReport report = find_bounces(how.is_step);
     finish();
+    report.num_bounces = std::max(report.num_bounces, lamps_.report().num_bounces);
+    report.error = std::max(report.error, lamps_.report().error);
+    report.seconds += lamps_.report().seconds;
     return report;
+}
+
+void LitScene::dim(std::vector<EmissionGain> gains) {
+    if (gains == lamps_.gains())
+        return;
+    lamps_.set(std::move(gains));
+    if (is_lit_)
+        finish();
 }
 
 BounceReport LitScene::find_bounces(bool is_step) {
@@ -336,28 +352,43 @@ BounceReport LitScene::find_bounces(bool is_step) {
     return is_step ? bounces_.step(direct) : bounces_.find(direct);
 }
 
-/// Adds what surfaces send to values of this process's receivers.
-void LitScene::add_bounced(std::span<glm::vec3> own) const {
-    const std::span<const glm::vec3> bounced = bounces_.bounced();
-    if (bounced.empty())
+/// Adds values of all receivers, or none, to those of this process's.
+void LitScene::add_of_all(std::span<const glm::vec3> of_all, std::span<glm::vec3> own) const {
+    if (of_all.empty())
         return;
     if (!part_)
-        return add(bounced, own);
+        return add(of_all, own);
     for (std::size_t i = 0; i < own.size(); ++i)
-        own[i] += bounced[part_->receivers[i]];
+        own[i] += of_all[part_->receivers[i]];
+}
+
+/// Adds what surfaces send, and what lamps give, to values of this process's receivers.
+void LitScene::add_surfaces(std::span<glm::vec3> own) const {
+    for (const auto& of_all : {bounces_.bounced(), lamps_.direct(), lamps_.bounced()})
+        add_of_all(of_all, own);
+}
+
+std::vector<glm::vec3> LitScene::bounced() const {
+    std::vector<glm::vec3> result = copy_of(bounces_.bounced());
+    if (!result.empty() && !lamps_.bounced().empty())
+        add(lamps_.bounced(), result);
+    return result;
 }
 
 /// Sums the parts of the light.
 void LitScene::finish() {
-    if (relighter_ && bounces_.bounced().empty() && added_.radiance.empty()) {
+    lamps_.find();
+    if (relighter_ && bounces_.bounced().empty() && added_.radiance.empty() &&
+        lamps_.direct().empty()) {
         total_.clear();
         return;
     }
-    total_ = added_.radiance;
-    if (!relighter_)
-        return;
+    if (!relighter_) {
+        total_ = added_.radiance;
+        return add_surfaces(total_);
+    }
     total_.assign(relighter_->radiance().begin(), relighter_->radiance().end());
-    add_bounced(total_);
+    add_surfaces(total_);
     if (!added_.radiance.empty())
         add(added_.radiance, total_);
 }
@@ -388,7 +419,7 @@ Lighting LitScene::lighting(bool is_drawn) const {
             result.soft = relighter_->soft_radiance();
         else
             result.soft = copy_of(relighter_->radiance());
-        add_bounced(result.soft);
+        add_surfaces(result.soft);
         if (!added_.radiance.empty())
             add(added_.lights.empty() ? added_.radiance : added_.soft, result.soft);
     }

@@ -21,6 +21,7 @@
 #include "relumine/lighting.h"
 #include "relumine/scene.h"
 #include "relumine/scene_bounces.h"
+#include "relumine/scene_lamps.h"
 #include "relumine/scene_rays.h"
 
 namespace relumine {
@@ -99,6 +100,7 @@ public:
     /// Marks of states; see mark().
     [[nodiscard]] LightHistory& history() { return history_; }
     [[nodiscard]] const SceneBounces& bounces() const { return bounces_; }
+    [[nodiscard]] const SceneLamps& lamps() const { return lamps_; }
 
     /// Lights the scene [JN, Eq. 8]. Layers and the turn of set_rotation() stay: a new environment
     /// is turned as well. A list without one takes the layers away, with the history. Bounces go
@@ -139,6 +141,19 @@ public:
     ///          without an albedo.
     /// Cost:    milliseconds, see docs/measurements.md.
     BounceReport bounce(const Bouncing& how = {});
+
+    /// Dims and colours the scene's own lamps, whose light is added to that of light(): factors on
+    /// what they give, in place of those before.
+    ///
+    /// Throws:  std::invalid_argument for a name that no lamp of the scene has; nothing has changed
+    ///          then.
+    /// Cost:    O(receivers) once the lamp's light is there. A name that the call before had not
+    ///          costs some 20 rays a receiver, and a solution of bounces.
+    void dim(std::vector<EmissionGain> gains);
+
+    /// What surfaces send to all receivers, as a part of radiance(): [num_receivers]; empty before
+    /// bounce().
+    [[nodiscard]] std::vector<glm::vec3> bounced() const;
 
     /// Outgoing radiance of this process's receivers, in their order and the unit of the
     /// environment's; without materials for albedo 1. Empty before the first light().
@@ -185,7 +200,8 @@ private:
     UpdateReport update(const LightState& next);
     void begin_edits();
     BounceReport find_bounces(bool is_step);
-    void add_bounced(std::span<glm::vec3> own) const;
+    void add_of_all(std::span<const glm::vec3> of_all, std::span<glm::vec3> own) const;
+    void add_surfaces(std::span<glm::vec3> own) const;
     void finish();
 
     std::shared_ptr<const Scene> scene_;
@@ -206,6 +222,7 @@ private:
     LayerCompositor compositor_;
     LightHistory history_;
     SceneBounces bounces_;
+    SceneLamps lamps_;
     /// [receivers of this process] of all light; empty where the relighter's is all.
     std::vector<glm::vec3> total_;
 };

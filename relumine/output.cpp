@@ -99,19 +99,6 @@ void add(std::span<const glm::vec3> emission, std::vector<glm::vec3>& colors) {
 
 } // namespace
 
-std::vector<glm::vec3> emission_of(const Scene& scene, const glm::vec3& factor) {
-    std::vector<glm::vec3> result;
-    const std::vector<prt::Surface>& surfaces = scene.receivers.surfaces;
-    const auto is_dark = [](const prt::Surface& surface) {
-        return surface.emission == glm::vec3(0.0f);
-    };
-    if (std::all_of(surfaces.begin(), surfaces.end(), is_dark))
-        return result;
-    for (const prt::Surface& surface : surfaces)
-        result.push_back(factor * surface.emission);
-    return result;
-}
-
 std::vector<glm::vec3> picture_albedo(const Scene& scene, const OutputOptions& options) {
     return factors(scene, options, Purpose::Show);
 }
@@ -127,7 +114,7 @@ std::vector<glm::vec3> colors_of(const Scene& scene, std::span<const glm::vec3> 
         product(radiance, std::holds_alternative<AutomaticAlbedo>(albedo)
                               ? factors(scene, OutputOptions{}, Purpose::Compute)
                               : factors(scene, albedo));
-    add(emission_of(scene, glm::vec3(1.0f)), colors);
+    add(emission_of(scene), colors);
     return colors;
 }
 
@@ -135,6 +122,9 @@ struct Painter::Impl {
     Impl(const LitScene& lit, const OutputOptions& given)
         : scene(lit.scene()), rays(lit.rays().of_mesh()), options(given),
           emission(emission_of(scene, options.emission)), floor(picture_floor(scene, options)) {
+        require_lamps(scene, options.emission);
+        if (is_on_vertices() && !emission.empty())
+            emission_gains = triangle_gains(scene, options.emission);
         // The transfer of a scene that processes share has no highlights.
         if (is_on_vertices())
             textures = {scene.mesh, scene.receivers.surfaces,
@@ -180,7 +170,7 @@ struct Painter::Impl {
         const std::span<const glm::vec3> radiance = traces ? lighting.soft : lighting.radiance;
         const std::vector<glm::vec3> colors = shown_colors(radiance, lighting);
         relight::MeshLight light{
-            .radiance = colors, .emission = emission, .emission_factor = options.emission};
+            .radiance = colors, .emission = emission, .emission_gains = emission_gains};
         if (scene.settings.view)
             light.eye = scene.settings.view->eye;
         // The lobes are those of lights that are traced, or of no lights.
@@ -435,6 +425,8 @@ struct Painter::Impl {
     OutputOptions options;
     /// [num_receivers] or empty: none.
     std::vector<glm::vec3> emission;
+    /// Of vertices with textures: [num_triangles] factors on it.
+    std::vector<glm::vec3> emission_gains;
     /// Null: the tone curve.
     std::unique_ptr<const relight::DisplayTransform> display =
         options.display.config.empty()

@@ -32,10 +32,6 @@ using relight::Picture;
                                                std::span<const glm::vec3> radiance,
                                                const Albedo& albedo = glm::vec3(1.0f));
 
-/// Returns the radiance that surfaces give of their own, times a factor, [num_receivers]; empty
-/// where none does.
-[[nodiscard]] std::vector<glm::vec3> emission_of(const Scene& scene, const glm::vec3& factor);
-
 /// Returns what pictures multiply each receiver's radiance with, [num_receivers].
 ///
 /// Throws:  std::invalid_argument for MeshColors of a mesh without colours.

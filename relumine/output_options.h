@@ -13,6 +13,7 @@
 #include "relight/pictures/display_transform.h"
 #include "relight/pictures/framing.h"
 #include "relight/pictures/tone_curve.h"
+#include "relumine/emission.h"
 #include "relumine/option_table.h"
 #include "relumine/scene.h"
 
@@ -94,8 +95,9 @@ struct OutputOptions {
     /// Of an added floor, where it has no surface of its own. Empty: 0.3 in pictures and colours, 1
     /// in data.
     std::optional<glm::vec3> floor_albedo = {};
-    /// Factor on the light that surfaces give of their own.
-    glm::vec3 emission{1.0f};
+    /// Factors on the light that the scene gives of its own. Pictures show them on what glows;
+    /// LitScene::dim() lets the light follow.
+    std::vector<EmissionGain> emission = {};
     /// The outer part of an added floor's radius over which it fades into the background; 0: none.
     float floor_fade = 0.6f;
     /// Exposure in stops. Empty: what suits the lit surfaces that are seen, for .png, .ply and
@@ -192,10 +194,11 @@ inline OptionTable options_of(OutputOptions& o) {
         row<ColorText>("--floor-albedo", o.floor_albedo,
                        "reflectance of the floor of --floor: a number or R,G,B (0.3; 1 in .npy)",
                        {.example = "0.7,0.6,0.5"}),
-        row<ColorText>("--emission", o.emission,
-                       "factor on the light that lamps, screens and unlit surfaces give of their "
-                       "own: a number or R,G,B",
-                       {.example = "0.5"}),
+        row<EmissionText>("--emission", o.emission,
+                          "factor on the light that lamps, screens and unlit surfaces give of "
+                          "their own: a number or R,G,B; NAME=GAIN[,R,G,B] for one group that "
+                          "glows or one light of the mesh's file",
+                          {.example = "0.5"}),
         row("--floor-fade", o.floor_fade,
             "outer part of the floor's radius over which it fades into the background",
             {.min = 0, .max = 1}),

@@ -14,6 +14,7 @@
 #include <glm/geometric.hpp>
 
 #include "files/extension.h"
+#include "files/joined.h"
 #include "mesh/load.h"
 #include "prt/glossy/lobe_list.h"
 #include "prt/glossy/sheen_lobe.h"
@@ -407,8 +408,12 @@ private:
     /// its own.
     void set_surfaces() {
         const mesh::TriangleMesh& mesh = scene_.mesh;
-        if (scene_.receivers.have_no_surface)
+        if (scene_.receivers.have_no_surface) {
+            if (!prt::lamps_of(mesh).empty())
+                note("points in space get no light from the scene's own lamps");
             return;
+        }
+        scene_.lamps.lights = mesh.lights;
         if (mesh.materials.empty() && !options_.surface && options_.floor_surface == prt::Surface())
             return;
         const std::size_t n = scene_.settings.floor_vertices;
@@ -420,6 +425,13 @@ private:
                     return options_.floor_surface;
                 return options_.surface ? options_.surface(of, triangle, own) : own;
             };
+        scene_.lamps = prt::lamps_of(mesh, surface_of);
+        if (const std::vector<std::string> names = scene_.lamps.names(); !names.empty())
+            note(fmt::format(
+                "lamps that --emission dims: {}",
+                files::joined(std::span(names).first(std::min<std::size_t>(names.size(), 8)),
+                              ", ") +
+                    (names.size() > 8 ? ", ..." : "")));
         prt::Receivers& receivers = scene_.receivers;
         const prt::GgxForm form = receivers.to_eye.empty() ? prt::GgxForm::Published : options_.ggx;
         if (receivers.points.empty()) {

@@ -76,18 +76,26 @@ std::vector<glm::dvec3> exact_radiance(const LitScene& lit, const prt::Receivers
 double add_traced(const LitScene& lit, std::span<const std::uint32_t> receivers,
                   const VerifyOptions& options, std::vector<glm::dvec3>& exact) {
     const Scene& scene = lit.scene();
+    const bool is_bounced = !lit.bounces().bounced().empty();
     const std::vector<glm::vec3> albedo_of_vertices =
-        prt::vertex_values(scene.mesh, scene.receivers, lit.bounces().surfaces().albedo);
+        is_bounced
+            ? prt::vertex_values(scene.mesh, scene.receivers, lit.bounces().surfaces().albedo)
+            : std::vector<glm::vec3>(scene.mesh.num_vertices());
+    const prt::Lamps lamps = dimmed(scene.lamps, lit.lamps().gains());
     const auto traced = in_slices<relight::TracedBounces>(
         options.team, receivers, [&](std::span<const std::uint32_t> slice) {
-            return relight::trace_bounces(scene.mesh, albedo_of_vertices, scene.receivers, slice,
-                                          lit.rays().of_mesh(), lit.relighter().environment(),
-                                          {.num_paths = options.num_paths,
-                                           .seed = options.seed,
-                                           .two_sided = scene.settings.two_sided_bounces,
-                                           .bias = scene.settings.bias,
-                                           .stop = options.stop,
-                                           .on_progress = options.on_progress});
+            return relight::trace_bounces(
+                scene.mesh, albedo_of_vertices, scene.receivers, slice, lit.rays().of_mesh(),
+                lit.relighter().environment(),
+                {.num_paths = options.num_paths,
+                 .num_bounces = is_bounced ? std::nullopt : std::optional(0u),
+                 .seed = options.seed,
+                 .emitters = lamps.emitters,
+                 .lights = lamps.lights,
+                 .two_sided = scene.settings.two_sided_bounces,
+                 .bias = scene.settings.bias,
+                 .stop = options.stop,
+                 .on_progress = options.on_progress});
         });
     double errors = 0.0, all = 0.0;
     for (std::size_t i = 0; i < exact.size(); ++i) {
@@ -189,11 +197,11 @@ Verification verify(const LitScene& lit, const VerifyOptions& options) {
     Verification result;
     result.receivers = relight::random_receivers(scene.transfer, options.num_samples, options.seed,
                                                  scene.receivers.num_own());
-    const bool is_bounced = !lit.bounces().bounced().empty();
+    const bool is_traced = !lit.bounces().bounced().empty() || !scene.lamps.empty();
     const bool has_surface = options.num_surface_points != 0 && prt::on_vertices(scene.layout);
     const auto num_receivers = static_cast<double>(result.receivers.size());
     const double num_points = has_surface ? static_cast<double>(options.num_surface_points) : 0.0;
-    const double all = (is_bounced ? 2.0 : 1.0) * num_receivers + 2.0 * num_points;
+    const double all = (is_traced ? 2.0 : 1.0) * num_receivers + 2.0 * num_points;
     double done = 0.0;
     // Each part of the work has its part of the progress.
     const auto options_of_next = [&](double size) {
@@ -211,7 +219,7 @@ Verification verify(const LitScene& lit, const VerifyOptions& options) {
     result.of_file = file_of(lit) != nullptr;
     std::vector<glm::dvec3> exact =
         exact_radiance(lit, scene.receivers, result.receivers, direct, exact_options);
-    if (is_bounced)
+    if (is_traced)
         result.noise = add_traced(lit, result.receivers, options_of_next(num_receivers), exact);
     result.error = relight::compare(result.receivers, exact, lit.radiance());
     if (!has_surface)

@@ -31,7 +31,8 @@ struct VerifyOptions {
     /// Points of the surface chosen at random, evenly by area, where the light is compared that a
     /// renderer would interpolate from the vertices; 0 for none. Only for vertices.
     std::size_t num_surface_points = 500;
-    /// Paths of each receiver that bounces are compared with; only after bounce()
+    /// Paths of each receiver that bounces and lamps are compared with; only after bounce(), and of
+    /// scenes with lamps
     std::uint32_t num_paths = 256;
     /// Processes that share the work, each with the whole scene in the same light: each integrates
     /// some of the points, and all get the same result.

@@ -18,6 +18,7 @@ Scene unclustered_scene(Mesh mesh) {
     scene.receivers = prt::vertex_receivers(scene.mesh);
     scene.settings.camera = mesh.camera;
     scene.settings.bias = prt::automatic_bias(scene.mesh);
+    scene.lamps = prt::lamps_of(scene.mesh);
     return scene;
 }
 

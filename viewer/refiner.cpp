@@ -34,6 +34,7 @@ relight::Picture drawn(const mesh::TriangleMesh& mesh, const prt::RayScene& rays
                                    .lights = moment.lights,
                                    .albedo = shading.albedo,
                                    .emission = shading.emission,
+                                   .emission_gains = shading.emission_gains,
                                    .surfaces = shading.surfaces,
                                    .textures = &shading.textures,
                                    .lobes = lobes,

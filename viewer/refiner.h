@@ -28,6 +28,8 @@ struct Shading {
     std::vector<prt::EyeCosines> eye_cosines = {};
     /// [num_vertices] or empty, as relight::MeshLight has it.
     std::vector<glm::vec3> emission = {};
+    /// [num_triangles], as relight::MeshLight has it.
+    std::vector<glm::vec3> emission_gains = {};
     /// The eye that highlights are for.
     std::optional<glm::vec3> eye = {};
     /// Lift of shadow rays.

@@ -61,6 +61,7 @@ public:
           binner_(relight::binner_of(lit_.relighter())),
           writer_(lit_, options.output.for_scene(scene())) {
         static_cast<void>(options.bounces.applies_to(scene(), options.scene.path));
+        lit_.dim(options.output.picture.emission);
         OutputOptions seen = options.output;
         if (options.turns_camera() && pattern_) {
             require_vertices(scene(), options.scene.path);

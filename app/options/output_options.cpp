@@ -64,6 +64,11 @@ const relumine::OutputOptions& OutputOptions::for_scene(const Scene& scene) cons
     if (std::holds_alternative<MeshColors>(picture.albedo) && scene.mesh.colors.empty())
         throw OptionError("--albedo",
                           "expected a mesh with vertex colours for `mesh`, got one without");
+    try {
+        require_lamps(scene, picture.emission);
+    } catch (const std::invalid_argument& error) {
+        throw OptionError("--emission", error.what());
+    }
     return picture;
 }
 

@@ -101,7 +101,9 @@ class Edit {
 public:
     Edit(const EditArguments& options, cubemap::LightLayers layers, Session& session)
         : options_(options), session_(session), layers_(std::move(layers)),
-          lit_(lit_scene(options.scene)) {}
+          lit_(lit_scene(options.scene)) {
+        lit_.dim(options.output.for_scene(lit_.scene()).emission);
+    }
 
     void run() {
         check_receivers();

@@ -243,6 +243,7 @@ void run(FitArguments& options, const Command& command, Session& session) {
     options.scene.clusters_only =
         options.scene.clusters_only || (options.num_lights == 0 && options.given.empty());
     LitScene lit = lit_scene(options.scene);
+    lit.dim({{.gain = glm::vec3(0.0f)}}); // what is looked for comes from outside
     Stopwatch watch;
     try {
         if (options.num_lights != 0 && is_picture(options.target) &&

@@ -104,6 +104,8 @@ Given given_light(const RelightArguments& options, Session& session) {
 
 /// "sky.exr (R = 256) and 3 lights of sun.json"
 std::string name_of(const RelightArguments& options, const LitScene& lit, std::size_t num_lights) {
+    if (options.environment.path.empty() && options.lights.empty())
+        return "its own lamps";
     std::string list = fmt::format("{} of {}", files::counted(num_lights, "light"), options.lights);
     if (options.environment.path.empty())
         return list;
@@ -130,6 +132,8 @@ void light_scene(const RelightArguments& options, Session& session) {
             ? lit_scene(first_scene(options.scene.path, !options.no_cache, session), options.scene)
             : lit_scene(options.scene, session.team);
     const Scene& scene = lit.scene();
+    if (options.environment.path.empty() && options.lights.empty() && scene.lamps.empty())
+        throw UsageError("relight", "expected ENV, --lights or both, or a scene with lamps");
     options.output.check_fits(scene);
     if (!options.harmonics.empty())
         check_harmonics(options.harmonics, scene);
@@ -138,9 +142,10 @@ void light_scene(const RelightArguments& options, Session& session) {
     Given given = given_light(options, session);
     const std::size_t num_lights = given.light.lights.size();
     watch.lap();
+    const relumine::OutputOptions output = options.output.for_scene(scene);
+    lit.dim(output.emission);
     const UpdateReport times = lit.light(std::move(given.light));
     session.poll();
-    const relumine::OutputOptions output = options.output.for_scene(scene);
     if (session.is_first()) {
         options.output.warn_of_eye(scene, session);
         for (const std::string& line : scene.settings.left_out)
@@ -155,8 +160,9 @@ void light_scene(const RelightArguments& options, Session& session) {
             save_harmonics(lit, options.harmonics); // of the first process, with these parts
         return;
     }
+    const std::vector<glm::vec3> bounced = lit.bounced();
     if (options.only_bounces)
-        keep_bounces(lighting, lit.bounces().bounced(), options.scene.path);
+        keep_bounces(lighting, bounced, options.scene.path);
     Painter painter(lit, output);
     painter.on_progress(session.progress("picture"));
     painter.save(options.output.path, lighting);
@@ -228,8 +234,6 @@ void run(const RelightArguments& options, const Command& command, Session& sessi
         throw UsageError("--part", "expected none where processes share the work");
     if (options.part.count != 0)
         return light_one_part(options, command, session);
-    if (options.environment.path.empty() && options.lights.empty())
-        throw UsageError("relight", "expected ENV, --lights or both");
     std::vector<std::string> inputs = {options.scene.path};
     for (const std::string& path : {options.environment.path, options.lights})
         if (!path.empty())

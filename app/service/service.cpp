@@ -232,12 +232,18 @@ void Service::Impl::declare_picture(Command& command) {
     auto options = std::make_shared<OutputOptions>();
     options->add_to(command);
     command.on_run([this, options] {
-        const LitScene& source = lit_by_environment();
+        static_cast<void>(lit_by_environment());
+        LitScene& source = lit();
         options->check({scene_path});
         options->check_fits(source.scene());
-        Painter painter(source, options->for_scene(source.scene()));
+        Stopwatch watch;
+        source.dim(options->for_scene(source.scene()).emission);
+        const double seconds_dim = watch.total();
+        Painter painter(source, options->picture);
         painter.save(options->path, source.lighting());
-        report = {{"output", options->path}, {"exposure", painter.exposure_ev(options->path)}};
+        report = {{"output", options->path},
+                  {"exposure", painter.exposure_ev(options->path)},
+                  {"seconds_dim", seconds_dim}};
     });
 }
 
@@ -330,7 +336,13 @@ void Service::Impl::perform(const JsonReader& reader, const Report& root) {
             words.emplace_back("--layers=a list");
             continue;
         }
-        if (option.is_flag) {
+        const bool is_list = option.repeats && value.type() == Report::Type::Array &&
+                             !value.values().empty() &&
+                             value.values().front().type() == Report::Type::String;
+        if (is_list) {
+            for (const Report& each : value.values())
+                words.push_back(fmt::format("--{}={}", member, value_text(reader, each, member)));
+        } else if (option.is_flag) {
             if (reader.boolean(value, fmt::format("\"{}\"", member)))
                 words.push_back("--" + member);
         } else if (const std::string text = value_text(reader, value, member);

@@ -167,9 +167,8 @@ std::string_view lost_without(std::string_view extension) {
     };
     constexpr std::string_view Images = "its images are left out; without another image, a surface "
                                         "has its factors alone";
-    constexpr std::array<Loss, 9> Losses = {{
+    constexpr std::array<Loss, 8> Losses = {{
         {"EXT_texture_avif", Images},
-        {"KHR_lights_punctual", "its lamps give no light"},
         {"KHR_materials_variants", "the first look of each surface is shown"},
         {"KHR_node_visibility", "hidden nodes are shown"},
         {"KHR_texture_basisu", Images},
@@ -331,10 +330,10 @@ void Document::split_glb(std::span<const std::byte> file) {
 }
 
 void Document::check_extensions() {
-    constexpr std::array<std::string_view, 7> Understood = {
+    constexpr std::array<std::string_view, 8> Understood = {
         "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression", "EXT_texture_webp",
-        "KHR_draco_mesh_compression", "KHR_mesh_quantization",   "KHR_meshopt_compression",
-        "KHR_texture_transform"};
+        "KHR_draco_mesh_compression", "KHR_lights_punctual",     "KHR_mesh_quantization",
+        "KHR_meshopt_compression",    "KHR_texture_transform"};
     const auto names = [this](const char* key) {
         std::set<std::string> result;
         for (const Json& name : items(root_, key)) {

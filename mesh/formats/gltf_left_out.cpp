@@ -137,10 +137,6 @@ void LeftOut::material(const Json& description) {
         count("cut out by alpha (leaves, fences); alpha is not read", "what is cut out is opaque");
     else if (mode != "OPAQUE")
         count("transparent by alpha; alpha is not read", "surfaces are opaque");
-    const std::vector<double> emission = numbers(description, "emissiveFactor", {0.0, 0.0, 0.0});
-    if (*std::max_element(emission.begin(), emission.end()) > 0.0 &&
-        !child(description, "extensions").find("KHR_materials_unlit"))
-        count("with emission", "it is seen, and lights no other surface");
     if (description.find("occlusionTexture"))
         count("with an occlusion map, which is not read", "rays find what blocks the light");
     if (description.find("doubleSided") && !flag(description, "doubleSided"))

@@ -20,6 +20,7 @@
 #include "mesh/formats/gltf_document.h"
 #include "mesh/formats/gltf_left_out.h"
 #include "mesh/formats/gltf_materials.h"
+#include "mesh/formats/gltf_lights.h"
 #include "mesh/formats/gltf_nodes.h"
 #include "mesh/formats/gltf_primitives.h"
 #include "mesh/formats/polygon_soup.h"
@@ -344,6 +345,8 @@ PolygonSoup GltfReader::read() {
         const Json& node = document_.element("nodes", index);
         if (node.find("mesh"))
             append_node(index);
+        if (auto light = gltf::light_at(document_, node, *worlds_[index]))
+            soup_.lights.push_back(std::move(*light));
         if (!camera_ && node.find("camera"))
             camera_ = gltf::camera_at(document_.element("cameras", gltf::whole(node, "camera")),
                                       *worlds_[index]);

@@ -83,6 +83,12 @@ void enlarge(PolygonSoup& soup) {
     for (glm::vec3& p : soup.positions)
         for (int axis = 0; axis < 3; ++axis)
             p[axis] = std::ldexp(p[axis], exponent);
+    for (PunctualLight& light : soup.lights) {
+        light.position *= std::exp2(static_cast<float>(exponent));
+        light.range = std::ldexp(light.range, exponent);
+        if (light.kind != PunctualLight::Kind::Directional)
+            light.intensity *= std::exp2(2.0f * static_cast<float>(exponent));
+    }
     soup.warnings.push_back(fmt::format(
         "coordinates are at most {:.3g}, too small to compute with; the mesh is read 2^{} times as "
         "large",
@@ -122,6 +128,7 @@ TriangleMesh to_mesh(PolygonSoup soup, NormalSource source) {
     mesh.groups = std::move(soup.groups);
     mesh.textures = std::move(soup.textures);
     mesh.missing = std::move(soup.missing);
+    mesh.lights = std::move(soup.lights);
     if (source == NormalSource::Smooth || mesh.normals.empty() || !normalize_normals(mesh))
         mesh.normals = smooth_normals(mesh);
     if (!std::all_of(mesh.colors.begin(), mesh.colors.end(), is_finite))

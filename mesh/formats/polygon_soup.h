@@ -49,6 +49,7 @@ struct PolygonSoup {
     std::vector<Material> materials;
     std::vector<std::string> groups;
     std::vector<Texture> textures;
+    std::vector<PunctualLight> lights;
     std::optional<Camera> camera = {};
     /// As in TriangleMesh.
     std::vector<std::string> missing, warnings;

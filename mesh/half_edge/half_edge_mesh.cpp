@@ -269,6 +269,7 @@ TriangleMesh HalfEdgeMesh::mesh() const {
     result.materials = source.materials;
     result.groups = source.groups;
     result.textures = source.textures;
+    result.lights = source.lights;
     result.missing = source.missing;
     result.warnings = source.warnings;
     return result;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -104,39 +105,49 @@ private:
     const Transfer& transfer_;
     const Blockers& blockers_;
     const RefinementLimits& limits_;
-    /// A heap, largest error first.
-    std::vector<Node> heap_;
-    /// Cells that are single texels.
-    std::vector<Node> done_;
+    /// A heap of cells that may be split, largest error first: nodes are too large to be moved.
+    struct Waiting {
+        double error = 0.0;
+        std::uint32_t node = 0;
+    };
+    static bool smaller_error(const Waiting& a, const Waiting& b) { return a.error < b.error; }
+    std::vector<Waiting> heap_;
+    /// All cells, also those that were split.
+    std::vector<Node> nodes_;
+    /// Cells that are single texels, in nodes_.
+    std::vector<std::uint32_t> done_;
     /// Sums over all cells.
     double error_ = 0.0;
     double power_ = 0.0;
     std::uint64_t num_rays_ = 0;
 };
 
-bool smaller_error(const Node& a, const Node& b) {
-    return a.error < b.error;
-}
-
 LobeCut LobeRefiner::run() {
     add_first_cells();
     while (!heap_.empty() && heap_.front().error > 0.0 && error_ > budget() &&
            heap_.size() + done_.size() < MaxCells) {
         std::pop_heap(heap_.begin(), heap_.end(), smaller_error);
-        const Node node = heap_.back();
+        const Node node = nodes_[heap_.back().node];
         heap_.pop_back();
         error_ -= node.error;
         power_ -= node.power;
         split(node);
     }
-    heap_.insert(heap_.end(), done_.begin(), done_.end());
-    std::sort(heap_.begin(), heap_.end(), [](const Node& a, const Node& b) {
-        return z_curve_key(a.cell) < z_curve_key(b.cell);
-    });
+    using Key = std::pair<decltype(z_curve_key(Cell{})), std::uint32_t>;
+    std::vector<Key> cut_cells;
+    const auto keep = [&](std::uint32_t index) {
+        const Floats& mean = nodes_[index].mean;
+        if (*std::max_element(mean.begin(), mean.end()) > 0.0f)
+            cut_cells.emplace_back(z_curve_key(nodes_[index].cell), index);
+    };
+    for (const Waiting& waiting : heap_)
+        keep(waiting.node);
+    for (const std::uint32_t index : done_)
+        keep(index);
+    std::sort(cut_cells.begin(), cut_cells.end());
     LobeCut cut{.cells = {}, .power = power_, .num_rays = num_rays_};
-    for (const Node& node : heap_)
-        if (*std::max_element(node.mean.begin(), node.mean.end()) > 0.0f)
-            cut.cells.push_back({node.cell, node.mean});
+    for (const Key& key : cut_cells)
+        cut.cells.push_back({nodes_[key.second].cell, nodes_[key.second].mean});
     return cut;
 }
 
@@ -239,11 +250,13 @@ void LobeRefiner::add(Node node, const std::array<const Floats*, SamplesPerCell>
     }
     error_ += node.error;
     power_ += node.power;
+    const auto index = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.push_back(node);
     if (node.cell.level == limits_.max_level) {
-        done_.push_back(node);
+        done_.push_back(index);
         return;
     }
-    heap_.push_back(node);
+    heap_.push_back({node.error, index});
     std::push_heap(heap_.begin(), heap_.end(), smaller_error);
 }
 

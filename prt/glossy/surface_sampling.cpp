@@ -130,6 +130,17 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
     return surface;
 }
 
+glm::vec3 emission_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
+                      const glm::vec2& barycentric) {
+    if (mesh.triangle_materials.empty())
+        return glm::vec3(0.0f);
+    const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
+    if (material.model == mesh::MaterialModel::Unlit || material.emission == glm::vec3(0.0f))
+        return glm::vec3(0.0f);
+    const MaterialPoint point{.mesh = mesh, .material = material, .at = {triangle, barycentric}};
+    return point.textured(material.emission, material.emission_texture);
+}
+
 bool has_highlight(const mesh::Material& material) {
     if (material.model == mesh::MaterialModel::Phong)
         return material.specular != glm::vec3(0.0f);

@@ -30,6 +30,11 @@ enum class GgxForm { Whole, Published };
                                  const glm::vec2& barycentric, GgxForm form = GgxForm::Whole,
                                  const TextureView* view = nullptr);
 
+/// Returns what surface_at() gives as emission, at less cost; none for unlit materials, which give
+/// no light.
+[[nodiscard]] glm::vec3 emission_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
+                                    const glm::vec2& barycentric);
+
 /// Whether surfaces of a material have a highlight.
 [[nodiscard]] bool has_highlight(const mesh::Material& material);
 

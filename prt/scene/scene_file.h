@@ -8,6 +8,7 @@
 
 #include "mesh/triangle_mesh.h"
 #include "prt/bounces/bounce_matrix.h"
+#include "prt/lamps/lamps.h"
 #include "prt/receivers/receiver_layout.h"
 #include "prt/receivers/receivers.h"
 #include "prt/transfer/transfer.h"
@@ -61,6 +62,8 @@ struct Scene {
     /// Light from surface to surface. It comes from vertices, so pixels and texels have the mesh's
     /// vertices behind them: Receivers::num_added.
     std::optional<BounceMatrix> bounces = {};
+    /// What gives light in the scene itself.
+    Lamps lamps = {};
 
     [[nodiscard]] const mesh::TriangleMesh& blocking_mesh() const {
         return blockers ? *blockers : mesh;

@@ -262,6 +262,12 @@ namespace {
 
 using Valid = std::array<int, PacketSize>;
 
+constexpr std::array<float, PacketSize> AllInfinite = [] {
+    std::array<float, PacketSize> distances{};
+    distances.fill(Infinity);
+    return distances;
+}();
+
 void fill_rays(const glm::vec3& origin, const DirectionPacket& directions, std::uint32_t active,
                Valid& valid, RTCRay16& rays) {
     for (std::size_t i = 0; i < PacketSize; ++i) {
@@ -298,9 +304,16 @@ RTCRay ray_of(const glm::vec3& origin, const glm::vec3& direction) {
 
 std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket& directions,
                                  std::uint32_t active) const {
+    return occluded(origin, directions, AllInfinite, active);
+}
+
+std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                                 std::span<const float, PacketSize> distances,
+                                 std::uint32_t active) const {
     alignas(64) Valid valid;
     RTCRay16 rays;
     fill_rays(origin, directions, active, valid, rays);
+    std::copy(distances.begin(), distances.end(), rays.tfar);
     Query query(true);
     query.context.flags = impl_->packets;
     rtcOccluded16(valid.data(), impl_->scene.get(), &query.context, &rays);
@@ -311,13 +324,17 @@ std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket&
         blocked |= static_cast<std::uint32_t>(rays.tfar[i] < 0.0f) << i;
     for (std::uint32_t rest = query.doubtful & active & ~blocked; rest != 0; rest &= rest - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-        blocked |= static_cast<std::uint32_t>(occluded(origin, directions.direction(i))) << i;
+        blocked |= static_cast<std::uint32_t>(
+                       occluded(origin, directions.direction(i), distances[i]))
+                   << i;
     }
     return blocked & active;
 }
 
-bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction) const {
+bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction,
+                        float distance) const {
     RTCRay ray = ray_of(origin, direction);
+    ray.tfar = distance;
     Query query(false);
     rtcOccluded1(impl_->scene.get(), &query.context, &ray);
     return ray.tfar < 0.0f;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -52,8 +53,15 @@ public:
     [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
                                          std::uint32_t active) const override;
 
+    /// The same for rays that end at these distances, in units of the directions' lengths.
+    [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                                         std::span<const float, PacketSize> distances,
+                                         std::uint32_t active) const;
+
     /// Whether anything lies on the ray.
-    [[nodiscard]] bool occluded(const glm::vec3& origin, const glm::vec3& direction) const;
+    [[nodiscard]] bool
+    occluded(const glm::vec3& origin, const glm::vec3& direction,
+             float distance = std::numeric_limits<float>::infinity()) const;
 
     [[nodiscard]] std::optional<Hit> closest_hit(const glm::vec3& origin,
                                                  const glm::vec3& direction) const;

@@ -43,7 +43,14 @@ void set(const OptionRow& option, const py::handle& value) {
             option.set("");
         return;
     }
-    if (!option.repeats)
+    // Text, a number, or numbers that are one value.
+    const auto is_one = [](const py::handle& given) {
+        return py::isinstance<py::str>(given) || PyNumber_Check(given.ptr()) != 0;
+    };
+    const bool is_color = option.type == "TEXT" && py::isinstance<py::sequence>(value) &&
+                          !is_one(value) && py::len(value) != 0 &&
+                          PyNumber_Check(py::object(value[py::int_(0)]).ptr()) != 0;
+    if (!option.repeats || is_one(value) || is_color)
         return option.set(text_of(option, value));
     std::vector<std::string> texts;
     for (const py::handle each : value)

@@ -320,6 +320,7 @@ void bind_questions(py::class_<Lit, LitPointer>& type) {
 py::tuple draw(const LitPointer& own, const py::dict& given) {
     const OutputOptions options = options_from<OutputOptions>(given);
     auto [picture, exposure] = slowly(own, py::none(), [options](LitScene& lit, const Reins&) {
+        lit.dim(options.emission);
         Painter painter(lit, options);
         const Lighting lighting = lit.lighting();
         Picture drawn = painter.draw(lighting);
@@ -339,6 +340,7 @@ py::tuple draw(const LitPointer& own, const py::dict& given) {
 void save_lit(const LitPointer& own, const Path& path, const py::dict& given) {
     slowly(own, py::none(),
            [path, options = options_from<OutputOptions>(given)](LitScene& lit, const Reins&) {
+               lit.dim(options.emission);
                save(lit, path, options);
                return true;
            });
@@ -431,10 +433,7 @@ void bind_relighters(py::module_& module) {
         .def("bounce", &bounce)
         .def("bounced",
              [](Lit& own) {
-                 return owned(quickly(own, [](LitScene& lit) {
-                     const std::span<const glm::vec3> bounced = lit.bounces().bounced();
-                     return std::vector<glm::vec3>(bounced.begin(), bounced.end());
-                 }));
+                 return owned(quickly(own, [](LitScene& lit) { return lit.bounced(); }));
              })
         .def("harmonics",
              [](Lit& own) {

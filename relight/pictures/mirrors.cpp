@@ -110,7 +110,7 @@ glm::vec3 Mirrors::seen(const prt::Hit& hit, const glm::vec3& direction,
                    (light_.emission.empty() ? glm::vec3(0.0f)
                                             : prt::value_at(mesh_, light_.emission, at));
         return colors.radiance(light_.mirrored, at) +
-               light_.emission_factor * colors.surface(at).emission;
+               light_.emission_gain(at.triangle) * colors.surface(at).emission;
     }
     const glm::vec3 position = prt::value_at(mesh_, mesh_.positions, at);
     const float opacity = floor_.opacity(position);

@@ -254,11 +254,11 @@ private:
                                     const std::optional<Mirror>& mirror) const {
         if (light_.emission.empty())
             return glm::vec3(0.0f);
+        const glm::vec3 gain = light_.emission_gain(sample.triangle);
         if (mirror)
-            return light_.emission_factor * mirror->surface.emission;
+            return gain * mirror->surface.emission;
         return has_texture(sample)
-                   ? light_.emission_factor *
-                         light_.textures->surface(point(sample), &texture_view_).emission
+                   ? gain * light_.textures->surface(point(sample), &texture_view_).emission
                    : prt::value_at(mesh_, light_.emission, point(sample));
     }
 

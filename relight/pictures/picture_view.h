@@ -70,9 +70,12 @@ struct MeshLight {
     /// [num_vertices] factor on what the lights give.
     std::span<const glm::vec3> albedo = {};
     /// [num_vertices] radiance that surfaces give of their own, or empty: none. Triangles with a
-    /// texture take theirs times `emission_factor`.
+    /// texture take theirs times `emission_gains`, [num_triangles] or empty.
     std::span<const glm::vec3> emission = {};
-    glm::vec3 emission_factor{1.0f};
+    std::span<const glm::vec3> emission_gains = {};
+    [[nodiscard]] glm::vec3 emission_gain(std::uint32_t triangle) const {
+        return emission_gains.empty() ? glm::vec3(1.0f) : emission_gains[triangle];
+    }
     /// [num_vertices], or empty: Lambert of albedo 1.
     std::span<const prt::Surface> surfaces = {};
     /// Triangles with a texture take its colour at the point, and the light of the vertices. Null:

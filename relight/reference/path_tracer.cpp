@@ -1,6 +1,7 @@
 #include "relight/reference/path_tracer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <numbers>
@@ -14,6 +15,7 @@
 #include "files/parallel.h"
 #include "prt/precompute.h"
 #include "prt/receivers/mesh_point.h"
+#include "relight/lamps/punctual.h"
 
 namespace relumine::relight {
 
@@ -95,6 +97,86 @@ private:
     std::vector<double> sums_;
 };
 
+/// Draws points of what glows by its power.
+class EmitterSampler {
+public:
+    EmitterSampler(const mesh::TriangleMesh& mesh, std::span<const prt::Emitter> emitters,
+                   bool two_sided)
+        : mesh_(mesh), emitters_(emitters), two_sided_(two_sided) {
+        for (const prt::Emitter& emitter : emitters) {
+            const auto [a, b, c] = prt::corners_of(mesh, emitter);
+            const double area = 0.5 * glm::length(glm::cross(b - a, c - a));
+            sums_.push_back(sums_.back() + area * brightness(emitter));
+        }
+    }
+
+    struct Sample {
+        /// From the place that asks; not of unit length.
+        glm::dvec3 way{0.0};
+        glm::dvec3 radiance{0.0};
+        /// Per steradian; 0: no light.
+        double density = 0.0;
+    };
+
+    Sample draw(const glm::dvec3& from, Random& random) const {
+        if (sums_.back() <= 0.0)
+            return {};
+        const auto found =
+            std::upper_bound(sums_.begin() + 1, sums_.end() - 1, random() * sums_.back());
+        const auto index = static_cast<std::size_t>(found - sums_.begin()) - 1;
+        const auto [a, b, c] = prt::corners_of(mesh_, emitters_[index]);
+        const double root = std::sqrt(random()), part = random();
+        return sample(index, a + root * (1.0 - part) * (b - a) + root * part * (c - a) - from);
+    }
+
+    /// What a ray meets.
+    [[nodiscard]] Sample at(const prt::Hit& hit, const glm::dvec3& way) const {
+        const auto [first, last] = std::equal_range(
+            emitters_.begin(), emitters_.end(), prt::Emitter{.triangle = hit.triangle},
+            [](const prt::Emitter& x, const prt::Emitter& y) { return x.triangle < y.triangle; });
+        const prt::MeshPoint point{.triangle = hit.triangle, .barycentric = hit.barycentric};
+        const glm::dvec3 place(prt::value_at(mesh_, mesh_.positions, point));
+        for (auto emitter = first; emitter != last; ++emitter)
+            if (first->part == 1 || contains(prt::corners_of(mesh_, *emitter), place))
+                return sample(static_cast<std::size_t>(emitter - emitters_.begin()), way);
+        return {};
+    }
+
+private:
+    static double brightness(const prt::Emitter& emitter) {
+        return double{emitter.radiance.r} + double{emitter.radiance.g} + double{emitter.radiance.b};
+    }
+
+    /// Of a point of the triangle's plane.
+    static bool contains(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& place) {
+        const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+        for (std::size_t i = 0; i < 3; ++i)
+            if (glm::dot(normal,
+                         glm::cross(corners[(i + 1) % 3] - corners[i], place - corners[i])) < 0.0)
+                return false;
+        return true;
+    }
+
+    [[nodiscard]] Sample sample(std::size_t index, const glm::dvec3& way) const {
+        const double distance = glm::length(way);
+        double cosine = -glm::dot(prt::front_of(mesh_, emitters_[index].triangle), way) / distance;
+        if (two_sided_)
+            cosine = std::abs(cosine);
+        if (!(cosine > 0.0))
+            return {};
+        const double chance = brightness(emitters_[index]) / sums_.back();
+        return {.way = way,
+                .radiance = glm::dvec3(emitters_[index].radiance),
+                .density = chance * distance * distance / cosine};
+    }
+
+    const mesh::TriangleMesh& mesh_;
+    std::span<const prt::Emitter> emitters_;
+    bool two_sided_;
+    /// [emitters + 1] power of those before.
+    std::vector<double> sums_ = {0.0};
+};
+
 /// A point of a path.
 struct PathPoint {
     glm::vec3 origin{0.0f};
@@ -117,13 +199,15 @@ public:
     PathTracer(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> albedo,
                const prt::RayScene& rays, const cubemap::CubeMap& environment,
                const PathTracerOptions& options)
-        : mesh_(mesh), albedo_(albedo), rays_(rays), lights_(environment), options_(options) {}
+        : mesh_(mesh), albedo_(albedo), rays_(rays), lights_(environment),
+          emitters_(mesh, options.emitters, options.two_sided), options_(options) {}
 
     /// One path's light from surfaces, for albedo 1 at its start.
     [[nodiscard]] glm::dvec3 trace(PathPoint point, Random& random) const {
         glm::dvec3 sum(0.0);
         glm::dvec3 throughput(1.0);
         for (std::uint32_t bounce = 0;; ++bounce) {
+            sum += throughput * lamp_sample(point, random);
             const glm::dvec3 direction = cosine_direction(point.normal, random);
             const auto hit = rays_.closest_hit(point.origin, glm::vec3(direction));
             if (!hit) {
@@ -132,6 +216,7 @@ public:
                     sum += throughput * weighted_sky(point, direction);
                 return sum;
             }
+            sum += throughput * weighted_lamp(point, *hit, direction);
             if (options_.num_bounces && bounce == *options_.num_bounces)
                 return sum;
             const prt::MeshPoint at{.triangle = hit->triangle, .barycentric = hit->barycentric};
@@ -166,6 +251,33 @@ private:
         return light.radiance * (diffuse / (light.density + diffuse));
     }
 
+    /// The sample of what glows, and all lights without a surface.
+    [[nodiscard]] glm::dvec3 lamp_sample(const PathPoint& point, Random& random) const {
+        glm::dvec3 sum(0.0);
+        for (const mesh::PunctualLight& light : options_.lights)
+            sum += punctual_light(light, point.origin, point.normal, rays_);
+        const EmitterSampler::Sample lamp = emitters_.draw(glm::dvec3(point.origin), random);
+        if (!(lamp.density > 0.0))
+            return sum;
+        const double distance = glm::length(lamp.way);
+        const double cosine = glm::dot(point.normal, lamp.way) / distance;
+        constexpr float Before = 1.0f - 1e-4f; // the lamp itself is no obstacle
+        if (!(cosine > 0.0) || rays_.occluded(point.origin, glm::vec3(lamp.way), Before))
+            return sum;
+        const double diffuse = cosine / std::numbers::pi;
+        return sum + lamp.radiance * (diffuse / (lamp.density + diffuse));
+    }
+
+    /// The sample of the hemisphere, which met a surface.
+    [[nodiscard]] glm::dvec3 weighted_lamp(const PathPoint& point, const prt::Hit& hit,
+                                           const glm::dvec3& direction) const {
+        const EmitterSampler::Sample lamp =
+            emitters_.at(hit, direction * static_cast<double>(hit.distance));
+        const double diffuse = std::max(glm::dot(point.normal, direction), 0.0) / std::numbers::pi;
+        return lamp.density > 0.0 ? lamp.radiance * (diffuse / (lamp.density + diffuse))
+                                  : glm::dvec3(0.0);
+    }
+
     /// The sample of the hemisphere, which met nothing.
     [[nodiscard]] glm::dvec3 weighted_sky(const PathPoint& point,
                                           const glm::dvec3& direction) const {
@@ -179,6 +291,7 @@ private:
     std::span<const glm::vec3> albedo_;
     const prt::RayScene& rays_;
     EnvironmentSampler lights_;
+    EmitterSampler emitters_;
     const PathTracerOptions& options_;
 };
 

@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 60> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 80> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -83,6 +83,9 @@ inline constexpr std::array<std::string_view, 60> SectionNames = {"settings",
                                                                   "g_sheen_b",
                                                                   "g_sheen_c",
                                                                   "g_sheen_s",
-                                                                  "g_sheen_v"};
+                                                                  "g_sheen_v",
+                                                                  "lamps",
+                                                                  "emitters",
+                                                                  "e_radiance"};
 
 } // namespace relumine::fuzz

@@ -103,7 +103,7 @@ TEST_F(Output, EmissionIsAddedAndDimmed) {
     const std::vector<glm::vec3> colors =
         colors_of(scene.scene(), scene.radiance(), glm::vec3(1.0f));
     const std::vector<glm::vec3> dimmed =
-        Painter(scene, {.emission = glm::vec3(0.5f, 1.0f, 2.0f)}).values(scene.radiance());
+        Painter(scene, {.emission = {{.gain = {0.5f, 1.0f, 2.0f}}}}).values(scene.radiance());
     for (std::size_t i = 0; i < colors.size(); ++i) {
         EXPECT_EQ(colors[i], scene.radiance()[i] + own);
         EXPECT_EQ(dimmed[i], scene.radiance()[i] + glm::vec3(1.5f, 0.0f, 1.0f));
@@ -115,7 +115,7 @@ TEST_F(Output, EmissionIsAddedAndDimmed) {
         OutputOptions options{.width = 9, .height = 5, .samples_per_axis = 1};
         options.background = NothingBehind{};
         const Picture bright = draw(*drawn, options);
-        options.emission = glm::vec3(0.0f);
+        options.emission = {{.gain = glm::vec3(0.0f)}};
         const Picture plain = draw(*drawn, options);
         float covered = 0.0f;
         for (std::size_t i = 0; i < plain.pixels.size(); ++i) {

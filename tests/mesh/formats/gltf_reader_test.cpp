@@ -558,7 +558,6 @@ TEST_F(GltfTest, SaysWhatIsLeftOut) {
             "1 material transparent by alpha; alpha is not read: surfaces are opaque",
             "2 materials with textures of hard pixels (NEAREST), which are not kept: they are "
             "sampled bilinearly",
-            "1 material with emission: it is seen, and lights no other surface",
             "1 material with the property 'shiny', which glTF does not have: it is left out",
             "1 primitive of points or lines: only triangles are read",
             "morph targets of colours and uvs: only shapes are read",
@@ -722,6 +721,65 @@ TEST_F(GltfTest, TheFirstPerspectiveCameraIsKept) {
     static_cast<void>(
         load(write("b.gltf", model.embedded()), NormalSource::File, nullptr, &camera));
     EXPECT_FALSE(camera);
+}
+
+/// A square with a node that has a light.
+Model square_with_light(const Json& light) {
+    Model model = square();
+    model.json["extensionsUsed"] = {"KHR_lights_punctual"};
+    model.json["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+    const std::size_t node = model.json["nodes"].size();
+    model.json["nodes"].push_back({{"translation", {1, 2, 3}},
+                                   {"rotation", {std::sqrt(0.5), 0, 0, -std::sqrt(0.5)}},
+                                   {"scale", {7, 7, 7}},
+                                   {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    model.json["scenes"][0]["nodes"].push_back(node);
+    return model;
+}
+
+TEST_F(GltfTest, LightsStandAtTheirNodes) {
+    const Json spot = {
+        {"type", "spot"},       {"name", "lamp"},
+        {"color", {1, 0.5, 0}}, {"intensity", 20},
+        {"range", 9},           {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}};
+    const TriangleMesh mesh = gltf(square_with_light(spot).embedded());
+    EXPECT_THAT(mesh.warnings, testing::IsEmpty());
+    ASSERT_EQ(mesh.lights.size(), 1u);
+    PunctualLight light = mesh.lights[0];
+    // -Z of the node looks down.
+    EXPECT_LT(glm::distance(light.direction, glm::vec3(0, -1, 0)), 1e-6f);
+    light.direction = {0, -1, 0};
+    EXPECT_EQ(light, (PunctualLight{.name = "lamp",
+                                    .kind = PunctualLight::Kind::Spot,
+                                    .intensity = {20, 10, 0},
+                                    .position = {1, 2, 3},
+                                    .direction = {0, -1, 0},
+                                    .range = 9,
+                                    .inner_cone = 0.25f,
+                                    .outer_cone = 0.5f}));
+    const TriangleMesh sun = gltf(square_with_light({{"type", "directional"}}).embedded());
+    EXPECT_EQ(sun.lights.at(0).name, "light 0");
+    EXPECT_EQ(sun.lights[0].intensity, glm::vec3(1.0f));
+    EXPECT_TRUE(std::isinf(sun.lights[0].range));
+}
+
+TEST_F(GltfTest, LightsThatCannotBeAreRefused) {
+    const auto expect_light_refused = [](const Model& broken, const std::string& part) {
+        EXPECT_THAT([&] { static_cast<void>(gltf(broken.embedded())); },
+                    testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr(part)));
+    };
+    const auto refused = [&](const Json& light, const std::string& part) {
+        expect_light_refused(square_with_light(light), part);
+    };
+    refused({{"type", "area"}}, "expected point, spot or directional");
+    refused({{"type", "point"}, {"intensity", -1}}, "as \"intensity\" of a light, got -1");
+    refused({{"type", "point"}, {"color", {1, 2, 1}}}, "expected 0 to 1 in \"color\"");
+    refused({{"type", "point"}, {"range", 0}}, "expected more than 0 as \"range\"");
+    refused({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.8}}}}, "\"innerConeAngle\" below");
+    refused({{"type", "spot"}, {"spot", {{"outerConeAngle", 3}}}}, "\"outerConeAngle\" of a light");
+    Model model = square_with_light({{"type", "point"}});
+    model.json["nodes"][1]["extensions"]["KHR_lights_punctual"]["light"] = 4;
+    expect_light_refused(model, "expected indices of lights below 1, got 4");
 }
 
 } // namespace

@@ -185,10 +185,9 @@ TEST(SurfaceColors, EmissionIsSeen) {
     const std::vector<prt::Surface> surfaces = prt::vertex_surfaces(mesh);
     const SurfaceColors textures(mesh, surfaces);
     ASSERT_TRUE(textures.has(0)) << "a texture of emission is one";
-    const Picture picture = view.cut_out({.radiance = black,
-                                          .emission = emission,
-                                          .emission_factor = glm::vec3(0.5f),
-                                          .textures = &textures});
+    const std::vector<glm::vec3> gains(mesh.num_triangles(), glm::vec3(0.5f));
+    const Picture picture = view.cut_out(
+        {.radiance = black, .emission = emission, .emission_gains = gains, .textures = &textures});
     const glm::vec3* row = picture.pixels.data() + 32;
     EXPECT_GT(row[2].r, row[2].g + 0.5f) << "the textures' colours";
     EXPECT_GT(row[4].g, row[4].b + 0.5f);
