@@ -14,6 +14,7 @@
 
 #include "files/extension.h"
 #include "mesh/load.h"
+#include "mesh/opacity.h"
 #include "prt/glossy/lobe_list.h"
 #include "prt/parts/part_file.h"
 #include "prt/parts/team_checkpoint.h"
@@ -446,12 +447,19 @@ private:
         if (mesh.textures.empty() || mesh.triangle_materials.empty())
             return;
         if (options_.surface) {
-            const auto plain = static_cast<std::uint32_t>(mesh.materials.size());
-            mesh.materials.push_back({.name = "option"});
+            const auto first = static_cast<std::ptrdiff_t>(mesh.materials.size());
             for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i) {
                 const prt::Surface own = prt::surface_at(mesh, i, glm::vec2(1.0f / 3.0f));
-                if (options_.surface(mesh, i, own) != own)
-                    mesh.triangle_materials[i] = plain;
+                if (options_.surface(mesh, i, own) == own)
+                    continue;
+                const mesh::Material plain =
+                    mesh::without_colors(mesh.materials[mesh.triangle_materials[i]]);
+                const auto place =
+                    std::find(mesh.materials.begin() + first, mesh.materials.end(), plain);
+                mesh.triangle_materials[i] =
+                    static_cast<std::uint32_t>(place - mesh.materials.begin());
+                if (place == mesh.materials.end())
+                    mesh.materials.push_back(plain);
             }
         }
         constexpr float LeastAlbedo = 1.0f / 255.0f / 12.92f;

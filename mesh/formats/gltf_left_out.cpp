@@ -46,9 +46,10 @@ constexpr std::array<std::string_view, 3> ReadExtensions = {"KHR_materials_emiss
                                                             "KHR_materials_unlit"};
 
 /// Everything that glTF 2.0 gives a material and a texture of it.
-constexpr std::array<std::string_view, 10> MaterialProperties = {
-    "name",        "extras",           "extensions",      "pbrMetallicRoughness", "normalTexture",
-    "alphaCutoff", "occlusionTexture", "emissiveTexture", "emissiveFactor",       "alphaMode"};
+constexpr std::array<std::string_view, 11> MaterialProperties = {
+    "name",           "extras",      "extensions",       "pbrMetallicRoughness",
+    "normalTexture",  "alphaCutoff", "occlusionTexture", "emissiveTexture",
+    "emissiveFactor", "alphaMode",   "doubleSided"};
 
 bool is_number(const Json& value, double number) {
     return value.type() == Json::Type::Number && value.number() == number;
@@ -134,11 +135,8 @@ void LeftOut::material_extensions(const Json& extensions) {
 
 void LeftOut::material(const Json& description) {
     of_this_material_.clear();
-    const std::string mode = text(description, "alphaMode", "OPAQUE");
-    if (mode == "MASK")
-        count("cut out by alpha (leaves, fences); alpha is not read", "what is cut out is opaque");
-    else if (mode != "OPAQUE")
-        count("transparent by alpha; alpha is not read", "surfaces are opaque");
+    if (text(description, "alphaMode", "OPAQUE") == "BLEND")
+        count("transparent by alpha, of which only alpha 0 is read", "other surfaces are opaque");
     if (description.find("normalTexture"))
         count("with a normal map, which is not read", "surfaces are as smooth as the mesh");
     const std::vector<double> emission = numbers(description, "emissiveFactor", {0.0, 0.0, 0.0});
@@ -147,11 +145,9 @@ void LeftOut::material(const Json& description) {
         count("with emission", "it is seen, and lights no other surface");
     if (description.find("occlusionTexture"))
         count("with an occlusion map, which is not read", "rays find what blocks the light");
-    if (description.find("doubleSided") && !flag(description, "doubleSided"))
-        count("with one side only", "pictures show both");
     for (const auto& [name, value] : description.members())
-        if (name != "doubleSided" && std::find(MaterialProperties.begin(), MaterialProperties.end(),
-                                               name) == MaterialProperties.end())
+        if (std::find(MaterialProperties.begin(), MaterialProperties.end(), name) ==
+            MaterialProperties.end())
             count("with the property " + excerpt(name) + ", which glTF does not have",
                   "it is left out");
     material_extensions(child(description, "extensions"));

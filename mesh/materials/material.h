@@ -43,6 +43,16 @@ enum class MaterialModel : std::uint8_t {
     Unlit,
 };
 
+/// What a material's alpha does (glTF's alphaMode).
+enum class AlphaMode : std::uint8_t {
+    /// Nothing.
+    Opaque,
+    /// Where it is below the cutoff, the surface does not exist: leaves, fences.
+    Mask,
+    /// It is the part of the light that the surface takes; the rest goes on behind it.
+    Blend,
+};
+
 /// Returns true for a number of 0 to 1. A little outside is a rounding: of a float, or of four
 /// decimals.
 [[nodiscard]] constexpr bool is_fraction(double value) {
@@ -75,6 +85,15 @@ struct Material {
     glm::vec3 emission{0.0f};
     /// Its RGB multiplies emission.
     std::optional<TextureSlot> emission_texture = {};
+    AlphaMode alpha_mode = AlphaMode::Opaque;
+    /// In [0, 1].
+    float alpha = 1.0f;
+    /// Mask: >= 0.
+    float alpha_cutoff = 0.5f;
+    /// Its R multiplies alpha. Only where alpha_mode is not Opaque.
+    std::optional<TextureSlot> alpha_texture = {};
+    /// False: pictures do not show the backs. They block light all the same.
+    bool is_double_sided = true;
 
     bool operator==(const Material&) const = default;
 };

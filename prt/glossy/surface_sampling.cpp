@@ -6,30 +6,13 @@
 
 #include <glm/common.hpp>
 
+#include "mesh/opacity.h"
 #include "prt/glossy/lobe_list.h"
 #include "prt/receivers/mesh_point.h"
 
 namespace relumine::prt {
 
 namespace {
-
-/// Interpolates an attribute of the corners at a point.
-template<class Value>
-Value interpolate(const std::array<Value, 3>& corners, const glm::vec2& barycentric) {
-    return corners[0] * (1.0f - barycentric.x - barycentric.y) + corners[1] * barycentric.x +
-           corners[2] * barycentric.y;
-}
-
-glm::vec2 uv_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
-                const glm::vec2& barycentric) {
-    const mesh::Triangle& t = mesh.triangles[triangle];
-    if (!mesh.corner_uvs.empty())
-        return interpolate(mesh.corner_uvs[triangle], barycentric);
-    if (!mesh.uvs.empty())
-        return interpolate<glm::vec2>({mesh.uvs[t[0]], mesh.uvs[t[1]], mesh.uvs[t[2]]},
-                                      barycentric);
-    return glm::vec2(0.0f);
-}
 
 /// A point of a mesh, and the material there.
 struct MaterialPoint {
@@ -100,7 +83,7 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
     const MaterialPoint point{.mesh = mesh,
                               .material = material,
                               .at = {triangle, barycentric},
-                              .uv = has_texture ? uv_at(mesh, triangle, barycentric)
+                              .uv = has_texture ? mesh::uv_at(mesh, triangle, barycentric)
                                                 : glm::vec2(0.0f)};
     if (material.model == mesh::MaterialModel::Unlit)
         return {.albedo = glm::vec3(0.0f), .emission = glm::max(point.base(), 0.0f)};

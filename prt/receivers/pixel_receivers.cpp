@@ -56,7 +56,8 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
             static_cast<std::uint32_t>(std::size_t{y} * view.width * picture.samples_per_pixel());
         for (std::uint32_t x = 0; x < view.width; ++x)
             for (std::uint32_t i = 0; i < picture.samples_per_pixel(); ++i, ++sample)
-                if (const auto hit = rays.closest_hit(view.camera.eye, picture.direction(x, y, i)))
+                if (const auto hit =
+                        rays.closest_hit(view.camera.eye, picture.direction(x, y, i), RayOf::Eye))
                     rows[y].push_back({sample, {hit->triangle, inside(hit->barycentric)}});
     };
     constexpr std::uint32_t Band = 128; // rows between two looks at the work

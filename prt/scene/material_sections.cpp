@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 
+#include "mesh/opacity.h"
 #include "prt/scene/json_members.h"
 #include "prt/scene/section_group.h"
 
@@ -97,6 +98,30 @@ std::optional<TextureSlot> slot_of(const Json& json, std::size_t num_textures) {
                        .uv_offset = glm::vec2(finite(uv.at(4)), finite(uv.at(5)))};
 }
 
+/// Members of a material that rays meet. Others have none.
+void add_alpha(Json& json, const Material& material, const Stored& stored) {
+    if (!material.is_double_sided)
+        json.set("double_sided", false);
+    if (!mesh::lets_light_pass(material))
+        return;
+    json.set("alpha_mode", static_cast<int>(material.alpha_mode));
+    json.set("alpha", material.alpha);
+    json.set("alpha_cutoff", material.alpha_cutoff);
+    json.set("alpha_texture", json_of(material.alpha_texture, stored));
+}
+
+void read_alpha(const Json& json, std::size_t num_textures, Material& material) {
+    if (const Json* sides = json.find("double_sided"))
+        material.is_double_sided = sides->boolean();
+    const Json* mode = json.find("alpha_mode");
+    if (mode == nullptr)
+        return;
+    material.alpha_mode = static_cast<mesh::AlphaMode>(below(*mode, 3));
+    material.alpha = fraction(json.at("alpha"));
+    material.alpha_cutoff = finite(json.at("alpha_cutoff"));
+    material.alpha_texture = slot_of(json.at("alpha_texture"), num_textures);
+}
+
 Material material_of(const Json& json, std::size_t num_textures) {
     Material material;
     material.model = static_cast<mesh::MaterialModel>(below(json.at("model"), 4));
@@ -113,6 +138,7 @@ Material material_of(const Json& json, std::size_t num_textures) {
         }
     for (const auto slot : color_slots(material))
         material.*slot = slot_of(json.at(name_of(slot)), num_textures);
+    read_alpha(json, num_textures, material);
     return material;
 }
 
@@ -128,52 +154,163 @@ mesh::Texture texture_of(const Json& json, const std::vector<std::byte>& images,
     return texture;
 }
 
-/// What gives a textured mesh its colours between the vertices: materials, the image files as they
-/// were, materials of triangles, uvs of corners. A mesh without textures adds nothing.
-void add_materials(NewSections& sections, const Scene& scene) {
-    if (!on_vertices(scene.layout) || scene.receivers.surfaces.empty())
-        return;
+/// Whether pictures of the scene's vertices take colours from textures.
+bool shows_textures(const Scene& scene) {
     const mesh::TriangleMesh& mesh = scene.mesh;
-    const auto has_texture = [&](const Material& material) {
-        return (material.base_color_texture || material.emission_texture) &&
-               has_files(material, mesh.textures);
-    };
-    if (mesh.triangle_materials.empty() ||
-        std::none_of(mesh.materials.begin(), mesh.materials.end(), has_texture))
-        return;
-    Json textures = Json::Array{}, materials = Json::Array{};
-    std::vector<std::byte> images;
-    Stored stored;
-    for (const Material& material : mesh.materials) {
-        Json json = {
-            {"model", static_cast<int>(material.model)},
-            {"base", {material.base_color.r, material.base_color.g, material.base_color.b}},
-            {"metallic", material.metallic},
-            {"specular", {material.specular.r, material.specular.g, material.specular.b}},
-            {"times_vertex_color", material.times_vertex_color}};
-        // A picture takes a material without its textures from the vertices.
-        const bool is_kept = has_files(material, mesh.textures);
-        if (const glm::vec3& emission = material.emission; emission != glm::vec3(0.0f))
-            json.set("emission", {emission.r, emission.g, emission.b});
-        for (const auto slot : color_slots(material)) {
-            const auto& used = is_kept ? material.*slot : std::nullopt;
-            if (used && !stored.contains(used->texture)) {
-                const mesh::Texture& texture = mesh.textures[used->texture];
-                stored.emplace(used->texture, textures.size());
-                textures.push_back({{"bytes", texture.file.size()},
-                                    {"v_from_top", texture.origin == mesh::VOrigin::Top}});
-                images.insert(images.end(), texture.file.begin(), texture.file.end());
-            }
-            json.set(name_of(slot), json_of(used, stored));
-        }
-        materials.push_back(json);
+    return on_vertices(scene.layout) && !scene.receivers.surfaces.empty() &&
+           std::any_of(mesh.materials.begin(), mesh.materials.end(), [&](const Material& material) {
+               return (material.base_color_texture || material.emission_texture) &&
+                      has_files(material, mesh.textures);
+           });
+}
+
+/// Whether rays look at the materials: those of light, or of pictures of vertices.
+bool rays_ask(const Scene& scene) {
+    const std::vector<Material>& materials = scene.mesh.materials;
+    return mesh::lets_light_pass(scene.blocking_mesh()) ||
+           (on_vertices(scene.layout) &&
+            std::any_of(materials.begin(), materials.end(), mesh::lets_eye_pass));
+}
+
+/// The textures that are stored: image files as they were, and after them the texels of alpha.
+class StoredTextures {
+public:
+    explicit StoredTextures(const mesh::TriangleMesh& mesh) : mesh_(mesh) {}
+
+    void add_image(const TextureSlot& slot) {
+        if (!stored.try_emplace(slot.texture, images_.size()).second)
+            return;
+        const mesh::Texture& texture = mesh_.textures[slot.texture];
+        images_.push_back(
+            {{"bytes", texture.file.size()}, {"v_from_top", texture.origin == mesh::VOrigin::Top}});
+        bytes.insert(bytes.end(), texture.file.begin(), texture.file.end());
     }
-    const std::string text = Json({{"images", textures}, {"materials", materials}}).text(2);
-    sections["materials"] = bytes_of(text);
-    sections["images"] = std::move(images);
+    /// Behind all images.
+    void add_alpha(const TextureSlot& slot) {
+        if (!stored.try_emplace(slot.texture, images_.size() + alphas_.size()).second)
+            return;
+        const mesh::Texture& texture = mesh_.textures[slot.texture];
+        alphas_.push_back({{"width", texture.width}, {"height", texture.height}});
+        for (const auto& texel : texture.texels)
+            alpha_bytes.push_back(std::byte{texel[0]});
+    }
+    void describe(Json& json) const {
+        json.set("images", images_);
+        if (alphas_.size() != 0)
+            json.set("alphas", alphas_);
+    }
+
+    Stored stored;
+    std::vector<std::byte> bytes, alpha_bytes;
+
+private:
+    const mesh::TriangleMesh& mesh_;
+    Json images_ = Json::Array{}, alphas_ = Json::Array{};
+};
+
+Json json_of(const Material& material, bool is_kept, const Stored& stored) {
+    Json json = {{"model", static_cast<int>(material.model)},
+                 {"base", {material.base_color.r, material.base_color.g, material.base_color.b}},
+                 {"metallic", material.metallic},
+                 {"specular", {material.specular.r, material.specular.g, material.specular.b}},
+                 {"times_vertex_color", material.times_vertex_color}};
+    if (const glm::vec3& emission = material.emission; emission != glm::vec3(0.0f))
+        json.set("emission", {emission.r, emission.g, emission.b});
+    for (const auto slot : color_slots(material))
+        json.set(name_of(slot), json_of(is_kept ? material.*slot : std::nullopt, stored));
+    add_alpha(json, material, stored);
+    return json;
+}
+
+/// What gives a textured mesh its colours between the vertices, and tells rays what they may pass:
+/// materials, the image files as they were, materials of triangles, uvs of corners. Other meshes
+/// add nothing.
+void add_materials(NewSections& sections, const Scene& scene) {
+    const mesh::TriangleMesh& mesh = scene.mesh;
+    const bool shows = shows_textures(scene);
+    if (mesh.triangle_materials.empty() || !(shows || rays_ask(scene)))
+        return;
+    StoredTextures textures(mesh);
+    // A picture takes a material without its textures from the vertices.
+    const auto is_kept = [&](const Material& material) {
+        return shows && has_files(material, mesh.textures);
+    };
+    for (const Material& material : mesh.materials)
+        for (const auto slot : color_slots(material))
+            if (const auto& used = material.*slot; used && is_kept(material))
+                textures.add_image(*used);
+    for (const Material& material : mesh.materials)
+        if (material.alpha_texture)
+            textures.add_alpha(*material.alpha_texture);
+    Json materials = Json::Array{};
+    for (const Material& material : mesh.materials)
+        materials.push_back(json_of(material, is_kept(material), textures.stored));
+    Json json = Json::Object{};
+    textures.describe(json);
+    json.set("materials", std::move(materials));
+    sections["materials"] = bytes_of(json.text(2));
+    sections["images"] = std::move(textures.bytes);
+    if (!textures.alpha_bytes.empty())
+        sections["alphas"] = std::move(textures.alpha_bytes);
     sections["t_materials"] = SectionContent::view(mesh.triangle_materials);
     if (!mesh.corner_uvs.empty())
         sections["corner_uvs"] = SectionContent::view(mesh.corner_uvs);
+    if (!scene.blockers || !mesh::lets_light_pass(*scene.blockers))
+        return;
+    sections["block_materials"] = SectionContent::view(scene.blockers->triangle_materials);
+    if (!scene.blockers->uvs.empty())
+        sections["block_uvs"] = SectionContent::view(scene.blockers->uvs);
+    if (!scene.blockers->corner_uvs.empty())
+        sections["block_corner_uvs"] = SectionContent::view(scene.blockers->corner_uvs);
+}
+
+/// Reads the texels of an alpha, from `offset` on, which goes behind them.
+mesh::Texture alpha_of(const Json& json, const std::vector<std::byte>& bytes, std::size_t& offset) {
+    mesh::Texture texture{.name = "alpha",
+                          .width = natural(json.at("width")),
+                          .height = natural(json.at("height")),
+                          .texels = {}};
+    const std::size_t size = std::size_t{texture.width} * texture.height;
+    if (size == 0 || size > bytes.size() - offset)
+        throw std::out_of_range("expected alpha in the section");
+    texture.texels.reserve(size);
+    for (const std::byte byte : std::span(bytes).subspan(offset, size)) {
+        const auto alpha = std::to_integer<std::uint8_t>(byte);
+        texture.texels.push_back({alpha, alpha, alpha});
+    }
+    offset += size;
+    return texture;
+}
+
+/// Reads the textures of a mesh, in the order of StoredTextures.
+void read_textures(const SectionReader& reader, const Json& json, mesh::TriangleMesh& mesh) {
+    const std::vector<std::byte> images = reader.bytes("images");
+    std::size_t offset = 0;
+    mesh::ImageBudget budget;
+    for (const Json& texture : json.at("images").values())
+        mesh.textures.push_back(texture_of(texture, images, offset, budget));
+    if (offset != images.size())
+        throw std::out_of_range("expected as many bytes as images have");
+    const Json* alphas = json.find("alphas");
+    if (alphas == nullptr)
+        return;
+    const std::vector<std::byte> bytes = reader.bytes("alphas");
+    offset = 0;
+    for (const Json& texture : alphas->values())
+        mesh.textures.push_back(alpha_of(texture, bytes, offset));
+    if (offset != bytes.size())
+        throw std::out_of_range("expected as many bytes as alphas have");
+}
+
+/// Reads which of the mesh's materials each triangle has.
+std::vector<std::uint32_t> triangle_materials(const SectionReader& reader, const char* section,
+                                              const mesh::TriangleMesh& mesh,
+                                              std::size_t num_materials) {
+    std::vector<std::uint32_t> result =
+        reader.elements<std::uint32_t>(section, mesh.num_triangles());
+    if (std::any_of(result.begin(), result.end(), [&](auto i) { return i >= num_materials; }))
+        reader.fail(section, "indices of materials");
+    return result;
 }
 
 void read_materials(const SectionReader& reader, Scene& scene) {
@@ -181,31 +318,40 @@ void read_materials(const SectionReader& reader, Scene& scene) {
     if (!reader.has("materials"))
         return;
     const Json json = reader.json("materials");
-    const std::vector<std::byte> images = reader.bytes("images");
     try {
-        std::size_t offset = 0;
-        mesh::ImageBudget budget;
-        for (const Json& texture : json.at("images").values())
-            mesh.textures.push_back(texture_of(texture, images, offset, budget));
-        if (offset != images.size())
-            throw std::out_of_range("expected as many bytes as images have");
+        read_textures(reader, json, mesh);
         for (const Json& material : json.at("materials").values())
             mesh.materials.push_back(material_of(material, mesh.textures.size()));
     } catch (const std::exception&) {
         reader.fail("materials", "JSON with materials and their images");
     }
-    mesh.triangle_materials = reader.elements<std::uint32_t>("t_materials", mesh.num_triangles());
-    if (std::any_of(mesh.triangle_materials.begin(), mesh.triangle_materials.end(),
-                    [&](auto i) { return i >= mesh.materials.size(); }))
-        reader.fail("t_materials", "indices of materials");
-    mesh.corner_uvs =
-        reader.elements<std::array<glm::vec2, 3>>("corner_uvs", mesh.num_triangles(), true);
+    using Corners = std::array<glm::vec2, 3>;
+    mesh.triangle_materials =
+        triangle_materials(reader, "t_materials", mesh, mesh.materials.size());
+    mesh.corner_uvs = reader.elements<Corners>("corner_uvs", mesh.num_triangles(), true);
+    if (!scene.blockers || !reader.has("block_materials"))
+        return;
+    mesh::TriangleMesh& blockers = *scene.blockers;
+    blockers.materials = mesh.materials;
+    blockers.textures = mesh.textures;
+    blockers.triangle_materials =
+        triangle_materials(reader, "block_materials", blockers, mesh.materials.size());
+    blockers.uvs = reader.elements<glm::vec2>("block_uvs", blockers.num_vertices(), true);
+    blockers.corner_uvs =
+        reader.elements<Corners>("block_corner_uvs", blockers.num_triangles(), true);
 }
 
 void check_materials(const SceneCheck& check, const Scene& scene) {
-    for (std::size_t corner = 0; corner < 3; ++corner)
-        check.all("finite uvs of corners", scene.mesh.corner_uvs, is_finite_uv,
-                  [&](const auto& uvs) { return uvs[corner]; });
+    const auto check_uvs = [&](const mesh::TriangleMesh& mesh) {
+        for (std::size_t corner = 0; corner < 3; ++corner)
+            check.all("finite uvs of corners", mesh.corner_uvs, is_finite_uv,
+                      [&](const auto& uvs) { return uvs[corner]; });
+    };
+    check_uvs(scene.mesh);
+    if (!scene.blockers)
+        return;
+    check_uvs(*scene.blockers);
+    check.all("finite uvs of blockers", scene.blockers->uvs, is_finite_uv);
 }
 
 } // namespace

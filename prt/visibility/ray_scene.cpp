@@ -68,6 +68,7 @@ const Element* fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat f
 struct Buffers {
     const glm::vec3* positions = nullptr;
     const mesh::Triangle* triangles = nullptr;
+    SeeThrough see_through;
 };
 
 /// The nearest hit of a ray so far.
@@ -89,10 +90,13 @@ struct Query {
     /// decide whether a hit is found that is one by a rounding only.
     std::uint32_t doubtful = 0;
     bool is_packet = false;
+    RayOf of = RayOf::Light;
     /// [number of rays] where the nearest hits are asked for
     Nearest* nearest = nullptr;
 
-    explicit Query(bool packet) : is_packet(packet) { rtcInitIntersectContext(&context); }
+    explicit Query(bool packet, RayOf whose = RayOf::Light) : is_packet(packet), of(whose) {
+        rtcInitIntersectContext(&context);
+    }
 };
 
 /// A ray, and a triangle that Embree says it hits.
@@ -102,18 +106,34 @@ struct Candidate {
     glm::dvec3 direction;
     /// Its number in the query
     std::uint32_t ray;
+    std::uint32_t triangle;
+    glm::vec3 origin;
+    const Buffers& buffers;
 
     Candidate(const RTCFilterFunctionNArguments* hits, unsigned int i)
         : direction(RTCRayN_dir_x(hits->ray, hits->N, i), RTCRayN_dir_y(hits->ray, hits->N, i),
                     RTCRayN_dir_z(hits->ray, hits->N, i)),
-          ray(RTCRayN_id(hits->ray, hits->N, i)) {
-        const glm::dvec3 origin(RTCRayN_org_x(hits->ray, hits->N, i),
-                                RTCRayN_org_y(hits->ray, hits->N, i),
-                                RTCRayN_org_z(hits->ray, hits->N, i));
-        const auto& buffers = *static_cast<const Buffers*>(hits->geometryUserPtr);
-        const mesh::Triangle& triangle = buffers.triangles[RTCHitN_primID(hits->hit, hits->N, i)];
+          ray(RTCRayN_id(hits->ray, hits->N, i)), triangle(RTCHitN_primID(hits->hit, hits->N, i)),
+          origin(RTCRayN_org_x(hits->ray, hits->N, i), RTCRayN_org_y(hits->ray, hits->N, i),
+                 RTCRayN_org_z(hits->ray, hits->N, i)),
+          buffers(*static_cast<const Buffers*>(hits->geometryUserPtr)) {
         for (std::size_t k = 0; k < 3; ++k)
-            corners[k] = glm::dvec3(buffers.positions[triangle[k]]) - origin;
+            corners[k] =
+                glm::dvec3(buffers.positions[buffers.triangles[triangle][k]]) - glm::dvec3(origin);
+    }
+
+    /// Whether the ray goes on behind the triangle.
+    [[nodiscard]] bool passes(RayOf of) const {
+        if (!buffers.see_through.may_pass(triangle, of))
+            return false;
+        const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+        return buffers.see_through.passes(
+            {.triangle = triangle,
+             .barycentric = glm::vec2(meeting_of(corners, direction).barycentric),
+             .origin = origin,
+             .direction = glm::vec3(direction),
+             .is_back = glm::dot(normal, direction) > 0.0},
+            of);
     }
 
     /// Whether the hit lies beside the triangle.
@@ -148,6 +168,10 @@ void keep_blockers(const RTCFilterFunctionNArguments* hits) {
         if (hits->valid[i] == 0)
             continue;
         const Candidate candidate(hits, i);
+        if (candidate.passes(query.of)) {
+            hits->valid[i] = 0;
+            continue;
+        }
         const bool is_in_doubt = candidate.is_in_doubt(query);
         if (query.is_packet && !is_in_doubt)
             continue;
@@ -172,7 +196,7 @@ void keep_nearest(const RTCFilterFunctionNArguments* hits) {
         if (hits->valid[i] == 0)
             continue;
         const Candidate candidate(hits, i);
-        if (candidate.is_beside()) {
+        if (candidate.is_beside() || candidate.passes(query.of)) {
             hits->valid[i] = 0;
             continue;
         }
@@ -187,9 +211,8 @@ void keep_nearest(const RTCFilterFunctionNArguments* hits) {
                                  ? meeting.distance
                                  : std::max(embree, meeting.distance);
         Nearest& nearest = query.nearest[candidate.ray];
-        const std::uint32_t triangle = RTCHitN_primID(hits->hit, hits->N, i);
-        if (std::tie(order, triangle) < std::tie(nearest.order, nearest.triangle))
-            nearest = {meeting, order, triangle, nearest.reach};
+        if (std::tie(order, candidate.triangle) < std::tie(nearest.order, nearest.triangle))
+            nearest = {meeting, order, candidate.triangle, nearest.reach};
         reach = nearest.reach = std::min(nearest.reach, static_cast<float>(order + about));
     }
 }
@@ -243,7 +266,8 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
             triangle = {nowhere, nowhere, nowhere};
     impl_->buffers = {
         .positions = fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions),
-        .triangles = fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles)};
+        .triangles = fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles),
+        .see_through = SeeThrough(mesh)};
     rtcSetGeometryUserData(geometry, &impl_->buffers);
     rtcSetGeometryOccludedFilterFunction(geometry, keep_blockers);
     rtcSetGeometryIntersectFilterFunction(geometry, keep_nearest);
@@ -323,12 +347,12 @@ bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction) con
     return ray.tfar < 0.0f;
 }
 
-std::optional<Hit> RayScene::closest_hit(const glm::vec3& origin,
-                                         const glm::vec3& direction) const {
+std::optional<Hit> RayScene::closest_hit(const glm::vec3& origin, const glm::vec3& direction,
+                                         RayOf of) const {
     RTCRayHit ray{};
     ray.ray = ray_of(origin, direction);
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    Query query(false);
+    Query query(false, of);
     Nearest nearest;
     query.nearest = &nearest;
     rtcIntersect1(impl_->scene.get(), &query.context, &ray);
@@ -338,12 +362,13 @@ std::optional<Hit> RayScene::closest_hit(const glm::vec3& origin,
 }
 
 std::uint32_t RayScene::closest_hits(const glm::vec3& origin, const DirectionPacket& directions,
-                                     std::uint32_t active, std::span<Hit, PacketSize> hits) const {
+                                     std::uint32_t active, std::span<Hit, PacketSize> hits,
+                                     RayOf of) const {
     alignas(64) Valid valid;
     RTCRayHit16 rays;
     fill_rays(origin, directions, active, valid, rays.ray);
     std::fill(std::begin(rays.hit.geomID), std::end(rays.hit.geomID), RTC_INVALID_GEOMETRY_ID);
-    Query query(true);
+    Query query(true, of);
     std::array<Nearest, PacketSize> nearest;
     query.nearest = nearest.data();
     query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -354,7 +379,7 @@ std::uint32_t RayScene::closest_hits(const glm::vec3& origin, const DirectionPac
             continue;
         std::optional<Hit> hit;
         if ((query.doubtful >> i & 1u) != 0)
-            hit = closest_hit(origin, directions.direction(i));
+            hit = closest_hit(origin, directions.direction(i), of);
         else if (rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
             hit = hit_of(nearest[i]);
         if (!hit)

@@ -11,6 +11,7 @@
 
 #include "mesh/triangle_mesh.h"
 #include "prt/visibility/blockers.h"
+#include "prt/visibility/see_through.h"
 
 namespace relumine::prt {
 
@@ -28,7 +29,8 @@ struct Hit {
 };
 
 /// Triangles prepared for ray queries; immutable. Triangles block from both sides. Rays are traced
-/// watertight (Embree's robust mode): no ray slips through a shared edge.
+/// watertight (Embree's robust mode): no ray slips through a shared edge. Where the mesh's
+/// materials let a ray pass (prt/visibility/see_through.h), it goes on behind the triangle.
 ///
 /// A ray's answer does not depend on the rays that are asked with it. x86 processors from AVX2 on
 /// give the same answers.
@@ -55,13 +57,14 @@ public:
     /// Whether anything lies on the ray.
     [[nodiscard]] bool occluded(const glm::vec3& origin, const glm::vec3& direction) const;
 
-    [[nodiscard]] std::optional<Hit> closest_hit(const glm::vec3& origin,
-                                                 const glm::vec3& direction) const;
+    [[nodiscard]] std::optional<Hit>
+    closest_hit(const glm::vec3& origin, const glm::vec3& direction, RayOf of = RayOf::Light) const;
 
     /// Finds the closest hit of each direction in `active`. Returns the mask of those that hit
     /// anything; the other hits are left alone. Fastest for directions that lie close together.
     std::uint32_t closest_hits(const glm::vec3& origin, const DirectionPacket& directions,
-                               std::uint32_t active, std::span<Hit, PacketSize> hits) const;
+                               std::uint32_t active, std::span<Hit, PacketSize> hits,
+                               RayOf of = RayOf::Light) const;
 
 private:
     struct Impl;

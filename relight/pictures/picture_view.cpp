@@ -79,7 +79,8 @@ void PictureView::trace(std::uint32_t y, std::uint32_t x_begin, std::uint32_t x_
         const auto num = packet.num_directions;
         for (std::size_t lane = num; lane < prt::PacketSize; ++lane)
             packet.set(lane, {packet.x[0], packet.y[0], packet.z[0]});
-        const std::uint32_t found = rays_.closest_hits(camera_.eye, packet, (1u << num) - 1u, hits);
+        const std::uint32_t found =
+            rays_.closest_hits(camera_.eye, packet, (1u << num) - 1u, hits, prt::RayOf::Eye);
         for (std::uint32_t lane = 0; lane < num; ++lane, ++done) {
             samples[done] = {NoTriangle, 0.0f, 0.0f};
             if ((found >> lane & 1u) == 0)

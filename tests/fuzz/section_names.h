@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 60> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 64> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -66,6 +66,10 @@ inline constexpr std::array<std::string_view, 60> SectionNames = {"settings",
                                                                   "r_metallic",
                                                                   "r_emission",
                                                                   "lifts",
-                                                                  "r_own_positions"};
+                                                                  "r_own_positions",
+                                                                  "alphas",
+                                                                  "block_materials",
+                                                                  "block_uvs",
+                                                                  "block_corner_uvs"};
 
 } // namespace relumine::fuzz
