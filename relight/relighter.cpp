@@ -342,12 +342,12 @@ UpdateReport update_region(Relighter& relighter, const TexelRectangle& rectangle
     });
 }
 
-std::span<const SharpLight> picture_lights(const Relighter& relighter) {
+std::vector<SharpLight> picture_lights(const Relighter& relighter) {
     constexpr std::size_t Most = 64;
-    const bool is_traced =
-        relighter.shadow_rays().blockers != nullptr &&
-        (relighter.environment().resolution == 0 || relighter.sharp_lights().size() <= Most);
-    return is_traced ? relighter.sharp_lights() : std::span<const SharpLight>();
+    const std::span<const SharpLight> lights = relighter.sharp_lights();
+    if (relighter.shadow_rays().blockers == nullptr)
+        return {};
+    return merged(lights, relighter.environment().resolution == 0 ? lights.size() : Most);
 }
 
 EnvironmentBinner binner_of(const Relighter& relighter) {

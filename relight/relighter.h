@@ -223,10 +223,10 @@ void put_texels(const TexelRectangle& rectangle, std::span<const glm::vec3> radi
 UpdateReport update_region(Relighter& relighter, const TexelRectangle& rectangle,
                            std::span<const glm::vec3> radiance);
 
-/// Returns the sharp lights, for a picture to trace at every point. Returns none for an environment
-/// with more than 64 sharp lights, as a scene of few clusters has: the shadows of so many lights
-/// are soft, and the picture would take half a minute.
-[[nodiscard]] std::span<const SharpLight> picture_lights(const Relighter& relighter);
+/// Returns the sharp lights, for a picture to trace at every point, merged to at most 64 where an
+/// environment has more. Returns none where so few would not do: the shadows of so many lights are
+/// soft, and the picture would take half a minute.
+[[nodiscard]] std::vector<SharpLight> picture_lights(const Relighter& relighter);
 
 /// Returns what bins environments for set_frame(). The Relighter's transfer must outlive it.
 [[nodiscard]] EnvironmentBinner binner_of(const Relighter& relighter);

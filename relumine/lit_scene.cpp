@@ -149,9 +149,8 @@ LitScene::Added LitScene::light_of_list(std::span<const lights::DistantLight> li
         added.diffuse = copy_of(relighter_->diffuse_radiance());
         if (harmonics_ != 0)
             added.harmonics = relighter_->harmonics();
-        const auto traced = relight::picture_lights(*relighter_);
-        added.lights.assign(traced.begin(), traced.end());
-        if (!traced.empty())
+        added.lights = relight::picture_lights(*relighter_);
+        if (!added.lights.empty())
             added.soft = relighter_->soft_radiance();
         return added;
     }
@@ -361,14 +360,12 @@ Lighting LitScene::lighting(bool is_drawn) const {
         throw std::logic_error("expected a scene that is lit");
     Lighting result{.radiance = radiance()};
     if (is_drawn) {
-        if (relighter_) {
-            const auto traced = relight::picture_lights(*relighter_);
-            result.lights.assign(traced.begin(), traced.end());
-        }
+        if (relighter_)
+            result.lights = relight::picture_lights(*relighter_);
         result.lights.insert(result.lights.end(), added_.lights.begin(), added_.lights.end());
     }
     if (is_drawn && relighter_ && scene_->transfer.glossy && !scene_->mesh.textures.empty())
-        result.lobes = relighter_->lobes(relight::picture_lights(*relighter_).empty());
+        result.lobes = relighter_->lobes(result.lights.size() == added_.lights.size());
     result.open_floor =
         added_.open_floor +
         (relighter_ ? relighter_->open_radiance({0.0f, 1.0f, 0.0f}) : glm::dvec3(0.0));

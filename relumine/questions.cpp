@@ -262,10 +262,9 @@ Share lit_by(const LitScene& lit, const cubemap::Region& region) {
     relight::Relighter part(relighter.transfer(), relighter.shadow_rays());
     part.set_environment(result.environment);
     result.radiance.assign(part.radiance().begin(), part.radiance().end());
-    if (const auto lights = relight::picture_lights(part); !lights.empty()) {
-        result.lights.assign(lights.begin(), lights.end());
+    result.lights = relight::picture_lights(part);
+    if (!result.lights.empty())
         result.soft = part.soft_radiance();
-    }
     if (!lit.bounces().bounced().empty()) {
         SceneBounces bounces;
         bounces.set(lit.scene(), lit.bounces().surfaces());

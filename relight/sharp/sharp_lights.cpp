@@ -32,6 +32,9 @@ constexpr double FinestShare = 1.0 / 64.0;
 // Cells of this level are at most 0.2 degrees wide: a sun of half a degree becomes about ten rays.
 constexpr std::uint32_t FinestLevel = 9;
 
+// Lights are not merged beyond cells of this level, 0.7 degrees wide.
+constexpr std::uint32_t CoarsestLevel = 7;
+
 /// Returns the sum of term(value). Keeps sums side by side: each addition waits for the one before
 /// it, and this function runs with every edit.
 template<class Term>
@@ -113,7 +116,42 @@ private:
     std::vector<SharpLight>& lights_;
 };
 
+/// Returns the cell of this level that holds another; a cell above the level itself.
+prt::Cell above(const prt::Cell& cell, std::uint32_t level) {
+    if (cell.level <= level)
+        return cell;
+    const std::uint32_t up = cell.level - level;
+    return {cell.face, static_cast<std::uint8_t>(level), cell.x >> up, cell.y >> up};
+}
+
+/// Lights come depth first, so those of one cell are neighbours.
+std::vector<SharpLight> merged_to_level(std::span<const SharpLight> lights, std::uint32_t level) {
+    std::vector<SharpLight> result;
+    for (const SharpLight& light : lights) {
+        const prt::Cell cell = above(light.cell, level);
+        if (result.empty() || result.back().cell != cell) {
+            result.push_back(light);
+            result.back().cell = cell;
+        } else {
+            result.back().irradiance += light.irradiance;
+        }
+    }
+    for (SharpLight& light : result)
+        light.direction = glm::normalize(light.irradiance.luminance());
+    return result;
+}
+
 } // namespace
+
+std::vector<SharpLight> merged(std::span<const SharpLight> lights, std::size_t most) {
+    std::vector<SharpLight> result(lights.begin(), lights.end());
+    for (std::uint32_t level = FinestLevel; result.size() > most; --level) {
+        if (level < CoarsestLevel)
+            return {};
+        result = merged_to_level(result, level);
+    }
+    return result;
+}
 
 std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
                                           const LightBinning& binning,

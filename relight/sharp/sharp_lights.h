@@ -50,4 +50,11 @@ struct SharpLight {
                                                         std::span<const double> powers,
                                                         float tolerance, bool glossy = false);
 
+/// Returns at most `most` lights of the same light: those of one small cell become one, in the
+/// middle of their power, where there are more. Returns none where cells of 0.7 degrees are not
+/// enough: shadows of such lights are soft.
+///
+/// Shape:   `lights` as find_sharp_lights() returns them.
+[[nodiscard]] std::vector<SharpLight> merged(std::span<const SharpLight> lights, std::size_t most);
+
 } // namespace relumine::relight

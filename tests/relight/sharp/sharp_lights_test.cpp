@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <random>
 #include <tuple>
@@ -88,6 +89,38 @@ TEST(SharpLights, PicturesTraceFewOfAnEnvironmentAndAllOfAList) {
     }
     relighter.set_lights(list);
     EXPECT_EQ(picture_lights(relighter).size(), list.size());
+}
+
+TEST(SharpLights, LightsOfOneSmallCellBecomeOne) {
+    const LightBinning binning(512);
+    const cubemap::CubeMap white(512, glm::vec3(1.0f));
+    std::vector<SharpLight> lights;
+    VectorIrradiance all;
+    const std::function<void(const prt::Cell&)> add = [&](const prt::Cell& cell) {
+        if (cell.level < 9) {
+            for (std::uint32_t i = 0; i < 4; ++i)
+                add(cell.child(i));
+            return;
+        }
+        lights.push_back({.cell = cell, .irradiance = binning.sum(white, cell)});
+        all += lights.back().irradiance;
+    };
+    add({cubemap::Face::PositiveZ, 5, 7, 9});
+    ASSERT_EQ(lights.size(), 256u);
+    EXPECT_EQ(merged(lights, 256).size(), 256u);
+    const std::vector<SharpLight> few = merged(lights, 64);
+    EXPECT_EQ(few.size(), 64u);
+    EXPECT_EQ(merged(lights, 63).size(), 16u);
+    EXPECT_TRUE(merged(lights, 15).empty()) << "that is too wide for shadows of one point";
+    VectorIrradiance sum;
+    for (const SharpLight& light : few) {
+        sum += light.irradiance;
+        const double size = light.cell.size();
+        const glm::dvec3 middle = cubemap::direction(light.cell.face, (light.cell.x + 0.5) * size,
+                                                     (light.cell.y + 0.5) * size);
+        EXPECT_GT(glm::dot(light.direction, middle), std::cos(0.001));
+    }
+    EXPECT_LT(glm::length(sum.green - all.green), 1e-12 * glm::length(all.green));
 }
 
 TEST(SharpLights, ASunIsAsSharpAsTracing) {
