@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+
 namespace relumine::mesh {
 
 glm::vec2 uv_at(const TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& barycentric) {
@@ -20,8 +23,8 @@ glm::vec2 uv_at(const TriangleMesh& mesh, std::uint32_t triangle, const glm::vec
 
 bool lets_light_pass(const Material& material) {
     const float opaque = material.alpha_mode == AlphaMode::Mask ? material.alpha_cutoff : 1.0f;
-    return material.alpha_mode != AlphaMode::Opaque &&
-           (material.alpha_texture || material.alpha < opaque);
+    return material.transmission > 0.0f || (material.alpha_mode != AlphaMode::Opaque &&
+                                            (material.alpha_texture || material.alpha < opaque));
 }
 
 bool lets_light_pass(const TriangleMesh& mesh) {
@@ -30,20 +33,51 @@ bool lets_light_pass(const TriangleMesh& mesh) {
                        [](const Material& material) { return lets_light_pass(material); });
 }
 
+bool is_thin(const Material& material) {
+    return lets_light_pass(material) &&
+           (material.transmission > 0.0f || material.alpha_mode == AlphaMode::Blend);
+}
+
 bool lets_eye_pass(const Material& material) {
     return !material.is_double_sided || lets_light_pass(material);
 }
 
-float opacity(const TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& barycentric) {
+namespace {
+
+/// What goes on through a surface of glass.
+glm::vec3 through_glass(const TriangleMesh& mesh, const Material& material, const glm::vec2& uv) {
+    constexpr float Reflected = 0.04f;
+    const auto textured = [&](glm::vec3 value, const std::optional<TextureSlot>& slot) {
+        return slot ? value * sample(mesh.textures[slot->texture], *slot, uv) : value;
+    };
+    const float part = textured(glm::vec3(material.transmission), material.transmission_texture).r *
+                       (1.0f - material.metallic) * (1.0f - Reflected);
+    const glm::vec3 tint = textured(material.base_color, material.base_color_texture);
+    if (material.thickness == 0.0f)
+        return part * tint;
+    const float way = 0.5f * material.thickness / material.attenuation_distance;
+    return part * glm::sqrt(tint) * glm::pow(material.attenuation_color, glm::vec3(way));
+}
+
+} // namespace
+
+Veil veil(const TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& barycentric) {
     const Material& material = mesh.materials[mesh.triangle_materials[triangle]];
-    if (material.alpha_mode == AlphaMode::Opaque)
-        return 1.0f;
-    float alpha = material.alpha;
-    if (const auto& slot = material.alpha_texture)
-        alpha *= sample(mesh.textures[slot->texture], *slot, uv_at(mesh, triangle, barycentric)).r;
-    if (material.alpha_mode == AlphaMode::Mask)
-        return alpha < material.alpha_cutoff ? 0.0f : 1.0f;
-    return alpha;
+    if (!lets_light_pass(material))
+        return {};
+    const glm::vec2 uv = uv_at(mesh, triangle, barycentric);
+    Veil veil;
+    if (material.alpha_mode != AlphaMode::Opaque) {
+        veil.weight = material.alpha;
+        if (const auto& slot = material.alpha_texture)
+            veil.weight *= sample(mesh.textures[slot->texture], *slot, uv).r;
+        if (material.alpha_mode == AlphaMode::Mask)
+            veil.weight = veil.weight < material.alpha_cutoff ? 0.0f : 1.0f;
+        veil.through = glm::vec3(1.0f - veil.weight);
+    }
+    if (material.transmission > 0.0f)
+        veil.through += veil.weight * through_glass(mesh, material, uv);
+    return veil;
 }
 
 Material without_colors(const Material& material) {
@@ -52,6 +86,11 @@ Material without_colors(const Material& material) {
             .alpha = material.alpha,
             .alpha_cutoff = material.alpha_cutoff,
             .alpha_texture = material.alpha_texture,
+            .transmission = material.transmission,
+            .transmission_texture = material.transmission_texture,
+            .thickness = material.thickness,
+            .attenuation_color = material.attenuation_color,
+            .attenuation_distance = material.attenuation_distance,
             .is_double_sided = material.is_double_sided};
 }
 
@@ -66,9 +105,16 @@ TriangleMesh blockers_of(const TriangleMesh& mesh) {
     blockers.triangle_materials = mesh.triangle_materials;
     blockers.textures.resize(mesh.textures.size());
     for (const Material& material : mesh.materials) {
-        blockers.materials.push_back(without_colors(material));
-        if (const auto& slot = material.alpha_texture)
-            blockers.textures[slot->texture] = mesh.textures[slot->texture];
+        Material& kept = blockers.materials.emplace_back(without_colors(material));
+        if (material.transmission > 0.0f) {
+            kept.metallic = material.metallic;
+            kept.base_color = material.base_color;
+            kept.base_color_texture = material.base_color_texture;
+        }
+        for (const auto& slot :
+             {kept.alpha_texture, kept.base_color_texture, kept.transmission_texture})
+            if (slot && blockers.textures[slot->texture].texels.empty())
+                blockers.textures[slot->texture] = mesh.textures[slot->texture];
     }
     return blockers;
 }

@@ -25,7 +25,7 @@ struct Extension {
     std::string_view loss;
 };
 
-constexpr std::array<Extension, 11> Extensions = {{
+constexpr std::array<Extension, 9> Extensions = {{
     {"KHR_materials_anisotropy", "anisotropyStrength", 0.0, "highlights are round"},
     {"KHR_materials_clearcoat", "clearcoatFactor", 0.0, "clear coats are left out"},
     {"KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", 0.0,
@@ -35,15 +35,13 @@ constexpr std::array<Extension, 11> Extensions = {{
     {"KHR_materials_iridescence", "iridescenceFactor", 0.0, "thin films are left out"},
     {"KHR_materials_sheen", "sheenColorFactor", 0.0, "sheen is left out"},
     {"KHR_materials_specular", "specularFactor", 1.0, "dielectrics reflect 0.04"},
-    {"KHR_materials_transmission", "transmissionFactor", 0.0, "surfaces are opaque"},
-    {"KHR_materials_volume", "thicknessFactor", 0.0, "surfaces are opaque"},
     {"KHR_materials_volume_scatter", "multiscatterColor", 0.0, "surfaces are opaque"},
 }};
 
 /// Those that are read.
-constexpr std::array<std::string_view, 3> ReadExtensions = {"KHR_materials_emissive_strength",
-                                                            "KHR_materials_pbrSpecularGlossiness",
-                                                            "KHR_materials_unlit"};
+constexpr std::array<std::string_view, 5> ReadExtensions = {
+    "KHR_materials_emissive_strength", "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_volume"};
 
 /// Everything that glTF 2.0 gives a material and a texture of it.
 constexpr std::array<std::string_view, 11> MaterialProperties = {
@@ -135,8 +133,13 @@ void LeftOut::material_extensions(const Json& extensions) {
 
 void LeftOut::material(const Json& description) {
     of_this_material_.clear();
-    if (text(description, "alphaMode", "OPAQUE") == "BLEND")
-        count("transparent by alpha, of which only alpha 0 is read", "other surfaces are opaque");
+    const Json& extensions = child(description, "extensions");
+    const Json& volume = child(extensions, "KHR_materials_volume");
+    if (number(child(extensions, "KHR_materials_transmission"), "transmissionFactor", 0.0) > 0.0)
+        count("of glass (KHR_materials_transmission)",
+              "light goes straight on, without refraction and blur, and its shadows are grey");
+    if (volume.find("thicknessTexture"))
+        count("with a texture of thickness, which is not read", "the factor counts everywhere");
     if (description.find("normalTexture"))
         count("with a normal map, which is not read", "surfaces are as smooth as the mesh");
     const std::vector<double> emission = numbers(description, "emissiveFactor", {0.0, 0.0, 0.0});

@@ -31,6 +31,7 @@ private:
     void set_mean(Material& material, std::string_view key) const;
     void read_specular_glossiness(const Json& description, Material& material);
     void read_emission(const Json& description, Material& material);
+    void read_glass(const Json& extensions, Material& material);
     void read_alpha(const Json& description, double alpha, Material& material);
     [[nodiscard]] std::optional<std::uint32_t> alpha_of(std::uint32_t texture);
 
@@ -291,6 +292,29 @@ void MaterialReader::read_alpha(const Json& description, double alpha, Material&
     }
 }
 
+/// Reads KHR_materials_transmission and KHR_materials_volume.
+void MaterialReader::read_glass(const Json& extensions, Material& material) {
+    const Json& transmission = child(extensions, "KHR_materials_transmission");
+    material.transmission = fraction(transmission, "transmissionFactor", 0.0f);
+    if (material.transmission == 0.0f)
+        return;
+    material.transmission_texture = slot(transmission, "transmissionTexture", false);
+    const Json& volume = child(extensions, "KHR_materials_volume");
+    const auto length = [&](const char* key, double fallback) {
+        const double value = number(volume, key, fallback);
+        if (!(value >= 0.0))
+            throw std::runtime_error(
+                fmt::format("expected a number of 0 or more as \"{}\", got {:g}", key, value));
+        return static_cast<float>(value);
+    };
+    constexpr double Endless = std::numeric_limits<double>::infinity();
+    material.thickness = length("thicknessFactor", 0.0);
+    material.attenuation_distance =
+        std::max(length("attenuationDistance", Endless), std::numeric_limits<float>::min());
+    const std::vector<double> color = factors(volume, "attenuationColor", {1.0, 1.0, 1.0});
+    material.attenuation_color = glm::vec3(color[0], color[1], color[2]);
+}
+
 Material MaterialReader::material(const Json& description, std::size_t index) {
     const Json& pbr = child(description, "pbrMetallicRoughness");
     const Json& extensions = child(description, "extensions");
@@ -316,6 +340,7 @@ Material MaterialReader::material(const Json& description, std::size_t index) {
     material.metallic = fraction(pbr, "metallicFactor", 1.0f);
     material.roughness = fraction(pbr, "roughnessFactor", 1.0f);
     material.metallic_roughness_texture = slot(pbr, "metallicRoughnessTexture", false);
+    read_glass(extensions, material);
     return material;
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -92,6 +93,16 @@ struct Material {
     float alpha_cutoff = 0.5f;
     /// Its R multiplies alpha. Only where alpha_mode is not Opaque.
     std::optional<TextureSlot> alpha_texture = {};
+    /// The part of the light that meets the dielectric part of the surface and goes on through it,
+    /// in [0, 1]: KHR_materials_transmission.
+    float transmission = 0.0f;
+    /// Its R multiplies transmission.
+    std::optional<TextureSlot> transmission_texture = {};
+    /// KHR_materials_volume: how thick the body behind the surface is, >= 0. 0: a thin sheet.
+    float thickness = 0.0f;
+    /// What is left of light on a way of attenuation_distance through the body.
+    glm::vec3 attenuation_color{1.0f};
+    float attenuation_distance = std::numeric_limits<float>::infinity();
     /// False: pictures do not show the backs. They block light all the same.
     bool is_double_sided = true;
 

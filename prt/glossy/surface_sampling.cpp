@@ -64,7 +64,9 @@ Surface reflecting(const MaterialPoint& point, GgxForm form) {
                 .highlight = highlight,
                 .roughness_or_exponent = roughness};
     }
-    return {.albedo = base * (1.0f - metallic),
+    const float transmission =
+        point.textured(glm::vec3(material.transmission), material.transmission_texture).r;
+    return {.albedo = base * (1.0f - metallic) * (1.0f - transmission),
             .specular = glm::mix(glm::vec3(DielectricF0), base, metallic),
             .highlight = highlight,
             .roughness_or_exponent = roughness,
@@ -79,7 +81,8 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
         return {};
     const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
     const bool has_texture = material.base_color_texture || material.metallic_roughness_texture ||
-                             material.specular_texture || material.emission_texture;
+                             material.specular_texture || material.emission_texture ||
+                             material.transmission_texture;
     const MaterialPoint point{.mesh = mesh,
                               .material = material,
                               .at = {triangle, barycentric},

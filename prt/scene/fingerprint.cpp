@@ -47,8 +47,12 @@ std::string text_of_alpha(const mesh::TriangleMesh& mesh) {
     std::vector<float> numbers;
     Hash hash;
     for (const mesh::Material& material : mesh.materials) {
-        numbers.insert(numbers.end(), {static_cast<float>(material.alpha_mode), material.alpha,
-                                       material.alpha_cutoff});
+        numbers.insert(numbers.end(),
+                       {static_cast<float>(material.alpha_mode), material.alpha,
+                        material.alpha_cutoff, material.transmission, material.thickness,
+                        material.attenuation_distance, material.attenuation_color.r,
+                        material.attenuation_color.g, material.attenuation_color.b,
+                        material.base_color.r, material.base_color.g, material.base_color.b});
         if (const auto& slot = material.alpha_texture) {
             const glm::mat2& m = slot->uv_from_mesh_uv;
             numbers.insert(numbers.end(), {m[0][0], m[0][1], m[1][0], m[1][1], slot->uv_offset.x,

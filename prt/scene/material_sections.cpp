@@ -28,7 +28,7 @@ Json json_of(const std::optional<TextureSlot>& slot, const Stored& stored) {
             {"uv", {m[0][0], m[0][1], m[1][0], m[1][1], slot->uv_offset.x, slot->uv_offset.y}}};
 }
 
-/// The textures of a material that its albedo and its emission depend on.
+/// The textures of a material that its albedo, its emission and its glass depend on.
 std::vector<std::optional<TextureSlot> Material::*> color_slots(const Material& material) {
     std::vector<std::optional<TextureSlot> Material::*> slots = {&Material::base_color_texture};
     if (material.model == mesh::MaterialModel::MetallicRoughness)
@@ -37,6 +37,8 @@ std::vector<std::optional<TextureSlot> Material::*> color_slots(const Material& 
         slots.push_back(&Material::specular_texture);
     if (material.emission != glm::vec3(0.0f))
         slots.push_back(&Material::emission_texture);
+    if (material.transmission > 0.0f)
+        slots.push_back(&Material::transmission_texture);
     return slots;
 }
 
@@ -52,7 +54,8 @@ const char* name_of(std::optional<TextureSlot> Material::*slot) {
     return slot == &Material::base_color_texture           ? "base_texture"
            : slot == &Material::metallic_roughness_texture ? "metallic_texture"
            : slot == &Material::specular_texture           ? "specular_texture"
-                                                           : "emission_texture";
+           : slot == &Material::emission_texture           ? "emission_texture"
+                                                           : "transmission_texture";
 }
 
 /// Returns a whole number below a limit.
@@ -102,7 +105,14 @@ std::optional<TextureSlot> slot_of(const Json& json, std::size_t num_textures) {
 void add_alpha(Json& json, const Material& material, const Stored& stored) {
     if (!material.is_double_sided)
         json.set("double_sided", false);
-    if (!mesh::lets_light_pass(material))
+    if (material.transmission > 0.0f) {
+        const glm::vec3& color = material.attenuation_color;
+        json.set("transmission", material.transmission);
+        json.set("thickness", material.thickness);
+        json.set("attenuation", {color.r, color.g, color.b});
+        json.set("attenuation_per_length", 1.0f / material.attenuation_distance);
+    }
+    if (material.alpha_mode == mesh::AlphaMode::Opaque)
         return;
     json.set("alpha_mode", static_cast<int>(material.alpha_mode));
     json.set("alpha", material.alpha);
@@ -113,6 +123,14 @@ void add_alpha(Json& json, const Material& material, const Stored& stored) {
 void read_alpha(const Json& json, std::size_t num_textures, Material& material) {
     if (const Json* sides = json.find("double_sided"))
         material.is_double_sided = sides->boolean();
+    if (json.find("transmission") != nullptr) {
+        material.transmission = fraction(json.at("transmission"));
+        material.thickness = finite(json.at("thickness"));
+        material.attenuation_color = color(json.at("attenuation"));
+        material.attenuation_distance = 1.0f / finite(json.at("attenuation_per_length"));
+        if (material.thickness < 0.0f || material.attenuation_distance < 0.0f)
+            throw std::out_of_range("expected lengths of 0 or more");
+    }
     const Json* mode = json.find("alpha_mode");
     if (mode == nullptr)
         return;
@@ -136,9 +154,9 @@ Material material_of(const Json& json, std::size_t num_textures) {
             if (material.emission[channel] < 0.0f)
                 throw std::out_of_range("expected an emission of 0 or more");
         }
+    read_alpha(json, num_textures, material);
     for (const auto slot : color_slots(material))
         material.*slot = slot_of(json.at(name_of(slot)), num_textures);
-    read_alpha(json, num_textures, material);
     return material;
 }
 
@@ -233,7 +251,7 @@ void add_materials(NewSections& sections, const Scene& scene) {
     StoredTextures textures(mesh);
     // A picture takes a material without its textures from the vertices.
     const auto is_kept = [&](const Material& material) {
-        return shows && has_files(material, mesh.textures);
+        return (shows || material.transmission > 0.0f) && has_files(material, mesh.textures);
     };
     for (const Material& material : mesh.materials)
         for (const auto slot : color_slots(material))

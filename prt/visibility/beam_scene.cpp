@@ -151,9 +151,17 @@ TriangleTree tree_of_see_through(const mesh::TriangleMesh& mesh) {
 
 BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact,
                      std::size_t crowded_shaft)
-    : opaque_(std::make_unique<const TriangleTree>(tree_of_opaque(mesh))),
-      see_through_(std::make_unique<const TriangleTree>(tree_of_see_through(mesh))), exact_(&exact),
-      crowded_shaft_(std::min(crowded_shaft, CrowdedShaft)) {}
+    : BeamScene(std::make_shared<const TriangleTree>(tree_of_opaque(mesh)),
+                std::make_shared<const TriangleTree>(tree_of_see_through(mesh)), exact,
+                std::min(crowded_shaft, CrowdedShaft)) {}
+
+BeamScene::BeamScene(Tree opaque, Tree see_through, const Blockers& exact,
+                     std::size_t crowded_shaft)
+    : opaque_(std::move(opaque)), see_through_(std::move(see_through)), exact_(&exact),
+      crowded_shaft_(crowded_shaft) {
+    if (const Blockers* settled = exact.settled())
+        settled_.reset(new BeamScene(opaque_, see_through_, *settled, crowded_shaft_));
+}
 
 BeamScene::~BeamScene() = default;
 BeamScene::BeamScene(BeamScene&&) noexcept = default;

@@ -60,11 +60,16 @@ public:
                                          std::uint32_t active) const override;
     void clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
                        std::span<std::uint64_t> rays) const override;
+    [[nodiscard]] const Blockers* settled() const override { return settled_.get(); }
 
 private:
-    std::unique_ptr<const TriangleTree> opaque_, see_through_;
+    using Tree = std::shared_ptr<const TriangleTree>;
+    BeamScene(Tree opaque, Tree see_through, const Blockers& exact, std::size_t crowded_shaft);
+
+    Tree opaque_, see_through_;
     const Blockers* exact_;
     std::size_t crowded_shaft_;
+    std::unique_ptr<const BeamScene> settled_;
 };
 
 } // namespace relumine::prt

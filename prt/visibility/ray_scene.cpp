@@ -93,6 +93,8 @@ struct Query {
     RayOf of = RayOf::Light;
     /// [number of rays] where the nearest hits are asked for
     Nearest* nearest = nullptr;
+    /// The layer whose successor is looked for; null: the first is.
+    const Nearest* behind = nullptr;
 
     explicit Query(bool packet, RayOf whose = RayOf::Light) : is_packet(packet), of(whose) {
         rtcInitIntersectContext(&context);
@@ -210,6 +212,11 @@ void keep_nearest(const RTCFilterFunctionNArguments* hits) {
         const double order = std::abs(embree - meeting.distance) <= about
                                  ? meeting.distance
                                  : std::max(embree, meeting.distance);
+        if (query.behind != nullptr && std::tie(order, candidate.triangle) <=
+                                           std::tie(query.behind->order, query.behind->triangle)) {
+            hits->valid[i] = 0;
+            continue;
+        }
         Nearest& nearest = query.nearest[candidate.ray];
         if (std::tie(order, candidate.triangle) < std::tie(nearest.order, nearest.triangle))
             nearest = {meeting, order, candidate.triangle, nearest.reach};
@@ -231,6 +238,25 @@ struct RayScene::Impl {
     DeviceHandle device;
     SceneHandle scene;
     RTCIntersectContextFlags packets = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    std::unique_ptr<const Blockers> settled;
+
+    std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                           std::uint32_t active, RayOf of) const;
+    bool occluded(const glm::vec3& origin, const glm::vec3& direction, RayOf of) const;
+    bool trace(const glm::vec3& origin, const glm::vec3& direction, Query& query) const;
+};
+
+/// The same rays, which pass no surface by chance.
+class RayScene::Settled final : public Blockers {
+public:
+    explicit Settled(const Impl& impl) : impl_(impl) {}
+    [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                                         std::uint32_t active) const override {
+        return impl_.occluded(origin, directions, active, RayOf::SettledLight);
+    }
+
+private:
+    const Impl& impl_;
 };
 
 RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
@@ -276,6 +302,8 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
     rtcReleaseGeometry(geometry);
     rtcCommitScene(impl_->scene.get());
     throw_on_error(device, "build the ray accelerator");
+    if (impl_->buffers.see_through.has_thin())
+        impl_->settled = std::make_unique<const Settled>(*impl_);
 }
 
 RayScene::~RayScene() = default;
@@ -320,14 +348,14 @@ RTCRay ray_of(const glm::vec3& origin, const glm::vec3& direction) {
 
 } // namespace
 
-std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket& directions,
-                                 std::uint32_t active) const {
+std::uint32_t RayScene::Impl::occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                                       std::uint32_t active, RayOf of) const {
     alignas(64) Valid valid;
     RTCRay16 rays;
     fill_rays(origin, directions, active, valid, rays);
-    Query query(true);
-    query.context.flags = impl_->packets;
-    rtcOccluded16(valid.data(), impl_->scene.get(), &query.context, &rays);
+    Query query(true, of);
+    query.context.flags = packets;
+    rtcOccluded16(valid.data(), scene.get(), &query.context, &rays);
 
     // Embree marks a blocked ray by tfar = -infinity.
     std::uint32_t blocked = 0;
@@ -335,30 +363,72 @@ std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket&
         blocked |= static_cast<std::uint32_t>(rays.tfar[i] < 0.0f) << i;
     for (std::uint32_t rest = query.doubtful & active & ~blocked; rest != 0; rest &= rest - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-        blocked |= static_cast<std::uint32_t>(occluded(origin, directions.direction(i))) << i;
+        blocked |= static_cast<std::uint32_t>(occluded(origin, directions.direction(i), of)) << i;
     }
     return blocked & active;
 }
 
-bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction) const {
+bool RayScene::Impl::occluded(const glm::vec3& origin, const glm::vec3& direction, RayOf of) const {
     RTCRay ray = ray_of(origin, direction);
-    Query query(false);
-    rtcOccluded1(impl_->scene.get(), &query.context, &ray);
+    Query query(false, of);
+    rtcOccluded1(scene.get(), &query.context, &ray);
     return ray.tfar < 0.0f;
+}
+
+/// Finds the nearest hit that the query asks for. Returns whether there is one.
+bool RayScene::Impl::trace(const glm::vec3& origin, const glm::vec3& direction,
+                           Query& query) const {
+    RTCRayHit ray{};
+    ray.ray = ray_of(origin, direction);
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene.get(), &query.context, &ray);
+    return ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
+
+std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                                 std::uint32_t active) const {
+    return impl_->occluded(origin, directions, active, RayOf::Light);
+}
+
+bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction) const {
+    return impl_->occluded(origin, direction, RayOf::Light);
+}
+
+const Blockers* RayScene::settled() const {
+    return impl_->settled.get();
+}
+
+bool RayScene::is_thin(std::uint32_t triangle) const {
+    return impl_->buffers.see_through.is_thin(triangle);
 }
 
 std::optional<Hit> RayScene::closest_hit(const glm::vec3& origin, const glm::vec3& direction,
                                          RayOf of) const {
-    RTCRayHit ray{};
-    ray.ray = ray_of(origin, direction);
-    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     Query query(false, of);
     Nearest nearest;
     query.nearest = &nearest;
-    rtcIntersect1(impl_->scene.get(), &query.context, &ray);
-    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+    if (!impl_->trace(origin, direction, query))
         return std::nullopt;
     return hit_of(nearest);
+}
+
+void RayScene::layers(const glm::vec3& origin, const glm::vec3& direction,
+                      std::vector<Layer>& layers) const {
+    layers.clear();
+    Nearest last;
+    while (layers.size() < MostLayers) {
+        Query query(false, RayOf::Eye);
+        Nearest nearest;
+        query.nearest = &nearest;
+        query.behind = layers.empty() ? nullptr : &last;
+        if (!impl_->trace(origin, direction, query))
+            return;
+        const Hit hit = hit_of(nearest);
+        layers.push_back({hit, impl_->buffers.see_through.veil(hit.triangle, hit.barycentric)});
+        if (layers.back().veil.through == glm::vec3(0.0f))
+            return;
+        last = nearest;
+    }
 }
 
 std::uint32_t RayScene::closest_hits(const glm::vec3& origin, const DirectionPacket& directions,

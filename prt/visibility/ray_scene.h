@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -66,8 +67,24 @@ public:
                                std::uint32_t active, std::span<Hit, PacketSize> hits,
                                RayOf of = RayOf::Light) const;
 
+    /// A surface that the eye meets, and what it leaves of the light behind it.
+    struct Layer {
+        Hit hit;
+        mesh::Veil veil;
+    };
+    /// Finds what the eye sees in a direction, nearest first, up to the first that nothing is seen
+    /// through. Most are one layer. Of more than MostLayers the last ones are left out.
+    void layers(const glm::vec3& origin, const glm::vec3& direction,
+                std::vector<Layer>& layers) const;
+    static constexpr std::size_t MostLayers = 64;
+    /// Whether there may be more layers behind a triangle.
+    [[nodiscard]] bool is_thin(std::uint32_t triangle) const;
+
+    [[nodiscard]] const Blockers* settled() const override;
+
 private:
     struct Impl;
+    class Settled;
     std::unique_ptr<Impl> impl_;
 };
 

@@ -7,13 +7,23 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "mesh/opacity.h"
 #include "mesh/triangle_mesh.h"
 
 namespace relumine::prt {
 
-/// Whose ray it is. Light meets all that is there, of thin surfaces by chance. The eye meets what
-/// is drawn: no point whose opacity is 0, and no back of a single-sided triangle.
-enum class RayOf : std::uint8_t { Light, Eye };
+/// Whose ray it is, and so what it passes.
+enum class RayOf : std::uint8_t {
+    /// Cut-out points, and thin surfaces (blended, glass) by chance: as many of the rays as the
+    /// surface's mean transmittance over the colours says. Chances of rays from one place are
+    /// spread evenly over directions, so that their sums are nearly right.
+    Light,
+    /// Cut-out points, and thin surfaces that take half of the light or less. Clusters are chosen
+    /// by these rays: chance would split them all.
+    SettledLight,
+    /// What is not drawn: points of no weight, and backs of single-sided triangles.
+    Eye,
+};
 
 /// The one place that says which points of triangles a ray passes.
 class SeeThrough {
@@ -23,15 +33,16 @@ public:
     /// Copies what it needs of the mesh.
     explicit SeeThrough(const mesh::TriangleMesh& mesh);
 
-    /// Whether any light passes.
-    [[nodiscard]] bool has_light() const { return !mesh_.triangle_materials.empty(); }
-    /// Whether the eye sees anything through a surface that is there.
+    /// Whether some surfaces pass light by chance.
     [[nodiscard]] bool has_thin() const { return has_thin_; }
+    /// Whether a triangle is thin: it is seen, and what is behind it, too.
+    [[nodiscard]] bool is_thin(std::uint32_t triangle) const {
+        return has_thin_ && (kinds_[triangle] & Thin) != 0;
+    }
     /// Whether rays may pass a triangle; false for nearly all, and cheap.
     [[nodiscard]] bool may_pass(std::uint32_t triangle, RayOf of) const {
         return !kinds_.empty() &&
-               (kinds_[triangle] & (of == RayOf::Light ? PassesLight : PassesLight | OneSided)) !=
-                   0;
+               (kinds_[triangle] & (of == RayOf::Eye ? PassesLight | OneSided : PassesLight)) != 0;
     }
 
     /// Where a ray meets such a triangle.
@@ -46,11 +57,11 @@ public:
     /// Whether the ray goes on behind it. The same ray and triangle have the same answer.
     [[nodiscard]] bool passes(const Meeting& meeting, RayOf of) const;
 
-    /// Returns the opacity at a triangle's point.
-    [[nodiscard]] float opacity(std::uint32_t triangle, const glm::vec2& barycentric) const;
+    /// Returns the veil that a triangle's point is.
+    [[nodiscard]] mesh::Veil veil(std::uint32_t triangle, const glm::vec2& barycentric) const;
 
 private:
-    static constexpr std::uint8_t PassesLight = 1, OneSided = 2;
+    static constexpr std::uint8_t PassesLight = 1, OneSided = 2, Thin = 4;
 
     /// [num_triangles], or empty.
     std::vector<std::uint8_t> kinds_;

@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 64> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 66> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -70,6 +70,8 @@ inline constexpr std::array<std::string_view, 64> SectionNames = {"settings",
                                                                   "alphas",
                                                                   "block_materials",
                                                                   "block_uvs",
-                                                                  "block_corner_uvs"};
+                                                                  "block_corner_uvs",
+                                                                  "layout_layers",
+                                                                  "r_veils"};
 
 } // namespace relumine::fuzz

@@ -403,7 +403,7 @@ TEST_F(GltfTest, AlphaCutsOut) {
               (std::vector<Rgb8>{{255, 255, 255}, {51, 51, 51}}));
     EXPECT_FALSE(leaf.alpha_texture->is_srgb);
     // 0.5 times 1 is above the cutoff, 0.5 times 0.2 below.
-    EXPECT_EQ(opacity(mesh, 0, glm::vec2(0.0f)), 1.0f);
+    EXPECT_EQ(veil(mesh, 0, glm::vec2(0.0f)), Veil());
     EXPECT_EQ(mesh.materials[1].alpha_cutoff, 0.5f) << "the default";
     EXPECT_TRUE(mesh.materials[1].is_double_sided);
     EXPECT_FALSE(mesh.materials[1].alpha_texture) << "an image without alpha";
@@ -416,6 +416,38 @@ TEST_F(GltfTest, AlphaCutsOut) {
         testing::IsSupersetOf(
             {testing::HasSubstr("expected OPAQUE, MASK or BLEND as \"alphaMode\", got 'CUT'"),
              testing::HasSubstr("expected a number of 0 or more as \"alphaCutoff\", got -1")}));
+}
+
+TEST_F(GltfTest, Glass) {
+    Model model = square();
+    const Json volume = {{"thicknessFactor", 0.5},
+                         {"attenuationDistance", 2},
+                         {"attenuationColor", {1, 0.5, 0.25}},
+                         {"thicknessTexture", {{"index", 0}}}};
+    const Json clear = {{"KHR_materials_transmission", {{"transmissionFactor", 0.75}}}};
+    Json body = clear;
+    body["KHR_materials_volume"] = volume;
+    model.json["materials"] = {{{"extensions", clear}},
+                               {{"extensions", body}},
+                               {{"extensions", {{"KHR_materials_volume", volume}}}}};
+    TriangleMesh mesh = gltf(model.embedded());
+    EXPECT_EQ(mesh.materials[0].transmission, 0.75f);
+    EXPECT_EQ(mesh.materials[0].thickness, 0.0f);
+    EXPECT_EQ(mesh.materials[1].thickness, 0.5f);
+    EXPECT_EQ(mesh.materials[1].attenuation_distance, 2.0f);
+    EXPECT_EQ(mesh.materials[1].attenuation_color, glm::vec3(1.0f, 0.5f, 0.25f));
+    EXPECT_FALSE(lets_light_pass(mesh.materials[2])) << "opaque";
+    EXPECT_THAT(
+        mesh.warnings,
+        testing::UnorderedElementsAre(
+            "2 materials of glass (KHR_materials_transmission): light goes straight on, without "
+            "refraction and blur, and its shadows are grey",
+            "2 materials with a texture of thickness, which is not read: the factor counts "
+            "everywhere"));
+    model.json["materials"][1]["extensions"]["KHR_materials_volume"]["thicknessFactor"] = -1;
+    EXPECT_THAT(gltf(model.embedded()).warnings,
+                testing::Contains(testing::HasSubstr(
+                    "expected a number of 0 or more as \"thicknessFactor\", got -1")));
 }
 
 TEST_F(GltfTest, NamesInLatin1) {
@@ -499,8 +531,6 @@ TEST_F(GltfTest, SaysWhatIsLeftOut) {
             "1 material with KHR_materials_clearcoat, which is not read: clear coats are left out",
             "1 material with 'VENDOR_fur', which is not read: what it describes is left out",
             "1 material with an occlusion map, which is not read: rays find what blocks the light",
-            "1 material transparent by alpha, of which only alpha 0 is read: other surfaces are "
-            "opaque",
             "1 material with textures of hard pixels (NEAREST), which are not kept: they are "
             "sampled bilinearly",
             "1 material with a normal map, which is not read: surfaces are as smooth as the mesh",

@@ -100,7 +100,11 @@ TEST(MaterialSections, AreOnlyForTextures) {
 TEST(MaterialSections, KeepWhatRaysPass) {
     Scene scene;
     scene.mesh = scenes::with_card(scenes::floor_grid(3, 2.0f), scenes::leaf_card(2, 1.0f, 1.0f));
-    scene.mesh.materials[0].is_double_sided = false;
+    scene.mesh.materials[0] = {.is_double_sided = false};
+    scene.mesh.materials[0].transmission = 0.5f;
+    scene.mesh.materials[0].thickness = 0.25f;
+    scene.mesh.materials[0].attenuation_color = glm::vec3(0.5f);
+    scene.mesh.materials[0].attenuation_distance = 3.0f;
     scene.mesh.materials[1].alpha = 0.75f;
     scene.mesh.materials[1].alpha_cutoff = 0.25f;
     scene.blockers = mesh::blockers_of(scene.mesh);
@@ -119,8 +123,7 @@ TEST(MaterialSections, KeepWhatRaysPass) {
         for (int i = 0; i < 100; ++i) {
             const auto triangle = static_cast<std::uint32_t>(i % 10);
             const glm::vec2 point(0.003f * static_cast<float>(i), 0.3f);
-            EXPECT_EQ(mesh::opacity(mesh, triangle, point),
-                      mesh::opacity(scene.mesh, triangle, point));
+            EXPECT_EQ(mesh::veil(mesh, triangle, point), mesh::veil(scene.mesh, triangle, point));
         }
     Sections bad = scenes::made(sections);
     bad["alphas"].pop_back();
