@@ -48,6 +48,7 @@ void append_floor_vertices(TriangleMesh& mesh, std::uint32_t n, const glm::dvec3
     extend(mesh.normals, mesh.num_vertices(), glm::vec3(0.0f, 1.0f, 0.0f));
     extend(mesh.colors, mesh.num_vertices(), glm::vec3(1.0f));
     extend(mesh.uvs, mesh.num_vertices(), glm::vec2(0.0f));
+    extend(mesh.second_uvs, mesh.num_vertices(), glm::vec2(0.0f));
 }
 
 /// Appends the triangles between n x n vertices, with a material and a group of their own.
@@ -64,6 +65,7 @@ void append_floor_triangles(TriangleMesh& mesh, std::uint32_t n, std::size_t fir
             mesh.triangles.push_back({b, c, d});
         }
     extend(mesh.corner_uvs, mesh.num_triangles(), {});
+    extend(mesh.corner_tangents, mesh.num_triangles(), {});
     if (!mesh.triangle_materials.empty()) {
         mesh.triangle_materials.resize(mesh.num_triangles(),
                                        static_cast<std::uint32_t>(mesh.materials.size()));

@@ -103,6 +103,8 @@ TriangleMesh with_creases(const TriangleMesh& mesh, float degrees) {
                 result.colors.push_back(result.colors[vertex]);
             if (!mesh.uvs.empty())
                 result.uvs.push_back(result.uvs[vertex]);
+            if (!mesh.second_uvs.empty())
+                result.second_uvs.push_back(result.second_uvs[vertex]);
             set_of.push_back(None);
             next.push_back(None);
             vertex = copy;

@@ -1,24 +1,22 @@
 #include "mesh/opacity.h"
 
 #include <algorithm>
-#include <array>
+#include <optional>
 
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 
+#include "mesh/tangents.h"
+
 namespace relumine::mesh {
 
-glm::vec2 uv_at(const TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& barycentric) {
-    const auto between = [&](const std::array<glm::vec2, 3>& corners) {
-        return corners[0] * (1.0f - barycentric.x - barycentric.y) + corners[1] * barycentric.x +
-               corners[2] * barycentric.y;
+glm::vec2 uv_at(const TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& barycentric,
+                std::uint32_t uv_set) {
+    const auto corner = [&](std::size_t k) {
+        return corner_uv(mesh, triangle, k, uv_set);
     };
-    const Triangle& t = mesh.triangles[triangle];
-    if (!mesh.corner_uvs.empty())
-        return between(mesh.corner_uvs[triangle]);
-    if (!mesh.uvs.empty())
-        return between({mesh.uvs[t[0]], mesh.uvs[t[1]], mesh.uvs[t[2]]});
-    return glm::vec2(0.0f);
+    return corner(0) * (1.0f - barycentric.x - barycentric.y) + corner(1) * barycentric.x +
+           corner(2) * barycentric.y;
 }
 
 bool lets_light_pass(const Material& material) {
@@ -44,15 +42,28 @@ bool lets_eye_pass(const Material& material) {
 
 namespace {
 
+struct Point {
+    const TriangleMesh& mesh;
+    const Material& material;
+    std::uint32_t triangle;
+    glm::vec2 barycentric;
+
+    [[nodiscard]] glm::vec3 textured(const glm::vec3& value,
+                                     const std::optional<TextureSlot>& slot) const {
+        return slot ? value * sample(mesh.textures[slot->texture], *slot,
+                                     uv_at(mesh, triangle, barycentric, slot->uv_set))
+                    : value;
+    }
+};
+
 /// What goes on through a surface of glass.
-glm::vec3 through_glass(const TriangleMesh& mesh, const Material& material, const glm::vec2& uv) {
+glm::vec3 through_glass(const Point& point) {
     constexpr float Reflected = 0.04f;
-    const auto textured = [&](glm::vec3 value, const std::optional<TextureSlot>& slot) {
-        return slot ? value * sample(mesh.textures[slot->texture], *slot, uv) : value;
-    };
-    const float part = textured(glm::vec3(material.transmission), material.transmission_texture).r *
-                       (1.0f - material.metallic) * (1.0f - Reflected);
-    const glm::vec3 tint = textured(material.base_color, material.base_color_texture);
+    const Material& material = point.material;
+    const float part =
+        point.textured(glm::vec3(material.transmission), material.transmission_texture).r *
+        (1.0f - material.metallic) * (1.0f - Reflected);
+    const glm::vec3 tint = point.textured(material.base_color, material.base_color_texture);
     if (material.thickness == 0.0f)
         return part * tint;
     const float way = 0.5f * material.thickness / material.attenuation_distance;
@@ -65,18 +76,16 @@ Veil veil(const TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& bar
     const Material& material = mesh.materials[mesh.triangle_materials[triangle]];
     if (!lets_light_pass(material))
         return {};
-    const glm::vec2 uv = uv_at(mesh, triangle, barycentric);
+    const Point point{mesh, material, triangle, barycentric};
     Veil veil;
     if (material.alpha_mode != AlphaMode::Opaque) {
-        veil.weight = material.alpha;
-        if (const auto& slot = material.alpha_texture)
-            veil.weight *= sample(mesh.textures[slot->texture], *slot, uv).r;
+        veil.weight = point.textured(glm::vec3(material.alpha), material.alpha_texture).r;
         if (material.alpha_mode == AlphaMode::Mask)
             veil.weight = veil.weight < material.alpha_cutoff ? 0.0f : 1.0f;
         veil.through = glm::vec3(1.0f - veil.weight);
     }
     if (material.transmission > 0.0f)
-        veil.through += veil.weight * through_glass(mesh, material, uv);
+        veil.through += veil.weight * through_glass(point);
     return veil;
 }
 
@@ -101,6 +110,7 @@ TriangleMesh blockers_of(const TriangleMesh& mesh) {
     if (!lets_light_pass(mesh))
         return blockers;
     blockers.uvs = mesh.uvs;
+    blockers.second_uvs = mesh.second_uvs;
     blockers.corner_uvs = mesh.corner_uvs;
     blockers.triangle_materials = mesh.triangle_materials;
     blockers.textures.resize(mesh.textures.size());

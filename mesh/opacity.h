@@ -11,10 +11,10 @@
 
 namespace relumine::mesh {
 
-/// Returns the uv at a triangle's point, given the weights of the second and third corner; 0
-/// without uvs.
+/// Returns the uv of a set at a triangle's point, given the weights of the second and third corner;
+/// 0 without uvs.
 [[nodiscard]] glm::vec2 uv_at(const TriangleMesh& mesh, std::uint32_t triangle,
-                              const glm::vec2& barycentric);
+                              const glm::vec2& barycentric, std::uint32_t uv_set);
 
 /// What a surface leaves of the light behind it.
 struct Veil {

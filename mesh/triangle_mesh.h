@@ -10,6 +10,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include "files/plain_glm.h"
 #include "mesh/materials/material.h"
@@ -36,12 +37,17 @@ struct TriangleMesh {
     std::vector<glm::vec3> colors;
     /// [num_vertices], or empty.
     std::vector<glm::vec2> uvs;
+    /// [num_vertices], or empty: what textures of the second uv set use.
+    std::vector<glm::vec2> second_uvs;
     /// [num_vertices] from each vertex to where its rays start: on the smooth surface that the
     /// normals pretend, or outside of a solid that hides it. Empty: all rays start at the vertices.
     std::vector<glm::vec3> lifts;
 
     /// [num_triangles], or empty. Used instead of uvs if a vertex has several (seams).
     std::vector<std::array<glm::vec2, 3>> corner_uvs;
+    /// [num_triangles], or empty: no normal maps. The direction of growing u, and in w the sign of
+    /// the bitangent, sign * cross(normal, tangent); zero without a normal map.
+    std::vector<std::array<glm::vec4, 3>> corner_tangents;
     /// In the file's order, or empty.
     std::vector<Material> materials;
     /// [num_triangles], every index < materials.size(); or empty.
@@ -60,6 +66,17 @@ struct TriangleMesh {
     [[nodiscard]] std::size_t num_vertices() const { return positions.size(); }
     [[nodiscard]] std::size_t num_triangles() const { return triangles.size(); }
 };
+
+/// Calls `use` for each array that has a value for every vertex, or is empty.
+template<class Mesh, class Use>
+void for_each_vertex_array(Mesh& mesh, const Use& use) {
+    use(mesh.positions);
+    use(mesh.normals);
+    use(mesh.colors);
+    use(mesh.uvs);
+    use(mesh.second_uvs);
+    use(mesh.lifts);
+}
 
 /// Returns all that a mesh's file holds or names and the mesh does not have, a line each.
 [[nodiscard]] std::vector<std::string> left_out(const TriangleMesh& mesh);

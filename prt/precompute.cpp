@@ -50,6 +50,10 @@ void check(const Receivers& receivers, const PrecomputeOptions& options) {
 
 namespace {
 
+/// Where light passes surfaces by chance, cells have at least this level: so many samples see about
+/// the right part of the light, within 0.01.
+constexpr std::uint32_t MinLevelOfChance = 3;
+
 /// Where light passes surfaces by chance, clusters are chosen as if it did not, and then counted:
 /// no cell could ever have nine transfers that agree.
 Transfer found(const Receivers& receivers, const Blockers& blockers,
@@ -59,7 +63,9 @@ Transfer found(const Receivers& receivers, const Blockers& blockers,
     if (settled == nullptr)
         return Clustering(receivers, blockers, options, work, context).run(statistics);
     const Work choice{.team = work.team, .stop = work.stop};
-    Transfer chosen = Clustering(receivers, *settled, options, choice, context).run(statistics);
+    PrecomputeOptions finer = options;
+    finer.min_level = std::max(options.min_level, MinLevelOfChance);
+    Transfer chosen = Clustering(receivers, *settled, finer, choice, context).run(statistics);
     chosen.counts = {};
     return Clustering(
                receivers, blockers, options, work,

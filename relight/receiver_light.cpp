@@ -56,7 +56,7 @@ void ReceiverLight::write_means(bool with_sharp_lights, std::span<glm::vec3> rad
     });
 }
 
-std::vector<glm::vec3> ReceiverLight::harmonics() const {
+std::vector<glm::vec3> ReceiverLight::harmonics(bool with_sharp_lights) const {
     if (!harmonics_)
         throw std::logic_error("expected a Relighter with harmonics, got one without");
     const std::size_t count = num_harmonics(harmonics_->order());
@@ -66,7 +66,8 @@ std::vector<glm::vec3> ReceiverLight::harmonics() const {
         for (std::size_t place = begin; place < std::min(begin + prt::BlockSize, radiance_.size());
              ++place)
             harmonics_->read(place,
-                             std::span(result).subspan(transfer_.order[place] * count, count));
+                             std::span(result).subspan(transfer_.order[place] * count, count),
+                             with_sharp_lights);
     });
     return result;
 }

@@ -54,7 +54,7 @@ public:
     [[nodiscard]] glm::dvec3 of_point_from_cluster(std::size_t place, std::size_t cluster) const;
     /// Returns the arriving light as it was summed, [num_receivers][order^2] in the receivers' own
     /// order.
-    [[nodiscard]] std::vector<glm::vec3> harmonics() const;
+    [[nodiscard]] std::vector<glm::vec3> harmonics(bool with_sharp_lights) const;
     /// 0: none are kept.
     [[nodiscard]] std::uint32_t harmonic_order() const {
         return harmonics_ ? harmonics_->order() : 0;

@@ -273,9 +273,12 @@ std::span<const glm::vec3> Relighter::radiance() const {
     return light_->radiance();
 }
 std::vector<glm::vec3> Relighter::harmonics() const {
-    std::vector<glm::vec3> result = light_->harmonics();
+    std::vector<glm::vec3> result = light_->harmonics(true);
     bind_to(transfer_, diffuse_radiance(), result);
     return result;
+}
+std::vector<glm::vec3> Relighter::summed_harmonics(bool with_sharp_lights) const {
+    return light_->harmonics(with_sharp_lights);
 }
 std::uint32_t Relighter::harmonic_order() const {
     return light_->harmonic_order();

@@ -150,6 +150,9 @@ public:
     /// Throws:  std::logic_error for a Relighter without harmonics.
     /// Cost:    O(receivers).
     [[nodiscard]] std::vector<glm::vec3> harmonics() const;
+    /// Returns the same as it was summed, not bound, all of it or without what the sharp lights
+    /// give.
+    [[nodiscard]] std::vector<glm::vec3> summed_harmonics(bool with_sharp_lights) const;
     /// 0: none are kept. Points have at least 1.
     [[nodiscard]] std::uint32_t harmonic_order() const;
 

@@ -30,6 +30,10 @@ struct Lighting {
     /// [num_receivers] what `soft` is made of, or `radiance` where there are no lights, without
     /// bounces. Only of meshes with textures and highlights.
     std::vector<prt::Lobes<glm::vec3>> lobes = {};
+    /// [num_receivers][coefficients] what arrives of `soft`, or of `radiance` where there are no
+    /// lights, as spherical harmonics and without bounces. Only of vertices of meshes with normal
+    /// maps.
+    std::vector<glm::vec3> harmonics = {};
     /// The radiance, for albedo 1, of a level floor that nothing shades. Empty: unknown, and floors
     /// catch no shadows.
     std::optional<glm::vec3> open_floor = {};

@@ -30,6 +30,11 @@ std::vector<glm::vec3> copy_of(std::span<const glm::vec3> values) {
     return {values.begin(), values.end()};
 }
 
+/// Whether pictures turn the normals between the vertices.
+bool has_mapped_vertices(const Scene& scene) {
+    return prt::on_vertices(scene.layout) && !scene.mesh.corner_tangents.empty();
+}
+
 void require_same_hash(prt::Team& team, const std::filesystem::path& path, std::uint64_t own) {
     const std::vector<std::byte> bytes = prt::to_send(std::span(&own, 1));
     if (team.broadcast(bytes) != bytes)
@@ -78,7 +83,9 @@ LitScene::LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::Scen
     part_ = std::move(part);
     if (has_clusters)
         relighter_ = std::make_unique<relight::Relighter>(
-            part_ ? part_->transfer : scene_->transfer, shadow_rays_, harmonics_);
+            part_ ? part_->transfer : scene_->transfer, shadow_rays_,
+            harmonics_ == 0 && has_mapped_vertices(*scene_) ? relight::MaxHarmonicOrder
+                                                            : harmonics_);
     else if (options.clusters_only)
         static_cast<void>(relighter());
 }
@@ -366,6 +373,9 @@ Lighting LitScene::lighting(bool is_drawn) const {
     }
     if (is_drawn && relighter_ && scene_->transfer.glossy && !scene_->mesh.textures.empty())
         result.lobes = relighter_->lobes(result.lights.size() == added_.lights.size());
+    if (is_drawn && relighter_ && has_mapped_vertices(*scene_))
+        result.harmonics =
+            relighter_->summed_harmonics(result.lights.size() == added_.lights.size());
     result.open_floor =
         added_.open_floor +
         (relighter_ ? relighter_->open_radiance({0.0f, 1.0f, 0.0f}) : glm::dvec3(0.0));
@@ -388,6 +398,9 @@ Lighting LitScene::lighting(bool is_drawn) const {
         result.radiance = *result.gathered;
         if (has_soft)
             result.soft = gathered(*team_, order, result.soft);
+        if (!result.harmonics.empty())
+            result.harmonics = gathered(*team_, order, result.harmonics,
+                                        relight::num_harmonics(relighter_->harmonic_order()));
         if (!team_->is_first())
             return {};
     }

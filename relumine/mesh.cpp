@@ -55,11 +55,7 @@ std::uint32_t move_floor_last(mesh::TriangleMesh& mesh, std::size_t first_of_flo
             sorted[place] = values[order[place]];
         values = std::move(sorted);
     };
-    sort(mesh.positions);
-    sort(mesh.normals);
-    sort(mesh.colors);
-    sort(mesh.uvs);
-    sort(mesh.lifts);
+    mesh::for_each_vertex_array(mesh, sort);
     for (mesh::Triangle& triangle : mesh.triangles)
         for (std::uint32_t& vertex : triangle)
             vertex = places[vertex];
@@ -76,11 +72,7 @@ mesh::TriangleMesh part_of(const mesh::TriangleMesh& mesh, std::size_t begin, st
             values = {values.begin() + static_cast<std::ptrdiff_t>(begin),
                       values.begin() + static_cast<std::ptrdiff_t>(end)};
     };
-    keep_vertices(part.positions);
-    keep_vertices(part.normals);
-    keep_vertices(part.colors);
-    keep_vertices(part.uvs);
-    keep_vertices(part.lifts);
+    mesh::for_each_vertex_array(part, keep_vertices);
     const auto keep_triangles = [&](auto& values) {
         if (values.empty())
             return;
@@ -92,6 +84,7 @@ mesh::TriangleMesh part_of(const mesh::TriangleMesh& mesh, std::size_t begin, st
     };
     keep_triangles(part.triangles);
     keep_triangles(part.corner_uvs);
+    keep_triangles(part.corner_tangents);
     keep_triangles(part.triangle_materials);
     keep_triangles(part.triangle_groups);
     for (mesh::Triangle& triangle : part.triangles)
@@ -110,12 +103,14 @@ void append(mesh::TriangleMesh& mesh, const mesh::TriangleMesh& part) {
     add(mesh.normals, part.normals);
     add(mesh.colors, part.colors);
     add(mesh.uvs, part.uvs);
+    add(mesh.second_uvs, part.second_uvs);
     if (!mesh.lifts.empty() || !part.lifts.empty()) {
         mesh.lifts.resize(first, glm::vec3(0.0f));
         add(mesh.lifts, part.lifts);
         mesh.lifts.resize(mesh.num_vertices(), glm::vec3(0.0f));
     }
     add(mesh.corner_uvs, part.corner_uvs);
+    add(mesh.corner_tangents, part.corner_tangents);
     add(mesh.triangle_materials, part.triangle_materials);
     add(mesh.triangle_groups, part.triangle_groups);
     for (const auto& [a, b, c] : part.triangles)

@@ -193,6 +193,10 @@ struct Painter::Impl {
         if (!lobes.empty() || !scene.settings.glossy_tolerance)
             light.textures = &textures;
         light.lobes = lobes;
+        std::vector<glm::vec3> harmonics;
+        if (light.textures != nullptr && (traces || lighting.lights.empty()))
+            harmonics = relight::scaled(lighting.harmonics, shown_factors());
+        light.harmonics = harmonics;
         light.open_floor = open_floor(scene, lighting, look(lighting), eye());
         light.surfaces = scene.receivers.surfaces;
         if (traces) {

@@ -23,6 +23,7 @@ relight::Picture drawn(const mesh::TriangleMesh& mesh, const prt::RayScene& rays
     std::vector<prt::Lobes<glm::vec3>> lobes = moment.lobes;
     if (!lobes.empty())
         relight::add_rest(moment.radiance, shading.surfaces, shading.eye_cosines, lobes);
+    const std::vector<glm::vec3> harmonics = relight::scaled(moment.harmonics, shading.albedo);
     const relight::PictureView view(mesh, rays, moment.camera,
                                     {.width = moment.width,
                                      .height = moment.height,
@@ -36,6 +37,7 @@ relight::Picture drawn(const mesh::TriangleMesh& mesh, const prt::RayScene& rays
                                    .surfaces = shading.surfaces,
                                    .textures = &shading.textures,
                                    .lobes = lobes,
+                                   .harmonics = harmonics,
                                    .eye = shading.eye,
                                    .bias = shading.bias,
                                    .open_floor = moment.open_floor};

@@ -43,6 +43,7 @@ struct Moment {
     std::vector<relight::SharpLight> lights;
     /// As Lighting has them.
     std::vector<prt::Lobes<glm::vec3>> lobes = {};
+    std::vector<glm::vec3> harmonics = {};
     /// As relight::MeshLight has it.
     std::optional<glm::vec3> open_floor = {};
     /// Empty: the picture has alpha.

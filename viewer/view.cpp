@@ -50,6 +50,7 @@ Moment moment_of(const ViewState& state, const PixelRectangle& size) {
     const FloorLook look = floor_look(scene, lighting, state.picture);
     moment.open_floor = open_floor(scene, lighting, look, camera.eye());
     moment.lobes = std::move(lighting.lobes);
+    moment.harmonics = std::move(lighting.harmonics);
     moment.lights = std::move(lighting.lights);
     moment.radiance = std::move(lighting.soft);
     if (moment.lights.empty())

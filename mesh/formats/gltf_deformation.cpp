@@ -24,6 +24,11 @@ glm::dvec3 Frame::normal(const glm::vec3& own) const {
     return length > 0.0 ? normal / (is_mirrored ? -length : length) : normal;
 }
 
+glm::vec4 Frame::tangent(const glm::vec4& own) const {
+    const double sign = (own.w < 0.0f) != is_mirrored ? -1.0 : 1.0;
+    return glm::dvec4(glm::dmat3(matrix) * glm::dvec3(own), std::isnan(own.w) ? own.w : sign);
+}
+
 Skin::Skin(Document& document, std::uint64_t index,
            const std::function<glm::dmat4(std::uint64_t)>& world) {
     const Json& skin = document.element("skins", index);
@@ -94,8 +99,9 @@ std::size_t Skin::check(std::span<const Influences> sets) const {
     return num_odd;
 }
 
+template<class Vector>
 void add_targets(Document& document, const Json& primitive, const char* attribute,
-                 std::span<const double> weights, std::vector<glm::vec3>& values) {
+                 std::span<const double> weights, std::vector<Vector>& values) {
     const Json::Array& targets = items(primitive, "targets");
     for (std::size_t target = 0; target < targets.size() && target < weights.size(); ++target) {
         if (weights[target] == 0.0 || targets[target].find(attribute) == nullptr)
@@ -113,5 +119,9 @@ void add_targets(Document& document, const Json& primitive, const char* attribut
                                    moves.values[3 * i + static_cast<std::size_t>(axis)];
     }
 }
+template void add_targets(Document&, const Json&, const char*, std::span<const double>,
+                          std::vector<glm::vec3>&);
+template void add_targets(Document&, const Json&, const char*, std::span<const double>,
+                          std::vector<glm::vec4>&);
 
 } // namespace relumine::mesh::gltf

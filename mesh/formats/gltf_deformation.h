@@ -24,6 +24,9 @@ struct Frame {
     /// Returns a unit normal, or zeros. It stays outside where the frame mirrors.
     [[nodiscard]] glm::dvec3 normal(const glm::vec3& own) const;
 
+    /// Returns a tangent of the same length or another. The sign of its bitangent, in w, is never 0.
+    [[nodiscard]] glm::vec4 tangent(const glm::vec4& own) const;
+
     glm::dmat4 matrix{1.0};
     /// The transposed inverse times the determinant. Singular matrices have cofactors, too.
     glm::dmat3 cofactors{1.0};
@@ -59,9 +62,11 @@ private:
     std::vector<glm::dmat4> matrices_;
 };
 
-/// Adds morph targets to one attribute, "POSITION" or "NORMAL", each times its weight.
+/// Adds morph targets to one attribute, "POSITION", "NORMAL" or "TANGENT", each times its weight.
+/// Vector is glm::vec3, or glm::vec4 whose w stays.
 /// Throws:  std::runtime_error "expected X, got Y" for targets of another number of vertices.
+template<class Vector>
 void add_targets(Document& document, const Json& primitive, const char* attribute,
-                 std::span<const double> weights, std::vector<glm::vec3>& values);
+                 std::span<const double> weights, std::vector<Vector>& values);
 
 } // namespace relumine::mesh::gltf

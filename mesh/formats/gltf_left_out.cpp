@@ -140,8 +140,6 @@ void LeftOut::material(const Json& description) {
               "light goes straight on, without refraction and blur, and its shadows are grey");
     if (volume.find("thicknessTexture"))
         count("with a texture of thickness, which is not read", "the factor counts everywhere");
-    if (description.find("normalTexture"))
-        count("with a normal map, which is not read", "surfaces are as smooth as the mesh");
     const std::vector<double> emission = numbers(description, "emissiveFactor", {0.0, 0.0, 0.0});
     if (*std::max_element(emission.begin(), emission.end()) > 0.0 &&
         !child(description, "extensions").find("KHR_materials_unlit"))
@@ -161,7 +159,8 @@ void LeftOut::material(const Json& description) {
                                       {&pbr, "metallicRoughnessTexture"},
                                       {&old, "diffuseTexture"},
                                       {&old, "specularGlossinessTexture"},
-                                      {&description, "emissiveTexture"}})
+                                      {&description, "emissiveTexture"},
+                                      {&description, "normalTexture"}})
         texture(child(*parent, key));
 }
 

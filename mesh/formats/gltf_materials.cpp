@@ -28,12 +28,12 @@ private:
     template<class Decode>
     [[nodiscard]] std::optional<Texture> decoded(std::uint64_t index, const Decode& decode);
     void join_uv_sets(Material& material);
-    void set_mean(Material& material, std::string_view key) const;
     void read_specular_glossiness(const Json& description, Material& material);
     void read_emission(const Json& description, Material& material);
     void read_glass(const Json& extensions, Material& material);
     void read_alpha(const Json& description, double alpha, Material& material);
     [[nodiscard]] std::optional<std::uint32_t> alpha_of(std::uint32_t texture);
+    void read_normal_map(const Json& description, Material& material);
 
     Document& document_;
     Materials result_;
@@ -44,8 +44,6 @@ private:
     /// Texture of the alpha of each texture. Empty: its image has none.
     std::map<std::uint32_t, std::optional<std::uint32_t>> alphas_;
     ImageBudget budget_;
-    /// UV sets of the textures of the current material, by the key of the texture.
-    std::map<std::string, std::uint64_t> uv_sets_;
 };
 
 /// Decodes an image. Returns nothing if its file does not exist, or, with a warning, if it cannot
@@ -139,55 +137,33 @@ std::optional<TextureSlot> MaterialReader::slot(const Json& parent, const char* 
         slot.uv_offset = glm::vec2(offset[0], offset[1]);
         uv_set = whole(transform, "texCoord", uv_set);
     }
-    uv_sets_.emplace(key, uv_set);
+    if (uv_set > std::numeric_limits<std::uint32_t>::max())
+        throw std::runtime_error(fmt::format("expected a number of a TEXCOORD, got {}", uv_set));
+    slot.uv_set = static_cast<std::uint32_t>(uv_set);
     return slot;
 }
 
-/// A mesh has one uv for each vertex: that of the material's colours. A texture of another set
-/// becomes one number, its mean.
+/// A mesh has two uvs for each vertex. A texture of a third set is left out.
 void MaterialReader::join_uv_sets(Material& material) {
-    std::optional<std::uint64_t> uv_set;
-    // The colours come first.
-    for (const char* key : {"baseColorTexture", "diffuseTexture", "metallicRoughnessTexture",
-                            "specularGlossinessTexture", "emissiveTexture"}) {
-        const auto own = uv_sets_.find(key);
-        if (own == uv_sets_.end() || own->second == uv_set)
+    auto& sets = result_.uv_sets.back();
+    for (const SlotName& entry : TextureSlots) {
+        std::optional<TextureSlot>& slot = material.*entry.slot;
+        if (!slot)
             continue;
-        if (!uv_set) {
-            uv_set = result_.uv_sets.back() = own->second;
+        const std::uint32_t own = slot->uv_set;
+        const auto place = std::find_if(sets.begin(), sets.end(),
+                                        [&](const auto& set) { return !set || *set == own; });
+        if (place != sets.end()) {
+            *place = own;
+            slot->uv_set = static_cast<std::uint32_t>(place - sets.begin());
             continue;
         }
-        set_mean(material, key);
         result_.warnings.push_back(
-            fmt::format("the material {} has its first texture in TEXCOORD_{} and its {} in "
-                        "TEXCOORD_{}; one set is read: the mean of the second texture stands for "
-                        "it",
-                        material.name, *uv_set, key, own->second));
-    }
-}
-
-/// Puts the mean of a texture into the material's numbers.
-void MaterialReader::set_mean(Material& material, std::string_view key) const {
-    const auto mean = [&](std::optional<TextureSlot>& slot) {
-        const Texture& texture = result_.textures[slot->texture];
-        glm::dvec3 sum(0.0);
-        for (std::uint32_t y = 0; y < texture.height; ++y)
-            for (std::uint32_t x = 0; x < texture.width; ++x)
-                sum += glm::dvec3(texel(texture, x, y, slot->is_srgb));
+            fmt::format("the material {} has textures in TEXCOORD_{}, TEXCOORD_{} and TEXCOORD_{}; "
+                        "two sets are read: its {} is left out",
+                        material.name, *sets[0], *sets[1], own, entry.name));
         slot.reset();
-        return glm::vec3(sum / (static_cast<double>(texture.texels.size())));
-    };
-    if (key == "emissiveTexture") {
-        material.emission *= mean(material.emission_texture);
-        return;
     }
-    if (material.metallic_roughness_texture) {
-        const glm::vec3 factors = mean(material.metallic_roughness_texture);
-        material.roughness *= factors.g;
-        material.metallic *= factors.b;
-    }
-    if (material.specular_texture)
-        material.specular *= mean(material.specular_texture);
 }
 
 /// Returns factors of a colour, each in [0, 1]. A rounding outside is brought inside.
@@ -315,6 +291,16 @@ void MaterialReader::read_glass(const Json& extensions, Material& material) {
     material.attenuation_color = glm::vec3(color[0], color[1], color[2]);
 }
 
+void MaterialReader::read_normal_map(const Json& description, Material& material) {
+    material.normal_scale =
+        static_cast<float>(number(child(description, "normalTexture"), "scale", 1.0));
+    if (!std::isfinite(material.normal_scale))
+        throw std::runtime_error(fmt::format(
+            "expected a finite \"scale\" of the normal map, got {}", material.normal_scale));
+    if (material.normal_scale != 0.0f)
+        material.normal_texture = slot(description, "normalTexture", false);
+}
+
 Material MaterialReader::material(const Json& description, std::size_t index) {
     const Json& pbr = child(description, "pbrMetallicRoughness");
     const Json& extensions = child(description, "extensions");
@@ -322,8 +308,10 @@ Material MaterialReader::material(const Json& description, std::size_t index) {
     material.name = text(description, "name", fmt::format("material {}", index));
     material.times_vertex_color = true;
     const bool is_unlit = extensions.find("KHR_materials_unlit") != nullptr;
-    if (!is_unlit)
+    if (!is_unlit) {
         read_emission(description, material);
+        read_normal_map(description, material);
+    }
     if (extensions.find("KHR_materials_pbrSpecularGlossiness") && !is_unlit) {
         read_specular_glossiness(description, material);
         return material;
@@ -346,7 +334,6 @@ Material MaterialReader::material(const Json& description, std::size_t index) {
 
 Materials MaterialReader::read() {
     for (std::size_t i = 0; i < document_.count("materials"); ++i) {
-        uv_sets_.clear();
         result_.uv_sets.emplace_back();
         std::string name = fmt::format("material {}", i);
         try {

@@ -1,6 +1,8 @@
 // Materials and textures of a glTF file.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,9 +17,9 @@ namespace relumine::mesh::gltf {
 struct Materials {
     /// Materials in the file's order.
     std::vector<Material> materials;
-    /// [materials] the number of the TEXCOORD set that the material's texture of colours uses, or
-    /// its other one. Empty: no textures.
-    std::vector<std::optional<std::uint64_t>> uv_sets;
+    /// [materials] the numbers of the TEXCOORD sets that the material's textures use: that of the
+    /// colours comes first.
+    std::vector<std::array<std::optional<std::uint32_t>, 2>> uv_sets;
     std::vector<Texture> textures;
     std::vector<std::string> missing;
     /// What the materials have and the result does not, a line each.

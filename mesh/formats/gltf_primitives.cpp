@@ -69,7 +69,7 @@ Attributes::Attributes(Document& document, const Json& description)
                           .num_components = num_components,
                           .is_normalized = flag(accessor, "normalized")});
     };
-    add("POSITION", 3), add("NORMAL", 3), add("COLOR_0", 3);
+    add("POSITION", 3), add("NORMAL", 3), add("TANGENT", 4), add("COLOR_0", 3);
     for (const auto& [name, id] : ids.members())
         if (name.starts_with("TEXCOORD_"))
             add(name, 2);
@@ -179,7 +179,12 @@ std::optional<Primitive> PrimitiveReader::read(const Json& description) {
     } else {
         result.material = default_material();
     }
-    read(fmt::format("TEXCOORD_{}", materials_.uv_sets[result.material].value_or(0)), result.uvs);
+    const auto& sets = materials_.uv_sets[result.material];
+    read(fmt::format("TEXCOORD_{}", sets[0].value_or(0)), result.uvs);
+    if (sets[1])
+        read(fmt::format("TEXCOORD_{}", *sets[1]), result.second_uvs);
+    if (materials_.materials[result.material].normal_texture)
+        read("TANGENT", result.tangents);
     for (std::size_t set = 0; attributes.contains(fmt::format("JOINTS_{}", set)) &&
                               attributes.contains(fmt::format("WEIGHTS_{}", set));
          ++set) {
@@ -220,6 +225,8 @@ std::optional<Primitive> morphed(Document& document, const Primitive& primitive,
         add_targets(document, *primitive.description, "NORMAL", weights, result.normals);
     else
         take_normals_of_faces(result);
+    if (!result.tangents.empty())
+        add_targets(document, *primitive.description, "TANGENT", weights, result.tangents);
     return result;
 }
 

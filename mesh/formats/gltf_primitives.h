@@ -9,6 +9,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include "mesh/formats/gltf_deformation.h"
 #include "mesh/formats/gltf_document.h"
@@ -24,7 +25,10 @@ namespace relumine::mesh::gltf {
 /// A primitive's arrays as the file has them, before any node places them.
 struct Primitive {
     std::vector<glm::vec3> positions, normals, colors;
-    std::vector<glm::vec2> uvs;
+    /// The sets that the material's textures use.
+    std::vector<glm::vec2> uvs, second_uvs;
+    /// Directions of growing u, if the material has a normal map, and signs of the bitangents in w.
+    std::vector<glm::vec4> tangents;
     std::vector<Triangle> triangles;
     std::uint32_t material = 0;
     std::vector<Influences> influences;

@@ -210,6 +210,18 @@ void GltfReader::append(const Primitive& primitive, const FrameOf& frame_of, std
     soup_.colors.resize(soup_.positions.size(), glm::vec3(1.0f));
     soup_.uvs.insert(soup_.uvs.end(), primitive.uvs.begin(), primitive.uvs.end());
     soup_.uvs.resize(soup_.positions.size(), glm::vec2(0.0f));
+    const auto add = [&](const auto& own, auto& all) {
+        if (all.empty() && own.empty())
+            return;
+        all.resize(first);
+        all.insert(all.end(), own.begin(), own.end());
+        all.resize(soup_.positions.size());
+    };
+    add(primitive.second_uvs, soup_.second_uvs);
+    std::vector<glm::vec4> tangents;
+    for (std::size_t i = 0; i < primitive.tangents.size(); ++i)
+        tangents.push_back(frame_of(i).tangent(primitive.tangents[i]));
+    add(tangents, soup_.tangents);
     for (const auto& [a, b, c] : primitive.triangles) {
         for (const std::uint32_t corner : {a, is_mirrored ? c : b, is_mirrored ? b : c})
             soup_.corners.push_back(static_cast<std::uint32_t>(first) + corner);

@@ -9,6 +9,7 @@
 
 #include "mesh/formats/triangulate.h"
 #include "mesh/normals.h"
+#include "mesh/tangents.h"
 
 namespace relumine::mesh {
 
@@ -116,6 +117,7 @@ TriangleMesh to_mesh(PolygonSoup soup, NormalSource source) {
     mesh.normals = std::move(soup.normals);
     mesh.colors = std::move(soup.colors);
     mesh.uvs = std::move(soup.uvs);
+    mesh.second_uvs = std::move(soup.second_uvs);
     mesh.materials = std::move(soup.materials);
     mesh.groups = std::move(soup.groups);
     mesh.textures = std::move(soup.textures);
@@ -127,12 +129,14 @@ TriangleMesh to_mesh(PolygonSoup soup, NormalSource source) {
     const auto is_finite_uv = [](const glm::vec2& uv) {
         return is_finite({uv, 0.0f});
     };
-    if (!std::all_of(mesh.uvs.begin(), mesh.uvs.end(), is_finite_uv))
-        mesh.uvs.clear();
+    for (std::vector<glm::vec2>* uvs : {&mesh.uvs, &mesh.second_uvs})
+        if (!std::all_of(uvs->begin(), uvs->end(), is_finite_uv))
+            uvs->clear();
     if (!std::all_of(mesh.corner_uvs.begin(), mesh.corner_uvs.end(), [&](const auto& uvs) {
             return std::all_of(uvs.begin(), uvs.end(), is_finite_uv);
         }))
         mesh.corner_uvs.clear();
+    set_tangents(mesh, soup.tangents);
     return mesh;
 }
 

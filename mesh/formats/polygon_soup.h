@@ -11,6 +11,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include "files/free_memory.h"
 #include "mesh/camera.h"
@@ -34,6 +35,10 @@ struct PolygonSoup {
     std::vector<glm::vec3> colors;
     /// [num_vertices], or empty.
     std::vector<glm::vec2> uvs;
+    /// [num_vertices], or empty.
+    std::vector<glm::vec2> second_uvs;
+    /// [num_vertices] of any length, or empty, as set_tangents() takes them.
+    std::vector<glm::vec4> tangents;
     /// Parallel to `corners`, or empty.
     std::vector<glm::vec2> corner_uvs;
 

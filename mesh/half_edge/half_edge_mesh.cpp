@@ -241,6 +241,7 @@ TriangleMesh HalfEdgeMesh::mesh() const {
     keep(source.normals, result.normals);
     keep(source.colors, result.colors);
     keep(source.uvs, result.uvs);
+    keep(source.second_uvs, result.second_uvs);
     std::uint32_t place = 0;
     for (std::size_t i = 0; i < places.size(); ++i)
         places[i] = stays[i] ? place++ : 0;
@@ -249,13 +250,17 @@ TriangleMesh HalfEdgeMesh::mesh() const {
         Triangle& triangle = result.triangles.emplace_back();
         for (std::size_t k = 0; k < 3; ++k)
             triangle[k] = places[impl_->fan_names[fans[i][k]]];
-        if (!source.corner_uvs.empty()) {
-            std::array<glm::vec2, 3>& uvs = result.corner_uvs.emplace_back();
+        const auto keep_corners = [&](const auto& values, auto& kept) {
+            if (values.empty())
+                return;
+            auto& corners = kept.emplace_back();
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::uint32_t corner = impl_->fan_corners[fans[i][k]];
-                uvs[k] = source.corner_uvs[impl_->face_sources[corner / 3]][corner % 3];
+                corners[k] = values[impl_->face_sources[corner / 3]][corner % 3];
             }
-        }
+        };
+        keep_corners(source.corner_uvs, result.corner_uvs);
+        keep_corners(source.corner_tangents, result.corner_tangents);
         if (!source.triangle_materials.empty())
             result.triangle_materials.push_back(source.triangle_materials[from]);
         if (!source.triangle_groups.empty())

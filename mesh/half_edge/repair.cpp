@@ -47,13 +47,16 @@ private:
     std::size_t weld() {
         std::vector<std::uint32_t> first = first_at_place(mesh_.positions);
         const std::size_t n = mesh_.num_vertices();
-        // Colours tell vertices apart. The first of each colour at a place stands for the others.
-        if (!mesh_.colors.empty()) {
+        // Colours and second uvs tell vertices apart. The first of each at a place stands for the
+        // others.
+        if (!mesh_.colors.empty() || !mesh_.second_uvs.empty()) {
             std::vector<std::vector<std::uint32_t>> at_place(n);
             for (std::uint32_t i = 0; i < n; ++i) {
                 std::vector<std::uint32_t>& others = at_place[first[i]];
                 const auto same = std::find_if(others.begin(), others.end(), [&](std::uint32_t j) {
-                    return mesh_.colors[j] == mesh_.colors[i];
+                    return (mesh_.colors.empty() || mesh_.colors[j] == mesh_.colors[i]) &&
+                           (mesh_.second_uvs.empty() ||
+                            mesh_.second_uvs[j] == mesh_.second_uvs[i]);
                 });
                 first[i] = same != others.end() ? *same : i;
                 if (same == others.end())
@@ -94,10 +97,7 @@ private:
                     values[places[i]] = values[i];
             values.resize(place);
         };
-        keep(mesh_.positions);
-        keep(mesh_.normals);
-        keep(mesh_.colors);
-        keep(mesh_.uvs);
+        for_each_vertex_array(mesh_, keep);
         keep(is_touched_);
         mesh_.triangles = renamed(mesh_.triangles, places);
         return stays.size() - place;
@@ -196,6 +196,7 @@ private:
         };
         keep(mesh_.triangles);
         keep(mesh_.corner_uvs);
+        keep(mesh_.corner_tangents);
         keep(mesh_.triangle_materials);
         keep(mesh_.triangle_groups);
     }
@@ -207,6 +208,11 @@ private:
                 std::swap(mesh_.triangles[i][1], mesh_.triangles[i][2]);
                 if (!mesh_.corner_uvs.empty())
                     std::swap(mesh_.corner_uvs[i][1], mesh_.corner_uvs[i][2]);
+                if (!mesh_.corner_tangents.empty()) {
+                    std::swap(mesh_.corner_tangents[i][1], mesh_.corner_tangents[i][2]);
+                    for (glm::vec4& tangent : mesh_.corner_tangents[i])
+                        tangent.w = -tangent.w;
+                }
                 touch(mesh_.triangles[i]);
             }
         return winding.num_wrong;
@@ -297,12 +303,16 @@ private:
     void add_triangle(const std::array<HalfEdgeMesh::RimCorner, 3>& corners) {
         mesh_.triangles.push_back({corners[0].vertex, corners[1].vertex, corners[2].vertex});
         touch(mesh_.triangles.back());
-        if (!mesh_.corner_uvs.empty()) {
-            std::array<glm::vec2, 3> uvs{};
+        const auto add = [&](auto& values) {
+            if (values.empty())
+                return;
+            auto own = values[corners[0].triangle];
             for (std::size_t k = 0; k < 3; ++k)
-                uvs[k] = mesh_.corner_uvs[corners[k].triangle][corners[k].corner];
-            mesh_.corner_uvs.push_back(uvs);
-        }
+                own[k] = values[corners[k].triangle][corners[k].corner];
+            values.push_back(own);
+        };
+        add(mesh_.corner_uvs);
+        add(mesh_.corner_tangents);
         if (!mesh_.triangle_materials.empty())
             mesh_.triangle_materials.push_back(mesh_.triangle_materials[corners[0].triangle]);
         if (!mesh_.triangle_groups.empty())

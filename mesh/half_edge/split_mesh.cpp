@@ -201,6 +201,7 @@ void SplitMesh::add_middles(std::uint32_t edge) {
         add(mesh_.positions);
         add(mesh_.colors);
         add(mesh_.uvs);
+        add(mesh_.second_uvs);
         if (!mesh_.normals.empty()) {
             vectors_.push_back(vector_between(vectors_[pair.low], vectors_[pair.high]));
             const float length = glm::length(vectors_.back());
@@ -234,12 +235,16 @@ std::uint32_t SplitMesh::cut_in_two(std::uint32_t triangle, std::uint32_t side) 
     remove_sides(triangle);
     mesh_.triangles[triangle] = {a, m, c};
     mesh_.triangles.push_back({m, b, c});
-    if (!mesh_.corner_uvs.empty()) {
-        const auto uvs = mesh_.corner_uvs[triangle];
-        const glm::vec2 uv = half_way(uvs[i], uvs[j]);
-        mesh_.corner_uvs[triangle] = {uvs[i], uv, uvs[k]};
-        mesh_.corner_uvs.push_back({uv, uvs[j], uvs[k]});
-    }
+    const auto cut_corners = [&](auto& values) {
+        if (values.empty())
+            return;
+        const auto corners = values[triangle];
+        const auto between = half_way(corners[i], corners[j]);
+        values[triangle] = {corners[i], between, corners[k]};
+        values.push_back({between, corners[j], corners[k]});
+    };
+    cut_corners(mesh_.corner_uvs);
+    cut_corners(mesh_.corner_tangents);
     if (!mesh_.triangle_materials.empty())
         mesh_.triangle_materials.push_back(mesh_.triangle_materials[triangle]);
     if (!mesh_.triangle_groups.empty())

@@ -25,6 +25,8 @@ struct TextureSlot {
     bool is_srgb = false;
     /// For u and v.
     std::array<Wrap, 2> wrap{};
+    /// 0: the place in the texture is from TriangleMesh::uvs, 1: from its second_uvs.
+    std::uint32_t uv_set = 0;
     /// The place in the texture is uv_from_mesh_uv times the mesh's uv, plus uv_offset.
     glm::mat2 uv_from_mesh_uv{1.0f};
     glm::vec2 uv_offset{0.0f};
@@ -105,9 +107,29 @@ struct Material {
     float attenuation_distance = std::numeric_limits<float>::infinity();
     /// False: pictures do not show the backs. They block light all the same.
     bool is_double_sided = true;
+    /// Normals in the frame of tangent, bitangent and normal, as 2 RGB - 1.
+    std::optional<TextureSlot> normal_texture = {};
+    /// Multiplies x and y of the texture's normals.
+    float normal_scale = 1.0f;
 
     bool operator==(const Material&) const = default;
 };
+
+/// A texture of a material and its name in files.
+struct SlotName {
+    std::optional<TextureSlot> Material::*slot;
+    const char* name;
+};
+
+/// All textures of a material; the colours come first.
+inline constexpr std::array<SlotName, 7> TextureSlots = {
+    {{&Material::base_color_texture, "base_texture"},
+     {&Material::metallic_roughness_texture, "metallic_texture"},
+     {&Material::specular_texture, "specular_texture"},
+     {&Material::emission_texture, "emission_texture"},
+     {&Material::normal_texture, "normal_texture"},
+     {&Material::alpha_texture, "alpha_texture"},
+     {&Material::transmission_texture, "transmission_texture"}}};
 
 /// Returns what stands for a material that cannot be read: grey, Lambert.
 [[nodiscard]] inline Material unreadable_material(std::string name) {

@@ -6,7 +6,6 @@
 
 #include <glm/common.hpp>
 
-#include "mesh/opacity.h"
 #include "prt/glossy/lobe_list.h"
 #include "prt/receivers/mesh_point.h"
 
@@ -19,12 +18,14 @@ struct MaterialPoint {
     const mesh::TriangleMesh& mesh;
     const mesh::Material& material;
     MeshPoint at;
-    glm::vec2 uv;
 
+    [[nodiscard]] glm::vec3 texel(const mesh::TextureSlot& slot) const {
+        return mesh::sample(mesh.textures[slot.texture], slot, uv_at(mesh, at, slot.uv_set));
+    }
     /// Returns a value times its texture, if there is one.
     [[nodiscard]] glm::vec3 textured(const glm::vec3& value,
                                      const std::optional<mesh::TextureSlot>& slot) const {
-        return slot ? value * mesh::sample(mesh.textures[slot->texture], *slot, uv) : value;
+        return slot ? value * texel(*slot) : value;
     }
     /// Returns the base colour, not limited where vertices are brighter than 1.
     [[nodiscard]] glm::vec3 base() const {
@@ -52,7 +53,7 @@ Surface reflecting(const MaterialPoint& point, GgxForm form) {
     const Highlight highlight = form == GgxForm::Whole ? Highlight::GgxWhole : Highlight::Ggx;
     float metallic = material.metallic, roughness = material.roughness;
     if (const auto& slot = material.metallic_roughness_texture) {
-        const glm::vec3 texel = mesh::sample(point.mesh.textures[slot->texture], *slot, point.uv);
+        const glm::vec3 texel = point.texel(*slot);
         roughness *= texel.g;
         metallic *= texel.b;
     }
@@ -80,14 +81,7 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
     if (mesh.triangle_materials.empty())
         return {};
     const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
-    const bool has_texture = material.base_color_texture || material.metallic_roughness_texture ||
-                             material.specular_texture || material.emission_texture ||
-                             material.transmission_texture;
-    const MaterialPoint point{.mesh = mesh,
-                              .material = material,
-                              .at = {triangle, barycentric},
-                              .uv = has_texture ? mesh::uv_at(mesh, triangle, barycentric)
-                                                : glm::vec2(0.0f)};
+    const MaterialPoint point{.mesh = mesh, .material = material, .at = {triangle, barycentric}};
     if (material.model == mesh::MaterialModel::Unlit)
         return {.albedo = glm::vec3(0.0f), .emission = glm::max(point.base(), 0.0f)};
     Surface surface = reflecting(point, form);

@@ -130,10 +130,11 @@ PartLight light_of(const SectionReader& reader, std::size_t num_own, const Trans
     return light;
 }
 
-/// What concerns the colours of a mesh. They are in the receivers' surfaces already, and rays ask
-/// only for alpha.
-constexpr std::array<const char*, 6> ColorSections = {"colors", "uvs",         "materials",
-                                                      "images", "t_materials", "corner_uvs"};
+/// What concerns the colours of a mesh. They are in the receivers' surfaces already, and rays
+/// ask only for what they pass.
+constexpr std::array<const char*, 8> ColorSections = {"colors",          "uvs",       "second_uvs",
+                                                      "corner_tangents", "materials", "images",
+                                                      "t_materials",     "corner_uvs"};
 
 } // namespace
 

@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 
 #include "cubemap/split_mix64.h"
+#include "mesh/opacity.h"
+#include "mesh/tangents.h"
 
 namespace relumine::prt {
 
@@ -25,6 +27,14 @@ bool leads_outwards(const glm::vec3& lift, const glm::vec3& normal) {
     return glm::dot(lift, normal) > LeastCosine * glm::length(lift);
 }
 
+/// Returns a component of a normal map's vector. Bytes of 127 and 128 both mean 0, so that a flat
+/// map is flat, and 255 means 1.
+float map_component(float texel) {
+    const float value = 2.0f * texel - 1.0f, step = 1.0f / 255.0f;
+    const float length = std::max(std::abs(value) - step, 0.0f) / (1.0f - step);
+    return std::copysign(length < 1e-6f ? 0.0f : length, value);
+}
+
 } // namespace
 
 glm::vec3 value_at(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> values,
@@ -33,6 +43,10 @@ glm::vec3 value_at(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> va
     const float first = 1.0f - point.barycentric.x - point.barycentric.y;
     return first * values[triangle[0]] + point.barycentric.x * values[triangle[1]] +
            point.barycentric.y * values[triangle[2]];
+}
+
+glm::vec2 uv_at(const mesh::TriangleMesh& mesh, const MeshPoint& point, std::uint32_t uv_set) {
+    return mesh::uv_at(mesh, point.triangle, point.barycentric, uv_set);
 }
 
 glm::vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
@@ -48,6 +62,33 @@ glm::vec3 shading_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point)
     constexpr float Shortest = 1e-4f;
     return glm::length(interpolated) > Shortest ? glm::normalize(interpolated)
                                                 : face_normal(mesh, point.triangle);
+}
+
+glm::vec3 mapped_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
+    const glm::vec3 normal = shading_normal(mesh, point);
+    if (mesh.corner_tangents.empty())
+        return normal;
+    const mesh::Material& material = mesh.materials[mesh.triangle_materials[point.triangle]];
+    if (!material.normal_texture)
+        return normal;
+    const mesh::TextureSlot& slot = *material.normal_texture;
+    const glm::vec3 texel =
+        mesh::sample(mesh.textures[slot.texture], slot, uv_at(mesh, point, slot.uv_set));
+    const glm::vec2 tilt =
+        material.normal_scale * glm::vec2(map_component(texel.x), map_component(texel.y));
+    const std::array<glm::vec4, 3>& corners = mesh.corner_tangents[point.triangle];
+    const glm::vec2& w = point.barycentric;
+    const glm::vec4 between = (1.0f - w.x - w.y) * corners[0] + w.x * corners[1] + w.y * corners[2];
+    const glm::vec3 along =
+        unit_or_zero(glm::dvec3(between) -
+                     glm::dot(glm::dvec3(between), glm::dvec3(normal)) * glm::dvec3(normal));
+    if (tilt == glm::vec2(0.0f) || along == glm::vec3(0.0f))
+        return normal;
+    const glm::vec3 bitangent = (between.w < 0.0f ? -1.0f : 1.0f) * glm::cross(normal, along);
+    const glm::vec3 mapped =
+        unit_or_zero(glm::dvec3(tilt.x * along + tilt.y * bitangent) +
+                     std::max(double{map_component(texel.z)}, 0.0) * glm::dvec3(normal));
+    return mapped == glm::vec3(0.0f) ? normal : mapped;
 }
 
 glm::vec3 smooth_position(const mesh::TriangleMesh& mesh, const MeshPoint& point) {

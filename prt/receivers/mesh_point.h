@@ -25,6 +25,10 @@ struct MeshPoint {
 [[nodiscard]] glm::vec3 value_at(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> values,
                                  const MeshPoint& point);
 
+/// Returns the mesh's uv at a point, of a set; 0 where it has none.
+[[nodiscard]] glm::vec2 uv_at(const mesh::TriangleMesh& mesh, const MeshPoint& point,
+                              std::uint32_t uv_set);
+
 /// Returns the unit normal of a triangle, or zero for a triangle without area. The corners run
 /// counter-clockwise as seen from the normal's tip.
 [[nodiscard]] glm::vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle);
@@ -32,6 +36,10 @@ struct MeshPoint {
 /// Returns the interpolated vertex normal with unit length, or the face's normal where the vertex
 /// normals cancel.
 [[nodiscard]] glm::vec3 shading_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point);
+
+/// Returns the unit normal that the material's normal map gives a point: shading_normal() where it
+/// has none, or where it is flat.
+[[nodiscard]] glm::vec3 mapped_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point);
 
 /// Returns the point moved outwards to the smooth surface that the vertex normals pretend. Shadow
 /// rays that start there do not see the facets of a convex mesh where the light grazes it. Points

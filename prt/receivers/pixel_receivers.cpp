@@ -3,6 +3,7 @@
 #include "prt/receivers/pixel_receivers.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
@@ -25,6 +26,46 @@ struct Seen {
 glm::vec2 inside(const glm::vec2& barycentric) {
     const glm::vec2 positive(std::max(barycentric.x, 0.0f), std::max(barycentric.y, 0.0f));
     return positive / std::max(positive.x + positive.y, 1.0f);
+}
+
+/// Turns a mapped normal as little as it takes for a mirror to reflect the eye's ray to the outside
+/// of the surface, whose normal is given: a steeper facet would hide behind others.
+///
+/// Based on: Blender's Cycles, ensure_valid_specular_reflection() (the equation).
+glm::vec3 reflecting_outwards(const glm::vec3& mapped, const glm::vec3& normal,
+                              const glm::vec3& to_eye) {
+    const float eye_z = glm::dot(to_eye, normal);
+    const float least = std::min(0.9f * eye_z, 0.025f);
+    const glm::vec3 mirrored = 2.0f * glm::dot(mapped, to_eye) * mapped - to_eye;
+    const glm::vec3 across = mapped - glm::dot(mapped, normal) * normal;
+    const float tilt = glm::length(across);
+    if (!(eye_z > 0.0f) || !(tilt > 0.0f) || glm::dot(normal, mirrored) >= least)
+        return mapped;
+    // In the plane of both normals, a normal (x, z) mirrors the eye to the height 2 z (x eye_x + z
+    // eye_z) - eye_z, which shall be `least`: an equation of second degree for z^2.
+    const glm::vec3 axis = across / tilt;
+    const float eye_x = glm::dot(to_eye, axis);
+    const float a = eye_x * eye_x + eye_z * eye_z, b = 2.0f * (a + eye_z * least);
+    const float c = (least + eye_z) * (least + eye_z);
+    const float root = std::sqrt(std::max(b * b - 4.0f * a * c, 0.0f));
+    const float z2 = std::clamp(0.25f * (eye_x < 0.0f ? b + root : b - root) / a, 0.0f, 1.0f);
+    return std::sqrt(1.0f - z2) * axis + std::sqrt(z2) * normal;
+}
+
+bool has_highlight(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
+    const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
+    return material.model != mesh::MaterialModel::Phong || material.specular != glm::vec3(0.0f);
+}
+
+/// Returns the normal of a normal map on the side of the receiver's normal.
+glm::vec3 mapped_towards(const mesh::TriangleMesh& mesh, const MeshPoint& point,
+                         const glm::vec3& normal, bool is_front, const glm::vec3& to_eye) {
+    if (mesh.corner_tangents.empty())
+        return normal;
+    const glm::vec3 mapped = (is_front ? 1.0f : -1.0f) * mapped_normal(mesh, point);
+    if (mapped == normal || !has_highlight(mesh, point.triangle))
+        return mapped;
+    return glm::normalize(reflecting_outwards(mapped, normal, to_eye));
 }
 
 /// Returns the normal on the eye's side of the surface.
@@ -107,7 +148,8 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
             // The smooth surface is before the facets as seen from its front.
             const bool is_front = normal == shading_normal(mesh, seen.point);
             receivers.positions[receiver] = is_front ? smooth_position(mesh, seen.point) : position;
-            receivers.normals[receiver] = normal;
+            receivers.normals[receiver] =
+                mapped_towards(mesh, seen.point, normal, is_front, to_eye);
             receivers.to_eye[receiver] = to_eye;
             receivers.points[receiver] = seen.point;
             result.layout.samples[receiver] = seen.sample;

@@ -239,7 +239,7 @@ TexelReceivers texel_receivers(const mesh::TriangleMesh& mesh, const AtlasSize& 
     receivers.normals.resize(receivers.points.size());
     files::parallel_for(std::size_t{0}, receivers.points.size(), [&](std::size_t i) {
         receivers.positions[i] = smooth_position(mesh, receivers.points[i]);
-        receivers.normals[i] = shading_normal(mesh, receivers.points[i]);
+        receivers.normals[i] = mapped_normal(mesh, receivers.points[i]);
     });
     return result;
 }

@@ -196,6 +196,7 @@ bool HiddenVertices::move(mesh::TriangleMesh& mesh, const Way& way,
             values[way.vertex] += way.lit * (values[way.towards] - values[way.vertex]);
     };
     follow(mesh.uvs);
+    follow(mesh.second_uvs);
     follow(mesh.colors);
     follow(mesh.lifts);
     mesh.positions[way.vertex] = after;

@@ -89,12 +89,9 @@ mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers
         for (std::uint32_t& corner : corners) {
             if (back_of[corner] == None) {
                 back_of[corner] = static_cast<std::uint32_t>(result.num_vertices());
-                repeat(result.positions, corner);
-                repeat(result.normals, corner);
+                mesh::for_each_vertex_array(result,
+                                            [&](auto& values) { repeat(values, corner); });
                 result.normals.back() = -result.normals.back();
-                repeat(result.colors, corner);
-                repeat(result.uvs, corner);
-                repeat(result.lifts, corner);
             }
             corner = back_of[corner];
         }
@@ -103,6 +100,13 @@ mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers
         repeat(result.corner_uvs, triangle);
         if (!result.corner_uvs.empty())
             std::swap(result.corner_uvs.back()[1], result.corner_uvs.back()[2]);
+        repeat(result.corner_tangents, triangle);
+        if (!result.corner_tangents.empty()) {
+            // The mapped normal is that of the front, reversed.
+            for (glm::vec4& tangent : result.corner_tangents.back())
+                tangent = -tangent;
+            std::swap(result.corner_tangents.back()[1], result.corner_tangents.back()[2]);
+        }
         repeat(result.triangle_materials, triangle);
         repeat(result.triangle_groups, triangle);
     }

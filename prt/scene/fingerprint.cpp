@@ -61,7 +61,12 @@ std::string text_of_alpha(const mesh::TriangleMesh& mesh) {
             hash.add(mesh.textures[slot->texture].texels);
         }
     }
-    return hash.add(numbers).add(mesh.triangle_materials).add(mesh.uvs).add(mesh.corner_uvs).text();
+    return hash.add(numbers)
+        .add(mesh.triangle_materials)
+        .add(mesh.uvs)
+        .add(mesh.second_uvs)
+        .add(mesh.corner_uvs)
+        .text();
 }
 
 } // namespace

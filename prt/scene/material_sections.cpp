@@ -22,13 +22,17 @@ Json json_of(const std::optional<TextureSlot>& slot, const Stored& stored) {
     if (!slot)
         return nullptr;
     const glm::mat2& m = slot->uv_from_mesh_uv;
-    return {{"image", stored.at(slot->texture)},
-            {"srgb", slot->is_srgb},
-            {"wrap", {static_cast<int>(slot->wrap[0]), static_cast<int>(slot->wrap[1])}},
-            {"uv", {m[0][0], m[0][1], m[1][0], m[1][1], slot->uv_offset.x, slot->uv_offset.y}}};
+    Json json = {
+        {"image", stored.at(slot->texture)},
+        {"srgb", slot->is_srgb},
+        {"wrap", {static_cast<int>(slot->wrap[0]), static_cast<int>(slot->wrap[1])}},
+        {"uv", {m[0][0], m[0][1], m[1][0], m[1][1], slot->uv_offset.x, slot->uv_offset.y}}};
+    if (slot->uv_set != 0)
+        json.set("uv_set", slot->uv_set);
+    return json;
 }
 
-/// The textures of a material that its albedo, its emission and its glass depend on.
+/// The textures of a material that its picture depends on.
 std::vector<std::optional<TextureSlot> Material::*> color_slots(const Material& material) {
     std::vector<std::optional<TextureSlot> Material::*> slots = {&Material::base_color_texture};
     if (material.model == mesh::MaterialModel::MetallicRoughness)
@@ -39,6 +43,8 @@ std::vector<std::optional<TextureSlot> Material::*> color_slots(const Material& 
         slots.push_back(&Material::emission_texture);
     if (material.transmission > 0.0f)
         slots.push_back(&Material::transmission_texture);
+    if (material.normal_texture)
+        slots.push_back(&Material::normal_texture);
     return slots;
 }
 
@@ -51,11 +57,9 @@ bool has_files(const Material& material, const std::vector<mesh::Texture>& textu
 }
 
 const char* name_of(std::optional<TextureSlot> Material::*slot) {
-    return slot == &Material::base_color_texture           ? "base_texture"
-           : slot == &Material::metallic_roughness_texture ? "metallic_texture"
-           : slot == &Material::specular_texture           ? "specular_texture"
-           : slot == &Material::emission_texture           ? "emission_texture"
-                                                           : "transmission_texture";
+    return std::find_if(mesh::TextureSlots.begin(), mesh::TextureSlots.end(),
+                        [&](const mesh::SlotName& entry) { return entry.slot == slot; })
+        ->name;
 }
 
 /// Returns a whole number below a limit.
@@ -96,6 +100,7 @@ std::optional<TextureSlot> slot_of(const Json& json, std::size_t num_textures) {
     return TextureSlot{.texture = below(json.at("image"), static_cast<std::uint32_t>(num_textures)),
                        .is_srgb = json.at("srgb").boolean(),
                        .wrap = {wrap(0), wrap(1)},
+                       .uv_set = json.find("uv_set") ? below(json.at("uv_set"), 2) : 0,
                        .uv_from_mesh_uv = glm::mat2(finite(uv.at(0)), finite(uv.at(1)),
                                                     finite(uv.at(2)), finite(uv.at(3))),
                        .uv_offset = glm::vec2(finite(uv.at(4)), finite(uv.at(5)))};
@@ -157,6 +162,10 @@ Material material_of(const Json& json, std::size_t num_textures) {
     read_alpha(json, num_textures, material);
     for (const auto slot : color_slots(material))
         material.*slot = slot_of(json.at(name_of(slot)), num_textures);
+    if (const Json* normals = json.find(name_of(&Material::normal_texture))) {
+        material.normal_texture = slot_of(*normals, num_textures);
+        material.normal_scale = finite(json.at("normal_scale"));
+    }
     return material;
 }
 
@@ -177,7 +186,8 @@ bool shows_textures(const Scene& scene) {
     const mesh::TriangleMesh& mesh = scene.mesh;
     return on_vertices(scene.layout) && !scene.receivers.surfaces.empty() &&
            std::any_of(mesh.materials.begin(), mesh.materials.end(), [&](const Material& material) {
-               return (material.base_color_texture || material.emission_texture) &&
+               return (material.base_color_texture || material.emission_texture ||
+                       material.normal_texture) &&
                       has_files(material, mesh.textures);
            });
 }
@@ -234,6 +244,8 @@ Json json_of(const Material& material, bool is_kept, const Stored& stored) {
                  {"times_vertex_color", material.times_vertex_color}};
     if (const glm::vec3& emission = material.emission; emission != glm::vec3(0.0f))
         json.set("emission", {emission.r, emission.g, emission.b});
+    if (material.normal_texture)
+        json.set("normal_scale", material.normal_scale);
     for (const auto slot : color_slots(material))
         json.set(name_of(slot), json_of(is_kept ? material.*slot : std::nullopt, stored));
     add_alpha(json, material, stored);
@@ -273,11 +285,15 @@ void add_materials(NewSections& sections, const Scene& scene) {
     sections["t_materials"] = SectionContent::view(mesh.triangle_materials);
     if (!mesh.corner_uvs.empty())
         sections["corner_uvs"] = SectionContent::view(mesh.corner_uvs);
+    if (!mesh.corner_tangents.empty())
+        sections["corner_tangents"] = SectionContent::view(mesh.corner_tangents);
     if (!scene.blockers || !mesh::lets_light_pass(*scene.blockers))
         return;
     sections["block_materials"] = SectionContent::view(scene.blockers->triangle_materials);
     if (!scene.blockers->uvs.empty())
         sections["block_uvs"] = SectionContent::view(scene.blockers->uvs);
+    if (!scene.blockers->second_uvs.empty())
+        sections["block_second_uvs"] = SectionContent::view(scene.blockers->second_uvs);
     if (!scene.blockers->corner_uvs.empty())
         sections["block_corner_uvs"] = SectionContent::view(scene.blockers->corner_uvs);
 }
@@ -347,6 +363,8 @@ void read_materials(const SectionReader& reader, Scene& scene) {
     mesh.triangle_materials =
         triangle_materials(reader, "t_materials", mesh, mesh.materials.size());
     mesh.corner_uvs = reader.elements<Corners>("corner_uvs", mesh.num_triangles(), true);
+    mesh.corner_tangents =
+        reader.elements<std::array<glm::vec4, 3>>("corner_tangents", mesh.num_triangles(), true);
     if (!scene.blockers || !reader.has("block_materials"))
         return;
     mesh::TriangleMesh& blockers = *scene.blockers;
@@ -355,6 +373,8 @@ void read_materials(const SectionReader& reader, Scene& scene) {
     blockers.triangle_materials =
         triangle_materials(reader, "block_materials", blockers, mesh.materials.size());
     blockers.uvs = reader.elements<glm::vec2>("block_uvs", blockers.num_vertices(), true);
+    blockers.second_uvs =
+        reader.elements<glm::vec2>("block_second_uvs", blockers.num_vertices(), true);
     blockers.corner_uvs =
         reader.elements<Corners>("block_corner_uvs", blockers.num_triangles(), true);
 }
@@ -366,10 +386,17 @@ void check_materials(const SceneCheck& check, const Scene& scene) {
                       [&](const auto& uvs) { return uvs[corner]; });
     };
     check_uvs(scene.mesh);
+    const auto is_tangent = [](const glm::vec4& tangent) {
+        return is_within(glm::vec3(tangent), -2.0f, 2.0f) && std::abs(tangent.w) <= 2.0f;
+    };
+    for (std::size_t corner = 0; corner < 3; ++corner)
+        check.all("finite tangents", scene.mesh.corner_tangents, is_tangent,
+                  [&](const auto& tangents) { return tangents[corner]; });
     if (!scene.blockers)
         return;
     check_uvs(*scene.blockers);
-    check.all("finite uvs of blockers", scene.blockers->uvs, is_finite_uv);
+    for (const auto* uvs : {&scene.blockers->uvs, &scene.blockers->second_uvs})
+        check.all("finite uvs of blockers", *uvs, is_finite_uv);
 }
 
 } // namespace

@@ -20,6 +20,8 @@ void add_mesh(NewSections& sections, const Scene& scene) {
         sections["colors"] = SectionContent::view(scene.mesh.colors);
     if (!scene.mesh.uvs.empty())
         sections["uvs"] = SectionContent::view(scene.mesh.uvs);
+    if (!scene.mesh.second_uvs.empty())
+        sections["second_uvs"] = SectionContent::view(scene.mesh.second_uvs);
     if (!scene.mesh.lifts.empty())
         sections["lifts"] = SectionContent::view(scene.mesh.lifts);
     if (scene.blockers) {
@@ -35,6 +37,7 @@ void read_mesh(const SectionReader& reader, Scene& scene) {
     mesh.normals = reader.elements<glm::vec3>("normals", mesh.num_vertices());
     mesh.colors = reader.elements<glm::vec3>("colors", mesh.num_vertices(), true);
     mesh.uvs = reader.elements<glm::vec2>("uvs", mesh.num_vertices(), true);
+    mesh.second_uvs = reader.elements<glm::vec2>("second_uvs", mesh.num_vertices(), true);
     mesh.lifts = reader.elements<glm::vec3>("lifts", mesh.num_vertices(), true);
     require_indices(reader, mesh, "triangles");
     if (!reader.has("block_triangles"))
@@ -64,6 +67,7 @@ void check_mesh(const SceneCheck& check, const Scene& scene) {
     check.all(fmt::format("colours of 0 to {}", MaxColor), scene.mesh.colors,
               [](const glm::vec3& color) { return is_within(color, 0.0f, MaxColor); });
     check.all("finite uvs", scene.mesh.uvs, is_finite_uv);
+    check.all("finite uvs", scene.mesh.second_uvs, is_finite_uv);
 }
 
 } // namespace

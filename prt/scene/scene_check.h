@@ -54,6 +54,9 @@ public:
     static std::string text_of(const glm::vec3& v) {
         return fmt::format("({}, {}, {})", v.x, v.y, v.z);
     }
+    static std::string text_of(const glm::vec4& v) {
+        return fmt::format("({}, {}, {}, {})", v.x, v.y, v.z, v.w);
+    }
 
 private:
     const std::filesystem::path& path_;

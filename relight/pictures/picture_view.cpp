@@ -11,6 +11,7 @@
 #include "files/parallel.h"
 #include "prt/glossy/brdf.h"
 #include "prt/receivers/mesh_point.h"
+#include "relight/harmonics/harmonics.h"
 #include "relight/sharp/light_packets.h"
 
 namespace relumine::relight {
@@ -196,8 +197,9 @@ private:
         const prt::MeshPoint at = point(sample);
         if (!has_texture(sample))
             return prt::value_at(mesh_, light_.radiance, at);
+        const glm::vec3 change = tilted(at);
         if (light_.lobes.empty())
-            return light_.textures->radiance(light_.radiance, at);
+            return light_.textures->radiance(light_.radiance, at, change);
         const auto between = [&](auto part) {
             const mesh::Triangle& triangle = mesh_.triangles[at.triangle];
             const glm::vec2& w = at.barycentric;
@@ -206,11 +208,34 @@ private:
         };
         using Lobes = prt::Lobes<glm::vec3>;
         return prt::reflect(surface_at(sample),
-                            {.diffuse = between(&Lobes::diffuse),
+                            {.diffuse = glm::max(between(&Lobes::diffuse) + change, 0.0f),
                              .diffuse_grazing = between(&Lobes::diffuse_grazing),
                              .specular = between(&Lobes::specular),
                              .specular_grazing = between(&Lobes::specular_grazing)},
                             eye_cosine(at));
+    }
+
+    /// Returns what a normal map adds to the diffuse radiance of albedo 1: the light of its normal
+    /// less that of the mesh's normal, so that a flat map adds nothing.
+    [[nodiscard]] glm::vec3 tilted(const prt::MeshPoint& at) const {
+        if (light_.harmonics.empty())
+            return glm::vec3(0.0f);
+        const glm::vec3 normal = prt::shading_normal(mesh_, at);
+        const glm::vec3 mapped = prt::mapped_normal(mesh_, at);
+        if (mapped == normal)
+            return glm::vec3(0.0f);
+        const std::size_t count = light_.harmonics.size() / mesh_.num_vertices();
+        const glm::vec2& w = at.barycentric;
+        const std::array<float, 3> weights = {1.0f - w.x - w.y, w.x, w.y};
+        std::array<glm::vec3, MaxHarmonics> between{};
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const std::size_t first = mesh_.triangles[at.triangle][corner] * count;
+            for (std::size_t i = 0; i < count; ++i)
+                between[i] += weights[corner] * light_.harmonics[first + i];
+        }
+        const auto light = std::span(between).first(count);
+        return glm::vec3((irradiance(light, mapped) - irradiance(light, normal)) /
+                         std::numbers::pi);
     }
 
     /// Returns the cosine between normal and eye, 0 without an eye.
@@ -233,7 +258,7 @@ private:
     /// Finds the lights that reach a sample.
     void look(const Sample& sample, std::span<std::uint16_t> lanes) const {
         const prt::MeshPoint at = point(sample);
-        packets_.visible(prt::smooth_position(mesh_, at), prt::shading_normal(mesh_, at), rays_,
+        packets_.visible(prt::smooth_position(mesh_, at), prt::mapped_normal(mesh_, at), rays_,
                          lanes);
     }
 
@@ -354,7 +379,7 @@ private:
                         [](std::uint16_t lanes) { return lanes == 0; }))
             return glm::vec3(0.0f);
         const prt::MeshPoint at = point(sample);
-        const glm::vec3 normal = prt::shading_normal(mesh_, at);
+        const glm::vec3 normal = prt::mapped_normal(mesh_, at);
         const glm::vec3 albedo =
             light_.albedo.empty() ? glm::vec3(1.0f) : prt::value_at(mesh_, light_.albedo, at);
         if (light_.surfaces.empty())
@@ -435,7 +460,9 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
         return size == 0 || size == mesh_.num_vertices();
     };
     if (light.radiance.size() != mesh_.num_vertices() || !fits(light.albedo.size()) ||
-        !fits(light.surfaces.size()) || !fits(light.lobes.size()) || !fits(light.emission.size()))
+        !fits(light.surfaces.size()) || !fits(light.lobes.size()) || !fits(light.emission.size()) ||
+        light.harmonics.size() % mesh_.num_vertices() != 0 ||
+        light.harmonics.size() / mesh_.num_vertices() > MaxHarmonics)
         throw std::invalid_argument("expected one radiance, albedo and surface per vertex");
     const LightPackets packets(light.lights);
     Picture picture{.width = options_.width, .height = options_.height};

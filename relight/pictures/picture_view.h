@@ -80,6 +80,9 @@ struct MeshLight {
     /// [num_vertices] what `radiance` is made of, or empty where nothing has a highlight: triangles
     /// with a texture take them in place of `radiance`.
     std::span<const prt::Lobes<glm::vec3>> lobes = {};
+    /// [num_vertices][4 or 9] harmonics of the light that arrives (docs/harmonics.md), times the
+    /// same factor as `radiance`, or empty: normal maps tilt no light but that of `lights`.
+    std::span<const glm::vec3> harmonics = {};
     /// The eye that highlights are for. Empty: there are none.
     std::optional<glm::vec3> eye = {};
     /// Lift of the rays' origins, as in prt::PrecomputeOptions.

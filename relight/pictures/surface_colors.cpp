@@ -17,7 +17,7 @@ SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt
     form_ = std::any_of(surfaces.begin(), surfaces.end(), is_whole) ? prt::GgxForm::Whole
                                                                     : prt::GgxForm::Published;
     const auto has_texture = [](const mesh::Material& material) {
-        return material.base_color_texture || material.emission_texture;
+        return material.base_color_texture || material.emission_texture || material.normal_texture;
     };
     if (mesh.triangle_materials.empty() || surfaces.size() != mesh.num_vertices() ||
         std::none_of(mesh.materials.begin(), mesh.materials.end(), has_texture))
@@ -38,7 +38,7 @@ prt::Surface SurfaceColors::surface(const prt::MeshPoint& point) const {
 }
 
 glm::vec3 SurfaceColors::radiance(std::span<const glm::vec3> vertex_radiance,
-                                  const prt::MeshPoint& point) const {
+                                  const prt::MeshPoint& point, const glm::vec3& change) const {
     const mesh::Triangle& triangle = mesh_->triangles[point.triangle];
     const std::array<float, 3> weights = {1.0f - point.barycentric.x - point.barycentric.y,
                                           point.barycentric.x, point.barycentric.y};
@@ -46,7 +46,16 @@ glm::vec3 SurfaceColors::radiance(std::span<const glm::vec3> vertex_radiance,
     for (std::size_t corner = 0; corner < 3; ++corner)
         light += weights[corner] * vertex_radiance[triangle[corner]] *
                  light_of_radiance_[triangle[corner]];
-    return light * albedo(point);
+    return glm::max(light + change, 0.0f) * albedo(point);
+}
+
+std::vector<glm::vec3> scaled(std::span<const glm::vec3> harmonics,
+                              std::span<const glm::vec3> factors) {
+    std::vector<glm::vec3> result(harmonics.begin(), harmonics.end());
+    const std::size_t count = harmonics.size() / std::max<std::size_t>(factors.size(), 1);
+    for (std::size_t i = 0; i < result.size(); ++i)
+        result[i] *= factors[i / count];
+    return result;
 }
 
 void add_rest(std::span<const glm::vec3> radiance, std::span<const prt::Surface> surfaces,

@@ -26,7 +26,7 @@ public:
     SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt::Surface> surfaces,
                   bool has_highlights = false);
 
-    /// Whether a triangle has a texture of its albedo or its emission.
+    /// Whether a triangle has a texture of its albedo, its emission or its normals.
     [[nodiscard]] bool has(std::uint32_t triangle) const {
         return !is_textured_.empty() && is_textured_[triangle];
     }
@@ -36,9 +36,11 @@ public:
     }
     /// Returns the surface that the materials give to a point.
     [[nodiscard]] prt::Surface surface(const prt::MeshPoint& point) const;
-    /// Returns the radiance at a point of such a triangle, under the light of its vertices.
+    /// Returns the radiance at a point of such a triangle, under the light of its vertices and a
+    /// change to it, which may be less than 0.
     [[nodiscard]] glm::vec3 radiance(std::span<const glm::vec3> vertex_radiance,
-                                     const prt::MeshPoint& point) const;
+                                     const prt::MeshPoint& point,
+                                     const glm::vec3& change = glm::vec3(0.0f)) const;
 
 private:
     const mesh::TriangleMesh* mesh_ = nullptr;
@@ -49,6 +51,12 @@ private:
     /// [num_vertices], 1 / albedo; 0 where that is 0.
     std::vector<glm::vec3> light_of_radiance_;
 };
+
+/// Returns the harmonics of vertices times a factor each.
+///
+/// Shape:   harmonics is [num_vertices][coefficients], or empty.
+[[nodiscard]] std::vector<glm::vec3> scaled(std::span<const glm::vec3> harmonics,
+                                            std::span<const glm::vec3> factors);
 
 /// Adds to the lobes of vertices what their radiance has beyond them, bounces above all, as diffuse
 /// light; where a surface reflects none, as light of its own colour. The cosines are those of

@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 66> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 69> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -67,9 +67,12 @@ inline constexpr std::array<std::string_view, 66> SectionNames = {"settings",
                                                                   "r_emission",
                                                                   "lifts",
                                                                   "r_own_positions",
+                                                                  "second_uvs",
+                                                                  "corner_tangents",
                                                                   "alphas",
                                                                   "block_materials",
                                                                   "block_uvs",
+                                                                  "block_second_uvs",
                                                                   "block_corner_uvs",
                                                                   "layout_layers",
                                                                   "r_veils"};

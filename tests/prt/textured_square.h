@@ -1,10 +1,13 @@
 // A mesh whose texture is finer than its vertices.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <string>
 
 #include "mesh/materials/texture.h"
+#include "mesh/tangents.h"
 #include "mesh/triangle_mesh.h"
 
 namespace relumine::scenes {
@@ -34,6 +37,17 @@ inline mesh::TriangleMesh textured_square() {
                        .base_color_texture = mesh::TextureSlot{
                            .texture = 0, .is_srgb = true, .wrap = {mesh::Wrap::Clamp, {}}}}};
     mesh.triangle_materials = {1, 1};
+    return mesh;
+}
+
+/// The same square, grey, with a normal map of one colour.
+inline mesh::TriangleMesh mapped_square(const std::array<std::uint8_t, 3>& color) {
+    mesh::TriangleMesh mesh = textured_square();
+    mesh.textures[0].texels.assign(4, color);
+    mesh.materials = {{.name = "grey", .base_color = glm::vec3(0.5f)}};
+    mesh.materials[0].normal_texture = mesh::TextureSlot{.texture = 0};
+    mesh.triangle_materials = {0, 0};
+    mesh::set_tangents(mesh, {});
     return mesh;
 }
 

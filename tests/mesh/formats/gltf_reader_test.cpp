@@ -1,5 +1,6 @@
 // glTF and GLB: geometry, transforms, materials and textures as written; broken files.
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "mesh/opacity.h"
@@ -220,15 +221,51 @@ TEST_F(GltfTest, TextureTransformAndOtherUvSets) {
     model.json["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = 0.5;
     const TriangleMesh mixed = gltf(model.embedded());
     EXPECT_EQ(mixed.uvs, mesh.uvs) << "the colours' set";
+    EXPECT_EQ(mixed.second_uvs[2], glm::vec2(1.0f, 0.0f));
     EXPECT_EQ(mixed.materials[0].base_color_texture, mesh.materials[0].base_color_texture);
-    EXPECT_FALSE(mixed.materials[0].metallic_roughness_texture);
-    // The mean of red, green, blue and grey: G and B are 1.5 / 4 where grey counts for 128 / 255.
-    EXPECT_NEAR(mixed.materials[0].roughness, 0.5 * (255 + 128) / (4 * 255.0), 1e-6);
-    EXPECT_NEAR(mixed.materials[0].metallic, (255 + 128) / (4 * 255.0), 1e-6);
-    EXPECT_THAT(mixed.warnings,
-                ElementsAre("the material material 0 has its first texture in TEXCOORD_3 and its "
-                            "metallicRoughnessTexture in TEXCOORD_0; one set is read: the mean of "
-                            "the second texture stands for it"));
+    EXPECT_EQ(mixed.materials[0].base_color_texture->uv_set, 0u);
+    EXPECT_EQ(mixed.materials[0].metallic_roughness_texture->uv_set, 1u);
+    EXPECT_THAT(mixed.warnings, ElementsAre());
+    model.json["materials"][0]["normalTexture"] = {{"index", 0}, {"texCoord", 1}};
+    const TriangleMesh three = gltf(model.embedded());
+    EXPECT_FALSE(three.materials[0].normal_texture);
+    EXPECT_THAT(three.warnings,
+                ElementsAre("the material material 0 has textures in TEXCOORD_3, TEXCOORD_0 and "
+                            "TEXCOORD_1; two sets are read: its normal_texture is left out"));
+}
+
+/// A mirrored frame keeps the bitangent where it is. What is no tangent is computed.
+TEST_F(GltfTest, Tangents) {
+    Model model = square();
+    Json& primitive = model.json["meshes"][0]["primitives"][0];
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    primitive["attributes"]["TANGENT"] = model.add<glm::vec4>(
+        {{0, 2, 0, 1}, {0, 1, 0, -1}, {0, 0, 0, 1}, {nan, 0, 0, 1}}, 5126, "VEC4");
+    primitive["material"] = 0;
+    model.json["images"] = {{{"uri", "data:image/png;base64," + base64(four_colors())}}};
+    model.json["textures"] = {{{"source", 0}}};
+    model.json["materials"] = {{{"normalTexture", {{"index", 0}, {"scale", 0.5}}}}};
+    const TriangleMesh mesh = gltf(model.embedded());
+    EXPECT_EQ(mesh.materials[0].normal_scale, 0.5f);
+    const auto tangent_of = [&](const TriangleMesh& of, std::uint32_t vertex) {
+        for (std::size_t i = 0; i < of.num_triangles(); ++i)
+            for (std::size_t k = 0; k < 3; ++k)
+                if (of.triangles[i][k] == vertex)
+                    return of.corner_tangents[i][k];
+        return glm::vec4(0.0f);
+    };
+    EXPECT_EQ(tangent_of(mesh, 0), glm::vec4(0, 1, 0, 1));
+    EXPECT_EQ(tangent_of(mesh, 1), glm::vec4(0, 1, 0, -1));
+    for (const std::uint32_t vertex : {2u, 3u})
+        EXPECT_NEAR(std::abs(tangent_of(mesh, vertex).x), 1.0f, 1e-6f);
+    EXPECT_THAT(mesh.warnings,
+                ElementsAre(testing::HasSubstr("tangents are zero or not finite at ")));
+    model.json["nodes"][0]["scale"] = {1, -1, 1};
+    EXPECT_EQ(tangent_of(gltf(model.embedded()), 0), glm::vec4(0, -1, 0, -1));
+    // Without a normal map they are not needed.
+    model.json["materials"] = {Json::object()};
+    EXPECT_TRUE(gltf(model.embedded()).corner_tangents.empty());
+    EXPECT_THAT(gltf(model.embedded()).warnings, ElementsAre());
 }
 
 /// Neither a material nor an image ends the load: the surface is grey, or without its texture.
@@ -531,9 +568,8 @@ TEST_F(GltfTest, SaysWhatIsLeftOut) {
             "1 material with KHR_materials_clearcoat, which is not read: clear coats are left out",
             "1 material with 'VENDOR_fur', which is not read: what it describes is left out",
             "1 material with an occlusion map, which is not read: rays find what blocks the light",
-            "1 material with textures of hard pixels (NEAREST), which are not kept: they are "
+            "2 materials with textures of hard pixels (NEAREST), which are not kept: they are "
             "sampled bilinearly",
-            "1 material with a normal map, which is not read: surfaces are as smooth as the mesh",
             "1 material with emission: it is seen, and lights no other surface",
             "1 material with the property 'shiny', which glTF does not have: it is left out",
             "1 primitive of points or lines: only triangles are read",

@@ -1,8 +1,10 @@
 #include "prt/receivers/mesh_point.h"
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "tests/prt/scenes.h"
+#include "tests/prt/textured_square.h"
 
 namespace relumine::prt {
 namespace {
@@ -31,6 +33,23 @@ TEST(RandomPoints, AreEvenByArea) {
     EXPECT_NE(random_points(mesh, 100, 7), random_points(mesh, 100, 8));
     mesh.triangles = {{0, 0, 1}};
     EXPECT_TRUE(random_points(mesh, 10, 1).empty());
+}
+
+TEST(MappedNormal, IsTheVectorOfTheMapInTheFrameOfTheUvs) {
+    const mesh::TriangleMesh flat = scenes::mapped_square({127, 128, 255});
+    const MeshPoint at{.triangle = 1, .barycentric = {0.25f, 0.5f}};
+    EXPECT_EQ(mapped_normal(flat, at), glm::vec3(0, 0, 1)) << "bit by bit";
+    // Bytes of 255, 128 and 1 are 1, 0 and -1.
+    mesh::TriangleMesh tilted = scenes::mapped_square({255, 128, 255});
+    EXPECT_LT(glm::distance(mapped_normal(tilted, at), glm::normalize(glm::vec3(1, 0, 1))), 1e-6f);
+    tilted.materials[0].normal_scale = 0.5f;
+    EXPECT_LT(glm::distance(mapped_normal(tilted, at), glm::normalize(glm::vec3(0.5f, 0, 1))),
+              1e-6f);
+    const mesh::TriangleMesh down = scenes::mapped_square({128, 0, 255});
+    EXPECT_LT(glm::distance(mapped_normal(down, at), glm::normalize(glm::vec3(0, -1, 1))), 1e-6f);
+    // Without a map.
+    tilted.materials[0].normal_texture.reset();
+    EXPECT_EQ(mapped_normal(tilted, at), glm::vec3(0, 0, 1));
 }
 
 } // namespace

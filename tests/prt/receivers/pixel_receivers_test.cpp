@@ -11,12 +11,38 @@
 
 #include "files/parallel.h"
 #include "tests/prt/scenes.h"
+#include "tests/prt/textured_square.h"
 
 namespace relumine::prt {
 namespace {
 
 PixelReceivers seen(const mesh::TriangleMesh& mesh, const PixelView& view) {
     return pixel_receivers(mesh, RayScene(mesh), view);
+}
+
+/// Facets of a map that would mirror the eye's ray into the surface turn until they do not.
+TEST(PixelReceivers, MappedNormalsMirrorTheEyeToTheOutside) {
+    const Camera camera{.eye = {0, -3, 1}, .target = {0, 0, 0}, .fov_degrees = 20.0f};
+    const auto receivers = [&](const std::array<std::uint8_t, 3>& color) {
+        mesh::TriangleMesh mesh = scenes::mapped_square(color);
+        mesh.materials[0].model = mesh::MaterialModel::MetallicRoughness;
+        return seen(mesh, {.camera = camera, .width = 8, .height = 8}).receivers;
+    };
+    const Receivers flat = receivers({128, 127, 255}), steep = receivers({128, 255, 64});
+    const Receivers gentle = receivers({128, 100, 255});
+    ASSERT_EQ(flat.size(), steep.size());
+    for (std::size_t i = 0; i < flat.size(); ++i) {
+        EXPECT_EQ(flat.normals[i], glm::vec3(0, 0, 1));
+        const auto mirrored = [&](const glm::vec3& normal) {
+            return -glm::reflect(flat.to_eye[i], normal);
+        };
+        EXPECT_GT(mirrored(gentle.normals[i]).z, 0.1f);
+        EXPECT_NEAR(gentle.normals[i].y, -27.0f / std::sqrt(27.0f * 27.0f + 127.0f * 127.0f),
+                    1e-2f);
+        EXPECT_NEAR(mirrored(steep.normals[i]).z, 0.025f, 1e-4f);
+        EXPECT_NEAR(glm::length(steep.normals[i]), 1.0f, 1e-6f);
+        EXPECT_GT(steep.normals[i].y, 0.05f) << "still the side of the map's";
+    }
 }
 
 TEST(PixelReceivers, CoverASpheresSilhouette) {

@@ -57,6 +57,23 @@ TEST(MaterialSections, UvsOfCornersAreFinite) {
                            [&] { MaterialSections.check(SceneCheck(path), scene); });
 }
 
+TEST(MaterialSections, KeepNormalMaps) {
+    mesh::TriangleMesh mesh = scenes::mapped_square({255, 128, 255});
+    mesh.materials[0].normal_scale = 0.5f;
+    mesh.materials[0].normal_texture->uv_set = 1;
+    mesh.materials[0].base_color_texture = mesh::TextureSlot{.texture = 0, .is_srgb = true};
+    const mesh::TriangleMesh same = read(written(mesh), mesh);
+    EXPECT_EQ(same.corner_tangents, mesh.corner_tangents);
+    EXPECT_EQ(same.materials[0].normal_texture, mesh.materials[0].normal_texture);
+    EXPECT_EQ(same.materials[0].normal_scale, 0.5f);
+    const std::filesystem::path path = "scene.prt";
+    Scene scene;
+    scene.mesh = mesh;
+    scene.mesh.corner_tangents[1][2].w = NAN;
+    scenes::expect_refused(path, "finite tangents, got element 1",
+                           [&] { MaterialSections.check(SceneCheck(path), scene); });
+}
+
 TEST(MaterialSections, KeepTheColoursOfEveryPoint) {
     mesh::TriangleMesh mesh = scenes::textured_square();
     mesh.triangle_materials = {1, 0};

@@ -48,6 +48,35 @@ TEST(SurfaceColors, LightOfTheVerticesTimesTheTexture) {
     EXPECT_EQ(colors.albedo({.triangle = 0, .barycentric = {0.625f, 0.0f}}), glm::vec3(0, 1, 0));
 }
 
+/// The light of the vertices as a function of the normal: L(w) = 1 + w.x, whose irradiance is pi +
+/// 2 pi / 3 n.x.
+TEST(SurfaceColors, NormalMapsTiltTheLightOfTheVertices) {
+    const Camera camera{.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = 20.0f};
+    const PictureOptions options{.width = 4, .height = 4, .samples_per_axis = 1};
+    const auto drawn = [&](const mesh::TriangleMesh& mesh) {
+        const prt::RayScene rays(mesh);
+        const std::vector<prt::Surface> surfaces = prt::vertex_surfaces(mesh);
+        const std::vector<glm::vec3> radiance(4, glm::vec3(0.5f));
+        std::vector<glm::vec3> harmonics;
+        for (int vertex = 0; vertex < 4; ++vertex) {
+            const std::array<float, 4> light = {3.5449077f, 0.0f, 0.0f, 2.0466534f};
+            for (const float coefficient : light)
+                harmonics.emplace_back(coefficient);
+        }
+        const SurfaceColors textures(mesh, surfaces);
+        return PictureView(mesh, rays, camera, options)
+            .cut_out({.radiance = radiance, .textures = &textures, .harmonics = harmonics});
+    };
+    const glm::vec3 n = glm::normalize(glm::vec3(1, 0, 1));
+    for (const glm::vec3& pixel : drawn(scenes::mapped_square({255, 128, 255})).pixels)
+        EXPECT_NEAR(pixel.g, 0.5f * (1.0f + 2.0f / 3.0f * n.x), 1e-5f);
+    mesh::TriangleMesh plain = scenes::mapped_square({128, 127, 255});
+    const Picture flat = drawn(plain);
+    plain.materials[0].normal_texture.reset();
+    EXPECT_EQ(flat.pixels, drawn(plain).pixels) << "bit by bit";
+    EXPECT_EQ(flat.pixels[5].g, 0.5f);
+}
+
 TEST(SurfaceColors, PicturesShowWhatIsFinerThanTheMesh) {
     const mesh::TriangleMesh mesh = scenes::textured_square();
     const prt::RayScene rays(mesh);
