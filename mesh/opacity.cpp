@@ -89,18 +89,22 @@ Veil veil(const TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& bar
     return veil;
 }
 
+Material passed_as(Material material, const Material& other) {
+    material.alpha_mode = other.alpha_mode;
+    material.alpha = other.alpha;
+    material.alpha_cutoff = other.alpha_cutoff;
+    material.alpha_texture = other.alpha_texture;
+    material.transmission = other.transmission;
+    material.transmission_texture = other.transmission_texture;
+    material.thickness = other.thickness;
+    material.attenuation_color = other.attenuation_color;
+    material.attenuation_distance = other.attenuation_distance;
+    material.is_double_sided = other.is_double_sided;
+    return material;
+}
+
 Material without_colors(const Material& material) {
-    return {.name = "option",
-            .alpha_mode = material.alpha_mode,
-            .alpha = material.alpha,
-            .alpha_cutoff = material.alpha_cutoff,
-            .alpha_texture = material.alpha_texture,
-            .transmission = material.transmission,
-            .transmission_texture = material.transmission_texture,
-            .thickness = material.thickness,
-            .attenuation_color = material.attenuation_color,
-            .attenuation_distance = material.attenuation_distance,
-            .is_double_sided = material.is_double_sided};
+    return passed_as({.name = "option"}, material);
 }
 
 TriangleMesh blockers_of(const TriangleMesh& mesh) {

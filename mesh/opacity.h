@@ -44,6 +44,9 @@ struct Veil {
 [[nodiscard]] Veil veil(const TriangleMesh& mesh, std::uint32_t triangle,
                         const glm::vec2& barycentric);
 
+/// Returns the material with the alpha, glass and sides of another.
+[[nodiscard]] Material passed_as(Material material, const Material& other);
+
 /// Returns a white material with the same alpha, glass and sides.
 [[nodiscard]] Material without_colors(const Material& material);
 

@@ -26,6 +26,8 @@ struct Lighting {
     /// The lights that are traced one by one, and [num_receivers] radiance without them. Empty:
     /// radiance has all light.
     std::vector<relight::SharpLight> lights = {};
+    /// The first so many are parts of `environment`.
+    std::size_t num_environment_lights = 0;
     std::vector<glm::vec3> soft = {};
     /// [num_receivers] what `soft` is made of, or `radiance` where there are no lights, without
     /// bounces. Only of meshes with textures and highlights.

@@ -369,6 +369,8 @@ Lighting LitScene::lighting(bool is_drawn) const {
     if (is_drawn) {
         if (relighter_)
             result.lights = relight::picture_lights(*relighter_);
+        if (relighter_ && relighter_->environment().resolution != 0)
+            result.num_environment_lights = result.lights.size();
         result.lights.insert(result.lights.end(), added_.lights.begin(), added_.lights.end());
     }
     if (is_drawn && relighter_ && scene_->transfer.glossy && !scene_->mesh.textures.empty())

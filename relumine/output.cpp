@@ -178,10 +178,7 @@ struct Painter::Impl {
                                 const relight::Backdrop* behind) {
         const bool traces = options.sun == SunShadows::Pixels && !lighting.lights.empty();
         const std::span<const glm::vec3> radiance = traces ? lighting.soft : lighting.radiance;
-        std::vector<glm::vec3> colors = product(radiance, shown_factors());
-        if (catches(lighting))
-            std::copy(radiance.begin() + floor.first_vertex, radiance.end(),
-                      colors.begin() + floor.first_vertex);
+        const std::vector<glm::vec3> colors = shown_colors(radiance, lighting);
         relight::MeshLight light{
             .radiance = colors, .emission = emission, .emission_factor = options.emission};
         if (scene.settings.view)
@@ -199,12 +196,33 @@ struct Painter::Impl {
         light.harmonics = harmonics;
         light.open_floor = open_floor(scene, lighting, look(lighting), eye());
         light.surfaces = scene.receivers.surfaces;
-        if (traces) {
+        light.albedo = shown_factors();
+        light.bias = scene.settings.bias;
+        if (traces)
             light.lights = lighting.lights;
-            light.albedo = shown_factors();
-            light.bias = scene.settings.bias;
+        std::optional<relight::Reflections> reflections;
+        std::vector<glm::vec3> mirrored;
+        if (textures.has_mirrors() && options.highlight_rays != 0) {
+            static const cubemap::CubeMap Black;
+            reflections.emplace(rays, scene.settings.bias, options.highlight_rays,
+                                lighting.environment == nullptr ? Black : *lighting.environment,
+                                light.lights.first(traces ? lighting.num_environment_lights : 0));
+            mirrored = shown_colors(lighting.radiance, lighting);
+            light.reflections = &*reflections;
+            light.mirrored = mirrored;
+            light.eye = eye();
         }
         return behind == nullptr ? from.cut_out(light) : from.draw(light, *behind);
+    }
+
+    /// The colours of vertices. A floor that catches shadows has its radiance for albedo 1.
+    [[nodiscard]] std::vector<glm::vec3> shown_colors(std::span<const glm::vec3> radiance,
+                                                      const Lighting& lighting) {
+        std::vector<glm::vec3> colors = product(radiance, shown_factors());
+        if (catches(lighting))
+            std::copy(radiance.begin() + floor.first_vertex, radiance.end(),
+                      colors.begin() + floor.first_vertex);
+        return colors;
     }
 
     /// Of vertices with textures and highlights; their radiance is given.

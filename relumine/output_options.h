@@ -120,6 +120,9 @@ struct OutputOptions {
     std::optional<glm::vec3> target = {};
     std::optional<float> fov_degrees = {};
     SunShadows sun = SunShadows::Pixels;
+    /// Rays that find what a pixel of a vertex scene mirrors, where the scene has no highlights
+    /// of its own; 0: surfaces are matte.
+    std::uint32_t highlight_rays = 32;
 
     /// Not for scenes of texels.
     Background background = EnvironmentBehind{};
@@ -222,6 +225,10 @@ inline OptionTable options_of(OutputOptions& o) {
                             {.example = "blur=5", .receivers = NoTexels, .part = "background"}),
         transparent_row(o.background, {.receivers = NoTexels, .part = "background"}),
         row("--sun", o.sun, "pictures of vertices: where shadows of the sun are traced"),
+        row("--highlight-rays", o.highlight_rays,
+            "pictures of vertices without --view: rays a pixel that find what glossy surfaces "
+            "mirror; 0: none, all is matte",
+            {.min = 0, .max = 4096, .receivers = OnVertices, .part = "highlights"}),
         row("--gutter", o.gutter, "lightmaps: texels filled around the charts",
             {.min = 0, .max = 16384})};
 }

@@ -420,7 +420,7 @@ private:
         const prt::GgxForm form = receivers.to_eye.empty() ? prt::GgxForm::Published : options_.ggx;
         if (receivers.points.empty()) {
             receivers.surfaces = prt::vertex_surfaces(mesh, surface_of, form);
-            prepare_textures();
+            keep_materials(surface_of);
         } else {
             receivers.surfaces.clear();
             for (const prt::MeshPoint& point : receivers.points)
@@ -439,33 +439,55 @@ private:
             receivers.surfaces[i].highlight = prt::Highlight::None;
     }
 
-    /// Pictures take the light of the vertices and the colours of the textures. So the option's
-    /// surfaces lose their textures, and black vertices keep a trace by which their light is known:
-    /// the lowest value that an image of 8 bits has.
-    void prepare_textures() {
+    /// Pictures take the light of the vertices, and the colours of textures and the highlights from
+    /// the materials. So those of the options become materials, and black vertices keep a trace by
+    /// which their light is known: the lowest value that an image of 8 bits has.
+    void keep_materials(const prt::SurfaceOverride& surface_of) {
         mesh::TriangleMesh& mesh = scene_.mesh;
-        if (mesh.textures.empty() || mesh.triangle_materials.empty())
+        const bool has_eye = !scene_.receivers.to_eye.empty();
+        const bool has_textures = !mesh.textures.empty() && !mesh.triangle_materials.empty();
+        const std::vector<prt::Surface>& surfaces = scene_.receivers.surfaces;
+        const bool mirrors =
+            !has_eye && std::any_of(surfaces.begin(), surfaces.end(), [](const prt::Surface& own) {
+                return own.highlight != prt::Highlight::None;
+            });
+        if (!has_textures && !mirrors)
             return;
-        if (options_.surface) {
-            const auto first = static_cast<std::ptrdiff_t>(mesh.materials.size());
-            for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i) {
-                const prt::Surface own = prt::surface_at(mesh, i, glm::vec2(1.0f / 3.0f));
-                if (options_.surface(mesh, i, own) == own)
-                    continue;
-                const mesh::Material plain =
-                    mesh::without_colors(mesh.materials[mesh.triangle_materials[i]]);
-                const auto place =
-                    std::find(mesh.materials.begin() + first, mesh.materials.end(), plain);
-                mesh.triangle_materials[i] =
-                    static_cast<std::uint32_t>(place - mesh.materials.begin());
-                if (place == mesh.materials.end())
-                    mesh.materials.push_back(plain);
-            }
-        }
+        if (options_.surface || options_.floor_surface != prt::Surface())
+            replace_materials(surface_of, has_eye);
         constexpr float LeastAlbedo = 1.0f / 255.0f / 12.92f;
         for (prt::Surface& surface : scene_.receivers.surfaces)
             if (surface.highlight != prt::Highlight::None || surface.emission == glm::vec3(0.0f))
                 surface.albedo = glm::max(surface.albedo, LeastAlbedo); // not of unlit ones
+    }
+
+    /// Gives triangles of other surfaces than the file's a material of their own: plain, or with
+    /// their highlight where there is no eye.
+    void replace_materials(const prt::SurfaceOverride& surface_of, bool has_eye) {
+        mesh::TriangleMesh& mesh = scene_.mesh;
+        const bool has_materials = !mesh.triangle_materials.empty();
+        const auto first = static_cast<std::ptrdiff_t>(mesh.materials.size());
+        const auto material_of = [&](std::uint32_t triangle, const prt::Surface& surface) {
+            const bool is_plain = has_eye || surface.highlight == prt::Highlight::None;
+            mesh::Material kept = prt::material_of(is_plain ? prt::Surface() : surface);
+            if (has_materials) // rays pass it as before
+                kept = mesh::passed_as(kept, mesh.materials[mesh.triangle_materials[triangle]]);
+            const auto found =
+                std::find(mesh.materials.begin() + first, mesh.materials.end(), kept);
+            const auto index = static_cast<std::uint32_t>(found - mesh.materials.begin());
+            if (found == mesh.materials.end())
+                mesh.materials.push_back(kept);
+            return index;
+        };
+        std::vector<std::uint32_t> result = mesh.triangle_materials;
+        result.resize(mesh.num_triangles());
+        for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i) {
+            const prt::Surface own = prt::surface_at(mesh, i, glm::vec2(1.0f / 3.0f));
+            const prt::Surface surface = surface_of(mesh, i, own);
+            if (surface != own || !has_materials)
+                result[i] = material_of(i, surface);
+        }
+        mesh.triangle_materials = std::move(result);
     }
 
     void leave_highlights_out() {
@@ -475,8 +497,8 @@ private:
         }
         if (report_.num_highlights_left_out != 0)
             warn(Warning::HighlightsWithoutView,
-                 fmt::format("{} receivers have highlights, which need a view: left out, the scene "
-                             "is diffuse",
+                 fmt::format("{} receivers have highlights, and there is no view: pictures trace "
+                             "them, all else is diffuse",
                              report_.num_highlights_left_out));
     }
 

@@ -276,7 +276,7 @@ OptionRow material_row(std::vector<SurfaceMaterial>& materials) {
         "--material", materials,
         "surface in place of the file's: ggx:roughness=0.3,albedo=0.5,f0=0.04, "
         "blinn:exponent=50,kd=0.3,ks=0.2 or lambert:albedo=0.8; GROUP=... for one object; "
-        "the floor of --floor is `floor`, and Lambert unless named; highlights need --view");
+        "the floor of --floor is `floor`, and Lambert unless named");
 }
 
 OptionTable options_of(PrecomputeOptions& o) {

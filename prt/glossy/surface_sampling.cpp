@@ -90,6 +90,27 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
     return surface;
 }
 
+bool has_highlight(const mesh::Material& material) {
+    if (material.model == mesh::MaterialModel::Phong)
+        return material.specular != glm::vec3(0.0f);
+    return material.model != mesh::MaterialModel::Unlit;
+}
+
+mesh::Material material_of(const Surface& surface) {
+    mesh::Material material{.name = "option"};
+    if (surface.highlight == Highlight::None)
+        return material;
+    material.base_color = surface.albedo;
+    material.specular = surface.specular;
+    if (facts_of(surface.highlight).is_roughness) {
+        material.model = mesh::MaterialModel::SpecularGlossiness;
+        material.roughness = surface.roughness_or_exponent;
+    } else {
+        material.exponent = surface.roughness_or_exponent;
+    }
+    return material;
+}
+
 Surface without_highlight(Surface surface) {
     if (facts_of(surface.highlight).has_fresnel)
         surface.albedo =

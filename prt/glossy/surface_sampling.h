@@ -26,6 +26,13 @@ enum class GgxForm { Whole, Published };
 [[nodiscard]] Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
                                  const glm::vec2& barycentric, GgxForm form = GgxForm::Whole);
 
+/// Whether surfaces of a material have a highlight.
+[[nodiscard]] bool has_highlight(const mesh::Material& material);
+
+/// Returns a material of this surface without its emission: plain where it has no highlight, whose
+/// colour is that of the vertices.
+[[nodiscard]] mesh::Material material_of(const Surface& surface);
+
 /// Returns the surface for a scene without a view, where highlights are left out: of one as
 /// published. What a metal reflects, F0 above the 0.04 of other surfaces, counts as diffuse:
 /// otherwise metals were black.

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "mesh/opacity.h"
+#include "prt/glossy/surface_sampling.h"
 #include "prt/scene/json_members.h"
 #include "prt/scene/section_group.h"
 
@@ -152,6 +153,12 @@ Material material_of(const Json& json, std::size_t num_textures) {
     material.metallic = fraction(json.at("metallic"));
     material.specular = color(json.at("specular"));
     material.times_vertex_color = json.at("times_vertex_color").boolean();
+    if (const Json* roughness = json.find("roughness")) {
+        material.roughness = fraction(*roughness);
+        material.exponent = finite(json.at("exponent"));
+        if (material.exponent < 0.0f)
+            throw std::out_of_range("expected an exponent of 0 or more");
+    }
     if (const Json* emission = json.find("emission"))
         for (int channel = 0; channel < 3; ++channel) {
             material.emission[channel] =
@@ -181,14 +188,20 @@ mesh::Texture texture_of(const Json& json, const std::vector<std::byte>& images,
     return texture;
 }
 
-/// Whether pictures of the scene's vertices take colours from textures.
+/// Whether pictures find a material's highlight by rays: without an eye.
+bool mirrors(const Scene& scene, const Material& material) {
+    return scene.receivers.to_eye.empty() && has_highlight(material);
+}
+
+/// Whether pictures of the scene's vertices take colours from textures, or highlights.
 bool shows_textures(const Scene& scene) {
     const mesh::TriangleMesh& mesh = scene.mesh;
     return on_vertices(scene.layout) && !scene.receivers.surfaces.empty() &&
            std::any_of(mesh.materials.begin(), mesh.materials.end(), [&](const Material& material) {
-               return (material.base_color_texture || material.emission_texture ||
-                       material.normal_texture) &&
-                      has_files(material, mesh.textures);
+               return ((material.base_color_texture || material.emission_texture ||
+                        material.normal_texture) &&
+                       has_files(material, mesh.textures)) ||
+                      mirrors(scene, material);
            });
 }
 
@@ -236,12 +249,16 @@ private:
     Json images_ = Json::Array{}, alphas_ = Json::Array{};
 };
 
-Json json_of(const Material& material, bool is_kept, const Stored& stored) {
+Json json_of(const Material& material, bool is_kept, bool has_shape, const Stored& stored) {
     Json json = {{"model", static_cast<int>(material.model)},
                  {"base", {material.base_color.r, material.base_color.g, material.base_color.b}},
                  {"metallic", material.metallic},
                  {"specular", {material.specular.r, material.specular.g, material.specular.b}},
                  {"times_vertex_color", material.times_vertex_color}};
+    if (has_shape) {
+        json.set("roughness", material.roughness);
+        json.set("exponent", material.exponent);
+    }
     if (const glm::vec3& emission = material.emission; emission != glm::vec3(0.0f))
         json.set("emission", {emission.r, emission.g, emission.b});
     if (material.normal_texture)
@@ -274,7 +291,8 @@ void add_materials(NewSections& sections, const Scene& scene) {
             textures.add_alpha(*material.alpha_texture);
     Json materials = Json::Array{};
     for (const Material& material : mesh.materials)
-        materials.push_back(json_of(material, is_kept(material), textures.stored));
+        materials.push_back(json_of(material, is_kept(material), shows && mirrors(scene, material),
+                                    textures.stored));
     Json json = Json::Object{};
     textures.describe(json);
     json.set("materials", std::move(materials));

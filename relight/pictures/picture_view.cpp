@@ -12,6 +12,7 @@
 #include "prt/glossy/brdf.h"
 #include "prt/receivers/mesh_point.h"
 #include "relight/harmonics/harmonics.h"
+#include "relight/pictures/mirrors.h"
 #include "relight/sharp/light_packets.h"
 
 namespace relumine::relight {
@@ -143,14 +144,15 @@ private:
 /// Draws a square of pixels.
 class PictureView::Tile {
 public:
-    Tile(const PictureView& view, const MeshLight& light, const LightPackets& packets)
+    Tile(const PictureView& view, const MeshLight& light, const LightPackets& packets,
+         const Backdrop* backdrop)
         : view_(view), mesh_(view.mesh_), light_(light),
           packets_(packets), rays_{.blockers = &view.rays_, .bias = light.bias},
+          backdrop_(backdrop), mirrors_(mesh_, *view.twins_, light, view.floor_, backdrop),
           lanes_(packets.num_packets()) {}
 
     /// Draws the mesh alone, with its alpha, where there is no backdrop.
-    void draw(std::uint32_t x_begin, std::uint32_t y_begin, const Backdrop* backdrop,
-              Picture& picture) {
+    void draw(std::uint32_t x_begin, std::uint32_t y_begin, Picture& picture) {
         const std::uint32_t x_end = std::min(x_begin + TileSize, picture.width);
         const std::uint32_t y_end = std::min(y_begin + TileSize, picture.height);
         // The tile and, for the lights, a ring of pixels around it.
@@ -171,10 +173,10 @@ public:
                 const std::size_t pixel = std::size_t{y} * picture.width + x;
                 const auto [color, alpha] = drawn(x, y, right, bottom);
                 picture.pixels[pixel] = color;
-                if (backdrop == nullptr)
+                if (backdrop_ == nullptr)
                     picture.alpha[pixel] = alpha;
                 else if (alpha < 1.0f || light_.open_floor)
-                    picture.pixels[pixel] += seen_behind(view_.grid_, x, y, passed_, *backdrop);
+                    picture.pixels[pixel] += seen_behind(view_.grid_, x, y, passed_, *backdrop_);
             }
     }
 
@@ -193,8 +195,11 @@ private:
     }
 
     /// Returns what a sample sends on of the light of the vertices.
-    [[nodiscard]] glm::vec3 soft(const Sample& sample) const {
+    [[nodiscard]] glm::vec3 soft(const Sample& sample, const std::optional<Mirror>& mirror) {
         const prt::MeshPoint at = point(sample);
+        if (mirror)
+            return mirrors_.soft(*mirror, at,
+                                 light_.textures->light(light_.radiance, at, tilted(at)));
         if (!has_texture(sample))
             return prt::value_at(mesh_, light_.radiance, at);
         const glm::vec3 change = tilted(at);
@@ -247,9 +252,12 @@ private:
     }
 
     /// Returns what a sample gives of its own.
-    [[nodiscard]] glm::vec3 emitted(const Sample& sample) const {
+    [[nodiscard]] glm::vec3 emitted(const Sample& sample,
+                                    const std::optional<Mirror>& mirror) const {
         if (light_.emission.empty())
             return glm::vec3(0.0f);
+        if (mirror)
+            return light_.emission_factor * mirror->surface.emission;
         return has_texture(sample)
                    ? light_.emission_factor * light_.textures->surface(point(sample)).emission
                    : prt::value_at(mesh_, light_.emission, point(sample));
@@ -306,6 +314,11 @@ private:
         glm::vec3 sum(0.0f);
         float alpha = 0.0f;
         passed_.assign(samples.size(), glm::vec3(1.0f));
+        const Sample& in_middle = middle(samples);
+        mirrors_.begin_pixel(x, y,
+                             in_middle.triangle == NoTriangle
+                                 ? std::nullopt
+                                 : std::optional<prt::MeshPoint>(point(in_middle)));
         for (std::size_t i = 0; i < samples.size(); ++i) {
             float covered = 0.0f;
             for (const Layer& layer : layers(x, y, static_cast<std::uint32_t>(i), samples[i])) {
@@ -314,16 +327,17 @@ private:
                 if (opacity == 0.0f)
                     continue;
                 const bool is_caught = catches(sample);
-                glm::vec3 radiance = soft(sample);
+                const std::optional<Mirror> mirror = mirrors_.at(point(sample));
+                glm::vec3 radiance = soft(sample, mirror);
                 if (traces && !(is_dark && layer.is_first)) {
                     if (!even || !layer.is_first)
                         look(sample, lanes_);
                     radiance += is_caught ? white(prt::shading_normal(mesh_, point(sample)))
-                                          : traced(sample);
+                                          : traced(sample, mirror);
                 }
                 if (!is_caught)
-                    sum +=
-                        passed_[i] * (layer.veil.weight * opacity) * (radiance + emitted(sample));
+                    sum += passed_[i] * (layer.veil.weight * opacity) *
+                           (radiance + emitted(sample, mirror));
                 const glm::vec3 passed = is_caught ? caught(radiance, *light_.open_floor, opacity)
                                                    : 1.0f - opacity * (1.0f - layer.veil.through);
                 passed_[i] *= passed;
@@ -374,7 +388,7 @@ private:
     }
 
     /// Returns what a sample sends on of the lights in lanes_.
-    [[nodiscard]] glm::vec3 traced(const Sample& sample) {
+    [[nodiscard]] glm::vec3 traced(const Sample& sample, const std::optional<Mirror>& mirror) {
         if (std::all_of(lanes_.begin(), lanes_.end(),
                         [](std::uint16_t lanes) { return lanes == 0; }))
             return glm::vec3(0.0f);
@@ -384,21 +398,34 @@ private:
             light_.albedo.empty() ? glm::vec3(1.0f) : prt::value_at(mesh_, light_.albedo, at);
         if (light_.surfaces.empty())
             return albedo * white(normal);
+        if (mirror) {
+            prt::Surface surface = mirror->surface;
+            if (prt::facts_of(surface.highlight).is_roughness)
+                surface.roughness_or_exponent =
+                    std::max(surface.roughness_or_exponent, light_.reflections->least_roughness());
+            return albedo * reflected(surface, mirror->normal, mirror->to_eye);
+        }
         const prt::Surface surface = surface_at(sample);
         if (surface.highlight == prt::Highlight::None || !light_.eye)
             return albedo * prt::reflect(surface, {.diffuse = white(normal)}, 0.0f);
-        const glm::vec3 to_eye =
-            glm::normalize(*light_.eye - prt::value_at(mesh_, mesh_.positions, at));
+        return albedo *
+               reflected(surface, normal,
+                         glm::normalize(*light_.eye - prt::value_at(mesh_, mesh_.positions, at)));
+    }
+
+    /// Returns what a surface sends to the eye of the lights in lanes_.
+    [[nodiscard]] glm::vec3 reflected(const prt::Surface& surface, const glm::vec3& normal,
+                                      const glm::vec3& to_eye) const {
         prt::BlockSurfaces block;
         block.set(0, surface, normal, to_eye);
         prt::Lobes<glm::dvec3> lobes;
         packets_.light_block(block, {&normal, 1}, lanes_, {&lobes, 1});
-        return albedo * prt::reflect(surface,
-                                     {.diffuse = glm::vec3(lobes.diffuse),
-                                      .diffuse_grazing = glm::vec3(lobes.diffuse_grazing),
-                                      .specular = glm::vec3(lobes.specular),
-                                      .specular_grazing = glm::vec3(lobes.specular_grazing)},
-                                     glm::dot(normal, to_eye));
+        return prt::reflect(surface,
+                            {.diffuse = glm::vec3(lobes.diffuse),
+                             .diffuse_grazing = glm::vec3(lobes.diffuse_grazing),
+                             .specular = glm::vec3(lobes.specular),
+                             .specular_grazing = glm::vec3(lobes.specular_grazing)},
+                            glm::dot(normal, to_eye));
     }
 
     /// Returns the surface between the vertices', with the highlight of the nearest and the colours
@@ -439,6 +466,8 @@ private:
     const MeshLight& light_;
     const LightPackets& packets_;
     ShadowRays rays_;
+    const Backdrop* backdrop_;
+    Mirrors mirrors_;
     std::uint32_t left_ = 0, top_ = 0, width_ = 0;
     std::vector<Row> rows_;
     /// [pixels of the tile and its ring x packets]
@@ -461,6 +490,7 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
     };
     if (light.radiance.size() != mesh_.num_vertices() || !fits(light.albedo.size()) ||
         !fits(light.surfaces.size()) || !fits(light.lobes.size()) || !fits(light.emission.size()) ||
+        (light.reflections != nullptr && light.mirrored.size() != mesh_.num_vertices()) ||
         light.harmonics.size() % mesh_.num_vertices() != 0 ||
         light.harmonics.size() / mesh_.num_vertices() > MaxHarmonics)
         throw std::invalid_argument("expected one radiance, albedo and surface per vertex");
@@ -477,8 +507,8 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
     files::parallel_for(std::uint32_t{0}, num_tiles, [&](std::uint32_t tile) {
         if (options_.stop.stop_requested())
             return;
-        Tile(*this, light, packets)
-            .draw(tile % num_columns * TileSize, tile / num_columns * TileSize, backdrop, picture);
+        Tile(*this, light, packets, backdrop)
+            .draw(tile % num_columns * TileSize, tile / num_columns * TileSize, picture);
         if (!options_.on_progress)
             return;
         const std::scoped_lock lock(mutex);

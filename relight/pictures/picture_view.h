@@ -20,6 +20,7 @@
 #include "prt/visibility/ray_scene.h"
 #include "prt/visibility/twin_triangles.h"
 #include "relight/pictures/backdrop.h"
+#include "relight/pictures/reflections.h"
 #include "relight/pictures/surface_colors.h"
 #include "relight/sharp/sharp_lights.h"
 
@@ -83,6 +84,12 @@ struct MeshLight {
     /// [num_vertices][4 or 9] harmonics of the light that arrives (docs/harmonics.md), times the
     /// same factor as `radiance`, or empty: normal maps tilt no light but that of `lights`.
     std::span<const glm::vec3> harmonics = {};
+    /// Finds the highlights of surfaces that mirror (SurfaceColors::mirrors()), for `eye`. Null:
+    /// they have none.
+    const Reflections* reflections = nullptr;
+    /// [num_vertices] outgoing radiance in all light: what mirrors see of surfaces. The floor's is
+    /// that of `radiance`.
+    std::span<const glm::vec3> mirrored = {};
     /// The eye that highlights are for. Empty: there are none.
     std::optional<glm::vec3> eye = {};
     /// Lift of the rays' origins, as in prt::PrecomputeOptions.

@@ -19,11 +19,22 @@ SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt
     const auto has_texture = [](const mesh::Material& material) {
         return material.base_color_texture || material.emission_texture || material.normal_texture;
     };
-    if (mesh.triangle_materials.empty() || surfaces.size() != mesh.num_vertices() ||
-        std::none_of(mesh.materials.begin(), mesh.materials.end(), has_texture))
+    const auto mirrors = [&](const mesh::Material& material) {
+        return !has_highlights && prt::has_highlight(material);
+    };
+    if (mesh.triangle_materials.empty() || surfaces.size() != mesh.num_vertices())
         return;
-    for (const std::uint32_t material : mesh.triangle_materials)
-        is_textured_.push_back(has_texture(mesh.materials[material]));
+    const auto marked = [&](const auto& is_marked) {
+        std::vector<bool> result;
+        if (std::any_of(mesh.materials.begin(), mesh.materials.end(), is_marked))
+            for (const std::uint32_t material : mesh.triangle_materials)
+                result.push_back(is_marked(mesh.materials[material]));
+        return result;
+    };
+    is_textured_ = marked(has_texture);
+    mirrors_ = marked(mirrors);
+    if (is_textured_.empty() && mirrors_.empty())
+        return;
     for (const prt::Surface& surface : surfaces) {
         glm::vec3& factor = light_of_radiance_.emplace_back(0.0f);
         for (int channel = 0; channel < 3; ++channel)
@@ -37,8 +48,12 @@ prt::Surface SurfaceColors::surface(const prt::MeshPoint& point) const {
     return has_highlights_ ? own : prt::without_highlight(own);
 }
 
-glm::vec3 SurfaceColors::radiance(std::span<const glm::vec3> vertex_radiance,
-                                  const prt::MeshPoint& point, const glm::vec3& change) const {
+prt::Surface SurfaceColors::mirror(const prt::MeshPoint& point) const {
+    return prt::surface_at(*mesh_, point.triangle, point.barycentric, prt::GgxForm::Whole);
+}
+
+glm::vec3 SurfaceColors::light(std::span<const glm::vec3> vertex_radiance,
+                               const prt::MeshPoint& point, const glm::vec3& change) const {
     const mesh::Triangle& triangle = mesh_->triangles[point.triangle];
     const std::array<float, 3> weights = {1.0f - point.barycentric.x - point.barycentric.y,
                                           point.barycentric.x, point.barycentric.y};
@@ -46,7 +61,12 @@ glm::vec3 SurfaceColors::radiance(std::span<const glm::vec3> vertex_radiance,
     for (std::size_t corner = 0; corner < 3; ++corner)
         light += weights[corner] * vertex_radiance[triangle[corner]] *
                  light_of_radiance_[triangle[corner]];
-    return glm::max(light + change, 0.0f) * albedo(point);
+    return glm::max(light + change, 0.0f);
+}
+
+glm::vec3 SurfaceColors::radiance(std::span<const glm::vec3> vertex_radiance,
+                                  const prt::MeshPoint& point, const glm::vec3& change) const {
+    return light(vertex_radiance, point, change) * albedo(point);
 }
 
 std::vector<glm::vec3> scaled(std::span<const glm::vec3> harmonics,

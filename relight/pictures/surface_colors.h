@@ -34,8 +34,22 @@ public:
     [[nodiscard]] glm::vec3 albedo(const prt::MeshPoint& point) const {
         return surface(point).albedo;
     }
+    /// Whether a triangle's material has a highlight that the scene has not: pictures find it by
+    /// rays (relight/pictures/reflections.h).
+    [[nodiscard]] bool mirrors(std::uint32_t triangle) const {
+        return !mirrors_.empty() && mirrors_[triangle];
+    }
+    /// Whether any triangle does.
+    [[nodiscard]] bool has_mirrors() const { return !mirrors_.empty(); }
     /// Returns the surface that the materials give to a point.
     [[nodiscard]] prt::Surface surface(const prt::MeshPoint& point) const;
+    /// Returns the surface at a point of a triangle that mirrors, with its highlight.
+    [[nodiscard]] prt::Surface mirror(const prt::MeshPoint& point) const;
+    /// Returns the diffuse radiance of albedo 1 at a point of a triangle that has a texture or
+    /// mirrors, and a change to it, which may be less than 0.
+    [[nodiscard]] glm::vec3 light(std::span<const glm::vec3> vertex_radiance,
+                                  const prt::MeshPoint& point,
+                                  const glm::vec3& change = glm::vec3(0.0f)) const;
     /// Returns the radiance at a point of such a triangle, under the light of its vertices and a
     /// change to it, which may be less than 0.
     [[nodiscard]] glm::vec3 radiance(std::span<const glm::vec3> vertex_radiance,
@@ -45,7 +59,7 @@ public:
 private:
     const mesh::TriangleMesh* mesh_ = nullptr;
     /// [num_triangles], or empty.
-    std::vector<bool> is_textured_;
+    std::vector<bool> is_textured_, mirrors_;
     bool has_highlights_ = false;
     prt::GgxForm form_ = prt::GgxForm::Published;
     /// [num_vertices], 1 / albedo; 0 where that is 0.

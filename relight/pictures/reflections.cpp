@@ -1,0 +1,205 @@
+#include "relight/pictures/reflections.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+#include "files/parallel.h"
+#include "prt/glossy/brdf.h"
+#include "prt/glossy/ggx_energy.h"
+#include "prt/glossy/ggx_lobe.h"
+#include "relight/kernels/cluster_lights.h"
+
+namespace relumine::relight {
+
+namespace {
+
+/// Returns a frame whose third axis is a unit normal. Based on: T. Duff et al., "Building an
+/// Orthonormal Basis, Revisited", JCGT 2017.
+glm::mat3 frame_of(const glm::vec3& n) {
+    const float sign = std::copysign(1.0f, n.z);
+    const float a = -1.0f / (sign + n.z);
+    const float b = n.x * n.y * a;
+    return {
+        {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+}
+
+/// Returns point i of n of Hammersley's, shifted around the unit square.
+glm::vec2 hammersley(std::uint32_t i, std::uint32_t n, const glm::vec2& shift) {
+    std::uint32_t bits = i;
+    float inverse = 0.0f;
+    for (float digit = 0.5f; bits != 0; bits >>= 1, digit *= 0.5f)
+        inverse += (bits & 1u) != 0 ? digit : 0.0f;
+    return glm::fract(glm::vec2((static_cast<float>(i) + 0.5f) / static_cast<float>(n), inverse) +
+                      shift);
+}
+
+/// Returns a half vector that an eye sees, in the frame of the normal [Heitz 2018, Listing 1].
+glm::vec3 visible_half(const glm::vec3& to_eye, float alpha, const glm::vec2& u) {
+    const glm::vec3 v = glm::normalize(glm::vec3(alpha * to_eye.x, alpha * to_eye.y, to_eye.z));
+    const float length2 = v.x * v.x + v.y * v.y;
+    const glm::vec3 t1 = length2 > 0.0f ? glm::vec3(-v.y, v.x, 0.0f) / std::sqrt(length2)
+                                        : glm::vec3(1.0f, 0.0f, 0.0f);
+    const glm::vec3 t2 = glm::cross(v, t1);
+    const float r = std::sqrt(u.x);
+    const float phi = 2.0f * std::numbers::pi_v<float> * u.y;
+    const float x = r * std::cos(phi);
+    const float s = 0.5f * (1.0f + v.z);
+    const float y = (1.0f - s) * std::sqrt(std::max(1.0f - x * x, 0.0f)) + s * r * std::sin(phi);
+    const glm::vec3 h = x * t1 + y * t2 + std::sqrt(std::max(1.0f - x * x - y * y, 0.0f)) * v;
+    return glm::normalize(glm::vec3(alpha * h.x, alpha * h.y, std::max(h.z, 1e-6f)));
+}
+
+/// Returns the density of directions whose half vector visible_half() chose: D G1 / (4 n.v).
+float density(const glm::vec3& half, float n_v, float alpha) {
+    const float a2 = alpha * alpha;
+    const float d = half.x * half.x + half.y * half.y + a2 * half.z * half.z;
+    const float mask = n_v + std::sqrt(n_v * n_v * (1.0f - a2) + a2);
+    return a2 / (std::numbers::pi_v<float> * d * d) * 0.5f / mask;
+}
+
+cubemap::CubeMap halved(const cubemap::CubeMap& map) {
+    cubemap::CubeMap result(map.resolution / 2);
+    for (const cubemap::Face face : cubemap::AllFaces)
+        files::parallel_for(std::uint32_t{0}, result.resolution, [&](std::uint32_t y) {
+            for (std::uint32_t x = 0; x < result.resolution; ++x)
+                result.at(face, x, y) =
+                    0.25f * (map.at(face, 2 * x, 2 * y) + map.at(face, 2 * x + 1, 2 * y) +
+                             map.at(face, 2 * x, 2 * y + 1) + map.at(face, 2 * x + 1, 2 * y + 1));
+        });
+    return result;
+}
+
+/// Sums of weights and of weighted radiance.
+struct Weighted {
+    float weight = 0.0f;
+    glm::vec3 sum{0.0f};
+    void add(float w, const glm::vec3& radiance) {
+        weight += w;
+        sum += w * radiance;
+    }
+    [[nodiscard]] glm::vec3 mean() const { return weight > 0.0f ? sum / weight : glm::vec3(0.0f); }
+};
+
+} // namespace
+
+float lobe_alpha(const prt::Surface& surface) {
+    if (surface.highlight == prt::Highlight::BlinnPhong)
+        return std::max(std::sqrt(2.0f / (surface.roughness_or_exponent + 2.0f)), 1e-3f);
+    return prt::ggx_alpha(surface.roughness_or_exponent);
+}
+
+cubemap::CubeMap without_lights(cubemap::CubeMap environment, std::span<const SharpLight> lights) {
+    if (environment.resolution == 0 || lights.empty())
+        return environment;
+    const LightBinning binning(environment.resolution);
+    const double r = environment.resolution;
+    for (const SharpLight& light : lights) {
+        const VectorIrradiance all = binning.sum(environment, light.cell);
+        const auto left = [](const glm::dvec3& whole, const glm::dvec3& part) {
+            const double length = glm::length(whole);
+            return length > 0.0 ? std::clamp(1.0 - glm::length(part) / length, 0.0, 1.0) : 1.0;
+        };
+        const glm::vec3 factor(left(all.red, light.irradiance.red),
+                               left(all.green, light.irradiance.green),
+                               left(all.blue, light.irradiance.blue));
+        const double size = light.cell.size();
+        const auto begin = [&](std::uint32_t i) {
+            return static_cast<std::uint32_t>(std::floor(i * size * r));
+        };
+        const auto end = [&](std::uint32_t i) {
+            return static_cast<std::uint32_t>(std::ceil((i + 1) * size * r));
+        };
+        for (std::uint32_t y = begin(light.cell.y); y < end(light.cell.y); ++y)
+            for (std::uint32_t x = begin(light.cell.x); x < end(light.cell.x); ++x)
+                environment.at(light.cell.face, x, y) *= factor;
+    }
+    return environment;
+}
+
+Reflections::Reflections(const prt::RayScene& rays, float bias, std::uint32_t num_rays,
+                         const cubemap::CubeMap& environment, std::span<const SharpLight> without)
+    : rays_(rays), bias_(bias), num_rays_(num_rays) {
+    for (const SharpLight& light : without) {
+        // Half vectors turn half as far as directions; a face is pi / 2 wide.
+        const double half_width = 0.25 * std::numbers::pi * light.cell.size();
+        least_roughness_ = std::max(least_roughness_, static_cast<float>(std::sqrt(half_width)));
+    }
+    if (environment.resolution == 0)
+        return;
+    levels_.push_back(without_lights(environment, without));
+    while (levels_.back().resolution % 2 == 0)
+        levels_.push_back(halved(levels_.back()));
+}
+
+/// Returns the mean radiance around a direction.
+glm::vec3 Reflections::sky(const glm::vec3& direction, float solid_angle) const {
+    if (levels_.empty())
+        return glm::vec3(0.0f);
+    const auto r = static_cast<float>(levels_[0].resolution);
+    const float texels = solid_angle * 6.0f * r * r / (4.0f * std::numbers::pi_v<float>);
+    const float level = 0.5f * std::log2(std::max(texels, 1.0f));
+    const auto last = static_cast<float>(levels_.size() - 1);
+    return cubemap::sample(levels_[static_cast<std::size_t>(std::min(level + 0.5f, last))],
+                           direction);
+}
+
+MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint& point,
+                                 std::uint32_t num_rays, const Surfaces& surfaces) const {
+    const float n_v = glm::dot(point.normal, point.to_eye);
+    if (surface.highlight == prt::Highlight::None || n_v <= 0.0f)
+        return {};
+    const glm::mat3 frame = frame_of(point.normal);
+    const glm::vec3 to_eye = point.to_eye * frame;
+    const float alpha = lobe_alpha(surface);
+    const glm::vec3 origin = point.position + bias_ * point.normal;
+    Weighted all, grazing;
+    for (std::uint32_t first = 0; first < num_rays; first += prt::PacketSize) {
+        const std::uint32_t count =
+            std::min(num_rays - first, static_cast<std::uint32_t>(prt::PacketSize));
+        prt::DirectionPacket packet{.num_directions = count};
+        std::array<float, prt::PacketSize> densities{};
+        std::uint32_t above = 0;
+        for (std::uint32_t lane = 0; lane < prt::PacketSize; ++lane) {
+            const glm::vec2 u = hammersley(first + lane % count, num_rays, point.shift);
+            const glm::vec3 half = visible_half(to_eye, alpha, u);
+            const glm::vec3 w = 2.0f * glm::dot(to_eye, half) * half - to_eye;
+            packet.set(lane, glm::normalize(frame * w));
+            densities[lane] = density(half, n_v, alpha);
+            above |= (lane < count && w.z > 0.0f ? 1u : 0u) << lane;
+        }
+        std::array<prt::Hit, prt::PacketSize> hits;
+        const std::uint32_t met = above != 0 ? rays_.closest_hits(origin, packet, above, hits) : 0;
+        for (std::uint32_t lane = 0; lane < count; ++lane) {
+            if ((above >> lane & 1u) == 0)
+                continue;
+            const glm::vec3 w = packet.direction(lane);
+            glm::vec3 radiance = sky(w, 1.0f / (static_cast<float>(num_rays) * densities[lane]));
+            if ((met >> lane & 1u) != 0)
+                radiance = surfaces(hits[lane], w, radiance);
+            const prt::Lobes<float> lobe =
+                prt::evaluate_lobes(surface, point.normal, point.to_eye, w);
+            all.add(lobe.specular / densities[lane], radiance);
+            grazing.add(lobe.specular_grazing / densities[lane], radiance);
+        }
+    }
+    return {.all = all.mean(),
+            .grazing = grazing.mean(),
+            .whole = all.weight / static_cast<float>(num_rays)};
+}
+
+prt::Lobes<glm::vec3> lobes_of(const prt::Surface& surface, const MirroredLight& light, float n_v) {
+    if (n_v <= 0.0f)
+        return {};
+    const bool is_known = prt::facts_of(surface.highlight).is_roughness;
+    const prt::GgxAlbedo albedo = is_known ? prt::ggx_albedo(surface.roughness_or_exponent, n_v)
+                                           : prt::GgxAlbedo{.all = light.whole};
+    return {.specular = albedo.all * light.all, .specular_grazing = albedo.grazing * light.grazing};
+}
+
+} // namespace relumine::relight

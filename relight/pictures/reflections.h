@@ -1,0 +1,94 @@
+// What glossy surfaces mirror, found by rays from the points that a picture shows: any eye, and
+// other surfaces in the mirror.
+//
+// Based on: E. Heitz, "Sampling the GGX Distribution of Visible Normals", JCGT 2018 (directions);
+// J. Krivanek and M. Colbert, "Real-time Shading with Filtered Importance Sampling", EGSR 2008 (a
+// ray that leaves sees the mean over its share of the lobe).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "cubemap/cube_map.h"
+#include "prt/glossy/lobes.h"
+#include "prt/receivers/surface.h"
+#include "prt/visibility/ray_scene.h"
+#include "relight/sharp/sharp_lights.h"
+
+namespace relumine::relight {
+
+/// A point that mirrors.
+struct MirrorPoint {
+    glm::vec3 position;
+    /// Unit length, as `to_eye`.
+    glm::vec3 normal;
+    glm::vec3 to_eye;
+    /// Shifts the rays against those of other points, in [0, 1)^2.
+    glm::vec2 shift;
+};
+
+/// Mean radiance in a highlight's lobes, which points of nearly the same normal share.
+struct MirroredLight {
+    /// Weighted by S and by Sc (prt/glossy/brdf.h).
+    glm::vec3 all{0.0f}, grazing{0.0f};
+    /// What S sends of a white sky, as the rays found it.
+    float whole = 0.0f;
+};
+
+/// Returns the light through a highlight's lobes: `specular` and `specular_grazing`. Exact for GGX
+/// under a sky of one radiance: what its lobes send of it is known.
+[[nodiscard]] prt::Lobes<glm::vec3> lobes_of(const prt::Surface& surface,
+                                             const MirroredLight& light, float n_v);
+
+class Reflections {
+public:
+    /// Returns the radiance of a surface that a ray meets; `sky` is what lies behind it.
+    using Surfaces = std::function<glm::vec3(const prt::Hit& hit, const glm::vec3& direction,
+                                             const glm::vec3& sky)>;
+
+    /// `without` are lights of the environment that are lit in another way: they are not mirrored.
+    /// `environment` may have no texels, which is black. `bias` is that of prt::PrecomputeOptions.
+    /// The rays must outlive this object.
+    ///
+    /// Cost:    O(texels), a third more than a copy of the environment.
+    Reflections(const prt::RayScene& rays, float bias, std::uint32_t num_rays,
+                const cubemap::CubeMap& environment, std::span<const SharpLight> without);
+
+    /// Returns what the highlight mirrors: black for Highlight::None, and for points that look away
+    /// from the eye.
+    ///
+    /// Cost:    num_rays rays.
+    /// Threads: any.
+    [[nodiscard]] MirroredLight light(const prt::Surface& surface, const MirrorPoint& point,
+                                      std::uint32_t num_rays, const Surfaces& surfaces) const;
+
+    [[nodiscard]] std::uint32_t num_rays() const { return num_rays_; }
+
+    /// Returns the least roughness of highlights of lights that are points: they stand for cells of
+    /// the environment, and a narrower lobe would show them one by one.
+    [[nodiscard]] float least_roughness() const { return least_roughness_; }
+
+private:
+    [[nodiscard]] glm::vec3 sky(const glm::vec3& direction, float solid_angle) const;
+
+    const prt::RayScene& rays_;
+    float bias_;
+    std::uint32_t num_rays_;
+    float least_roughness_ = 0.0f;
+    /// The environment at R, R / 2, .. texels along an edge.
+    std::vector<cubemap::CubeMap> levels_;
+};
+
+/// Returns the alpha of the GGX lobe that is about as wide as a surface's highlight.
+[[nodiscard]] float lobe_alpha(const prt::Surface& surface);
+
+/// Returns an environment whose cells give no more than what the lights leave.
+[[nodiscard]] cubemap::CubeMap without_lights(cubemap::CubeMap environment,
+                                              std::span<const SharpLight> lights);
+
+} // namespace relumine::relight

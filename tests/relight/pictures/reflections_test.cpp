@@ -1,0 +1,153 @@
+// Rays against the integral over all texels.
+#include "relight/pictures/reflections.h"
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "prt/glossy/brdf.h"
+#include "relight/kernels/cluster_lights.h"
+#include "tests/prt/scenes.h"
+#include "tests/relight/environments.h"
+
+namespace relumine::relight {
+namespace {
+
+constexpr std::uint32_t R = 64;
+
+const Reflections::Surfaces NoSurface = [](const prt::Hit&, const glm::vec3&, const glm::vec3&) {
+    ADD_FAILURE() << "nothing stands around the point";
+    return glm::vec3(0.0f);
+};
+
+prt::Surface metal(float roughness) {
+    return {.albedo = glm::vec3(0.0f),
+            .specular = glm::vec3(1.0f),
+            .highlight = prt::Highlight::GgxWhole,
+            .roughness_or_exponent = roughness,
+            .metallic = 1.0f};
+}
+
+MirrorPoint seen_at(float n_v) {
+    return {.position = glm::vec3(0.0f),
+            .normal = {0.0f, 0.0f, 1.0f},
+            .to_eye = {std::sqrt(1.0f - n_v * n_v), 0.0f, n_v},
+            .shift = {0.3f, 0.7f}};
+}
+
+prt::Lobes<glm::vec3> mirrored(const Reflections& reflections, const prt::Surface& surface,
+                               const MirrorPoint& point,
+                               const Reflections::Surfaces& surfaces = NoSurface) {
+    return lobes_of(surface, reflections.light(surface, point, reflections.num_rays(), surfaces),
+                    glm::dot(point.normal, point.to_eye));
+}
+
+/// The sum over texels, each at its middle.
+prt::Lobes<glm::vec3> integrated(const prt::Surface& surface, const MirrorPoint& point,
+                                 const cubemap::CubeMap& environment) {
+    const std::vector<double> solid_angles = cubemap::texel_solid_angles(environment.resolution);
+    prt::Lobes<glm::vec3> sum;
+    for (const cubemap::Face face : cubemap::AllFaces)
+        for (std::uint32_t y = 0; y < environment.resolution; ++y)
+            for (std::uint32_t x = 0; x < environment.resolution; ++x) {
+                const glm::vec3 w(cubemap::texel_direction(face, x, y, environment.resolution));
+                const auto lobes = prt::evaluate_lobes(surface, point.normal, point.to_eye, w);
+                const glm::vec3 light =
+                    environment.at(face, x, y) *
+                    static_cast<float>(solid_angles[std::size_t{y} * environment.resolution + x]);
+                sum.specular += lobes.specular * light;
+                sum.specular_grazing += lobes.specular_grazing * light;
+            }
+    return sum;
+}
+
+/// A mesh that no ray meets.
+const prt::RayScene& nothing() {
+    static const prt::RayScene Rays(scenes::box({-1.0f, -1.0f, -3.0f}, {1.0f, 1.0f, -2.0f}));
+    return Rays;
+}
+
+TEST(Reflections, OfASmoothSkyAreItsIntegral) {
+    const cubemap::CubeMap sky = scenes::smooth_environment(R);
+    const Reflections reflections(nothing(), 0.0f, 1024, sky, {});
+    for (const float roughness : {0.3f, 0.5f, 1.0f})
+        for (const float n_v : {1.0f, 0.6f, 0.2f}) {
+            const prt::Surface surface = metal(roughness);
+            const MirrorPoint point = seen_at(n_v);
+            const auto lobes = mirrored(reflections, surface, point);
+            const auto expected = integrated(surface, point, sky);
+            const float scale = expected.specular.g;
+            EXPECT_NEAR(lobes.specular.g, expected.specular.g, 0.01f * scale)
+                << roughness << " " << n_v;
+            EXPECT_NEAR(lobes.specular_grazing.g, expected.specular_grazing.g, 0.01f * scale);
+        }
+}
+
+TEST(Reflections, PhongHasNoEnergyToKeep) {
+    const cubemap::CubeMap sky = scenes::smooth_environment(R);
+    const Reflections reflections(nothing(), 0.0f, 4096, sky, {});
+    const prt::Surface surface{.specular = glm::vec3(0.5f),
+                               .highlight = prt::Highlight::BlinnPhong,
+                               .roughness_or_exponent = 20.0f};
+    const MirrorPoint point = seen_at(0.8f);
+    const auto lobes = mirrored(reflections, surface, point);
+    const auto expected = integrated(surface, point, sky);
+    EXPECT_NEAR(lobes.specular.g, expected.specular.g, 0.02f * expected.specular.g);
+}
+
+TEST(Reflections, AWhiteSkyHasNoNoise) {
+    const cubemap::CubeMap white(16, glm::vec3(1.0f));
+    const Reflections reflections(nothing(), 0.0f, 16, white, {});
+    for (const float roughness : {0.0f, 0.4f, 1.0f})
+        for (const float n_v : {1.0f, 0.5f, 0.05f}) {
+            const prt::Surface surface = metal(roughness);
+            const MirrorPoint point = seen_at(n_v);
+            const glm::vec3 sent =
+                prt::reflect(surface, mirrored(reflections, surface, point), n_v);
+            EXPECT_NEAR(sent.r, 1.0f, 0.01f) << roughness << " " << n_v;
+        }
+}
+
+TEST(Reflections, AMirrorShowsWhatItLooksAt) {
+    // A wall of radiance 3 stands where the mirror looks, and hides the sky.
+    const prt::RayScene wall(scenes::box({-2.0f, -1.0f, 0.5f}, {-1.0f, 1.0f, 2.0f}));
+    const Reflections reflections(wall, 1e-4f, 16, cubemap::CubeMap(16, glm::vec3(0.25f)), {});
+    const auto bright = [](const prt::Hit&, const glm::vec3& direction, const glm::vec3& sky) {
+        EXPECT_LT(direction.x, 0.0f);
+        EXPECT_NEAR(sky.r, 0.25f, 1e-4f);
+        return glm::vec3(3.0f);
+    };
+    const prt::Surface mirror = metal(0.0f);
+    const auto seen = [&](const MirrorPoint& point) {
+        return prt::reflect(mirror, mirrored(reflections, mirror, point, bright),
+                            glm::dot(point.normal, point.to_eye))
+            .r;
+    };
+    EXPECT_NEAR(seen(seen_at(0.6f)), 3.0f, 0.03f);
+    EXPECT_NEAR(seen(seen_at(1.0f)), 0.25f, 0.01f) << "up, beside the wall";
+    MirrorPoint away = seen_at(0.6f);
+    away.to_eye = -away.to_eye;
+    EXPECT_EQ(mirrored(reflections, mirror, away, bright).specular, glm::vec3(0.0f));
+}
+
+TEST(Reflections, LightsThatAreTracedAreNotMirrored) {
+    cubemap::CubeMap sky(R, glm::vec3(0.5f));
+    sky.at(cubemap::Face::PositiveZ, 20, 30) = glm::vec3(900.0f, 800.0f, 700.0f);
+    const prt::Cell texel{cubemap::Face::PositiveZ, 6, 20, 30};
+    const LightBinning binning(R);
+    SharpLight light{.cell = texel, .irradiance = binning.sum(sky, texel)};
+    const cubemap::CubeMap left = without_lights(sky, {&light, 1});
+    EXPECT_LT(glm::length(left.at(cubemap::Face::PositiveZ, 20, 30)), 1e-3f);
+    EXPECT_EQ(left.at(cubemap::Face::PositiveZ, 21, 30), glm::vec3(0.5f));
+    // A light of a wider cell takes its part of the power.
+    light.cell = {cubemap::Face::PositiveZ, 5, 10, 15};
+    const cubemap::CubeMap wide = without_lights(sky, {&light, 1});
+    const double before = glm::length(binning.sum(sky, light.cell).green);
+    const double after = glm::length(binning.sum(wide, light.cell).green);
+    EXPECT_NEAR(after, before - glm::length(light.irradiance.green), 1e-3 * before);
+    EXPECT_GT(Reflections(nothing(), 0.0f, 16, sky, {&light, 1}).least_roughness(), 0.05f);
+}
+
+} // namespace
+} // namespace relumine::relight

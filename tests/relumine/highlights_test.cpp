@@ -1,0 +1,121 @@
+// Highlights of pictures whose scene has no view: by rays.
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "data_gen/environments.h"
+#include "prt/glossy/brdf.h"
+#include "relumine/lit_scene.h"
+#include "relumine/output.h"
+#include "relumine/precompute.h"
+#include "tests/prt/scenes.h"
+
+namespace relumine {
+namespace {
+
+const Camera Front{.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = 20};
+
+mesh::Material metal(float roughness) {
+    return {.name = "metal",
+            .model = mesh::MaterialModel::MetallicRoughness,
+            .base_color = glm::vec3(1.0f),
+            .metallic = 1.0f,
+            .roughness = roughness};
+}
+
+mesh::TriangleMesh sphere_of(const mesh::Material& material) {
+    mesh::TriangleMesh mesh = scenes::icosphere(5, 0.5f, glm::vec3(0.0f));
+    mesh.materials = {material};
+    mesh.triangle_materials.assign(mesh.num_triangles(), 0);
+    return mesh;
+}
+
+Picture drawn(const LitScene& lit, OutputOptions options = {}) {
+    options.width = options.height = 48;
+    options.camera = Front;
+    options.background = NothingBehind{};
+    return Painter(lit, options).draw(lit.lighting());
+}
+
+LitScene lit_under(const mesh::TriangleMesh& mesh, const cubemap::CubeMap& sky,
+                   PrecomputeOptions options = {}) {
+    options.tolerance = 0.06f;
+    options.bounce_tolerance = 0.0f;
+    options.no_refine = true;
+    LitScene lit(precompute(mesh, options));
+    lit.light(sky);
+    return lit;
+}
+
+const glm::vec3& middle(const Picture& picture) {
+    return picture.pixels[picture.pixels.size() / 2 + picture.width / 2];
+}
+
+TEST(Highlights, AWhiteMetalIsWhiteInAFurnace) {
+    const cubemap::CubeMap sky = data_gen::constant(16, glm::vec3(1.0f));
+    for (const float roughness : {0.0f, 0.5f, 1.0f}) {
+        const LitScene lit = lit_under(sphere_of(metal(roughness)), sky);
+        const Picture picture = drawn(lit);
+        for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+            if (picture.alpha[i] == 1.0f) {
+                EXPECT_NEAR(picture.pixels[i].g, 1.0f, 0.02f) << roughness;
+            }
+    }
+}
+
+TEST(Highlights, AreThoseOfPixelsWithAView) {
+    const cubemap::CubeMap sky = data_gen::two_soft_boxes(64);
+    const mesh::TriangleMesh mesh = sphere_of(metal(0.4f));
+    const Picture traced = drawn(lit_under(mesh, sky), {.highlight_rays = 256});
+    PrecomputeOptions options{.receivers =
+                                  Pixels{.width = 48, .height = 48, .samples_per_axis = 3}};
+    options.view = View{.camera = Front};
+    const LitScene fixed = lit_under(mesh, sky, options);
+    const Picture exact = Painter(fixed, {.background = NothingBehind{}}).draw(fixed.lighting());
+    double sum = 0.0, difference = 0.0;
+    for (std::size_t i = 0; i < exact.pixels.size(); ++i)
+        if (traced.alpha[i] == 1.0f && exact.alpha[i] == 1.0f) {
+            sum += exact.pixels[i].g;
+            difference += std::abs(exact.pixels[i].g - traced.pixels[i].g);
+        }
+    ASSERT_GT(sum, 1.0);
+    EXPECT_LT(difference, 0.04 * sum);
+}
+
+TEST(Highlights, AMirrorShowsTheLightOfSurfaces) {
+    // A mirror faces the eye; behind the eye, all around, stands a box that shines.
+    mesh::TriangleMesh mesh = scenes::box({-3, -3, 5}, {3, 3, 6});
+    const auto num_box = static_cast<std::uint32_t>(mesh.num_triangles());
+    const auto first = static_cast<std::uint32_t>(mesh.num_vertices());
+    for (const glm::vec3& corner :
+         {glm::vec3(-1, -1, 0), glm::vec3(1, -1, 0), glm::vec3(-1, 1, 0), glm::vec3(1, 1, 0)}) {
+        mesh.positions.push_back(corner);
+        mesh.normals.emplace_back(0, 0, 1);
+    }
+    mesh.triangles.push_back({first, first + 1, first + 3});
+    mesh.triangles.push_back({first, first + 3, first + 2});
+    mesh.materials = {
+        {.name = "screen", .model = mesh::MaterialModel::Unlit, .base_color = {1.0f, 0.5f, 0.25f}},
+        metal(0.1f)};
+    mesh.triangle_materials.assign(num_box, 0);
+    mesh.triangle_materials.resize(mesh.num_triangles(), 1);
+    const LitScene lit = lit_under(mesh, data_gen::constant(16, glm::vec3(0.125f)));
+    const glm::vec3 seen = middle(drawn(lit));
+    EXPECT_LT(glm::length(seen - glm::vec3(1.0f, 0.5f, 0.25f)), 0.03f);
+    EXPECT_LT(middle(drawn(lit, {.highlight_rays = 0})).g, 0.2f) << "matte, and in shadow";
+}
+
+TEST(Highlights, SurfacesOfOptionsHaveTheirs) {
+    const cubemap::CubeMap sky = data_gen::constant(16, glm::vec3(1.0f));
+    PrecomputeOptions options;
+    options.surface = [](const mesh::TriangleMesh&, std::uint32_t, const prt::Surface&) {
+        return prt::Surface{.albedo = glm::vec3(0.0f),
+                            .specular = glm::vec3(0.25f),
+                            .highlight = prt::Highlight::GgxWhole,
+                            .roughness_or_exponent = 0.3f};
+    };
+    const LitScene lit = lit_under(scenes::icosphere(3, 0.5f, glm::vec3(0.0f)), sky, options);
+    EXPECT_NEAR(middle(drawn(lit)).g, 0.25f, 0.02f);
+}
+
+} // namespace
+} // namespace relumine
