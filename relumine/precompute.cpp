@@ -14,7 +14,6 @@
 
 #include "files/extension.h"
 #include "mesh/load.h"
-#include "mesh/opacity.h"
 #include "prt/glossy/lobe_list.h"
 #include "prt/parts/part_file.h"
 #include "prt/parts/team_checkpoint.h"
@@ -27,6 +26,7 @@
 #include "relight/pictures/array_file.h"
 #include "relight/pictures/framing.h"
 #include "relumine/precompute_table.h"
+#include "relumine/scene_materials.h"
 #include "relumine/stages.h"
 
 namespace relumine {
@@ -420,7 +420,8 @@ private:
         const prt::GgxForm form = receivers.to_eye.empty() ? prt::GgxForm::Published : options_.ggx;
         if (receivers.points.empty()) {
             receivers.surfaces = prt::vertex_surfaces(mesh, surface_of, form);
-            keep_materials(surface_of);
+            keep_materials(scene_.mesh, receivers, surface_of,
+                           options_.surface || options_.floor_surface != prt::Surface());
         } else {
             receivers.surfaces.clear();
             for (const prt::MeshPoint& point : receivers.points)
@@ -437,57 +438,6 @@ private:
         // Vertices that only send light on are seen by nobody.
         for (std::size_t i = receivers.num_own(); i < receivers.size(); ++i)
             receivers.surfaces[i].highlight = prt::Highlight::None;
-    }
-
-    /// Pictures take the light of the vertices, and the colours of textures and the highlights from
-    /// the materials. So those of the options become materials, and black vertices keep a trace by
-    /// which their light is known: the lowest value that an image of 8 bits has.
-    void keep_materials(const prt::SurfaceOverride& surface_of) {
-        mesh::TriangleMesh& mesh = scene_.mesh;
-        const bool has_eye = !scene_.receivers.to_eye.empty();
-        const bool has_textures = !mesh.textures.empty() && !mesh.triangle_materials.empty();
-        const std::vector<prt::Surface>& surfaces = scene_.receivers.surfaces;
-        const bool mirrors =
-            !has_eye && std::any_of(surfaces.begin(), surfaces.end(), [](const prt::Surface& own) {
-                return own.highlight != prt::Highlight::None;
-            });
-        if (!has_textures && !mirrors)
-            return;
-        if (options_.surface || options_.floor_surface != prt::Surface())
-            replace_materials(surface_of, has_eye);
-        constexpr float LeastAlbedo = 1.0f / 255.0f / 12.92f;
-        for (prt::Surface& surface : scene_.receivers.surfaces)
-            if (surface.highlight != prt::Highlight::None || surface.emission == glm::vec3(0.0f))
-                surface.albedo = glm::max(surface.albedo, LeastAlbedo); // not of unlit ones
-    }
-
-    /// Gives triangles of other surfaces than the file's a material of their own: plain, or with
-    /// their highlight where there is no eye.
-    void replace_materials(const prt::SurfaceOverride& surface_of, bool has_eye) {
-        mesh::TriangleMesh& mesh = scene_.mesh;
-        const bool has_materials = !mesh.triangle_materials.empty();
-        const auto first = static_cast<std::ptrdiff_t>(mesh.materials.size());
-        const auto material_of = [&](std::uint32_t triangle, const prt::Surface& surface) {
-            const bool is_plain = has_eye || surface.highlight == prt::Highlight::None;
-            mesh::Material kept = prt::material_of(is_plain ? prt::Surface() : surface);
-            if (has_materials) // rays pass it as before
-                kept = mesh::passed_as(kept, mesh.materials[mesh.triangle_materials[triangle]]);
-            const auto found =
-                std::find(mesh.materials.begin() + first, mesh.materials.end(), kept);
-            const auto index = static_cast<std::uint32_t>(found - mesh.materials.begin());
-            if (found == mesh.materials.end())
-                mesh.materials.push_back(kept);
-            return index;
-        };
-        std::vector<std::uint32_t> result = mesh.triangle_materials;
-        result.resize(mesh.num_triangles());
-        for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i) {
-            const prt::Surface own = prt::surface_at(mesh, i, glm::vec2(1.0f / 3.0f));
-            const prt::Surface surface = surface_of(mesh, i, own);
-            if (surface != own || !has_materials)
-                result[i] = material_of(i, surface);
-        }
-        mesh.triangle_materials = std::move(result);
     }
 
     void leave_highlights_out() {

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Raise it when a change of the precompute makes scenes that were kept worthless.
-constexpr int CacheVersion = 2;
+constexpr int CacheVersion = 3;
 
 /// Removes the scenes that were used longest ago, until the rest is within the limit. `kept` stays.
 void remove_oldest(const SceneCache& cache, const fs::path& kept) {
