@@ -34,6 +34,11 @@ glm::dvec3 any_across(const glm::dvec3& normal) {
     return across(std::abs(normal.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0), normal);
 }
 
+/// The map whose uvs the tangents follow: the surface's, or its coat's.
+const std::optional<TextureSlot>& normal_map(const Material& material) {
+    return material.normal_texture ? material.normal_texture : material.coat_normal_texture;
+}
+
 class Tangents {
 public:
     Tangents(TriangleMesh& mesh, std::span<const glm::vec4> of_file)
@@ -63,7 +68,7 @@ public:
 
 private:
     [[nodiscard]] const std::optional<TextureSlot>& slot(std::uint32_t triangle) const {
-        return mesh_.materials[mesh_.triangle_materials[triangle]].normal_texture;
+        return normal_map(mesh_.materials[mesh_.triangle_materials[triangle]]);
     }
 
     /// The place in the normal map; v grows upwards, as in the picture.
@@ -175,7 +180,7 @@ glm::vec2 corner_uv(const TriangleMesh& mesh, std::uint32_t triangle, std::size_
 void set_tangents(TriangleMesh& mesh, std::span<const glm::vec4> of_file) {
     if (!mesh.triangle_materials.empty() &&
         std::any_of(mesh.materials.begin(), mesh.materials.end(),
-                    [](const Material& material) { return material.normal_texture.has_value(); }))
+                    [](const Material& material) { return normal_map(material).has_value(); }))
         Tangents(mesh, of_file).set();
 }
 

@@ -33,7 +33,8 @@ ReceiverLight::ReceiverLight(const prt::Transfer& transfer, const ShadowRays& ra
         glossy_.resize(transfer.counts.num_blocks());
         eye_cosines_.resize(transfer.num_receivers());
         for (std::size_t i = 0; i < eye_cosines_.size(); ++i)
-            eye_cosines_[i] = glm::dot(transfer.normals[i], transfer.glossy->to_eye[i]);
+            eye_cosines_[i] = {transfer.surfaces[i], transfer.normals[i],
+                               transfer.glossy->to_eye[i]};
     }
     if (harmonics > MaxHarmonicOrder)
         throw std::invalid_argument(fmt::format("expected harmonics of order 1 to {}, got {}",
@@ -154,7 +155,9 @@ void ReceiverLight::light_glossy(std::size_t block) {
     if (!pyramid_)
         return;
     for (std::size_t lobe = 0; lobe < prt::NumGlossyLobes; ++lobe)
-        light_block(transfer_.glossy->lobes[lobe], block, pyramid_->light(), glossy_[block][lobe]);
+        if (transfer_.glossy->lobes[lobe].num_entries() != 0)
+            light_block(transfer_.glossy->lobes[lobe], block, pyramid_->light(),
+                        glossy_[block][lobe]);
 }
 
 /// Returns the light of a receiver with a surface through each lobe. `diffuse` is its radiance for
@@ -166,12 +169,8 @@ prt::Lobes<glm::vec3> ReceiverLight::lobes_at(std::size_t place, const glm::vec3
     lobes.diffuse = diffuse;
     if (!glossy_.empty()) {
         const GlossyLight& light = glossy_[place / prt::BlockSize];
-        const auto through = [&](prt::GlossyLobe lobe) {
-            return light[static_cast<std::size_t>(lobe)].of(place % prt::BlockSize);
-        };
-        lobes.specular += through(prt::GlossyLobe::Specular);
-        lobes.specular_grazing += through(prt::GlossyLobe::SpecularGrazing);
-        lobes.diffuse_grazing += through(prt::GlossyLobe::DiffuseGrazing);
+        for (std::size_t lobe = 0; lobe < prt::NumGlossyLobes; ++lobe)
+            lobes.*prt::GlossyParts<glm::vec3>[lobe] += light[lobe].of(place % prt::BlockSize);
     }
     return lobes;
 }
@@ -199,7 +198,7 @@ double ReceiverLight::write_radiance(std::size_t block, bool with_sharp_lights,
         for (std::size_t i = 0; i < receivers.size(); ++i)
             radiance[receivers[i]] = prt::reflect(
                 transfer_.surfaces[begin + i], lobes_at(begin + i, sums.of(i), with_sharp_lights),
-                eye_cosines_.empty() ? 0.0f : eye_cosines_[begin + i]);
+                eye_cosines_.empty() ? prt::EyeCosines() : eye_cosines_[begin + i]);
     return brightness;
 }
 

@@ -89,7 +89,7 @@ private:
     /// [num_blocks]; empty without a glossy part.
     std::vector<GlossyLight> glossy_;
     /// [num_receivers] cosines between normal and eye; empty without a glossy part.
-    std::vector<float> eye_cosines_;
+    std::vector<prt::EyeCosines> eye_cosines_;
     /// [num_blocks]
     std::vector<BlockNormals> normals_;
     /// From tile_words().

@@ -234,9 +234,7 @@ struct Painter::Impl {
         relight::add_rest(radiance, scene.receivers.surfaces, prt::eye_cosines(scene.receivers),
                           lobes);
         for (std::size_t i = 0; i < lobes.size(); ++i)
-            for (glm::vec3* part : {&lobes[i].diffuse, &lobes[i].diffuse_grazing,
-                                    &lobes[i].specular, &lobes[i].specular_grazing})
-                *part *= shown_factors()[i];
+            prt::multiply(lobes[i], shown_factors()[i]);
         return lobes;
     }
 

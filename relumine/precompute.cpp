@@ -11,10 +11,12 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "files/extension.h"
 #include "mesh/load.h"
 #include "prt/glossy/lobe_list.h"
+#include "prt/glossy/sheen_lobe.h"
 #include "prt/parts/part_file.h"
 #include "prt/parts/team_checkpoint.h"
 #include "prt/receivers/pixel_receivers.h"
@@ -423,12 +425,16 @@ private:
             keep_materials(scene_.mesh, receivers, surface_of,
                            options_.surface || options_.floor_surface != prt::Surface());
         } else {
+            const mesh::MipMaps maps(mesh.textures);
+            const std::optional<prt::TextureView> view = texture_view(maps);
             receivers.surfaces.clear();
             for (const prt::MeshPoint& point : receivers.points)
                 receivers.surfaces.push_back(
                     surface_of(mesh, point.triangle,
-                               prt::surface_at(mesh, point.triangle, point.barycentric, form)));
+                               prt::surface_at(mesh, point.triangle, point.barycentric, form,
+                                               view ? &*view : nullptr)));
         }
+        set_coat_normals();
         if (receivers.to_eye.empty())
             leave_highlights_out();
         else if (options_.ggx == prt::GgxForm::Published)
@@ -438,6 +444,30 @@ private:
         // Vertices that only send light on are seen by nobody.
         for (std::size_t i = receivers.num_own(); i < receivers.size(); ++i)
             receivers.surfaces[i].highlight = prt::Highlight::None;
+    }
+
+    /// How pixels see the textures.
+    [[nodiscard]] std::optional<prt::TextureView> texture_view(const mesh::MipMaps& maps) const {
+        const auto* pixels = std::get_if<prt::PixelLayout>(&scene_.layout);
+        if (pixels == nullptr)
+            return std::nullopt;
+        return prt::TextureView(
+            maps, pixels->camera.eye,
+            {pixels->camera, pixels->width, pixels->height, pixels->samples_per_axis});
+    }
+
+    /// Coats are as smooth as the mesh, or have normal maps of their own.
+    void set_coat_normals() {
+        prt::Receivers& receivers = scene_.receivers;
+        if (receivers.points.empty() || scene_.mesh.corner_tangents.empty())
+            return;
+        for (std::size_t i = 0; i < receivers.num_own(); ++i) {
+            if (!prt::has_coat(receivers.surfaces[i]))
+                continue;
+            const glm::vec3 normal = prt::coat_normal(scene_.mesh, receivers.points[i]);
+            receivers.surfaces[i].coat_normal =
+                glm::dot(normal, receivers.normals[i]) < 0.0f ? -normal : normal;
+        }
     }
 
     void leave_highlights_out() {

@@ -64,7 +64,7 @@ BounceReport SceneBounces::take(const BounceReport& report) {
     const std::span<const glm::vec3> indirect = light_->indirect();
     bounced_.assign(indirect.begin(), indirect.end());
     const std::vector<prt::Surface>& surfaces = scene_->receivers.surfaces;
-    const std::vector<float> cosines = prt::eye_cosines(scene_->receivers);
+    const std::vector<prt::EyeCosines> cosines = prt::eye_cosines(scene_->receivers);
     for (std::size_t i = 0; i < surfaces.size(); ++i)
         bounced_[i] *= prt::diffuse_albedo(surfaces[i], cosines[i]);
     return report;

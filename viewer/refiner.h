@@ -25,7 +25,7 @@ struct Shading {
     std::span<const prt::Surface> surfaces = {};
     relight::SurfaceColors textures = {};
     /// [num_vertices] as relight::add_rest() takes them; empty without highlights.
-    std::vector<float> eye_cosines = {};
+    std::vector<prt::EyeCosines> eye_cosines = {};
     /// [num_vertices] or empty, as relight::MeshLight has it.
     std::vector<glm::vec3> emission = {};
     /// The eye that highlights are for.

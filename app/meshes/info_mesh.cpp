@@ -5,93 +5,17 @@
 
 #include <fmt/format.h>
 
+#include "app/meshes/material_table.h"
 #include "app/options/output_options.h"
 #include "files/counted.h"
 #include "mesh/half_edge/diagnosis.h"
 #include "mesh/load.h"
 #include "relight/pictures/mesh_picture.h"
+#include "relumine/material_report.h"
 
 namespace relumine::app {
 
 namespace {
-
-/// Model and numbers of a material, as the file has them.
-std::string reflection(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
-    const auto texture = [&mesh](const std::optional<mesh::TextureSlot>& slot) {
-        if (!slot)
-            return std::string();
-        const mesh::Texture& image = mesh.textures[slot->texture];
-        return fmt::format(" x {} ({} x {})", image.name, image.width, image.height);
-    };
-    const glm::vec3& base = material.base_color;
-    if (material.model == mesh::MaterialModel::MetallicRoughness)
-        return fmt::format("metallic-roughness, base {} {} {}{}, metallic {}, roughness {}{}",
-                           base.r, base.g, base.b, texture(material.base_color_texture),
-                           material.metallic, material.roughness,
-                           texture(material.metallic_roughness_texture));
-    if (material.model == mesh::MaterialModel::SpecularGlossiness)
-        return fmt::format("specular-glossiness, diffuse {} {} {}{}, F0 {} {} {}{}, roughness {}{}",
-                           base.r, base.g, base.b, texture(material.base_color_texture),
-                           material.specular.r, material.specular.g, material.specular.b,
-                           texture(material.specular_texture), material.roughness,
-                           texture(material.metallic_roughness_texture));
-    if (material.model == mesh::MaterialModel::Unlit)
-        return fmt::format("unlit, {} {} {}{}", base.r, base.g, base.b,
-                           texture(material.base_color_texture));
-    const std::string diffuse =
-        fmt::format("Kd {} {} {}{}", base.r, base.g, base.b, texture(material.base_color_texture));
-    if (material.specular == glm::vec3(0.0f))
-        return fmt::format("Lambert, {}", diffuse);
-    return fmt::format("Blinn-Phong, {}, Ks {} {} {}, Ns {}", diffuse, material.specular.r,
-                       material.specular.g, material.specular.b, material.exponent);
-}
-
-std::string description(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
-    const glm::vec3& emission = material.emission;
-    if (emission == glm::vec3(0.0f))
-        return reflection(mesh, material);
-    const mesh::Texture* image =
-        material.emission_texture ? &mesh.textures[material.emission_texture->texture] : nullptr;
-    return fmt::format("{}, emission {} {} {}{}", reflection(mesh, material), emission.r,
-                       emission.g, emission.b,
-                       image == nullptr ? ""
-                                        : fmt::format(" x {} ({} x {})", image->name, image->width,
-                                                      image->height));
-}
-
-Report json_of(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
-    const auto texture = [&mesh](const std::optional<mesh::TextureSlot>& slot) {
-        return slot ? Report(mesh.textures[slot->texture].name) : Report(nullptr);
-    };
-    using Model = mesh::MaterialModel;
-    const Model model = material.model;
-    Report result = {{"name", material.name},
-                     {"model", model == Model::Phong               ? "phong"
-                               : model == Model::MetallicRoughness ? "metallic-roughness"
-                               : model == Model::Unlit             ? "unlit"
-                                                                   : "specular-glossiness"},
-                     {"base_color", material.base_color},
-                     {"base_color_texture", texture(material.base_color_texture)}};
-    if (material.emission != glm::vec3(0.0f)) {
-        result.set("emission", material.emission);
-        result.set("emission_texture", texture(material.emission_texture));
-    }
-    if (model == Model::Unlit)
-        return result;
-    if (model != Model::MetallicRoughness)
-        result.set("specular", material.specular);
-    if (model == Model::Phong) {
-        result.set("exponent", material.exponent);
-    } else {
-        result.set("roughness", material.roughness);
-        result.set("metallic_roughness_texture", texture(material.metallic_roughness_texture));
-    }
-    if (model == Model::MetallicRoughness)
-        result.set("metallic", material.metallic);
-    else if (model == Model::SpecularGlossiness)
-        result.set("specular_texture", texture(material.specular_texture));
-    return result;
-}
 
 /// "12, the first of vertices 3 and 17 at (0, 1, 2)"
 std::string text_of(const mesh::TriangleMesh& mesh, const std::vector<mesh::VertexPair>& edges) {
@@ -182,12 +106,11 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
                             !mesh.uvs.empty()          ? "yes"
                             : !mesh.corner_uvs.empty() ? "per corner"
                                                        : "no"));
+    for (const std::string& line : material_table(mesh))
+        session.say(line);
     std::vector<Report> materials;
-    for (const mesh::Material& material : mesh.materials) {
-        session.say(
-            fmt::format("material            {}: {}", material.name, description(mesh, material)));
-        materials.push_back(json_of(mesh, material));
-    }
+    for (const mesh::Material& material : mesh.materials)
+        materials.push_back(report_of(mesh, material));
     for (const std::string& group : mesh.groups)
         session.say(fmt::format("group               {}", group));
     for (const std::string& name : mesh.missing)

@@ -25,23 +25,22 @@ struct Extension {
     std::string_view loss;
 };
 
-constexpr std::array<Extension, 9> Extensions = {{
+constexpr std::array<Extension, 5> Extensions = {{
     {"KHR_materials_anisotropy", "anisotropyStrength", 0.0, "highlights are round"},
-    {"KHR_materials_clearcoat", "clearcoatFactor", 0.0, "clear coats are left out"},
     {"KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", 0.0,
      "no light shines through surfaces"},
     {"KHR_materials_dispersion", "dispersion", 0.0, "surfaces are opaque"},
-    {"KHR_materials_ior", "ior", 1.5, "the index of refraction is 1.5"},
     {"KHR_materials_iridescence", "iridescenceFactor", 0.0, "thin films are left out"},
-    {"KHR_materials_sheen", "sheenColorFactor", 0.0, "sheen is left out"},
-    {"KHR_materials_specular", "specularFactor", 1.0, "dielectrics reflect 0.04"},
     {"KHR_materials_volume_scatter", "multiscatterColor", 0.0, "surfaces are opaque"},
 }};
 
 /// Those that are read.
-constexpr std::array<std::string_view, 5> ReadExtensions = {
-    "KHR_materials_emissive_strength", "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_volume"};
+constexpr std::array<std::string_view, 9> ReadExtensions = {
+    "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_sheen",        "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_materials_unlit",
+    "KHR_materials_volume"};
 
 /// Everything that glTF 2.0 gives a material and a texture of it.
 constexpr std::array<std::string_view, 11> MaterialProperties = {
@@ -152,15 +151,25 @@ void LeftOut::material(const Json& description) {
             count("with the property " + excerpt(name) + ", which glTF does not have",
                   "it is left out");
     material_extensions(child(description, "extensions"));
+    const Json& extensions = child(description, "extensions");
     const Json& pbr = child(description, "pbrMetallicRoughness");
-    const Json& old =
-        child(child(description, "extensions"), "KHR_materials_pbrSpecularGlossiness");
+    const Json& old = child(extensions, "KHR_materials_pbrSpecularGlossiness");
+    const Json& specular = child(extensions, "KHR_materials_specular");
+    const Json& coat = child(extensions, "KHR_materials_clearcoat");
+    const Json& sheen = child(extensions, "KHR_materials_sheen");
     for (const auto& [parent, key] : {std::pair{&pbr, "baseColorTexture"},
                                       {&pbr, "metallicRoughnessTexture"},
                                       {&old, "diffuseTexture"},
                                       {&old, "specularGlossinessTexture"},
                                       {&description, "emissiveTexture"},
-                                      {&description, "normalTexture"}})
+                                      {&description, "normalTexture"},
+                                      {&specular, "specularTexture"},
+                                      {&specular, "specularColorTexture"},
+                                      {&coat, "clearcoatTexture"},
+                                      {&coat, "clearcoatRoughnessTexture"},
+                                      {&coat, "clearcoatNormalTexture"},
+                                      {&sheen, "sheenColorTexture"},
+                                      {&sheen, "sheenRoughnessTexture"}})
         texture(child(*parent, key));
 }
 

@@ -33,7 +33,12 @@ private:
     void read_glass(const Json& extensions, Material& material);
     void read_alpha(const Json& description, double alpha, Material& material);
     [[nodiscard]] std::optional<std::uint32_t> alpha_of(std::uint32_t texture);
-    void read_normal_map(const Json& description, Material& material);
+    [[nodiscard]] std::optional<TextureSlot> alpha_slot(const Json& parent, const char* key);
+    [[nodiscard]] std::optional<TextureSlot> normal_map(const Json& parent, const char* key,
+                                                        float& scale);
+    void read_specular(const Json& extensions, Material& material);
+    void read_coat(const Json& extension, Material& material);
+    void read_sheen(const Json& extension, Material& material);
 
     Document& document_;
     Materials result_;
@@ -291,14 +296,67 @@ void MaterialReader::read_glass(const Json& extensions, Material& material) {
     material.attenuation_color = glm::vec3(color[0], color[1], color[2]);
 }
 
-void MaterialReader::read_normal_map(const Json& description, Material& material) {
-    material.normal_scale =
-        static_cast<float>(number(child(description, "normalTexture"), "scale", 1.0));
-    if (!std::isfinite(material.normal_scale))
-        throw std::runtime_error(fmt::format(
-            "expected a finite \"scale\" of the normal map, got {}", material.normal_scale));
-    if (material.normal_scale != 0.0f)
-        material.normal_texture = slot(description, "normalTexture", false);
+/// Returns the alpha of a texture as grey.
+std::optional<TextureSlot> MaterialReader::alpha_slot(const Json& parent, const char* key) {
+    std::optional<TextureSlot> result = slot(parent, key, false);
+    if (!result)
+        return std::nullopt;
+    std::optional<Texture> texture = decoded(images_.at(result->texture), decode_alpha_texture);
+    if (!texture) // gone since its colours were read
+        return std::nullopt;
+    texture->name += " (alpha)";
+    result->texture = static_cast<std::uint32_t>(result_.textures.size());
+    result_.textures.push_back(std::move(*texture));
+    return result;
+}
+
+/// Returns a normal map, unless its scale makes it flat.
+std::optional<TextureSlot> MaterialReader::normal_map(const Json& parent, const char* key,
+                                                      float& scale) {
+    scale = static_cast<float>(number(child(parent, key), "scale", 1.0));
+    if (!std::isfinite(scale))
+        throw std::runtime_error(
+            fmt::format("expected a finite \"scale\" of \"{}\", got {}", key, scale));
+    return scale == 0.0f ? std::nullopt : slot(parent, key, false);
+}
+
+/// Reads KHR_materials_ior and KHR_materials_specular.
+void MaterialReader::read_specular(const Json& extensions, Material& material) {
+    const double ior = number(child(extensions, "KHR_materials_ior"), "ior", 1.5);
+    if (ior != 0.0 && !(ior >= 1.0 && ior <= 1e6))
+        throw std::runtime_error(fmt::format("expected 0, or 1 to 1e6, as \"ior\", got {}", ior));
+    material.ior = static_cast<float>(ior);
+    const Json& specular = child(extensions, "KHR_materials_specular");
+    material.specular_strength = fraction(specular, "specularFactor", 1.0f);
+    material.specular_strength_texture = alpha_slot(specular, "specularTexture");
+    const std::vector<double> tint = numbers(specular, "specularColorFactor", {1.0, 1.0, 1.0});
+    for (const double channel : tint)
+        if (!(channel >= 0.0 && channel <= 1e6))
+            throw std::runtime_error(fmt::format(
+                "expected numbers of 0 to 1e6 as \"specularColorFactor\", got {}", channel));
+    material.specular_tint = glm::vec3(tint[0], tint[1], tint[2]);
+    material.specular_tint_texture = slot(specular, "specularColorTexture", true);
+}
+
+void MaterialReader::read_coat(const Json& extension, Material& material) {
+    material.coat = fraction(extension, "clearcoatFactor", 0.0f);
+    if (material.coat == 0.0f)
+        return;
+    material.coat_texture = slot(extension, "clearcoatTexture", false);
+    material.coat_roughness = fraction(extension, "clearcoatRoughnessFactor", 0.0f);
+    material.coat_roughness_texture = slot(extension, "clearcoatRoughnessTexture", false);
+    material.coat_normal_texture =
+        normal_map(extension, "clearcoatNormalTexture", material.coat_normal_scale);
+}
+
+void MaterialReader::read_sheen(const Json& extension, Material& material) {
+    const std::vector<double> color = factors(extension, "sheenColorFactor", {0.0, 0.0, 0.0});
+    material.sheen = glm::vec3(color[0], color[1], color[2]);
+    if (material.sheen == glm::vec3(0.0f))
+        return;
+    material.sheen_texture = slot(extension, "sheenColorTexture", true);
+    material.sheen_roughness = fraction(extension, "sheenRoughnessFactor", 0.0f);
+    material.sheen_roughness_texture = alpha_slot(extension, "sheenRoughnessTexture");
 }
 
 Material MaterialReader::material(const Json& description, std::size_t index) {
@@ -310,7 +368,7 @@ Material MaterialReader::material(const Json& description, std::size_t index) {
     const bool is_unlit = extensions.find("KHR_materials_unlit") != nullptr;
     if (!is_unlit) {
         read_emission(description, material);
-        read_normal_map(description, material);
+        material.normal_texture = normal_map(description, "normalTexture", material.normal_scale);
     }
     if (extensions.find("KHR_materials_pbrSpecularGlossiness") && !is_unlit) {
         read_specular_glossiness(description, material);
@@ -328,6 +386,9 @@ Material MaterialReader::material(const Json& description, std::size_t index) {
     material.metallic = fraction(pbr, "metallicFactor", 1.0f);
     material.roughness = fraction(pbr, "roughnessFactor", 1.0f);
     material.metallic_roughness_texture = slot(pbr, "metallicRoughnessTexture", false);
+    read_specular(extensions, material);
+    read_coat(child(extensions, "KHR_materials_clearcoat"), material);
+    read_sheen(child(extensions, "KHR_materials_sheen"), material);
     read_glass(extensions, material);
     return material;
 }

@@ -27,7 +27,8 @@ struct Materials {
 };
 
 /// Reads factors, textures, samplers, emission, KHR_texture_transform, EXT_texture_webp,
-/// KHR_materials_emissive_strength, KHR_materials_unlit and KHR_materials_pbrSpecularGlossiness;
+/// KHR_materials_clearcoat, _emissive_strength, _ior, _pbrSpecularGlossiness, _sheen, _specular and
+/// _unlit;
 /// left_out() names the rest. A material that cannot be read becomes grey, an image is left out,
 /// each with a warning.
 [[nodiscard]] Materials read_materials(Document& document);

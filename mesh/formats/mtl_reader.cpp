@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "files/joined.h"
 #include "files/output_file.h"
@@ -130,6 +131,8 @@ std::optional<TextureSlot> MtlLibrary::texture(std::span<const std::string_view>
             ++num_arguments;
         if (num_arguments == 0 || words.size() < num_arguments + 1)
             reader.fail(fmt::format("arguments of {}", option), "the end of the line");
+        if (option == "-bm")
+            bump_ = number_between(reader, words[1], -1e6, 1e6);
         if (option == "-clamp" && words[1] == "on")
             slot.wrap = {Wrap::Clamp, Wrap::Clamp};
         if (option == "-s" || option == "-o")
@@ -173,9 +176,9 @@ std::optional<std::uint32_t> MtlLibrary::texture_of(const std::filesystem::path&
 
 /// Notes statements that change what a surface looks like and are not read.
 void MtlLibrary::note_unread(std::span<const std::string_view> words) {
-    constexpr std::array<std::string_view, 12> Maps = {"map_Ks", "map_Ns", "map_Pr",   "map_Pm",
+    constexpr std::array<std::string_view, 11> Maps = {"map_Ks", "map_Ns", "map_Pr",   "map_Pm",
                                                        "map_Ke", "map_d",  "map_Bump", "map_bump",
-                                                       "bump",   "norm",   "disp",     "refl"};
+                                                       "bump",   "disp",   "refl"};
     const std::string_view keyword = words[0];
     const auto is_only = [&](std::string_view digit) { // 0, 0.0, 1.000 ...
         return std::all_of(words.begin() + 1, words.end(), [&](std::string_view word) {
@@ -198,6 +201,40 @@ std::vector<std::string> MtlLibrary::take_warnings() {
     return std::move(warnings_);
 }
 
+/// Whether the texels are vectors of length 1 that stand on the surface, not heights.
+bool is_of_normals(const Texture& texture) {
+    std::size_t num_normals = 0;
+    for (const auto& texel : texture.texels) {
+        const glm::vec3 n = glm::vec3(texel[0], texel[1], texel[2]) / 127.5f - 1.0f;
+        num_normals += n.z > 0.0f && std::abs(glm::length(n) - 1.0f) < 0.15f ? 1 : 0;
+    }
+    constexpr double Most = 0.9;
+    return static_cast<double>(num_normals) >= Most * static_cast<double>(texture.texels.size());
+}
+
+/// Reads `norm`, and `bump` where its image has normals: many programs write these so.
+void MtlLibrary::read_normal_map(Material& material, const TextReader& reader,
+                                 const std::filesystem::path& folder) {
+    bump_ = 1.0f;
+    const std::size_t num_before = textures.size();
+    std::optional<TextureSlot> slot = texture(std::span(reader.words()).subspan(1), reader, folder);
+    if (!slot)
+        return;
+    if (reader.words()[0] != "norm" && !is_of_normals(textures[slot->texture])) {
+        note_unread(reader.words());
+        if (textures.size() > num_before) { // read for nothing
+            textures.pop_back();
+            std::erase_if(texture_indices_,
+                          [&](const auto& one) { return one.second == slot->texture; });
+        }
+        return;
+    }
+    slot->is_srgb = false;
+    material.normal_scale = bump_;
+    if (bump_ != 0.0f)
+        material.normal_texture = slot;
+}
+
 /// Reads a statement of a material.
 void MtlLibrary::read_value(Material& material, const TextReader& reader,
                             const std::filesystem::path& folder) {
@@ -211,6 +248,10 @@ void MtlLibrary::read_value(Material& material, const TextReader& reader,
         material.exponent = scalar(reader, 1e6);
     else if (keyword == "map_Kd")
         material.base_color_texture = texture(std::span(words).subspan(1), reader, folder);
+    else if (keyword == "norm" ||
+             ((keyword == "map_Bump" || keyword == "map_bump" || keyword == "bump") &&
+              material.normal_texture == std::nullopt))
+        read_normal_map(material, reader, folder);
     else if (keyword == "Pr" || keyword == "Pm") {
         (keyword == "Pr" ? material.roughness : material.metallic) = scalar(reader, 1.0);
         material.model = MaterialModel::MetallicRoughness;

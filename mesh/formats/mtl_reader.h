@@ -22,8 +22,8 @@ class MtlLibrary {
 public:
     explicit MtlLibrary(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// Adds a library. It reads Kd, Ks, Ns, Pr, Pm and map_Kd (with -s, -o and -clamp) and skips
-    /// the rest. A material with Pr or Pm is MetallicRoughness. A second definition of a material
+    /// Adds a library. It reads Kd, Ks, Ns, Pr, Pm, map_Kd (with -s, -o and -clamp) and normal maps,
+    /// and skips the rest. A material with Pr or Pm is MetallicRoughness. A second definition of a material
     /// replaces the first. A missing library or image goes to `missing`. A material that cannot be
     /// read becomes grey, a broken image is left out, each with a warning.
     void read(const std::string& name);
@@ -46,6 +46,8 @@ private:
                const std::filesystem::path& folder);
     void read_value(Material& material, const class TextReader& reader,
                     const std::filesystem::path& folder);
+    void read_normal_map(Material& material, const class TextReader& reader,
+                         const std::filesystem::path& folder);
     void note_unread(std::span<const std::string_view> words);
     [[nodiscard]] std::optional<std::uint32_t> texture_of(const std::filesystem::path& path,
                                                           const std::string& name);
@@ -61,6 +63,8 @@ private:
     ImageBudget budget_;
     /// Keywords that are not read.
     std::vector<std::string> warnings_, unread_;
+    /// Of the last texture: -bm.
+    float bump_ = 1.0f;
     bool has_library_ = false, is_broken_ = false;
 };
 

@@ -111,6 +111,35 @@ struct Material {
     std::optional<TextureSlot> normal_texture = {};
     /// Multiplies x and y of the texture's normals.
     float normal_scale = 1.0f;
+    /// MetallicRoughness: the index of refraction, >= 1; 0: infinite. F0 of what is not metal.
+    float ior = 1.5f;
+    /// In [0, 1]. MetallicRoughness: multiplies all that a dielectric mirrors.
+    float specular_strength = 1.0f;
+    /// Its R multiplies specular_strength.
+    std::optional<TextureSlot> specular_strength_texture = {};
+    /// >= 0. MetallicRoughness: multiplies a dielectric's F0.
+    glm::vec3 specular_tint{1.0f};
+    /// Its RGB multiplies specular_tint.
+    std::optional<TextureSlot> specular_tint_texture = {};
+    /// In [0, 1]. MetallicRoughness: the part that a clear coat covers.
+    float coat = 0.0f;
+    /// Its R multiplies coat.
+    std::optional<TextureSlot> coat_texture = {};
+    /// In [0, 1].
+    float coat_roughness = 0.0f;
+    /// Its G multiplies coat_roughness.
+    std::optional<TextureSlot> coat_roughness_texture = {};
+    /// As normal_texture, of the coat alone. Without it the coat has the mesh's normals.
+    std::optional<TextureSlot> coat_normal_texture = {};
+    float coat_normal_scale = 1.0f;
+    /// In [0, 1]. MetallicRoughness: the colour of fibres that stand out of a cloth.
+    glm::vec3 sheen{0.0f};
+    /// Its RGB multiplies sheen.
+    std::optional<TextureSlot> sheen_texture = {};
+    /// In [0, 1].
+    float sheen_roughness = 0.0f;
+    /// Its R multiplies sheen_roughness.
+    std::optional<TextureSlot> sheen_roughness_texture = {};
 
     bool operator==(const Material&) const = default;
 };
@@ -122,12 +151,19 @@ struct SlotName {
 };
 
 /// All textures of a material; the colours come first.
-inline constexpr std::array<SlotName, 7> TextureSlots = {
+inline constexpr std::array<SlotName, 14> TextureSlots = {
     {{&Material::base_color_texture, "base_texture"},
      {&Material::metallic_roughness_texture, "metallic_texture"},
      {&Material::specular_texture, "specular_texture"},
      {&Material::emission_texture, "emission_texture"},
      {&Material::normal_texture, "normal_texture"},
+     {&Material::specular_strength_texture, "specular_strength_texture"},
+     {&Material::specular_tint_texture, "specular_tint_texture"},
+     {&Material::coat_texture, "coat_texture"},
+     {&Material::coat_roughness_texture, "coat_roughness_texture"},
+     {&Material::coat_normal_texture, "coat_normal_texture"},
+     {&Material::sheen_texture, "sheen_texture"},
+     {&Material::sheen_roughness_texture, "sheen_roughness_texture"},
      {&Material::alpha_texture, "alpha_texture"},
      {&Material::transmission_texture, "transmission_texture"}}};
 

@@ -40,23 +40,6 @@ std::uint32_t wrapped(std::int64_t i, std::uint32_t size, Wrap wrap) {
     return static_cast<std::uint32_t>(i < n ? i : period - 1 - i);
 }
 
-/// The two texels of a coordinate, and the weight of the second.
-struct Pair {
-    std::uint32_t first, second;
-    float weight;
-};
-
-Pair neighbours(float coordinate, std::uint32_t size, Wrap wrap) {
-    // In double. A repeating coordinate is first brought near 0, so large coordinates keep the
-    // fraction that their float has.
-    double x = std::isfinite(coordinate) ? double{coordinate} : 0.0;
-    x = wrap == Wrap::Clamp ? std::clamp(x, 0.0, 1.0) : x - 2.0 * std::floor(0.5 * x);
-    x = x * size - 0.5;
-    const double below = std::floor(x);
-    const auto i = static_cast<std::int64_t>(below);
-    return {wrapped(i, size, wrap), wrapped(i + 1, size, wrap), static_cast<float>(x - below)};
-}
-
 /// Puts the image's rows into the order of v. `texel` gives the pixel of a number from the top
 /// left.
 template<class Texel>
@@ -108,15 +91,23 @@ glm::vec3 texel(const Texture& texture, std::uint32_t column, std::uint32_t row,
     return decoded(texture.texels[std::size_t{row} * texture.width + column], is_srgb);
 }
 
+TexelPair texels_beside(float coordinate, std::uint32_t size, Wrap wrap) {
+    // In double. A repeating coordinate is first brought near 0, so large coordinates keep the
+    // fraction that their float has.
+    double x = std::isfinite(coordinate) ? double{coordinate} : 0.0;
+    x = wrap == Wrap::Clamp ? std::clamp(x, 0.0, 1.0) : x - 2.0 * std::floor(0.5 * x);
+    x = x * size - 0.5;
+    const double below = std::floor(x);
+    const auto i = static_cast<std::int64_t>(below);
+    return {wrapped(i, size, wrap), wrapped(i + 1, size, wrap), static_cast<float>(x - below)};
+}
+
 glm::vec3 sample(const Texture& texture, const TextureSlot& slot, const glm::vec2& mesh_uv) {
-    const glm::vec2 uv = slot.uv_from_mesh_uv * mesh_uv + slot.uv_offset;
-    const Pair u = neighbours(uv.x, texture.width, slot.wrap[0]);
-    const Pair v = neighbours(uv.y, texture.height, slot.wrap[1]);
-    const auto at = [&](std::uint32_t column, std::uint32_t row) {
-        return texel(texture, column, row, slot.is_srgb);
-    };
-    return glm::mix(glm::mix(at(u.first, v.first), at(u.second, v.first), u.weight),
-                    glm::mix(at(u.first, v.second), at(u.second, v.second), u.weight), v.weight);
+    return bilinear(slot.uv_from_mesh_uv * mesh_uv + slot.uv_offset,
+                    {texture.width, texture.height}, slot.wrap,
+                    [&](std::uint32_t column, std::uint32_t row) {
+                        return texel(texture, column, row, slot.is_srgb);
+                    });
 }
 
 } // namespace relumine::mesh

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -66,6 +67,28 @@ private:
 /// Returns the value of a texel, each channel in [0, 1].
 [[nodiscard]] glm::vec3 texel(const Texture& texture, std::uint32_t column, std::uint32_t row,
                               bool is_srgb);
+
+/// The two texels of a coordinate, and the weight of the second.
+struct TexelPair {
+    std::uint32_t first, second;
+    float weight;
+};
+
+/// Returns the texels beside a coordinate of a picture; texel centres lie at (i + 0.5) / size. A
+/// coordinate that is not finite counts as 0.
+[[nodiscard]] TexelPair texels_beside(float coordinate, std::uint32_t size, Wrap wrap);
+
+/// Returns the bilinear value of a picture of some width and height, whose texels `texel(column,
+/// row)` returns.
+template<class Texel>
+[[nodiscard]] glm::vec3 bilinear(const glm::vec2& uv, const std::array<std::uint32_t, 2>& size,
+                                 const std::array<Wrap, 2>& wrap, const Texel& texel) {
+    const TexelPair u = texels_beside(uv.x, size[0], wrap[0]);
+    const TexelPair v = texels_beside(uv.y, size[1], wrap[1]);
+    return glm::mix(glm::mix(texel(u.first, v.first), texel(u.second, v.first), u.weight),
+                    glm::mix(texel(u.first, v.second), texel(u.second, v.second), u.weight),
+                    v.weight);
+}
 
 /// Returns the texture's value at a uv of the mesh, each channel in [0, 1]. Values are bilinear
 /// between texel centres, which lie at (i + 0.5) / width. A uv that is not finite counts as 0.

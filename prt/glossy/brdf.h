@@ -15,8 +15,12 @@
 //     albedo (1 - R) D  +  m (F0 (S - Sc) + Sc),   m = 1 + F0 (1 - E) / E,
 //     R = m (F0 (E - Ec) + Ec)
 //
-// where E and Ec are the integrals of S and Sc over all lights (prt/glossy/ggx_energy.h): R is what
-// the highlight reflects of a white sky.
+// A clear coat is one more GGX lobe of F0 = 0.04 over all of this, with a normal of its own, and
+// sheen a lobe between both (prt/glossy/sheen_lobe.h). Each leaves to what is under it what it does
+// not reflect of a white sky.
+//
+// Above, E and Ec are the integrals of S and Sc over all lights (prt/glossy/ggx_energy.h): R is
+// what the highlight reflects of a white sky.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -39,12 +43,13 @@ namespace relumine::prt {
                                           const glm::vec3& to_eye, const glm::vec3& w);
 
 /// Puts the colours in. Returns outgoing radiance for sums of radiance times lobe, or BRDF times
-/// cosine for the lobes of a single light. `n_v` is the cosine between normal and eye; only
-/// Highlight::GgxWhole asks for it.
-[[nodiscard]] glm::vec3 reflect(const Surface& surface, const Lobes<glm::vec3>& lobes, float n_v);
+/// cosine for the lobes of a single light. `n_v` are the cosines between normals and eye; only
+/// Highlight::GgxWhole asks for them.
+[[nodiscard]] glm::vec3 reflect(const Surface& surface, const Lobes<glm::vec3>& lobes,
+                                const EyeCosines& n_v);
 
 /// Returns the factor on diffuse light from other surfaces: the albedo, less what the highlight of
 /// a GgxWhole takes.
-[[nodiscard]] glm::vec3 diffuse_albedo(const Surface& surface, float n_v);
+[[nodiscard]] glm::vec3 diffuse_albedo(const Surface& surface, const EyeCosines& n_v);
 
 } // namespace relumine::prt

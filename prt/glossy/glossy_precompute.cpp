@@ -105,9 +105,9 @@ LobeCuts joined(std::span<FinishedBlock> blocks, std::size_t lobe) {
 /// at a time. Narrow ones still have few cells.
 constexpr float FullToleranceWidth = 0.18f;
 
-float tightened(float tolerance, const BlockToRefine& block) {
+float tightened(float tolerance, const Mirrors& mirrors) {
     float narrowest = FullToleranceWidth;
-    for (const float width : block.narrowness)
+    for (const float width : mirrors.narrowness)
         if (width > 0.0f)
             narrowest = std::min(narrowest, width);
     return tolerance * std::pow(narrowest / FullToleranceWidth, 0.75f);
@@ -154,9 +154,15 @@ BlockToRefine GlossyPrecompute::block_at(std::size_t block, std::vector<glm::vec
         const Surface& surface = receivers_.surfaces[receiver];
         const std::size_t lane = i - begin;
         result.surfaces.set(lane, surface, normal, to_eye);
-        result.mirror[lane] = 2.0f * result.surfaces.normal_dot_eye[lane] * normal - to_eye;
-        result.narrowness[lane] =
+        result.of_base.mirror[lane] = 2.0f * result.surfaces.normal_dot_eye[lane] * normal - to_eye;
+        result.of_base.narrowness[lane] =
             result.surfaces.normal_dot_eye[lane] > 0.0f ? narrowness_of(surface) : 0.0f;
+        if ((result.surfaces.coat_lanes >> lane & 1u) != 0) {
+            const glm::vec3 coat =
+                surface.coat_normal == glm::vec3(0.0f) ? normal : surface.coat_normal;
+            result.of_coat.mirror[lane] = 2.0f * glm::dot(coat, to_eye) * coat - to_eye;
+            result.of_coat.narrowness[lane] = GgxLobe::narrowness(surface.coat_roughness);
+        }
         origins.push_back(ray_origin(receivers_.positions[receiver], normal, options_.bias));
     }
     result.origins = origins;
@@ -167,10 +173,10 @@ FinishedBlock GlossyPrecompute::refine(std::size_t block) const {
     std::vector<glm::vec3> origins;
     const BlockToRefine to_refine = block_at(block, origins);
     FinishedBlock finished;
-    RefinementLimits limits{.tolerance = tightened(options_.tolerance, to_refine),
+    RefinementLimits limits{.tolerance = tightened(options_.tolerance, to_refine.of_base),
                             .max_level = deepest_level(options_.face_resolution)};
-    for (const GlossyLobe lobe :
-         {GlossyLobe::Specular, GlossyLobe::SpecularGrazing, GlossyLobe::DiffuseGrazing}) {
+    for (std::size_t i = 0; i < NumGlossyLobes; ++i) {
+        const auto lobe = static_cast<GlossyLobe>(i);
         LobeCuts& entries = finished.lobes[static_cast<std::size_t>(lobe)];
         if (!to_refine.surfaces.has(lobe)) {
             entries.begin.push_back(0);
@@ -181,6 +187,10 @@ FinishedBlock GlossyPrecompute::refine(std::size_t block) const {
             limits.reference_power =
                 std::popcount(to_refine.surfaces.lanes_with(GlossyLobe::DiffuseGrazing)) * 2.0 /
                 (3.0 * std::numbers::pi);
+        // Layers have their own power.
+        if (lobe == GlossyLobe::Coat || lobe == GlossyLobe::Sheen)
+            limits = {.tolerance = tightened(options_.tolerance, to_refine.mirrors(lobe)),
+                      .max_level = limits.max_level};
         const LobeCut cut = refine_lobe(to_refine, lobe, transfer_, blockers_, limits);
         if (lobe == GlossyLobe::Specular)
             limits.reference_power = cut.power;

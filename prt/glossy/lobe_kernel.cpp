@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "prt/glossy/lobe_list.h"
+#include "prt/glossy/sheen_lobe.h"
 
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
@@ -42,13 +43,30 @@ Vector squared_cross(const Vector3& a, const Vector3& b) {
     return hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
 }
 
+/// Normals of some receivers, and a lobe's parameters.
+struct LobeNormals {
+    explicit LobeNormals(const BlockSurfaces& of)
+        : normal(of.normal), dot_eye(of.normal_dot_eye), parameters(of.parameters) {}
+    LobeNormals(const std::array<BlockSurfaces::Floats, 3>& own,
+                const BlockSurfaces::Floats& own_dot_eye,
+                const std::array<BlockSurfaces::Floats, 2>& own_parameters)
+        : normal(own), dot_eye(own_dot_eye), parameters(own_parameters) {}
+
+    const std::array<BlockSurfaces::Floats, 3>& normal;
+    const BlockSurfaces::Floats& dot_eye;
+    const std::array<BlockSurfaces::Floats, 2>& parameters;
+};
+
 /// The terms of one direction for some of a block's receivers, as LobeGeometry has them.
 struct LobeTerms {
     LobeTerms(const BlockSurfaces& of, const glm::vec3& w, std::size_t first_lane)
-        : surfaces(of), lane(first_lane), n_w(hn::Zero(Tag())), sin2(hn::Zero(Tag())),
-          fresnel(hn::Zero(Tag())) {
+        : LobeTerms(of, LobeNormals(of), w, first_lane) {}
+    LobeTerms(const BlockSurfaces& of, const LobeNormals& of_lobe, const glm::vec3& w,
+              std::size_t first_lane)
+        : surfaces(of), normals(of_lobe), lane(first_lane), n_w(hn::Zero(Tag())),
+          sin2(hn::Zero(Tag())), fresnel(hn::Zero(Tag())) {
         const Tag d;
-        const Vector3 n(of.normal, lane);
+        const Vector3 n(normals.normal, lane);
         const Vector3 v(of.to_eye, lane);
         const Vector3 light(hn::Set(d, w.x), hn::Set(d, w.y), hn::Set(d, w.z));
         n_w = hn::Max(dot(n, light), hn::Zero(d));
@@ -62,12 +80,10 @@ struct LobeTerms {
         fresnel = hn::Mul(hn::Mul(squared, squared), one_less);
     }
 
-    [[nodiscard]] Vector n_v() const {
-        return hn::Load(Tag(), surfaces.normal_dot_eye.data() + lane);
-    }
+    [[nodiscard]] Vector n_v() const { return hn::Load(Tag(), normals.dot_eye.data() + lane); }
     /// Of a lobe's parameters().
     [[nodiscard]] Vector parameter(std::size_t i) const {
-        return hn::Load(Tag(), surfaces.parameters[i].data() + lane);
+        return hn::Load(Tag(), normals.parameters[i].data() + lane);
     }
     [[nodiscard]] hn::Mask<Tag> lanes(std::uint32_t bits) const {
         const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits >> lane),
@@ -76,6 +92,7 @@ struct LobeTerms {
     }
 
     const BlockSurfaces& surfaces;
+    LobeNormals normals;
     std::size_t lane;
     /// n.w, sin^2 between n and the half vector, and Schlick's (1 - v.h)^5
     Vector n_w, sin2, fresnel;
@@ -84,6 +101,7 @@ struct LobeTerms {
 // The lobes, 16 receivers at a time: functions `specular(LOBE, LobeTerms)`.
 #include "prt/glossy/blinn_phong_lobe-inl.h"
 #include "prt/glossy/ggx_lobe-inl.h"
+#include "prt/glossy/sheen_lobe-inl.h"
 
 /// Returns the highlights of all lobes that the block has.
 template<std::size_t I = 1>
@@ -109,18 +127,47 @@ Vector diffuse(const LobeTerms& terms) {
     return hn::Mul(terms.n_w, hn::Set(Tag(), std::numbers::inv_pi_v<float>));
 }
 
+/// What clear coats mirror.
+Vector coat(const BlockSurfaces& surfaces, const glm::vec3& direction, std::size_t lane) {
+    const Tag d;
+    const LobeTerms terms(surfaces,
+                          {surfaces.coat_normal, surfaces.coat_dot_eye, surfaces.coat_parameters},
+                          direction, lane);
+    const auto fresnel =
+        hn::MulAdd(hn::Set(d, 1.0f - DielectricF0), terms.fresnel, hn::Set(d, DielectricF0));
+    return hn::IfThenElseZero(
+        hn::And(terms.lanes(surfaces.coat_lanes), hn::Gt(terms.n_w, hn::Zero(d))),
+        hn::Mul(fresnel, specular(GgxLobe(), terms)));
+}
+
+Vector sheen(const LobeTerms& terms) {
+    return hn::IfThenElseZero(
+        hn::And(terms.lanes(terms.surfaces.sheen_lanes), hn::Gt(terms.n_w, hn::Zero(Tag()))),
+        value(SheenLobe(), terms));
+}
+
 void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe,
                    std::span<const glm::vec3> directions, std::span<BlockSurfaces::Floats> values) {
     const std::uint32_t lanes = surfaces.lanes_with(lobe);
-    for (std::size_t i = 0; i < directions.size(); ++i)
-        for (std::size_t lane = 0; lane < BlockSize; lane += hn::Lanes(Tag())) {
-            const LobeTerms terms(surfaces, directions[i], lane);
-            const auto value = lobe == GlossyLobe::Specular ? all_specular(terms)
-                               : lobe == GlossyLobe::SpecularGrazing
-                                   ? grazing(terms, lanes, all_specular(terms))
-                                   : grazing(terms, lanes, diffuse(terms));
-            hn::StoreU(value, Tag(), values[i].data() + lane);
+    const auto evaluated = [&](const LobeTerms& terms, const glm::vec3& direction) {
+        switch (lobe) {
+        case GlossyLobe::Specular:
+            return all_specular(terms);
+        case GlossyLobe::SpecularGrazing:
+            return grazing(terms, lanes, all_specular(terms));
+        case GlossyLobe::DiffuseGrazing:
+            return grazing(terms, lanes, diffuse(terms));
+        case GlossyLobe::Coat:
+            return coat(surfaces, direction, terms.lane);
+        case GlossyLobe::Sheen:
+            break;
         }
+        return sheen(terms);
+    };
+    for (std::size_t i = 0; i < directions.size(); ++i)
+        for (std::size_t lane = 0; lane < BlockSize; lane += hn::Lanes(Tag()))
+            hn::StoreU(evaluated(LobeTerms(surfaces, directions[i], lane), directions[i]), Tag(),
+                       values[i].data() + lane);
 }
 
 void evaluate_lobes(const BlockSurfaces& surfaces, const glm::vec3& direction,
@@ -133,6 +180,10 @@ void evaluate_lobes(const BlockSurfaces& surfaces, const glm::vec3& direction,
         hn::StoreU(highlight, Tag(), values[0].data() + lane);
         hn::StoreU(grazing(terms, lanes, highlight), Tag(), values[1].data() + lane);
         hn::StoreU(grazing(terms, diffuse_lanes, diffuse(terms)), Tag(), values[2].data() + lane);
+        hn::StoreU(surfaces.coat_lanes == 0 ? hn::Zero(Tag()) : coat(surfaces, direction, lane),
+                   Tag(), values[3].data() + lane);
+        hn::StoreU(surfaces.sheen_lanes == 0 ? hn::Zero(Tag()) : sheen(terms), Tag(),
+                   values[4].data() + lane);
     }
 }
 
@@ -152,6 +203,8 @@ void BlockSurfaces::set(std::size_t lane, const Surface& surface, const glm::vec
         to_eye[static_cast<std::size_t>(axis)][lane] = eye_of_lane[axis];
     }
     normal_dot_eye[lane] = glm::dot(normal_of_lane, eye_of_lane);
+    if (has_coat(surface))
+        set_coat(lane, surface, normal_of_lane, eye_of_lane);
     if (!(normal_dot_eye[lane] > 0.0f) || surface.highlight == Highlight::None)
         return;
     lanes[static_cast<std::size_t>(surface.highlight)] |= 1u << lane;
@@ -160,9 +213,35 @@ void BlockSurfaces::set(std::size_t lane, const Surface& surface, const glm::vec
     });
     for (std::size_t i = 0; i < own.size(); ++i)
         parameters[i][lane] = own[i];
+    if (!has_sheen(surface))
+        return;
+    sheen_lanes |= 1u << lane;
+    const float n_v = normal_dot_eye[lane], alpha = SheenLobe::alpha(surface.sheen_roughness);
+    sheen_parameters[0][lane] = alpha;
+    sheen_parameters[1][lane] = 1.0f + SheenLobe::lambda(SheenLobe::fit(alpha), n_v);
+    sheen_parameters[2][lane] = sheen_limit(surface.sheen_roughness, n_v) * (2.0f + 1.0f / alpha) *
+                                0.5f * std::numbers::inv_pi_v<float> / (4.0f * n_v);
+}
+
+void BlockSurfaces::set_coat(std::size_t lane, const Surface& surface,
+                             const glm::vec3& normal_of_lane, const glm::vec3& eye_of_lane) {
+    const glm::vec3 own =
+        surface.coat_normal == glm::vec3(0.0f) ? normal_of_lane : surface.coat_normal;
+    for (int axis = 0; axis < 3; ++axis)
+        coat_normal[static_cast<std::size_t>(axis)][lane] = own[axis];
+    coat_dot_eye[lane] = glm::dot(own, eye_of_lane);
+    if (coat_dot_eye[lane] > 0.0f)
+        coat_lanes |= 1u << lane;
+    const std::array<float, 2> of_lobe = GgxLobe::parameters(surface.coat_roughness);
+    for (std::size_t i = 0; i < of_lobe.size(); ++i)
+        coat_parameters[i][lane] = of_lobe[i];
 }
 
 std::uint32_t BlockSurfaces::lanes_with(GlossyLobe lobe) const {
+    if (lobe == GlossyLobe::Coat)
+        return coat_lanes;
+    if (lobe == GlossyLobe::Sheen)
+        return sheen_lanes;
     std::uint32_t bits = 0;
     for (std::size_t i = 1; i < NumHighlights; ++i) {
         const LobeFacts& facts = facts_of(static_cast<Highlight>(i));

@@ -23,12 +23,24 @@ struct alignas(64) BlockSurfaces {
     std::array<Floats, 2> parameters{};
     /// By Highlight: bit i is set where receiver i has it and its eye is above the horizon.
     std::array<std::uint32_t, NumHighlights> lanes{};
+    /// Receivers with a clear coat, and with sheen.
+    std::uint32_t coat_lanes = 0, sheen_lanes = 0;
+    /// Of the coat, as above.
+    alignas(64) std::array<Floats, 3> coat_normal{};
+    Floats coat_dot_eye{};
+    std::array<Floats, 2> coat_parameters{};
+    /// Of sheen: alpha, 1 + lambda of the eye, and the factor on the lobe.
+    std::array<Floats, 3> sheen_parameters{};
 
     void set(std::size_t lane, const Surface& surface, const glm::vec3& normal_of_lane,
              const glm::vec3& eye_of_lane);
     /// Returns the bits of the receivers that have a lobe.
     [[nodiscard]] std::uint32_t lanes_with(GlossyLobe lobe) const;
     [[nodiscard]] bool has(GlossyLobe lobe) const { return lanes_with(lobe) != 0; }
+
+private:
+    void set_coat(std::size_t lane, const Surface& surface, const glm::vec3& normal_of_lane,
+                  const glm::vec3& eye_of_lane);
 };
 
 /// Evaluates one lobe of each receiver for each direction.

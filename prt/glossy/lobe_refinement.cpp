@@ -76,7 +76,8 @@ class LobeRefiner {
 public:
     LobeRefiner(const BlockToRefine& block, GlossyLobe lobe, const Transfer& transfer,
                 const Blockers& blockers, const RefinementLimits& limits)
-        : block_(block), lobe_(lobe), transfer_(transfer), blockers_(blockers), limits_(limits) {}
+        : block_(block), lobe_(lobe), mirrors_(block.mirrors(lobe)), transfer_(transfer),
+          blockers_(blockers), limits_(limits) {}
 
     LobeCut run();
 
@@ -99,6 +100,7 @@ private:
 
     const BlockToRefine& block_;
     GlossyLobe lobe_;
+    Mirrors mirrors_;
     const Transfer& transfer_;
     const Blockers& blockers_;
     const RefinementLimits& limits_;
@@ -248,14 +250,12 @@ void LobeRefiner::add(Node node, const std::array<const Floats*, SamplesPerCell>
 /// Whether a highlight may hide between the samples: the cell is wider than the highlight and wider
 /// than its distance from the highlight.
 bool LobeRefiner::is_too_coarse(const Cell& cell) const {
-    if (lobe_ == GlossyLobe::DiffuseGrazing)
-        return false;
     const auto radius = static_cast<float>(1.42 * cell.size()); // half the longest diagonal
     const glm::vec3 centre =
         cubemap::direction(cell.face, (cell.x + 0.5) * cell.size(), (cell.y + 0.5) * cell.size());
     for (std::size_t i = 0; i < block_.origins.size(); ++i)
-        if (block_.narrowness[i] > 0.0f && radius > block_.narrowness[i] &&
-            radius > 0.7f * glm::distance(centre, block_.mirror[i]))
+        if (mirrors_.narrowness[i] > 0.0f && radius > mirrors_.narrowness[i] &&
+            radius > 0.7f * glm::distance(centre, mirrors_.mirror[i]))
             return true;
     return false;
 }

@@ -15,15 +15,27 @@
 
 namespace relumine::prt {
 
+/// Where highlights are.
+struct Mirrors {
+    /// The eye's direction mirrored at each receiver's normal.
+    std::array<glm::vec3, BlockSize> mirror{};
+    /// The angle over which each receiver's highlight changes, radians; 0 without a highlight.
+    std::array<float, BlockSize> narrowness{};
+};
+
 /// A block of receivers, with everything that its lobes share.
 struct BlockToRefine {
     BlockSurfaces surfaces = {};
     /// [1..16] starts of the receivers' rays.
     std::span<const glm::vec3> origins = {};
-    /// The eye's direction mirrored at each receiver's normal.
-    std::array<glm::vec3, BlockSize> mirror{};
-    /// The angle over which each receiver's highlight changes, radians; 0 without a highlight.
-    std::array<float, BlockSize> narrowness{};
+    Mirrors of_base = {}, of_coat = {};
+
+    /// Of a lobe. Sheen has no narrow highlight.
+    [[nodiscard]] Mirrors mirrors(GlossyLobe lobe) const {
+        return lobe == GlossyLobe::Coat                                          ? of_coat
+               : lobe == GlossyLobe::Sheen || lobe == GlossyLobe::DiffuseGrazing ? Mirrors()
+                                                                                 : of_base;
+    }
     /// Index of the block in the transfer.
     std::size_t block = 0;
 };

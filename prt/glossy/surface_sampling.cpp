@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 
 #include "prt/glossy/lobe_list.h"
+#include "prt/glossy/sheen_lobe.h"
 #include "prt/receivers/mesh_point.h"
 
 namespace relumine::prt {
@@ -18,14 +19,22 @@ struct MaterialPoint {
     const mesh::TriangleMesh& mesh;
     const mesh::Material& material;
     MeshPoint at;
+    const TextureView* view;
 
     [[nodiscard]] glm::vec3 texel(const mesh::TextureSlot& slot) const {
+        if (view != nullptr)
+            return view->maps->sample(slot, uv_at(mesh, at, slot.uv_set),
+                                      view->footprint(mesh, at, slot.uv_set));
         return mesh::sample(mesh.textures[slot.texture], slot, uv_at(mesh, at, slot.uv_set));
     }
     /// Returns a value times its texture, if there is one.
     [[nodiscard]] glm::vec3 textured(const glm::vec3& value,
                                      const std::optional<mesh::TextureSlot>& slot) const {
         return slot ? value * texel(*slot) : value;
+    }
+    [[nodiscard]] glm::vec3 textured(float value,
+                                     const std::optional<mesh::TextureSlot>& slot) const {
+        return textured(glm::vec3(value), slot);
     }
     /// Returns the base colour, not limited where vertices are brighter than 1.
     [[nodiscard]] glm::vec3 base() const {
@@ -35,6 +44,28 @@ struct MaterialPoint {
                    : base;
     }
 };
+
+/// F0 of glass of an index of refraction; 0 stands for an infinite one.
+float f0_of(float ior) {
+    if (ior == mesh::Material().ior)
+        return DielectricF0;
+    const float root = (ior - 1.0f) / (ior + 1.0f);
+    return root * root;
+}
+
+void add_layers(const MaterialPoint& point, Surface& surface) {
+    const mesh::Material& material = point.material;
+    if (material.coat > 0.0f) {
+        surface.coat = point.textured(material.coat, material.coat_texture).r;
+        surface.coat_roughness =
+            point.textured(material.coat_roughness, material.coat_roughness_texture).g;
+    }
+    if (material.sheen != glm::vec3(0.0f)) {
+        surface.sheen = point.textured(material.sheen, material.sheen_texture);
+        surface.sheen_roughness =
+            point.textured(material.sheen_roughness, material.sheen_roughness_texture).r;
+    }
+}
 
 /// A surface without its emission.
 Surface reflecting(const MaterialPoint& point, GgxForm form) {
@@ -67,21 +98,32 @@ Surface reflecting(const MaterialPoint& point, GgxForm form) {
     }
     const float transmission =
         point.textured(glm::vec3(material.transmission), material.transmission_texture).r;
-    return {.albedo = base * (1.0f - metallic) * (1.0f - transmission),
-            .specular = glm::mix(glm::vec3(DielectricF0), base, metallic),
-            .highlight = highlight,
-            .roughness_or_exponent = roughness,
-            .metallic = form == GgxForm::Whole ? metallic : 0.0f};
+    const float strength =
+        point.textured(material.specular_strength, material.specular_strength_texture).r;
+    const glm::vec3 dielectric =
+        strength * glm::min(f0_of(material.ior) * point.textured(material.specular_tint,
+                                                                 material.specular_tint_texture),
+                            1.0f);
+    Surface result{.albedo = base * (1.0f - metallic) * (1.0f - transmission),
+                   .specular = glm::mix(dielectric, base, metallic),
+                   .highlight = highlight,
+                   .roughness_or_exponent = roughness,
+                   .metallic = form == GgxForm::Whole ? metallic : 0.0f,
+                   .dielectric_f0 = std::max({dielectric.r, dielectric.g, dielectric.b}),
+                   .dielectric_f90 = strength};
+    add_layers(point, result);
+    return result;
 }
 
 } // namespace
 
 Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
-                   const glm::vec2& barycentric, GgxForm form) {
+                   const glm::vec2& barycentric, GgxForm form, const TextureView* view) {
     if (mesh.triangle_materials.empty())
         return {};
     const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
-    const MaterialPoint point{.mesh = mesh, .material = material, .at = {triangle, barycentric}};
+    const MaterialPoint point{
+        .mesh = mesh, .material = material, .at = {triangle, barycentric}, .view = view};
     if (material.model == mesh::MaterialModel::Unlit)
         return {.albedo = glm::vec3(0.0f), .emission = glm::max(point.base(), 0.0f)};
     Surface surface = reflecting(point, form);
@@ -111,7 +153,18 @@ mesh::Material material_of(const Surface& surface) {
     return material;
 }
 
+/// Of the directions from which a surface is seen.
+constexpr float MeanCosine = 0.5f;
+
 Surface without_highlight(Surface surface) {
+    if (surface.sheen != glm::vec3(0.0f)) {
+        const float albedo = sheen_albedo(surface.sheen_roughness, MeanCosine);
+        const glm::vec3& color = surface.sheen;
+        surface.albedo *= 1.0f - albedo * std::max({color.r, color.g, color.b});
+        surface.albedo += albedo * color;
+    }
+    surface.coat = 0.0f;
+    surface.sheen = glm::vec3(0.0f);
     if (facts_of(surface.highlight).has_fresnel)
         surface.albedo =
             glm::min(surface.albedo + glm::max(surface.specular - DielectricF0, 0.0f), 1.0f);

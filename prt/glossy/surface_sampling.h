@@ -9,6 +9,7 @@
 
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/surface.h"
+#include "prt/receivers/texture_view.h"
 
 namespace relumine::prt {
 
@@ -19,12 +20,15 @@ enum class GgxForm { Whole, Published };
 /// Returns the surface at a triangle's point, position a + x (b - a) + y (c - a) for barycentric
 /// (x, y).
 ///
+/// Textures are means over what a sample of the view sees; without a view, values at the point.
 /// Lambert of albedo 1 where the mesh has no materials. Metallic-roughness materials give GGX with
 /// albedo = base (1 - metallic) and F0 = mix(0.04, base, metallic), specular-glossiness materials
-/// GGX with albedo = base, or base (1 - max F0) as published. Phong materials give Blinn-Phong
+/// GGX with albedo = base, or base (1 - max F0) as published. A dielectric's own F0 takes the place
+/// of 0.04. The normal of a clear coat is the receiver's. Phong materials give Blinn-Phong
 /// where Ks > 0, Lambert otherwise. Unlit materials are black and emit their colour.
 [[nodiscard]] Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
-                                 const glm::vec2& barycentric, GgxForm form = GgxForm::Whole);
+                                 const glm::vec2& barycentric, GgxForm form = GgxForm::Whole,
+                                 const TextureView* view = nullptr);
 
 /// Whether surfaces of a material have a highlight.
 [[nodiscard]] bool has_highlight(const mesh::Material& material);
@@ -35,7 +39,7 @@ enum class GgxForm { Whole, Published };
 
 /// Returns the surface for a scene without a view, where highlights are left out: of one as
 /// published. What a metal reflects, F0 above the 0.04 of other surfaces, counts as diffuse:
-/// otherwise metals were black.
+/// otherwise metals were black. So does what sheen reflects towards 60 degrees.
 [[nodiscard]] Surface without_highlight(Surface surface);
 
 /// Replaces the surface of a triangle's points, given its own: materials from the command line.

@@ -50,6 +50,7 @@ PictureRays::PictureRays(const Camera& camera, std::uint32_t width, std::uint32_
             fmt::format("expected 1 to {} samples a side of a pixel, got {}", MaxSamplesPerAxis,
                         samples_per_axis));
     const CameraAxes axes = axes_of(camera, static_cast<float>(width) / static_cast<float>(height));
+    forward_ = axes.forward;
     corner_ = axes.forward - axes.right + axes.up;
     right_ = 2.0f / static_cast<float>(width) * axes.right;
     down_ = -2.0f / static_cast<float>(height) * axes.up;

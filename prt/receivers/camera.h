@@ -45,11 +45,15 @@ public:
     /// Returns the unit direction of sample i of pixel (x, y). Pixels count from the top left;
     /// samples count row by row.
     [[nodiscard]] glm::vec3 direction(std::uint32_t x, std::uint32_t y, std::uint32_t i) const;
+    /// Returns the steps between samples, at distance 1.
+    [[nodiscard]] glm::vec3 right() const { return right_ / static_cast<float>(samples_per_axis_); }
+    [[nodiscard]] glm::vec3 down() const { return down_ / static_cast<float>(samples_per_axis_); }
+    [[nodiscard]] const glm::vec3& forward() const { return forward_; }
 
 private:
     std::uint32_t samples_per_axis_;
-    /// Towards the picture's top left corner, and one pixel to the right and down.
-    glm::vec3 corner_, right_, down_;
+    /// Towards the picture's top left corner, one pixel to the right and down, and the axis.
+    glm::vec3 corner_, right_, down_, forward_;
     /// [samples per pixel] places in the pixel, from its top left corner.
     std::vector<glm::vec2> places_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -64,18 +65,26 @@ glm::vec3 shading_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point)
                                                 : face_normal(mesh, point.triangle);
 }
 
-glm::vec3 mapped_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
+namespace {
+
+/// A map of a material, and the factor on its tilt.
+struct NormalMap {
+    std::optional<mesh::TextureSlot> mesh::Material::*texture;
+    float mesh::Material::*scale;
+};
+
+glm::vec3 normal_of(const mesh::TriangleMesh& mesh, const MeshPoint& point, const NormalMap& map) {
     const glm::vec3 normal = shading_normal(mesh, point);
     if (mesh.corner_tangents.empty())
         return normal;
     const mesh::Material& material = mesh.materials[mesh.triangle_materials[point.triangle]];
-    if (!material.normal_texture)
+    if (!(material.*map.texture))
         return normal;
-    const mesh::TextureSlot& slot = *material.normal_texture;
+    const mesh::TextureSlot& slot = *(material.*map.texture);
     const glm::vec3 texel =
         mesh::sample(mesh.textures[slot.texture], slot, uv_at(mesh, point, slot.uv_set));
     const glm::vec2 tilt =
-        material.normal_scale * glm::vec2(map_component(texel.x), map_component(texel.y));
+        material.*map.scale * glm::vec2(map_component(texel.x), map_component(texel.y));
     const std::array<glm::vec4, 3>& corners = mesh.corner_tangents[point.triangle];
     const glm::vec2& w = point.barycentric;
     const glm::vec4 between = (1.0f - w.x - w.y) * corners[0] + w.x * corners[1] + w.y * corners[2];
@@ -89,6 +98,17 @@ glm::vec3 mapped_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point) 
         unit_or_zero(glm::dvec3(tilt.x * along + tilt.y * bitangent) +
                      std::max(double{map_component(texel.z)}, 0.0) * glm::dvec3(normal));
     return mapped == glm::vec3(0.0f) ? normal : mapped;
+}
+
+} // namespace
+
+glm::vec3 mapped_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
+    return normal_of(mesh, point, {&mesh::Material::normal_texture, &mesh::Material::normal_scale});
+}
+
+glm::vec3 coat_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
+    return normal_of(mesh, point,
+                     {&mesh::Material::coat_normal_texture, &mesh::Material::coat_normal_scale});
 }
 
 glm::vec3 smooth_position(const mesh::TriangleMesh& mesh, const MeshPoint& point) {

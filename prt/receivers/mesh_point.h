@@ -41,6 +41,9 @@ struct MeshPoint {
 /// has none, or where it is flat.
 [[nodiscard]] glm::vec3 mapped_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point);
 
+/// Returns the same of the material's clear coat.
+[[nodiscard]] glm::vec3 coat_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point);
+
 /// Returns the point moved outwards to the smooth surface that the vertex normals pretend. Shadow
 /// rays that start there do not see the facets of a convex mesh where the light grazes it. Points
 /// of flat and hollow parts stay where they are, and so do those beside a sharp edge. Lifts of

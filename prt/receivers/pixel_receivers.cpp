@@ -35,7 +35,7 @@ glm::vec2 inside(const glm::vec2& barycentric) {
 glm::vec3 reflecting_outwards(const glm::vec3& mapped, const glm::vec3& normal,
                               const glm::vec3& to_eye) {
     const float eye_z = glm::dot(to_eye, normal);
-    const float least = std::min(0.9f * eye_z, 0.025f);
+    const float least = std::min(0.9f * eye_z, 0.1f);
     const glm::vec3 mirrored = 2.0f * glm::dot(mapped, to_eye) * mapped - to_eye;
     const glm::vec3 across = mapped - glm::dot(mapped, normal) * normal;
     const float tilt = glm::length(across);

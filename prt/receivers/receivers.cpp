@@ -112,10 +112,11 @@ std::vector<glm::vec3> colors_at(const mesh::TriangleMesh& mesh, const Receivers
     return colors;
 }
 
-std::vector<float> eye_cosines(const Receivers& receivers) {
-    std::vector<float> cosines(receivers.size(), 0.0f);
+std::vector<EyeCosines> eye_cosines(const Receivers& receivers) {
+    std::vector<EyeCosines> cosines(receivers.size());
     for (std::size_t i = 0; i < receivers.to_eye.size(); ++i)
-        cosines[i] = glm::dot(receivers.normals[i], receivers.to_eye[i]);
+        cosines[i] = {receivers.surfaces.empty() ? Surface() : receivers.surfaces[i],
+                      receivers.normals[i], receivers.to_eye[i]};
     return cosines;
 }
 

@@ -78,7 +78,7 @@ void look_from(Receivers& receivers, const glm::vec3& eye);
 
 /// Returns the cosines between normals and directions to the eye, [num_receivers]; 0 without an
 /// eye.
-[[nodiscard]] std::vector<float> eye_cosines(const Receivers& receivers);
+[[nodiscard]] std::vector<EyeCosines> eye_cosines(const Receivers& receivers);
 
 /// Returns the mesh's colours at the receivers: interpolated at their points, or the vertices'
 /// colours.

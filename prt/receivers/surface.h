@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 namespace relumine::prt {
@@ -35,8 +36,30 @@ struct Surface {
     float metallic = 0.0f;
     /// Radiance of its own, >= 0.
     glm::vec3 emission{0.0f};
+    /// GgxWhole, where metallic is neither 0 nor 1: F0 of the part that is not metal.
+    float dielectric_f0 = 0.04f;
+    /// GgxWhole: what the part that is not metal mirrors at grazing angles.
+    float dielectric_f90 = 1.0f;
+    /// GgxWhole: the part that a clear coat of F0 0.04 covers, 0..1, and its roughness.
+    float coat = 0.0f;
+    float coat_roughness = 0.0f;
+    /// Zero: the receiver's own.
+    glm::vec3 coat_normal{0.0f};
+    /// GgxWhole: the colour of sheen, under the coat, 0..1, and its roughness.
+    glm::vec3 sheen{0.0f};
+    float sheen_roughness = 0.0f;
 
     bool operator==(const Surface&) const = default;
+};
+
+/// Cosines between the direction to the eye and the normals of a surface.
+struct EyeCosines {
+    EyeCosines(float of_both = 0.0f) : base(of_both), coat(of_both) {}
+    EyeCosines(const Surface& surface, const glm::vec3& normal, const glm::vec3& to_eye)
+        : base(glm::dot(normal, to_eye)),
+          coat(surface.coat_normal == glm::vec3(0.0f) ? base
+                                                      : glm::dot(surface.coat_normal, to_eye)) {}
+    float base, coat;
 };
 
 } // namespace relumine::prt

@@ -14,7 +14,12 @@ namespace {
 
 // By GlossyLobe.
 constexpr std::array<const char*, NumGlossyLobes> Names = {"g_specular", "g_spec_grazing",
-                                                           "g_diff_grazing"};
+                                                           "g_diff_grazing", "g_coat", "g_sheen"};
+
+/// Lobes that only files with such receivers have.
+bool is_optional(std::size_t lobe) {
+    return lobe > static_cast<std::size_t>(GlossyLobe::DiffuseGrazing);
+}
 
 std::string name_of(std::size_t lobe, char part) {
     return fmt::format("{}_{}", Names[lobe], part);
@@ -188,6 +193,8 @@ LobeCuts read_lobe_part(const SectionReader& reader, std::size_t lobe, std::size
 void add_glossy_sections(NewSections& sections, const GlossyTransfer& glossy) {
     for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {
         const LobeCuts& cuts = glossy.lobes[lobe];
+        if (is_optional(lobe) && cuts.num_entries() == 0)
+            continue;
         sections[name_of(lobe, 'b')] = SectionContent::view(cuts.begin);
         // Each cell minus the one before, modulo 2^32: neighbours on the Z curve differ by little.
         sections[name_of(lobe, 'c')] = byte_planes(cuts.cells.size(), [&cuts](std::size_t i) {
@@ -207,15 +214,25 @@ bool has_glossy(const SectionReader& reader) {
 GlossyTransfer read_glossy(const SectionReader& reader, std::size_t num_blocks) {
     GlossyTransfer glossy;
     for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe)
-        glossy.lobes[lobe] = read_lobe(reader, lobe, num_blocks);
+        if (is_optional(lobe) && !reader.has(name_of(lobe, 'b')))
+            glossy.lobes[lobe].begin.assign(num_blocks + 1, 0);
+        else
+            glossy.lobes[lobe] = read_lobe(reader, lobe, num_blocks);
     return glossy;
 }
 
 GlossyTransfer read_glossy_part(const SectionReader& reader, std::size_t num_blocks,
                                 std::span<const BlockRange> blocks) {
     GlossyTransfer glossy;
+    std::size_t num_own = 0;
+    for (const BlockRange& range : blocks)
+        num_own += range.end - range.begin;
     for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe)
-        glossy.lobes[lobe] = read_lobe_part(reader, lobe, num_blocks, blocks, glossy.whole_depth);
+        if (is_optional(lobe) && !reader.has(name_of(lobe, 'b')))
+            glossy.lobes[lobe].begin.assign(num_own + 1, 0);
+        else
+            glossy.lobes[lobe] =
+                read_lobe_part(reader, lobe, num_blocks, blocks, glossy.whole_depth);
     return glossy;
 }
 

@@ -78,13 +78,22 @@ float finite(const Json& json) {
     return number;
 }
 
-/// Returns a number in [0, 1].
-float fraction(const Json& json) {
+/// Returns a number from 0 to the most.
+float within(const Json& json, float most) {
     const float number = real(json);
-    if (!(number >= 0.0f && number <= 1.0f))
-        throw std::out_of_range("expected 0 to 1");
+    if (!(number >= 0.0f && number <= most))
+        throw std::out_of_range("expected a number within its limits");
     return number;
 }
+
+/// Returns a number in [0, 1].
+float fraction(const Json& json) {
+    return within(json, 1.0f);
+}
+
+/// Numbers that F0 depends on, where they are not the usual ones.
+constexpr std::array<std::pair<const char*, float Material::*>, 2> Scalars = {
+    {{"ior", &Material::ior}, {"specular_strength", &Material::specular_strength}}};
 
 glm::vec3 color(const Json& json) {
     return {fraction(json.values().at(0)), fraction(json.values().at(1)),
@@ -166,6 +175,13 @@ Material material_of(const Json& json, std::size_t num_textures) {
             if (material.emission[channel] < 0.0f)
                 throw std::out_of_range("expected an emission of 0 or more");
         }
+    for (const auto& [name, member] : Scalars)
+        if (const Json* value = json.find(name))
+            material.*member = within(*value, 1e6f);
+    if (const Json* tint = json.find("specular_tint"))
+        for (int channel = 0; channel < 3; ++channel)
+            material.specular_tint[channel] =
+                within(tint->values().at(static_cast<std::size_t>(channel)), 1e6f);
     read_alpha(json, num_textures, material);
     for (const auto slot : color_slots(material))
         material.*slot = slot_of(json.at(name_of(slot)), num_textures);
@@ -263,6 +279,11 @@ Json json_of(const Material& material, bool is_kept, bool has_shape, const Store
         json.set("emission", {emission.r, emission.g, emission.b});
     if (material.normal_texture)
         json.set("normal_scale", material.normal_scale);
+    for (const auto& [name, member] : Scalars)
+        if (material.*member != Material().*member)
+            json.set(name, material.*member);
+    if (const glm::vec3& tint = material.specular_tint; tint != glm::vec3(1.0f))
+        json.set("specular_tint", {tint.r, tint.g, tint.b});
     for (const auto slot : color_slots(material))
         json.set(name_of(slot), json_of(is_kept ? material.*slot : std::nullopt, stored));
     add_alpha(json, material, stored);

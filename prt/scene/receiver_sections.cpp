@@ -110,6 +110,20 @@ void add_places(NewSections& sections, ReceiverLayout layout, const Receivers& r
     sections["r_barycentric"] = bytes_of(barycentric);
 }
 
+/// Calls `use(section, member)` for what only files with such surfaces have.
+template<class Use>
+void for_each_unusual(const Use& use) {
+    use("r_metallic", &Surface::metallic);
+    use("r_emission", &Surface::emission);
+    use("r_f0", &Surface::dielectric_f0);
+    use("r_f90", &Surface::dielectric_f90);
+    use("r_coat", &Surface::coat);
+    use("r_coat_rough", &Surface::coat_roughness);
+    use("r_coat_normal", &Surface::coat_normal);
+    use("r_sheen", &Surface::sheen);
+    use("r_sheen_rough", &Surface::sheen_roughness);
+}
+
 /// Stores field by field: a Surface in memory has padding.
 void add_surfaces(NewSections& sections, const std::vector<Surface>& surfaces) {
     std::vector<glm::vec3> albedo, specular;
@@ -125,7 +139,7 @@ void add_surfaces(NewSections& sections, const std::vector<Surface>& surfaces) {
     sections["r_specular"] = bytes_of(specular);
     sections["r_highlight"] = bytes_of(highlight);
     sections["r_shape"] = bytes_of(shape);
-    const auto add_unusual = [&](const char* name, auto member) {
+    for_each_unusual([&](const char* name, auto member) {
         const auto usual = Surface().*member;
         if (std::all_of(surfaces.begin(), surfaces.end(),
                         [&](const Surface& surface) { return surface.*member == usual; }))
@@ -134,9 +148,7 @@ void add_surfaces(NewSections& sections, const std::vector<Surface>& surfaces) {
         for (const Surface& surface : surfaces)
             values.push_back(surface.*member);
         sections[name] = bytes_of(values);
-    };
-    add_unusual("r_metallic", &Surface::metallic);
-    add_unusual("r_emission", &Surface::emission);
+    });
 }
 
 std::vector<Surface> read_surfaces(const SectionReader& reader, std::size_t count) {
@@ -154,14 +166,12 @@ std::vector<Surface> read_surfaces(const SectionReader& reader, std::size_t coun
                        .specular = specular[i],
                        .highlight = static_cast<Highlight>(highlight[i]),
                        .roughness_or_exponent = shape[i]};
-    const auto read_unusual = [&](const char* name, auto member) {
+    for_each_unusual([&](const char* name, auto member) {
         using Value = std::remove_cvref_t<decltype(Surface().*member)>;
         const std::vector<Value> values = reader.elements<Value>(name, count, true);
         for (std::size_t i = 0; i < values.size(); ++i)
             surfaces[i].*member = values[i];
-    };
-    read_unusual("r_metallic", &Surface::metallic);
-    read_unusual("r_emission", &Surface::emission);
+    });
     return surfaces;
 }
 
@@ -206,6 +216,15 @@ void check_surfaces(const SceneCheck& check, const std::vector<Surface>& surface
               [](const Surface& s) { return s.specular; });
     check.all("surfaces of metallic 0 to 1", surfaces, is_color,
               [](const Surface& s) { return glm::vec3(s.metallic); });
+    check.all("surfaces of F0 and F90 0 to 1", surfaces, is_color,
+              [](const Surface& s) { return glm::vec3(s.dielectric_f0, s.dielectric_f90, 0.0f); });
+    check.all("coats of 0 to 1", surfaces, is_color,
+              [](const Surface& s) { return glm::vec3(s.coat, s.coat_roughness, 0.0f); });
+    check.all("normals of coats of length 1 or 0", surfaces, is_unit_or_zero,
+              [](const Surface& s) { return s.coat_normal; });
+    check.all("sheen of 0 to 1", surfaces, is_color, [](const Surface& s) { return s.sheen; });
+    check.all("sheen of roughness 0 to 1", surfaces, is_color,
+              [](const Surface& s) { return glm::vec3(s.sheen_roughness); });
     check.all(
         "surfaces of emission 0 to 1e9", surfaces,
         [](const glm::vec3& color) { return is_within(color, 0.0f, 1e9f); },

@@ -15,8 +15,8 @@
 namespace relumine::prt {
 
 /// The lobes of prt::Lobes that depend on the view.
-enum class GlossyLobe : std::uint8_t { Specular, SpecularGrazing, DiffuseGrazing };
-inline constexpr std::size_t NumGlossyLobes = 3;
+enum class GlossyLobe : std::uint8_t { Specular, SpecularGrazing, DiffuseGrazing, Coat, Sheen };
+inline constexpr std::size_t NumGlossyLobes = 5;
 
 /// Deepest level of a cell: 0.09 degrees, less than the narrowest highlight (ggx_alpha()), and the
 /// deepest level of a LightPyramid.

@@ -9,6 +9,7 @@
 
 #include "arrays.h"
 #include "mesh/normals.h"
+#include "relumine/material_report.h"
 #include "options.h"
 #include "run.h"
 
@@ -272,6 +273,12 @@ void bind_mesh_arrays(Class& type, Geometry geometry) {
         "colors", [=](const Pointer& own) { return view(own, geometry(*own).colors); });
     type.def_property_readonly("uvs", [=](const Pointer& own) {
         return view(own, std::span<const glm::vec2>(geometry(*own).uvs));
+    });
+    type.def_property_readonly("materials", [=](const Pointer& own) {
+        files::Json materials = files::Json::Array{};
+        for (const mesh::Material& material : geometry(*own).materials)
+            materials.push_back(report_of(geometry(*own), material));
+        return materials.text();
     });
     type.def_property_readonly("groups", [=](const Pointer& own) { return geometry(*own).groups; });
 }

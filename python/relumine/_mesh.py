@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import warnings
 from typing import Any, Callable, Dict, List, Optional, Tuple, Union
@@ -160,6 +161,13 @@ class Mesh:
         """(N, 2) float32, read-only, or (0, 2)."""
         result: Floats = view(self._core.uvs)
         return result
+
+    @property
+    def materials(self) -> List[Dict[str, Any]]:
+        """Materials of the file, as `relumine info --json` tells them: model, colours, roughness,
+        names of textures, coat, sheen."""
+        materials: List[Dict[str, Any]] = json.loads(self._core.materials)
+        return materials
 
     @property
     def groups(self) -> List[str]:

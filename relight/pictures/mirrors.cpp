@@ -50,7 +50,7 @@ std::optional<Mirror> Mirrors::at(const prt::MeshPoint& point) const {
     constexpr float LeastCosine = 0.01f;
     if (const float cosine = glm::dot(normal, to_eye); cosine < LeastCosine)
         normal = glm::normalize(normal + (LeastCosine - cosine) * to_eye);
-    return Mirror{light_.textures->mirror(point), normal, to_eye};
+    return Mirror{light_.textures->mirror(point, &view_), normal, to_eye};
 }
 
 glm::vec3 Mirrors::soft(const Mirror& mirror, const prt::MeshPoint& point,

@@ -24,14 +24,15 @@ class Mirrors {
 public:
     /// All must outlive this object. Null: there is nothing behind the mesh but the environment.
     Mirrors(const mesh::TriangleMesh& mesh, const prt::TwinTriangles& twins, const MeshLight& light,
-            const FadingFloor& floor, const Backdrop* backdrop)
-        : mesh_(mesh), twins_(twins), light_(light), floor_(floor), backdrop_(backdrop) {}
+            const FadingFloor& floor, const Backdrop* backdrop, const prt::TextureView& view)
+        : mesh_(mesh), twins_(twins), light_(light), floor_(floor), backdrop_(backdrop),
+          view_(view) {}
 
     /// `middle` is what the middle of the pixel sees: the first to be shared.
     void begin_pixel(std::uint32_t x, std::uint32_t y, const std::optional<prt::MeshPoint>& middle);
 
-    /// Returns the mirror at a point; none where nothing mirrors, or the point looks away from the
-    /// eye.
+    /// Returns the mirror at a point; none where nothing mirrors, or
+    /// the point looks away from the eye.
     [[nodiscard]] std::optional<Mirror> at(const prt::MeshPoint& point) const;
 
     /// Returns what a mirror sends on of all but MeshLight::lights. `diffuse` is the light of its
@@ -56,6 +57,7 @@ private:
     const MeshLight& light_;
     const FadingFloor& floor_;
     const Backdrop* backdrop_;
+    const prt::TextureView& view_;
     glm::vec2 shift_{0.0f};
     // Of this pixel
     std::optional<prt::MeshPoint> middle_;

@@ -148,8 +148,12 @@ public:
          const Backdrop* backdrop)
         : view_(view), mesh_(view.mesh_), light_(light),
           packets_(packets), rays_{.blockers = &view.rays_, .bias = light.bias},
-          backdrop_(backdrop), mirrors_(mesh_, *view.twins_, light, view.floor_, backdrop),
-          lanes_(packets.num_packets()) {}
+          backdrop_(backdrop),
+          mirrors_(mesh_, *view.twins_, light, view.floor_, backdrop, texture_view_),
+          lanes_(packets.num_packets()) {
+        if (light.textures != nullptr && light.textures->maps() != nullptr)
+            texture_view_ = {*light.textures->maps(), view.camera_.eye, view.grid_};
+    }
 
     /// Draws the mesh alone, with its alpha, where there is no backdrop.
     void draw(std::uint32_t x_begin, std::uint32_t y_begin, Picture& picture) {
@@ -204,20 +208,15 @@ private:
             return prt::value_at(mesh_, light_.radiance, at);
         const glm::vec3 change = tilted(at);
         if (light_.lobes.empty())
-            return light_.textures->radiance(light_.radiance, at, change);
-        const auto between = [&](auto part) {
-            const mesh::Triangle& triangle = mesh_.triangles[at.triangle];
-            const glm::vec2& w = at.barycentric;
-            return (1.0f - w.x - w.y) * light_.lobes[triangle[0]].*part +
-                   w.x * light_.lobes[triangle[1]].*part + w.y * light_.lobes[triangle[2]].*part;
-        };
-        using Lobes = prt::Lobes<glm::vec3>;
-        return prt::reflect(surface_at(sample),
-                            {.diffuse = glm::max(between(&Lobes::diffuse) + change, 0.0f),
-                             .diffuse_grazing = between(&Lobes::diffuse_grazing),
-                             .specular = between(&Lobes::specular),
-                             .specular_grazing = between(&Lobes::specular_grazing)},
-                            eye_cosine(at));
+            return light_.textures->radiance(light_.radiance, at, change, &texture_view_);
+        const mesh::Triangle& triangle = mesh_.triangles[at.triangle];
+        const glm::vec2& w = at.barycentric;
+        prt::Lobes<glm::vec3> between;
+        prt::add_scaled(between, light_.lobes[triangle[0]], 1.0f - w.x - w.y);
+        prt::add_scaled(between, light_.lobes[triangle[1]], w.x);
+        prt::add_scaled(between, light_.lobes[triangle[2]], w.y);
+        between.diffuse = glm::max(between.diffuse + change, 0.0f);
+        return prt::reflect(surface_at(sample), between, eye_cosine(at));
     }
 
     /// Returns what a normal map adds to the diffuse radiance of albedo 1: the light of its normal
@@ -259,7 +258,8 @@ private:
         if (mirror)
             return light_.emission_factor * mirror->surface.emission;
         return has_texture(sample)
-                   ? light_.emission_factor * light_.textures->surface(point(sample)).emission
+                   ? light_.emission_factor *
+                         light_.textures->surface(point(sample), &texture_view_).emission
                    : prt::value_at(mesh_, light_.emission, point(sample));
     }
 
@@ -420,12 +420,7 @@ private:
         block.set(0, surface, normal, to_eye);
         prt::Lobes<glm::dvec3> lobes;
         packets_.light_block(block, {&normal, 1}, lanes_, {&lobes, 1});
-        return prt::reflect(surface,
-                            {.diffuse = glm::vec3(lobes.diffuse),
-                             .diffuse_grazing = glm::vec3(lobes.diffuse_grazing),
-                             .specular = glm::vec3(lobes.specular),
-                             .specular_grazing = glm::vec3(lobes.specular_grazing)},
-                            glm::dot(normal, to_eye));
+        return prt::reflect(surface, prt::converted<glm::vec3>(lobes), {surface, normal, to_eye});
     }
 
     /// Returns the surface between the vertices', with the highlight of the nearest and the colours
@@ -438,13 +433,16 @@ private:
         const auto nearest = static_cast<std::size_t>(
             std::max_element(weights.begin(), weights.end()) - weights.begin());
         prt::Surface surface = light_.surfaces[triangle[nearest]];
-        surface.albedo = surface.specular = glm::vec3(0.0f);
+        surface.albedo = surface.specular = surface.sheen = glm::vec3(0.0f);
+        surface.coat = 0.0f;
         float shape = 0.0f, metallic = 0.0f;
         bool is_same = true;
         for (std::size_t corner = 0; corner < 3; ++corner) {
             const prt::Surface& own = light_.surfaces[triangle[corner]];
             surface.albedo += weights[corner] * own.albedo;
             surface.specular += weights[corner] * own.specular;
+            surface.coat += weights[corner] * own.coat;
+            surface.sheen += weights[corner] * own.sheen;
             metallic += weights[corner] * own.metallic;
             shape += weights[corner] * own.roughness_or_exponent;
             is_same = is_same && own.highlight == surface.highlight;
@@ -453,7 +451,7 @@ private:
             surface.roughness_or_exponent = shape;
         surface.metallic = metallic;
         if (has_texture(sample)) {
-            const prt::Surface own = light_.textures->surface(at);
+            const prt::Surface own = light_.textures->surface(at, &texture_view_);
             surface.albedo = own.albedo;
             surface.specular = own.specular;
             surface.metallic = own.metallic;
@@ -466,6 +464,8 @@ private:
     const MeshLight& light_;
     const LightPackets& packets_;
     ShadowRays rays_;
+    /// Used where triangles have textures.
+    prt::TextureView texture_view_;
     const Backdrop* backdrop_;
     Mirrors mirrors_;
     std::uint32_t left_ = 0, top_ = 0, width_ = 0;

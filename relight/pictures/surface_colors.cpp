@@ -35,6 +35,7 @@ SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt
     mirrors_ = marked(mirrors);
     if (is_textured_.empty() && mirrors_.empty())
         return;
+    maps_ = std::make_shared<const mesh::MipMaps>(mesh.textures);
     for (const prt::Surface& surface : surfaces) {
         glm::vec3& factor = light_of_radiance_.emplace_back(0.0f);
         for (int channel = 0; channel < 3; ++channel)
@@ -43,13 +44,20 @@ SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt
     }
 }
 
-prt::Surface SurfaceColors::surface(const prt::MeshPoint& point) const {
-    const prt::Surface own = prt::surface_at(*mesh_, point.triangle, point.barycentric, form_);
+prt::Surface SurfaceColors::surface(const prt::MeshPoint& point,
+                                    const prt::TextureView* view) const {
+    const prt::Surface own =
+        prt::surface_at(*mesh_, point.triangle, point.barycentric, form_, view);
     return has_highlights_ ? own : prt::without_highlight(own);
 }
 
-prt::Surface SurfaceColors::mirror(const prt::MeshPoint& point) const {
-    return prt::surface_at(*mesh_, point.triangle, point.barycentric, prt::GgxForm::Whole);
+prt::Surface SurfaceColors::mirror(const prt::MeshPoint& point,
+                                   const prt::TextureView* view) const {
+    prt::Surface own =
+        prt::surface_at(*mesh_, point.triangle, point.barycentric, prt::GgxForm::Whole, view);
+    own.coat = 0.0f;
+    own.sheen = glm::vec3(0.0f);
+    return own;
 }
 
 glm::vec3 SurfaceColors::light(std::span<const glm::vec3> vertex_radiance,
@@ -65,8 +73,9 @@ glm::vec3 SurfaceColors::light(std::span<const glm::vec3> vertex_radiance,
 }
 
 glm::vec3 SurfaceColors::radiance(std::span<const glm::vec3> vertex_radiance,
-                                  const prt::MeshPoint& point, const glm::vec3& change) const {
-    return light(vertex_radiance, point, change) * albedo(point);
+                                  const prt::MeshPoint& point, const glm::vec3& change,
+                                  const prt::TextureView* view) const {
+    return light(vertex_radiance, point, change) * surface(point, view).albedo;
 }
 
 std::vector<glm::vec3> scaled(std::span<const glm::vec3> harmonics,
@@ -79,7 +88,8 @@ std::vector<glm::vec3> scaled(std::span<const glm::vec3> harmonics,
 }
 
 void add_rest(std::span<const glm::vec3> radiance, std::span<const prt::Surface> surfaces,
-              std::span<const float> eye_cosines, std::span<prt::Lobes<glm::vec3>> lobes) {
+              std::span<const prt::EyeCosines> eye_cosines,
+              std::span<prt::Lobes<glm::vec3>> lobes) {
     constexpr float LeastDiffuse = 0.02f;
     for (std::size_t i = 0; i < lobes.size(); ++i) {
         const glm::vec3 rest = radiance[i] - prt::reflect(surfaces[i], lobes[i], eye_cosines[i]);

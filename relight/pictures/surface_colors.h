@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,8 @@ public:
     [[nodiscard]] bool has(std::uint32_t triangle) const {
         return !is_textured_.empty() && is_textured_[triangle];
     }
+    /// The textures at all levels, where any triangle has one.
+    [[nodiscard]] const mesh::MipMaps* maps() const { return maps_.get(); }
     /// Returns the albedo at a point of such a triangle.
     [[nodiscard]] glm::vec3 albedo(const prt::MeshPoint& point) const {
         return surface(point).albedo;
@@ -41,10 +44,13 @@ public:
     }
     /// Whether any triangle does.
     [[nodiscard]] bool has_mirrors() const { return !mirrors_.empty(); }
-    /// Returns the surface that the materials give to a point.
-    [[nodiscard]] prt::Surface surface(const prt::MeshPoint& point) const;
-    /// Returns the surface at a point of a triangle that mirrors, with its highlight.
-    [[nodiscard]] prt::Surface mirror(const prt::MeshPoint& point) const;
+    /// Returns the surface that the materials give to a point, or to a sample of a view.
+    [[nodiscard]] prt::Surface surface(const prt::MeshPoint& point,
+                                       const prt::TextureView* view = nullptr) const;
+    /// Returns the surface at a point of a triangle that mirrors, with its highlight, but without
+    /// coat and sheen: no rays find these.
+    [[nodiscard]] prt::Surface mirror(const prt::MeshPoint& point,
+                                      const prt::TextureView* view = nullptr) const;
     /// Returns the diffuse radiance of albedo 1 at a point of a triangle that has a texture or
     /// mirrors, and a change to it, which may be less than 0.
     [[nodiscard]] glm::vec3 light(std::span<const glm::vec3> vertex_radiance,
@@ -54,12 +60,14 @@ public:
     /// change to it, which may be less than 0.
     [[nodiscard]] glm::vec3 radiance(std::span<const glm::vec3> vertex_radiance,
                                      const prt::MeshPoint& point,
-                                     const glm::vec3& change = glm::vec3(0.0f)) const;
+                                     const glm::vec3& change = glm::vec3(0.0f),
+                                     const prt::TextureView* view = nullptr) const;
 
 private:
     const mesh::TriangleMesh* mesh_ = nullptr;
     /// [num_triangles], or empty.
     std::vector<bool> is_textured_, mirrors_;
+    std::shared_ptr<const mesh::MipMaps> maps_;
     bool has_highlights_ = false;
     prt::GgxForm form_ = prt::GgxForm::Published;
     /// [num_vertices], 1 / albedo; 0 where that is 0.
@@ -78,6 +86,6 @@ private:
 ///
 /// Shape:   all are [num_vertices].
 void add_rest(std::span<const glm::vec3> radiance, std::span<const prt::Surface> surfaces,
-              std::span<const float> eye_cosines, std::span<prt::Lobes<glm::vec3>> lobes);
+              std::span<const prt::EyeCosines> eye_cosines, std::span<prt::Lobes<glm::vec3>> lobes);
 
 } // namespace relumine::relight

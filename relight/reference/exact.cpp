@@ -88,21 +88,17 @@ public:
             if (diffuse_only)
                 continue;
             const prt::Lobes<float> lobes = prt::evaluate_lobes(surface_, normal_, to_eye_, w);
-            sums.diffuse_grazing += tile.power[i] * static_cast<double>(lobes.diffuse_grazing);
-            sums.specular += tile.power[i] * static_cast<double>(lobes.specular);
-            sums.specular_grazing += tile.power[i] * static_cast<double>(lobes.specular_grazing);
+            for (std::size_t lobe = 0; lobe < prt::NumGlossyLobes; ++lobe)
+                sums.*prt::GlossyParts<glm::dvec3>[lobe] +=
+                    tile.power[i] * static_cast<double>(lobes.*prt::GlossyParts<float>[lobe]);
         }
     }
 
     [[nodiscard]] glm::dvec3 radiance(const prt::Lobes<glm::dvec3>& sums) const {
         if (surface_ == prt::Surface())
             return sums.diffuse;
-        return prt::reflect(surface_,
-                            {.diffuse = sums.diffuse,
-                             .diffuse_grazing = sums.diffuse_grazing,
-                             .specular = sums.specular,
-                             .specular_grazing = sums.specular_grazing},
-                            glm::dot(normal_, to_eye_));
+        return prt::reflect(surface_, prt::converted<glm::vec3>(sums),
+                            {surface_, normal_, to_eye_});
     }
 
 private:

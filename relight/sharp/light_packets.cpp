@@ -107,9 +107,9 @@ void add_light(const prt::BlockSurfaces& surfaces, std::span<const glm::vec3> no
         const auto i = static_cast<std::size_t>(std::countr_zero(reached));
         prt::Lobes<glm::dvec3>& sum = sums[i];
         sum.diffuse += irradiance.on(normals[i]) / std::numbers::pi;
-        sum.specular += strength * static_cast<double>(lobes[0][i]);
-        sum.specular_grazing += strength * static_cast<double>(lobes[1][i]);
-        sum.diffuse_grazing += strength * static_cast<double>(lobes[2][i]);
+        for (std::size_t lobe = 0; lobe < prt::NumGlossyLobes; ++lobe)
+            sum.*prt::GlossyParts<glm::dvec3>[lobe] +=
+                strength * static_cast<double>(lobes[lobe][i]);
     }
 }
 

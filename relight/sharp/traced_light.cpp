@@ -168,9 +168,8 @@ void TracedLight::light_glossy_block(std::span<const SharpLight> lights,
                   (*of_light[light])[block], std::span(lobes).first(size));
     for (std::size_t i = 0; i < size; ++i) {
         set(diffuse_[block], i, lobes[i].diffuse);
-        highlights_[begin + i] = {.diffuse_grazing = glm::vec3(lobes[i].diffuse_grazing),
-                                  .specular = glm::vec3(lobes[i].specular),
-                                  .specular_grazing = glm::vec3(lobes[i].specular_grazing)};
+        highlights_[begin + i] = prt::converted<glm::vec3>(lobes[i]);
+        highlights_[begin + i].diffuse = glm::vec3(0.0f);
     }
 }
 

@@ -55,9 +55,12 @@ TEST_F(Info, MaterialsOfAMesh) {
     EXPECT_EQ(info["groups"], nlohmann::json{"lid"});
     EXPECT_EQ(info["missing"], nlohmann::json{"gone.png"});
     const Result told = succeed({"info", "parts.obj"});
-    for (const char* part : {"shiny: Blinn-Phong, Kd 0.5 0.5 0.5, Ks 0.25 0.25 0.25, Ns 50",
-                             "metal: metallic-roughness, base 1 1 1, metallic 1, roughness 0.25",
-                             "group               lid", "not found           gone.png"})
+    for (const char* part :
+         {"material  model               colour       metallic  roughness  specular        "
+          "exponent",
+          "shiny     Blinn-Phong         0.5 0.5 0.5                       0.25 0.25 0.25  50",
+          "metal     metallic-roughness  1 1 1        1         0.25", "group               lid",
+          "not found           gone.png"})
         EXPECT_NE(told.out.find(part), std::string::npos) << part << told.described();
     write("a.mtl", "newmtl shiny\nKd 2\n");
     EXPECT_NE(succeed({"info", "parts.obj"})

@@ -41,6 +41,19 @@ def missing(path):
     return pytest.raises(FileNotFoundError, match=f"No such file.*{path}")
 
 
+def test_materials_of_a_mesh(folder):
+    (folder / "a.mtl").write_text("newmtl metal\nPr 0.25\nPm 1\n")
+    (folder / "a.obj").write_text(
+        "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl metal\nf 1 2 3\n"
+    )
+    (material,) = relumine.Mesh.load(folder / "a.obj").materials
+    assert material["name"] == "metal"
+    assert material["model"] == "metallic-roughness"
+    assert material["roughness"] == 0.25
+    assert material["base_color"] == [1, 1, 1]
+    assert "coat" not in material
+
+
 def test_missing_files(folder):
     calls = {
         "a.ply": relumine.Mesh.load,

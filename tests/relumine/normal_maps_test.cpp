@@ -76,5 +76,27 @@ TEST(NormalMaps, AFlatMapChangesNothing) {
         EXPECT_EQ(drawn(mapped, options), drawn(plain, options));
 }
 
+/// Layers of pixels under a white sky: each lobe is cut into cells of its own, and kept in files.
+TEST(NormalMaps, LayersOfAWhiteSurfaceStayWhite) {
+    mesh::TriangleMesh mesh = scenes::mapped_square(Tilted);
+    mesh.materials[0] = {.model = mesh::MaterialModel::MetallicRoughness,
+                         .roughness = 0.5f,
+                         .coat = 1.0f,
+                         .coat_roughness = 0.4f,
+                         .sheen = glm::vec3(1.0f),
+                         .sheen_roughness = 0.5f};
+    const Camera camera{.eye = {0, -3, 3}, .target = {0, 0, 0}, .fov_degrees = 20};
+    const Scene scene = precompute(mesh, {.tolerance = 0.02f,
+                                          .receivers = Pixels{.width = 4, .height = 4},
+                                          .view = View{.camera = camera}});
+    ASSERT_TRUE(scene.transfer.glossy);
+    for (const prt::GlossyLobe lobe : {prt::GlossyLobe::Coat, prt::GlossyLobe::Sheen})
+        EXPECT_GT(scene.transfer.glossy->lobes[static_cast<std::size_t>(lobe)].num_entries(), 0u);
+    LitScene lit(scene);
+    lit.light(data_gen::constant(64, glm::vec3(1.0f)));
+    for (const glm::vec3& radiance : lit.radiance())
+        EXPECT_NEAR(radiance.g, 1.0f, 0.015f);
+}
+
 } // namespace
 } // namespace relumine

@@ -234,6 +234,65 @@ TEST_F(GltfTest, TextureTransformAndOtherUvSets) {
                             "TEXCOORD_1; two sets are read: its normal_texture is left out"));
 }
 
+TEST_F(GltfTest, SpecularCoatAndSheen) {
+    Model model = square();
+    const std::string image = webp(2, 1, {{255, 128, 0, 255}, {0, 0, 0, 51}});
+    static_cast<void>(write("a.webp", image));
+    model.json["images"] = {{{"uri", "a.webp"}}};
+    model.json["textures"] = {{{"source", 0}}};
+    const Json texture = {{"index", 0}};
+    const Json extensions = {{"KHR_materials_ior", {{"ior", 1.25}}},
+                             {"KHR_materials_specular",
+                              {{"specularFactor", 0.5},
+                               {"specularTexture", texture},
+                               {"specularColorFactor", {2, 1, 0.5}},
+                               {"specularColorTexture", texture}}},
+                             {"KHR_materials_clearcoat",
+                              {{"clearcoatFactor", 0.25},
+                               {"clearcoatTexture", texture},
+                               {"clearcoatRoughnessFactor", 0.125},
+                               {"clearcoatRoughnessTexture", texture},
+                               {"clearcoatNormalTexture", {{"index", 0}, {"scale", 2}}}}},
+                             {"KHR_materials_sheen",
+                              {{"sheenColorFactor", {1, 0.5, 0}},
+                               {"sheenColorTexture", texture},
+                               {"sheenRoughnessFactor", 0.75},
+                               {"sheenRoughnessTexture", texture}}}};
+    model.json["materials"] = {{{"extensions", extensions}}};
+    const std::filesystem::path path = write("a.gltf", model.embedded());
+    const TriangleMesh mesh = load(path);
+    const Material& material = mesh.materials[0];
+    EXPECT_EQ(material.ior, 1.25f);
+    EXPECT_EQ(material.specular_strength, 0.5f);
+    EXPECT_EQ(material.specular_tint, glm::vec3(2.0f, 1.0f, 0.5f));
+    EXPECT_TRUE(material.specular_tint_texture->is_srgb);
+    EXPECT_EQ(material.coat, 0.25f);
+    EXPECT_EQ(material.coat_roughness, 0.125f);
+    EXPECT_EQ(material.coat_normal_scale, 2.0f);
+    EXPECT_EQ(material.sheen, glm::vec3(1.0f, 0.5f, 0.0f));
+    EXPECT_EQ(material.sheen_roughness, 0.75f);
+    for (const auto& slot :
+         {material.coat_texture, material.coat_roughness_texture, material.coat_normal_texture}) {
+        EXPECT_FALSE(slot->is_srgb);
+        EXPECT_EQ(mesh.textures[slot->texture].texels[0], (Rgb8{255, 128, 0}));
+    }
+    for (const auto& slot : {material.specular_strength_texture, material.sheen_roughness_texture})
+        EXPECT_EQ(mesh.textures[slot->texture].texels,
+                  (std::vector<Rgb8>{{255, 255, 255}, {51, 51, 51}}))
+            << "alpha";
+    EXPECT_THAT(mesh.warnings, ElementsAre());
+    const auto refused = [&](const char* extension, const Json& value, const char* message) {
+        model.json["materials"] = {{{"extensions", {{extension, value}}}}};
+        EXPECT_THAT(gltf(model.embedded()).warnings, ElementsAre(testing::HasSubstr(message)));
+    };
+    refused("KHR_materials_ior", {{"ior", 0.5}}, "expected 0, or 1 to 1e6, as \"ior\", got 0.5");
+    refused("KHR_materials_clearcoat", {{"clearcoatFactor", 2}}, "\"clearcoatFactor\", got '2'");
+    refused("KHR_materials_sheen", {{"sheenColorFactor", {-1, 0, 0}}},
+            "expected numbers of 0 to 1 as \"sheenColorFactor\", got -1");
+    refused("KHR_materials_specular", {{"specularColorFactor", {-1, 0, 0}}},
+            "expected numbers of 0 to 1e6 as \"specularColorFactor\", got -1");
+}
+
 /// A mirrored frame keeps the bitangent where it is. What is no tangent is computed.
 TEST_F(GltfTest, Tangents) {
     Model model = square();
@@ -538,13 +597,15 @@ TEST_F(GltfTest, Instances) {
 TEST_F(GltfTest, SaysWhatIsLeftOut) {
     Model model = square();
     EXPECT_THAT(gltf(model.embedded()).warnings, ElementsAre());
-    model.json["extensionsUsed"] = {"KHR_materials_clearcoat", "VENDOR_wind", "KHR_texture_basisu",
-                                    "KHR_texture_transform", "KHR_materials_clearcoat"};
+    model.json["extensionsUsed"] = {"KHR_materials_anisotropy", "VENDOR_wind", "KHR_texture_basisu",
+                                    "KHR_texture_transform", "KHR_materials_anisotropy"};
     model.json["extensionsRequired"] = {"KHR_texture_basisu"};
-    const Json coats = {{"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}}},
-                        {"KHR_materials_sheen", {{"sheenColorFactor", {0, 0, 0}}}},
-                        {"KHR_materials_specular", {{"specularColorFactor", {1, 1, 1}}}},
-                        {"KHR_materials_ior", {{"ior", 1.5}}},
+    const Json coats = {{"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}}},
+                        {"KHR_materials_iridescence", {{"iridescenceFactor", 0}}},
+                        {"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}}},
+                        {"KHR_materials_sheen", {{"sheenColorFactor", {0.5, 0, 0}}}},
+                        {"KHR_materials_specular", {{"specularColorFactor", {0.5, 1, 1}}}},
+                        {"KHR_materials_ior", {{"ior", 1.25}}},
                         {"VENDOR_fur", {{"length", 2}}}};
     model.json["samplers"] = {{{"magFilter", 9728}}};
     model.json["textures"] = {{{"sampler", 0}}};
@@ -565,7 +626,7 @@ TEST_F(GltfTest, SaysWhatIsLeftOut) {
             "the extension 'KHR_texture_basisu' is not read: its images are left out; "
             "without another image, a surface has its factors alone",
             "the extension 'VENDOR_wind' is not read: what it describes is left out",
-            "1 material with KHR_materials_clearcoat, which is not read: clear coats are left out",
+            "1 material with KHR_materials_anisotropy, which is not read: highlights are round",
             "1 material with 'VENDOR_fur', which is not read: what it describes is left out",
             "1 material with an occlusion map, which is not read: rays find what blocks the light",
             "2 materials with textures of hard pixels (NEAREST), which are not kept: they are "

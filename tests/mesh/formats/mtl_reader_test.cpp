@@ -174,9 +174,32 @@ TEST_F(MtlTest, RoundingsAboveOneAreOne) {
     EXPECT_THAT(mesh.warnings, ElementsAre());
 }
 
+/// `norm` has normals; `bump` has them where they are vectors of length 1, otherwise heights.
+TEST_F(MtlTest, NormalMaps) {
+    static_cast<void>(write("normals.png", png(2, 1, {{128, 128, 255}, {218, 128, 218}})));
+    static_cast<void>(write("heights.png", png(2, 1, {{128, 128, 128}, {255, 255, 255}})));
+    for (const char* statement : {"norm -bm 0.5", "map_Bump -bm 0.5", "bump -bm 0.5"}) {
+        const TriangleMesh mesh =
+            with_mtl(std::string("newmtl m\n") + statement + " normals.png\n");
+        ASSERT_TRUE(mesh.materials[0].normal_texture) << statement;
+        EXPECT_FALSE(mesh.materials[0].normal_texture->is_srgb);
+        EXPECT_EQ(mesh.materials[0].normal_scale, 0.5f);
+        EXPECT_EQ(mesh.corner_tangents.size(), 1u);
+        EXPECT_THAT(mesh.warnings, ElementsAre());
+    }
+    const TriangleMesh heights =
+        with_mtl("newmtl m\nbump heights.png\nmap_Kd heights.png\nnewmtl n\nbump heights.png\n");
+    EXPECT_FALSE(heights.materials[0].normal_texture);
+    EXPECT_EQ(heights.textures.size(), 1u) << "that of the colours";
+    EXPECT_TRUE(heights.corner_tangents.empty());
+    EXPECT_THAT(heights.warnings, ElementsAre("the materials have bump, which is not read"));
+    EXPECT_THAT(with_mtl("newmtl m\nnorm gone.png\n").missing, ElementsAre("gone.png"));
+}
+
 TEST_F(MtlTest, SaysWhatIsNotRead) {
     EXPECT_THAT(with_mtl("newmtl m\nKa 1 1 1\nKe 0 0 0\nd 1.000\nTr 0.0\nillum 2\n").warnings,
                 ElementsAre());
+    static_cast<void>(write("a.png", four_colors()));
     EXPECT_THAT(with_mtl("newmtl m\nKe 1 0 0\nd 0.5\nmap_Bump a.png\nnewmtl n\nd 0.5\n").warnings,
                 ElementsAre("the materials have Ke, d, map_Bump, which are not read"));
 }

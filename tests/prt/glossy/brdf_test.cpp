@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "prt/glossy/ggx_energy.h"
+#include "prt/glossy/sheen_lobe.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine::prt {
@@ -69,12 +70,7 @@ glm::vec3 eye_at(double degrees) {
 glm::vec3 reflected(const Surface& surface, const glm::vec3& normal, const glm::vec3& v,
                     const glm::vec3& w) {
     const Lobes<float> lobes = evaluate_lobes(surface, normal, v, w);
-    return reflect(surface,
-                   {.diffuse = glm::vec3(lobes.diffuse),
-                    .diffuse_grazing = glm::vec3(lobes.diffuse_grazing),
-                    .specular = glm::vec3(lobes.specular),
-                    .specular_grazing = glm::vec3(lobes.specular_grazing)},
-                   glm::dot(normal, v));
+    return reflect(surface, converted<glm::vec3>(lobes), {surface, normal, v});
 }
 
 glm::vec3 brdf(const Surface& surface, const glm::vec3& normal, const glm::vec3& v,
@@ -83,10 +79,7 @@ glm::vec3 brdf(const Surface& surface, const glm::vec3& normal, const glm::vec3&
 }
 
 void add(Lobes<double>& sum, const Lobes<float>& lobes, double weight) {
-    sum.diffuse += weight * double{lobes.diffuse};
-    sum.diffuse_grazing += weight * double{lobes.diffuse_grazing};
-    sum.specular += weight * double{lobes.specular};
-    sum.specular_grazing += weight * double{lobes.specular_grazing};
+    add_scaled(sum, converted<double>(lobes), weight);
 }
 
 /// Integral of the lobes over all w: midpoints of a grid uniform in the cosine's square root and
@@ -532,6 +525,106 @@ TEST(Brdf, WholeGgxKeepsTheEnergy) {
                 EXPECT_LE(gold.g, 1.0) << where;
                 EXPECT_LT(gold.b, gold.g) << where;
             }
+}
+
+/// What a surface with layers sends of a white sky: each lobe's integral over points that suit it.
+glm::dvec3 layers_of_white_sky(const Surface& surface, const glm::vec3& eye) {
+    Lobes<double> sum = albedo_of_highlight(surface, eye);
+    sum.diffuse = 1.0;
+    sum.coat =
+        integral_over_halves(surface, eye, double{ggx_alpha(surface.coat_roughness)}, 150).coat;
+    sum.sheen = integral_over_lights(surface, eye, 150).sheen;
+    return reflect(surface, converted<glm::vec3>(converted<float>(sum)), eye.y);
+}
+
+/// A coat and white sheen leave a white surface white, and coloured sheen takes light away.
+TEST(Brdf, LayersKeepTheEnergy) {
+    for (const float roughness : {0.1f, 0.5f, 1.0f})
+        for (const double degrees : {0.0, 50.0, 75.0, 85.0})
+            for (const float metallic : {0.0f, 1.0f})
+                for (const float coat : {0.0f, 0.5f, 1.0f}) {
+                    Surface surface{.albedo = glm::vec3(1.0f - metallic),
+                                    .specular = glm::vec3(0.04f + 0.96f * metallic),
+                                    .highlight = Highlight::GgxWhole,
+                                    .roughness_or_exponent = 0.5f,
+                                    .metallic = metallic,
+                                    .coat = coat,
+                                    .coat_roughness = roughness,
+                                    .sheen = glm::vec3(1.0f - coat),
+                                    .sheen_roughness = std::max(roughness, 0.3f)};
+                    const std::string where =
+                        fmt::format("roughness {}, metallic {}, coat {}, {} degrees", roughness,
+                                    metallic, coat, degrees);
+                    EXPECT_NEAR(layers_of_white_sky(surface, eye_at(degrees)).g, 1.0, 0.01)
+                        << where;
+                    surface.sheen = {0.5f, 0.0f, 0.0f};
+                    const glm::dvec3 red = layers_of_white_sky(surface, eye_at(degrees));
+                    EXPECT_LE(red.r, 1.01) << where;
+                    EXPECT_LE(red.g, red.r + 1e-6) << where;
+                }
+}
+
+TEST(Brdf, SheenIsEstevezAndKullas) {
+    // The distribution, projected onto the surface, has an area of 1: without the shadowing, whose
+    // lambdas are put back in.
+    for (const float roughness : {0.25f, 0.6f, 1.0f}) {
+        const float alpha = SheenLobe::alpha(roughness);
+        const std::array<float, 5> fit = SheenLobe::fit(alpha);
+        double area = 0.0;
+        constexpr int Steps = 2000;
+        for (int i = 0; i < Steps; ++i) {
+            const double theta = 0.5 * std::numbers::pi * (i + 0.5) / Steps;
+            const auto cosine = static_cast<float>(std::cos(theta));
+            const LobeGeometry at{cosine, cosine, 1.0f - cosine * cosine};
+            const double distribution = double{SheenLobe::unlimited(roughness, at)} *
+                                        (1.0 + 2.0 * double{SheenLobe::lambda(fit, cosine)}) * 4.0 *
+                                        double{cosine};
+            area += distribution * std::cos(theta) * std::sin(theta) * std::numbers::pi *
+                    std::numbers::pi / Steps;
+        }
+        EXPECT_NEAR(area, 1.0, 1e-3) << roughness;
+        // Light and eye change places.
+        const LobeGeometry there{0.3f, 0.7f, 0.6f}, back{0.7f, 0.3f, 0.6f};
+        EXPECT_NEAR(SheenLobe::unlimited(roughness, there) / 0.3f,
+                    SheenLobe::unlimited(roughness, back) / 0.7f, 1e-5f);
+    }
+    // The two halves of the fit meet at 60 degrees.
+    const std::array<float, 5> fit = SheenLobe::fit(0.5f);
+    EXPECT_NEAR(SheenLobe::lambda(fit, 0.49999f), SheenLobe::lambda(fit, 0.5f), 1e-3f);
+}
+
+TEST(Brdf, AlbedoOfSheenIsItsIntegral) {
+    for (const float roughness : {0.3f, 0.47f, 0.8f, 1.0f})
+        for (const double degrees : {0.0, 45.0, 70.0, 84.0}) {
+            const Surface cloth{.highlight = Highlight::GgxWhole,
+                                .sheen = glm::vec3(1.0f),
+                                .sheen_roughness = roughness};
+            const glm::vec3 eye = eye_at(degrees);
+            EXPECT_NEAR(double{sheen_albedo(roughness, eye.y)},
+                        integral_over_lights(cloth, eye, 200).sheen, 5e-3)
+                << roughness << ' ' << degrees;
+        }
+}
+
+/// A mirror of F0 0.04, whose normal may differ from the surface's, and its Fresnel.
+TEST(Brdf, ACoatMirrorsAboutItsOwnNormal) {
+    Surface surface{.albedo = glm::vec3(0.0f),
+                    .highlight = Highlight::GgxWhole,
+                    .coat = 1.0f,
+                    .coat_roughness = 0.3f};
+    const glm::vec3 tilted = glm::normalize(glm::vec3(0.3f, 1.0f, 0.0f));
+    const Lobes<float> plain = evaluate_lobes(surface, tilted, tilted, tilted);
+    surface.coat_normal = tilted;
+    EXPECT_EQ(evaluate_lobes(surface, Up, tilted, tilted).coat, plain.coat);
+    const float alpha = ggx_alpha(0.3f);
+    EXPECT_NEAR(plain.coat, 0.04f / (4.0f * std::numbers::pi_v<float> * alpha * alpha), 1e-4f);
+    const glm::vec3 v = eye_at(89.0);
+    surface.coat_normal = glm::vec3(0.0f);
+    EXPECT_GT(reflect(surface, {.coat = glm::vec3(1.0f)}, {surface, Up, v}).g, 1.0f)
+        << "m of Turquin";
+    EXPECT_EQ(diffuse_albedo(surface, {surface, Up, v}), glm::vec3(0.0f));
+    surface.coat = 0.0f;
+    EXPECT_EQ(evaluate_lobes(surface, Up, v, v).coat, 0.0f);
 }
 
 /// The table is the integral of the lobe.

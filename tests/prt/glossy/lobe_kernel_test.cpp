@@ -25,10 +25,17 @@ struct RandomBlock {
         for (std::size_t i = 0; i < BlockSize; ++i) {
             normals[i] = scenes::random_direction(random);
             to_eye[i] = scenes::random_direction(random);
-            const auto highlight = static_cast<Highlight>(random() % 3);
+            const auto highlight = static_cast<Highlight>(random() % NumHighlights);
             surfaces[i] = {.highlight = highlight,
-                           .roughness_or_exponent =
-                               highlight == Highlight::Ggx ? unit(random) : 200.0f * unit(random)};
+                           .roughness_or_exponent = highlight == Highlight::BlinnPhong
+                                                        ? 200.0f * unit(random)
+                                                        : unit(random),
+                           .coat = unit(random) < 0.5f ? 0.0f : 0.5f,
+                           .coat_roughness = unit(random),
+                           .sheen = glm::vec3(unit(random) < 0.5f ? 0.0f : 1.0f),
+                           .sheen_roughness = unit(random)};
+            if (i % 2 == 0)
+                surfaces[i].coat_normal = scenes::random_direction(random);
             block.set(i, surfaces[i], normals[i], to_eye[i]);
         }
     }
@@ -51,16 +58,12 @@ TEST(LobeKernel, EqualsThePlainLobesOnEveryTarget) {
                     2.0f * glm::dot(random.normals[i], random.to_eye[i]) * random.normals[i] -
                     random.to_eye[i] + 1e-3f * directions[i]);
             std::vector<BlockSurfaces::Floats> values(directions.size());
-            for (const GlossyLobe lobe :
-                 {GlossyLobe::Specular, GlossyLobe::SpecularGrazing, GlossyLobe::DiffuseGrazing}) {
-                evaluate_lobe(random.block, lobe, directions, values);
+            for (std::size_t l = 0; l < NumGlossyLobes; ++l) {
+                evaluate_lobe(random.block, static_cast<GlossyLobe>(l), directions, values);
                 for (std::size_t d = 0; d < directions.size(); ++d)
                     for (std::size_t i = 0; i < BlockSize; ++i) {
                         const Lobes<float> plain = random.plain(i, directions[d]);
-                        const float expected = lobe == GlossyLobe::Specular ? plain.specular
-                                               : lobe == GlossyLobe::SpecularGrazing
-                                                   ? plain.specular_grazing
-                                                   : plain.diffuse_grazing;
+                        const float expected = plain.*GlossyParts<float>[l];
                         EXPECT_NEAR(values[d][i], expected, 1e-4f * expected + 1e-6f)
                             << "receiver " << i << " direction " << d;
                     }

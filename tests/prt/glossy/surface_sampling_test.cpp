@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/prt/textured_square.h"
+
 namespace relumine::prt {
 namespace {
 
@@ -63,6 +65,56 @@ TEST(SurfaceSampling, MetallicRoughness) {
 
 /// F0 takes its part of the diffuse colour, as KHR_materials_pbrSpecularGlossiness defines it; the
 /// whole form takes what the highlight reflects in its place.
+/// KHR_materials_ior and _specular: F0 = min(((n - 1) / (n + 1))^2 tint, 1) strength.
+TEST(SurfaceSampling, DielectricsHaveTheirOwnF0) {
+    mesh::TriangleMesh mesh = scenes::textured_square();
+    mesh::Material& material = mesh.materials[1] = {.model = mesh::MaterialModel::MetallicRoughness,
+                                                    .base_color = glm::vec3(0.5f)};
+    const auto surface = [&] {
+        return surface_at(mesh, 0, glm::vec2(0.25f));
+    };
+    EXPECT_EQ(surface().specular, glm::vec3(0.04f));
+    material.ior = 1.33f;
+    EXPECT_NEAR(surface().specular.g, 0.33f * 0.33f / (2.33f * 2.33f), 1e-7f);
+    material.ior = 0.0f;
+    EXPECT_EQ(surface().specular, glm::vec3(1.0f)) << "infinite";
+    material.ior = 3.0f;
+    material.specular_tint = {1.0f, 0.5f, 8.0f};
+    material.specular_strength = 0.5f;
+    EXPECT_EQ(surface().specular, glm::vec3(0.125f, 0.0625f, 0.5f));
+    EXPECT_EQ(surface().dielectric_f90, 0.5f);
+    material.metallic = 0.5f;
+    EXPECT_EQ(surface().specular, glm::vec3(0.3125f, 0.28125f, 0.5f));
+    EXPECT_EQ(surface().dielectric_f0, 0.5f);
+}
+
+TEST(SurfaceSampling, LayersHaveTheirTextures) {
+    mesh::TriangleMesh mesh = scenes::textured_square();
+    const mesh::TextureSlot colors{.texture = 0, .wrap = {mesh::Wrap::Clamp, {}}};
+    mesh.materials[1] = {.model = mesh::MaterialModel::MetallicRoughness,
+                         .coat = 0.5f,
+                         .coat_texture = colors,
+                         .coat_roughness = 0.25f,
+                         .coat_roughness_texture = colors,
+                         .sheen = {1.0f, 0.5f, 0.25f},
+                         .sheen_texture = colors,
+                         .sheen_roughness = 0.75f};
+    // Black, red, green and blue, at the middles of the texels.
+    const Surface red = surface_at(mesh, 0, {0.375f, 0.0f}),
+                  green = surface_at(mesh, 0, {0.625f, 0.0f});
+    EXPECT_EQ(red.coat, 0.5f);
+    EXPECT_EQ(red.coat_roughness, 0.0f);
+    EXPECT_EQ(green.coat, 0.0f);
+    EXPECT_EQ(green.coat_roughness, 0.25f);
+    EXPECT_EQ(red.sheen, glm::vec3(1, 0, 0));
+    EXPECT_EQ(green.sheen, glm::vec3(0, 0.5f, 0));
+    EXPECT_EQ(green.sheen_roughness, 0.75f);
+    const Surface plain = without_highlight(red);
+    EXPECT_EQ(plain.coat, 0.0f);
+    EXPECT_EQ(plain.sheen, glm::vec3(0.0f));
+    EXPECT_LT(plain.albedo.g, red.albedo.g) << "sheen takes light";
+}
+
 TEST(SurfaceSampling, SpecularGlossiness) {
     Material material = {.model = MaterialModel::SpecularGlossiness,
                          .base_color = {1.0f, 0.5f, 0.25f},

@@ -60,12 +60,17 @@ TEST(MaterialSections, UvsOfCornersAreFinite) {
 TEST(MaterialSections, KeepNormalMaps) {
     mesh::TriangleMesh mesh = scenes::mapped_square({255, 128, 255});
     mesh.materials[0].normal_scale = 0.5f;
+    mesh.materials[0].ior = 1.25f;
+    mesh.materials[0].specular_tint = {2.0f, 0.5f, 0.0f};
     mesh.materials[0].normal_texture->uv_set = 1;
     mesh.materials[0].base_color_texture = mesh::TextureSlot{.texture = 0, .is_srgb = true};
     const mesh::TriangleMesh same = read(written(mesh), mesh);
     EXPECT_EQ(same.corner_tangents, mesh.corner_tangents);
     EXPECT_EQ(same.materials[0].normal_texture, mesh.materials[0].normal_texture);
     EXPECT_EQ(same.materials[0].normal_scale, 0.5f);
+    EXPECT_EQ(same.materials[0].ior, 1.25f);
+    EXPECT_EQ(same.materials[0].specular_strength, 1.0f);
+    EXPECT_EQ(same.materials[0].specular_tint, mesh.materials[0].specular_tint);
     const std::filesystem::path path = "scene.prt";
     Scene scene;
     scene.mesh = mesh;

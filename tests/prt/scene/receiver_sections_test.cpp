@@ -258,10 +258,19 @@ TEST_F(ReceiverSectionsTest, MissingAndShortSections) {
     EXPECT_FALSE(good.contains("r_emission"));
     scene.receivers.surfaces[2].metallic = 0.5f;
     scene.receivers.surfaces[3].emission = glm::vec3(7.0f, 0.0f, 1.0f);
+    Surface& layered = scene.receivers.surfaces[4];
+    layered.dielectric_f0 = 0.25f;
+    layered.dielectric_f90 = 0.5f;
+    layered.coat = 0.75f;
+    layered.coat_roughness = 0.125f;
+    layered.coat_normal = {0.0f, 0.0f, 1.0f};
+    layered.sheen = {1.0f, 0.5f, 0.0f};
+    layered.sheen_roughness = 0.25f;
     save_scene(file_, scene);
     EXPECT_EQ(load_scene(file_).receivers.surfaces, scene.receivers.surfaces);
     const Sections unusual = read_sections(file_);
-    for (const char* name : {"r_metallic", "r_emission"})
+    for (const char* name : {"r_metallic", "r_emission", "r_f0", "r_f90", "r_coat", "r_coat_rough",
+                             "r_coat_normal", "r_sheen", "r_sheen_rough"})
         refused(unusual, std::string("'") + name + "'",
                 [&](Sections& s) { s.at(name).pop_back(); });
     refused(unusual, "metallic 0 to 1",

@@ -160,7 +160,7 @@ TEST(SurfaceColors, HighlightsStayOnTopOfTextures) {
     metal.albedo = glm::vec3(0.0f);
     for (const prt::Surface& surface : {shiny, metal}) {
         std::vector<prt::Lobes<glm::vec3>> all = lobes;
-        add_rest(radiance, std::vector(4, surface), std::vector(4, 1.0f), all);
+        add_rest(radiance, std::vector(4, surface), std::vector<prt::EyeCosines>(4, 1.0f), all);
         EXPECT_LT(glm::distance(prt::reflect(surface, all[1], 1.0f), radiance[1]), 1e-5f);
     }
 }
