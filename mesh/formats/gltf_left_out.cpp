@@ -151,7 +151,6 @@ void LeftOut::material(const Json& description) {
             count("with the property " + excerpt(name) + ", which glTF does not have",
                   "it is left out");
     material_extensions(child(description, "extensions"));
-    const Json& extensions = child(description, "extensions");
     const Json& pbr = child(description, "pbrMetallicRoughness");
     const Json& old = child(extensions, "KHR_materials_pbrSpecularGlossiness");
     const Json& specular = child(extensions, "KHR_materials_specular");
