@@ -90,8 +90,7 @@ BinnedEnvironment EnvironmentBinner::bin(std::shared_ptr<const cubemap::CubeMap>
     start = Clock::now();
     if (sharp_tolerance_ > 0.0f)
         result.sharp_lights =
-            find_sharp_lights(*result.map, *binning_, transfer_.quadtree.leaves(), result.powers,
-                              sharp_tolerance_, transfer_.glossy.has_value());
+            find_sharp_lights(*result.map, *binning_, transfer_, result.powers, sharp_tolerance_);
     result.seconds_sharp = seconds_since(start);
     return result;
 }

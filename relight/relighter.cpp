@@ -236,8 +236,7 @@ UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangle
     std::optional<std::size_t> traced;
     if (rays_.blockers != nullptr)
         traced = replace_sharp_lights(
-            find_sharp_lights(*environment_, *binning_, transfer_.quadtree.leaves(), powers_,
-                              rays_.tolerance, transfer_.glossy.has_value()));
+            find_sharp_lights(*environment_, *binning_, transfer_, powers_, rays_.tolerance));
     set_cells();
     const std::size_t num_receivers =
         light_->update({.all = sums_, .sharp = sharp_lights_}, changed_, traced.has_value());

@@ -113,8 +113,10 @@ public:
         scene_.blockers = std::move(mesh.blockers);
         scene_.mesh = std::move(mesh.geometry);
         scene_.settings = {
-            .tolerance = options.tolerance.value_or(
-                report_.refined ? ToleranceOfRefined : prt::PrecomputeOptions{}.tolerance),
+            .tolerance =
+                options.tolerance.value_or(are_in_space(options) ? ToleranceOfPoints
+                                           : report_.refined     ? ToleranceOfRefined
+                                                             : prt::PrecomputeOptions{}.tolerance),
             .epsilon = options.epsilon,
             .min_level = are_in_space(options) ? std::max(options.min_level, prt::MinLevelOfPoints)
                                                : options.min_level,

@@ -110,9 +110,12 @@ enum class Warning {
 /// to 2 %.
 inline constexpr float ToleranceOfRefined = 0.025f;
 
+/// The same of points: with cells of prt::MinLevelOfPoints, nothing more is split as a rule.
+inline constexpr float ToleranceOfPoints = 0.1f;
+
 struct PrecomputeOptions {
     /// RMS error of the transfer allowed within a cluster, 1/sr; smaller is finer. Empty: that of
-    /// prt::PrecomputeOptions, or ToleranceOfRefined.
+    /// prt::PrecomputeOptions, ToleranceOfRefined or ToleranceOfPoints.
     std::optional<float> tolerance = {};
     /// Replaces `tolerance` if given: the paper's form, which allows larger meshes a larger error.
     std::optional<float> epsilon = {};

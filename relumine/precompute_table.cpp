@@ -283,13 +283,15 @@ OptionTable options_of(PrecomputeOptions& o) {
     return {
         row("--tolerance", o.tolerance,
             fmt::format("RMS error of the transfer allowed within a cluster, 1/sr ({}; {} where "
-                        "the mesh or its floor is refined by itself)",
-                        prt::PrecomputeOptions{}.tolerance, ToleranceOfRefined),
+                        "the mesh or its floor is refined by itself; {} for points)",
+                        prt::PrecomputeOptions{}.tolerance, ToleranceOfRefined, ToleranceOfPoints),
             {.min = 0, .max = 1e6}),
         row("--epsilon", o.epsilon,
             "the paper's form of the tolerance: grows lax with the mesh's size",
             {.min = 0, .max = 1e6, .excludes = "--tolerance"}),
-        row("--min-depth", o.min_level, "every cell is split at least this often",
+        row("--min-depth", o.min_level,
+            fmt::format("every cell is split at least this often; for points at least {} times",
+                        prt::MinLevelOfPoints),
             {.min = 0, .max = prt::MaxLevel}),
         row("--face-resolution", o.face_resolution,
             "R: cells stop at single texels of a 6 x R x R environment",

@@ -9,8 +9,8 @@
 
 #include "arrays.h"
 #include "mesh/normals.h"
-#include "relumine/material_report.h"
 #include "options.h"
+#include "relumine/material_report.h"
 #include "run.h"
 
 namespace relumine::python {
@@ -277,7 +277,7 @@ void bind_mesh_arrays(Class& type, Geometry geometry) {
     type.def_property_readonly("materials", [=](const Pointer& own) {
         files::Json materials = files::Json::Array{};
         for (const mesh::Material& material : geometry(*own).materials)
-            materials.push_back(report_of(geometry(*own), material));
+            materials.push_back(relumine::report_of(geometry(*own), material));
         return materials.text();
     });
     type.def_property_readonly("groups", [=](const Pointer& own) { return geometry(*own).groups; });

@@ -99,7 +99,7 @@ def precompute(
 
     mesh       a Mesh, or an array of vertices (N, 3) with `triangles` (M, 3)
     tolerance  RMS error of the transfer allowed within a cluster, in 1/sr (0.0135; 0.025 where
-               vertices were added)
+               vertices were added; 0.1 for points)
     epsilon    the paper's form of it; excludes `tolerance`
     receivers  "vertices"; "pixels:WxH[:N]", what a fixed camera sees; "texels:WxH", a lightmap;
                "grid:NXxNYxNZ", "points:FILE" or an array (N, 3): points in space, which have no
@@ -294,7 +294,7 @@ class Scene:
 
     @property
     def num_clusters(self) -> int:
-        """Clusters of light; 0 for an unclustered scene."""
+        """Clusters of light; 6, the faces of the cube, for an unclustered scene."""
         return self._core.num_clusters
 
     @property

@@ -11,9 +11,10 @@ namespace relumine::relight {
 
 namespace {
 
-/// Groups are cells of this level, 3.6 degrees wide at most, or leaves that are larger. Not
-/// measured: light moves by 2.5 degrees at most, and finer groups cost more products.
-constexpr std::uint32_t GroupLevel = 5;
+/// Groups are cells of this level, 5.6 degrees wide at most, or leaves that are larger. Measured on
+/// points in the colonnade: finer groups take a seventh longer and help no error (0.0128 and 0.0128
+/// under grace); coarser ones add 4 % to 20 % to errors and save next to nothing.
+constexpr std::uint32_t GroupLevel = 4;
 
 struct CellMiddle {
     /// Unit length.
@@ -59,7 +60,7 @@ HarmonicGroup group_at(const prt::Cell& cell) {
     const std::array<double, 3> factors = band_factors(middle.coherence);
     HarmonicGroup group;
     for (std::size_t k = 0; k < values.size(); ++k)
-        group.basis[k] = static_cast<float>(values[k] * factors[band_of(k)]);
+        group.middle[k] = static_cast<float>(values[k] * factors[band_of(k)]);
     const double width = std::sqrt(middle.solid_angle);
     for (int axis = 0; axis < 3; ++axis)
         group.slope[static_cast<std::size_t>(axis)] =
@@ -72,7 +73,7 @@ prt::Cell group_cell(const prt::Cell& leaf) {
     prt::Cell cell = leaf;
     if (leaf.level > GroupLevel) {
         const std::uint32_t shift = leaf.level - GroupLevel;
-        cell.level = GroupLevel;
+        cell.level = static_cast<std::uint8_t>(GroupLevel);
         cell.x = static_cast<decltype(cell.x)>(leaf.x >> shift);
         cell.y = static_cast<decltype(cell.y)>(leaf.y >> shift);
     }
@@ -100,18 +101,24 @@ std::array<std::array<double, MaxHarmonics>, 3> harmonics_of(const VectorIrradia
 
 ClusterHarmonics::ClusterHarmonics(const prt::Quadtree& quadtree, std::uint32_t order)
     : order_(order), coherences_(quadtree.num_leaves()), values_(quadtree.num_leaves() * stride()),
-      prefix_(((quadtree.num_leaves() + 63) / 64 * 64 + 1) * stride()),
+      prefix_(((quadtree.num_leaves() + 63) / 64 * 64 + 1) * eights()),
       fluxes_(quadtree.num_leaves() * 3) {
     prt::Cell last;
     for (std::size_t leaf = 0; leaf < coherences_.size(); ++leaf) {
         const prt::Cell& cell = quadtree.leaves()[leaf];
         coherences_[leaf] = middle_of(cell).coherence;
         const prt::Cell of_group = group_cell(cell);
-        if (groups_.empty() || of_group != last)
+        if (groups_.empty() || of_group != last) {
             groups_.push_back(group_at(of_group));
+            groups_.back().begin = static_cast<std::uint32_t>(leaf);
+        }
+        groups_.back().end = static_cast<std::uint32_t>(leaf + 1);
         last = of_group;
         group_of_.push_back(static_cast<std::uint32_t>(groups_.size() - 1));
     }
+    bases_.resize(groups_.size() * stride());
+    for (std::size_t group = 0; group < groups_.size(); ++group)
+        sum_group(group);
 }
 
 void ClusterHarmonics::set(std::size_t cluster, const VectorIrradiance& light) {
@@ -130,45 +137,100 @@ void ClusterHarmonics::set(std::size_t cluster, const VectorIrradiance& light) {
 }
 
 void ClusterHarmonics::sum_prefix() {
-    for (std::size_t i = 0; i < values_.size(); ++i)
-        prefix_[i + stride()] = prefix_[i] + values_[i];
+    std::vector<double> sums(stride());
+    EightDoubles* line = prefix_.data();
+    for (std::size_t cluster = 0; cluster < coherences_.size(); ++cluster, line += eights()) {
+        const double* value = values_.data() + cluster * stride();
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            sums[i] += value[i];
+            line[eights() + i / 8].numbers[i % 8] = sums[i];
+        }
+    }
 }
 
-void HarmonicChanges::clear() {
+void ClusterHarmonics::sum_group(std::size_t index) {
+    const HarmonicGroup& group = groups_[index];
+    const std::size_t count = num_harmonics(order_);
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        double flux = 0.0;
+        std::array<double, MaxHarmonics> sums{};
+        for (std::size_t cluster = group.begin; cluster < group.end; ++cluster) {
+            flux += static_cast<double>(fluxes_[cluster * 3 + channel]);
+            for (std::size_t k = 0; k < count; ++k)
+                sums[k] += values_[cluster * stride() + channel * count + k];
+        }
+        float* basis = bases_.data() + index * stride() + channel * count;
+        for (std::size_t k = 0; k < count; ++k)
+            basis[k] = flux > 0.0 ? static_cast<float>(sums[k] / flux) : group.middle[k];
+    }
+}
+
+void HarmonicChanges::set(ClusterHarmonics& lights, std::span<const std::uint32_t> changed,
+                          const std::function<VectorIrradiance(std::uint32_t)>& light_of) {
     words.clear();
     values.clear();
     word_values.clear();
-    fluxes.clear();
+    members.clear();
     groups.clear();
+    bases_before.clear();
+    bases.clear();
+    while (!changed.empty()) {
+        const HarmonicGroup& group = lights.groups()[lights.group_of()[changed.front()]];
+        const auto end = std::lower_bound(changed.begin(), changed.end(), group.end);
+        const auto count = static_cast<std::size_t>(end - changed.begin());
+        set_group(lights, changed.first(count), light_of);
+        changed = changed.subspan(count);
+    }
 }
 
-void HarmonicChanges::set(ClusterHarmonics& lights, std::size_t cluster,
-                          const VectorIrradiance& light) {
-    const std::size_t first_value = values.size(), first_flux = fluxes.size();
-    const std::span<const double> own = lights.of(cluster);
-    const std::span<const float> flux = lights.fluxes().subspan(cluster * 3, 3);
-    values.insert(values.end(), own.begin(), own.end());
-    fluxes.insert(fluxes.end(), flux.begin(), flux.end());
-    lights.set(cluster, light);
-    if (std::equal(own.begin(), own.end(), values.begin() + static_cast<long>(first_value))) {
-        values.resize(first_value);
-        fluxes.resize(first_flux);
-        return;
-    }
-    for (std::size_t i = 0; i < own.size(); ++i)
-        values[first_value + i] = own[i] - values[first_value + i];
-    for (std::size_t i = 0; i < flux.size(); ++i)
-        fluxes[first_flux + i] = static_cast<double>(flux[i]) - fluxes[first_flux + i];
+/// Returns the word of a cluster, behind which there is none yet.
+HarmonicChanges::Word& HarmonicChanges::word_of(std::uint32_t cluster, std::size_t stride) {
     if (words.empty() || words.back().word != cluster / 64) {
-        words.push_back({.word = static_cast<std::uint32_t>(cluster / 64),
-                         .first = static_cast<std::uint32_t>(groups.size())});
-        word_values.resize(word_values.size() + own.size());
+        words.push_back({.word = cluster / 64,
+                         .first_changed = static_cast<std::uint32_t>(values.size() / stride),
+                         .first_member = static_cast<std::uint32_t>(members.size())});
+        word_values.resize(word_values.size() + stride);
     }
-    double* of_word = word_values.data() + word_values.size() - own.size();
-    for (std::size_t i = 0; i < own.size(); ++i)
-        of_word[i] += values[first_value + i];
-    words.back().clusters |= std::uint64_t{1} << (cluster % 64);
-    groups.push_back(lights.group_of()[cluster]);
+    return words.back();
+}
+
+/// Sets the light of clusters of one group.
+void HarmonicChanges::set_group(ClusterHarmonics& lights, std::span<const std::uint32_t> changed,
+                                const std::function<VectorIrradiance(std::uint32_t)>& light_of) {
+    const std::uint32_t index = lights.group_of()[changed.front()];
+    const HarmonicGroup& group = lights.groups()[index];
+    const std::size_t stride = lights.stride();
+    const auto basis = lights.bases().subspan(index * stride, stride);
+    bases_before.insert(bases_before.end(), basis.begin(), basis.end());
+    const auto flux = [&](std::uint32_t cluster, double sign) {
+        const float* of_cluster = lights.fluxes().data() + std::size_t{3} * cluster;
+        return std::array<double, 3>{sign * of_cluster[0], sign * of_cluster[1],
+                                     sign * of_cluster[2]};
+    };
+    for (std::uint32_t cluster = group.begin; cluster < group.end; ++cluster) {
+        Word& word = word_of(cluster, stride);
+        const std::uint64_t bit = std::uint64_t{1} << (cluster % 64);
+        word.members |= bit;
+        members.push_back(
+            {.before = flux(cluster, -1.0), .group = static_cast<std::uint32_t>(groups.size())});
+        if (!changed.empty() && changed.front() == cluster) {
+            changed = changed.subspan(1);
+            const std::span<const double> own = lights.of(cluster);
+            const std::size_t first = values.size();
+            values.insert(values.end(), own.begin(), own.end());
+            lights.set(cluster, light_of(cluster));
+            word.changed |= bit;
+            double* of_word = word_values.data() + word_values.size() - stride;
+            for (std::size_t i = 0; i < stride; ++i) {
+                values[first + i] = own[i] - values[first + i];
+                of_word[i] += values[first + i];
+            }
+        }
+        members.back().now = flux(cluster, 1.0);
+    }
+    groups.push_back(index);
+    lights.sum_group(index);
+    bases.insert(bases.end(), basis.begin(), basis.end());
 }
 
 } // namespace relumine::relight

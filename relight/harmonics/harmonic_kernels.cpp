@@ -52,102 +52,77 @@ hn::Vec<Tag<T>> load_counts(const std::uint8_t* counts) {
     }
 }
 
-/// The clusters of a block and a word that add up per receiver, ascending.
-struct Pairs {
-    /// Bits of the word.
-    std::uint64_t bits;
-    /// Those that the block sees in part; it sees the others whole, across a horizon.
-    std::uint64_t mixed;
-    /// Counts of the first mixed one.
-    const std::uint8_t* counts;
-    const BlockNormals& normals;
-};
-
-/// Fluxes of groups that one block sees in part, until their basis functions are multiplied.
-template<typename T>
+/// Groups that one block sees in part: their fluxes, until these meet the groups' bases.
+template<typename T, std::size_t Count>
 class GroupFluxes {
+    using Vector = hn::Vec<Tag<T>>;
+    /// Wide vectors come with registers for the sums of all channels.
+    static constexpr std::size_t Channels = HWY_TARGET <= HWY_AVX3 ? 3 : 1;
+
 public:
-    GroupFluxes(const ClusterHarmonics& lights, float above)
-        : groups_(lights.groups().data()), above_(above) {}
+    static constexpr std::size_t Most = 128;
 
-    [[nodiscard]] bool is_full() const { return size_ > Most - 64; }
+    /// Sums of a group's fluxes times counts, for the receivers from `lane` on.
+    struct Sum {
+        Vector red, green, blue;
 
-    /// Sums pairs of a word. `group_of(bit)` tells a cluster's group, `flux_of(bit)` its three
-    /// fluxes.
-    template<class GroupOf, class FluxOf>
-    HWY_INLINE void add(const Pairs& pairs, const GroupOf& group_of, const FluxOf& flux_of) {
-        const Tag<T> d;
-        std::size_t entry = size_;
-        for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
-            entry = size_;
-            const std::uint8_t* counts = pairs.counts + lane;
-            std::size_t bit = first_bit(pairs.bits);
-            std::uint32_t group = group_of(bit);
-            auto red = hn::Zero(d), green = red, blue = red;
-            for (std::uint64_t bits = pairs.bits; bits != 0; bits &= bits - 1) {
-                bit = first_bit(bits);
-                if (const std::uint32_t next = group_of(bit); next != group) {
-                    finish(entry++, lane, group, pairs.normals, red, green, blue);
-                    group = next;
-                    red = green = blue = hn::Zero(d);
-                }
-                auto count = hn::Set(d, static_cast<T>(prt::FullCount));
-                if ((pairs.mixed >> bit & 1u) != 0) {
-                    count = load_counts<T>(counts);
-                    counts += prt::BlockSize;
-                }
-                const T* flux = flux_of(bit);
-                red = hn::MulAdd(count, hn::Set(d, flux[0]), red);
-                green = hn::MulAdd(count, hn::Set(d, flux[1]), green);
-                blue = hn::MulAdd(count, hn::Set(d, flux[2]), blue);
-            }
-            finish(entry++, lane, group, pairs.normals, red, green, blue);
+        HWY_INLINE Sum() : red(hn::Zero(Tag<T>())), green(red), blue(red) {}
+        HWY_INLINE void add(Vector count, const T* flux) {
+            const Tag<T> d;
+            red = hn::MulAdd(count, hn::Set(d, flux[0]), red);
+            green = hn::MulAdd(count, hn::Set(d, flux[1]), green);
+            blue = hn::MulAdd(count, hn::Set(d, flux[2]), blue);
         }
-        size_ = entry;
-    }
+    };
 
-    /// Adds the fluxes times the basis functions to a block's sums.
-    template<std::size_t Count>
-    void multiply(double* sums) {
+    [[nodiscard]] std::size_t size() const { return size_; }
+
+    /// Sets the receivers from `lane` on of an entry. Takes what is below their horizons off.
+    HWY_INLINE void set(std::size_t entry, std::size_t lane, const HarmonicGroup& group,
+                        const BlockNormals& normals, float middle_above, const Sum& sum) {
         const Tag<T> d;
-        for (std::size_t lane = 0; lane < prt::BlockSize && size_ != 0; lane += hn::Lanes(d))
-            for (std::size_t channel = 0; channel < 3; ++channel) {
-                hn::Vec<Tag<T>> products[Count];
-                for (auto& product : products)
-                    product = hn::Zero(d);
-                for (std::size_t i = 0; i < size_; ++i) {
-                    const auto flux = hn::Load(d, fluxes_[i][channel].data() + lane);
-                    const float* basis = groups_[group_[i]].basis.data();
-#pragma GCC unroll 9
-                    for (std::size_t k = 0; k < Count; ++k)
-                        products[k] =
-                            hn::MulAdd(flux, hn::Set(d, static_cast<T>(basis[k])), products[k]);
-                }
-#pragma GCC unroll 9
-                for (std::size_t k = 0; k < Count; ++k)
-                    add_to(sums + (channel * Count + k) * prt::BlockSize + lane, products[k]);
-            }
+        auto above = hn::Set(d, static_cast<T>(middle_above));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            above = hn::MulAdd(load_normals(normals.axes[axis].data() + lane),
+                               hn::Set(d, static_cast<T>(group.slope[axis])), above);
+        above = hn::Min(hn::Max(above, hn::Zero(d)), hn::Set(d, T{1}));
+        hn::Store(hn::Mul(above, sum.red), d, fluxes_[entry][0].data() + lane);
+        hn::Store(hn::Mul(above, sum.green), d, fluxes_[entry][1].data() + lane);
+        hn::Store(hn::Mul(above, sum.blue), d, fluxes_[entry][2].data() + lane);
+    }
+    /// Ends the entry behind the last. `basis` is [channel][coefficient].
+    void push(const float* basis) { bases_[size_++] = basis; }
+
+    /// Adds the fluxes times the bases to a block's sums, and forgets them.
+    void multiply(double* sums) {
+        if (size_ != 0)
+            for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Tag<T>()))
+                for (std::size_t channel = 0; channel < 3; channel += Channels)
+                    multiply(sums, lane, channel);
         size_ = 0;
     }
 
 private:
-    static constexpr std::size_t Most = 128;
-    using Vector = hn::Vec<Tag<T>>;
-
-    /// Takes what is below the receivers' horizons off a group's fluxes.
-    HWY_INLINE void finish(std::size_t entry, std::size_t lane, std::uint32_t group,
-                           const BlockNormals& normals, Vector red, Vector green, Vector blue) {
+    HWY_INLINE void multiply(double* sums, std::size_t lane, std::size_t first_channel) {
         const Tag<T> d;
-        const HarmonicGroup& of_group = groups_[group];
-        auto above = hn::Set(d, static_cast<T>(above_));
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            above = hn::MulAdd(load_normals(normals.axes[axis].data() + lane),
-                               hn::Set(d, static_cast<T>(of_group.slope[axis])), above);
-        above = hn::Min(hn::Max(above, hn::Zero(d)), hn::Set(d, T{1}));
-        group_[entry] = group;
-        hn::Store(hn::Mul(above, red), d, fluxes_[entry][0].data() + lane);
-        hn::Store(hn::Mul(above, green), d, fluxes_[entry][1].data() + lane);
-        hn::Store(hn::Mul(above, blue), d, fluxes_[entry][2].data() + lane);
+        Vector products[Channels * Count];
+        for (Vector& product : products)
+            product = hn::Zero(d);
+        for (std::size_t i = 0; i < size_; ++i) {
+            const float* basis = bases_[i] + first_channel * Count;
+#pragma GCC unroll 3
+            for (std::size_t channel = 0; channel < Channels; ++channel) {
+                const auto flux = hn::Load(d, fluxes_[i][first_channel + channel].data() + lane);
+#pragma GCC unroll 9
+                for (std::size_t k = 0; k < Count; ++k)
+                    products[channel * Count + k] =
+                        hn::MulAdd(flux, hn::Set(d, static_cast<T>(basis[channel * Count + k])),
+                                   products[channel * Count + k]);
+            }
+        }
+#pragma GCC unroll 27
+        for (std::size_t k = 0; k < Channels * Count; ++k)
+            add_to(sums + (first_channel * Count + k) * prt::BlockSize + lane, products[k]);
     }
 
     static HWY_INLINE Vector load_normals(const float* normals) {
@@ -172,13 +147,53 @@ private:
         }
     }
 
-    const HarmonicGroup* groups_;
-    float above_;
     std::size_t size_ = 0;
-    std::array<std::uint32_t, Most> group_;
+    std::array<const float*, Most> bases_;
     /// [group][channel][receiver]
     alignas(64) std::array<std::array<std::array<T, prt::BlockSize>, 3>, Most> fluxes_;
 };
+
+/// The clusters of a block and word that add up per receiver.
+struct Pairs {
+    /// Bits of those that the block sees in part, and whole across a horizon.
+    std::uint64_t mixed, across;
+    /// Counts of the word's first mixed cluster.
+    const std::uint8_t* counts;
+};
+
+/// Adds the clusters of a word, group by group, to what one block sees in part. `cluster` is the
+/// word's first.
+template<std::size_t Count>
+HWY_INLINE void add_pairs(const Pairs& pairs, const ClusterHarmonics& lights, std::size_t cluster,
+                          const BlockNormals& normals, float middle_above,
+                          GroupFluxes<float, Count>& fluxes) {
+    const Tag<float> d;
+    const HarmonicGroup* groups = lights.groups().data();
+    const std::uint32_t* group_of = lights.group_of().data() + cluster;
+    const float* flux = lights.fluxes().data() + cluster * 3;
+    const float* bases = lights.bases().data();
+    const std::uint8_t* counts = pairs.counts;
+    for (std::uint64_t rest = pairs.mixed | pairs.across; rest != 0;) {
+        const std::size_t index = group_of[first_bit(rest)];
+        const HarmonicGroup& group = groups[index];
+        const std::size_t end = group.end - cluster;
+        const std::uint64_t of_group = end < 64 ? rest & ((std::uint64_t{1} << end) - 1) : rest;
+        rest &= ~of_group;
+        for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
+            typename GroupFluxes<float, Count>::Sum sum;
+            const std::uint8_t* count = counts + lane;
+            for (std::uint64_t bits = of_group & pairs.mixed; bits != 0;
+                 bits &= bits - 1, count += prt::BlockSize)
+                sum.add(load_counts<float>(count), flux + first_bit(bits) * 3);
+            for_bits(of_group & pairs.across, [&](std::size_t i) {
+                sum.add(hn::Set(d, static_cast<float>(prt::FullCount)), flux + i * 3);
+            });
+            fluxes.set(fluxes.size(), lane, group, normals, middle_above, sum);
+        }
+        counts += static_cast<std::size_t>(std::popcount(of_group & pairs.mixed)) * prt::BlockSize;
+        fluxes.push(bases + index * lights.stride());
+    }
+}
 
 /// Adds sign times `values` to a sum.
 void add_scaled(const double* values, double sign, std::size_t stride, double* sum) {
@@ -189,6 +204,27 @@ void add_scaled(const double* values, double sign, std::size_t stride, double* s
                    sum + i);
     for (; i < stride; ++i)
         sum[i] += sign * values[i];
+}
+
+/// Sums the clusters of runs: a sum of all clusters before each run's end, minus a sum of those
+/// before its beginning. `edges` are the bits where a run begins, which is `visible` there, or
+/// ends. `prefix` begins at the word's first cluster.
+template<std::size_t Eights>
+HWY_INLINE void add_runs(std::uint64_t edges, std::uint64_t visible, const EightDoubles* prefix,
+                         double* sum) {
+    const hn::CappedTag<double, 8> d;
+    constexpr std::size_t Lanes = hn::MaxLanes(d), NumVectors = Eights * 8 / Lanes;
+    hn::Vec<decltype(d)> sums[NumVectors];
+    for (std::size_t i = 0; i < NumVectors; ++i)
+        sums[i] = hn::Load(d, sum + i * Lanes);
+    for_bits(edges, [&](std::size_t bit) {
+        const auto sign = hn::Set(d, (visible >> bit & 1u) != 0 ? -1.0 : 1.0);
+        const double* before = prefix[bit * Eights].numbers.data();
+        for (std::size_t i = 0; i < NumVectors; ++i)
+            sums[i] = hn::MulAdd(sign, hn::Load(d, before + i * Lanes), sums[i]);
+    });
+    for (std::size_t i = 0; i < NumVectors; ++i)
+        hn::Store(sums[i], d, sum + i * Lanes);
 }
 
 /// Where the counts of a block's word begin.
@@ -203,51 +239,73 @@ void light_harmonics(const BlockScene& scene, std::size_t tile, const ClusterHar
     const prt::VisibleCounts& counts = scene.counts;
     const std::size_t begin = counts.tile_begin(tile);
     const std::size_t num_words = counts.words_per_block();
-    const double* prefix = lights.prefix().data();
-    const float* fluxes = lights.fluxes().data();
-    const std::uint32_t* group_of = lights.group_of().data();
+    constexpr std::size_t Eights = (Stride + 7) / 8;
+    const EightDoubles* prefix = lights.prefix().data();
+    std::array<std::array<EightDoubles, Eights>, prt::VisibleCounts::TileBlocks> visible_sums{};
     chosen &= counts.tile_blocks(tile);
     for_bits(chosen, [&](std::size_t block) {
-        std::fill_n(of_blocks.visible + (begin + block) * Stride, Stride, 0.0);
         std::fill_n(of_blocks.mixed + (begin + block) * Stride * prt::BlockSize,
                     Stride * prt::BlockSize, 0.0);
     });
-    GroupFluxes<float> groups(lights, of_blocks.above);
+    GroupFluxes<float, Count> fluxes;
     std::uint64_t inside = 0; // blocks in the middle of a run
-    for (std::size_t first = 0; first < num_words; first += WordsPerStep)
+    for (std::size_t first = 0; first < num_words; first += WordsPerStep) {
+        const TileWord* of_tile = scene.words.words.data() + tile * num_words + first;
+        // The words of the step that a block has work for.
+        std::array<std::uint64_t, prt::VisibleCounts::TileBlocks> work{};
+        for (std::size_t w = 0; w < std::min(WordsPerStep, num_words - first); ++w)
+            for_bits((of_tile[w].edges | of_tile[w].mixed | of_tile[w].across) & chosen,
+                     [&](std::size_t block) { work[block] |= std::uint64_t{1} << w; });
         for_bits(chosen, [&](std::size_t block) {
-            double* visible_sum = of_blocks.visible + (begin + block) * Stride;
+            double* visible_sum = visible_sums[block].front().numbers.data();
             double* mixed_sum = of_blocks.mixed + (begin + block) * Stride * prt::BlockSize;
-            for (std::size_t w = first; w < std::min(first + WordsPerStep, num_words); ++w) {
-                const TileWord& of_tile = scene.words.words[tile * num_words + w];
-                const std::size_t word = counts.word(begin + block, w);
-                const std::uint64_t across = scene.words.across_of(of_tile, block);
+            for_bits(work[block], [&](std::size_t w) {
+                const std::size_t cluster = (first + w) * 64;
+                const std::size_t word = counts.word(begin + block, first + w);
+                const std::uint64_t across = scene.words.across_of(of_tile[w], block);
                 const std::uint64_t visible = counts.visible[word] & ~across;
-                for_bits(visible ^ (visible << 1 | (inside >> block & 1u)), [&](std::size_t i) {
-                    add_scaled(prefix + (w * 64 + i) * Stride,
-                               (visible >> i & 1u) != 0 ? -1.0 : 1.0, Stride, visible_sum);
-                });
+                if (const std::uint64_t edges = visible ^ (visible << 1 | (inside >> block & 1u));
+                    edges != 0)
+                    add_runs<Eights>(edges, visible, prefix + cluster * Eights, visible_sum);
                 inside = (inside & ~(std::uint64_t{1} << block)) | visible >> 63 << block;
                 const std::uint64_t mixed = counts.mixed[word];
                 if ((mixed | across) == 0)
-                    continue;
-                groups.add(
-                    {.bits = mixed | across,
-                     .mixed = mixed,
-                     .counts = counts_of(counts, word),
-                     .normals = scene.normals[begin + block]},
-                    [&](std::size_t i) { return group_of[w * 64 + i]; },
-                    [&](std::size_t i) { return fluxes + (w * 64 + i) * 3; });
-                if (groups.is_full())
-                    groups.template multiply<Count>(mixed_sum);
-            }
-            groups.template multiply<Count>(mixed_sum);
+                    return;
+                if (fluxes.size() + 64 > fluxes.Most)
+                    fluxes.multiply(mixed_sum);
+                add_pairs({.mixed = mixed, .across = across, .counts = counts_of(counts, word)},
+                          lights, cluster, scene.normals[begin + block], of_blocks.above, fluxes);
+            });
+            fluxes.multiply(mixed_sum);
         });
-    // A run up to the last bit of the last word ends behind it.
-    for_bits(inside, [&](std::size_t block) {
-        add_scaled(prefix + num_words * 64 * Stride, 1.0, Stride,
-                   of_blocks.visible + (begin + block) * Stride);
+    }
+    for_bits(chosen, [&](std::size_t block) {
+        double* visible_sum = visible_sums[block].front().numbers.data();
+        // A run up to the last bit of the last word ends behind it.
+        add_runs<Eights>(inside >> block & 1u, 0, prefix + num_words * 64 * Eights, visible_sum);
+        std::copy_n(visible_sum, Stride, of_blocks.visible + (begin + block) * Stride);
     });
+}
+
+/// Adds a cluster of a changed group, as it is now and less what it was, to what a block sees in
+/// part. `counts` is null for a cluster that is seen whole.
+template<std::size_t Count>
+void add_member(const HarmonicChanges& changes, const HarmonicChanges::Member& member,
+                const std::uint8_t* counts, const HarmonicGroup& group, const BlockNormals& normals,
+                float middle_above, GroupFluxes<double, Count>& fluxes) {
+    const Tag<double> d;
+    const auto add = [&](const std::array<double, 3>& flux, const std::vector<float>& bases) {
+        for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
+            typename GroupFluxes<double, Count>::Sum sum;
+            sum.add(counts != nullptr ? load_counts<double>(counts + lane)
+                                      : hn::Set(d, static_cast<double>(prt::FullCount)),
+                    flux.data());
+            fluxes.set(fluxes.size(), lane, group, normals, middle_above, sum);
+        }
+        fluxes.push(bases.data() + std::size_t{member.group} * 3 * Count);
+    };
+    add(member.before, changes.bases_before);
+    add(member.now, changes.bases);
 }
 
 template<std::size_t Count>
@@ -258,7 +316,7 @@ std::uint64_t update_harmonics(const BlockScene& scene, std::size_t tile,
     const prt::VisibleCounts& counts = scene.counts;
     const std::size_t begin = counts.tile_begin(tile);
     const std::size_t num_words = counts.words_per_block();
-    GroupFluxes<double> groups(lights, of_blocks.above);
+    GroupFluxes<double, Count> fluxes;
     std::uint64_t touched = 0;
     for_bits(counts.tile_blocks(tile), [&](std::size_t block) {
         double* visible_sum = of_blocks.visible + (begin + block) * Stride;
@@ -267,42 +325,39 @@ std::uint64_t update_harmonics(const BlockScene& scene, std::size_t tile,
             const HarmonicChanges::Word& change = changes.words[c];
             const TileWord& of_tile = scene.words.words[tile * num_words + change.word];
             const std::size_t word = counts.word(begin + block, change.word);
-            const std::uint64_t seen = counts.visible[word] & change.clusters;
-            const std::uint64_t across = scene.words.across_of(of_tile, block) & seen;
+            const std::uint64_t all_across = scene.words.across_of(of_tile, block);
             const std::uint64_t all_mixed = counts.mixed[word];
-            const std::uint64_t mixed = all_mixed & change.clusters;
-            if ((seen | mixed) == 0)
+            const std::uint64_t whole = counts.visible[word] & change.changed & ~all_across;
+            const std::uint64_t per_receiver = (all_mixed | all_across) & change.members;
+            if ((whole | per_receiver) == 0)
                 continue;
             touched |= std::uint64_t{1} << block;
-            const auto index_of = [&](std::size_t i) {
-                return change.first + static_cast<std::size_t>(std::popcount(
-                                          change.clusters & ((std::uint64_t{1} << i) - 1)));
+            const auto index_of = [](std::uint64_t bits, std::size_t i) {
+                return static_cast<std::size_t>(
+                    std::popcount(bits & ((std::uint64_t{1} << i) - 1)));
             };
-            const std::uint64_t whole = seen & ~across;
-            if (whole == change.clusters)
+            if (whole == change.changed)
                 add_scaled(changes.word_values.data() + c * Stride, 1.0, Stride, visible_sum);
             else
                 for_bits(whole, [&](std::size_t i) {
-                    add_scaled(changes.values.data() + index_of(i) * Stride, 1.0, Stride,
-                               visible_sum);
+                    add_scaled(changes.values.data() +
+                                   (change.first_changed + index_of(change.changed, i)) * Stride,
+                               1.0, Stride, visible_sum);
                 });
-            // One by one: the counts of mixed clusters that did not change lie between.
-            for_bits(mixed | across, [&](std::size_t i) {
-                const std::uint64_t bit = std::uint64_t{1} << i;
-                const auto before = static_cast<std::size_t>(std::popcount(all_mixed & (bit - 1)));
-                const std::size_t index = index_of(i);
-                groups.add(
-                    {.bits = bit,
-                     .mixed = mixed & bit,
-                     .counts = counts_of(counts, word) + before * prt::BlockSize,
-                     .normals = scene.normals[begin + block]},
-                    [&](std::size_t) { return changes.groups[index]; },
-                    [&](std::size_t) { return changes.fluxes.data() + index * 3; });
-                if (groups.is_full())
-                    groups.template multiply<Count>(mixed_sum);
+            for_bits(per_receiver, [&](std::size_t i) {
+                if (fluxes.size() + 2 > fluxes.Most)
+                    fluxes.multiply(mixed_sum);
+                const HarmonicChanges::Member& member =
+                    changes.members[change.first_member + index_of(change.members, i)];
+                add_member(changes, member,
+                           (all_mixed >> i & 1u) != 0
+                               ? counts_of(counts, word) + index_of(all_mixed, i) * prt::BlockSize
+                               : nullptr,
+                           lights.groups()[changes.groups[member.group]],
+                           scene.normals[begin + block], of_blocks.above, fluxes);
             });
         }
-        groups.template multiply<Count>(mixed_sum);
+        fluxes.multiply(mixed_sum);
     });
     return touched;
 }

@@ -65,6 +65,11 @@ void HarmonicLight::sum(const BlockScene& scene, const ClusterSums& sums) {
                 lights_.set(cluster, sums.without_sharp(cluster));
         });
     lights_.sum_prefix();
+    files::parallel_for(files::IndexRange<std::size_t>(0, lights_.groups().size(), Grain),
+                        [&](const auto& range) {
+                            for (std::size_t group = range.begin(); group < range.end(); ++group)
+                                lights_.sum_group(group);
+                        });
     const prt::VisibleCounts& counts = transfer_.counts;
     files::parallel_for(std::size_t{0}, counts.num_tiles(), [&](std::size_t tile) {
         light_harmonics(scene, tile, lights_, ~std::uint64_t{0}, blocks());
@@ -76,9 +81,8 @@ void HarmonicLight::sum(const BlockScene& scene, const ClusterSums& sums) {
 
 std::size_t HarmonicLight::update(const BlockScene& scene, const ClusterSums& sums,
                                   std::span<const std::uint32_t> changed) {
-    changes_.clear();
-    for (const std::uint32_t cluster : changed)
-        changes_.set(lights_, cluster, sums.without_sharp(cluster));
+    changes_.set(lights_, changed,
+                 [&](std::uint32_t cluster) { return sums.without_sharp(cluster); });
     const prt::VisibleCounts& counts = transfer_.counts;
     dimmed_.assign(counts.num_tiles(), 0);
     std::atomic<std::size_t> num_blocks = 0;

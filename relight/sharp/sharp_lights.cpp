@@ -17,6 +17,10 @@ namespace {
 // map stay within 0.5 %, the error of clusters on the measured environments.
 constexpr double AllowedError = 0.0025;
 
+// To points, lights count that are so much weaker. Measured on 2,000 points in the colonnade under
+// grace: an error of 0.28 % in place of 0.31 %, with 48 lights in place of 11.
+constexpr float PointSensitivity = 2.0f;
+
 // Levels between a cluster and its candidate cells, which have a sixteenth of its area. A light
 // that fills less is "small".
 constexpr std::uint32_t LevelsBelowCluster = 2;
@@ -157,7 +161,7 @@ std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
                                           const LightBinning& binning,
                                           std::span<const prt::Cell> clusters,
                                           std::span<const double> powers, float tolerance,
-                                          bool glossy) {
+                                          bool even_too) {
     // The length of a small cell's vector irradiance is its power.
     const double total_power = sum_of(powers, std::identity());
     std::vector<SharpLight> lights;
@@ -166,7 +170,7 @@ std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
     const double min_power =
         AllowedError * total_power / (4.0 * std::numbers::pi) / static_cast<double>(tolerance);
 
-    Search search(environment, binning, min_power, glossy, lights);
+    Search search(environment, binning, min_power, even_too, lights);
     const auto is_bright = [=](double power) {
         return power >= min_power;
     };
@@ -183,6 +187,15 @@ std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
                                  clusters[cluster]);
     }
     return lights;
+}
+
+std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
+                                          const LightBinning& binning,
+                                          const prt::Transfer& transfer,
+                                          std::span<const double> powers, float tolerance) {
+    return find_sharp_lights(environment, binning, transfer.quadtree.leaves(), powers,
+                             transfer.have_no_surface ? PointSensitivity * tolerance : tolerance,
+                             transfer.glossy || transfer.have_no_surface);
 }
 
 } // namespace relumine::relight

@@ -13,7 +13,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "prt/transfer/quadtree.h"
+#include "prt/transfer/transfer.h"
 #include "relight/kernels/cluster_lights.h"
 
 namespace relumine::relight {
@@ -37,9 +37,8 @@ struct SharpLight {
 /// beside the map's power P. In the cluster, a point light of power p may make an error of
 /// tolerance p. This error must exceed 0.25 % of the mean radiance P / (4 pi).
 ///
-/// Also, the candidate or a sister must hold more than an eighth of the cluster's power. With
-/// `glossy` receivers this condition is dropped: highlights may be smaller than any cluster, so
-/// bright cells are sharp even where the cluster's light is even.
+/// Also, the candidate or a sister must hold more than an eighth of the cluster's power, unless
+/// cells with even light are to count, too (`even_too`).
 ///
 /// Shape:   powers is [clusters.size()]: the length of each cluster's full vector irradiance, in
 ///          luminance.
@@ -48,7 +47,14 @@ struct SharpLight {
                                                         const LightBinning& binning,
                                                         std::span<const prt::Cell> clusters,
                                                         std::span<const double> powers,
-                                                        float tolerance, bool glossy = false);
+                                                        float tolerance, bool even_too = false);
+
+/// Returns the lights that are sharp to a scene's receivers. Highlights may be smaller than any
+/// cluster, and a cluster of points is all that divides their light, so to both, bright cells are
+/// sharp even where the cluster's light is even. To points, lights of half the power are.
+[[nodiscard]] std::vector<SharpLight>
+find_sharp_lights(const cubemap::CubeMap& environment, const LightBinning& binning,
+                  const prt::Transfer& transfer, std::span<const double> powers, float tolerance);
 
 /// Returns at most `most` lights of the same light: those of one small cell become one, in the
 /// middle of their power, where there are more. Returns none where cells of 0.7 degrees are not

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <span>
 #include <string>
@@ -29,9 +30,13 @@ namespace {
 struct Settings {
     std::uint32_t num_points = 2000;
     std::uint32_t resolution = 256;
+    Grid grid{16, 8, 16};
     /// Of exact integration.
     std::uint32_t exact_resolution = 128;
     int passes = 9;
+    /// Of points.
+    std::vector<float> tolerances = {ToleranceOfPoints};
+    std::vector<std::string> parts = {"grid", "relight", "normals", "points"};
 };
 
 struct NamedMap {
@@ -71,27 +76,39 @@ std::vector<glm::vec3> random_points(const mesh::TriangleMesh& mesh, std::size_t
     return receivers.positions;
 }
 
+/// How right the coefficients of points are, by tolerance.
 void measure_points(const Settings& settings, const bench::Inputs& inputs,
                     const mesh::TriangleMesh& colonnade) {
     const std::vector<glm::vec3> points = random_points(colonnade, settings.num_points);
-    PrecomputeReport report;
-    const LitScene made(
-        precompute(Mesh(colonnade), {.receivers = Points{.positions = points}}, {}, &report));
-    const Scene& scene = made.scene();
-    fmt::print("\n{} points in the colonnade: {} clusters, precompute {:.2f} s\n\n| light | "
-               "coefficients against exact integration, relative L2 |\n|---|---|\n",
-               points.size(), report.clusters.num_clusters, report.clusters.seconds);
+    const prt::RayScene rays(colonnade);
+    const prt::Receivers receivers = prt::point_receivers(points, colonnade, rays);
     std::vector<std::uint32_t> all(points.size());
-    for (std::uint32_t i = 0; i < all.size(); ++i)
-        all[i] = i;
-    LitScene lit(scene, {.harmonics = 3});
-    for (NamedMap& environment : environments(inputs, settings.exact_resolution)) {
-        const std::vector<glm::dvec3> exact = relight::exact_harmonics(
-            scene.receivers, all, lit.rays().of_mesh(), environment.map, 3, scene.settings.bias);
-        lit.light(std::move(environment.map));
-        const std::vector<glm::vec3> light = lit.harmonics();
-        fmt::print("| {} | {:.5f} |\n", environment.name,
-                   relative_l2(std::vector<glm::dvec3>(light.begin(), light.end()), exact));
+    std::iota(all.begin(), all.end(), 0u);
+    std::vector<NamedMap> maps = environments(inputs, settings.exact_resolution);
+    std::vector<std::vector<glm::dvec3>> exact;
+    for (const NamedMap& map : maps)
+        exact.push_back(relight::exact_harmonics(receivers, all, rays, map.map, 3, 0.0f));
+    fmt::print("\n{} points in the colonnade, coefficients against exact integration, relative "
+               "L2\n\n| tolerance | clusters | precompute, s |",
+               points.size());
+    for (const NamedMap& map : maps)
+        fmt::print(" {} |", map.name);
+    fmt::print("\n|{}\n", fmt::join(std::vector<std::string>(maps.size() + 3, "---|"), ""));
+    for (const float tolerance : settings.tolerances) {
+        PrecomputeReport report;
+        LitScene lit(precompute(Mesh(colonnade),
+                                {.tolerance = tolerance, .receivers = Points{.positions = points}},
+                                {}, &report),
+                     {.harmonics = 3});
+        fmt::print("| {} | {} | {:.2f} |", lit.scene().settings.tolerance,
+                   report.clusters.num_clusters, report.clusters.seconds);
+        for (std::size_t i = 0; i < maps.size(); ++i) {
+            lit.light(Light(cubemap::CubeMap(maps[i].map)));
+            const std::vector<glm::vec3> light = lit.harmonics();
+            fmt::print(" {:.5f} |",
+                       relative_l2(std::vector<glm::dvec3>(light.begin(), light.end()), exact[i]));
+        }
+        fmt::print("\n");
         std::fflush(stdout);
     }
 }
@@ -99,9 +116,12 @@ void measure_points(const Settings& settings, const bench::Inputs& inputs,
 /// Irradiance of normals that are turned by 30 degrees, and of the surfaces' own.
 void measure_normals(const Settings& settings, const bench::Inputs& inputs, const Scene& bunny) {
     LitScene lit(bunny, {.harmonics = 3});
-    const std::vector<std::uint32_t> chosen = relight::random_receivers(
-        bunny.transfer, std::min<std::size_t>(settings.num_points, 1000), 5);
+    std::vector<std::uint32_t> chosen =
+        relight::random_receivers(bunny.transfer, settings.num_points, 5);
     constexpr float Angle = std::numbers::pi_v<float> / 6.0f;
+    // Vertices of no triangle have no normal that could be turned.
+    std::erase_if(chosen,
+                  [&](std::uint32_t i) { return bunny.receivers.normals[i] == glm::vec3(0.0f); });
     std::vector<glm::vec3> normals;
     std::mt19937 random(2);
     std::uniform_real_distribution<float> around(0.0f, 2.0f * std::numbers::pi_v<float>);
@@ -113,20 +133,25 @@ void measure_normals(const Settings& settings, const bench::Inputs& inputs, cons
         const glm::vec3 side = std::cos(angle) * u + std::sin(angle) * glm::cross(n, u);
         normals.push_back(std::cos(Angle) * n + std::sin(Angle) * side);
     }
-    fmt::print("\n| light | irradiance of normals 30 degrees off, bunny, relative L2 | largest "
-               "error at the own normal |\n|---|---|---|\n");
+    fmt::print("\n| light | irradiance of normals 30 degrees off, bunny, relative L2 | of nine "
+               "exact coefficients | largest error at the own normal |\n|---|---|---|---|\n");
     std::vector<double> errors;
     for (NamedMap& environment : environments(inputs, settings.exact_resolution)) {
         const std::vector<glm::dvec3> exact =
             relight::exact_irradiance(bunny.receivers, chosen, normals, lit.rays().of_mesh(),
                                       environment.map, bunny.settings.bias);
+        const std::vector<glm::dvec3> nine = relight::exact_harmonics(
+            bunny.receivers, chosen, lit.rays().of_mesh(), environment.map, 3, bunny.settings.bias);
+        const std::vector<glm::vec3> exact_light(nine.begin(), nine.end());
         lit.light(std::move(environment.map));
         const std::vector<glm::vec3> light = lit.harmonics();
-        std::vector<glm::dvec3> turned;
+        std::vector<glm::dvec3> turned, turned_exact;
         double largest = 0.0;
         for (std::size_t i = 0; i < chosen.size(); ++i) {
             const auto own = std::span(light).subspan(std::size_t{9} * chosen[i], 9);
             turned.push_back(relight::irradiance(own, normals[i]));
+            turned_exact.push_back(relight::irradiance(
+                std::span(exact_light).subspan(std::size_t{9} * i, 9), normals[i]));
             const glm::dvec3 at_normal =
                 relight::irradiance(own, bunny.receivers.normals[chosen[i]]) / std::numbers::pi;
             const glm::dvec3 radiance(lit.radiance()[chosen[i]]);
@@ -135,7 +160,8 @@ void measure_normals(const Settings& settings, const bench::Inputs& inputs, cons
                                                 std::max(radiance[channel], 1e-3));
         }
         errors.push_back(relative_l2(turned, exact));
-        fmt::print("| {} | {:.4f} | {:.1e} |\n", environment.name, errors.back(), largest);
+        fmt::print("| {} | {:.4f} | {:.4f} | {:.1e} |\n", environment.name, errors.back(),
+                   relative_l2(turned_exact, exact), largest);
         std::fflush(stdout);
     }
     fmt::print("median {:.4f}\n", bench::median(errors));
@@ -167,7 +193,7 @@ void measure_grid(const Settings& settings, const bench::Inputs& inputs,
                   const mesh::TriangleMesh& colonnade) {
     PrecomputeReport report;
     const bench::Stopwatch watch;
-    Scene scene = precompute(Mesh(colonnade), {.receivers = Grid{16, 8, 16}}, {}, &report);
+    Scene scene = precompute(Mesh(colonnade), {.receivers = settings.grid}, {}, &report);
     const double seconds = watch.seconds();
     LitScene lit(std::move(scene), {.harmonics = 3});
     const cubemap::CubeMap map = inputs.environment("grace_cross.hdr", settings.resolution);
@@ -183,11 +209,11 @@ void measure_grid(const Settings& settings, const bench::Inputs& inputs,
             set_layers(lit, {bench::disc({1.0, 1.0 + 0.01 * pass, 0.3}, 0.05, 2.0 + 0.1 * pass)});
         edit.push_back(1e3 * times.seconds);
     }
-    fmt::print("\ngrid 16 x 8 x 16 in the colonnade: precompute {:.2f} s ({} clusters, {:.0f} M "
+    fmt::print("\ngrid {} x {} x {} in the colonnade: precompute {:.2f} s ({} clusters, {:.0f} M "
                "rays), {} points inside\nR = {}: relight {:.2f} ms (sums {:.2f}), edit of a disc "
                "{:.3f} ms\n",
-               seconds, report.clusters.num_clusters,
-               1e-6 * static_cast<double>(report.clusters.num_rays),
+               settings.grid.nx, settings.grid.ny, settings.grid.nz, seconds,
+               report.clusters.num_clusters, 1e-6 * static_cast<double>(report.clusters.num_rays),
                prt::num_inside(lit.scene().receivers), settings.resolution, bench::median(relight),
                bench::median(sums), bench::median(edit));
 }
@@ -199,23 +225,36 @@ int main(int argc, char** argv) {
     bench::Program program("harmonics", "points in space and spherical harmonics");
     bench::Inputs inputs(program);
     inputs.add_scene();
-    bool no_exact = false;
     program.add("--points", settings.num_points, "points that are integrated exactly");
     program.add("--resolution", settings.resolution, "R of what is timed");
     program.add("--exact-resolution", settings.exact_resolution, "R of what is integrated exactly");
     program.add("--passes", settings.passes);
-    program.add_flag("--no-exact", no_exact, "times alone");
+    program.add("--tolerances", settings.tolerances, "of points");
+    program.add("--parts", settings.parts);
     return program.run(argc, argv, [&] {
         if (program.is_tiny())
-            settings = {.num_points = 20, .resolution = 16, .exact_resolution = 16, .passes = 2};
+            settings = {.num_points = 20,
+                        .resolution = 16,
+                        .grid = {2, 2, 2},
+                        .exact_resolution = 16,
+                        .passes = 2,
+                        .tolerances = {0.1f}};
+        const auto is_asked = [&](const char* part) {
+            return std::find(settings.parts.begin(), settings.parts.end(), part) !=
+                   settings.parts.end();
+        };
         const mesh::TriangleMesh colonnade =
             data_gen::colonnade(program.is_tiny() ? 2000 : 100'000);
-        const Scene bunny = inputs.bunny();
-        measure_grid(settings, inputs, colonnade);
-        measure_relight(settings, inputs, bunny);
-        if (no_exact)
-            return;
-        measure_normals(settings, inputs, bunny);
-        measure_points(settings, inputs, colonnade);
+        if (is_asked("grid"))
+            measure_grid(settings, inputs, colonnade);
+        if (is_asked("relight") || is_asked("normals")) {
+            const Scene bunny = inputs.bunny();
+            if (is_asked("relight"))
+                measure_relight(settings, inputs, bunny);
+            if (is_asked("normals"))
+                measure_normals(settings, inputs, bunny);
+        }
+        if (is_asked("points"))
+            measure_points(settings, inputs, colonnade);
     });
 }
