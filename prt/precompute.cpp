@@ -48,13 +48,40 @@ void check(const Receivers& receivers, const PrecomputeOptions& options) {
 
 } // namespace
 
+namespace {
+
+/// Where light passes surfaces by chance, cells have at least this level: so many samples see about
+/// the right part of the light, within 0.01.
+constexpr std::uint32_t MinLevelOfChance = 3;
+
+/// Where light passes surfaces by chance, clusters are chosen as if it did not, and then counted:
+/// no cell could ever have nine transfers that agree.
+Transfer found(const Receivers& receivers, const Blockers& blockers,
+               const PrecomputeOptions& options, const Work& work, const PrecomputeContext& context,
+               PrecomputeStatistics& statistics) {
+    const Blockers* settled = context.has_clusters ? nullptr : blockers.settled();
+    if (settled == nullptr)
+        return Clustering(receivers, blockers, options, work, context).run(statistics);
+    const Work choice{.team = work.team, .stop = work.stop};
+    PrecomputeOptions finer = options;
+    finer.min_level = std::max(options.min_level, MinLevelOfChance);
+    Transfer chosen = Clustering(receivers, *settled, finer, choice, context).run(statistics);
+    chosen.counts = {};
+    return Clustering(
+               receivers, blockers, options, work,
+               {.column_scale = context.column_scale, .given = &chosen, .has_clusters = true})
+        .run(statistics);
+}
+
+} // namespace
+
 Transfer precompute(const Receivers& receivers, const Blockers& blockers,
                     const PrecomputeOptions& options, const Work& work,
                     const PrecomputeContext& context, PrecomputeStatistics* statistics) {
     check(receivers, options);
     const auto start = std::chrono::steady_clock::now();
     PrecomputeStatistics local;
-    Transfer transfer = Clustering(receivers, blockers, options, work, context).run(local);
+    Transfer transfer = found(receivers, blockers, options, work, context, local);
     local.num_clusters = transfer.num_clusters();
     local.num_samples = local.num_directions * receivers.size();
     local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -12,6 +12,7 @@
 #include "mesh/floor.h"
 #include "mesh/half_edge/simplify.h"
 #include "mesh/normals.h"
+#include "mesh/opacity.h"
 #include "prt/memory_estimate.h"
 #include "prt/refinement/lit_backs.h"
 #include "prt/visibility/beam_scene.h"
@@ -22,14 +23,6 @@
 namespace relumine {
 
 namespace {
-
-/// What rays need of a mesh.
-mesh::TriangleMesh blockers_of(const mesh::TriangleMesh& mesh) {
-    mesh::TriangleMesh blockers;
-    blockers.positions = mesh.positions;
-    blockers.triangles = mesh.triangles;
-    return blockers;
-}
 
 /// Moves the floor's vertices to the end, those of `num_old` first. Returns how many of the floor
 /// are new.
@@ -269,7 +262,7 @@ Mesh refined(Mesh mesh, const RefineOptions& options, const prt::Work& work, Ref
     if (options.curved)
         mesh.blockers.reset();
     else if (!mesh.blockers)
-        mesh.blockers = blockers_of(mesh.geometry);
+        mesh.blockers = mesh::blockers_of(mesh.geometry);
     mesh.geometry = std::move(after);
     if (n == 0)
         return mesh;
@@ -339,7 +332,7 @@ Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& wo
     if (!is_coarse && !mesh.is_floor_open)
         return mesh;
     mesh::TriangleMesh before =
-        mesh.blockers ? std::move(*mesh.blockers) : blockers_of(mesh.geometry);
+        mesh.blockers ? std::move(*mesh.blockers) : mesh::blockers_of(mesh.geometry);
     const bool has_blockers = std::exchange(mesh.blockers, {}).has_value();
     mesh::TriangleMesh floor = part_of(mesh.geometry, first_of_floor, mesh.geometry.num_vertices());
     RefineReport local;
@@ -379,7 +372,7 @@ Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& wo
 Mesh simplified(Mesh mesh, std::size_t num_vertices) {
     mesh.is_open = false;
     if (!mesh.blockers)
-        mesh.blockers = blockers_of(mesh.geometry);
+        mesh.blockers = mesh::blockers_of(mesh.geometry);
     const std::size_t n = mesh.floor_vertices;
     const std::size_t first_of_floor =
         mesh.geometry.num_vertices() - (n == 0 ? 0 : n * n + mesh.floor_added);

@@ -295,8 +295,10 @@ struct Painter::Impl {
                     emitted[i] = glm::vec3(0.0f);
         }
         if (std::holds_alternative<NothingBehind>(options.background))
-            return relight::compose_cut_out(pixels, emitted, opacity(lighting));
-        return relight::compose(pixels, emitted, backdrop(lighting), opacity(lighting));
+            return relight::compose_cut_out(pixels, emitted, opacity(lighting),
+                                            scene.receivers.veils);
+        return relight::compose(pixels, emitted, backdrop(lighting), opacity(lighting),
+                                scene.receivers.veils);
     }
     [[nodiscard]] Picture composed(const prt::TexelLayout& texels,
                                    std::span<const glm::vec3> colors, const Lighting&) const {

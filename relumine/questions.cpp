@@ -327,7 +327,8 @@ std::vector<std::uint8_t> sees(const LitScene& lit, std::span<const glm::vec3> p
 std::optional<glm::vec3> light_direction(const LitScene& lit, const glm::vec3& eye,
                                          const glm::vec3& view_direction, Aim aim) {
     const glm::vec3 view = glm::normalize(view_direction);
-    const std::optional<prt::Hit> hit = lit.rays().of_mesh().closest_hit(eye, view);
+    const std::optional<prt::Hit> hit =
+        lit.rays().of_mesh().closest_hit(eye, view, prt::RayOf::Eye);
     if (!hit)
         return std::nullopt;
     const mesh::TriangleMesh& mesh = lit.scene().mesh;

@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "mesh/opacity.h"
 #include "prt/tolerance.h"
 #include "prt/visibility/ray_scene.h"
 
@@ -70,7 +71,8 @@ void set_colors(Scene& scene, const SurfaceColors& colors) {
         surface.specular = colors.specular.value_or(surface.specular);
     }
     if (colors.albedo) // textures, too, give way to it
-        scene.mesh.triangle_materials.clear();
+        for (mesh::Material& material : scene.mesh.materials)
+            material = mesh::without_colors(material);
     prt::set_surfaces(scene.transfer, scene.receivers);
 }
 

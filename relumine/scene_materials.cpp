@@ -7,6 +7,8 @@
 
 #include <glm/common.hpp>
 
+#include "mesh/opacity.h"
+
 namespace relumine {
 
 namespace {
@@ -15,27 +17,26 @@ namespace {
 /// highlight where there is no eye.
 void replace_materials(mesh::TriangleMesh& mesh, const prt::SurfaceOverride& surface_of,
                        bool has_eye) {
-    std::vector<prt::Surface> added;
-    const auto first = static_cast<std::uint32_t>(mesh.materials.size());
-    const auto material_of = [&](const prt::Surface& surface) {
-        const bool is_plain = has_eye || surface.highlight == prt::Highlight::None;
-        const prt::Surface kept = is_plain ? prt::Surface() : surface;
-        const auto found = std::find(added.begin(), added.end(), kept);
-        const auto index = static_cast<std::uint32_t>(found - added.begin());
-        if (found == added.end()) {
-            added.push_back(kept);
-            mesh.materials.push_back(prt::material_of(kept));
-        }
-        return first + index;
-    };
     const bool has_materials = !mesh.triangle_materials.empty();
+    const auto first = static_cast<std::ptrdiff_t>(mesh.materials.size());
+    const auto material_of = [&](std::uint32_t triangle, const prt::Surface& surface) {
+        const bool is_plain = has_eye || surface.highlight == prt::Highlight::None;
+        mesh::Material kept = prt::material_of(is_plain ? prt::Surface() : surface);
+        if (has_materials) // rays pass it as before
+            kept = mesh::passed_as(kept, mesh.materials[mesh.triangle_materials[triangle]]);
+        const auto found = std::find(mesh.materials.begin() + first, mesh.materials.end(), kept);
+        const auto index = static_cast<std::uint32_t>(found - mesh.materials.begin());
+        if (found == mesh.materials.end())
+            mesh.materials.push_back(kept);
+        return index;
+    };
     std::vector<std::uint32_t> result = mesh.triangle_materials;
     result.resize(mesh.num_triangles());
     for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i) {
         const prt::Surface own = prt::surface_at(mesh, i, glm::vec2(1.0f / 3.0f));
         const prt::Surface surface = surface_of(mesh, i, own);
         if (surface != own || !has_materials)
-            result[i] = material_of(surface);
+            result[i] = material_of(i, surface);
     }
     mesh.triangle_materials = std::move(result);
 }

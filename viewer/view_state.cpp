@@ -91,7 +91,8 @@ OrbitCamera camera_on_all(const Scene& scene, const PixelRectangle& viewport,
 
 void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec2& pixel) {
     const Ray ray = ray_through(state.camera, viewport, pixel);
-    const std::optional<prt::Hit> hit = state.rays.closest_hit(ray.origin, ray.direction);
+    const std::optional<prt::Hit> hit =
+        state.rays.closest_hit(ray.origin, ray.direction, prt::RayOf::Eye);
     state.receiver.reset();
     state.environment_look.heat = hit.has_value();
     if (!hit)

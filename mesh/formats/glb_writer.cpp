@@ -173,6 +173,8 @@ files::Json material_of(const Material& material, std::set<std::string>& used) {
                                   double{material.base_color.b}, 1.0}},
                      {"metallicFactor", is_phong ? 0.0 : double{material.metallic}},
                      {"roughnessFactor", roughness}}}};
+    if (material.is_double_sided)
+        result.set("doubleSided", true);
     const glm::vec3& emission = material.emission;
     // Factors are at most 1; the extension has the rest.
     const float strength = std::max({emission.r, emission.g, emission.b});

@@ -25,28 +25,28 @@ struct Extension {
     std::string_view loss;
 };
 
-constexpr std::array<Extension, 7> Extensions = {{
+constexpr std::array<Extension, 5> Extensions = {{
     {"KHR_materials_anisotropy", "anisotropyStrength", 0.0, "highlights are round"},
     {"KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", 0.0,
      "no light shines through surfaces"},
     {"KHR_materials_dispersion", "dispersion", 0.0, "surfaces are opaque"},
     {"KHR_materials_iridescence", "iridescenceFactor", 0.0, "thin films are left out"},
-    {"KHR_materials_transmission", "transmissionFactor", 0.0, "surfaces are opaque"},
-    {"KHR_materials_volume", "thicknessFactor", 0.0, "surfaces are opaque"},
     {"KHR_materials_volume_scatter", "multiscatterColor", 0.0, "surfaces are opaque"},
 }};
 
 /// Those that are read.
-constexpr std::array<std::string_view, 7> ReadExtensions = {
-    "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
-    "KHR_materials_ior",       "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_sheen",     "KHR_materials_specular",
-    "KHR_materials_unlit"};
+constexpr std::array<std::string_view, 9> ReadExtensions = {
+    "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_sheen",        "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_materials_unlit",
+    "KHR_materials_volume"};
 
 /// Everything that glTF 2.0 gives a material and a texture of it.
-constexpr std::array<std::string_view, 10> MaterialProperties = {
-    "name",        "extras",           "extensions",      "pbrMetallicRoughness", "normalTexture",
-    "alphaCutoff", "occlusionTexture", "emissiveTexture", "emissiveFactor",       "alphaMode"};
+constexpr std::array<std::string_view, 11> MaterialProperties = {
+    "name",           "extras",      "extensions",       "pbrMetallicRoughness",
+    "normalTexture",  "alphaCutoff", "occlusionTexture", "emissiveTexture",
+    "emissiveFactor", "alphaMode",   "doubleSided"};
 
 bool is_number(const Json& value, double number) {
     return value.type() == Json::Type::Number && value.number() == number;
@@ -132,22 +132,21 @@ void LeftOut::material_extensions(const Json& extensions) {
 
 void LeftOut::material(const Json& description) {
     of_this_material_.clear();
-    const std::string mode = text(description, "alphaMode", "OPAQUE");
-    if (mode == "MASK")
-        count("cut out by alpha (leaves, fences); alpha is not read", "what is cut out is opaque");
-    else if (mode != "OPAQUE")
-        count("transparent by alpha; alpha is not read", "surfaces are opaque");
+    const Json& extensions = child(description, "extensions");
+    const Json& volume = child(extensions, "KHR_materials_volume");
+    if (number(child(extensions, "KHR_materials_transmission"), "transmissionFactor", 0.0) > 0.0)
+        count("of glass (KHR_materials_transmission)",
+              "light goes straight on, without refraction and blur, and its shadows are grey");
+    if (volume.find("thicknessTexture"))
+        count("with a texture of thickness, which is not read", "the factor counts everywhere");
     if (description.find("occlusionTexture"))
         count("with an occlusion map, which is not read", "rays find what blocks the light");
-    if (description.find("doubleSided") && !flag(description, "doubleSided"))
-        count("with one side only", "pictures show both");
     for (const auto& [name, value] : description.members())
-        if (name != "doubleSided" && std::find(MaterialProperties.begin(), MaterialProperties.end(),
-                                               name) == MaterialProperties.end())
+        if (std::find(MaterialProperties.begin(), MaterialProperties.end(), name) ==
+            MaterialProperties.end())
             count("with the property " + excerpt(name) + ", which glTF does not have",
                   "it is left out");
     material_extensions(child(description, "extensions"));
-    const Json& extensions = child(description, "extensions");
     const Json& pbr = child(description, "pbrMetallicRoughness");
     const Json& old = child(extensions, "KHR_materials_pbrSpecularGlossiness");
     const Json& specular = child(extensions, "KHR_materials_specular");

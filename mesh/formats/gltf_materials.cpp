@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "mesh/text_reader.h"
+
 namespace relumine::mesh::gltf {
 
 namespace {
@@ -26,8 +28,11 @@ private:
     template<class Decode>
     [[nodiscard]] std::optional<Texture> decoded(std::uint64_t index, const Decode& decode);
     void join_uv_sets(Material& material);
-    void read_specular_glossiness(const Json& extension, Material& material);
+    void read_specular_glossiness(const Json& description, Material& material);
     void read_emission(const Json& description, Material& material);
+    void read_glass(const Json& extensions, Material& material);
+    void read_alpha(const Json& description, double alpha, Material& material);
+    [[nodiscard]] std::optional<std::uint32_t> alpha_of(std::uint32_t texture);
     [[nodiscard]] std::optional<TextureSlot> alpha_slot(const Json& parent, const char* key);
     [[nodiscard]] std::optional<TextureSlot> normal_map(const Json& parent, const char* key,
                                                         float& scale);
@@ -41,6 +46,8 @@ private:
     std::map<std::uint64_t, std::optional<std::uint32_t>> textures_;
     /// Image of each texture.
     std::map<std::uint32_t, std::uint64_t> images_;
+    /// Texture of the alpha of each texture. Empty: its image has none.
+    std::map<std::uint32_t, std::optional<std::uint32_t>> alphas_;
     ImageBudget budget_;
 };
 
@@ -178,13 +185,16 @@ std::vector<double> factors(const Json& object, const char* key, std::vector<dou
 
 /// Reads KHR_materials_pbrSpecularGlossiness. Glossiness times the texture's alpha becomes a
 /// texture of roughness.
-void MaterialReader::read_specular_glossiness(const Json& extension, Material& material) {
+void MaterialReader::read_specular_glossiness(const Json& description, Material& material) {
+    const Json& extension =
+        child(child(description, "extensions"), "KHR_materials_pbrSpecularGlossiness");
     const std::vector<double> diffuse = factors(extension, "diffuseFactor", {1.0, 1.0, 1.0, 1.0});
     const std::vector<double> specular = factors(extension, "specularFactor", {1.0, 1.0, 1.0});
     const float glossiness = fraction(extension, "glossinessFactor", 1.0f);
     material.model = MaterialModel::SpecularGlossiness;
     material.base_color = glm::vec3(diffuse[0], diffuse[1], diffuse[2]);
     material.base_color_texture = slot(extension, "diffuseTexture", true);
+    read_alpha(description, diffuse[3], material);
     material.specular = glm::vec3(specular[0], specular[1], specular[2]);
     material.specular_texture = slot(extension, "specularGlossinessTexture", true);
     material.roughness = 1.0f - glossiness;
@@ -220,6 +230,70 @@ void MaterialReader::read_emission(const Json& description, Material& material) 
     material.emission = glm::vec3(strength * factor[0], strength * factor[1], strength * factor[2]);
     if (material.emission != glm::vec3(0.0f))
         material.emission_texture = slot(description, "emissiveTexture", true);
+}
+
+/// Returns the texture of another texture's alpha. None where that is 1 everywhere.
+std::optional<std::uint32_t> MaterialReader::alpha_of(std::uint32_t texture) {
+    if (const auto found = alphas_.find(texture); found != alphas_.end())
+        return found->second;
+    std::optional<std::uint32_t> place;
+    std::optional<Texture> alpha = decoded(images_.at(texture), decode_alpha_texture);
+    if (alpha && std::any_of(alpha->texels.begin(), alpha->texels.end(),
+                             [](const auto& texel) { return texel[0] != 255; })) {
+        place = static_cast<std::uint32_t>(result_.textures.size());
+        alpha->name += " (alpha)";
+        result_.textures.push_back(std::move(*alpha));
+    }
+    alphas_.emplace(texture, place);
+    return place;
+}
+
+/// Reads what alpha does. Its texture is that of the base colour.
+void MaterialReader::read_alpha(const Json& description, double alpha, Material& material) {
+    material.is_double_sided = flag(description, "doubleSided");
+    const std::string mode = text(description, "alphaMode", "OPAQUE");
+    if (mode == "OPAQUE")
+        return;
+    if (mode != "MASK" && mode != "BLEND")
+        throw std::runtime_error(
+            fmt::format("expected OPAQUE, MASK or BLEND as \"alphaMode\", got {}", excerpt(mode)));
+    material.alpha_mode = mode == "MASK" ? AlphaMode::Mask : AlphaMode::Blend;
+    material.alpha = static_cast<float>(alpha);
+    const double cutoff = number(description, "alphaCutoff", 0.5);
+    if (!(cutoff >= 0.0 && cutoff <= std::numeric_limits<float>::max()))
+        throw std::runtime_error(
+            fmt::format("expected a number of 0 or more as \"alphaCutoff\", got {:g}", cutoff));
+    material.alpha_cutoff = static_cast<float>(cutoff);
+    if (!material.base_color_texture)
+        return;
+    if (const auto texture = alpha_of(material.base_color_texture->texture)) {
+        material.alpha_texture = material.base_color_texture;
+        material.alpha_texture->texture = *texture;
+        material.alpha_texture->is_srgb = false;
+    }
+}
+
+/// Reads KHR_materials_transmission and KHR_materials_volume.
+void MaterialReader::read_glass(const Json& extensions, Material& material) {
+    const Json& transmission = child(extensions, "KHR_materials_transmission");
+    material.transmission = fraction(transmission, "transmissionFactor", 0.0f);
+    if (material.transmission == 0.0f)
+        return;
+    material.transmission_texture = slot(transmission, "transmissionTexture", false);
+    const Json& volume = child(extensions, "KHR_materials_volume");
+    const auto length = [&](const char* key, double fallback) {
+        const double value = number(volume, key, fallback);
+        if (!(value >= 0.0))
+            throw std::runtime_error(
+                fmt::format("expected a number of 0 or more as \"{}\", got {:g}", key, value));
+        return static_cast<float>(value);
+    };
+    constexpr double Endless = std::numeric_limits<double>::infinity();
+    material.thickness = length("thicknessFactor", 0.0);
+    material.attenuation_distance =
+        std::max(length("attenuationDistance", Endless), std::numeric_limits<float>::min());
+    const std::vector<double> color = factors(volume, "attenuationColor", {1.0, 1.0, 1.0});
+    material.attenuation_color = glm::vec3(color[0], color[1], color[2]);
 }
 
 /// Returns the alpha of a texture as grey.
@@ -296,14 +370,14 @@ Material MaterialReader::material(const Json& description, std::size_t index) {
         read_emission(description, material);
         material.normal_texture = normal_map(description, "normalTexture", material.normal_scale);
     }
-    if (const Json& specular = child(extensions, "KHR_materials_pbrSpecularGlossiness");
-        extensions.find("KHR_materials_pbrSpecularGlossiness") && !is_unlit) {
-        read_specular_glossiness(specular, material);
+    if (extensions.find("KHR_materials_pbrSpecularGlossiness") && !is_unlit) {
+        read_specular_glossiness(description, material);
         return material;
     }
     const std::vector<double> base = factors(pbr, "baseColorFactor", {1.0, 1.0, 1.0, 1.0});
     material.base_color = glm::vec3(base[0], base[1], base[2]);
     material.base_color_texture = slot(pbr, "baseColorTexture", true);
+    read_alpha(description, base[3], material);
     if (is_unlit) {
         material.model = MaterialModel::Unlit;
         return material;
@@ -315,6 +389,7 @@ Material MaterialReader::material(const Json& description, std::size_t index) {
     read_specular(extensions, material);
     read_coat(child(extensions, "KHR_materials_clearcoat"), material);
     read_sheen(child(extensions, "KHR_materials_sheen"), material);
+    read_glass(extensions, material);
     return material;
 }
 

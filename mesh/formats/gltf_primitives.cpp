@@ -123,7 +123,8 @@ std::uint32_t PrimitiveReader::default_material() {
         materials_.materials.push_back({.name = "default",
                                         .model = MaterialModel::MetallicRoughness,
                                         .metallic = 1.0f,
-                                        .times_vertex_color = true});
+                                        .times_vertex_color = true,
+                                        .is_double_sided = false});
         materials_.uv_sets.emplace_back();
     }
     return *default_material_;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -45,6 +46,16 @@ enum class MaterialModel : std::uint8_t {
     Unlit,
 };
 
+/// What a material's alpha does (glTF's alphaMode).
+enum class AlphaMode : std::uint8_t {
+    /// Nothing.
+    Opaque,
+    /// Where it is below the cutoff, the surface does not exist: leaves, fences.
+    Mask,
+    /// It is the part of the light that the surface takes; the rest goes on behind it.
+    Blend,
+};
+
 /// Returns true for a number of 0 to 1. A little outside is a rounding: of a float, or of four
 /// decimals.
 [[nodiscard]] constexpr bool is_fraction(double value) {
@@ -77,6 +88,25 @@ struct Material {
     glm::vec3 emission{0.0f};
     /// Its RGB multiplies emission.
     std::optional<TextureSlot> emission_texture = {};
+    AlphaMode alpha_mode = AlphaMode::Opaque;
+    /// In [0, 1].
+    float alpha = 1.0f;
+    /// Mask: >= 0.
+    float alpha_cutoff = 0.5f;
+    /// Its R multiplies alpha. Only where alpha_mode is not Opaque.
+    std::optional<TextureSlot> alpha_texture = {};
+    /// The part of the light that meets the dielectric part of the surface and goes on through it,
+    /// in [0, 1]: KHR_materials_transmission.
+    float transmission = 0.0f;
+    /// Its R multiplies transmission.
+    std::optional<TextureSlot> transmission_texture = {};
+    /// KHR_materials_volume: how thick the body behind the surface is, >= 0. 0: a thin sheet.
+    float thickness = 0.0f;
+    /// What is left of light on a way of attenuation_distance through the body.
+    glm::vec3 attenuation_color{1.0f};
+    float attenuation_distance = std::numeric_limits<float>::infinity();
+    /// False: pictures do not show the backs. They block light all the same.
+    bool is_double_sided = true;
     /// Normals in the frame of tangent, bitangent and normal, as 2 RGB - 1.
     std::optional<TextureSlot> normal_texture = {};
     /// Multiplies x and y of the texture's normals.
@@ -121,7 +151,7 @@ struct SlotName {
 };
 
 /// All textures of a material; the colours come first.
-inline constexpr std::array<SlotName, 12> TextureSlots = {
+inline constexpr std::array<SlotName, 14> TextureSlots = {
     {{&Material::base_color_texture, "base_texture"},
      {&Material::metallic_roughness_texture, "metallic_texture"},
      {&Material::specular_texture, "specular_texture"},
@@ -133,7 +163,9 @@ inline constexpr std::array<SlotName, 12> TextureSlots = {
      {&Material::coat_roughness_texture, "coat_roughness_texture"},
      {&Material::coat_normal_texture, "coat_normal_texture"},
      {&Material::sheen_texture, "sheen_texture"},
-     {&Material::sheen_roughness_texture, "sheen_roughness_texture"}}};
+     {&Material::sheen_roughness_texture, "sheen_roughness_texture"},
+     {&Material::alpha_texture, "alpha_texture"},
+     {&Material::transmission_texture, "transmission_texture"}}};
 
 /// Returns what stands for a material that cannot be read: grey, Lambert.
 [[nodiscard]] inline Material unreadable_material(std::string name) {

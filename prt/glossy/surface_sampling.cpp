@@ -96,13 +96,15 @@ Surface reflecting(const MaterialPoint& point, GgxForm form) {
                 .highlight = highlight,
                 .roughness_or_exponent = roughness};
     }
+    const float transmission =
+        point.textured(glm::vec3(material.transmission), material.transmission_texture).r;
     const float strength =
         point.textured(material.specular_strength, material.specular_strength_texture).r;
     const glm::vec3 dielectric =
         strength * glm::min(f0_of(material.ior) * point.textured(material.specular_tint,
                                                                  material.specular_tint_texture),
                             1.0f);
-    Surface result{.albedo = base * (1.0f - metallic),
+    Surface result{.albedo = base * (1.0f - metallic) * (1.0f - transmission),
                    .specular = glm::mix(dielectric, base, metallic),
                    .highlight = highlight,
                    .roughness_or_exponent = roughness,

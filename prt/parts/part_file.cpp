@@ -12,6 +12,7 @@
 
 #include "files/hash.h"
 #include "files/json.h"
+#include "mesh/opacity.h"
 #include "prt/arithmetic.h"
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/parts/part_list.h"
@@ -130,7 +131,8 @@ PartLight light_of(const SectionReader& reader, std::size_t num_own, const Trans
     return light;
 }
 
-/// What concerns the colours of a mesh. They are in the receivers' surfaces already.
+/// What concerns the colours of a mesh. They are in the receivers' surfaces already, and rays
+/// ask only for what they pass.
 constexpr std::array<const char*, 8> ColorSections = {"colors",          "uvs",       "second_uvs",
                                                       "corner_tangents", "materials", "images",
                                                       "t_materials",     "corner_uvs"};
@@ -159,8 +161,9 @@ void share_plan(Team& team, Plan& plan) {
     std::vector<std::byte> bytes;
     if (team.is_first()) {
         NewSections sections = sections_of("plan", plan);
-        for (const char* name : ColorSections)
-            sections.erase(name);
+        if (!mesh::lets_light_pass(plan.scene.blocking_mesh()))
+            for (const char* name : ColorSections)
+                sections.erase(name);
         bytes = packed_sections(sections);
     }
     bytes = team.broadcast(std::move(bytes));

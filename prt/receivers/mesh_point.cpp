@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "cubemap/split_mix64.h"
+#include "mesh/opacity.h"
 #include "mesh/tangents.h"
 
 namespace relumine::prt {
@@ -46,11 +47,7 @@ glm::vec3 value_at(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> va
 }
 
 glm::vec2 uv_at(const mesh::TriangleMesh& mesh, const MeshPoint& point, std::uint32_t uv_set) {
-    const auto corner = [&](std::size_t k) {
-        return mesh::corner_uv(mesh, point.triangle, k, uv_set);
-    };
-    const glm::vec2& w = point.barycentric;
-    return corner(0) * (1.0f - w.x - w.y) + corner(1) * w.x + corner(2) * w.y;
+    return mesh::uv_at(mesh, point.triangle, point.barycentric, uv_set);
 }
 
 glm::vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {

@@ -19,6 +19,7 @@ namespace {
 struct Seen {
     std::uint32_t sample;
     MeshPoint point;
+    mesh::Veil veil = {};
 };
 
 /// Moves a hit into its triangle: a ray through a shared edge may end a rounding error outside.
@@ -93,12 +94,24 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
 
     std::vector<std::vector<Seen>> rows(view.height);
     const auto trace_row = [&](std::uint32_t y) {
+        std::vector<RayScene::Layer> layers;
         auto sample =
             static_cast<std::uint32_t>(std::size_t{y} * view.width * picture.samples_per_pixel());
         for (std::uint32_t x = 0; x < view.width; ++x)
-            for (std::uint32_t i = 0; i < picture.samples_per_pixel(); ++i, ++sample)
-                if (const auto hit = rays.closest_hit(view.camera.eye, picture.direction(x, y, i)))
+            for (std::uint32_t i = 0; i < picture.samples_per_pixel(); ++i, ++sample) {
+                const glm::vec3 direction = picture.direction(x, y, i);
+                const auto hit = rays.closest_hit(view.camera.eye, direction, RayOf::Eye);
+                if (!hit)
+                    continue;
+                if (!rays.is_thin(hit->triangle)) {
                     rows[y].push_back({sample, {hit->triangle, inside(hit->barycentric)}});
+                    continue;
+                }
+                rays.layers(view.camera.eye, direction, layers);
+                for (const RayScene::Layer& layer : layers)
+                    rows[y].push_back(
+                        {sample, {layer.hit.triangle, inside(layer.hit.barycentric)}, layer.veil});
+            }
     };
     constexpr std::uint32_t Band = 128; // rows between two looks at the work
     for (std::uint32_t y = 0; y < view.height; y += Band) {
@@ -120,6 +133,7 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
     receivers.normals.resize(first.back());
     receivers.to_eye.resize(first.back());
     receivers.points.resize(first.back());
+    receivers.veils.resize(first.back());
     result.layout.samples.resize(first.back());
     files::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
         std::size_t receiver = first[y];
@@ -139,9 +153,13 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
             receivers.to_eye[receiver] = to_eye;
             receivers.points[receiver] = seen.point;
             result.layout.samples[receiver] = seen.sample;
+            receivers.veils[receiver] = seen.veil;
             ++receiver;
         }
     });
+    if (std::all_of(receivers.veils.begin(), receivers.veils.end(),
+                    [](const mesh::Veil& veil) { return veil == mesh::Veil(); }))
+        receivers.veils.clear();
     return result;
 }
 

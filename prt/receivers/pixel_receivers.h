@@ -24,7 +24,8 @@ struct PixelReceivers {
 };
 
 /// Returns the first hits of the view's rays, with their directions to the eye and their points on
-/// the mesh. A sample that hits nothing makes no receiver.
+/// the mesh, and all that is seen through what is thin. A sample that hits nothing makes no
+/// receiver.
 ///
 /// The normal is the interpolated vertex normal, turned over where the eye sees the back of the
 /// surface. The vertex normals say which side is the front; the order of a triangle's corners does

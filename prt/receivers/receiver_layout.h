@@ -62,7 +62,8 @@ struct PixelLayout {
     std::uint32_t height = 0;
     /// n: each pixel has n x n samples.
     std::uint32_t samples_per_axis = 1;
-    /// [num_receivers] ascending: the sample of each receiver. Samples count pixel by pixel, row by
+    /// [num_receivers] ascending: the sample of each receiver; several where surfaces are seen
+    /// through, nearest first. Samples count pixel by pixel, row by
     /// row from the top, n^2 to a pixel.
     std::vector<std::uint32_t> samples = {};
 

@@ -8,6 +8,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "mesh/opacity.h"
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/receivers/surface.h"
@@ -32,6 +33,9 @@ struct Receivers {
     /// Points in space: no surface turns them, so their normals are zero and every direction of the
     /// sphere counts, by 1 in place of a cosine.
     bool have_no_surface = false;
+    /// [num_own()] of pixels, or empty: nothing is seen through them. A sample has a receiver for
+    /// each surface that its ray meets, nearest first.
+    std::vector<mesh::Veil> veils = {};
     /// [num_receivers] where points were asked for; empty: at `positions`. A point inside of an
     /// object is blind, so it looks from the position of the nearest point that is not.
     std::vector<glm::vec3> own_positions = {};

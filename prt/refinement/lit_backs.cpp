@@ -55,11 +55,18 @@ Backs backs_of(const mesh::TriangleMesh& mesh, const std::vector<std::uint32_t>&
     return backs;
 }
 
+/// Pictures do not show the backs of single-sided faces.
+bool has_no_back(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
+    return !mesh.triangle_materials.empty() &&
+           !mesh.materials[mesh.triangle_materials[triangle]].is_double_sided;
+}
+
 } // namespace
 
 mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers& blockers,
                                   float bias, const Work& work) {
-    const std::vector<std::uint32_t> single = triangles_without_twin(mesh);
+    std::vector<std::uint32_t> single = triangles_without_twin(mesh);
+    std::erase_if(single, [&](std::uint32_t triangle) { return has_no_back(mesh, triangle); });
     const auto [receivers, ends] = backs_of(mesh, single);
     const auto bits = CoarseDirections().trace(receivers, blockers, bias, Progress(work));
     mesh::TriangleMesh result = mesh;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "files/hash.h"
+#include "mesh/opacity.h"
 #include "prt/arithmetic.h"
 #include "prt/receivers/surface.h"
 
@@ -41,6 +42,33 @@ std::vector<float> numbers_of(const std::vector<Surface>& surfaces) {
     return numbers;
 }
 
+/// Hashes what decides where light passes triangles.
+std::string text_of_alpha(const mesh::TriangleMesh& mesh) {
+    std::vector<float> numbers;
+    Hash hash;
+    for (const mesh::Material& material : mesh.materials) {
+        numbers.insert(numbers.end(),
+                       {static_cast<float>(material.alpha_mode), material.alpha,
+                        material.alpha_cutoff, material.transmission, material.thickness,
+                        material.attenuation_distance, material.attenuation_color.r,
+                        material.attenuation_color.g, material.attenuation_color.b,
+                        material.base_color.r, material.base_color.g, material.base_color.b});
+        if (const auto& slot = material.alpha_texture) {
+            const glm::mat2& m = slot->uv_from_mesh_uv;
+            numbers.insert(numbers.end(), {m[0][0], m[0][1], m[1][0], m[1][1], slot->uv_offset.x,
+                                           slot->uv_offset.y, static_cast<float>(slot->wrap[0]),
+                                           static_cast<float>(slot->wrap[1])});
+            hash.add(mesh.textures[slot->texture].texels);
+        }
+    }
+    return hash.add(numbers)
+        .add(mesh.triangle_materials)
+        .add(mesh.uvs)
+        .add(mesh.second_uvs)
+        .add(mesh.corner_uvs)
+        .text();
+}
+
 } // namespace
 
 Fingerprint fingerprint(const Scene& scene, std::optional<float> bounce_tolerance) {
@@ -61,6 +89,8 @@ Fingerprint fingerprint(const Scene& scene, std::optional<float> bounce_toleranc
         {"face resolution", text(settings.face_resolution)},
         {"bias", text(settings.bias)},
         {"processor", arithmetic()}};
+    if (mesh::lets_light_pass(blockers))
+        result.emplace_back("alpha", text_of_alpha(blockers));
     if (bounce_tolerance) {
         result.emplace_back("bounces", text(*bounce_tolerance));
         result.emplace_back("two-sided", settings.two_sided_bounces ? "yes" : "no");

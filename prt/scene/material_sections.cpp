@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 
+#include "mesh/opacity.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/scene/json_members.h"
 #include "prt/scene/section_group.h"
@@ -41,6 +42,8 @@ std::vector<std::optional<TextureSlot> Material::*> color_slots(const Material& 
         slots.push_back(&Material::specular_texture);
     if (material.emission != glm::vec3(0.0f))
         slots.push_back(&Material::emission_texture);
+    if (material.transmission > 0.0f)
+        slots.push_back(&Material::transmission_texture);
     if (material.normal_texture)
         slots.push_back(&Material::normal_texture);
     return slots;
@@ -113,6 +116,45 @@ std::optional<TextureSlot> slot_of(const Json& json, std::size_t num_textures) {
                        .uv_offset = glm::vec2(finite(uv.at(4)), finite(uv.at(5)))};
 }
 
+/// Members of a material that rays meet. Others have none.
+void add_alpha(Json& json, const Material& material, const Stored& stored) {
+    if (!material.is_double_sided)
+        json.set("double_sided", false);
+    if (material.transmission > 0.0f) {
+        const glm::vec3& color = material.attenuation_color;
+        json.set("transmission", material.transmission);
+        json.set("thickness", material.thickness);
+        json.set("attenuation", {color.r, color.g, color.b});
+        json.set("attenuation_per_length", 1.0f / material.attenuation_distance);
+    }
+    if (material.alpha_mode == mesh::AlphaMode::Opaque)
+        return;
+    json.set("alpha_mode", static_cast<int>(material.alpha_mode));
+    json.set("alpha", material.alpha);
+    json.set("alpha_cutoff", material.alpha_cutoff);
+    json.set("alpha_texture", json_of(material.alpha_texture, stored));
+}
+
+void read_alpha(const Json& json, std::size_t num_textures, Material& material) {
+    if (const Json* sides = json.find("double_sided"))
+        material.is_double_sided = sides->boolean();
+    if (json.find("transmission") != nullptr) {
+        material.transmission = fraction(json.at("transmission"));
+        material.thickness = finite(json.at("thickness"));
+        material.attenuation_color = color(json.at("attenuation"));
+        material.attenuation_distance = 1.0f / finite(json.at("attenuation_per_length"));
+        if (material.thickness < 0.0f || material.attenuation_distance < 0.0f)
+            throw std::out_of_range("expected lengths of 0 or more");
+    }
+    const Json* mode = json.find("alpha_mode");
+    if (mode == nullptr)
+        return;
+    material.alpha_mode = static_cast<mesh::AlphaMode>(below(*mode, 3));
+    material.alpha = fraction(json.at("alpha"));
+    material.alpha_cutoff = finite(json.at("alpha_cutoff"));
+    material.alpha_texture = slot_of(json.at("alpha_texture"), num_textures);
+}
+
 Material material_of(const Json& json, std::size_t num_textures) {
     Material material;
     material.model = static_cast<mesh::MaterialModel>(below(json.at("model"), 4));
@@ -140,6 +182,7 @@ Material material_of(const Json& json, std::size_t num_textures) {
         for (int channel = 0; channel < 3; ++channel)
             material.specular_tint[channel] =
                 within(tint->values().at(static_cast<std::size_t>(channel)), 1e6f);
+    read_alpha(json, num_textures, material);
     for (const auto slot : color_slots(material))
         material.*slot = slot_of(json.at(name_of(slot)), num_textures);
     if (const Json* normals = json.find(name_of(&Material::normal_texture))) {
@@ -161,73 +204,186 @@ mesh::Texture texture_of(const Json& json, const std::vector<std::byte>& images,
     return texture;
 }
 
-/// What gives a textured mesh its colours between the vertices: materials, the image files as they
-/// were, materials of triangles, uvs of corners. A mesh without textures adds nothing.
-void add_materials(NewSections& sections, const Scene& scene) {
-    if (!on_vertices(scene.layout) || scene.receivers.surfaces.empty())
-        return;
+/// Whether pictures find a material's highlight by rays: without an eye.
+bool mirrors(const Scene& scene, const Material& material) {
+    return scene.receivers.to_eye.empty() && has_highlight(material);
+}
+
+/// Whether pictures of the scene's vertices take colours from textures, or highlights.
+bool shows_textures(const Scene& scene) {
     const mesh::TriangleMesh& mesh = scene.mesh;
-    const auto has_texture = [&](const Material& material) {
-        return (material.base_color_texture || material.emission_texture ||
-                material.normal_texture) &&
-               has_files(material, mesh.textures);
-    };
-    // Without an eye pictures find the highlights by rays.
-    const auto mirrors = [&](const Material& material) {
-        return scene.receivers.to_eye.empty() && has_highlight(material);
-    };
-    const auto is_needed = [&](const Material& material) {
-        return has_texture(material) || mirrors(material);
-    };
-    if (mesh.triangle_materials.empty() ||
-        std::none_of(mesh.materials.begin(), mesh.materials.end(), is_needed))
-        return;
-    Json textures = Json::Array{}, materials = Json::Array{};
-    std::vector<std::byte> images;
-    Stored stored;
-    for (const Material& material : mesh.materials) {
-        Json json = {
-            {"model", static_cast<int>(material.model)},
-            {"base", {material.base_color.r, material.base_color.g, material.base_color.b}},
-            {"metallic", material.metallic},
-            {"specular", {material.specular.r, material.specular.g, material.specular.b}},
-            {"times_vertex_color", material.times_vertex_color}};
-        if (mirrors(material)) {
-            json.set("roughness", material.roughness);
-            json.set("exponent", material.exponent);
-        }
-        // A picture takes a material without its textures from the vertices.
-        const bool is_kept = has_files(material, mesh.textures);
-        if (const glm::vec3& emission = material.emission; emission != glm::vec3(0.0f))
-            json.set("emission", {emission.r, emission.g, emission.b});
-        if (material.normal_texture)
-            json.set("normal_scale", material.normal_scale);
-        for (const auto& [name, member] : Scalars)
-            if (material.*member != Material().*member)
-                json.set(name, material.*member);
-        if (const glm::vec3& tint = material.specular_tint; tint != glm::vec3(1.0f))
-            json.set("specular_tint", {tint.r, tint.g, tint.b});
-        for (const auto slot : color_slots(material)) {
-            const auto& used = is_kept ? material.*slot : std::nullopt;
-            if (used && !stored.contains(used->texture)) {
-                const mesh::Texture& texture = mesh.textures[used->texture];
-                stored.emplace(used->texture, textures.size());
-                textures.push_back({{"bytes", texture.file.size()},
-                                    {"v_from_top", texture.origin == mesh::VOrigin::Top}});
-                images.insert(images.end(), texture.file.begin(), texture.file.end());
-            }
-            json.set(name_of(slot), json_of(used, stored));
-        }
-        materials.push_back(json);
+    return on_vertices(scene.layout) && !scene.receivers.surfaces.empty() &&
+           std::any_of(mesh.materials.begin(), mesh.materials.end(), [&](const Material& material) {
+               return ((material.base_color_texture || material.emission_texture ||
+                        material.normal_texture) &&
+                       has_files(material, mesh.textures)) ||
+                      mirrors(scene, material);
+           });
+}
+
+/// Whether rays look at the materials: those of light, or of pictures of vertices.
+bool rays_ask(const Scene& scene) {
+    const std::vector<Material>& materials = scene.mesh.materials;
+    return mesh::lets_light_pass(scene.blocking_mesh()) ||
+           (on_vertices(scene.layout) &&
+            std::any_of(materials.begin(), materials.end(), mesh::lets_eye_pass));
+}
+
+/// The textures that are stored: image files as they were, and after them the texels of alpha.
+class StoredTextures {
+public:
+    explicit StoredTextures(const mesh::TriangleMesh& mesh) : mesh_(mesh) {}
+
+    void add_image(const TextureSlot& slot) {
+        if (!stored.try_emplace(slot.texture, images_.size()).second)
+            return;
+        const mesh::Texture& texture = mesh_.textures[slot.texture];
+        images_.push_back(
+            {{"bytes", texture.file.size()}, {"v_from_top", texture.origin == mesh::VOrigin::Top}});
+        bytes.insert(bytes.end(), texture.file.begin(), texture.file.end());
     }
-    const std::string text = Json({{"images", textures}, {"materials", materials}}).text(2);
-    sections["materials"] = bytes_of(text);
-    sections["images"] = std::move(images);
+    /// Behind all images.
+    void add_alpha(const TextureSlot& slot) {
+        if (!stored.try_emplace(slot.texture, images_.size() + alphas_.size()).second)
+            return;
+        const mesh::Texture& texture = mesh_.textures[slot.texture];
+        alphas_.push_back({{"width", texture.width}, {"height", texture.height}});
+        for (const auto& texel : texture.texels)
+            alpha_bytes.push_back(std::byte{texel[0]});
+    }
+    void describe(Json& json) const {
+        json.set("images", images_);
+        if (alphas_.size() != 0)
+            json.set("alphas", alphas_);
+    }
+
+    Stored stored;
+    std::vector<std::byte> bytes, alpha_bytes;
+
+private:
+    const mesh::TriangleMesh& mesh_;
+    Json images_ = Json::Array{}, alphas_ = Json::Array{};
+};
+
+Json json_of(const Material& material, bool is_kept, bool has_shape, const Stored& stored) {
+    Json json = {{"model", static_cast<int>(material.model)},
+                 {"base", {material.base_color.r, material.base_color.g, material.base_color.b}},
+                 {"metallic", material.metallic},
+                 {"specular", {material.specular.r, material.specular.g, material.specular.b}},
+                 {"times_vertex_color", material.times_vertex_color}};
+    if (has_shape) {
+        json.set("roughness", material.roughness);
+        json.set("exponent", material.exponent);
+    }
+    if (const glm::vec3& emission = material.emission; emission != glm::vec3(0.0f))
+        json.set("emission", {emission.r, emission.g, emission.b});
+    if (material.normal_texture)
+        json.set("normal_scale", material.normal_scale);
+    for (const auto& [name, member] : Scalars)
+        if (material.*member != Material().*member)
+            json.set(name, material.*member);
+    if (const glm::vec3& tint = material.specular_tint; tint != glm::vec3(1.0f))
+        json.set("specular_tint", {tint.r, tint.g, tint.b});
+    for (const auto slot : color_slots(material))
+        json.set(name_of(slot), json_of(is_kept ? material.*slot : std::nullopt, stored));
+    add_alpha(json, material, stored);
+    return json;
+}
+
+/// What gives a textured mesh its colours between the vertices, and tells rays what they may pass:
+/// materials, the image files as they were, materials of triangles, uvs of corners. Other meshes
+/// add nothing.
+void add_materials(NewSections& sections, const Scene& scene) {
+    const mesh::TriangleMesh& mesh = scene.mesh;
+    const bool shows = shows_textures(scene);
+    if (mesh.triangle_materials.empty() || !(shows || rays_ask(scene)))
+        return;
+    StoredTextures textures(mesh);
+    // A picture takes a material without its textures from the vertices.
+    const auto is_kept = [&](const Material& material) {
+        return (shows || material.transmission > 0.0f) && has_files(material, mesh.textures);
+    };
+    for (const Material& material : mesh.materials)
+        for (const auto slot : color_slots(material))
+            if (const auto& used = material.*slot; used && is_kept(material))
+                textures.add_image(*used);
+    for (const Material& material : mesh.materials)
+        if (material.alpha_texture)
+            textures.add_alpha(*material.alpha_texture);
+    Json materials = Json::Array{};
+    for (const Material& material : mesh.materials)
+        materials.push_back(json_of(material, is_kept(material), shows && mirrors(scene, material),
+                                    textures.stored));
+    Json json = Json::Object{};
+    textures.describe(json);
+    json.set("materials", std::move(materials));
+    sections["materials"] = bytes_of(json.text(2));
+    sections["images"] = std::move(textures.bytes);
+    if (!textures.alpha_bytes.empty())
+        sections["alphas"] = std::move(textures.alpha_bytes);
     sections["t_materials"] = SectionContent::view(mesh.triangle_materials);
     if (!mesh.corner_uvs.empty())
         sections["corner_uvs"] = SectionContent::view(mesh.corner_uvs);
     if (!mesh.corner_tangents.empty())
         sections["corner_tangents"] = SectionContent::view(mesh.corner_tangents);
+    if (!scene.blockers || !mesh::lets_light_pass(*scene.blockers))
+        return;
+    sections["block_materials"] = SectionContent::view(scene.blockers->triangle_materials);
+    if (!scene.blockers->uvs.empty())
+        sections["block_uvs"] = SectionContent::view(scene.blockers->uvs);
+    if (!scene.blockers->second_uvs.empty())
+        sections["block_second_uvs"] = SectionContent::view(scene.blockers->second_uvs);
+    if (!scene.blockers->corner_uvs.empty())
+        sections["block_corner_uvs"] = SectionContent::view(scene.blockers->corner_uvs);
+}
+
+/// Reads the texels of an alpha, from `offset` on, which goes behind them.
+mesh::Texture alpha_of(const Json& json, const std::vector<std::byte>& bytes, std::size_t& offset) {
+    mesh::Texture texture{.name = "alpha",
+                          .width = natural(json.at("width")),
+                          .height = natural(json.at("height")),
+                          .texels = {}};
+    const std::size_t size = std::size_t{texture.width} * texture.height;
+    if (size == 0 || size > bytes.size() - offset)
+        throw std::out_of_range("expected alpha in the section");
+    texture.texels.reserve(size);
+    for (const std::byte byte : std::span(bytes).subspan(offset, size)) {
+        const auto alpha = std::to_integer<std::uint8_t>(byte);
+        texture.texels.push_back({alpha, alpha, alpha});
+    }
+    offset += size;
+    return texture;
+}
+
+/// Reads the textures of a mesh, in the order of StoredTextures.
+void read_textures(const SectionReader& reader, const Json& json, mesh::TriangleMesh& mesh) {
+    const std::vector<std::byte> images = reader.bytes("images");
+    std::size_t offset = 0;
+    mesh::ImageBudget budget;
+    for (const Json& texture : json.at("images").values())
+        mesh.textures.push_back(texture_of(texture, images, offset, budget));
+    if (offset != images.size())
+        throw std::out_of_range("expected as many bytes as images have");
+    const Json* alphas = json.find("alphas");
+    if (alphas == nullptr)
+        return;
+    const std::vector<std::byte> bytes = reader.bytes("alphas");
+    offset = 0;
+    for (const Json& texture : alphas->values())
+        mesh.textures.push_back(alpha_of(texture, bytes, offset));
+    if (offset != bytes.size())
+        throw std::out_of_range("expected as many bytes as alphas have");
+}
+
+/// Reads which of the mesh's materials each triangle has.
+std::vector<std::uint32_t> triangle_materials(const SectionReader& reader, const char* section,
+                                              const mesh::TriangleMesh& mesh,
+                                              std::size_t num_materials) {
+    std::vector<std::uint32_t> result =
+        reader.elements<std::uint32_t>(section, mesh.num_triangles());
+    if (std::any_of(result.begin(), result.end(), [&](auto i) { return i >= num_materials; }))
+        reader.fail(section, "indices of materials");
+    return result;
 }
 
 void read_materials(const SectionReader& reader, Scene& scene) {
@@ -235,39 +391,51 @@ void read_materials(const SectionReader& reader, Scene& scene) {
     if (!reader.has("materials"))
         return;
     const Json json = reader.json("materials");
-    const std::vector<std::byte> images = reader.bytes("images");
     try {
-        std::size_t offset = 0;
-        mesh::ImageBudget budget;
-        for (const Json& texture : json.at("images").values())
-            mesh.textures.push_back(texture_of(texture, images, offset, budget));
-        if (offset != images.size())
-            throw std::out_of_range("expected as many bytes as images have");
+        read_textures(reader, json, mesh);
         for (const Json& material : json.at("materials").values())
             mesh.materials.push_back(material_of(material, mesh.textures.size()));
     } catch (const std::exception&) {
         reader.fail("materials", "JSON with materials and their images");
     }
-    mesh.triangle_materials = reader.elements<std::uint32_t>("t_materials", mesh.num_triangles());
-    if (std::any_of(mesh.triangle_materials.begin(), mesh.triangle_materials.end(),
-                    [&](auto i) { return i >= mesh.materials.size(); }))
-        reader.fail("t_materials", "indices of materials");
-    mesh.corner_uvs =
-        reader.elements<std::array<glm::vec2, 3>>("corner_uvs", mesh.num_triangles(), true);
+    using Corners = std::array<glm::vec2, 3>;
+    mesh.triangle_materials =
+        triangle_materials(reader, "t_materials", mesh, mesh.materials.size());
+    mesh.corner_uvs = reader.elements<Corners>("corner_uvs", mesh.num_triangles(), true);
     mesh.corner_tangents =
         reader.elements<std::array<glm::vec4, 3>>("corner_tangents", mesh.num_triangles(), true);
+    if (!scene.blockers || !reader.has("block_materials"))
+        return;
+    mesh::TriangleMesh& blockers = *scene.blockers;
+    blockers.materials = mesh.materials;
+    blockers.textures = mesh.textures;
+    blockers.triangle_materials =
+        triangle_materials(reader, "block_materials", blockers, mesh.materials.size());
+    blockers.uvs = reader.elements<glm::vec2>("block_uvs", blockers.num_vertices(), true);
+    blockers.second_uvs =
+        reader.elements<glm::vec2>("block_second_uvs", blockers.num_vertices(), true);
+    blockers.corner_uvs =
+        reader.elements<Corners>("block_corner_uvs", blockers.num_triangles(), true);
 }
 
 void check_materials(const SceneCheck& check, const Scene& scene) {
+    const auto check_uvs = [&](const mesh::TriangleMesh& mesh) {
+        for (std::size_t corner = 0; corner < 3; ++corner)
+            check.all("finite uvs of corners", mesh.corner_uvs, is_finite_uv,
+                      [&](const auto& uvs) { return uvs[corner]; });
+    };
+    check_uvs(scene.mesh);
     const auto is_tangent = [](const glm::vec4& tangent) {
         return is_within(glm::vec3(tangent), -2.0f, 2.0f) && std::abs(tangent.w) <= 2.0f;
     };
-    for (std::size_t corner = 0; corner < 3; ++corner) {
+    for (std::size_t corner = 0; corner < 3; ++corner)
         check.all("finite tangents", scene.mesh.corner_tangents, is_tangent,
                   [&](const auto& tangents) { return tangents[corner]; });
-        check.all("finite uvs of corners", scene.mesh.corner_uvs, is_finite_uv,
-                  [&](const auto& uvs) { return uvs[corner]; });
-    }
+    if (!scene.blockers)
+        return;
+    check_uvs(*scene.blockers);
+    for (const auto* uvs : {&scene.blockers->uvs, &scene.blockers->second_uvs})
+        check.all("finite uvs of blockers", *uvs, is_finite_uv);
 }
 
 } // namespace

@@ -9,6 +9,7 @@
 #include "prt/scene/bounce_sections.h"
 #include "prt/scene/json_members.h"
 #include "prt/scene/section_group.h"
+#include "prt/visibility/ray_scene.h"
 
 namespace relumine::prt {
 
@@ -19,7 +20,9 @@ const std::string Layout = "layout", Mask = "layout_mask";
 void check_fit(const ReceiverLayout& layout, const Receivers& receivers) {
     const std::span<const std::uint32_t> own = places(layout);
     const bool ascending =
-        std::adjacent_find(own.begin(), own.end(), std::greater_equal<>()) == own.end() &&
+        (receivers.veils.empty()
+             ? std::adjacent_find(own.begin(), own.end(), std::greater_equal<>()) == own.end()
+             : std::is_sorted(own.begin(), own.end())) &&
         (own.empty() || own.back() < num_places(layout));
     if (num_places(layout) > MaxLayoutPlaces || own.size() != receivers.num_own() || !ascending)
         throw std::invalid_argument(
@@ -38,6 +41,46 @@ void check_fit(const ReceiverLayout& layout, const Receivers& receivers) {
                         receivers.size(), receivers.normals.size(), receivers.points.size()));
 }
 
+constexpr std::size_t NumbersOfVeil = 4;
+
+/// Pixels whose samples see several surfaces, one through the other.
+void add_veils(NewSections& sections, std::span<const std::uint32_t> samples,
+               const std::vector<mesh::Veil>& veils) {
+    std::vector<std::uint8_t> counts;
+    std::vector<float> numbers;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (i == 0 || samples[i] != samples[i - 1])
+            counts.push_back(0);
+        ++counts.back();
+        const mesh::Veil& veil = veils[i];
+        numbers.insert(numbers.end(),
+                       {veil.weight, veil.through.r, veil.through.g, veil.through.b});
+    }
+    sections["layout_layers"] = bytes_of(counts);
+    sections["r_veils"] = bytes_of(numbers);
+}
+
+/// Reads them, and gives every sample its receivers.
+std::vector<mesh::Veil> read_veils(const SectionReader& reader,
+                                   std::vector<std::uint32_t>& samples) {
+    const auto counts = reader.elements<std::uint8_t>("layout_layers", samples.size());
+    std::vector<std::uint32_t> layers;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        if (counts[i] == 0 || counts[i] > RayScene::MostLayers)
+            reader.fail("layout_layers", fmt::format("1 to {} layers", RayScene::MostLayers));
+        layers.insert(layers.end(), counts[i], samples[i]);
+    }
+    samples = std::move(layers);
+    const auto numbers = reader.elements<float>("r_veils", NumbersOfVeil * samples.size());
+    if (!std::all_of(numbers.begin(), numbers.end(),
+                     [](float x) { return x >= 0.0f && x <= 1.0f; }))
+        reader.fail("r_veils", "numbers of 0 to 1");
+    std::vector<mesh::Veil> veils;
+    for (std::size_t i = 0; i < numbers.size(); i += NumbersOfVeil)
+        veils.push_back({numbers[i], {numbers[i + 1], numbers[i + 2], numbers[i + 3]}});
+    return veils;
+}
+
 /// Of all but vertices.
 void add_places(NewSections& sections, ReceiverLayout layout, const Receivers& receivers) {
     check_fit(layout, receivers);
@@ -49,6 +92,8 @@ void add_places(NewSections& sections, ReceiverLayout layout, const Receivers& r
     for (const std::uint32_t place : places(layout))
         bits[place] = true;
     sections[Mask] = packed(bits);
+    if (!receivers.veils.empty())
+        add_veils(sections, places(layout), receivers.veils);
     sections["r_positions"] = SectionContent::view(receivers.positions);
     if (!receivers.own_positions.empty())
         sections["r_own_positions"] = SectionContent::view(receivers.own_positions);
@@ -261,6 +306,8 @@ void read_receivers(const SectionReader& reader, Scene& scene) {
     if (on_vertices(scene.layout)) {
         receivers = vertex_receivers(mesh);
     } else {
+        if (auto* pixels = std::get_if<PixelLayout>(&scene.layout); pixels && reader.has("r_veils"))
+            receivers.veils = read_veils(reader, pixels->samples);
         const std::size_t num_own = places(scene.layout).size();
         receivers.positions = reader.elements<glm::vec3>("r_positions");
         const std::size_t count = receivers.size();

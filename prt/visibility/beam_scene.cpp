@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mesh/flat_regions.h"
+#include "mesh/opacity.h"
 #include "prt/visibility/beam_kernels.h"
 #include "prt/visibility/bit_matrix.h"
 #include "prt/visibility/group_origins.h"
@@ -54,12 +55,19 @@ constexpr std::size_t LeavesPerRay = 4;
 /// many leaves. Measured.
 constexpr float WidestCrowdedPatch = 0.75f;
 
-/// Traces one direction after the other, all receivers at once. Where this does not pay, the exact
-/// tracer gets the remaining directions.
-void clear_by_direction(const TriangleTree& tree, const Blockers& exact, const ReceiverGroup& group,
-                        const GroupOrigins& origins, const DirectionPatch& patch,
-                        const PatchPlane& plane, std::span<std::uint64_t> rays) {
+/// What is asked of a tree: which rays of a group through a patch it blocks.
+struct Asked {
+    const ReceiverGroup& group;
+    const DirectionPatch& patch;
+    const PatchPlane& plane;
+};
+
+/// Traces one direction after the other, all receivers at once. Where this does not pay, the
+/// remaining directions are left in doubt.
+void clear_by_direction(const TriangleTree& tree, const Asked& asked, const GroupOrigins& origins,
+                        std::span<std::uint64_t> rays, std::span<std::uint64_t> in_doubt) {
     static_assert(std::tuple_size_v<ReceiverBits> * DirectionPatch::Size == ReceiverGroup::MaxSize);
+    const DirectionPatch& patch = asked.patch;
     RayWords lit{}, doubts{};
     std::copy(rays.begin(), rays.end(), lit.begin());
     transpose_squares(lit);
@@ -75,7 +83,8 @@ void clear_by_direction(const TriangleTree& tree, const Blockers& exact, const R
                 doubts[word * DirectionPatch::Size + j] = active[word];
             continue;
         }
-        const ParallelResult result = test_parallel_rays(tree, {patch, plane, j}, origins, active);
+        const ParallelResult result =
+            test_parallel_rays(tree, {patch, asked.plane, j}, origins, active);
         num_leaves += result.num_leaves;
         for (std::size_t word = 0; word < active.size(); ++word) {
             num_rays += static_cast<std::size_t>(std::popcount(active[word]));
@@ -85,19 +94,74 @@ void clear_by_direction(const TriangleTree& tree, const Blockers& exact, const R
     }
     transpose_squares(lit);
     transpose_squares(doubts);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        rays[i] = lit[i];
-        ask(exact, group.origins[i], patch, doubts[i], rays[i]);
+    std::copy_n(lit.begin(), rays.size(), rays.begin());
+    std::copy_n(doubts.begin(), rays.size(), in_doubt.begin());
+}
+
+/// Clears the rays that a tree blocks for certain, and sets `in_doubt` to the remaining rays that
+/// it may block. False: the exact tracer is faster, and nothing was done.
+bool clear_by_tree(const TriangleTree& tree, std::size_t crowded_shaft, const Asked& asked,
+                   std::span<std::uint64_t> rays, std::span<std::uint64_t> in_doubt) {
+    if (tree.nodes.empty())
+        return true;
+    const PatchPlane& plane = asked.plane;
+    const GroupOrigins origins(asked.group, tree);
+    if (!plane.narrow || !(origins.reach < LargestReach))
+        return false;
+    thread_local ShaftLeaves leaves;
+    Shaft shaft = shaft_of(plane, asked.group.mean_normal, origins.reach);
+    const ReceiverCones cones = place_shaft(origins, rays, shaft);
+    if (!find_leaves(tree, shaft, crowded_shaft, leaves)) {
+        if (std::max(plane.s1 - plane.s0, plane.t1 - plane.t0) > WidestCrowdedPatch)
+            return false;
+        clear_by_direction(tree, asked, origins, rays, in_doubt);
+        return true;
     }
+    if (!leaves.found.empty())
+        clear_certain(tree, {asked.patch, plane, shaft}, leaves, origins, cones, rays, in_doubt);
+    return true;
+}
+
+/// Returns the triangles of a mesh that let light pass, or those that do not.
+mesh::TriangleMesh chosen_triangles(const mesh::TriangleMesh& mesh, bool let_light_pass) {
+    mesh::TriangleMesh chosen;
+    if (!mesh::lets_light_pass(mesh) && let_light_pass)
+        return chosen;
+    chosen.positions = mesh.positions;
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+        if (mesh.triangle_materials.empty() ||
+            mesh::lets_light_pass(mesh.materials[mesh.triangle_materials[i]]) == let_light_pass)
+            chosen.triangles.push_back(mesh.triangles[i]);
+    return chosen;
+}
+
+TriangleTree tree_of_opaque(const mesh::TriangleMesh& mesh) {
+    if (!mesh::lets_light_pass(mesh))
+        return triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh));
+    const mesh::TriangleMesh opaque = chosen_triangles(mesh, false);
+    return triangle_tree(opaque.positions, mesh::with_flat_regions_merged(opaque));
+}
+
+TriangleTree tree_of_see_through(const mesh::TriangleMesh& mesh) {
+    const mesh::TriangleMesh see_through = chosen_triangles(mesh, true);
+    return triangle_tree(see_through.positions, see_through.triangles);
 }
 
 } // namespace
 
 BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact,
                      std::size_t crowded_shaft)
-    : tree_(std::make_unique<const TriangleTree>(
-          triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh)))),
-      exact_(&exact), crowded_shaft_(std::min(crowded_shaft, CrowdedShaft)) {}
+    : BeamScene(std::make_shared<const TriangleTree>(tree_of_opaque(mesh)),
+                std::make_shared<const TriangleTree>(tree_of_see_through(mesh)), exact,
+                std::min(crowded_shaft, CrowdedShaft)) {}
+
+BeamScene::BeamScene(Tree opaque, Tree see_through, const Blockers& exact,
+                     std::size_t crowded_shaft)
+    : opaque_(std::move(opaque)), see_through_(std::move(see_through)), exact_(&exact),
+      crowded_shaft_(crowded_shaft) {
+    if (const Blockers* settled = exact.settled())
+        settled_.reset(new BeamScene(opaque_, see_through_, *settled, crowded_shaft_));
+}
 
 BeamScene::~BeamScene() = default;
 BeamScene::BeamScene(BeamScene&&) noexcept = default;
@@ -110,33 +174,28 @@ std::uint32_t BeamScene::occluded(const glm::vec3& origin, const DirectionPacket
 
 void BeamScene::clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
                               std::span<std::uint64_t> rays) const {
-    const TriangleTree& tree = *tree_;
-    const Blockers& exact = *exact_;
     if (rays.empty())
         return;
     const PatchPlane plane = patch_plane(patch);
-    const GroupOrigins origins(group, tree);
-    if (!plane.narrow || !(origins.reach < LargestReach)) {
-        exact.clear_blocked(group, patch, rays);
-        return;
-    }
-    thread_local ShaftLeaves leaves;
-    Shaft shaft = shaft_of(plane, group.mean_normal, origins.reach);
-    const ReceiverCones cones = place_shaft(origins, rays, shaft);
-    if (!find_leaves(tree, shaft, crowded_shaft_, leaves)) {
-        if (std::max(plane.s1 - plane.s0, plane.t1 - plane.t0) > WidestCrowdedPatch)
-            exact.clear_blocked(group, patch, rays);
-        else
-            clear_by_direction(tree, exact, group, origins, patch, plane, rays);
-        return;
-    }
-    if (leaves.found.empty())
-        return;
+    const Asked asked{group, patch, plane};
     RayWords doubts{};
-    clear_certain(tree, {patch, plane, shaft}, leaves, origins, cones, rays,
-                  std::span(doubts).first(rays.size()));
+    if (!clear_by_tree(*opaque_, crowded_shaft_, asked, rays,
+                       std::span(doubts).first(rays.size()))) {
+        exact_->clear_blocked(group, patch, rays);
+        return;
+    }
+    if (!see_through_->nodes.empty()) {
+        // Whatever such a triangle may block is in doubt.
+        RayWords clear{}, more{};
+        const std::span<std::uint64_t> rest = std::span(clear).first(rays.size());
+        std::copy(rays.begin(), rays.end(), rest.begin());
+        const bool is_tested = clear_by_tree(*see_through_, crowded_shaft_, asked, rest,
+                                             std::span(more).first(rays.size()));
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            doubts[i] |= is_tested ? (rays[i] & ~rest[i]) | more[i] : rays[i];
+    }
     for (std::size_t i = 0; i < rays.size(); ++i)
-        ask(exact, group.origins[i], patch, doubts[i], rays[i]);
+        ask(*exact_, group.origins[i], patch, doubts[i], rays[i]);
 }
 
 } // namespace relumine::prt

@@ -82,6 +82,10 @@ public:
     /// Says that so many rays will be asked for soon. It is worth work that makes them faster.
     virtual void prepare(std::uint64_t num_rays) const { static_cast<void>(num_rays); }
 
+    /// Returns the same blockers with no surface that light passes by chance
+    /// (prt/visibility/see_through.h). Null: they have none. As long-lived as this object.
+    [[nodiscard]] virtual const Blockers* settled() const { return nullptr; }
+
 protected:
     Blockers(const Blockers&) = default;
     Blockers& operator=(const Blockers&) = default;

@@ -68,6 +68,7 @@ const Element* fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat f
 struct Buffers {
     const glm::vec3* positions = nullptr;
     const mesh::Triangle* triangles = nullptr;
+    SeeThrough see_through;
 };
 
 /// The nearest hit of a ray so far.
@@ -89,10 +90,15 @@ struct Query {
     /// decide whether a hit is found that is one by a rounding only.
     std::uint32_t doubtful = 0;
     bool is_packet = false;
+    RayOf of = RayOf::Light;
     /// [number of rays] where the nearest hits are asked for
     Nearest* nearest = nullptr;
+    /// The layer whose successor is looked for; null: the first is.
+    const Nearest* behind = nullptr;
 
-    explicit Query(bool packet) : is_packet(packet) { rtcInitIntersectContext(&context); }
+    explicit Query(bool packet, RayOf whose = RayOf::Light) : is_packet(packet), of(whose) {
+        rtcInitIntersectContext(&context);
+    }
 };
 
 /// A ray, and a triangle that Embree says it hits.
@@ -102,18 +108,34 @@ struct Candidate {
     glm::dvec3 direction;
     /// Its number in the query
     std::uint32_t ray;
+    std::uint32_t triangle;
+    glm::vec3 origin;
+    const Buffers& buffers;
 
     Candidate(const RTCFilterFunctionNArguments* hits, unsigned int i)
         : direction(RTCRayN_dir_x(hits->ray, hits->N, i), RTCRayN_dir_y(hits->ray, hits->N, i),
                     RTCRayN_dir_z(hits->ray, hits->N, i)),
-          ray(RTCRayN_id(hits->ray, hits->N, i)) {
-        const glm::dvec3 origin(RTCRayN_org_x(hits->ray, hits->N, i),
-                                RTCRayN_org_y(hits->ray, hits->N, i),
-                                RTCRayN_org_z(hits->ray, hits->N, i));
-        const auto& buffers = *static_cast<const Buffers*>(hits->geometryUserPtr);
-        const mesh::Triangle& triangle = buffers.triangles[RTCHitN_primID(hits->hit, hits->N, i)];
+          ray(RTCRayN_id(hits->ray, hits->N, i)), triangle(RTCHitN_primID(hits->hit, hits->N, i)),
+          origin(RTCRayN_org_x(hits->ray, hits->N, i), RTCRayN_org_y(hits->ray, hits->N, i),
+                 RTCRayN_org_z(hits->ray, hits->N, i)),
+          buffers(*static_cast<const Buffers*>(hits->geometryUserPtr)) {
         for (std::size_t k = 0; k < 3; ++k)
-            corners[k] = glm::dvec3(buffers.positions[triangle[k]]) - origin;
+            corners[k] =
+                glm::dvec3(buffers.positions[buffers.triangles[triangle][k]]) - glm::dvec3(origin);
+    }
+
+    /// Whether the ray goes on behind the triangle.
+    [[nodiscard]] bool passes(RayOf of) const {
+        if (!buffers.see_through.may_pass(triangle, of))
+            return false;
+        const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+        return buffers.see_through.passes(
+            {.triangle = triangle,
+             .barycentric = glm::vec2(meeting_of(corners, direction).barycentric),
+             .origin = origin,
+             .direction = glm::vec3(direction),
+             .is_back = glm::dot(normal, direction) > 0.0},
+            of);
     }
 
     /// Whether the hit lies beside the triangle.
@@ -148,6 +170,10 @@ void keep_blockers(const RTCFilterFunctionNArguments* hits) {
         if (hits->valid[i] == 0)
             continue;
         const Candidate candidate(hits, i);
+        if (candidate.passes(query.of)) {
+            hits->valid[i] = 0;
+            continue;
+        }
         const bool is_in_doubt = candidate.is_in_doubt(query);
         if (query.is_packet && !is_in_doubt)
             continue;
@@ -172,7 +198,7 @@ void keep_nearest(const RTCFilterFunctionNArguments* hits) {
         if (hits->valid[i] == 0)
             continue;
         const Candidate candidate(hits, i);
-        if (candidate.is_beside()) {
+        if (candidate.is_beside() || candidate.passes(query.of)) {
             hits->valid[i] = 0;
             continue;
         }
@@ -186,13 +212,23 @@ void keep_nearest(const RTCFilterFunctionNArguments* hits) {
         const double order = std::abs(embree - meeting.distance) <= about
                                  ? meeting.distance
                                  : std::max(embree, meeting.distance);
+        if (query.behind != nullptr && std::tie(order, candidate.triangle) <=
+                                           std::tie(query.behind->order, query.behind->triangle)) {
+            hits->valid[i] = 0;
+            continue;
+        }
         Nearest& nearest = query.nearest[candidate.ray];
-        const std::uint32_t triangle = RTCHitN_primID(hits->hit, hits->N, i);
-        if (std::tie(order, triangle) < std::tie(nearest.order, nearest.triangle))
-            nearest = {meeting, order, triangle, nearest.reach};
+        if (std::tie(order, candidate.triangle) < std::tie(nearest.order, nearest.triangle))
+            nearest = {meeting, order, candidate.triangle, nearest.reach};
         reach = nearest.reach = std::min(nearest.reach, static_cast<float>(order + about));
     }
 }
+
+constexpr std::array<float, PacketSize> AllInfinite = [] {
+    std::array<float, PacketSize> distances{};
+    distances.fill(Infinity);
+    return distances;
+}();
 
 Hit hit_of(const Nearest& nearest) {
     return {.triangle = nearest.triangle,
@@ -208,6 +244,27 @@ struct RayScene::Impl {
     DeviceHandle device;
     SceneHandle scene;
     RTCIntersectContextFlags packets = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    std::unique_ptr<const Blockers> settled;
+
+    std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                           std::span<const float, PacketSize> distances, std::uint32_t active,
+                           RayOf of) const;
+    bool occluded(const glm::vec3& origin, const glm::vec3& direction, float distance,
+                  RayOf of) const;
+    bool trace(const glm::vec3& origin, const glm::vec3& direction, Query& query) const;
+};
+
+/// The same rays, which pass no surface by chance.
+class RayScene::Settled final : public Blockers {
+public:
+    explicit Settled(const Impl& impl) : impl_(impl) {}
+    [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                                         std::uint32_t active) const override {
+        return impl_.occluded(origin, directions, AllInfinite, active, RayOf::SettledLight);
+    }
+
+private:
+    const Impl& impl_;
 };
 
 RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
@@ -243,7 +300,8 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
             triangle = {nowhere, nowhere, nowhere};
     impl_->buffers = {
         .positions = fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions),
-        .triangles = fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles)};
+        .triangles = fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles),
+        .see_through = SeeThrough(mesh)};
     rtcSetGeometryUserData(geometry, &impl_->buffers);
     rtcSetGeometryOccludedFilterFunction(geometry, keep_blockers);
     rtcSetGeometryIntersectFilterFunction(geometry, keep_nearest);
@@ -252,6 +310,8 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
     rtcReleaseGeometry(geometry);
     rtcCommitScene(impl_->scene.get());
     throw_on_error(device, "build the ray accelerator");
+    if (impl_->buffers.see_through.has_thin())
+        impl_->settled = std::make_unique<const Settled>(*impl_);
 }
 
 RayScene::~RayScene() = default;
@@ -261,12 +321,6 @@ RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 namespace {
 
 using Valid = std::array<int, PacketSize>;
-
-constexpr std::array<float, PacketSize> AllInfinite = [] {
-    std::array<float, PacketSize> distances{};
-    distances.fill(Infinity);
-    return distances;
-}();
 
 void fill_rays(const glm::vec3& origin, const DirectionPacket& directions, std::uint32_t active,
                Valid& valid, RTCRay16& rays) {
@@ -302,6 +356,49 @@ RTCRay ray_of(const glm::vec3& origin, const glm::vec3& direction) {
 
 } // namespace
 
+std::uint32_t RayScene::Impl::occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                                       std::span<const float, PacketSize> distances,
+                                       std::uint32_t active, RayOf of) const {
+    alignas(64) Valid valid;
+    RTCRay16 rays;
+    fill_rays(origin, directions, active, valid, rays);
+    std::copy(distances.begin(), distances.end(), rays.tfar);
+    Query query(true, of);
+    query.context.flags = packets;
+    rtcOccluded16(valid.data(), scene.get(), &query.context, &rays);
+
+    // Embree marks a blocked ray by tfar = -infinity.
+    std::uint32_t blocked = 0;
+    for (std::size_t i = 0; i < PacketSize; ++i)
+        blocked |= static_cast<std::uint32_t>(rays.tfar[i] < 0.0f) << i;
+    for (std::uint32_t rest = query.doubtful & active & ~blocked; rest != 0; rest &= rest - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+        blocked |=
+            static_cast<std::uint32_t>(occluded(origin, directions.direction(i), distances[i], of))
+            << i;
+    }
+    return blocked & active;
+}
+
+bool RayScene::Impl::occluded(const glm::vec3& origin, const glm::vec3& direction, float distance,
+                              RayOf of) const {
+    RTCRay ray = ray_of(origin, direction);
+    ray.tfar = distance;
+    Query query(false, of);
+    rtcOccluded1(scene.get(), &query.context, &ray);
+    return ray.tfar < 0.0f;
+}
+
+/// Finds the nearest hit that the query asks for. Returns whether there is one.
+bool RayScene::Impl::trace(const glm::vec3& origin, const glm::vec3& direction,
+                           Query& query) const {
+    RTCRayHit ray{};
+    ray.ray = ray_of(origin, direction);
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene.get(), &query.context, &ray);
+    return ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
+
 std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket& directions,
                                  std::uint32_t active) const {
     return occluded(origin, directions, AllInfinite, active);
@@ -310,57 +407,58 @@ std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket&
 std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket& directions,
                                  std::span<const float, PacketSize> distances,
                                  std::uint32_t active) const {
-    alignas(64) Valid valid;
-    RTCRay16 rays;
-    fill_rays(origin, directions, active, valid, rays);
-    std::copy(distances.begin(), distances.end(), rays.tfar);
-    Query query(true);
-    query.context.flags = impl_->packets;
-    rtcOccluded16(valid.data(), impl_->scene.get(), &query.context, &rays);
-
-    // Embree marks a blocked ray by tfar = -infinity.
-    std::uint32_t blocked = 0;
-    for (std::size_t i = 0; i < PacketSize; ++i)
-        blocked |= static_cast<std::uint32_t>(rays.tfar[i] < 0.0f) << i;
-    for (std::uint32_t rest = query.doubtful & active & ~blocked; rest != 0; rest &= rest - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-        blocked |= static_cast<std::uint32_t>(
-                       occluded(origin, directions.direction(i), distances[i]))
-                   << i;
-    }
-    return blocked & active;
+    return impl_->occluded(origin, directions, distances, active, RayOf::Light);
 }
 
-bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction,
-                        float distance) const {
-    RTCRay ray = ray_of(origin, direction);
-    ray.tfar = distance;
-    Query query(false);
-    rtcOccluded1(impl_->scene.get(), &query.context, &ray);
-    return ray.tfar < 0.0f;
+bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, float distance) const {
+    return impl_->occluded(origin, direction, distance, RayOf::Light);
 }
 
-std::optional<Hit> RayScene::closest_hit(const glm::vec3& origin,
-                                         const glm::vec3& direction) const {
-    RTCRayHit ray{};
-    ray.ray = ray_of(origin, direction);
-    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    Query query(false);
+const Blockers* RayScene::settled() const {
+    return impl_->settled.get();
+}
+
+bool RayScene::is_thin(std::uint32_t triangle) const {
+    return impl_->buffers.see_through.is_thin(triangle);
+}
+
+std::optional<Hit> RayScene::closest_hit(const glm::vec3& origin, const glm::vec3& direction,
+                                         RayOf of) const {
+    Query query(false, of);
     Nearest nearest;
     query.nearest = &nearest;
-    rtcIntersect1(impl_->scene.get(), &query.context, &ray);
-    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+    if (!impl_->trace(origin, direction, query))
         return std::nullopt;
     return hit_of(nearest);
 }
 
+void RayScene::layers(const glm::vec3& origin, const glm::vec3& direction,
+                      std::vector<Layer>& layers) const {
+    layers.clear();
+    Nearest last;
+    while (layers.size() < MostLayers) {
+        Query query(false, RayOf::Eye);
+        Nearest nearest;
+        query.nearest = &nearest;
+        query.behind = layers.empty() ? nullptr : &last;
+        if (!impl_->trace(origin, direction, query))
+            return;
+        const Hit hit = hit_of(nearest);
+        layers.push_back({hit, impl_->buffers.see_through.veil(hit.triangle, hit.barycentric)});
+        if (layers.back().veil.through == glm::vec3(0.0f))
+            return;
+        last = nearest;
+    }
+}
+
 std::uint32_t RayScene::closest_hits(const glm::vec3& origin, const DirectionPacket& directions,
-                                     std::uint32_t active, std::span<Hit, PacketSize> hits) const {
+                                     std::uint32_t active, std::span<Hit, PacketSize> hits,
+                                     RayOf of) const {
     alignas(64) Valid valid;
     RTCRayHit16 rays;
     fill_rays(origin, directions, active, valid, rays.ray);
     std::fill(std::begin(rays.hit.geomID), std::end(rays.hit.geomID), RTC_INVALID_GEOMETRY_ID);
-    Query query(true);
+    Query query(true, of);
     std::array<Nearest, PacketSize> nearest;
     query.nearest = nearest.data();
     query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -371,7 +469,7 @@ std::uint32_t RayScene::closest_hits(const glm::vec3& origin, const DirectionPac
             continue;
         std::optional<Hit> hit;
         if ((query.doubtful >> i & 1u) != 0)
-            hit = closest_hit(origin, directions.direction(i));
+            hit = closest_hit(origin, directions.direction(i), of);
         else if (rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
             hit = hit_of(nearest[i]);
         if (!hit)

@@ -6,12 +6,14 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "mesh/triangle_mesh.h"
 #include "prt/visibility/blockers.h"
+#include "prt/visibility/see_through.h"
 
 namespace relumine::prt {
 
@@ -29,7 +31,8 @@ struct Hit {
 };
 
 /// Triangles prepared for ray queries; immutable. Triangles block from both sides. Rays are traced
-/// watertight (Embree's robust mode): no ray slips through a shared edge.
+/// watertight (Embree's robust mode): no ray slips through a shared edge. Where the mesh's
+/// materials let a ray pass (prt/visibility/see_through.h), it goes on behind the triangle.
 ///
 /// A ray's answer does not depend on the rays that are asked with it. x86 processors from AVX2 on
 /// give the same answers.
@@ -63,16 +66,33 @@ public:
     occluded(const glm::vec3& origin, const glm::vec3& direction,
              float distance = std::numeric_limits<float>::infinity()) const;
 
-    [[nodiscard]] std::optional<Hit> closest_hit(const glm::vec3& origin,
-                                                 const glm::vec3& direction) const;
+    [[nodiscard]] std::optional<Hit>
+    closest_hit(const glm::vec3& origin, const glm::vec3& direction, RayOf of = RayOf::Light) const;
 
     /// Finds the closest hit of each direction in `active`. Returns the mask of those that hit
     /// anything; the other hits are left alone. Fastest for directions that lie close together.
     std::uint32_t closest_hits(const glm::vec3& origin, const DirectionPacket& directions,
-                               std::uint32_t active, std::span<Hit, PacketSize> hits) const;
+                               std::uint32_t active, std::span<Hit, PacketSize> hits,
+                               RayOf of = RayOf::Light) const;
+
+    /// A surface that the eye meets, and what it leaves of the light behind it.
+    struct Layer {
+        Hit hit;
+        mesh::Veil veil;
+    };
+    /// Finds what the eye sees in a direction, nearest first, up to the first that nothing is seen
+    /// through. Most are one layer. Of more than MostLayers the last ones are left out.
+    void layers(const glm::vec3& origin, const glm::vec3& direction,
+                std::vector<Layer>& layers) const;
+    static constexpr std::size_t MostLayers = 64;
+    /// Whether there may be more layers behind a triangle.
+    [[nodiscard]] bool is_thin(std::uint32_t triangle) const;
+
+    [[nodiscard]] const Blockers* settled() const override;
 
 private:
     struct Impl;
+    class Settled;
     std::unique_ptr<Impl> impl_;
 };
 

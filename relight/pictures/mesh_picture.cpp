@@ -61,7 +61,7 @@ private:
                 glm::vec3 sum(0.0f);
                 for (std::uint32_t i = 0; i < rays.samples_per_pixel(); ++i) {
                     const glm::vec3 direction = rays.direction(x, y, i);
-                    const auto hit = rays_.closest_hit(camera_.eye, direction);
+                    const auto hit = rays_.closest_hit(camera_.eye, direction, prt::RayOf::Eye);
                     const float facing =
                         hit ? std::abs(glm::dot(prt::face_normal(mesh_, hit->triangle), direction))
                             : 0.0f;
@@ -84,7 +84,7 @@ private:
         if (!(depth > 0.0f))
             return;
         constexpr float Nearer = 0.997f;
-        const auto hit = rays_.closest_hit(camera_.eye, way / distance);
+        const auto hit = rays_.closest_hit(camera_.eye, way / distance, prt::RayOf::Eye);
         if (hit && hit->distance < Nearer * distance)
             return;
         const float x = 0.5f * (1.0f + glm::dot(way, axes_.right) /

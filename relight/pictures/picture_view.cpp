@@ -81,7 +81,8 @@ void PictureView::trace(std::uint32_t y, std::uint32_t x_begin, std::uint32_t x_
         const auto num = packet.num_directions;
         for (std::size_t lane = num; lane < prt::PacketSize; ++lane)
             packet.set(lane, {packet.x[0], packet.y[0], packet.z[0]});
-        const std::uint32_t found = rays_.closest_hits(camera_.eye, packet, (1u << num) - 1u, hits);
+        const std::uint32_t found =
+            rays_.closest_hits(camera_.eye, packet, (1u << num) - 1u, hits, prt::RayOf::Eye);
         for (std::uint32_t lane = 0; lane < num; ++lane, ++done) {
             samples[done] = {NoTriangle, 0.0f, 0.0f};
             if ((found >> lane & 1u) == 0)
@@ -319,27 +320,56 @@ private:
                                  ? std::nullopt
                                  : std::optional<prt::MeshPoint>(point(in_middle)));
         for (std::size_t i = 0; i < samples.size(); ++i) {
-            const Sample& sample = samples[i];
-            const float opacity = view_.opacity(sample);
-            if (opacity == 0.0f)
-                continue;
-            const bool is_caught = catches(sample);
-            const std::optional<Mirror> mirror = mirrors_.at(point(sample));
-            glm::vec3 radiance = soft(sample, mirror);
-            if (traces && !is_dark) {
-                if (!even)
-                    look(sample, lanes_);
-                radiance += is_caught ? white(prt::shading_normal(mesh_, point(sample)))
-                                      : traced(sample, mirror);
+            float covered = 0.0f;
+            for (const Layer& layer : layers(x, y, static_cast<std::uint32_t>(i), samples[i])) {
+                const Sample& sample = layer.sample;
+                const float opacity = view_.opacity(sample);
+                if (opacity == 0.0f)
+                    continue;
+                const bool is_caught = catches(sample);
+                const std::optional<Mirror> mirror = mirrors_.at(point(sample));
+                glm::vec3 radiance = soft(sample, mirror);
+                if (traces && !(is_dark && layer.is_first)) {
+                    if (!even || !layer.is_first)
+                        look(sample, lanes_);
+                    radiance += is_caught ? white(prt::shading_normal(mesh_, point(sample)))
+                                          : traced(sample, mirror);
+                }
+                if (!is_caught)
+                    sum += passed_[i] * (layer.veil.weight * opacity) *
+                           (radiance + emitted(sample, mirror));
+                const glm::vec3 passed = is_caught ? caught(radiance, *light_.open_floor, opacity)
+                                                   : 1.0f - opacity * (1.0f - layer.veil.through);
+                passed_[i] *= passed;
+                covered += (1.0f - covered) * (is_caught || layer.veil.through != glm::vec3(0.0f)
+                                                   ? opacity_of(passed)
+                                                   : opacity);
             }
-            passed_[i] = is_caught ? caught(radiance, *light_.open_floor, opacity)
-                                   : glm::vec3(1.0f - opacity);
-            if (!is_caught)
-                sum += opacity * (radiance + emitted(sample, mirror));
-            alpha += is_caught ? opacity_of(passed_[i]) : opacity;
+            alpha += covered;
         }
         const auto count = static_cast<float>(samples.size());
         return {.color = sum / count, .alpha = alpha / count};
+    }
+
+    /// What a sample sees, one behind the other.
+    struct Layer {
+        Sample sample;
+        mesh::Veil veil = {};
+        bool is_first = true;
+    };
+    [[nodiscard]] std::span<const Layer> layers(std::uint32_t x, std::uint32_t y, std::uint32_t i,
+                                                const Sample& first) {
+        layers_.assign(1, {first});
+        if (first.triangle == NoTriangle || !view_.rays_.is_thin(first.triangle))
+            return layers_;
+        view_.rays_.layers(view_.camera_.eye, view_.grid_.direction(x, y, i), found_);
+        layers_.clear();
+        for (const prt::RayScene::Layer& layer : found_)
+            layers_.push_back(
+                {{layer.hit.triangle, layer.hit.barycentric.x, layer.hit.barycentric.y},
+                 layer.veil,
+                 layers_.empty()});
+        return layers_;
     }
 
     /// Whether a sample lies on a floor that catches shadows.
@@ -447,6 +477,9 @@ private:
     /// The lanes whose lights were summed last, and their sum.
     Lanes summed_;
     VectorIrradiance sum_;
+    /// Scratch of layers()
+    std::vector<Layer> layers_;
+    std::vector<prt::RayScene::Layer> found_;
     /// [samples of a pixel] what passes of the light behind.
     std::vector<glm::vec3> passed_;
 };

@@ -22,10 +22,13 @@ void require_one_per_receiver(std::size_t num_receivers, std::span<const glm::ve
 /// that let so much through. The mean opacity goes to the picture's alpha if asked for.
 template<typename Behind>
 Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
-                 std::span<const glm::vec3> opacity, const Behind& behind, bool with_alpha) {
+                 std::span<const glm::vec3> opacity, std::span<const mesh::Veil> veils,
+                 const Behind& behind, bool with_alpha) {
     require_one_per_receiver(layout.samples.size(), radiance);
     if (!opacity.empty() && opacity.size() != radiance.size())
         throw std::invalid_argument("expected one opacity per receiver");
+    if (!veils.empty() && veils.size() != radiance.size())
+        throw std::invalid_argument("expected one veil per receiver");
     const std::size_t num_pixels = std::size_t{layout.width} * layout.height;
     Picture picture{.width = layout.width, .height = layout.height};
     picture.pixels.resize(num_pixels);
@@ -42,14 +45,18 @@ Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radi
             glm::vec3 sum(0.0f);
             float alpha = 0.0f;
             for (std::uint32_t i = 0; i < per_pixel; ++i) {
-                glm::vec3 own(0.0f);
-                if (receiver < layout.samples.size() &&
-                    layout.samples[receiver] == pixel * per_pixel + i) {
-                    own = opacity.empty() ? glm::vec3(1.0f) : opacity[receiver];
-                    sum += own * radiance[receiver++];
+                glm::vec3 taken(0.0f), through(1.0f);
+                for (; receiver < layout.samples.size() &&
+                       layout.samples[receiver] == pixel * per_pixel + i;
+                     ++receiver) {
+                    const glm::vec3 own = opacity.empty() ? glm::vec3(1.0f) : opacity[receiver];
+                    const mesh::Veil veil = veils.empty() ? mesh::Veil() : veils[receiver];
+                    sum += veil.weight * through * own * radiance[receiver];
+                    taken += through * own * (1.0f - veil.through);
+                    through = 1.0f - taken;
                 }
-                passed[i] = 1.0f - own;
-                alpha += std::clamp((own.r + own.g + own.b) / 3.0f, 0.0f, 1.0f);
+                passed[i] = through;
+                alpha += std::clamp((taken.r + taken.g + taken.b) / 3.0f, 0.0f, 1.0f);
             }
             picture.pixels[pixel] = sum / static_cast<float>(per_pixel) + behind(x, y, passed);
             if (with_alpha)
@@ -119,17 +126,19 @@ private:
 } // namespace
 
 Picture compose_cut_out(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
-                        std::span<const glm::vec3> opacity) {
+                        std::span<const glm::vec3> opacity, std::span<const mesh::Veil> veils) {
     return averaged(
-        layout, radiance, opacity, [](auto, auto, const auto&) { return glm::vec3(0.0f); }, true);
+        layout, radiance, opacity, veils, [](auto, auto, const auto&) { return glm::vec3(0.0f); },
+        true);
 }
 
 Picture compose(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
-                const Backdrop& backdrop, std::span<const glm::vec3> opacity) {
+                const Backdrop& backdrop, std::span<const glm::vec3> opacity,
+                std::span<const mesh::Veil> veils) {
     const prt::PictureRays rays(layout.camera, layout.width, layout.height,
                                 layout.samples_per_axis);
     return averaged(
-        layout, radiance, opacity,
+        layout, radiance, opacity, veils,
         [&](auto x, auto y, const auto& passed) {
             return seen_behind(rays, x, y, passed, backdrop);
         },

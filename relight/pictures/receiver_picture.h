@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/image/picture.h"
+#include "mesh/opacity.h"
 #include "prt/receivers/receiver_layout.h"
 #include "relight/pictures/backdrop.h"
 
@@ -18,18 +19,21 @@ using cubemap::Picture;
 /// pixel's samples, which is 0 for a sample without a receiver; the pixels are premultiplied.
 ///
 /// Shape:   radiance is [num_receivers], opacity the same for each colour, or empty for opaque
-///          receivers. It may be negative where light is added to what is behind.
+///          receivers. It may be negative where light is added to what is behind. veils is
+///          [num_receivers], or empty for receivers that nothing is seen through.
 /// Throws:  std::invalid_argument for another number of values.
 [[nodiscard]] Picture compose_cut_out(const prt::PixelLayout& layout,
                                       std::span<const glm::vec3> radiance,
-                                      std::span<const glm::vec3> opacity = {});
+                                      std::span<const glm::vec3> opacity = {},
+                                      std::span<const mesh::Veil> veils = {});
 
 /// Composes the picture of pixel receivers before a backdrop: each pixel is the mean of its
 /// samples. The picture is opaque.
 ///
 /// Shape:   as compose_cut_out().
 [[nodiscard]] Picture compose(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
-                              const Backdrop& backdrop, std::span<const glm::vec3> opacity = {});
+                              const Backdrop& backdrop, std::span<const glm::vec3> opacity = {},
+                              std::span<const mesh::Veil> veils = {});
 
 /// Composes the lightmap of texel receivers.
 ///

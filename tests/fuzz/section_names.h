@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 80> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 87> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -86,6 +86,13 @@ inline constexpr std::array<std::string_view, 80> SectionNames = {"settings",
                                                                   "g_sheen_v",
                                                                   "lamps",
                                                                   "emitters",
-                                                                  "e_radiance"};
+                                                                  "e_radiance",
+                                                                  "alphas",
+                                                                  "block_materials",
+                                                                  "block_uvs",
+                                                                  "block_second_uvs",
+                                                                  "block_corner_uvs",
+                                                                  "layout_layers",
+                                                                  "r_veils"};
 
 } // namespace relumine::fuzz

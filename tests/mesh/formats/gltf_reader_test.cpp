@@ -3,6 +3,7 @@
 #include <limits>
 #include <numbers>
 
+#include "mesh/opacity.h"
 #include "mesh/save.h"
 #include "tests/mesh/encoders.h"
 #include "tests/mesh/gltf_model.h"
@@ -31,7 +32,8 @@ TEST_F(GltfTest, TheSameEmbeddedExternalAndBinary) {
     EXPECT_EQ(embedded.materials, (std::vector<Material>{{.name = "default",
                                                           .model = MaterialModel::MetallicRoughness,
                                                           .metallic = 1.0f,
-                                                          .times_vertex_color = true}}));
+                                                          .times_vertex_color = true,
+                                                          .is_double_sided = false}}));
     for (const auto& path :
          {write("b.gltf", model.external("some%20data.bin")), write("c.GLB", model.glb())}) {
         const TriangleMesh other = load(path);
@@ -139,7 +141,8 @@ TEST_F(GltfTest, MaterialsAsWritten) {
                                            .base_color = {1.0f, 0.75f, 0.25f},
                                            .metallic = 1.0f,
                                            .roughness = 0.25f,
-                                           .times_vertex_color = true}));
+                                           .times_vertex_color = true,
+                                           .is_double_sided = false}));
     EXPECT_EQ(mesh.materials[1].name, "material 1");
     EXPECT_EQ(mesh.materials[1].metallic, 0.5f);
     EXPECT_EQ(mesh.materials[1].roughness, 1.0f);
@@ -469,6 +472,80 @@ TEST_F(GltfTest, SpecularGlossiness) {
                     "material 0: expected numbers of 0 to 1 as \"specularFactor\", got 2")));
 }
 
+TEST_F(GltfTest, AlphaCutsOut) {
+    Model model = square();
+    static_cast<void>(write("leaf.webp", webp(2, 1, {{255, 128, 0, 255}, {0, 0, 0, 51}})));
+    static_cast<void>(write("opaque.png", four_colors()));
+    model.json["images"] = {{{"uri", "leaf.webp"}}, {{"uri", "opaque.png"}}};
+    model.json["textures"] = {{{"source", 0}}, {{"source", 1}}};
+    const auto textured = [](int texture) {
+        return Json{{"baseColorFactor", {1, 1, 1, 0.5}},
+                    {"baseColorTexture", {{"index", texture}}}};
+    };
+    model.json["materials"] = {
+        {{"alphaMode", "MASK"}, {"alphaCutoff", 0.25}, {"pbrMetallicRoughness", textured(0)}},
+        {{"alphaMode", "MASK"}, {"doubleSided", true}, {"pbrMetallicRoughness", textured(1)}},
+        {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", textured(0)}},
+        {{"pbrMetallicRoughness", textured(0)}},
+        {{"alphaMode", "CUT"}},
+        {{"alphaMode", "MASK"}, {"alphaCutoff", -1}}};
+    const TriangleMesh mesh = load(write("a.gltf", model.embedded()));
+    const Material& leaf = mesh.materials[0];
+    EXPECT_EQ(leaf.alpha_mode, AlphaMode::Mask);
+    EXPECT_EQ(leaf.alpha_cutoff, 0.25f);
+    EXPECT_EQ(leaf.alpha, 0.5f);
+    EXPECT_FALSE(leaf.is_double_sided);
+    EXPECT_EQ(mesh.textures[leaf.alpha_texture->texture].texels,
+              (std::vector<Rgb8>{{255, 255, 255}, {51, 51, 51}}));
+    EXPECT_FALSE(leaf.alpha_texture->is_srgb);
+    // 0.5 times 1 is above the cutoff, 0.5 times 0.2 below.
+    EXPECT_EQ(veil(mesh, 0, glm::vec2(0.0f)), Veil());
+    EXPECT_EQ(mesh.materials[1].alpha_cutoff, 0.5f) << "the default";
+    EXPECT_TRUE(mesh.materials[1].is_double_sided);
+    EXPECT_FALSE(mesh.materials[1].alpha_texture) << "an image without alpha";
+    EXPECT_FALSE(lets_light_pass(mesh.materials[1])) << "0.5 is not below 0.5";
+    EXPECT_EQ(mesh.materials[2].alpha_mode, AlphaMode::Blend);
+    EXPECT_EQ(mesh.materials[2].alpha_texture->texture, leaf.alpha_texture->texture);
+    EXPECT_FALSE(mesh.materials[3].alpha_texture) << "alpha of opaque materials means nothing";
+    EXPECT_THAT(
+        mesh.warnings,
+        testing::IsSupersetOf(
+            {testing::HasSubstr("expected OPAQUE, MASK or BLEND as \"alphaMode\", got 'CUT'"),
+             testing::HasSubstr("expected a number of 0 or more as \"alphaCutoff\", got -1")}));
+}
+
+TEST_F(GltfTest, Glass) {
+    Model model = square();
+    const Json volume = {{"thicknessFactor", 0.5},
+                         {"attenuationDistance", 2},
+                         {"attenuationColor", {1, 0.5, 0.25}},
+                         {"thicknessTexture", {{"index", 0}}}};
+    const Json clear = {{"KHR_materials_transmission", {{"transmissionFactor", 0.75}}}};
+    Json body = clear;
+    body["KHR_materials_volume"] = volume;
+    model.json["materials"] = {{{"extensions", clear}},
+                               {{"extensions", body}},
+                               {{"extensions", {{"KHR_materials_volume", volume}}}}};
+    TriangleMesh mesh = gltf(model.embedded());
+    EXPECT_EQ(mesh.materials[0].transmission, 0.75f);
+    EXPECT_EQ(mesh.materials[0].thickness, 0.0f);
+    EXPECT_EQ(mesh.materials[1].thickness, 0.5f);
+    EXPECT_EQ(mesh.materials[1].attenuation_distance, 2.0f);
+    EXPECT_EQ(mesh.materials[1].attenuation_color, glm::vec3(1.0f, 0.5f, 0.25f));
+    EXPECT_FALSE(lets_light_pass(mesh.materials[2])) << "opaque";
+    EXPECT_THAT(
+        mesh.warnings,
+        testing::UnorderedElementsAre(
+            "2 materials of glass (KHR_materials_transmission): light goes straight on, without "
+            "refraction and blur, and its shadows are grey",
+            "2 materials with a texture of thickness, which is not read: the factor counts "
+            "everywhere"));
+    model.json["materials"][1]["extensions"]["KHR_materials_volume"]["thicknessFactor"] = -1;
+    EXPECT_THAT(gltf(model.embedded()).warnings,
+                testing::Contains(testing::HasSubstr(
+                    "expected a number of 0 or more as \"thicknessFactor\", got -1")));
+}
+
 TEST_F(GltfTest, NamesInLatin1) {
     Model model = square();
     static_cast<void>(write("gr\xfcn.png", four_colors()));
@@ -549,13 +626,9 @@ TEST_F(GltfTest, SaysWhatIsLeftOut) {
             "the extension 'KHR_texture_basisu' is not read: its images are left out; "
             "without another image, a surface has its factors alone",
             "the extension 'VENDOR_wind' is not read: what it describes is left out",
-            "2 materials cut out by alpha (leaves, fences); alpha is not read: what is cut "
-            "out is opaque",
-            "1 material with one side only: pictures show both",
             "1 material with KHR_materials_anisotropy, which is not read: highlights are round",
             "1 material with 'VENDOR_fur', which is not read: what it describes is left out",
             "1 material with an occlusion map, which is not read: rays find what blocks the light",
-            "1 material transparent by alpha; alpha is not read: surfaces are opaque",
             "2 materials with textures of hard pixels (NEAREST), which are not kept: they are "
             "sampled bilinearly",
             "1 material with the property 'shiny', which glTF does not have: it is left out",

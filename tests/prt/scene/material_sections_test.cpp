@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/opacity.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/scene/section_group.h"
 #include "tests/prt/damaged_file.h"
+#include "tests/prt/leaf_card.h"
 #include "tests/prt/made_sections.h"
+#include "tests/prt/scenes.h"
 #include "tests/prt/textured_square.h"
 
 namespace relumine::prt {
@@ -114,6 +117,40 @@ TEST(MaterialSections, AreOnlyForTextures) {
     mesh.materials[1].base_color_texture.reset();
     EXPECT_TRUE(written(mesh).empty());
     EXPECT_TRUE(read({}, mesh).materials.empty()) << "files without them are good";
+}
+
+TEST(MaterialSections, KeepWhatRaysPass) {
+    Scene scene;
+    scene.mesh = scenes::with_card(scenes::floor_grid(3, 2.0f), scenes::leaf_card(2, 1.0f, 1.0f));
+    scene.mesh.materials[0] = {.is_double_sided = false};
+    scene.mesh.materials[0].transmission = 0.5f;
+    scene.mesh.materials[0].thickness = 0.25f;
+    scene.mesh.materials[0].attenuation_color = glm::vec3(0.5f);
+    scene.mesh.materials[0].attenuation_distance = 3.0f;
+    scene.mesh.materials[1].alpha = 0.75f;
+    scene.mesh.materials[1].alpha_cutoff = 0.25f;
+    scene.blockers = mesh::blockers_of(scene.mesh);
+    scene.layout = PointLayout{};
+    NewSections sections;
+    MaterialSections.add(sections, scene);
+    Scene same;
+    same.mesh.positions = scene.mesh.positions;
+    same.mesh.triangles = scene.mesh.triangles;
+    same.mesh.uvs = scene.mesh.uvs;
+    same.blockers = same.mesh;
+    same.blockers->uvs.clear();
+    MaterialSections.read(scenes::reader_of("scene.prt", scenes::made(sections)), same);
+    EXPECT_FALSE(same.mesh.materials[0].is_double_sided);
+    for (const mesh::TriangleMesh& mesh : {same.mesh, *same.blockers})
+        for (int i = 0; i < 100; ++i) {
+            const auto triangle = static_cast<std::uint32_t>(i % 10);
+            const glm::vec2 point(0.003f * static_cast<float>(i), 0.3f);
+            EXPECT_EQ(mesh::veil(mesh, triangle, point), mesh::veil(scene.mesh, triangle, point));
+        }
+    Sections bad = scenes::made(sections);
+    bad["alphas"].pop_back();
+    EXPECT_THROW(MaterialSections.read(scenes::reader_of("scene.prt", std::move(bad)), same),
+                 std::runtime_error);
 }
 
 TEST(MaterialSections, TexturesThatWereMadeInCodeAreLeftOut) {

@@ -31,9 +31,11 @@ void precompute(Scene& scene) {
                         {.tolerance = 0.1f, .min_level = 1, .face_resolution = 8, .bias = 1e-3f});
 }
 
-Scene pixel_scene() {
+Scene pixel_scene(const mesh::Material& material = {}) {
     Scene scene;
     scene.mesh = scenes::box(glm::vec3(-1.0f), glm::vec3(1.0f));
+    scene.mesh.materials = {material};
+    scene.mesh.triangle_materials.assign(scene.mesh.num_triangles(), 0);
     PixelReceivers pixels =
         pixel_receivers(scene.mesh, RayScene(scene.mesh),
                         {.camera = {.eye = {3.1f, 2.2f, 4.3f}, .fov_degrees = 33.3f},
@@ -93,6 +95,7 @@ void expect_same(const Receivers& a, const Receivers& b) {
     EXPECT_EQ(a.to_eye, b.to_eye);
     EXPECT_EQ(a.surfaces, b.surfaces);
     EXPECT_EQ(a.points, b.points);
+    EXPECT_EQ(a.veils, b.veils);
     EXPECT_EQ(a.own_positions, b.own_positions);
     EXPECT_EQ(a.have_no_surface, b.have_no_surface);
 }
@@ -142,6 +145,17 @@ TEST_F(ReceiverSectionsTest, PixelsComeBack) {
     expect_round_trip(scene);
     add_surfaces(scene);
     expect_round_trip(scene);
+}
+
+TEST_F(ReceiverSectionsTest, PixelsThatSeeThroughSurfacesComeBack) {
+    const Scene scene = pixel_scene({.alpha_mode = mesh::AlphaMode::Blend, .alpha = 0.25f});
+    ASSERT_EQ(scene.receivers.veils.size(), scene.receivers.size());
+    expect_round_trip(scene);
+    const Sections good = read_sections(file_);
+    refused(good, "layout_layers", 0, std::uint8_t{0});
+    refused(good, "layout_layers", 0, std::uint8_t{200});
+    refused(good, "r_veils", 2, 1.5f);
+    refused(good, "r_veils", 0, std::numeric_limits<float>::quiet_NaN());
 }
 
 TEST_F(ReceiverSectionsTest, TexelsComeBack) {

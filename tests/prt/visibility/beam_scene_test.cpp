@@ -19,6 +19,7 @@
 #include "prt/visibility/ray_scene.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"
+#include "tests/prt/leaf_card.h"
 #include "tests/prt/same_transfer.h"
 #include "tests/prt/scenes.h"
 #include "tests/real_data.h"
@@ -148,6 +149,25 @@ TEST(BeamScene, AnswersAsTheRayTracerDoes) {
         EXPECT_GT(tally.num_rays - tally.num_blocked, 500000u);
     });
     compare_at_vertices(scenes::sphere_and_box_on_floor(), 2, 1500);
+}
+
+TEST(BeamScene, AnswersAsTheRayTracerDoesBehindLeaves) {
+    const auto check = [](const mesh::TriangleMesh& mesh, std::uint32_t seed) {
+        const Tally tally = compare_at_vertices(mesh, seed, 600);
+        EXPECT_GT(tally.num_blocked, 20000u);
+        EXPECT_GT(tally.num_rays - tally.num_blocked, 100000u);
+    };
+    scenes::on_every_target([&] {
+        check(scenes::with_card(things_on_a_floor(), scenes::leaf_card(16, 2.0f, 1.2f)), 3);
+    });
+    // Nothing opaque is left.
+    mesh::TriangleMesh all = things_on_a_floor();
+    all.materials = scenes::leaf_card(1, 1.0f, 0.0f).materials;
+    all.textures = scenes::leaf_card(1, 1.0f, 0.0f).textures;
+    all.triangle_materials.assign(all.num_triangles(), 1);
+    for (const glm::vec3& p : all.positions)
+        all.uvs.emplace_back(5.0f * p.x, 5.0f * p.z);
+    compare_at_vertices(all, 4, 600);
 }
 
 TEST(BeamScene, AnswersAsTheRayTracerDoesAmongRandomTriangles) {

@@ -1,0 +1,136 @@
+#include "mesh/opacity.h"
+
+#include <algorithm>
+#include <optional>
+
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+
+#include "mesh/tangents.h"
+
+namespace relumine::mesh {
+
+glm::vec2 uv_at(const TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& barycentric,
+                std::uint32_t uv_set) {
+    const auto corner = [&](std::size_t k) {
+        return corner_uv(mesh, triangle, k, uv_set);
+    };
+    return corner(0) * (1.0f - barycentric.x - barycentric.y) + corner(1) * barycentric.x +
+           corner(2) * barycentric.y;
+}
+
+bool lets_light_pass(const Material& material) {
+    const float opaque = material.alpha_mode == AlphaMode::Mask ? material.alpha_cutoff : 1.0f;
+    return material.transmission > 0.0f || (material.alpha_mode != AlphaMode::Opaque &&
+                                            (material.alpha_texture || material.alpha < opaque));
+}
+
+bool lets_light_pass(const TriangleMesh& mesh) {
+    return !mesh.triangle_materials.empty() &&
+           std::any_of(mesh.materials.begin(), mesh.materials.end(),
+                       [](const Material& material) { return lets_light_pass(material); });
+}
+
+bool is_thin(const Material& material) {
+    return lets_light_pass(material) &&
+           (material.transmission > 0.0f || material.alpha_mode == AlphaMode::Blend);
+}
+
+bool lets_eye_pass(const Material& material) {
+    return !material.is_double_sided || lets_light_pass(material);
+}
+
+namespace {
+
+struct Point {
+    const TriangleMesh& mesh;
+    const Material& material;
+    std::uint32_t triangle;
+    glm::vec2 barycentric;
+
+    [[nodiscard]] glm::vec3 textured(const glm::vec3& value,
+                                     const std::optional<TextureSlot>& slot) const {
+        return slot ? value * sample(mesh.textures[slot->texture], *slot,
+                                     uv_at(mesh, triangle, barycentric, slot->uv_set))
+                    : value;
+    }
+};
+
+/// What goes on through a surface of glass.
+glm::vec3 through_glass(const Point& point) {
+    constexpr float Reflected = 0.04f;
+    const Material& material = point.material;
+    const float part =
+        point.textured(glm::vec3(material.transmission), material.transmission_texture).r *
+        (1.0f - material.metallic) * (1.0f - Reflected);
+    const glm::vec3 tint = point.textured(material.base_color, material.base_color_texture);
+    if (material.thickness == 0.0f)
+        return part * tint;
+    const float way = 0.5f * material.thickness / material.attenuation_distance;
+    return part * glm::sqrt(tint) * glm::pow(material.attenuation_color, glm::vec3(way));
+}
+
+} // namespace
+
+Veil veil(const TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& barycentric) {
+    const Material& material = mesh.materials[mesh.triangle_materials[triangle]];
+    if (!lets_light_pass(material))
+        return {};
+    const Point point{mesh, material, triangle, barycentric};
+    Veil veil;
+    if (material.alpha_mode != AlphaMode::Opaque) {
+        veil.weight = point.textured(glm::vec3(material.alpha), material.alpha_texture).r;
+        if (material.alpha_mode == AlphaMode::Mask)
+            veil.weight = veil.weight < material.alpha_cutoff ? 0.0f : 1.0f;
+        veil.through = glm::vec3(1.0f - veil.weight);
+    }
+    if (material.transmission > 0.0f)
+        veil.through += veil.weight * through_glass(point);
+    return veil;
+}
+
+Material passed_as(Material material, const Material& other) {
+    material.alpha_mode = other.alpha_mode;
+    material.alpha = other.alpha;
+    material.alpha_cutoff = other.alpha_cutoff;
+    material.alpha_texture = other.alpha_texture;
+    material.transmission = other.transmission;
+    material.transmission_texture = other.transmission_texture;
+    material.thickness = other.thickness;
+    material.attenuation_color = other.attenuation_color;
+    material.attenuation_distance = other.attenuation_distance;
+    material.is_double_sided = other.is_double_sided;
+    return material;
+}
+
+Material without_colors(const Material& material) {
+    return passed_as({.name = "option"}, material);
+}
+
+TriangleMesh blockers_of(const TriangleMesh& mesh) {
+    TriangleMesh blockers;
+    blockers.positions = mesh.positions;
+    blockers.triangles = mesh.triangles;
+    if (!lets_light_pass(mesh))
+        return blockers;
+    blockers.uvs = mesh.uvs;
+    blockers.second_uvs = mesh.second_uvs;
+    blockers.corner_uvs = mesh.corner_uvs;
+    blockers.triangle_materials = mesh.triangle_materials;
+    blockers.textures.resize(mesh.textures.size());
+    for (const Material& material : mesh.materials) {
+        Material& kept = blockers.materials.emplace_back(without_colors(material));
+        if (material.transmission > 0.0f) {
+            kept.metallic = material.metallic;
+            kept.base_color = material.base_color;
+            kept.base_color_texture = material.base_color_texture;
+        }
+        for (const auto& slot :
+             {kept.alpha_texture, kept.base_color_texture, kept.transmission_texture})
+            if (slot && blockers.textures[slot->texture].texels.empty())
+                blockers.textures[slot->texture] = mesh.textures[slot->texture];
+    }
+    return blockers;
+}
+
+} // namespace relumine::mesh

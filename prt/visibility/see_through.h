@@ -1,0 +1,73 @@
+// What rays do not stop at: cut-out and thin surfaces, and backs that are not shown.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "mesh/opacity.h"
+#include "mesh/triangle_mesh.h"
+
+namespace relumine::prt {
+
+/// Whose ray it is, and so what it passes.
+enum class RayOf : std::uint8_t {
+    /// Cut-out points, and thin surfaces (blended, glass) by chance: as many of the rays as the
+    /// surface's mean transmittance over the colours says. Chances of rays from one place are
+    /// spread evenly over directions, so that their sums are nearly right.
+    Light,
+    /// Cut-out points, and thin surfaces that take half of the light or less. Clusters are chosen
+    /// by these rays: chance would split them all.
+    SettledLight,
+    /// What is not drawn: points of no weight, and backs of single-sided triangles.
+    Eye,
+};
+
+/// The one place that says which points of triangles a ray passes.
+class SeeThrough {
+public:
+    /// Rays pass nothing.
+    SeeThrough() = default;
+    /// Copies what it needs of the mesh.
+    explicit SeeThrough(const mesh::TriangleMesh& mesh);
+
+    /// Whether some surfaces pass light by chance.
+    [[nodiscard]] bool has_thin() const { return has_thin_; }
+    /// Whether a triangle is thin: it is seen, and what is behind it, too.
+    [[nodiscard]] bool is_thin(std::uint32_t triangle) const {
+        return has_thin_ && (kinds_[triangle] & Thin) != 0;
+    }
+    /// Whether rays may pass a triangle; false for nearly all, and cheap.
+    [[nodiscard]] bool may_pass(std::uint32_t triangle, RayOf of) const {
+        return !kinds_.empty() &&
+               (kinds_[triangle] & (of == RayOf::Eye ? PassesLight | OneSided : PassesLight)) != 0;
+    }
+
+    /// Where a ray meets such a triangle.
+    struct Meeting {
+        std::uint32_t triangle = 0;
+        /// Weights of the second and third corner
+        glm::vec2 barycentric{0.0f};
+        glm::vec3 origin{0.0f};
+        glm::vec3 direction{0.0f};
+        bool is_back = false;
+    };
+    /// Whether the ray goes on behind it. The same ray and triangle have the same answer.
+    [[nodiscard]] bool passes(const Meeting& meeting, RayOf of) const;
+
+    /// Returns the veil that a triangle's point is.
+    [[nodiscard]] mesh::Veil veil(std::uint32_t triangle, const glm::vec2& barycentric) const;
+
+private:
+    static constexpr std::uint8_t PassesLight = 1, OneSided = 2, Thin = 4;
+
+    /// [num_triangles], or empty.
+    std::vector<std::uint8_t> kinds_;
+    /// mesh::blockers_of() without its positions; empty where no light passes.
+    mesh::TriangleMesh mesh_;
+    bool has_thin_ = false;
+};
+
+} // namespace relumine::prt
