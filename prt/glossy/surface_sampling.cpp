@@ -139,7 +139,8 @@ glm::vec3 emission_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
     const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
     if (material.model == mesh::MaterialModel::Unlit || material.emission == glm::vec3(0.0f))
         return glm::vec3(0.0f);
-    const MaterialPoint point{.mesh = mesh, .material = material, .at = {triangle, barycentric}};
+    const MaterialPoint point{
+        .mesh = mesh, .material = material, .at = {triangle, barycentric}, .view = nullptr};
     return point.textured(material.emission, material.emission_texture);
 }
 
