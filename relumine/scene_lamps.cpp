@@ -91,7 +91,7 @@ void SceneLamps::find() {
             bounced_[i] += gain * source.bounced[i];
     }
     const std::vector<prt::Surface>& surfaces = scene_->receivers.surfaces;
-    const std::vector<float> cosines = prt::eye_cosines(scene_->receivers);
+    const std::vector<prt::EyeCosines> cosines = prt::eye_cosines(scene_->receivers);
     for (std::size_t i = 0; i < surfaces.size(); ++i)
         direct_[i] *= prt::diffuse_albedo(surfaces[i], cosines[i]);
 }

@@ -26,7 +26,8 @@ mesh::TriangleMesh screen(std::uint32_t n) {
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     mesh.normals.assign(4, {0, 0, 1});
     mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    mesh::Texture texture{.width = n, .height = n};
+    mesh::Texture texture;
+    texture.width = texture.height = n;
     for (std::uint32_t i = 0; i < n * n; ++i) {
         const auto level = static_cast<std::uint8_t>(i % n < n / 2 ? 255 : 0);
         texture.texels.push_back({level, level, level});
@@ -66,7 +67,7 @@ TEST(Lamps, PartsTileTheirTriangle) {
             const Emitter emitter{.triangle = 0, .part = part};
             const auto [a, b, c] = corners_of(mesh, emitter);
             area += area_of(mesh, emitter);
-            middle += (a + b + c) / 3.0 / double{first};
+            middle += (a + b + c) / 3.0 / static_cast<double>(first);
             EXPECT_NEAR(area_of(mesh, emitter), 0.5 / first, 1e-9);
             EXPECT_GT(glm::cross(b - a, c - a).z, 0.0) << "as the triangle runs";
         }
