@@ -262,7 +262,7 @@ OptionRow row(std::string name, T& value, std::string help, OptionFacts facts) {
         if constexpr (IsVector) {
             std::string all;
             for (const Own& each : value)
-                all += (all.empty() ? "" : " ") + How::show(each);
+                all.append(all.empty() ? "" : " ").append(How::show(each));
             return all;
         } else if constexpr (requires { How::show(value); }) {
             return How::show(value);

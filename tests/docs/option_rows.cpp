@@ -1,6 +1,5 @@
 // Prints the options of pictures as the table of docs/command-line.md.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "relumine/relumine.h"
 
@@ -8,9 +7,9 @@ int main() {
     relumine::OutputOptions options;
     fmt::print("| option | meaning |\n|---|---|\n");
     for (const relumine::OptionRow& option : relumine::options_of(options)) {
-        const std::string values = option.choices.empty()
-                                       ? option.type
-                                       : fmt::format("{}", fmt::join(option.choices, "\\|"));
+        std::string values = option.type;
+        for (const std::string& choice : option.choices)
+            values = (&choice == &option.choices.front() ? "" : values + "\\|") + choice;
         std::string more;
         if (!option.range().empty())
             more += fmt::format("; {}", option.range());
