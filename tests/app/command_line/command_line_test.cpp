@@ -63,7 +63,6 @@ TEST_F(CommandLineTest, WrongUsageExitsWithTwoAndOneLine) {
     }
     misuse({"precompute", "mesh.obj"}, "--output");
     misuse({"relight", "scene.prt", "env.hdr"}, "--output");
-    misuse({"relight", "scene.prt", "-o", "new.npy"}, "ENV");
     misuse({"edit", "scene.prt", "env.hdr", "-o", "new.npy"}, "--disc");
     misuse({"generate", "teapot", "-o", "new"}, "teapot");
     misuse({"generate", "blob"}, "--output");

@@ -154,6 +154,7 @@ TEST_F(Bounces, WrongUseIsOneLine) {
     write("frame.0000.hdr", white_hdr());
     fail({"animate", "direct.prt", "frame.%04d.hdr", "--vertices", "x.npy", "--bounces", "2"},
          {"direct.prt: expected a scene made with `relumine precompute --bounces`"});
+    misuse({"relight", "direct.prt", "-o", "x.png"}, "expected ENV, --lights or both");
     misuse({"relight", "direct.prt", "white.hdr", "-o", "x.png", "--bounces", "many"},
            "--bounces: expected a number of bounces or 'all', got 'many'");
     misuse({"precompute", "colonnade.ply", "-o", "x.prt", "--bounces", "2"},
