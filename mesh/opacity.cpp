@@ -60,9 +60,11 @@ struct Point {
 glm::vec3 through_glass(const Point& point) {
     constexpr float Reflected = 0.04f;
     const Material& material = point.material;
+    const float metallic =
+        point.textured(glm::vec3(material.metallic), material.metallic_roughness_texture).b;
     const float part =
         point.textured(glm::vec3(material.transmission), material.transmission_texture).r *
-        (1.0f - material.metallic) * (1.0f - Reflected);
+        (1.0f - metallic) * (1.0f - Reflected);
     const glm::vec3 tint = point.textured(material.base_color, material.base_color_texture);
     if (material.thickness == 0.0f)
         return part * tint;
@@ -122,11 +124,12 @@ TriangleMesh blockers_of(const TriangleMesh& mesh) {
         Material& kept = blockers.materials.emplace_back(without_colors(material));
         if (material.transmission > 0.0f) {
             kept.metallic = material.metallic;
+            kept.metallic_roughness_texture = material.metallic_roughness_texture;
             kept.base_color = material.base_color;
             kept.base_color_texture = material.base_color_texture;
         }
-        for (const auto& slot :
-             {kept.alpha_texture, kept.base_color_texture, kept.transmission_texture})
+        for (const auto& slot : {kept.alpha_texture, kept.base_color_texture,
+                                 kept.metallic_roughness_texture, kept.transmission_texture})
             if (slot && blockers.textures[slot->texture].texels.empty())
                 blockers.textures[slot->texture] = mesh.textures[slot->texture];
     }

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -46,11 +48,12 @@ struct FitArguments {
 /// The options of a picture that also say how a target was made.
 OptionTable shown_options(relumine::OutputOptions& shown) {
     OptionTable table;
+    constexpr std::array<const char*, 8> Names = {"--albedo", "--exposure",    "--camera",
+                                                  "--front",  "--eye",         "--target",
+                                                  "--fov",    "--floor-albedo"};
     for (OptionRow& row : options_of(shown))
-        for (const char* name : {"--albedo", "--exposure", "--camera", "--front", "--eye",
-                                 "--target", "--fov", "--floor-albedo"})
-            if (row.name == name)
-                table.push_back(std::move(row));
+        if (std::find(Names.begin(), Names.end(), row.name) != Names.end())
+            table.push_back(std::move(row));
     return table;
 }
 

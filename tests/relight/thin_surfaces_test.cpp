@@ -136,6 +136,16 @@ TEST(ThinSurfaces, VeilsOfGlass) {
     EXPECT_LT(glm::length(through() - 0.96f * 0.5f * glm::vec3(0.5f, 1.0f, 0.0f)), 1e-6f);
     mesh.materials[0].metallic = 1.0f;
     EXPECT_EQ(through(), glm::vec3(0.0f)) << "metals are opaque";
+    mesh::Texture texture;
+    texture.width = texture.height = 1;
+    texture.texels = {{0, 0, 51}};
+    mesh.textures = {texture};
+    mesh.uvs.assign(mesh.num_vertices(), glm::vec2(0.5f));
+    mesh.materials[0].thickness = 0.0f;
+    mesh.materials[0].metallic_roughness_texture = mesh::TextureSlot{};
+    EXPECT_LT(glm::length(through() - 0.8f * 0.96f * glm::vec3(0.25f, 1.0f, 0.0f)), 1e-6f)
+        << "a fifth is metal by its texture";
+    EXPECT_EQ(mesh::veil(mesh::blockers_of(mesh), 0, glm::vec2(0.2f)).through, through());
 }
 
 } // namespace
