@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws the pictures of README.md: one mesh under four photographs, without an option but the size. And those of
+# Draws the pictures of README.md: one mesh under four photographs, plaster without an option but the size, and metal. And those of
 # docs/meshes.md: a mesh as it is, refined evenly, by light, and for the sun, at equal numbers of vertices. Needs meshes
 # and environments of RELUMINE_DATA (docs/data.md). FOLDER keeps the scenes.
 #
@@ -10,12 +10,16 @@ folder=$2
 pictures=$3
 mkdir -p "$folder" "$pictures"
 
-for environment in kiara_1_dawn rooitou_park studio_small_03; do
-    "$relumine" relight "$RELUMINE_DATA/meshes/stanford/dragon_vrip_res2.ply" \
-        "$RELUMINE_DATA/envs/polyhaven/${environment}_1k.hdr" --size 400x300 -o "$pictures/dragon_$environment.png" -q
+dragon=$RELUMINE_DATA/meshes/stanford/dragon_vrip_res2.ply
+for environment in kiara_1_dawn studio_small_03; do
+    "$relumine" relight "$dragon" "$RELUMINE_DATA/envs/polyhaven/${environment}_1k.hdr" --size 400x300 \
+        -o "$pictures/dragon_$environment.png" -q
 done
-"$relumine" relight "$RELUMINE_DATA/meshes/stanford/dragon_vrip_res2.ply" \
-    "$RELUMINE_DATA/lowpoly/kloppenheim_05_1k.hdr" --size 400x300 -o "$pictures/dragon_kloppenheim_05.png" -q
+"$relumine" precompute "$dragon" --floor --material ggx:roughness=0.25,albedo=0,f0=0.9 -o "$folder/metal.prt" -q
+for environment in envs/polyhaven/rooitou_park lowpoly/kloppenheim_05; do
+    "$relumine" relight "$folder/metal.prt" "$RELUMINE_DATA/${environment}_1k.hdr" --size 400x300 \
+        -o "$pictures/dragon_${environment##*/}.png" -q
+done
 
 for environment in sun_sky soft_boxes; do
     "$relumine" generate "$environment" -o "$folder" -q
