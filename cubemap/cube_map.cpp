@@ -89,6 +89,27 @@ std::vector<double> texel_solid_angles(std::uint32_t resolution) {
     return angles;
 }
 
+CubeMap halved(const CubeMap& map) {
+    CubeMap result(map.resolution / 2);
+    const std::vector<double> solid_angles = texel_solid_angles(map.resolution);
+    files::parallel_for(std::uint32_t{0}, 6 * result.resolution, [&](std::uint32_t row) {
+        const auto face = static_cast<Face>(row / result.resolution);
+        const std::uint32_t y = row % result.resolution;
+        for (std::uint32_t x = 0; x < result.resolution; ++x) {
+            glm::dvec3 sum(0.0);
+            double weight = 0.0;
+            for (std::uint32_t i = 0; i < 4; ++i) {
+                const std::uint32_t u = 2 * x + (i & 1), v = 2 * y + (i >> 1);
+                const double own = solid_angles[std::size_t{v} * map.resolution + u];
+                sum += own * glm::dvec3(map.at(face, u, v));
+                weight += own;
+            }
+            result.at(face, x, y) = glm::vec3(sum / weight);
+        }
+    });
+    return result;
+}
+
 glm::vec3 sample(const CubeMap& map, const glm::vec3& direction) {
     const FacePoint point = face_point(glm::dvec3(direction));
     const auto resolution = static_cast<std::int64_t>(map.resolution);

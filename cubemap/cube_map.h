@@ -50,6 +50,10 @@ struct CubeMap {
 /// Unit:    steradian.
 [[nodiscard]] std::vector<double> texel_solid_angles(std::uint32_t resolution);
 
+/// Returns the map at half its resolution, which must be even: each texel holds the mean of four
+/// over their solid angles.
+[[nodiscard]] CubeMap halved(const CubeMap& map);
+
 /// Returns the radiance seen in a direction. Values between texel centres are bilinear, also across
 /// the edges of faces.
 [[nodiscard]] glm::vec3 sample(const CubeMap& map, const glm::vec3& direction);

@@ -31,4 +31,9 @@ private:
     std::uint64_t counter_;
 };
 
+/// Returns a number in [0, 1) from the upper bits.
+[[nodiscard]] constexpr double unit_interval(std::uint64_t bits) {
+    return static_cast<double>(bits >> 11) * 0x1p-53;
+}
+
 } // namespace relumine::cubemap

@@ -17,7 +17,7 @@ namespace {
 double random(std::uint64_t seed, std::uint64_t index) {
     const std::uint64_t mixed =
         cubemap::SplitMix64(seed * cubemap::SplitMix64::Step + index).next();
-    return static_cast<double>(cubemap::SplitMix64(mixed).next() >> 11) * 0x1p-53;
+    return cubemap::unit_interval(cubemap::SplitMix64(mixed).next());
 }
 
 /// The distribution of the directions: by energy, or by solid angle for a map without light.

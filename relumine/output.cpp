@@ -197,9 +197,10 @@ struct Painter::Impl {
             reflections.emplace(rays, scene.settings.bias, options.highlight_rays,
                                 lighting.environment == nullptr ? Black : *lighting.environment,
                                 light.lights.first(traces ? lighting.num_environment_lights : 0));
-            mirrored = shown_colors(lighting.radiance, lighting);
+            if (traces)
+                mirrored = shown_colors(lighting.radiance, lighting);
             light.reflections = &*reflections;
-            light.mirrored = mirrored;
+            light.mirrored = traces ? mirrored : colors;
             light.eye = eye();
         }
         return behind == nullptr ? from.cut_out(light) : from.draw(light, *behind);

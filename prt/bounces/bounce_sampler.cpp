@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "cubemap/face.h"
+#include "cubemap/frame.h"
 #include "cubemap/split_mix64.h"
 #include "prt/receivers/mesh_point.h"
 
@@ -18,25 +19,18 @@ namespace {
 /// Sets the choice of vertices apart from the shift of directions.
 constexpr std::uint64_t ChoiceSeed = 0x5851f42d4c957f2du;
 
-/// Returns a number in [0, 1) from the upper bits.
-double unit_interval(std::uint64_t bits) {
-    return static_cast<double>(bits >> 11u) * 0x1p-53;
-}
-
 /// Cosine-distributed directions around a normal: Roberts' R2 sequence, shifted by the receiver, so
 /// that any beginning of it is stratified.
 class CosineDirections {
 public:
     CosineDirections(const glm::vec3& normal, std::uint32_t receiver)
         : normal_(normal),
-          shift_s_(unit_interval(cubemap::SplitMix64(2 * std::uint64_t{receiver}).next())),
-          shift_t_(unit_interval(cubemap::SplitMix64(2 * std::uint64_t{receiver} + 1).next())) {
-        // Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
-        const double sign = std::copysign(1.0, normal_.z);
-        const double a = -1.0 / (sign + normal_.z);
-        const double b = normal_.x * normal_.y * a;
-        tangent_ = {1.0 + sign * normal_.x * normal_.x * a, sign * b, -sign * normal_.x};
-        bitangent_ = {b, sign + normal_.y * normal_.y * a, -normal_.y};
+          shift_s_(cubemap::unit_interval(cubemap::SplitMix64(2 * std::uint64_t{receiver}).next())),
+          shift_t_(
+              cubemap::unit_interval(cubemap::SplitMix64(2 * std::uint64_t{receiver} + 1).next())) {
+        const glm::dmat3 frame = cubemap::frame_of(normal_);
+        tangent_ = frame[0];
+        bitangent_ = frame[1];
     }
 
     [[nodiscard]] glm::dvec3 operator[](std::uint32_t i) const {
@@ -95,7 +89,7 @@ std::uint64_t BounceSampler::look(const PartReceiver& of_part, std::uint32_t num
         if (!met)
             continue;
         const Hit hit = twins_.facing(*met, glm::vec3(direction));
-        const double choice = unit_interval(
+        const double choice = cubemap::unit_interval(
             cubemap::SplitMix64((std::uint64_t{receiver} << 32u | i) ^ ChoiceSeed).next());
         hits.halves[i % 2].push_back(emitter_of(hit, glm::vec3(direction), choice));
         const MeshPoint at{hit.triangle, hit.barycentric};

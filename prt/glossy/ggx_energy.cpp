@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include "prt/glossy/ggx_lobe.h"
+#include "prt/glossy/knot_table.h"
 
 namespace relumine::prt {
 
@@ -75,17 +76,9 @@ public:
     }
 
     [[nodiscard]] GgxAlbedo at(float roughness, float n_v) const {
-        const float last = Knots - 1;
-        const float y = std::clamp(roughness, 0.0f, 1.0f) * last;
-        const float x = std::sqrt(std::clamp(n_v, 0.0f, 1.0f)) * last;
-        const auto row = std::min(static_cast<std::size_t>(y), Knots - 2);
-        const auto column = std::min(static_cast<std::size_t>(x), Knots - 2);
-        const float t = y - static_cast<float>(row), s = x - static_cast<float>(column);
+        const KnotPlace place(Knots, roughness, n_v);
         const auto between = [&](auto part) {
-            const auto of_row = [&](std::size_t r) {
-                return (1.0f - s) * knots_[r][column].*part + s * knots_[r][column + 1].*part;
-            };
-            return (1.0f - t) * of_row(row) + t * of_row(row + 1);
+            return place.between([&](std::size_t r, std::size_t c) { return knots_[r][c].*part; });
         };
         return {between(&GgxAlbedo::all), between(&GgxAlbedo::grazing)};
     }

@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "prt/glossy/knot_table.h"
+
 namespace relumine::prt {
 
 namespace {
@@ -47,16 +49,9 @@ public:
     }
 
     [[nodiscard]] float at(float roughness, float n_v) const {
-        const float last = SheenKnots - 1;
-        const float y = std::clamp(roughness, 0.0f, 1.0f) * last;
-        const float x = std::sqrt(std::clamp(n_v, 0.0f, 1.0f)) * last;
-        const auto row = std::min(static_cast<std::size_t>(y), SheenKnots - 2);
-        const auto column = std::min(static_cast<std::size_t>(x), SheenKnots - 2);
-        const float t = y - static_cast<float>(row), s = x - static_cast<float>(column);
-        const auto of_row = [&](std::size_t r) {
-            return (1.0f - s) * knots_[r][column] + s * knots_[r][column + 1];
-        };
-        return (1.0f - t) * of_row(row) + t * of_row(row + 1);
+        return KnotPlace(SheenKnots, roughness, n_v).between([&](std::size_t r, std::size_t c) {
+            return knots_[r][c];
+        });
     }
 
 private:

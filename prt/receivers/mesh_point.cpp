@@ -158,7 +158,7 @@ std::vector<MeshPoint> random_points(const mesh::TriangleMesh& mesh, std::size_t
         return {};
     cubemap::SplitMix64 random(seed);
     const auto uniform = [&random] {
-        return static_cast<double>(random.next() >> 11u) * 0x1p-53;
+        return cubemap::unit_interval(random.next());
     };
     std::vector<MeshPoint> points;
     for (std::size_t i = 0; i < count; ++i) {

@@ -26,6 +26,13 @@ struct Cell {
     [[nodiscard]] Cell child(std::uint32_t i) const {
         return {face, static_cast<std::uint8_t>(level + 1), 2 * x + (i & 1u), 2 * y + (i >> 1u)};
     }
+    /// Returns the cell of a level that holds this one; this one where it is no deeper.
+    [[nodiscard]] Cell above(std::uint32_t of_level) const {
+        if (level <= of_level)
+            return *this;
+        const std::uint32_t up = level - of_level;
+        return {face, static_cast<std::uint8_t>(of_level), x >> up, y >> up};
+    }
     /// Length of the cell's side; a whole face has 1.
     [[nodiscard]] double size() const { return 1.0 / static_cast<double>(1u << level); }
     bool operator==(const Cell&) const = default;

@@ -27,7 +27,7 @@ double chance(const SeeThrough::Meeting& meeting) {
     const cubemap::FacePoint at = cubemap::face_point(glm::dvec3(meeting.direction));
     const double x = Cells * at.s * static_cast<double>(1 + of_triangle % 16);
     const double y = Cells * at.t * static_cast<double>(1 + of_triangle / 16 % 16);
-    const double place = static_cast<double>(seed >> 11u) * 0x1p-53 + StepX * x + StepY * y;
+    const double place = cubemap::unit_interval(seed) + StepX * x + StepY * y;
     return place - std::floor(place);
 }
 

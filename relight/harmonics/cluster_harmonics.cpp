@@ -68,18 +68,6 @@ HarmonicGroup group_at(const prt::Cell& cell) {
     return group;
 }
 
-/// Returns the cell of a group that a leaf is in.
-prt::Cell group_cell(const prt::Cell& leaf) {
-    prt::Cell cell = leaf;
-    if (leaf.level > GroupLevel) {
-        const std::uint32_t shift = leaf.level - GroupLevel;
-        cell.level = static_cast<std::uint8_t>(GroupLevel);
-        cell.x = static_cast<decltype(cell.x)>(leaf.x >> shift);
-        cell.y = static_cast<decltype(cell.y)>(leaf.y >> shift);
-    }
-    return cell;
-}
-
 } // namespace
 
 std::array<std::array<double, MaxHarmonics>, 3> harmonics_of(const VectorIrradiance& light,
@@ -107,7 +95,7 @@ ClusterHarmonics::ClusterHarmonics(const prt::Quadtree& quadtree, std::uint32_t 
     for (std::size_t leaf = 0; leaf < coherences_.size(); ++leaf) {
         const prt::Cell& cell = quadtree.leaves()[leaf];
         coherences_[leaf] = middle_of(cell).coherence;
-        const prt::Cell of_group = group_cell(cell);
+        const prt::Cell of_group = cell.above(GroupLevel);
         if (groups_.empty() || of_group != last) {
             groups_.push_back(group_at(of_group));
             groups_.back().begin = static_cast<std::uint32_t>(leaf);

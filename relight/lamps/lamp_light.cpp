@@ -19,14 +19,6 @@ namespace {
 
 using Seen = EmitterTree::Seen;
 
-double unit_interval(std::uint64_t bits) {
-    return static_cast<double>(bits >> 11u) * 0x1p-53;
-}
-
-double fraction(double value) {
-    return value - std::floor(value);
-}
-
 /// Which part of each emitter that a receiver sees its rays reach.
 class Shadows {
 public:
@@ -72,9 +64,10 @@ private:
         parts_.assign(seen_.size(), {});
         sent_ = reached_ = 0.0;
         cubemap::SplitMix64 random(std::uint64_t{receiver} << 32u | num_rays);
-        const double shift = unit_interval(random.next());
-        const double shift_s = unit_interval(random.next()), shift_t = unit_interval(random.next());
-        const double shift_choice = unit_interval(random.next());
+        const double shift = cubemap::unit_interval(random.next());
+        const double shift_s = cubemap::unit_interval(random.next()),
+                     shift_t = cubemap::unit_interval(random.next());
+        const double shift_choice = cubemap::unit_interval(random.next());
         std::size_t at = 0;
         double before = 0.0;
         for (std::size_t begin = 0; begin < num_rays; begin += prt::PacketSize) {
@@ -89,10 +82,10 @@ private:
                 while (at + 1 < seen_.size() && before + seen_[at].weight() <= place)
                     before += seen_[at++].weight();
                 // Kronecker sequences of the plastic number and of the golden ratio.
-                const glm::dvec2 square(fraction(shift_s + 0.7548776662466927 * i),
-                                        fraction(shift_t + 0.5698402909980532 * i));
+                const glm::dvec2 square(glm::fract(shift_s + 0.7548776662466927 * i),
+                                        glm::fract(shift_t + 0.5698402909980532 * i));
                 const EmitterTree::Glow& glow =
-                    tree_.choose(seen_[at], fraction(shift_choice + 0.6180339887498949 * i));
+                    tree_.choose(seen_[at], glm::fract(shift_choice + 0.6180339887498949 * i));
                 const glm::dvec3 way = glow.at(in_triangle(square)) - glm::dvec3(origin);
                 const double distance = glm::length(way);
                 const double carried = glm::dot(normal, way) * -glm::dot(glow.front, way);

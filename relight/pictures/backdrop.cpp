@@ -82,26 +82,6 @@ glm::vec3 projected(const EnvironmentImage& image, const cubemap::Projection& pr
     });
 }
 
-/// Halves the resolution, which must be even.
-cubemap::CubeMap halved(const cubemap::CubeMap& map) {
-    cubemap::CubeMap result(map.resolution / 2);
-    const std::vector<double> solid_angles = cubemap::texel_solid_angles(map.resolution);
-    for (const cubemap::Face face : cubemap::AllFaces)
-        for (std::uint32_t y = 0; y < result.resolution; ++y)
-            for (std::uint32_t x = 0; x < result.resolution; ++x) {
-                glm::dvec3 sum(0.0);
-                double weight = 0.0;
-                for (std::uint32_t i = 0; i < 4; ++i) {
-                    const std::uint32_t u = 2 * x + (i & 1), v = 2 * y + (i >> 1);
-                    const double own = solid_angles[std::size_t{v} * map.resolution + u];
-                    sum += own * glm::dvec3(map.at(face, u, v));
-                    weight += own;
-                }
-                result.at(face, x, y) = glm::vec3(sum / weight);
-            }
-    return result;
-}
-
 /// Directions spread as a Gaussian about +Z.
 std::vector<glm::dvec3> gaussian_spread(double sigma) {
     constexpr std::size_t NumDirections = 128;
@@ -125,7 +105,7 @@ cubemap::CubeMap blurred(const cubemap::CubeMap& map, double degrees) {
     const auto resolution = static_cast<std::uint32_t>(std::clamp(std::ceil(needed), 8.0, 384.0));
     cubemap::CubeMap source = map;
     while (source.resolution % 2 == 0 && source.resolution / 2 >= resolution)
-        source = halved(source);
+        source = cubemap::halved(source);
     const std::vector<glm::dvec3> spread = gaussian_spread(sigma);
     cubemap::CubeMap result(resolution);
     files::parallel_for(std::uint32_t{0}, 6 * resolution, [&](std::uint32_t row) {

@@ -109,8 +109,9 @@ glm::vec3 Mirrors::seen(const prt::Hit& hit, const glm::vec3& direction,
             return prt::value_at(mesh_, light_.mirrored, at) +
                    (light_.emission.empty() ? glm::vec3(0.0f)
                                             : prt::value_at(mesh_, light_.emission, at));
-        return colors.radiance(light_.mirrored, at) +
-               light_.emission_gain(at.triangle) * colors.surface(at).emission;
+        const prt::Surface surface = colors.surface(at);
+        return colors.light(light_.mirrored, at) * surface.albedo +
+               light_.emission_gain(at.triangle) * surface.emission;
     }
     const glm::vec3 position = prt::value_at(mesh_, mesh_.positions, at);
     const float opacity = floor_.opacity(position);

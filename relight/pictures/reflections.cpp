@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
-#include "files/parallel.h"
+#include "cubemap/frame.h"
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/ggx_energy.h"
 #include "prt/glossy/ggx_lobe.h"
@@ -18,16 +18,6 @@
 namespace relumine::relight {
 
 namespace {
-
-/// Returns a frame whose third axis is a unit normal. Based on: T. Duff et al., "Building an
-/// Orthonormal Basis, Revisited", JCGT 2017.
-glm::mat3 frame_of(const glm::vec3& n) {
-    const float sign = std::copysign(1.0f, n.z);
-    const float a = -1.0f / (sign + n.z);
-    const float b = n.x * n.y * a;
-    return {
-        {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
-}
 
 /// Returns point i of n of Hammersley's, shifted around the unit square.
 glm::vec2 hammersley(std::uint32_t i, std::uint32_t n, const glm::vec2& shift) {
@@ -61,18 +51,6 @@ float density(const glm::vec3& half, float n_v, float alpha) {
     const float d = half.x * half.x + half.y * half.y + a2 * half.z * half.z;
     const float mask = n_v + std::sqrt(n_v * n_v * (1.0f - a2) + a2);
     return a2 / (std::numbers::pi_v<float> * d * d) * 0.5f / mask;
-}
-
-cubemap::CubeMap halved(const cubemap::CubeMap& map) {
-    cubemap::CubeMap result(map.resolution / 2);
-    for (const cubemap::Face face : cubemap::AllFaces)
-        files::parallel_for(std::uint32_t{0}, result.resolution, [&](std::uint32_t y) {
-            for (std::uint32_t x = 0; x < result.resolution; ++x)
-                result.at(face, x, y) =
-                    0.25f * (map.at(face, 2 * x, 2 * y) + map.at(face, 2 * x + 1, 2 * y) +
-                             map.at(face, 2 * x, 2 * y + 1) + map.at(face, 2 * x + 1, 2 * y + 1));
-        });
-    return result;
 }
 
 /// Sums of weights and of weighted radiance.
@@ -134,7 +112,7 @@ Reflections::Reflections(const prt::RayScene& rays, float bias, std::uint32_t nu
         return;
     levels_.push_back(without_lights(environment, without));
     while (levels_.back().resolution % 2 == 0)
-        levels_.push_back(halved(levels_.back()));
+        levels_.push_back(cubemap::halved(levels_.back()));
 }
 
 /// Returns the mean radiance around a direction.
@@ -154,7 +132,7 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
     const float n_v = glm::dot(point.normal, point.to_eye);
     if (surface.highlight == prt::Highlight::None || n_v <= 0.0f)
         return {};
-    const glm::mat3 frame = frame_of(point.normal);
+    const glm::mat3 frame = cubemap::frame_of(point.normal);
     const glm::vec3 to_eye = point.to_eye * frame;
     const float alpha = lobe_alpha(surface);
     const glm::vec3 origin = point.position + bias_ * point.normal;

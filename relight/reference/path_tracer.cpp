@@ -28,7 +28,7 @@ constexpr double LargestSurvival = 0.95;
 class Random {
 public:
     explicit Random(std::uint64_t seed) : bits_(seed) {}
-    double operator()() { return static_cast<double>(bits_.next() >> 11u) * 0x1p-53; }
+    double operator()() { return cubemap::unit_interval(bits_.next()); }
 
 private:
     cubemap::SplitMix64 bits_;

@@ -120,19 +120,11 @@ private:
     std::vector<SharpLight>& lights_;
 };
 
-/// Returns the cell of this level that holds another; a cell above the level itself.
-prt::Cell above(const prt::Cell& cell, std::uint32_t level) {
-    if (cell.level <= level)
-        return cell;
-    const std::uint32_t up = cell.level - level;
-    return {cell.face, static_cast<std::uint8_t>(level), cell.x >> up, cell.y >> up};
-}
-
 /// Lights come depth first, so those of one cell are neighbours.
 std::vector<SharpLight> merged_to_level(std::span<const SharpLight> lights, std::uint32_t level) {
     std::vector<SharpLight> result;
     for (const SharpLight& light : lights) {
-        const prt::Cell cell = above(light.cell, level);
+        const prt::Cell cell = light.cell.above(level);
         if (result.empty() || result.back().cell != cell) {
             result.push_back(light);
             result.back().cell = cell;

@@ -112,7 +112,7 @@ WeighedPoints weighed_points(const mesh::TriangleMesh& mesh, std::size_t count,
     WeighedPoints result;
     cubemap::SplitMix64 random(1);
     const auto uniform = [&random] {
-        return static_cast<double>(random.next() >> 11u) * 0x1p-53;
+        return cubemap::unit_interval(random.next());
     };
     const double step = mass / static_cast<double>(count);
     double end = 0.0, next = 0.5 * step;
