@@ -48,12 +48,12 @@ Json report_of(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
     using Model = mesh::MaterialModel;
     const Model model = material.model;
     Json result = {{"name", material.name},
-                     {"model", model == Model::Phong               ? "phong"
-                               : model == Model::MetallicRoughness ? "metallic-roughness"
-                               : model == Model::Unlit             ? "unlit"
-                                                                   : "specular-glossiness"},
-                     {"base_color", material.base_color},
-                     {"base_color_texture", texture(material.base_color_texture)}};
+                   {"model", model == Model::Phong               ? "phong"
+                             : model == Model::MetallicRoughness ? "metallic-roughness"
+                             : model == Model::Unlit             ? "unlit"
+                                                                 : "specular-glossiness"},
+                   {"base_color", material.base_color},
+                   {"base_color_texture", texture(material.base_color_texture)}};
     if (material.emission != glm::vec3(0.0f)) {
         result.set("emission", material.emission);
         result.set("emission_texture", texture(material.emission_texture));

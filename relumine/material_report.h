@@ -8,7 +8,6 @@ namespace relumine {
 
 /// Returns the numbers of a material and the names of its textures. What changes nothing is left
 /// out.
-[[nodiscard]] files::Json report_of(const mesh::TriangleMesh& mesh,
-                                    const mesh::Material& material);
+[[nodiscard]] files::Json report_of(const mesh::TriangleMesh& mesh, const mesh::Material& material);
 
 } // namespace relumine

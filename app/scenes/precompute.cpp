@@ -72,7 +72,8 @@ PrecomputeWork precompute_work(Session& session) {
                 show(fraction);
         };
     work.on_warning = [&session](Warning kind, const std::string& message) {
-        session.warn(kind == Warning::HighlightsWithoutView ? message + " (--view keeps them)" : message);
+        session.warn(kind == Warning::HighlightsWithoutView ? message + " (--view keeps them)"
+                                                            : message);
     };
     work.on_note = [&session](const std::string& message) {
         session.detail(message);

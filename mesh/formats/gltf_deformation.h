@@ -24,7 +24,8 @@ struct Frame {
     /// Returns a unit normal, or zeros. It stays outside where the frame mirrors.
     [[nodiscard]] glm::dvec3 normal(const glm::vec3& own) const;
 
-    /// Returns a tangent of the same length or another. The sign of its bitangent, in w, is never 0.
+    /// Returns a tangent of the same length or another. The sign of its bitangent, in w, is never
+    /// 0.
     [[nodiscard]] glm::vec4 tangent(const glm::vec4& own) const;
 
     glm::dmat4 matrix{1.0};

@@ -22,10 +22,10 @@ class MtlLibrary {
 public:
     explicit MtlLibrary(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// Adds a library. It reads Kd, Ks, Ns, Pr, Pm, map_Kd (with -s, -o and -clamp) and normal maps,
-    /// and skips the rest. A material with Pr or Pm is MetallicRoughness. A second definition of a material
-    /// replaces the first. A missing library or image goes to `missing`. A material that cannot be
-    /// read becomes grey, a broken image is left out, each with a warning.
+    /// Adds a library. It reads Kd, Ks, Ns, Pr, Pm, map_Kd (with -s, -o and -clamp) and normal
+    /// maps, and skips the rest. A material with Pr or Pm is MetallicRoughness. A second definition
+    /// of a material replaces the first. A missing library or image goes to `missing`. A material
+    /// that cannot be read becomes grey, a broken image is left out, each with a warning.
     void read(const std::string& name);
 
     /// Returns the index of a material. A name that no library defines becomes a white Lambert

@@ -55,8 +55,7 @@ private:
                 std::vector<std::uint32_t>& others = at_place[first[i]];
                 const auto same = std::find_if(others.begin(), others.end(), [&](std::uint32_t j) {
                     return (mesh_.colors.empty() || mesh_.colors[j] == mesh_.colors[i]) &&
-                           (mesh_.second_uvs.empty() ||
-                            mesh_.second_uvs[j] == mesh_.second_uvs[i]);
+                           (mesh_.second_uvs.empty() || mesh_.second_uvs[j] == mesh_.second_uvs[i]);
                 });
                 first[i] = same != others.end() ? *same : i;
                 if (same == others.end())

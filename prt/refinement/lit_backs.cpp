@@ -89,8 +89,7 @@ mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers
         for (std::uint32_t& corner : corners) {
             if (back_of[corner] == None) {
                 back_of[corner] = static_cast<std::uint32_t>(result.num_vertices());
-                mesh::for_each_vertex_array(result,
-                                            [&](auto& values) { repeat(values, corner); });
+                mesh::for_each_vertex_array(result, [&](auto& values) { repeat(values, corner); });
                 result.normals.back() = -result.normals.back();
             }
             corner = back_of[corner];

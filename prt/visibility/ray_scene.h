@@ -62,9 +62,8 @@ public:
                                          std::uint32_t active) const;
 
     /// Whether anything lies on the ray.
-    [[nodiscard]] bool
-    occluded(const glm::vec3& origin, const glm::vec3& direction,
-             float distance = std::numeric_limits<float>::infinity()) const;
+    [[nodiscard]] bool occluded(const glm::vec3& origin, const glm::vec3& direction,
+                                float distance = std::numeric_limits<float>::infinity()) const;
 
     [[nodiscard]] std::optional<Hit>
     closest_hit(const glm::vec3& origin, const glm::vec3& direction, RayOf of = RayOf::Light) const;
