@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "cubemap/split_mix64.h"
-#include "prt/visibility/ray_scene.h"
+#include "prt/visibility/bias.h"
 
 namespace relumine::prt {
 

@@ -480,15 +480,4 @@ std::uint32_t RayScene::closest_hits(const glm::vec3& origin, const DirectionPac
     return found;
 }
 
-float automatic_bias(const mesh::TriangleMesh& blockers) {
-    const mesh::Bounds bounds = mesh::bounds(blockers);
-    float largest = 0.0f;
-    for (int axis = 0; axis < 3; ++axis)
-        largest = std::max({largest, std::abs(bounds.min[axis]), std::abs(bounds.max[axis])});
-    // A sum is rounded by up to half a spacing on each axis. The other half of the four is for the
-    // triangles' own rounding.
-    return std::max(1e-4f * bounds.diagonal(),
-                    4.0f * std::numeric_limits<float>::epsilon() * largest);
-}
-
 } // namespace relumine::prt

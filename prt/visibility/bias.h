@@ -1,0 +1,16 @@
+// How far off their surface rays start.
+#pragma once
+
+#include "mesh/triangle_mesh.h"
+
+namespace relumine::prt {
+
+/// Returns the bias to use where none is given: 1e-4 of the blockers' bounding-box diagonal. It is
+/// a thousand times the spacing of floats at the box's size, and well below the edge length of a
+/// mesh of a million triangles.
+///
+/// Far from the origin floats are so sparse that such a bias would be rounded away, and every
+/// surface would block its own light. There the bias is four spacings of floats.
+[[nodiscard]] float automatic_bias(const mesh::TriangleMesh& blockers);
+
+} // namespace relumine::prt

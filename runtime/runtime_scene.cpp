@@ -1,0 +1,101 @@
+#include "runtime/runtime_scene.h"
+
+#include <utility>
+
+#include "relight/binned_environment.h"
+#include "relight/harmonics/harmonics.h"
+#include "relight/receiver_light.h"
+
+namespace relumine::runtime {
+
+RuntimeScene::RuntimeScene(prt::RelightingScene given, std::uint32_t harmonics,
+                           const CallerJobs& jobs)
+    : jobs_(jobs), scene_(std::move(given.scene)), relighter_(scene_.transfer, {}, harmonics),
+      has_harmonics_(harmonics != 0) {
+    if (scene_.bounces && !given.albedo.empty())
+        set_albedo(given.albedo);
+}
+
+std::size_t RuntimeScene::num_harmonics() const {
+    return has_harmonics_ ? relight::num_harmonics(relighter_.receiver_light().harmonic_order())
+                          : 0;
+}
+
+void RuntimeScene::light(cubemap::CubeMap map) {
+    relighter_.set_environment(map);
+    given_ = std::move(map);
+    is_lit_ = true;
+    has_bounced_ = false;
+}
+
+void RuntimeScene::light(std::span<const lights::DistantLight> lights) {
+    relighter_.set_lights(lights);
+    given_ = {};
+    is_lit_ = true;
+    has_bounced_ = false;
+}
+
+void RuntimeScene::turn(double degrees) {
+    if (given_.resolution == 0)
+        throw NotLit();
+    relighter_.set_environment(cubemap::rotated(given_, degrees));
+    has_bounced_ = false;
+}
+
+void RuntimeScene::update(const cubemap::TexelRectangle& rectangle,
+                          std::span<const glm::vec3> radiance) {
+    if (given_.resolution == 0)
+        throw NotLit();
+    relight::require_radiance(radiance);
+    relighter_.update_regions(std::span(&rectangle, 1), [&](cubemap::CubeMap& map) {
+        auto from = radiance.begin();
+        for (std::uint32_t y = rectangle.y0; y != rectangle.y1; ++y)
+            for (std::uint32_t x = rectangle.x0; x != rectangle.x1; ++x)
+                map.at(rectangle.face, x, y) = *from++;
+    });
+}
+
+void RuntimeScene::set_albedo(std::span<const glm::vec3> albedo) {
+    if (!scene_.bounces)
+        throw NotThere{"a scene made with bounces"};
+    if (albedo.size() != scene_.receivers.size())
+        throw NotThere{"an albedo for the vertices behind pixels and texels, too: a file of "
+                       "`relumine export runtime` has it"};
+    relight::BounceLight bounces(*scene_.bounces, scene_.transfer);
+    bounces.set_albedo(albedo);
+    bounces_.emplace(std::move(bounces));
+    has_bounced_ = false;
+}
+
+void RuntimeScene::bounce(const relight::BounceLimits& limits, bool is_step) {
+    require_light();
+    if (!bounces_)
+        throw NotThere{"a scene made with bounces, and an albedo"};
+    const std::span<const glm::vec3> direct = relighter_.diffuse_radiance();
+    if (is_step)
+        bounces_->step(direct);
+    else
+        bounces_->solve(direct, limits);
+    has_bounced_ = true;
+}
+
+glm::vec3 RuntimeScene::radiance(std::size_t receiver) const {
+    const glm::vec3 direct = relighter_.diffuse_radiance()[receiver];
+    return has_bounced_ ? direct + bounces_->indirect()[receiver] : direct;
+}
+
+std::vector<glm::vec3> RuntimeScene::harmonics() const {
+    require_light();
+    if (!has_harmonics_)
+        throw NotThere{"a scene opened with harmonics"};
+    std::vector<glm::vec3> all = relighter_.harmonics();
+    all.resize(num_receivers() * num_harmonics());
+    return all;
+}
+
+void RuntimeScene::require_light() const {
+    if (!is_lit_)
+        throw NotLit();
+}
+
+} // namespace relumine::runtime
