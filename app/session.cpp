@@ -1,5 +1,7 @@
 #include "app/session.h"
 
+#include <cerrno>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -74,7 +76,7 @@ Shared& shared() {
     const std::scoped_lock lock(shared().mutex);
     if (shared().is_said)
         ::_exit(1);
-    text += fmt::format("relumine: {}\n", shared().cancelled_message);
+    text += fmt::format("{}: {}\n", program_invocation_short_name, shared().cancelled_message);
     static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
     ::_exit(1);
 }

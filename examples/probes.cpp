@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "relight/harmonics/harmonics.h"
+#include "relumine/relight/harmonics/harmonics.h"
 #include "relumine/relumine.h"
 
 using namespace relumine;

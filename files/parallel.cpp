@@ -1,5 +1,7 @@
 #include "files/parallel.h"
 
+#include <algorithm>
+
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -8,7 +10,9 @@
 namespace relumine::files {
 
 std::size_t num_threads() {
-    return static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    return std::min(
+        static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()),
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
 
 struct ThreadLimit::Control {
@@ -16,7 +20,9 @@ struct ThreadLimit::Control {
 };
 
 ThreadLimit::ThreadLimit(std::size_t num_threads)
-    : control_(new Control{{tbb::global_control::max_allowed_parallelism, num_threads}}) {}
+    : control_(num_threads == 0
+                   ? nullptr
+                   : new Control{{tbb::global_control::max_allowed_parallelism, num_threads}}) {}
 
 ThreadLimit::~ThreadLimit() = default;
 

@@ -13,7 +13,7 @@ namespace relumine::files {
 /// Returns how many threads loops run on at most, the caller's among them.
 [[nodiscard]] std::size_t num_threads();
 
-/// While it lives, loops run on at most so many threads.
+/// While it lives, loops run on at most so many threads; 0: on as many as without it.
 class ThreadLimit {
 public:
     explicit ThreadLimit(std::size_t num_threads);

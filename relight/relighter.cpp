@@ -71,6 +71,10 @@ void require_inside(const TexelRectangle& rectangle, const cubemap::CubeMap& map
     const std::uint32_t r = map.resolution;
     if (r == 0)
         throw std::invalid_argument("expected an environment before its first update");
+    if (static_cast<std::size_t>(rectangle.face) >= cubemap::NumFaces)
+        throw std::invalid_argument(fmt::format("expected one of {} faces, got number {}",
+                                                cubemap::NumFaces,
+                                                static_cast<std::size_t>(rectangle.face)));
     if (rectangle.x0 >= rectangle.x1 || rectangle.y0 >= rectangle.y1 || rectangle.x1 > r ||
         rectangle.y1 > r)
         throw std::invalid_argument(

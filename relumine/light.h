@@ -112,8 +112,15 @@ public:
     }
     /// Forgets the marks after the present one, and adds one of another state.
     void mark(const LightState& state);
-    /// Makes the mark before, or after, the present one, and returns it; null where there is none.
-    const LightState* undo() { return can_undo() ? &marks_[--at_] : nullptr; }
+    /// Returns the state to go back to: the present mark where `now` is another state, as after an
+    /// edit without a mark; otherwise the mark before, which becomes the present one. Null where
+    /// there is none.
+    const LightState* undo(const LightState& now) {
+        if (!marks_.empty() && marks_[at_] != now)
+            return &marks_[at_];
+        return can_undo() ? &marks_[--at_] : nullptr;
+    }
+    /// Makes the mark after the present one that, and returns it; null where there is none.
     const LightState* redo() { return can_redo() ? &marks_[++at_] : nullptr; }
     [[nodiscard]] bool can_undo() const { return at_ > 0; }
     [[nodiscard]] bool can_redo() const { return at_ + 1 < marks_.size(); }

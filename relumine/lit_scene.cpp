@@ -512,7 +512,7 @@ void forget_history(LitScene& lit) {
 }
 
 UpdateReport undo(LitScene& lit) {
-    const LightState* before = lit.history().undo();
+    const LightState* before = lit.history().undo(lit.state());
     return before == nullptr ? UpdateReport() : lit.edit(*before, Ending::Exact);
 }
 

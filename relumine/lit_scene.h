@@ -263,8 +263,8 @@ UpdateReport set_rotation(LitScene& lit, double degrees);
 void mark(LitScene& lit);
 /// Forgets all marks; the present state becomes the only one.
 void forget_history(LitScene& lit);
-/// Goes back to the mark before, or forward again. The radiance is that at the mark, bit by bit.
-/// Returns an empty report where there is no such mark.
+/// Goes back to the last mark, from that to the mark before, or forward again. The radiance is that
+/// at the mark, bit by bit. Returns an empty report where there is no such mark.
 UpdateReport undo(LitScene& lit);
 UpdateReport redo(LitScene& lit);
 

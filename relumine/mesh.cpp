@@ -244,7 +244,16 @@ float lowest(std::span<const glm::vec3> positions) {
 
 } // namespace
 
-Mesh refined(Mesh mesh, const RefineOptions& options, const prt::Work& work, RefineReport* report) {
+Mesh sound(Mesh mesh) {
+    if (mesh.geometry.normals.empty())
+        mesh.geometry.normals = mesh::smooth_normals(mesh.geometry);
+    mesh::require_sound(mesh.geometry);
+    return mesh;
+}
+
+Mesh refined(Mesh given, const RefineOptions& options, const prt::Work& work,
+             RefineReport* report) {
+    Mesh mesh = sound(std::move(given));
     const mesh::TriangleMesh& before = mesh.blockers ? *mesh.blockers : mesh.geometry;
     const std::size_t num_old = mesh.geometry.num_vertices();
     const std::size_t n = mesh.floor_vertices;
@@ -369,7 +378,8 @@ Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& wo
     return mesh;
 }
 
-Mesh simplified(Mesh mesh, std::size_t num_vertices) {
+Mesh simplified(Mesh given, std::size_t num_vertices) {
+    Mesh mesh = sound(std::move(given));
     mesh.is_open = false;
     if (!mesh.blockers)
         mesh.blockers = mesh::blockers_of(mesh.geometry);

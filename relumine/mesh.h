@@ -90,6 +90,12 @@ struct MeshOptions {
 /// --crease of MeshOptions alone
 [[nodiscard]] OptionRow crease_row(std::optional<float>& degrees);
 
+/// Returns the mesh with smooth normals where it has none at all. All functions that take a mesh
+/// begin with this, because a mesh made in code may be anything.
+///
+/// Throws:  std::invalid_argument as mesh::require_sound().
+[[nodiscard]] Mesh sound(Mesh mesh);
+
 /// Reads an .obj, .gltf, .glb, .ply, .off or .stl file, turns it upright and adds the floor.
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y" for a file that cannot be read;

@@ -110,7 +110,7 @@ public:
         : options_(options), work_(work), report_(report),
           prefix_(mesh.source.empty() ? "" : mesh.source + ": ") {
         report_ = {};
-        mesh = with_vertices(std::move(mesh));
+        mesh = with_vertices(sound(std::move(mesh)));
         scene_.blockers = std::move(mesh.blockers);
         scene_.mesh = std::move(mesh.geometry);
         scene_.settings = {

@@ -386,13 +386,14 @@ int num_writers(const Picture& picture) {
     constexpr std::size_t Small = std::size_t{1} << 18;
     if (picture.pixels.size() <= Small)
         return 0;
-    static const int num_threads = [] {
-        const auto allowed = static_cast<int>(files::num_threads());
-        if (allowed > 1)
-            Imf::setGlobalThreadCount(allowed);
-        return allowed > 1 ? allowed : 0;
+    const auto allowed = static_cast<int>(files::num_threads());
+    if (allowed <= 1)
+        return 0;
+    static const int pool = [&] {
+        Imf::setGlobalThreadCount(allowed);
+        return allowed;
     }();
-    return num_threads;
+    return std::min(allowed, pool);
 }
 
 } // namespace
