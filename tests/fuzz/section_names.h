@@ -93,6 +93,8 @@ inline constexpr std::array<std::string_view, 87> SectionNames = {"settings",
                                                                   "block_second_uvs",
                                                                   "block_corner_uvs",
                                                                   "layout_layers",
-                                                                  "r_veils"};
+                                                                  "r_veils",
+                                                                  "brdf_tables",
+                                                                  "r_brdf"};
 
 } // namespace relumine::fuzz
