@@ -88,6 +88,11 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
         check_highlights(SceneCheck(path), *transfer.glossy);
         for (const std::uint32_t receiver : result.receivers)
             transfer.glossy->to_eye.push_back(whole.receivers.to_eye[receiver]);
+    } else if (has_highlights(whole.receivers)) { // as set_surfaces() does
+        for (LobeCuts& lobe : transfer.glossy.emplace().lobes)
+            lobe.begin.assign(transfer.counts.num_blocks() + 1, 0);
+        for (const std::uint32_t receiver : result.receivers)
+            transfer.glossy->to_eye.push_back(whole.receivers.to_eye[receiver]);
     }
     return result;
 }
