@@ -8,6 +8,7 @@
 #include "files/parallel.h"
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/glossy_precompute.h"
+#include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/visibility/twin_triangles.h"
 #include "relight/pictures/reflections.h"
@@ -99,8 +100,8 @@ void SceneMirrors::add(const relight::Relighter& light, const Surfaces& surfaces
             .shift = glm::vec2(
                 glm::fract(number * glm::dvec2(0.75487766624669276, 0.56984029099805327)))};
         const prt::Lobes<glm::vec3> lobes =
-            lobes_of(surface, reflections.light(surface, point, rays_per_receiver_, seen),
-                     glm::dot(normal, to_eye));
+            relight::lobes_of(surface, reflections.light(surface, point, rays_per_receiver_, seen),
+                              glm::dot(normal, to_eye));
         radiance[i] += prt::reflect(surface, lobes, {surface, normal, to_eye});
     });
 }

@@ -218,8 +218,9 @@ float roughness_of(std::span<const float> rest) {
 
 void BrdfTable::measure() {
     constexpr float LeastCosine = 0.17f, Most = 1.05f;
+    const auto last = static_cast<double>(albedo_.size() - 1);
     for (std::size_t i = 0; i < albedo_.size(); ++i) {
-        const double root = std::max(static_cast<double>(i) / (albedo_.size() - 1.0), 0.05);
+        const double root = std::max(static_cast<double>(i) / last, 0.05);
         const auto n_v = static_cast<float>(root * root);
         albedo_[i] = integrated(*this, root * root);
         for (int color = 0; color < 3; ++color)

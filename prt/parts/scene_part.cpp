@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "prt/clusters/dealt_tiles.h"
+#include "prt/glossy/glossy_precompute.h"
 #include "prt/parts/part_list.h"
 #include "prt/scene/bounce_sections.h"
 #include "prt/scene/count_sections.h"
