@@ -7,7 +7,6 @@
 #include "files/one_of_each.h"
 #include "prt/glossy/lobe_list.h"
 #include "prt/scene/bounce_sections.h"
-#include "prt/scene/brdf_tables.h"
 #include "prt/scene/json_members.h"
 #include "prt/scene/section_group.h"
 #include "prt/visibility/ray_scene.h"
@@ -152,32 +151,6 @@ void add_surfaces(NewSections& sections, const std::vector<Surface>& surfaces) {
     });
 }
 
-/// The numbers of the tables of measured surfaces, counted from 1; 0 for others.
-void add_tables(NewSections& sections, const Scene& scene) {
-    const BrdfTables tables = brdf_tables(scene);
-    std::vector<std::uint32_t> numbers;
-    for (const Surface& surface : scene.receivers.surfaces)
-        numbers.push_back(
-            surface.table
-                ? static_cast<std::uint32_t>(
-                      std::find(tables.begin(), tables.end(), surface.table) - tables.begin()) +
-                      1
-                : 0);
-    if (std::any_of(numbers.begin(), numbers.end(), [](auto number) { return number != 0; }))
-        sections["r_brdf"] = bytes_of(numbers);
-}
-
-void read_tables(const SectionReader& reader, const BrdfTables& tables,
-                 std::vector<Surface>& surfaces) {
-    const auto numbers = reader.elements<std::uint32_t>("r_brdf", surfaces.size(), true);
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        if (numbers[i] > tables.size())
-            reader.fail("r_brdf", "numbers of tables");
-        if (numbers[i] != 0)
-            surfaces[i].table = tables[numbers[i] - 1];
-    }
-}
-
 std::vector<Surface> read_surfaces(const SectionReader& reader, std::size_t count) {
     if (!reader.has("r_albedo"))
         return {};
@@ -258,8 +231,6 @@ void check_surfaces(const SceneCheck& check, const std::vector<Surface>& surface
         [](const Surface& s) { return s.emission; });
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const LobeFacts& lobe = facts_of(surfaces[i].highlight);
-        check.that(!lobe.is_table || surfaces[i].table != nullptr, "a table of each measured BRDF",
-                   fmt::format("element {} without", i));
         const float shape = surfaces[i].roughness_or_exponent;
         if (!(shape >= 0.0f && shape <= lobe.largest_shape + RangeSlack))
             check.fail(fmt::format("{} of 0 to {}", lobe.shape.empty() ? "roughness" : lobe.shape,
@@ -299,7 +270,6 @@ void add_receivers(NewSections& sections, const Scene& scene) {
         sections["r_to_eye"] = SectionContent::view(receivers.to_eye);
     if (!receivers.surfaces.empty())
         add_surfaces(sections, receivers.surfaces);
-    add_tables(sections, scene);
 }
 
 void read_points_in_space(const SectionReader& reader, std::size_t num_own, Receivers& receivers) {
@@ -357,7 +327,6 @@ void read_receivers(const SectionReader& reader, Scene& scene) {
     }
     receivers.to_eye = reader.elements<glm::vec3>("r_to_eye", receivers.size(), true);
     receivers.surfaces = read_surfaces(reader, receivers.size());
-    read_tables(reader, scene.brdfs, receivers.surfaces);
 }
 
 } // namespace

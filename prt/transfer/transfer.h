@@ -42,8 +42,7 @@ struct Transfer {
 };
 
 /// Copies the receivers' surfaces into the transfer, and for a glossy part their directions to the
-/// eye. Receivers with an eye and highlights of which nothing is stored get a glossy part without
-/// cells.
+/// eye.
 void set_surfaces(Transfer& transfer, const Receivers& receivers);
 
 } // namespace relumine::prt

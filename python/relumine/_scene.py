@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import Floats, Indices, expect, floats, view, whole
-from ._brdf import Brdf
 from ._core import Scene as CoreScene
 from ._files import Path, errors
 from ._mesh import Mesh, warn
@@ -42,22 +41,19 @@ class Lambert(NamedTuple):
     albedo: Optional[Color] = None
 
 
-Material = Union[Ggx, Blinn, Lambert, Brdf]
+Material = Union[Ggx, Blinn, Lambert]
 
 
-def _materials(material: Union[Material, Mapping[str, Material], None]) -> List[Any]:
-    """Materials as --material has them, or a group's name and its table."""
+def _materials(material: Union[Material, Mapping[str, Material], None]) -> List[str]:
+    """Materials as --material has them."""
     if material is None:
         return []
-    if isinstance(material, (Ggx, Blinn, Lambert, Brdf)):
+    if isinstance(material, (Ggx, Blinn, Lambert)):
         material = {"": material}
-    result: List[Any] = []
+    result: List[str] = []
     for group, surface in material.items():
-        if isinstance(surface, Brdf):
-            result.append((group, surface._core))
-            continue
         if not isinstance(surface, (Ggx, Blinn, Lambert)):
-            raise ValueError(f"material: expected Ggx, Blinn, Lambert or Brdf, got {surface!r}")
+            raise ValueError(f"material: expected Ggx, Blinn or Lambert, got {surface!r}")
         values = ",".join(
             f"{name}={','.join(repr(float(each)) for each in np.atleast_1d(value))}"
             for name, value in surface._asdict().items()
@@ -114,7 +110,7 @@ def precompute(
                keeps it as it is
     view       the eye of highlights and the camera of pixels: "auto", (eye, target) or
                (eye, target, fov)
-    material   Ggx, Blinn, Lambert or Brdf in place of the mesh's materials, or {group: material};
+    material   Ggx, Blinn or Lambert in place of the mesh's materials, or {group: material};
                "floor" is the added floor
     ggx        "whole": highlights of GGX keep their energy; "published": glTF's formula
     highlights "stored": exact and free of noise; "traced": rays find them when pixels are lit; None:

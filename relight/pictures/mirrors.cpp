@@ -16,7 +16,7 @@ namespace {
 /// the lobe blurs.
 bool are_alike(const Mirror& a, const Mirror& b) {
     constexpr float LargestStep = 0.1f, LeastTurn = 0.02f, LargestTurn = 0.1f, ShareOfLobe = 0.25f;
-    if (a.surface.highlight != b.surface.highlight || a.surface.table != b.surface.table ||
+    if (a.surface.highlight != b.surface.highlight ||
         std::abs(a.surface.roughness_or_exponent - b.surface.roughness_or_exponent) >
             LargestStep * std::max(a.surface.roughness_or_exponent, LargestStep))
         return false;
@@ -61,7 +61,7 @@ glm::vec3 Mirrors::soft(const Mirror& mirror, const prt::MeshPoint& point,
     const prt::Lobes<glm::vec3> own = lobes_of(mirror.surface, light(mirror, point), n_v);
     return prt::reflect(mirror.surface,
                         {.diffuse = diffuse,
-                         .diffuse_grazing = factor * own.diffuse_grazing,
+                         .diffuse_grazing = glm::vec3(0.0f),
                          .specular = factor * own.specular,
                          .specular_grazing = factor * own.specular_grazing},
                         n_v);

@@ -53,28 +53,16 @@ float density(const glm::vec3& half, float n_v, float alpha) {
     return a2 / (std::numbers::pi_v<float> * d * d) * 0.5f / mask;
 }
 
-/// Sums of weights and of weighted radiance, by colour.
+/// Sums of weights and of weighted radiance.
 struct Weighted {
-    glm::vec3 weight{0.0f};
+    float weight = 0.0f;
     glm::vec3 sum{0.0f};
-    void add(const glm::vec3& w, const glm::vec3& radiance) {
+    void add(float w, const glm::vec3& radiance) {
         weight += w;
         sum += w * radiance;
     }
-    [[nodiscard]] glm::vec3 mean() const {
-        glm::vec3 result(0.0f);
-        for (int color = 0; color < 3; ++color)
-            if (weight[color] > 0.0f)
-                result[color] = sum[color] / weight[color];
-        return result;
-    }
+    [[nodiscard]] glm::vec3 mean() const { return weight > 0.0f ? sum / weight : glm::vec3(0.0f); }
 };
-
-/// What a highlight sends, by colour; of a measured one each colour has its own lobe.
-glm::vec3 highlight_of(const prt::Surface& surface, const prt::Lobes<float>& lobes) {
-    return surface.table ? glm::vec3(lobes.specular, lobes.specular_grazing, lobes.diffuse_grazing)
-                         : glm::vec3(lobes.specular);
-}
 
 } // namespace
 
@@ -174,22 +162,18 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
                 radiance = surfaces(hits[lane], w, radiance);
             const prt::Lobes<float> lobe =
                 prt::evaluate_lobes(surface, point.normal, point.to_eye, w);
-            all.add(highlight_of(surface, lobe) / densities[lane], radiance);
-            grazing.add(glm::vec3(lobe.specular_grazing / densities[lane]), radiance);
+            all.add(lobe.specular / densities[lane], radiance);
+            grazing.add(lobe.specular_grazing / densities[lane], radiance);
         }
     }
     return {.all = all.mean(),
             .grazing = grazing.mean(),
-            .whole = all.weight.r / static_cast<float>(num_rays)};
+            .whole = all.weight / static_cast<float>(num_rays)};
 }
 
 prt::Lobes<glm::vec3> lobes_of(const prt::Surface& surface, const MirroredLight& light, float n_v) {
     if (n_v <= 0.0f)
         return {};
-    if (surface.table) {
-        const glm::vec3 colors = surface.table->rest_albedo(n_v) * light.all;
-        return {.diffuse_grazing = colors, .specular = colors, .specular_grazing = colors};
-    }
     const bool is_known = prt::facts_of(surface.highlight).is_roughness;
     const prt::GgxAlbedo albedo = is_known ? prt::ggx_albedo(surface.roughness_or_exponent, n_v)
                                            : prt::GgxAlbedo{.all = light.whole};

@@ -40,8 +40,8 @@ struct MirroredLight {
     float whole = 0.0f;
 };
 
-/// Returns the light through a highlight's lobes. Exact for GGX and for measured BRDFs under a sky
-/// of one radiance: what their lobes send of it is known.
+/// Returns the light through a highlight's lobes: `specular` and `specular_grazing`. Exact for GGX
+/// under a sky of one radiance: what its lobes send of it is known.
 [[nodiscard]] prt::Lobes<glm::vec3> lobes_of(const prt::Surface& surface,
                                              const MirroredLight& light, float n_v);
 

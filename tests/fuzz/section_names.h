@@ -93,8 +93,6 @@ inline constexpr std::array<std::string_view, 87> SectionNames = {"settings",
                                                                   "block_second_uvs",
                                                                   "block_corner_uvs",
                                                                   "layout_layers",
-                                                                  "r_veils",
-                                                                  "brdf_tables",
-                                                                  "r_brdf"};
+                                                                  "r_veils"};
 
 } // namespace relumine::fuzz
