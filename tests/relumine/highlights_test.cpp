@@ -37,11 +37,11 @@ Picture drawn(const LitScene& lit, OutputOptions options = {}) {
 }
 
 LitScene lit_under(const mesh::TriangleMesh& mesh, const cubemap::CubeMap& sky,
-                   PrecomputeOptions options = {}) {
+                   PrecomputeOptions options = {}, const LightOptions& light = {}) {
     options.tolerance = 0.06f;
     options.bounce_tolerance = 0.0f;
     options.no_refine = true;
-    LitScene lit(precompute(mesh, options));
+    LitScene lit(precompute(mesh, options), light);
     lit.light(sky);
     return lit;
 }
@@ -81,7 +81,7 @@ TEST(Highlights, PixelsTraceWhatIsNotStored) {
     PrecomputeOptions options{.receivers =
                                   Pixels{.width = 48, .height = 48, .samples_per_axis = 2}};
     options.view = View{.camera = Front};
-    const LitScene traced = lit_under(mesh, sky, options);
+    const LitScene traced = lit_under(mesh, sky, options, {.highlight_rays = 1024});
     EXPECT_FALSE(traced.scene().settings.glossy_tolerance);
     options.highlights = Highlights::Stored;
     const LitScene stored = lit_under(mesh, sky, options);

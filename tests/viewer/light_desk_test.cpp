@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "relumine/precompute.h"
 #include "tests/relumine/bouncing_lit_scene.h"
 #include "tests/relumine/relit_lit_scene.h"
 #include "viewer/gestures.h"

@@ -36,7 +36,9 @@ TEST_F(MtlTest, MaterialsAsWritten) {
     EXPECT_EQ(mesh.materials[1], (Material{.name = "shiny",
                                            .base_color = glm::vec3(0.25f),
                                            .specular = {0.5f, 0.5f, 0.75f},
-                                           .exponent = 96.5f}));
+                                           .exponent = 96.5f,
+                                           .alpha_mode = AlphaMode::Blend,
+                                           .alpha = 0.5f}));
     EXPECT_EQ(mesh.materials[2], (Material{.name = "metal",
                                            .model = MaterialModel::MetallicRoughness,
                                            .base_color = {1.0f, 0.75f, 0.5f},
