@@ -16,7 +16,9 @@
 #include "app/options/receiver_options.h"
 #include "cubemap/image/environment.h"
 #include "files/output_file.h"
+#include "mesh/load.h"
 #include "prt/scene/scene_file.h"
+#include "relumine/mesh.h"
 
 namespace relumine::app {
 
@@ -27,6 +29,7 @@ struct InfoArguments {
     std::optional<cubemap::Layout> layout;
     std::string picture;
     bool check = false;
+    std::optional<mesh::Pose> pose;
 };
 
 /// One line more where they are not the vertices.
@@ -104,12 +107,15 @@ void run(const InfoArguments& options, const Session& session) {
             fmt::format("expected an environment or a mesh to draw, got '{}'", options.path));
     if (options.check && extension != ".prt")
         throw UsageError("--check", fmt::format("expected a scene (.prt), got '{}'", options.path));
+    if (options.pose && !mesh::has_mesh_extension(options.path))
+        throw UsageError("--pose",
+                         fmt::format("expected a mesh (.glb, .gltf), got '{}'", options.path));
     if (extension == ".prt")
         describe_scene(options, session);
     else if (cubemap::is_environment_name(options.path))
         describe_environment({options.path, options.layout, options.picture}, session);
     else
-        describe_mesh({options.path, options.picture}, session);
+        describe_mesh({options.path, options.picture, options.pose}, session);
 }
 
 } // namespace
@@ -127,6 +133,7 @@ void add_info(Command& program, Session& session) {
                     "draw an environment, lat-long with the axes and the sun marked, or a mesh "
                     "with its faults marked: .png",
                     {.file = true}));
+    command.add(pose_row(options->pose));
     command.add(row(
         "--check", options->check,
         "verify a scene: all checksums, sections and what must hold between them; exit code 1 and "

@@ -8,10 +8,11 @@
 namespace relumine {
 
 /// Draws the scene in its light, and what each light adds: "environment", the environment without
-/// layers, then every light layer that shines, from the lowest to the highest, by its name. A part
-/// is the picture with this layer and all below it, less the picture without this layer; so the
-/// parts add up to the picture, and a layer that dims has negative light. The light is the same
-/// afterwards.
+/// layers, then every light layer that shines, from the lowest to the highest, by its name, then
+/// the scene's own lamps, each with its glow. A part is the picture with this layer and all below
+/// it, less the picture without this layer; so the parts add up to the picture, and a layer that
+/// dims has negative light. The light is the same afterwards, and the painter shows lamps as it has
+/// them.
 ///
 /// Throws:  as Painter::draw(), and std::logic_error unless an environment lights the scene.
 /// Cost:    a picture and an edit for each part; bounces, where there are any, for each.

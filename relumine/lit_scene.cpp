@@ -6,6 +6,7 @@
 #include <cstring>
 #include <functional>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -60,7 +61,8 @@ LitScene::LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::Scen
     : scene_(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(scene)),
       rays_(std::make_unique<const SceneRays>(*scene_)),
       team_(part && options.team != nullptr ? options.team : &prt::alone()), path_(options.path),
-      harmonics_(options.harmonics), lamps_(*scene_, *rays_) {
+      harmonics_(options.harmonics), lamps_(*scene_, *rays_),
+      mirrors_(*scene_, *rays_, options.highlight_rays) {
     if (harmonics_ != 0)
         relight::require_order(harmonics_);
     const bool has_clusters = relumine::has_clusters(*scene_);
@@ -330,6 +332,22 @@ void LitScene::dim(std::vector<EmissionGain> gains) {
         finish();
 }
 
+/// Values of this process's receivers become those of all, in every process.
+std::vector<glm::vec3> LitScene::of_all(std::span<const glm::vec3> own) const {
+    if (!team_->has_others())
+        return copy_of(own);
+    const std::vector<std::uint32_t>& order = scene_->transfer.order;
+    const std::vector<std::uint32_t> places = prt::places_of(team_->part(), order.size());
+    std::vector<glm::vec3> by_place(order.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+        by_place[places[i]] = own[i];
+    prt::share_by_place(*team_, std::span(by_place));
+    std::vector<glm::vec3> result(order.size());
+    for (std::size_t place = 0; place < order.size(); ++place)
+        result[order[place]] = by_place[place];
+    return result;
+}
+
 BounceReport LitScene::find_bounces(bool is_step) {
     std::span<const glm::vec3> direct = relighter_->diffuse_radiance();
     std::vector<glm::vec3> sum;
@@ -337,17 +355,8 @@ BounceReport LitScene::find_bounces(bool is_step) {
         sum = copy_of(direct);
         if (!added_.diffuse.empty())
             add(added_.diffuse, sum);
-        if (team_->has_others()) {
-            const std::vector<std::uint32_t>& order = scene_->transfer.order;
-            const std::vector<std::uint32_t> places = prt::places_of(team_->part(), order.size());
-            std::vector<glm::vec3> by_place(order.size());
-            for (std::size_t i = 0; i < places.size(); ++i)
-                by_place[places[i]] = sum[i];
-            prt::share_by_place(*team_, std::span(by_place));
-            sum.resize(order.size());
-            for (std::size_t place = 0; place < order.size(); ++place)
-                sum[order[place]] = by_place[place];
-        }
+        if (team_->has_others())
+            sum = of_all(sum);
         direct = sum;
     }
     return is_step ? bounces_.step(direct) : bounces_.find(direct);
@@ -379,8 +388,9 @@ std::vector<glm::vec3> LitScene::bounced() const {
 /// Sums the parts of the light.
 void LitScene::finish() {
     lamps_.find();
+    const bool has_mirrors = relighter_ && is_lit_ && mirrors_.is_needed();
     if (relighter_ && bounces_.bounced().empty() && added_.radiance.empty() &&
-        lamps_.direct().empty()) {
+        lamps_.direct().empty() && !has_mirrors) {
         total_.clear();
         return;
     }
@@ -392,6 +402,25 @@ void LitScene::finish() {
     add_surfaces(total_);
     if (!added_.radiance.empty())
         add(added_.radiance, total_);
+    if (has_mirrors)
+        add_mirrored();
+}
+
+/// Adds the highlights that rays find.
+void LitScene::add_mirrored() {
+    SceneMirrors::Surfaces surfaces{.emission = lamps_.gains()};
+    std::vector<glm::vec3> whole;
+    if (mirrors_.shows_surfaces()) {
+        whole = of_all(total_);
+        surfaces.radiance = whole;
+    }
+    std::vector<std::uint32_t> receivers;
+    if (!part_) {
+        receivers.resize(total_.size());
+        std::iota(receivers.begin(), receivers.end(), 0u);
+    }
+    mirrors_.add(*relighter_, surfaces,
+                 part_ ? std::span<const std::uint32_t>(part_->receivers) : receivers, total_);
 }
 
 Lighting LitScene::lighting(bool is_drawn) const {

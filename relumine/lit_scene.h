@@ -22,6 +22,7 @@
 #include "relumine/scene.h"
 #include "relumine/scene_bounces.h"
 #include "relumine/scene_lamps.h"
+#include "relumine/scene_mirrors.h"
 #include "relumine/scene_rays.h"
 
 namespace relumine {
@@ -33,6 +34,8 @@ struct LightOptions {
     bool clusters_only = false;
     /// Order of the spherical harmonics that LitScene::harmonics() returns: 2 or 3. 0: none.
     std::uint32_t harmonics = 0;
+    /// Of a pixel whose highlights are not stored: rays that find them. 0: none.
+    std::uint32_t highlight_rays = DefaultHighlightRays;
     /// Of a part: the processes that share the light, each with its own. It must outlive the
     /// LitScene. Null: this one has no others.
     prt::Team* team = nullptr;
@@ -200,6 +203,8 @@ private:
     BounceReport find_bounces(bool is_step);
     void add_of_all(std::span<const glm::vec3> of_all, std::span<glm::vec3> own) const;
     void add_surfaces(std::span<glm::vec3> own) const;
+    [[nodiscard]] std::vector<glm::vec3> of_all(std::span<const glm::vec3> own) const;
+    void add_mirrored();
     void finish();
 
     std::shared_ptr<const Scene> scene_;
@@ -221,6 +226,7 @@ private:
     LightHistory history_;
     SceneBounces bounces_;
     SceneLamps lamps_;
+    SceneMirrors mirrors_;
     /// [receivers of this process] of all light; empty where the relighter's is all.
     std::vector<glm::vec3> total_;
 };

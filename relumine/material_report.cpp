@@ -64,6 +64,8 @@ Json report_of(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
         result.set("specular", material.specular);
     if (model == Model::Phong) {
         result.set("exponent", material.exponent);
+        if (material.specular_texture)
+            result.set("specular_texture", texture(material.specular_texture));
     } else {
         result.set("roughness", material.roughness);
         result.set("metallic_roughness_texture", texture(material.metallic_roughness_texture));

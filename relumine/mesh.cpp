@@ -129,6 +129,14 @@ OptionRow crease_row(std::optional<float>& degrees) {
                {.min = 0, .max = 180, .type = "DEGREES"});
 }
 
+OptionRow pose_row(std::optional<mesh::Pose>& pose) {
+    return row<PoseText>(
+        "--pose", pose,
+        "glTF: the moment of an animation in which skins, morph targets and nodes stand: its name "
+        "or number, and seconds (they stand as the nodes say)",
+        {.type = "ANIMATION@SECONDS", .example = "0@0.5"});
+}
+
 OptionTable options_of(MeshOptions& o) {
     return {
         row<FloorText>(
@@ -143,10 +151,7 @@ OptionTable options_of(MeshOptions& o) {
         row("--normals", o.normals,
             "vertex normals: the file's where it has them, or always smooth"),
         crease_row(o.crease),
-        row<PoseText>("--pose", o.pose,
-                      "glTF: the moment of an animation in which skins, morph targets and nodes "
-                      "stand: its name or number, and seconds (they stand as the nodes say)",
-                      {.type = "ANIMATION@SECONDS", .example = "0@0.5"})};
+        pose_row(o.pose)};
 }
 
 OptionTable options_of(RefineOptions& o) {

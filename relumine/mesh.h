@@ -86,6 +86,8 @@ struct MeshOptions {
 };
 
 [[nodiscard]] OptionTable options_of(MeshOptions& options);
+/// The row of --pose alone.
+[[nodiscard]] OptionRow pose_row(std::optional<mesh::Pose>& pose);
 
 /// --crease of MeshOptions alone
 [[nodiscard]] OptionRow crease_row(std::optional<float>& degrees);

@@ -121,14 +121,19 @@ std::vector<glm::vec3> colors_of(const Scene& scene, std::span<const glm::vec3> 
 struct Painter::Impl {
     Impl(const LitScene& lit, const OutputOptions& given)
         : scene(lit.scene()), rays(lit.rays().of_mesh()), options(given),
-          emission(emission_of(scene, options.emission)), floor(picture_floor(scene, options)) {
-        require_lamps(scene, options.emission);
-        if (is_on_vertices() && !emission.empty())
-            emission_gains = triangle_gains(scene, options.emission);
+          floor(picture_floor(scene, options)) {
+        take_emission();
         // The transfer of a scene that processes share has no highlights.
         if (is_on_vertices())
             textures = {scene.mesh, scene.receivers.surfaces,
                         scene.settings.glossy_tolerance.has_value()};
+    }
+
+    void take_emission() {
+        require_lamps(scene, options.emission);
+        emission = emission_of(scene, options.emission);
+        if (is_on_vertices() && !emission.empty())
+            emission_gains = triangle_gains(scene, options.emission);
     }
 
     [[nodiscard]] bool is_on_vertices() const { return prt::on_vertices(scene.layout); }
@@ -516,6 +521,11 @@ void Painter::look_from(const Camera& camera) {
     impl_->view.reset();
     impl_->small.reset();
     impl_->drew_one = false;
+}
+
+void Painter::dim(std::vector<EmissionGain> gains) {
+    impl_->options.emission = std::move(gains);
+    impl_->take_emission();
 }
 
 void Painter::set_exposure_ev(double ev) {

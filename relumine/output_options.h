@@ -122,8 +122,8 @@ struct OutputOptions {
     std::optional<glm::vec3> target = {};
     std::optional<float> fov_degrees = {};
     SunShadows sun = SunShadows::Pixels;
-    /// Rays that find what a pixel of a vertex scene mirrors, where the scene has no highlights
-    /// of its own; 0: surfaces are matte.
+    /// Rays that find what a pixel mirrors, where the scene has no highlights of its own; 0:
+    /// surfaces are matte. Receivers on pixels take LightOptions::highlight_rays.
     std::uint32_t highlight_rays = 32;
 
     /// Not for scenes of texels.
@@ -229,9 +229,9 @@ inline OptionTable options_of(OutputOptions& o) {
         transparent_row(o.background, {.receivers = NoTexels, .part = "background"}),
         row("--sun", o.sun, "pictures of vertices: where shadows of the sun are traced"),
         row("--highlight-rays", o.highlight_rays,
-            "pictures of vertices without --view: rays a pixel that find what glossy surfaces "
-            "mirror; 0: none, all is matte",
-            {.min = 0, .max = 4096, .receivers = OnVertices, .part = "highlights"}),
+            "rays a pixel that find what glossy surfaces mirror, where the scene stores no "
+            "highlights; 0: none, all is matte (of pixels: relight, edit and animate)",
+            {.min = 0, .max = 4096, .receivers = NoTexels, .part = "highlights"}),
         row("--gutter", o.gutter, "lightmaps: texels filled around the charts",
             {.min = 0, .max = 16384})};
 }

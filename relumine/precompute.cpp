@@ -203,7 +203,7 @@ private:
         report_.num_receivers = scene_.receivers.size();
         set_surfaces();
         poll();
-        if (prt::has_highlights(scene_.receivers)) {
+        if (prt::has_highlights(scene_.receivers) && !are_traced()) {
             scene_.settings.glossy_tolerance = options_.glossy_tolerance;
             warn_of_smooth_surfaces();
         }
@@ -213,6 +213,18 @@ private:
                              .is_automatic = !options_.bounce_tolerance.has_value()};
         }
         return rays;
+    }
+
+    /// Whether rays find the highlights when the scene is lit.
+    [[nodiscard]] bool are_traced() const {
+        if (options_.highlights)
+            return *options_.highlights == Highlights::Traced;
+        const auto is_layered = [](const prt::Surface& surface) {
+            return prt::has_coat(surface) || prt::has_sheen(surface);
+        };
+        const std::vector<prt::Surface>& surfaces = scene_.receivers.surfaces;
+        return std::holds_alternative<prt::PixelLayout>(scene_.layout) &&
+               std::none_of(surfaces.begin(), surfaces.end(), is_layered);
     }
 
     /// What was asked for. Where nothing was, vertices bounce light if surfaces are before them.

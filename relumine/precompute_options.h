@@ -113,6 +113,14 @@ inline constexpr float ToleranceOfRefined = 0.025f;
 /// The same of points: with cells of prt::MinLevelOfPoints, nothing more is split as a rule.
 inline constexpr float ToleranceOfPoints = 0.1f;
 
+/// Where highlights come from, for receivers with an eye.
+enum class Highlights {
+    /// The transfer has them: exact, and free of noise
+    Stored,
+    /// Rays find them when the scene is lit
+    Traced,
+};
+
 struct PrecomputeOptions {
     /// RMS error of the transfer allowed within a cluster, 1/sr; smaller is finer. Empty: that of
     /// prt::PrecomputeOptions, ToleranceOfRefined or ToleranceOfPoints.
@@ -146,7 +154,10 @@ struct PrecomputeOptions {
     /// The added floor's own surface; `surface` is not asked for it. A white Lambert one takes its
     /// albedo from the options of each picture.
     prt::Surface floor_surface = {};
-    /// Relative error of a highlight under a small light anywhere
+    /// Of pixels only they may be traced. Empty: pixels trace them, unless surfaces have coats or
+    /// sheen; vertices and texels store them.
+    std::optional<Highlights> highlights = {};
+    /// Relative error of a stored highlight under a small light anywhere
     float glossy_tolerance = prt::GlossyOptions{}.tolerance;
 
     /// Light bounces from surface to surface; prt::BounceOptions::tolerance. None reaches points

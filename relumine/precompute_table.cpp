@@ -321,8 +321,13 @@ OptionTable options_of(PrecomputeOptions& o) {
         row("--ggx", o.ggx,
             "highlights of materials with roughness: whole (what scatters between the facets comes "
             "back, and a white surface stays white), or published (glTF's formula)"),
+        row("--highlights", o.highlights,
+            "stored in the scene, exact and free of noise, or traced: rays find them when pixels "
+            "are lit (pixels trace them, unless surfaces have coats or sheen; vertices and texels "
+            "store them)"),
         row("--glossy-tolerance", o.glossy_tolerance,
-            "relative error of a highlight under a small light anywhere", {.min = 1e-4, .max = 1}),
+            "relative error of a stored highlight under a small light anywhere",
+            {.min = 1e-4, .max = 1}),
         row<MemoryText>("--max-memory", o.max_memory,
                         "refuse the work when it would take more memory, stop when it does: "
                         "500M, 4G",
@@ -362,6 +367,9 @@ void check(const Grid& grid) {
 void check(const PrecomputeOptions& options) {
     if (std::holds_alternative<Pixels>(options.receivers) && !options.view)
         throw OptionError("--receivers", "expected --view (a camera, or auto) with pixels");
+    if (options.highlights == Highlights::Traced &&
+        !std::holds_alternative<Pixels>(options.receivers))
+        throw OptionError("--highlights", "expected --receivers pixels:WxH with traced highlights");
     check_points(options);
 }
 

@@ -24,6 +24,11 @@ inline constexpr std::array<std::string_view, 2> GgxWords = {"whole", "published
 template<>
 inline constexpr std::span<const std::string_view> WordsOf<prt::GgxForm> = GgxWords;
 
+/// By Highlights
+inline constexpr std::array<std::string_view, 2> HighlightWords = {"stored", "traced"};
+template<>
+inline constexpr std::span<const std::string_view> WordsOf<Highlights> = HighlightWords;
+
 /// "vertices", "pixels:WxH", "pixels:WxH:N", "texels:WxH", "points:FILE" or "grid:NXxNYxNZ"
 struct ReceiversText {
     using Value = ReceiverChoice;

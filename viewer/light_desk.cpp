@@ -58,11 +58,33 @@ void LightDesk::redo() {
     timed([&] { return relumine::redo(lit_); });
 }
 
+void LightDesk::dim(std::vector<EmissionGain> gains) {
+    timed([&] {
+        lit_.dim(std::move(gains));
+        return UpdateReport{.num_receivers = lit_.radiance().size()};
+    });
+}
+
 void LightDesk::bounce(bool all) {
     if (lit_.bounces().is_settled())
         return;
     lit_.bounce({.is_step = !all});
     ++version_;
+}
+
+glm::vec3 dimmer(const LightDesk& desk, const std::string& name) {
+    glm::vec3 result(1.0f);
+    for (const EmissionGain& gain : desk.lit().lamps().gains())
+        if (gain.name == name)
+            result *= gain.gain;
+    return result;
+}
+
+void set_dimmer(LightDesk& desk, const std::string& name, const glm::vec3& gain) {
+    std::vector<EmissionGain> gains = desk.lit().lamps().gains();
+    std::erase_if(gains, [&](const EmissionGain& one) { return one.name == name; });
+    gains.push_back({.name = name, .gain = gain});
+    desk.dim(std::move(gains));
 }
 
 std::optional<std::size_t> find(const LightDesk& desk, const std::string& name) {

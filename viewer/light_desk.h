@@ -44,6 +44,11 @@ public:
     void undo();
     void redo();
 
+    /// Dims and colours the scene's own lamps. That is no step of undo.
+    ///
+    /// Throws:  as LitScene::dim().
+    void dim(std::vector<EmissionGain> gains);
+
     /// Brings the next bounce of light where the light changed, or all bounces: to be called once
     /// per frame.
     void bounce(bool all = false);
@@ -67,6 +72,11 @@ private:
 };
 
 [[nodiscard]] std::optional<std::size_t> find(const LightDesk& desk, const std::string& name);
+
+/// Returns the factor on a lamp; without a name that on all.
+[[nodiscard]] glm::vec3 dimmer(const LightDesk& desk, const std::string& name);
+/// Sets it. Throws as LitScene::dim().
+void set_dimmer(LightDesk& desk, const std::string& name, const glm::vec3& gain);
 
 // Edits in progress, for example while a slider moves.
 

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <imgui.h>
 
@@ -13,6 +15,43 @@ namespace {
 
 glm::vec2 pointer() {
     return {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y};
+}
+
+/// A slider and a colour of a lamp; without a name, of all.
+void dimmer_row(ViewState& state, const std::string& name) {
+    const glm::vec3 now = dimmer(state.desk, name);
+    float strength = std::max({now.r, now.g, now.b});
+    glm::vec3 color = strength > 0.0f ? now / strength : glm::vec3(1.0f);
+    constexpr float Most = 8.0f;
+    ImGui::PushID(name.c_str());
+    ImGui::SetNextItemWidth(150.0f);
+    bool is_changed =
+        ImGui::SliderFloat("##dimmer", &strength, 0.0f, Most, "%.2f", ImGuiSliderFlags_Logarithmic);
+    ImGui::SameLine();
+    is_changed |= ImGui::ColorEdit3("##colour", &color.x, ImGuiColorEditFlags_NoInputs);
+    ImGui::SameLine();
+    ImGui::TextUnformatted(name.empty() ? "all lamps" : name.c_str());
+    ImGui::PopID();
+    if (is_changed)
+        set_dimmer(state.desk, name, strength * color);
+}
+
+/// The scene's own lamps, where it has any.
+void dimmers(ViewState& state) {
+    const prt::Lamps& lamps = state.desk.lit().scene().lamps;
+    if (lamps.empty())
+        return;
+    ImGui::SameLine();
+    if (ImGui::Button("Lamps"))
+        ImGui::OpenPopup("lamps");
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("Dims and colours the lamps of the scene, as --emission does");
+    if (!ImGui::BeginPopup("lamps"))
+        return;
+    dimmer_row(state, "");
+    for (const std::string& name : lamps.names())
+        dimmer_row(state, name);
+    ImGui::EndPopup();
 }
 
 void tools(ViewState& state, const PixelRectangle& place, const PixelRectangle& picture) {
@@ -47,6 +86,7 @@ void tools(ViewState& state, const PixelRectangle& place, const PixelRectangle& 
         ImGui::SetTooltip("A click on the model: shows what lights the point, moves the chosen "
                           "layer so that it lights it (Ctrl), or so that the point mirrors it "
                           "(Ctrl-Shift)");
+    dimmers(state);
     ImGui::End();
 }
 

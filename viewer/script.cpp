@@ -186,6 +186,15 @@ void set_gain(Step& s) {
     s.state.desk.finish();
 }
 
+/// Without a name, all lamps.
+void dim(Step& s) {
+    try {
+        set_dimmer(s.state.desk, s.command.text, glm::vec3(static_cast<float>(s.number(0))));
+    } catch (const std::invalid_argument& error) {
+        fail(s.command, error.what());
+    }
+}
+
 void rotate(Step& s) {
     set_rotation(s.state.desk, s.number(0));
     s.state.desk.finish();
@@ -230,6 +239,7 @@ constexpr std::array Verbs = {
     Verb{"aim_layer NAME X Y", aim<Aim::Facing>},
     Verb{"mirror_layer NAME X Y", aim<Aim::Mirrored>},
     Verb{"set_gain NAME EV", set_gain},
+    Verb{"dim NAME GAIN", dim},
     Verb{"drag_env X0 Y0 X1 Y1", drag_to_move, DragFrames},
     Verb{"paint_env X0 Y0 X1 Y1", paint, DragFrames},
     Verb{"lasso_env X0 Y0 X1 Y1", draw_lasso, DragFrames},

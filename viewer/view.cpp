@@ -74,6 +74,8 @@ public:
         const LitScene& lit = state.desk.lit();
         if (const auto version = state.desk.version(); version != version_) {
             version_ = version;
+            if (const std::vector<EmissionGain>& gains = lit.lamps().gains(); gains != gains_)
+                take_emission(state.shading, lit.scene(), gains);
             std::vector<glm::vec3> colors(lit.radiance().begin(), lit.radiance().end());
             find_floor(state);
             for (std::size_t i = 0; i < colors.size(); ++i)
@@ -90,6 +92,15 @@ public:
             environment_.upload_heat(contribution_map(lit, {&*state.receiver, 1}));
             state.heat_is_stale = false;
         }
+    }
+
+    /// Takes what lamps glow with now. Nothing is drawn meanwhile.
+    void take_emission(Shading& shading, const Scene& scene,
+                       const std::vector<EmissionGain>& gains) {
+        refiner_.stop();
+        shading.emission = emission_of(scene, gains);
+        shading.emission_gains = triangle_gains(scene, gains);
+        gains_ = gains;
     }
 
     /// Draws the scene finely where nothing has moved for a moment, or at once.
@@ -161,6 +172,8 @@ private:
     MultisampleTarget target_;
     CubeTexture texture_;
     std::uint64_t version_ = 0;
+    /// Those of the shading.
+    std::vector<EmissionGain> gains_;
     Scenery seen_;
     Clock::time_point since_ = Clock::now();
     bool is_refining_ = false, is_refined_ = false;

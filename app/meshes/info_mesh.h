@@ -1,9 +1,11 @@
 // `relumine info MESH`: the mesh doctor.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/session.h"
+#include "mesh/pose.h"
 
 namespace relumine::app {
 
@@ -11,6 +13,8 @@ struct MeshInfoOptions {
     std::string path;
     /// The .png to draw. Empty: none.
     std::string picture;
+    /// Of glTF
+    std::optional<mesh::Pose> pose = {};
 };
 
 /// Says what a mesh is and what may be wrong with it; docs/meshes.md explains every line.

@@ -467,7 +467,10 @@ void add_animate(Command& program, Session& session) {
     auto options = std::make_shared<AnimateOptions>();
     options->add_to(command);
     session.add_common_options(command);
-    command.on_run([options, &session] { run(*options, session); });
+    command.on_run([options, &session] {
+        options->scene.highlight_rays = options->output.picture.highlight_rays;
+        run(*options, session);
+    });
 }
 
 } // namespace relumine::app

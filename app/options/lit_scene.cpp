@@ -16,6 +16,8 @@ void SceneOptions::add_to(Command& command) {
                     mesh_too ? "scene file from `relumine precompute`, or a mesh"
                              : "scene file from `relumine precompute`",
                     {.file = true, .required = true}));
+    if (mesh_too)
+        command.add(pose_row(pose));
     command.add(row("--clusters-only", clusters_only,
                     "light the sun through its cluster too, without shadow rays of its own"));
     command.add_all(options_of(colors));
@@ -24,12 +26,17 @@ void SceneOptions::add_to(Command& command) {
 namespace {
 
 Scene load(const SceneOptions& options) {
-    if (!options.mesh_too || !mesh::has_mesh_extension(options.path))
+    if (!options.mesh_too || !mesh::has_mesh_extension(options.path)) {
+        if (options.pose)
+            throw UsageError("--pose", fmt::format("expected a mesh (.glb, .gltf), got {}, which "
+                                                   "has the pose of its precompute",
+                                                   options.path));
         return load_scene(options.path);
+    }
     if (options.clusters_only)
         throw std::runtime_error(fmt::format(
             "{}: expected a scene file with --clusters-only, got a mesh", options.path));
-    return unclustered_scene(load_mesh(options.path));
+    return unclustered_scene(load_mesh(options.path, {.pose = options.pose}));
 }
 
 void recolour(Scene& scene, const SceneOptions& options) {
@@ -65,6 +72,7 @@ LitScene lit_scene(const SceneOptions& options, prt::Team* team) {
                                               options.path));
     const LightOptions light{.clusters_only = options.clusters_only,
                              .harmonics = options.harmonics,
+                             .highlight_rays = options.highlight_rays,
                              .team = team,
                              .path = options.path};
     if (team != nullptr && team->has_others()) {
@@ -79,6 +87,7 @@ LitScene lit_scene(Scene scene, const SceneOptions& options) {
     recolour(scene, options);
     const LightOptions light{.clusters_only = options.clusters_only,
                              .harmonics = options.harmonics,
+                             .highlight_rays = options.highlight_rays,
                              .path = options.path};
     return naming_scene(options.path, [&] { return LitScene(std::move(scene), light); });
 }

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "app/command_line/command_line.h"
 #include "relumine/lit_scene.h"
+#include "relumine/mesh.h"
 
 namespace relumine::app {
 
@@ -15,8 +17,12 @@ struct SceneOptions {
     bool clusters_only = false;
     /// As LightOptions::harmonics
     std::uint32_t harmonics = 0;
+    /// As LightOptions::highlight_rays
+    std::uint32_t highlight_rays = DefaultHighlightRays;
     /// The argument may also be a mesh, which is lit without clusters.
     bool mesh_too = false;
+    /// Of a mesh: MeshOptions::pose
+    std::optional<mesh::Pose> pose = {};
     /// Of all surfaces, in place of those of the precompute
     SurfaceColors colors = {};
 

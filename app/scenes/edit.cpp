@@ -331,7 +331,10 @@ void add_edit(Command& program, Session& session) {
     command.add(row("--watch", options->watch,
                     "go on: when another program saves ENV, update and write OUT again"));
     session.add_common_options(command);
-    command.on_run([options, &session] { run(*options, session); });
+    command.on_run([options, &session] {
+        options->scene.highlight_rays = options->output.picture.highlight_rays;
+        run(*options, session);
+    });
 }
 
 } // namespace relumine::app

@@ -1,9 +1,11 @@
 // A mesh that is lit without a precompute of its own.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/session.h"
+#include "relumine/mesh.h"
 #include "relumine/scene.h"
 
 namespace relumine::app {
@@ -13,6 +15,7 @@ namespace relumine::app {
 /// asked.
 ///
 /// Throws:  as load_mesh() and precompute().
-[[nodiscard]] Scene first_scene(const std::string& path, bool is_cached, Session& session);
+[[nodiscard]] Scene first_scene(const std::string& path, const std::optional<mesh::Pose>& pose,
+                                bool is_cached, Session& session);
 
 } // namespace relumine::app

@@ -173,10 +173,10 @@ void light_scene(const RelightArguments& options, Session& session) {
     Stopwatch watch;
     const bool is_first_picture =
         !options.environment.path.empty() && mesh::has_mesh_extension(options.scene.path);
-    LitScene lit =
-        is_first_picture
-            ? lit_scene(first_scene(options.scene.path, !options.no_cache, session), options.scene)
-            : lit_scene(options.scene, session.team);
+    LitScene lit = is_first_picture ? lit_scene(first_scene(options.scene.path, options.scene.pose,
+                                                            !options.no_cache, session),
+                                                options.scene)
+                                    : lit_scene(options.scene, session.team);
     const Scene& scene = lit.scene();
     if (options.environment.path.empty() && options.lights.empty() && scene.lamps.empty())
         throw UsageError("relight", "expected ENV, --lights or both, or a scene with lamps");
@@ -311,6 +311,7 @@ void add_relight(Command& program, Session& session) {
     command.on_run([options, command, &session] {
         if (!options->harmonics.empty())
             options->scene.harmonics = options->harmonics_order;
+        options->scene.highlight_rays = options->output.picture.highlight_rays;
         run(*options, command, session);
     });
 }

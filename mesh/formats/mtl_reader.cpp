@@ -32,7 +32,7 @@ float number_between(const TextReader& reader, std::string_view word, double min
 }
 
 /// Reads one value of a line "Kd 0.5" or three of "Kd 0.5 0.5 0.5".
-glm::vec3 color(const TextReader& reader) {
+glm::vec3 color(const TextReader& reader, double max = 1.0) {
     const auto& words = reader.words();
     if (words.size() != 2 && words.size() != 4)
         reader.fail(fmt::format("1 or 3 numbers of {}", words[0]),
@@ -40,7 +40,7 @@ glm::vec3 color(const TextReader& reader) {
     glm::vec3 result(0.0f);
     for (int i = 0; i < 3; ++i)
         result[i] = number_between(
-            reader, words[words.size() == 2 ? 1 : static_cast<std::size_t>(i) + 1], 0.0, 1.0);
+            reader, words[words.size() == 2 ? 1 : static_cast<std::size_t>(i) + 1], 0.0, max);
     return result;
 }
 
@@ -112,7 +112,7 @@ std::uint32_t MtlLibrary::index_of(const std::string& name) {
 /// one.
 std::optional<TextureSlot> MtlLibrary::texture(std::span<const std::string_view> words,
                                                const TextReader& reader,
-                                               const std::filesystem::path& folder) {
+                                               const std::filesystem::path& folder, bool is_alpha) {
     TextureSlot slot{.is_srgb = true};
     glm::vec2 scale(1.0f);
     while (!words.empty() && words[0].starts_with('-')) {
@@ -151,22 +151,24 @@ std::optional<TextureSlot> MtlLibrary::texture(std::span<const std::string_view>
             missing.push_back(name);
         return std::nullopt;
     }
-    const std::optional<std::uint32_t> index = texture_of(path, name);
+    const std::optional<std::uint32_t> index = texture_of(path, name, is_alpha);
     if (!index)
         return std::nullopt;
     slot.texture = *index;
     return slot;
 }
 
-/// Returns the texture of an image file. Each file is read once.
+/// Returns the texture of an image file, or of its alpha. Each is read once.
 std::optional<std::uint32_t> MtlLibrary::texture_of(const std::filesystem::path& path,
-                                                    const std::string& name) {
-    const auto [place, is_new] = texture_indices_.try_emplace(path.string());
+                                                    const std::string& name, bool is_alpha) {
+    const auto [place, is_new] = texture_indices_.try_emplace({path.string(), is_alpha});
     if (!is_new)
         return place->second;
     try {
-        textures.push_back(decode_texture(files::read(path), VOrigin::Bottom, budget_));
-        textures.back().name = name;
+        const std::vector<std::byte> file = files::read(path);
+        textures.push_back(is_alpha ? decode_alpha_texture(file, VOrigin::Bottom, budget_)
+                                    : decode_texture(file, VOrigin::Bottom, budget_));
+        textures.back().name = is_alpha ? name + " (alpha)" : name;
         place->second = static_cast<std::uint32_t>(textures.size() - 1);
     } catch (const std::runtime_error& error) {
         warnings_.push_back(fmt::format("the image {} is left out: {}", name, error.what()));
@@ -174,11 +176,20 @@ std::optional<std::uint32_t> MtlLibrary::texture_of(const std::filesystem::path&
     return place->second;
 }
 
+/// Drops a texture that was read for nothing, if it is a new one.
+void MtlLibrary::forget(std::uint32_t texture, std::size_t num_before) {
+    if (textures.size() == num_before)
+        return;
+    textures.pop_back();
+    std::erase_if(texture_indices_, [&](const auto& one) { return one.second == texture; });
+}
+
 /// Notes statements that change what a surface looks like and are not read.
 void MtlLibrary::note_unread(std::span<const std::string_view> words) {
-    constexpr std::array<std::string_view, 11> Maps = {"map_Ks", "map_Ns", "map_Pr",   "map_Pm",
-                                                       "map_Ke", "map_d",  "map_Bump", "map_bump",
-                                                       "bump",   "disp",   "refl"};
+    constexpr std::array<std::string_view, 15> Maps = {
+        "map_Ns", "map_Bump", "map_bump", "bump",    "disp",   "refl",     "map_Tr", "map_Pr",
+        "map_Pm", "map_Ps",   "map_Pc",   "map_Pcr", "map_Tf", "map_disp", "decal"};
+    constexpr std::array<std::string_view, 2> Numbers = {"aniso", "anisor"};
     const std::string_view keyword = words[0];
     const auto is_only = [&](std::string_view digit) { // 0, 0.0, 1.000 ...
         return std::all_of(words.begin() + 1, words.end(), [&](std::string_view word) {
@@ -186,11 +197,17 @@ void MtlLibrary::note_unread(std::span<const std::string_view> words) {
                    word.find_first_not_of("0.", digit.size()) == std::string_view::npos;
         });
     };
-    const bool is_unread = std::find(Maps.begin(), Maps.end(), keyword) != Maps.end() ||
-                           (keyword == "d" && !is_only("1")) ||
-                           ((keyword == "Ke" || keyword == "Tr") && !is_only("0"));
-    if (is_unread && std::find(unread_.begin(), unread_.end(), keyword) == unread_.end())
-        unread_.emplace_back(keyword);
+    const bool is_unread =
+        std::find(Maps.begin(), Maps.end(), keyword) != Maps.end() ||
+        (std::find(Numbers.begin(), Numbers.end(), keyword) != Numbers.end() && !is_only("0")) ||
+        (keyword == "Tf" && !is_only("1"));
+    if (is_unread)
+        note(keyword);
+}
+
+void MtlLibrary::note(std::string_view unread) {
+    if (std::find(unread_.begin(), unread_.end(), unread) == unread_.end())
+        unread_.emplace_back(unread);
 }
 
 std::vector<std::string> MtlLibrary::take_warnings() {
@@ -222,11 +239,7 @@ void MtlLibrary::read_normal_map(Material& material, const TextReader& reader,
         return;
     if (reader.words()[0] != "norm" && !is_of_normals(textures[slot->texture])) {
         note_unread(reader.words());
-        if (textures.size() > num_before) { // read for nothing
-            textures.pop_back();
-            std::erase_if(texture_indices_,
-                          [&](const auto& one) { return one.second == slot->texture; });
-        }
+        forget(slot->texture, num_before);
         return;
     }
     slot->is_srgb = false;
@@ -235,28 +248,109 @@ void MtlLibrary::read_normal_map(Material& material, const TextReader& reader,
         material.normal_texture = slot;
 }
 
+/// Reads map_d: a grey image, or one whose alpha is meant. One of black and white alone is a mask.
+void MtlLibrary::read_alpha_map(Material& material, const TextReader& reader,
+                                const std::filesystem::path& folder) {
+    const auto words = std::span(reader.words()).subspan(1);
+    const auto is_full = [](const auto& texel) {
+        return texel[0] == 255;
+    };
+    const std::size_t num_before = textures.size();
+    std::optional<TextureSlot> slot = texture(words, reader, folder, true);
+    if (slot && std::all_of(textures[slot->texture].texels.begin(),
+                            textures[slot->texture].texels.end(), is_full)) {
+        forget(slot->texture, num_before);
+        slot = texture(words, reader, folder);
+    }
+    if (!slot)
+        return;
+    slot->is_srgb = false;
+    const auto& texels = textures[slot->texture].texels;
+    const auto num_sharp = std::count_if(texels.begin(), texels.end(), [](const auto& texel) {
+        return texel[0] < 16 || texel[0] > 239;
+    });
+    constexpr double LeastOfMask = 0.9;
+    material.alpha_mode =
+        static_cast<double>(num_sharp) >= LeastOfMask * static_cast<double>(texels.size())
+            ? AlphaMode::Mask
+            : AlphaMode::Blend;
+    material.alpha_texture = slot;
+}
+
+/// Reads the extension for physically based rendering.
+bool MtlLibrary::read_physical(Material& material, const TextReader& reader) {
+    const std::vector<std::string_view>& words = reader.words();
+    const std::string_view keyword = words[0];
+    if (keyword == "Pr")
+        material.roughness = scalar(reader, 1.0);
+    else if (keyword == "Pm")
+        material.metallic = scalar(reader, 1.0);
+    else if (keyword == "Pc")
+        material.coat = scalar(reader, 1.0);
+    else if (keyword == "Pcr")
+        material.coat_roughness = scalar(reader, 1.0);
+    else if (keyword == "Ps")
+        material.sheen = glm::vec3(scalar(reader, 1.0));
+    else
+        return false;
+    material.model = MaterialModel::MetallicRoughness;
+    return true;
+}
+
 /// Reads a statement of a material.
 void MtlLibrary::read_value(Material& material, const TextReader& reader,
                             const std::filesystem::path& folder) {
     const std::vector<std::string_view>& words = reader.words();
     const std::string_view keyword = words[0];
+    const auto map = [&] {
+        return texture(std::span(words).subspan(1), reader, folder);
+    };
     if (keyword == "Kd")
         material.base_color = color(reader);
     else if (keyword == "Ks")
         material.specular = color(reader);
+    else if (keyword == "Ke")
+        material.emission = color(reader, 1e6);
     else if (keyword == "Ns")
         material.exponent = scalar(reader, 1e6);
+    else if (keyword == "d" || keyword == "Tr")
+        material.alpha = keyword == "d" ? scalar(reader, 1.0) : 1.0f - scalar(reader, 1.0);
     else if (keyword == "map_Kd")
-        material.base_color_texture = texture(std::span(words).subspan(1), reader, folder);
+        material.base_color_texture = map();
+    else if (keyword == "map_Ks")
+        material.specular_texture = map();
+    else if (keyword == "map_Ke")
+        material.emission_texture = map();
+    else if (keyword == "map_d")
+        read_alpha_map(material, reader, folder);
     else if (keyword == "norm" ||
              ((keyword == "map_Bump" || keyword == "map_bump" || keyword == "bump") &&
               material.normal_texture == std::nullopt))
         read_normal_map(material, reader, folder);
-    else if (keyword == "Pr" || keyword == "Pm") {
-        (keyword == "Pr" ? material.roughness : material.metallic) = scalar(reader, 1.0);
-        material.model = MaterialModel::MetallicRoughness;
-    } else
+    else if (!read_physical(material, reader))
         note_unread(words);
+}
+
+/// Settles what statements mean together.
+void MtlLibrary::finish(Material& material) {
+    if (material.alpha < 1.0f && material.alpha_mode == AlphaMode::Opaque)
+        material.alpha_mode = AlphaMode::Blend;
+    // A map says something beside a factor of 0, which many programs write, and beside none.
+    if (material.emission_texture && material.emission == glm::vec3(0.0f))
+        material.emission = glm::vec3(1.0f);
+    if (material.model == MaterialModel::Phong) {
+        if (material.specular_texture && material.specular == glm::vec3(0.0f))
+            material.specular = glm::vec3(1.0f);
+        return;
+    }
+    // The format has no roughness of fibres.
+    constexpr float RoughnessOfCloth = 0.5f;
+    if (material.sheen != glm::vec3(0.0f))
+        material.sheen_roughness = RoughnessOfCloth;
+    if (material.specular_texture) {
+        note("map_Ks beside Pr or Pm");
+        material.specular_texture.reset();
+    }
 }
 
 void MtlLibrary::parse(std::span<const std::byte> bytes, const std::string& name,
@@ -284,6 +378,8 @@ void MtlLibrary::parse(std::span<const std::byte> bytes, const std::string& name
                             name, error.what()));
         }
     }
+    for (Material& material : materials)
+        finish(material);
 }
 
 } // namespace relumine::mesh

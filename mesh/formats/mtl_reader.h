@@ -5,6 +5,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh/materials/material.h"
@@ -22,9 +23,10 @@ class MtlLibrary {
 public:
     explicit MtlLibrary(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// Adds a library. It reads Kd, Ks, Ns, Pr, Pm, map_Kd (with -s, -o and -clamp) and normal
-    /// maps, and skips the rest. A material with Pr or Pm is MetallicRoughness. A second definition
-    /// of a material replaces the first. A missing library or image goes to `missing`. A material
+    /// Adds a library. It reads colours, emission, alpha, the extension for physically based
+    /// rendering, their textures (with -s, -o and -clamp) and normal maps, and skips the rest. A
+    /// material with a statement of the extension is MetallicRoughness. A second definition of a
+    /// material replaces the first. A missing library or image goes to `missing`. A material
     /// that cannot be read becomes grey, a broken image is left out, each with a warning.
     void read(const std::string& name);
 
@@ -48,18 +50,25 @@ private:
                     const std::filesystem::path& folder);
     void read_normal_map(Material& material, const class TextReader& reader,
                          const std::filesystem::path& folder);
+    void read_alpha_map(Material& material, const class TextReader& reader,
+                        const std::filesystem::path& folder);
+    [[nodiscard]] static bool read_physical(Material& material, const class TextReader& reader);
+    void finish(Material& material);
     void note_unread(std::span<const std::string_view> words);
     [[nodiscard]] std::optional<std::uint32_t> texture_of(const std::filesystem::path& path,
-                                                          const std::string& name);
+                                                          const std::string& name, bool is_alpha);
     [[nodiscard]] std::optional<TextureSlot> texture(std::span<const std::string_view> words,
                                                      const class TextReader& reader,
-                                                     const std::filesystem::path& folder);
+                                                     const std::filesystem::path& folder,
+                                                     bool is_alpha = false);
+    void forget(std::uint32_t texture, std::size_t num_before);
+    void note(std::string_view unread);
     [[nodiscard]] std::uint32_t add(const std::string& name);
 
     std::filesystem::path folder_;
     std::map<std::string, std::uint32_t, std::less<>> indices_;
-    /// Texture of each image file. Empty: the image is broken.
-    std::map<std::string, std::optional<std::uint32_t>> texture_indices_;
+    /// Texture of each image file, or of its alpha. Empty: the image is broken.
+    std::map<std::pair<std::string, bool>, std::optional<std::uint32_t>> texture_indices_;
     ImageBudget budget_;
     /// Keywords that are not read.
     std::vector<std::string> warnings_, unread_;

@@ -77,7 +77,7 @@ Surface reflecting(const MaterialPoint& point, GgxForm form) {
         if (material.specular == glm::vec3(0.0f))
             return {.albedo = base};
         return {.albedo = base,
-                .specular = material.specular,
+                .specular = point.textured(material.specular, material.specular_texture),
                 .highlight = Highlight::BlinnPhong,
                 .roughness_or_exponent = material.exponent};
     }

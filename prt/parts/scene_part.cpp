@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "prt/clusters/dealt_tiles.h"
+#include "prt/glossy/glossy_precompute.h"
 #include "prt/parts/part_list.h"
 #include "prt/scene/bounce_sections.h"
 #include "prt/scene/count_sections.h"
@@ -86,6 +87,11 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
             blocks.push_back({shape.tile_begin(tile), shape.tile_begin(tile + 1)});
         transfer.glossy = read_glossy_part(reader, shape.num_blocks(), blocks);
         check_highlights(SceneCheck(path), *transfer.glossy);
+        for (const std::uint32_t receiver : result.receivers)
+            transfer.glossy->to_eye.push_back(whole.receivers.to_eye[receiver]);
+    } else if (has_highlights(whole.receivers)) { // as set_surfaces() does
+        for (LobeCuts& lobe : transfer.glossy.emplace().lobes)
+            lobe.begin.assign(transfer.counts.num_blocks() + 1, 0);
         for (const std::uint32_t receiver : result.receivers)
             transfer.glossy->to_eye.push_back(whole.receivers.to_eye[receiver]);
     }

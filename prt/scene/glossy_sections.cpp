@@ -248,7 +248,7 @@ void check_highlights(const SceneCheck& check, const GlossyTransfer& glossy) {
 const SectionGroup GlossySections = {
     .add =
         [](NewSections& sections, const Scene& scene) {
-            if (scene.transfer.glossy)
+            if (scene.transfer.glossy && scene.settings.glossy_tolerance)
                 add_glossy_sections(sections, *scene.transfer.glossy);
         },
     .read =
@@ -258,7 +258,12 @@ const SectionGroup GlossySections = {
         },
     .check =
         [](const SceneCheck& check, const Scene& scene) {
-            const bool is_glossy = scene.transfer.glossy.has_value();
+            // Without cells it is that of set_surfaces().
+            const auto& glossy = scene.transfer.glossy;
+            const bool is_glossy =
+                glossy && (scene.settings.glossy_tolerance ||
+                           std::any_of(glossy->lobes.begin(), glossy->lobes.end(),
+                                       [](const LobeCuts& l) { return l.num_entries() != 0; }));
             // A plan knows how its highlights will be.
             const bool is_plan = scene.transfer.counts.num_receivers == 0;
             check.that(is_glossy == scene.settings.glossy_tolerance.has_value() ||

@@ -38,7 +38,7 @@ std::vector<std::optional<TextureSlot> Material::*> color_slots(const Material& 
     std::vector<std::optional<TextureSlot> Material::*> slots = {&Material::base_color_texture};
     if (material.model == mesh::MaterialModel::MetallicRoughness)
         slots.push_back(&Material::metallic_roughness_texture);
-    if (material.model == mesh::MaterialModel::SpecularGlossiness)
+    if (material.model == mesh::MaterialModel::SpecularGlossiness || material.specular_texture)
         slots.push_back(&Material::specular_texture);
     if (material.emission != glm::vec3(0.0f))
         slots.push_back(&Material::emission_texture);
@@ -185,6 +185,8 @@ Material material_of(const Json& json, std::size_t num_textures) {
     read_alpha(json, num_textures, material);
     for (const auto slot : color_slots(material))
         material.*slot = slot_of(json.at(name_of(slot)), num_textures);
+    if (const Json* own = json.find(name_of(&Material::specular_texture))) // of Phong, too
+        material.specular_texture = slot_of(*own, num_textures);
     if (const Json* normals = json.find(name_of(&Material::normal_texture))) {
         material.normal_texture = slot_of(*normals, num_textures);
         material.normal_scale = finite(json.at("normal_scale"));

@@ -86,6 +86,7 @@ def precompute(
     view: Any = None,
     material: Union[Material, Mapping[str, Material], None] = None,
     ggx: str = "whole",
+    highlights: Optional[str] = None,
     glossy_tolerance: Optional[float] = None,
     bounces: Union[bool, float, None] = None,
     two_sided: bool = False,
@@ -112,6 +113,8 @@ def precompute(
     material   Ggx, Blinn or Lambert in place of the mesh's materials, or {group: material};
                "floor" is the added floor
     ggx        "whole": highlights of GGX keep their energy; "published": glTF's formula
+    highlights "stored": exact and free of noise; "traced": rays find them when pixels are lit; None:
+               traced for pixels, unless surfaces have coats or sheen, and stored for the rest
     bounces    light goes on from surface to surface: True, or its standard error; False: direct
                light alone; None: where vertices see other surfaces
     max_memory bytes; work that would take more is refused with MemoryError
@@ -146,6 +149,7 @@ def precompute(
         "view": view,
         "material": _materials(material),
         "ggx": ggx,
+        "highlights": highlights,
         "glossy_tolerance": glossy_tolerance,
         "bounces": 0.0 if bounces is False else bounces,
         "two_sided": two_sided,

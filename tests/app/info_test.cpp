@@ -41,6 +41,44 @@ TEST_F(Info, WithoutRoomForAThreadItEndsWithOneLine) {
     EXPECT_EQ(result.signal, 0);
 }
 
+/// A triangle that an animation lifts by 2 within a second.
+TEST_F(Info, PoseOfAMesh) {
+    write("lift.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "buffers": [{"byteLength": 68, "uri": "data:application/octet-stream;base64,)"
+                       "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAAAAAAAAAAAA"
+                       "AAAAAAAAAAAAQAAAAAA="
+                       R"("}], "bufferViews": [{"buffer": 0, "byteLength": 36},
+        {"buffer": 0, "byteOffset": 36, "byteLength": 8},
+        {"buffer": 0, "byteOffset": 44, "byteLength": 24}], "accessors": [
+        {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+         "max": [1, 1, 0]},
+        {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0],
+         "max": [1]},
+        {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}],
+        "animations": [{"name": "up", "samplers": [{"input": 1, "output": 2}],
+                        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]
+                       }]})");
+    const auto low = [&](const std::vector<std::string>& pose) {
+        std::vector<std::string> arguments = {"info", "lift.gltf", "--json"};
+        arguments.insert(arguments.end(), pose.begin(), pose.end());
+        return succeed(arguments).json()["min"][1];
+    };
+    EXPECT_EQ(low({}), 0.0);
+    EXPECT_EQ(low({"--pose", "up@0.5"}), 1.0);
+    EXPECT_EQ(low({"--pose", "0@3"}), 2.0);
+    write("white.hdr", white_hdr());
+    succeed({"relight", "lift.gltf", "white.hdr", "--no-cache", "--pose", "up@1", "-o", "posed.png",
+             "--size", "32x32"});
+    fail({"info", "lift.gltf", "--pose", "down@1"}, {"lift.gltf", "down"});
+    fail({"info", "mesh.obj", "--pose", "0@1"}, {"expected .glb or .gltf for a pose"});
+    misuse({"info", "white.hdr", "--pose", "0@1"}, "--pose");
+    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--tolerance", "1", "--min-depth", "0",
+             "-q", "--no-refine", "--bounces", "0"});
+    misuse({"info", "scene.prt", "--pose", "0@1"}, "--pose");
+    misuse({"relight", "scene.prt", "white.hdr", "--pose", "0@1", "-o", "posed.png"}, "--pose");
+}
+
 TEST_F(Info, MaterialsOfAMesh) {
     write("a.mtl",
           "newmtl shiny\nKd 0.5\nKs 0.25\nNs 50\nmap_Kd gone.png\nnewmtl metal\nPr 0.25\nPm 1\n");

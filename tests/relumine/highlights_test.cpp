@@ -37,11 +37,11 @@ Picture drawn(const LitScene& lit, OutputOptions options = {}) {
 }
 
 LitScene lit_under(const mesh::TriangleMesh& mesh, const cubemap::CubeMap& sky,
-                   PrecomputeOptions options = {}) {
+                   PrecomputeOptions options = {}, const LightOptions& light = {}) {
     options.tolerance = 0.06f;
     options.bounce_tolerance = 0.0f;
     options.no_refine = true;
-    LitScene lit(precompute(mesh, options));
+    LitScene lit(precompute(mesh, options), light);
     lit.light(sky);
     return lit;
 }
@@ -62,6 +62,70 @@ TEST(Highlights, AWhiteMetalIsWhiteInAFurnace) {
     }
 }
 
+/// Mean absolute difference over the mean, where both pictures show the sphere whole.
+double relative_difference(const Picture& a, const Picture& b) {
+    double sum = 0.0, difference = 0.0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+        if (a.alpha[i] == 1.0f && b.alpha[i] == 1.0f)
+            for (int color = 0; color < 3; ++color) {
+                sum += double{a.pixels[i][color]};
+                difference += std::abs(double{a.pixels[i][color]} - double{b.pixels[i][color]});
+            }
+    EXPECT_GT(sum, 1.0);
+    return difference / sum;
+}
+
+TEST(Highlights, PixelsTraceWhatIsNotStored) {
+    const cubemap::CubeMap sky = data_gen::two_soft_boxes(64);
+    const mesh::TriangleMesh mesh = sphere_of(metal(0.4f));
+    PrecomputeOptions options{.receivers =
+                                  Pixels{.width = 48, .height = 48, .samples_per_axis = 2}};
+    options.view = View{.camera = Front};
+    const LitScene traced = lit_under(mesh, sky, options, {.highlight_rays = 1024});
+    EXPECT_FALSE(traced.scene().settings.glossy_tolerance);
+    options.highlights = Highlights::Stored;
+    const LitScene stored = lit_under(mesh, sky, options);
+    EXPECT_TRUE(stored.scene().settings.glossy_tolerance);
+    const auto picture_of = [](const LitScene& lit) {
+        return Painter(lit, {.background = NothingBehind{}}).draw(lit.lighting());
+    };
+    EXPECT_LT(relative_difference(picture_of(traced), picture_of(stored)), 0.03);
+    // Numbers have them, too.
+    double sum = 0.0, difference = 0.0;
+    for (std::size_t i = 0; i < stored.radiance().size(); ++i) {
+        sum += double{stored.radiance()[i].g};
+        difference += std::abs(double{stored.radiance()[i].g} - double{traced.radiance()[i].g});
+    }
+    EXPECT_LT(difference, 0.05 * sum);
+}
+
+/// A white metal is white, and a mirror shows the lit floor below it.
+TEST(Highlights, TracedPixelsShowTheFloorWithItsBounces) {
+    Mesh mesh;
+    mesh.geometry = sphere_of(metal(0.2f));
+    add_floor(mesh, {.floor_vertices = 33});
+    const cubemap::CubeMap sky = data_gen::constant(16, glm::vec3(1.0f));
+    const Camera above{.eye = {0, 1, 4}, .target = {0, 0, 0}, .fov_degrees = 20};
+    const auto lowest = [&](float bounces) {
+        PrecomputeOptions options{.tolerance = 0.06f,
+                                  .receivers = Pixels{.width = 24, .height = 24},
+                                  .bounce_tolerance = bounces};
+        options.view = View{.camera = above};
+        LitScene lit(precompute(mesh, options));
+        lit.light(sky);
+        if (lit.scene().bounces)
+            lit.bounce({.albedo = bounce_albedo(lit.scene(), {})});
+        float least = 1e9f;
+        const prt::Receivers& receivers = lit.scene().receivers;
+        for (std::size_t i = 0; i < receivers.num_own(); ++i)
+            if (receivers.surfaces[i].metallic == 1.0f && receivers.normals[i].y < -0.3f)
+                least = std::min(least, lit.radiance()[i].g);
+        return least;
+    };
+    EXPECT_LT(lowest(0.0f), 0.05f) << "surfaces in the mirror are black";
+    EXPECT_GT(lowest(0.05f), 0.2f);
+}
+
 TEST(Highlights, AreThoseOfPixelsWithAView) {
     const cubemap::CubeMap sky = data_gen::two_soft_boxes(64);
     const mesh::TriangleMesh mesh = sphere_of(metal(0.4f));
@@ -69,6 +133,7 @@ TEST(Highlights, AreThoseOfPixelsWithAView) {
     PrecomputeOptions options{.receivers =
                                   Pixels{.width = 48, .height = 48, .samples_per_axis = 3}};
     options.view = View{.camera = Front};
+    options.highlights = Highlights::Stored;
     const LitScene fixed = lit_under(mesh, sky, options);
     const Picture exact = Painter(fixed, {.background = NothingBehind{}}).draw(fixed.lighting());
     double sum = 0.0, difference = 0.0;

@@ -108,6 +108,34 @@ TEST(SceneLamps, FactorsAreWeightsOfASum) {
         EXPECT_EQ(value, glm::vec3(0.0f));
 }
 
+TEST(SceneLamps, TheMixerGivesEachItsLayer) {
+    const std::vector<EmissionGain> gains = {{"lamp", {2, 1, 0.5f}}};
+    LitScene lit = lit_room(gains);
+    OutputOptions options{.width = 32, .height = 24, .samples_per_axis = 1};
+    options.eye = glm::vec3(0.9f, 0.0f, 0.9f);
+    options.target = glm::vec3(0.0f);
+    options.emission = gains;
+    Painter painter(lit, options);
+    const Picture before = painter.draw(lit.lighting());
+    const relight::LayeredPicture mix = light_mix(lit, painter);
+    ASSERT_EQ(mix.layers.size(), 3u);
+    EXPECT_EQ(mix.layers[0].name, "environment");
+    EXPECT_EQ(mix.layers[1].name, "lamp");
+    EXPECT_EQ(mix.layers[2].name, "screen");
+    double lamp = 0.0, screen = 0.0;
+    for (std::size_t i = 0; i < before.pixels.size(); ++i) {
+        EXPECT_EQ(mix.layers[0].pixels[i], glm::vec3(0.0f)) << "lamps are in no other layer";
+        const glm::vec3 sum = mix.layers[1].pixels[i] + mix.layers[2].pixels[i];
+        EXPECT_LT(glm::distance(sum, mix.whole.pixels[i]), 1e-4f);
+        lamp += double{mix.layers[1].pixels[i].r};
+        screen += double{mix.layers[2].pixels[i].r};
+    }
+    EXPECT_GT(lamp, 1.0);
+    EXPECT_NEAR(screen, 0.0, 1e-6) << "it has no red";
+    const Picture after = painter.draw(lit.lighting());
+    EXPECT_EQ(after.pixels, before.pixels);
+}
+
 // Dimming there and back is no change, bit by bit, and a factor leaves no trace of others.
 TEST(SceneLamps, AFactorIsTheSameOnAnyWay) {
     const std::vector<EmissionGain> half = {{"lamp", glm::vec3(0.5f)}};

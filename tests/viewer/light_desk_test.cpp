@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "relumine/precompute.h"
 #include "tests/relumine/bouncing_lit_scene.h"
 #include "tests/relumine/relit_lit_scene.h"
 #include "viewer/gestures.h"
@@ -196,6 +197,43 @@ TEST_F(LightDeskTest, ToldTexelsHoldEveryChange) {
     EXPECT_TRUE(update());
     remove(*desk_, 0);
     EXPECT_TRUE(update());
+}
+
+/// A lamp of side 1 that hangs 1 above a floor of side 2.
+LitScene lamp_over_floor() {
+    mesh::TriangleMesh mesh;
+    mesh.groups = {"floor", "lamp"};
+    mesh.materials = {{.name = "floor"}, {.name = "lamp", .emission = glm::vec3(2.0f)}};
+    mesh.positions = {{-1, 0, -1},       {-1, 0, 1},       {1, 0, 1},       {1, 0, -1},
+                      {-0.5f, 1, -0.5f}, {0.5f, 1, -0.5f}, {0.5f, 1, 0.5f}, {-0.5f, 1, 0.5f}};
+    mesh.normals.assign(4, {0, 1, 0});
+    mesh.normals.resize(8, {0, -1, 0});
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+    mesh.triangle_groups = mesh.triangle_materials = {0, 0, 1, 1};
+    LitScene lit(precompute(std::move(mesh),
+                            {.tolerance = 0.2f, .no_refine = true, .bounce_tolerance = 0.0f}));
+    lit.edit({.base = base_of(Environment{
+                  .map = cubemap::CubeMap(8), .file = {}, .assumptions = {}, .path = {}})});
+    return lit;
+}
+
+TEST(LightDeskLamps, DimmersAreFactorsOnTheirLight) {
+    LitScene lit = lamp_over_floor();
+    LightDesk desk(lit);
+    const float before = desk.lit().radiance()[0].g;
+    ASSERT_GT(before, 0.01f);
+    const std::uint64_t version = desk.version();
+    set_dimmer(desk, "lamp", {0.5f, 1.0f, 2.0f});
+    EXPECT_GT(desk.version(), version) << "the window draws again";
+    set_dimmer(desk, "", glm::vec3(3.0f));
+    EXPECT_EQ(dimmer(desk, "lamp"), glm::vec3(0.5f, 1.0f, 2.0f));
+    EXPECT_EQ(dimmer(desk, ""), glm::vec3(3.0f));
+    EXPECT_NEAR(desk.lit().radiance()[0].r, 1.5f * before, 1e-4f);
+    EXPECT_NEAR(desk.lit().radiance()[0].b, 6.0f * before, 1e-4f);
+    set_dimmer(desk, "lamp", glm::vec3(0.0f));
+    EXPECT_EQ(desk.lit().radiance()[0], glm::vec3(0.0f));
+    EXPECT_THROW(set_dimmer(desk, "lmap", glm::vec3(1.0f)), std::invalid_argument);
+    EXPECT_EQ(dimmer(desk, "lamp"), glm::vec3(0.0f));
 }
 
 TEST(LightDeskBounces, GoOnFrameByFrameUntilTheLightStands) {

@@ -36,7 +36,9 @@ TEST_F(MtlTest, MaterialsAsWritten) {
     EXPECT_EQ(mesh.materials[1], (Material{.name = "shiny",
                                            .base_color = glm::vec3(0.25f),
                                            .specular = {0.5f, 0.5f, 0.75f},
-                                           .exponent = 96.5f}));
+                                           .exponent = 96.5f,
+                                           .alpha_mode = AlphaMode::Blend,
+                                           .alpha = 0.5f}));
     EXPECT_EQ(mesh.materials[2], (Material{.name = "metal",
                                            .model = MaterialModel::MetallicRoughness,
                                            .base_color = {1.0f, 0.75f, 0.5f},
@@ -197,11 +199,97 @@ TEST_F(MtlTest, NormalMaps) {
 }
 
 TEST_F(MtlTest, SaysWhatIsNotRead) {
-    EXPECT_THAT(with_mtl("newmtl m\nKa 1 1 1\nKe 0 0 0\nd 1.000\nTr 0.0\nillum 2\n").warnings,
+    EXPECT_THAT(with_mtl("newmtl m\nKa 1 1 1\nKe 0 0 0\nd 1.000\nTr 0.0\nillum 2\nTf 1 1 1\n"
+                         "aniso 0\n")
+                    .warnings,
                 ElementsAre());
     static_cast<void>(write("a.png", four_colors()));
-    EXPECT_THAT(with_mtl("newmtl m\nKe 1 0 0\nd 0.5\nmap_Bump a.png\nnewmtl n\nd 0.5\n").warnings,
-                ElementsAre("the materials have Ke, d, map_Bump, which are not read"));
+    EXPECT_THAT(
+        with_mtl("newmtl m\nmap_Ns a.png\nmap_Bump a.png\nTf 1 0 0\nnewmtl n\nPr 0.5\n"
+                 "map_Ks a.png\naniso 0.5\nmap_Ns a.png\n")
+            .warnings,
+        ElementsAre("the materials have map_Ns, map_Bump, Tf, aniso, map_Ks beside Pr or Pm, "
+                    "which are not read"));
+}
+
+TEST_F(MtlTest, EmissionAndItsMap) {
+    static_cast<void>(write("a.png", four_colors()));
+    const TriangleMesh mesh = with_mtl("newmtl m\nKe 2 0.5 0\nmap_Ke a.png\n"
+                                       "newmtl n\nKe 0 0 0\nmap_Ke a.png\nnewmtl o\nKe 3\n");
+    EXPECT_EQ(mesh.materials[0].emission, glm::vec3(2.0f, 0.5f, 0.0f));
+    EXPECT_TRUE(mesh.materials[0].emission_texture->is_srgb);
+    EXPECT_EQ(mesh.materials[1].emission, glm::vec3(1.0f)) << "the map alone";
+    EXPECT_EQ(mesh.materials[2].emission, glm::vec3(3.0f));
+    EXPECT_THAT(mesh.warnings, ElementsAre());
+}
+
+TEST_F(MtlTest, AlphaBlendsOrCutsOut) {
+    static_cast<void>(write("leaf.png", png(2, 1, {{0, 0, 0}, {255, 255, 255}})));
+    static_cast<void>(write("smoke.png", png(2, 1, {{40, 40, 40}, {200, 200, 200}})));
+    const TriangleMesh mesh =
+        with_mtl("newmtl a\nd 0.25\nnewmtl b\nTr 0.25\nnewmtl c\nmap_d leaf.png\n"
+                 "newmtl d\nd 0.5\nmap_d smoke.png\nnewmtl e\nd 1\nTr 0\n");
+    EXPECT_EQ(mesh.materials[0].alpha_mode, AlphaMode::Blend);
+    EXPECT_EQ(mesh.materials[0].alpha, 0.25f);
+    EXPECT_EQ(mesh.materials[1].alpha, 0.75f);
+    EXPECT_EQ(mesh.materials[2].alpha_mode, AlphaMode::Mask);
+    EXPECT_FALSE(mesh.materials[2].alpha_texture->is_srgb);
+    EXPECT_EQ(mesh.materials[3].alpha_mode, AlphaMode::Blend);
+    EXPECT_EQ(mesh.textures[mesh.materials[3].alpha_texture->texture].texels[0],
+              (Rgb8{40, 40, 40}));
+    EXPECT_EQ(mesh.materials[4], (Material{.name = "e"}));
+    EXPECT_EQ(mesh.textures.size(), 2u);
+}
+
+/// An image with alpha is meant by its alpha, whatever its colours are.
+TEST_F(MtlTest, AlphaOfAnImageOfColours) {
+    static_cast<void>(write("leaf.png", png_of_alpha(2, 1, {{255, 0, 0, 255}, {255, 0, 0, 100}})));
+    const TriangleMesh mesh = with_mtl("newmtl m\nmap_Kd leaf.png\nmap_d leaf.png\n");
+    const Material& leaf = mesh.materials[0];
+    ASSERT_EQ(mesh.textures.size(), 2u);
+    EXPECT_EQ(mesh.textures[leaf.base_color_texture->texture].texels[1], Red);
+    EXPECT_EQ(mesh.textures[leaf.alpha_texture->texture].texels[1], (Rgb8{100, 100, 100}));
+    EXPECT_EQ(leaf.alpha_mode, AlphaMode::Blend);
+}
+
+TEST_F(MtlTest, PhysicallyBasedExtension) {
+    static_cast<void>(write("r.png", png(1, 1, {{64, 64, 64}})));
+    const TriangleMesh mesh =
+        with_mtl("newmtl m\nKd 0.5\nPr 0.5\nPm 0.25\nPc 0.75\nPcr 0.125\nPs 0.25\nmap_Pr r.png\n");
+    const Material& m = mesh.materials[0];
+    EXPECT_EQ(m.model, MaterialModel::MetallicRoughness);
+    EXPECT_EQ(m.roughness, 0.5f);
+    EXPECT_EQ(m.metallic, 0.25f);
+    EXPECT_EQ(m.coat, 0.75f);
+    EXPECT_EQ(m.coat_roughness, 0.125f);
+    EXPECT_EQ(m.sheen, glm::vec3(0.25f));
+    EXPECT_THAT(mesh.warnings, ElementsAre("the materials have map_Pr, which is not read"));
+}
+
+/// Every slot takes images of 1 pixel and of 16 bits, and goes without what cannot be read.
+TEST_F(MtlTest, ImagesOfAllSlots) {
+    static_cast<void>(write("one.png", png(1, 1, {Gray})));
+    static_cast<void>(write("deep.png", png_of_16_bits(0x8080)));
+    std::string huge = four_colors();
+    huge[16] = 0, huge[17] = 1; // 65538 pixels wide
+    static_cast<void>(write("huge.png", huge));
+    for (const std::string statement : {"map_Kd", "map_Ks", "map_Ke", "map_d", "norm"}) {
+        for (const std::string image : {"one.png", "deep.png"}) {
+            const TriangleMesh mesh = with_mtl("newmtl m\n" + statement + " " + image + "\n");
+            ASSERT_EQ(mesh.textures.size(), 1u) << statement << image;
+            EXPECT_EQ(mesh.textures[0].texels, (std::vector<Rgb8>{Gray})) << statement << image;
+            EXPECT_THAT(mesh.warnings, ElementsAre()) << statement << image;
+        }
+        const TriangleMesh without = with_mtl("newmtl m\n" + statement + " gone.png\n");
+        EXPECT_THAT(without.missing, ElementsAre("gone.png")) << statement;
+        const TriangleMesh refused = with_mtl("newmtl m\n" + statement + " huge.png\n");
+        EXPECT_THAT(refused.warnings,
+                    ElementsAre(testing::AllOf(
+                        testing::StartsWith("the image huge.png is left out: expected"),
+                        testing::HasSubstr("at most 16384 x 16384 pixels"))))
+            << statement;
+        EXPECT_TRUE(refused.textures.empty()) << statement;
+    }
 }
 
 } // namespace

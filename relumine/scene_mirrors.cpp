@@ -1,0 +1,109 @@
+#include "relumine/scene_mirrors.h"
+
+#include <algorithm>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "files/parallel.h"
+#include "prt/glossy/brdf.h"
+#include "prt/glossy/glossy_precompute.h"
+#include "prt/glossy/surface_sampling.h"
+#include "prt/receivers/mesh_point.h"
+#include "prt/visibility/twin_triangles.h"
+#include "relight/pictures/reflections.h"
+
+namespace relumine {
+
+namespace {
+
+/// What rays see of the surfaces that they meet.
+class MirroredSurfaces {
+public:
+    MirroredSurfaces(const Scene& scene, const SceneMirrors::Surfaces& surfaces)
+        : mesh_(scene.mesh), twins_(scene.mesh),
+          gains_(scene.lamps.empty() ? std::vector<glm::vec3>()
+                                     : triangle_gains(scene, surfaces.emission)) {
+        const prt::Receivers& receivers = scene.receivers;
+        if (surfaces.radiance.empty() || receivers.num_added == 0)
+            return;
+        light_.resize(mesh_.num_vertices(), glm::vec3(0.0f));
+        for (std::size_t i = receivers.num_own(); i < receivers.size(); ++i) {
+            const glm::vec3 albedo =
+                receivers.surfaces.empty() ? glm::vec3(1.0f) : receivers.surfaces[i].albedo;
+            light_[prt::vertex_at(mesh_, receivers.points[i])] =
+                surfaces.radiance[i] / glm::max(albedo, 1e-4f);
+        }
+    }
+
+    /// As relight::Reflections asks for them.
+    [[nodiscard]] glm::vec3 radiance(const prt::Hit& hit, const glm::vec3& direction) const {
+        const prt::Hit facing = twins_.facing(hit, direction);
+        const prt::MeshPoint at{.triangle = facing.triangle, .barycentric = facing.barycentric};
+        const prt::Surface surface = prt::without_highlight(
+            prt::surface_at(mesh_, at.triangle, at.barycentric, prt::GgxForm::Published));
+        const glm::vec3 gain = gains_.empty() ? glm::vec3(1.0f) : gains_[at.triangle];
+        const glm::vec3 reflected =
+            light_.empty() ? glm::vec3(0.0f) : surface.albedo * prt::value_at(mesh_, light_, at);
+        return reflected + gain * surface.emission;
+    }
+
+private:
+    const mesh::TriangleMesh& mesh_;
+    prt::TwinTriangles twins_;
+    std::vector<glm::vec3> gains_;
+    /// [num_vertices] what arrives, as radiance of albedo 1; empty: unknown.
+    std::vector<glm::vec3> light_;
+};
+
+} // namespace
+
+bool has_traced_highlights(const Scene& scene) {
+    return !scene.settings.glossy_tolerance && prt::has_highlights(scene.receivers);
+}
+
+SceneMirrors::SceneMirrors(const Scene& scene, const SceneRays& rays, std::uint32_t num_rays)
+    : scene_(&scene), rays_(&rays) {
+    if (!has_traced_highlights(scene))
+        return;
+    constexpr std::uint32_t Least = 4;
+    const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout);
+    const std::uint32_t samples =
+        pixels != nullptr ? pixels->samples_per_axis * pixels->samples_per_axis : 1;
+    rays_per_receiver_ = num_rays == 0 ? 0 : std::max((num_rays + samples - 1) / samples, Least);
+}
+
+void SceneMirrors::add(const relight::Relighter& light, const Surfaces& surfaces,
+                       std::span<const std::uint32_t> receivers,
+                       std::span<glm::vec3> radiance) const {
+    const prt::Receivers& all = scene_->receivers;
+    const relight::Reflections reflections(rays_->of_mesh(), scene_->settings.bias,
+                                           rays_per_receiver_, light.environment(),
+                                           light.sharp_lights());
+    const MirroredSurfaces mirrored(*scene_, surfaces);
+    const auto seen = [&](const prt::Hit& hit, const glm::vec3& direction, const glm::vec3&) {
+        return mirrored.radiance(hit, direction);
+    };
+    files::parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t i) {
+        const std::uint32_t receiver = receivers[i];
+        const prt::Surface& surface = all.surfaces[receiver];
+        if (receiver >= all.num_own() || surface.highlight == prt::Highlight::None)
+            return;
+        const glm::vec3& normal = all.normals[receiver];
+        const glm::vec3& to_eye = all.to_eye[receiver];
+        // Roberts' R2 sequence: neighbours get shifts that are far apart.
+        const auto number = static_cast<double>(receiver);
+        const relight::MirrorPoint point{
+            .position = all.positions[receiver],
+            .normal = normal,
+            .to_eye = to_eye,
+            .shift = glm::vec2(
+                glm::fract(number * glm::dvec2(0.75487766624669276, 0.56984029099805327)))};
+        const prt::Lobes<glm::vec3> lobes =
+            relight::lobes_of(surface, reflections.light(surface, point, rays_per_receiver_, seen),
+                              glm::dot(normal, to_eye));
+        radiance[i] += prt::reflect(surface, lobes, {surface, normal, to_eye});
+    });
+}
+
+} // namespace relumine
