@@ -1,41 +1,30 @@
 #include "relight/batch.h"
 
 #include <algorithm>
-#include <memory>
 #include <stdexcept>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "files/parallel.h"
+#include "relight/kernels/batch_kernel.h"
 #include "relight/receiver_light.h"
 
 namespace relumine::relight {
 
 namespace {
 
-/// As many as are worth reading a tile of the transfer for: more gain little.
-constexpr std::size_t GroupSize = 8;
-
-/// The light of one environment, ready for the receivers.
-struct BatchLight {
-    ClusterLights clusters;
-    TracedLight traced;
-
-    BatchLight(const Relighter& relighter, BinnedEnvironment binned)
-        : clusters(relighter.transfer().num_clusters()),
-          traced(relighter.transfer(), relighter.shadow_rays()) {
-        const ClusterSums sums{.all = binned.sums, .sharp = binned.sharp_lights};
-        files::parallel_for(
-            files::IndexRange<std::size_t>(0, clusters.spread.size()), [&](const auto& words) {
-                const std::size_t end = std::min(words.end() * 64, sums.all.size());
-                for (std::size_t cluster = words.begin() * 64; cluster < end; ++cluster)
-                    clusters.set(cluster, sums.without_sharp(cluster));
-            });
-        clusters.sum_prefix();
-        traced.trace(binned.sharp_lights);
-    }
-};
+/// Sets the light of the clusters, and traces the sharp lights.
+void set_light(const BinnedEnvironment& binned, ClusterLights& clusters, TracedLight& traced) {
+    const ClusterSums sums{.all = binned.sums, .sharp = binned.sharp_lights};
+    files::parallel_for(files::IndexRange<std::size_t>(0, clusters.spread.size()),
+                        [&](const auto& words) {
+                            const std::size_t end = std::min(words.end() * 64, sums.all.size());
+                            for (std::size_t cluster = words.begin() * 64; cluster < end; ++cluster)
+                                clusters.set(cluster, sums.without_sharp(cluster));
+                        });
+    traced.trace(binned.sharp_lights);
+}
 
 /// Writes the radiance of a block.
 void write_block(const prt::Transfer& transfer, const BlockRadiance& sums, std::size_t block,
@@ -66,24 +55,30 @@ void relight_batch(const Relighter& relighter, std::span<const cubemap::CubeMap>
         throw std::invalid_argument("expected receivers on surfaces, got points in space");
     const BlockScene scene = relighter.receiver_light().block_scene();
     EnvironmentBinner binner = binner_of(relighter);
-    std::vector<BlockLight> scratch(scene.counts.num_blocks());
-    for (std::size_t first = 0; first < environments.size(); first += GroupSize) {
-        std::vector<std::unique_ptr<BatchLight>> lights;
-        for (const cubemap::CubeMap& map :
-             environments.subspan(first, std::min(GroupSize, environments.size() - first)))
-            lights.push_back(std::make_unique<BatchLight>(relighter, binner.bin(map)));
+    BatchLights lights(transfer.num_clusters());
+    std::vector<TracedLight> traced;
+    for (std::size_t k = 0; k < BatchLights::Most; ++k)
+        traced.emplace_back(transfer, relighter.shadow_rays());
+    for (std::size_t first = 0; first < environments.size(); first += BatchLights::Most) {
+        lights.size = std::min(BatchLights::Most, environments.size() - first);
+        for (std::size_t k = 0; k < lights.size; ++k)
+            set_light(binner.bin(environments[first + k]), lights.each[k], traced[k]);
+        lights.compare_and_sum();
         files::parallel_for(std::size_t{0}, scene.counts.num_tiles(), [&](std::size_t tile) {
-            for (std::size_t i = 0; i < lights.size(); ++i) {
-                light_tile(scene, tile, lights[i]->clusters, scratch);
-                for (std::size_t block = scene.counts.tile_begin(tile);
-                     block < scene.counts.tile_begin(tile + 1); ++block) {
+            constexpr std::size_t TileBlocks = prt::VisibleCounts::TileBlocks;
+            std::vector<BlockLight> light(BatchLights::Most * TileBlocks);
+            light_tile(scene, tile, lights, light);
+            const std::size_t begin = scene.counts.tile_begin(tile);
+            for (std::size_t k = 0; k < lights.size; ++k)
+                for (std::size_t block = begin; block < scene.counts.tile_begin(tile + 1);
+                     ++block) {
                     BlockRadiance sums;
-                    static_cast<void>(block_radiance(scene.normals[block], scratch[block],
-                                                     lights[i]->traced.diffuse(block), sums));
+                    static_cast<void>(block_radiance(scene.normals[block],
+                                                     light[k * TileBlocks + block - begin],
+                                                     traced[k].diffuse(block), sums));
                     write_block(transfer, sums, block,
-                                radiance.subspan((first + i) * num_receivers, num_receivers));
+                                radiance.subspan((first + k) * num_receivers, num_receivers));
                 }
-            }
         });
     }
 }

@@ -10,9 +10,10 @@
 
 namespace relumine::relight {
 
-/// Lights the receivers of a relighter with one environment after the other. The radiance is bit by
-/// bit that of Relighter::set_environment(); the relighter's own light stays as it is. A part of
-/// the transfer is read once for several environments.
+/// Lights the receivers of a relighter with many environments. The radiance is that of
+/// Relighter::set_environment() but for roundings; the relighter's own light stays as it is. Up to
+/// 8 environments share the reading of the transfer, and the cosines of clusters that lie inside of
+/// a texel.
 ///
 /// Shape:   radiance is [environments][num_receivers] in the receivers' own order.
 /// Memory:  some megabytes for each of at most 8 environments.

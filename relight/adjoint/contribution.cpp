@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "files/parallel.h"
@@ -109,15 +110,22 @@ struct Given {
     std::vector<glm::dvec3> by_sharp;
 };
 
+/// Returns the places of the receivers that have a weight.
+std::vector<std::size_t> weighted_places(std::span<const std::uint32_t> order,
+                                         std::span<const glm::vec3> weights) {
+    std::vector<std::size_t> places;
+    for (std::size_t place = 0; place < order.size(); ++place)
+        if (weights[order[place]] != glm::vec3(0.0f))
+            places.push_back(place);
+    return places;
+}
+
 /// Of points in space, whose radiance is the mean over the sphere.
 Given given_to_points(const Relighter& relighter, std::span<const glm::vec3> weights) {
     const ReceiverLight& light = relighter.receiver_light();
     const std::span<const std::uint32_t> order = relighter.transfer().order;
     const std::span<const SharpLight> sharp = relighter.sharp_lights();
-    std::vector<std::size_t> places;
-    for (std::size_t place = 0; place < order.size(); ++place)
-        if (weights[order[place]] != glm::vec3(0.0f))
-            places.push_back(place);
+    const std::vector<std::size_t> places = weighted_places(order, weights);
     Given given{std::vector<glm::dvec3>(relighter.transfer().num_clusters()),
                 std::vector<glm::dvec3>(sharp.size())};
     files::parallel_for(std::size_t{0}, given.by_clusters.size(), [&](std::size_t cluster) {
@@ -138,9 +146,73 @@ Given given_to_points(const Relighter& relighter, std::span<const glm::vec3> wei
     return given;
 }
 
+/// Returns what a receiver has from one cluster, without its sharp lights, as light_tile() has it.
+glm::dvec3 from_cluster(const prt::Transfer& transfer, const ReceiverLight& light,
+                        std::size_t place, std::size_t cluster) {
+    const auto count = static_cast<double>(transfer.counts.count(place, cluster));
+    if (count == 0.0)
+        return glm::dvec3(0.0);
+    const std::size_t block = place / prt::BlockSize, word = cluster / 64;
+    const std::size_t tile = block / prt::VisibleCounts::TileBlocks;
+    const BlockScene scene = light.block_scene();
+    const std::uint64_t bit = std::uint64_t{1} << (cluster % 64);
+    const bool is_whole =
+        (transfer.counts.visible[transfer.counts.word(block, word)] & bit) != 0 &&
+        (scene.words.across_of(scene.words.words[tile * transfer.counts.words_per_block() + word],
+                               block - transfer.counts.tile_begin(tile)) &
+         bit) == 0;
+    const ClusterLights& lights = light.cluster_lights();
+    const glm::dvec3 normal(transfer.normals[place]);
+    const auto along = [&](const float* v) {
+        return normal.x * static_cast<double>(v[0]) + normal.y * static_cast<double>(v[1]) +
+               normal.z * static_cast<double>(v[2]);
+    };
+    if (is_whole || lights.is_spread(cluster)) {
+        const float* e = lights.vectors.data() + cluster * ClusterLights::Stride;
+        const glm::dvec3 given(along(e), along(e + 3), along(e + 6));
+        return count * (is_whole ? given : glm::max(given, 0.0));
+    }
+    const float* d = lights.directionals.data() + cluster * ClusterLights::DirectionalStride;
+    return count * std::max(along(d), 0.0) * glm::dvec3(d[3], d[4], d[5]);
+}
+
+/// Asks the few receivers of `places` alone.
+Given given_to_few(const Relighter& relighter, std::span<const glm::vec3> weights,
+                   std::span<const std::size_t> places) {
+    const prt::Transfer& transfer = relighter.transfer();
+    const ReceiverLight& light = relighter.receiver_light();
+    const std::span<const SharpLight> sharp = relighter.sharp_lights();
+    Given given{std::vector<glm::dvec3>(transfer.num_clusters()),
+                std::vector<glm::dvec3>(sharp.size())};
+    constexpr std::size_t Grain = 256;
+    files::parallel_for(
+        files::IndexRange<std::size_t>(0, given.by_clusters.size(), Grain),
+        [&](const auto& clusters) {
+            for (std::size_t cluster = clusters.begin(); cluster < clusters.end(); ++cluster)
+                for (const std::size_t place : places)
+                    given.by_clusters[cluster] += glm::dvec3(weights[transfer.order[place]]) *
+                                                  from_cluster(transfer, light, place, cluster);
+        });
+    for (std::size_t i = 0; i < sharp.size(); ++i) {
+        const std::span<const std::uint16_t> reached = light.traced().reached(sharp[i]);
+        for (const std::size_t place : places)
+            if ((reached[place / prt::BlockSize] >> (place % prt::BlockSize) & 1u) != 0)
+                given.by_sharp[i] += glm::dvec3(weights[transfer.order[place]]) *
+                                     sharp[i].irradiance.on(transfer.normals[place]) *
+                                     std::numbers::inv_pi;
+    }
+    return given;
+}
+
 Given given_to(const Relighter& relighter, std::span<const glm::vec3> weights) {
     if (relighter.transfer().have_no_surface)
         return given_to_points(relighter, weights);
+    // So many cost less than a walk through the whole transfer.
+    constexpr std::size_t Few = 64;
+    if (const std::vector<std::size_t> places =
+            weighted_places(relighter.transfer().order, weights);
+        places.size() <= Few)
+        return given_to_few(relighter, weights, places);
     LightDerivative derivative = light_derivative(relighter, weights);
     return {std::move(derivative.given_by_clusters), std::move(derivative.given_by_sharp)};
 }

@@ -20,7 +20,8 @@ namespace relumine::relight {
 /// surfaces, too.
 ///
 /// Unit:    radiance per sr.
-/// Cost:    as light_derivative() and, with bounces, as bounce_adjoint().
+/// Cost:    for up to 64 receivers their own transfer; for more, and with bounces, as
+///          light_derivative() and bounce_adjoint().
 /// Throws:  std::invalid_argument for no receivers, or an index out of range.
 [[nodiscard]] cubemap::CubeMap contribution_map(const Relighter& relighter,
                                                 std::span<const std::uint32_t> receivers,

@@ -13,50 +13,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "relight/kernels/block_loops-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace relumine::relight::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-/// Sums of float for the 16 receivers, [channel][receiver].
-using FloatSum = std::array<std::array<float, prt::BlockSize>, 3>;
-
-using Floats = hn::CappedTag<float, prt::BlockSize>;
-
-/// Normals of some of a block's receivers.
-template<class D>
-struct Normals {
-    using Vec = hn::Vec<D>;
-    Vec x, y, z;
-
-    Normals(const BlockNormals& normals, std::size_t lane)
-        : x(hn::LoadU(D(), normals.axes[0].data() + lane)),
-          y(hn::LoadU(D(), normals.axes[1].data() + lane)),
-          z(hn::LoadU(D(), normals.axes[2].data() + lane)) {}
-
-    /// Returns n.e.
-    [[nodiscard]] Vec dot(const float* e) const {
-        const D d;
-        const auto along_z = hn::Mul(z, hn::Set(d, e[2]));
-        return hn::MulAdd(x, hn::Set(d, e[0]), hn::MulAdd(y, hn::Set(d, e[1]), along_z));
-    }
-};
-
-template<class D>
-hn::Vec<D> load_counts(D d, const std::uint8_t* counts) {
-    const hn::Rebind<std::uint8_t, D> bytes;
-    const hn::Rebind<std::int32_t, D> integers;
-    return hn::ConvertTo(d, hn::PromoteTo(integers, hn::LoadU(bytes, counts)));
-}
-
-std::size_t first_bit(std::uint64_t bits) {
-    return static_cast<std::size_t>(std::countr_zero(bits));
-}
-
-/// Returns how many counts the mixed pairs of a word have.
-std::size_t num_counts(std::uint64_t mixed) {
-    return static_cast<std::size_t>(std::popcount(mixed)) * prt::BlockSize;
-}
 
 /// Returns how many counts of the word come before the counts of a cluster. `cluster` is its bit.
 std::size_t counts_before(std::uint64_t mixed, std::uint64_t cluster) {
@@ -79,31 +41,6 @@ struct PairWord {
     /// Begins at the first entry of `mixed`.
     const std::uint8_t* counts;
     const BlockNormals& normals;
-};
-
-/// Radiance of some receivers, per channel.
-struct Sum {
-    hn::Vec<Floats> red, green, blue;
-
-    // Written out: g++ compiles an implicit constructor without the instruction set of the
-    // functions around it.
-    Sum() : red(hn::Zero(Floats())), green(red), blue(red) {}
-    Sum(const FloatSum& sum, std::size_t lane)
-        : red(hn::LoadU(Floats(), sum[0].data() + lane)),
-          green(hn::LoadU(Floats(), sum[1].data() + lane)),
-          blue(hn::LoadU(Floats(), sum[2].data() + lane)) {}
-
-    void store(FloatSum& sum, std::size_t lane) const {
-        hn::StoreU(red, Floats(), sum[0].data() + lane);
-        hn::StoreU(green, Floats(), sum[1].data() + lane);
-        hn::StoreU(blue, Floats(), sum[2].data() + lane);
-    }
-    void add(hn::Vec<Floats> part, const float* colour) {
-        const Floats d;
-        red = hn::MulAdd(part, hn::Set(d, colour[0]), red);
-        green = hn::MulAdd(part, hn::Set(d, colour[1]), green);
-        blue = hn::MulAdd(part, hn::Set(d, colour[2]), blue);
-    }
 };
 
 /// Adds max(n.E, 0) of clusters.
@@ -167,17 +104,6 @@ void add_pairs(const PairWord& word, const WordLights& lights, FloatSum& result)
     }
 }
 
-void add(const FloatSum& sum, BlockLight& light) {
-    const hn::CappedTag<double, prt::BlockSize> d;
-    const hn::Rebind<float, decltype(d)> floats;
-    for (std::size_t channel = 0; channel < 3; ++channel)
-        for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
-            double* total = light.mixed[channel].data() + lane;
-            const auto more = hn::PromoteTo(d, hn::LoadU(floats, sum[channel].data() + lane));
-            hn::StoreU(hn::Add(hn::LoadU(d, total), more), d, total);
-        }
-}
-
 /// Sums the clusters of runs: a sum of all clusters before each run's end, minus a sum of those
 /// before its beginning. `edges` are the bits where a run begins, which is `visible` there, or
 /// ends. `prefix` begins at the word's first cluster.
@@ -232,13 +158,6 @@ double block_radiance(const BlockNormals& normals, const BlockLight& light,
         }
     }
     return static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, largest)));
-}
-
-/// Calls visit(block) for the set bits, blocks of a tile.
-template<class Visit>
-void for_blocks(std::uint64_t bits, const Visit& visit) {
-    for (; bits != 0; bits &= bits - 1)
-        visit(first_bit(bits));
 }
 
 /// Adds up the clusters that the chosen blocks of a tile see whole.

@@ -53,16 +53,18 @@ void measure_batch(const cubemap::CubeMap& environment, std::size_t count, LitSc
             environments[i].texels[texel] =
                 environment.texels[(texel + 977 * i) % environment.texels.size()];
     std::vector<glm::vec3> radiance(count * lit.scene().receivers.size());
-    const double single = bench::seconds_of([&] {
+    const double single = bench::processor_seconds_of([&] {
         for (std::size_t i = 0; i < count; ++i) {
             lit.light(environments[i]);
             std::copy(lit.radiance().begin(), lit.radiance().end(),
                       radiance.begin() + static_cast<std::ptrdiff_t>(i * lit.radiance().size()));
         }
     });
-    const double batch = bench::seconds_of([&] { relight_batch(lit, environments, radiance); });
+    const double batch =
+        bench::processor_seconds_of([&] { relight_batch(lit, environments, radiance); });
     fmt::print(
-        "\n{} environments at R = {}: {:.0f} ms one by one, {:.0f} ms at once, ratio {:.2f}\n",
+        "\n{} environments at R = {}: {:.0f} ms of processors one by one, {:.0f} ms at once, "
+        "ratio {:.2f}\n",
         count, environment.resolution, 1e3 * single, 1e3 * batch, batch / single);
 }
 

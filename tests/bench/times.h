@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <ctime>
 #include <vector>
 
 namespace relumine::bench {
@@ -34,6 +35,14 @@ double seconds_of(const Work& work) {
     const Stopwatch watch;
     work();
     return watch.seconds();
+}
+
+/// Of one run, on all processors together: other programs change it less.
+template<class Work>
+double processor_seconds_of(const Work& work) {
+    const std::clock_t start = std::clock();
+    work();
+    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 /// The median of 21 runs, after one that is not counted.
