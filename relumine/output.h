@@ -89,8 +89,8 @@ public:
 
     /// Looks from another camera from now on. Only for scenes of vertices.
     void look_from(const Camera& camera);
-    /// Dims and colours what the scene's lamps show of their own light, as LitScene::dim() does with
-    /// what they give.
+    /// Dims and colours what the scene's lamps show of their own light, as LitScene::dim() does
+    /// with what they give.
     void dim(std::vector<EmissionGain> gains);
 
     /// Keeps to an exposure that was chosen before.

@@ -93,3 +93,21 @@ packages=$(xargs dpkg-query -S <<<"$others" | sed 's/:.*//' | sort -u)
 echo "headers of ${packages//$'\n'/ }"
 wrong=$(grep -vE '^(libglm-dev|libc6-dev|linux-libc-dev|libstdc\+\+-[0-9]+-dev|libgcc-[0-9]+-dev|libclang-common-[0-9]+-dev)$' <<<"$packages" || true)
 [ -z "$wrong" ] || fail "the consumer read headers of ${wrong//$'\n'/ }"
+
+# The runtime asks for nothing but itself, by CMake as by pkg-config.
+if [ -e "$root/include/relumine_runtime.h" ]; then
+    example=$source/../../../examples/runtime.c
+    mkdir "$work/runtime"
+    printf '%s\n' 'cmake_minimum_required(VERSION 3.24)' 'project(engine LANGUAGES C)' \
+        'find_package(relumine COMPONENTS runtime REQUIRED)' "add_executable(engine $example)" \
+        'target_link_libraries(engine PRIVATE relumine::runtime m)' >"$work/runtime/CMakeLists.txt"
+    cmake -S "$work/runtime" -B "$work/runtime/build" -G Ninja -DCMAKE_PREFIX_PATH="$root" >"$work/runtime.log" 2>&1 &&
+        cmake --build "$work/runtime/build" >>"$work/runtime.log" 2>&1 || fail "$(cat "$work/runtime.log")"
+    # shellcheck disable=SC2046
+    cc "$example" $(PKG_CONFIG_PATH=$pkgconfig pkg-config --define-prefix --cflags --libs relumine-runtime) -lm \
+        -o "$work/runtime/by_pkg_config"
+    for engine in "$work/runtime/build/engine" "$work/runtime/by_pkg_config"; do
+        said=$(LD_LIBRARY_PATH=$(dirname "$(find "$root" -name librelumine_runtime.so)") "$engine" nothing.prt out.ply 2>&1 || true)
+        [[ "$said" == "open: nothing.prt: cannot read"* ]] || fail "$engine: $said"
+    done
+fi
