@@ -48,14 +48,25 @@ public:
     [[nodiscard]] std::span<const glm::vec3> diffuse_radiance() const {
         return diffuse_.empty() ? radiance_ : diffuse_;
     }
+    /// Returns the radiance without what the sharp lights give, for pictures that trace them
+    /// themselves. Black under Relighter::set_lights() with shadow rays.
+    ///
+    /// Shape:   [num_receivers], as radiance().
+    /// Cost:    O(receivers).
     [[nodiscard]] std::vector<glm::vec3> soft_radiance() const;
+    /// Returns the light of receivers with surfaces through each lobe, without colours, all of it
+    /// or without what the sharp lights give: reflect() makes radiance() or soft_radiance() of it.
+    ///
+    /// Shape:   [num_receivers], as radiance().
     [[nodiscard]] std::vector<prt::Lobes<glm::vec3>> lobes(bool with_sharp_lights) const;
     /// Returns what a point in space has from one cluster, without its sharp lights.
     [[nodiscard]] glm::dvec3 of_point_from_cluster(std::size_t place, std::size_t cluster) const;
-    /// Returns the arriving light as it was summed, [num_receivers][order^2] in the receivers' own
-    /// order.
+    /// Returns the arriving light as it was summed, not bound, all of it or without what the sharp
+    /// lights give.
+    ///
+    /// Shape:   [num_receivers][order^2], in the receivers' own order.
     [[nodiscard]] std::vector<glm::vec3> harmonics(bool with_sharp_lights) const;
-    /// 0: none are kept.
+    /// 0: none are kept. Points have at least 1.
     [[nodiscard]] std::uint32_t harmonic_order() const {
         return harmonics_ ? harmonics_->order() : 0;
     }

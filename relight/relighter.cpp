@@ -276,18 +276,6 @@ std::vector<glm::vec3> Relighter::harmonics() const {
     bind_to(transfer_, diffuse_radiance(), result);
     return result;
 }
-std::vector<glm::vec3> Relighter::summed_harmonics(bool with_sharp_lights) const {
-    return light_->harmonics(with_sharp_lights);
-}
-std::uint32_t Relighter::harmonic_order() const {
-    return light_->harmonic_order();
-}
-std::vector<glm::vec3> Relighter::soft_radiance() const {
-    return light_->soft_radiance();
-}
-std::vector<prt::Lobes<glm::vec3>> Relighter::lobes(bool with_sharp_lights) const {
-    return light_->lobes(with_sharp_lights);
-}
 std::span<const glm::vec3> Relighter::diffuse_radiance() const {
     return light_->diffuse_radiance();
 }

@@ -124,19 +124,6 @@ public:
     /// Shape:   [num_receivers] in the receivers' own order.
     [[nodiscard]] std::span<const glm::vec3> radiance() const;
 
-    /// Returns the radiance without what the sharp lights give, for pictures that trace them
-    /// themselves. Black under set_lights() with shadow rays.
-    ///
-    /// Shape:   [num_receivers], as radiance().
-    /// Cost:    O(receivers).
-    [[nodiscard]] std::vector<glm::vec3> soft_radiance() const;
-
-    /// Returns the light of receivers with surfaces through each lobe, without colours, all of it
-    /// or without what the sharp lights give: reflect() makes radiance() or soft_radiance() of it.
-    ///
-    /// Shape:   [num_receivers], as radiance().
-    [[nodiscard]] std::vector<prt::Lobes<glm::vec3>> lobes(bool with_sharp_lights) const;
-
     /// Radiance as if every receiver were Lambert of albedo 1: irradiance over pi.
     ///
     /// Shape:   [num_receivers] in the receivers' own order.
@@ -150,11 +137,6 @@ public:
     /// Throws:  std::logic_error for a Relighter without harmonics.
     /// Cost:    O(receivers).
     [[nodiscard]] std::vector<glm::vec3> harmonics() const;
-    /// Returns the same as it was summed, not bound, all of it or without what the sharp lights
-    /// give.
-    [[nodiscard]] std::vector<glm::vec3> summed_harmonics(bool with_sharp_lights) const;
-    /// 0: none are kept. Points have at least 1.
-    [[nodiscard]] std::uint32_t harmonic_order() const;
 
     /// Returns the radiance (albedo 1) of a surface that nothing shades: all light of each cluster,
     /// the sharp lights' included.

@@ -173,7 +173,7 @@ void save_harmonics(const LitScene& lit, const std::filesystem::path& path) {
     const Lighting lighting = lit.lighting(false);
     if (light.empty())
         return; // the first process writes
-    const std::size_t count = relight::num_harmonics(lit.harmonic_order());
+    const std::size_t count = light.size() / scene.receivers.size();
     const std::string extension = files::extension_of(path);
     if (extension == ".npy")
         save_npy(path, light, count);

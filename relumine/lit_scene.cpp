@@ -14,6 +14,7 @@
 #include "files/hash.h"
 #include "prt/clusters/dealt_tiles.h"
 #include "relight/harmonics/harmonics.h"
+#include "relight/receiver_light.h"
 #include "relight/sharp/light_packets.h"
 #include "relight/sharp/shadow_rays.h"
 #include "relumine/gathered.h"
@@ -159,7 +160,7 @@ LitScene::Added LitScene::light_of_list(std::span<const lights::DistantLight> li
             added.harmonics = relighter_->harmonics();
         added.lights = relight::picture_lights(*relighter_);
         if (!added.lights.empty())
-            added.soft = relighter_->soft_radiance();
+            added.soft = relighter_->receiver_light().soft_radiance();
         return added;
     }
     added.radiance = relight::radiance_under(lights, scene_->receivers.normals, shadow_rays_);
@@ -405,10 +406,11 @@ Lighting LitScene::lighting(bool is_drawn) const {
         result.lights.insert(result.lights.end(), added_.lights.begin(), added_.lights.end());
     }
     if (is_drawn && relighter_ && scene_->transfer.glossy && !scene_->mesh.textures.empty())
-        result.lobes = relighter_->lobes(result.lights.size() == added_.lights.size());
+        result.lobes =
+            relighter_->receiver_light().lobes(result.lights.size() == added_.lights.size());
     if (is_drawn && relighter_ && has_mapped_vertices(*scene_))
         result.harmonics =
-            relighter_->summed_harmonics(result.lights.size() == added_.lights.size());
+            relighter_->receiver_light().harmonics(result.lights.size() == added_.lights.size());
     result.open_floor =
         added_.open_floor +
         (relighter_ ? relighter_->open_radiance({0.0f, 1.0f, 0.0f}) : glm::dvec3(0.0));
@@ -416,7 +418,7 @@ Lighting LitScene::lighting(bool is_drawn) const {
         if (!relighter_)
             result.soft.resize(added_.soft.size());
         else if (result.lights.size() > added_.lights.size())
-            result.soft = relighter_->soft_radiance();
+            result.soft = relighter_->receiver_light().soft_radiance();
         else
             result.soft = copy_of(relighter_->radiance());
         add_surfaces(result.soft);
@@ -432,8 +434,9 @@ Lighting LitScene::lighting(bool is_drawn) const {
         if (has_soft)
             result.soft = gathered(*team_, order, result.soft);
         if (!result.harmonics.empty())
-            result.harmonics = gathered(*team_, order, result.harmonics,
-                                        relight::num_harmonics(relighter_->harmonic_order()));
+            result.harmonics =
+                gathered(*team_, order, result.harmonics,
+                         relight::num_harmonics(relighter_->receiver_light().harmonic_order()));
         if (!team_->is_first())
             return {};
     }

@@ -16,6 +16,7 @@
 #include "relight/adjoint/contribution.h"
 #include "relight/batch.h"
 #include "relight/pictures/framing.h"
+#include "relight/receiver_light.h"
 #include "relight/reference/path_tracer.h"
 #include "relight/sharp/light_packets.h"
 
@@ -178,7 +179,8 @@ std::optional<Verification::Surface> verify_picture(const LitScene& lit,
     const auto lights = relight::picture_lights(relighter);
     if (lights.empty() || lit.scene().transfer.glossy)
         return verify_points(lit, std::move(points), relighter.diffuse_radiance(), {}, options);
-    return verify_points(lit, std::move(points), relighter.soft_radiance(), lights, options);
+    return verify_points(lit, std::move(points), relighter.receiver_light().soft_radiance(), lights,
+                         options);
 }
 
 double sum_of(std::span<const glm::vec3> radiance) {
@@ -272,7 +274,7 @@ Share lit_by(const LitScene& lit, const cubemap::Region& region) {
     result.radiance.assign(part.radiance().begin(), part.radiance().end());
     result.lights = relight::picture_lights(part);
     if (!result.lights.empty())
-        result.soft = part.soft_radiance();
+        result.soft = part.receiver_light().soft_radiance();
     if (!lit.bounces().bounced().empty()) {
         SceneBounces bounces;
         bounces.set(lit.scene(), lit.bounces().surfaces());

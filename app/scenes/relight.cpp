@@ -121,6 +121,52 @@ void check_harmonics(const std::string& path, const Scene& scene) {
     }
 }
 
+/// A picture that was made.
+struct Lit {
+    const Given& given;
+    const LitScene& lit;
+    const Painter& painter;
+    std::size_t num_lights;
+    UpdateReport times;
+    std::optional<BounceReport> bounces;
+    double seconds_load_scene, seconds_light, seconds_output, seconds;
+};
+
+void report_light(const RelightArguments& options, Session& session, const Lit& made) {
+    const Scene& scene = made.lit.scene();
+    const UpdateReport& times = made.times;
+    session.say(fmt::format(
+        "{}: {} under {} in {:.2f} s{}: scene {:.0f}, {}bin {:.1f}, trace {:.1f} ({}), relight "
+        "{:.1f}{}, output {:.0f} ms{}{}",
+        options.output.path, files::counted(scene.receivers.num_own(), "receiver"),
+        name_of(options, made.lit, made.num_lights), made.seconds,
+        session.team != nullptr ? fmt::format(" by {} processes", session.team->part().count) : "",
+        1e3 * made.seconds_load_scene, made.given.text, 1e3 * times.seconds_bin,
+        1e3 * times.seconds_trace, files::counted(times.num_sharp_lights, "light"),
+        1e3 * times.seconds_relight, text_of(made.bounces), 1e3 * made.seconds_output,
+        options.scene.clusters_only ? ", through the clusters" : "",
+        options.output.exposure_text(made.painter)));
+    Report report = {{"receivers", scene.receivers.num_own()},
+                     {"clusters", scene.transfer.num_clusters()},
+                     {"traced", !options.scene.clusters_only},
+                     {"seconds_load_scene", made.seconds_load_scene},
+                     {"seconds_light", made.seconds_light},
+                     {"seconds_bin", times.seconds_bin},
+                     {"seconds_trace", times.seconds_trace},
+                     {"seconds_relight", times.seconds_relight},
+                     {"bounces", made.bounces ? made.bounces->num_bounces : 0},
+                     {"seconds_bounces", made.bounces ? made.bounces->seconds : 0.0},
+                     {"sharp_lights", times.num_sharp_lights},
+                     {"exposure", made.painter.exposure_ev(options.output.path)},
+                     {"seconds_output", made.seconds_output},
+                     {"seconds", made.seconds}};
+    files::update(report, made.given.report);
+    if (session.team != nullptr)
+        files::update(report,
+                      {{"processes", session.team->part().count}, {"peak_bytes", peak_bytes()}});
+    session.report(report);
+}
+
 /// Lights the scene with an environment, a list, or both; alone or with the processes of a team,
 /// whose first one writes the output.
 void light_scene(const RelightArguments& options, Session& session) {
@@ -171,36 +217,17 @@ void light_scene(const RelightArguments& options, Session& session) {
         save_harmonics(lit, options.harmonics);
     const double seconds_output = watch.lap();
 
-    session.say(fmt::format(
-        "{}: {} under {} in {:.2f} s{}: scene {:.0f}, {}bin {:.1f}, trace {:.1f} ({}), relight "
-        "{:.1f}{}, output {:.0f} ms{}{}",
-        options.output.path, files::counted(scene.receivers.num_own(), "receiver"),
-        name_of(options, lit, num_lights), watch.total(),
-        session.team != nullptr ? fmt::format(" by {} processes", session.team->part().count) : "",
-        1e3 * seconds_load_scene, given.text, 1e3 * times.seconds_bin, 1e3 * times.seconds_trace,
-        files::counted(times.num_sharp_lights, "light"), 1e3 * times.seconds_relight,
-        text_of(bounces), 1e3 * seconds_output,
-        options.scene.clusters_only ? ", through the clusters" : "",
-        options.output.exposure_text(painter)));
-    Report report = {{"receivers", scene.receivers.num_own()},
-                     {"clusters", scene.transfer.num_clusters()},
-                     {"traced", !options.scene.clusters_only},
-                     {"seconds_load_scene", seconds_load_scene},
-                     {"seconds_light", seconds_light},
-                     {"seconds_bin", times.seconds_bin},
-                     {"seconds_trace", times.seconds_trace},
-                     {"seconds_relight", times.seconds_relight},
-                     {"bounces", bounces ? bounces->num_bounces : 0},
-                     {"seconds_bounces", bounces ? bounces->seconds : 0.0},
-                     {"sharp_lights", times.num_sharp_lights},
-                     {"exposure", painter.exposure_ev(options.output.path)},
-                     {"seconds_output", seconds_output},
-                     {"seconds", watch.total()}};
-    files::update(report, given.report);
-    if (session.team != nullptr)
-        files::update(report,
-                      {{"processes", session.team->part().count}, {"peak_bytes", peak_bytes()}});
-    session.report(report);
+    report_light(options, session,
+                 {.given = given,
+                  .lit = lit,
+                  .painter = painter,
+                  .num_lights = num_lights,
+                  .times = times,
+                  .bounces = bounces,
+                  .seconds_load_scene = seconds_load_scene,
+                  .seconds_light = seconds_light,
+                  .seconds_output = seconds_output,
+                  .seconds = watch.total()});
 }
 
 /// Lights a part of the receivers.

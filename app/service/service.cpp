@@ -87,6 +87,7 @@ struct Service::Impl {
     };
     /// All requests.
     static const std::vector<Request>& requests();
+    static const Request& request_named(const std::string& name);
 
     // The requests. Each sets the report.
     void declare_scene(Command& command);
@@ -295,19 +296,22 @@ void Service::Impl::declare_help(Command& command) {
     });
 }
 
+const Service::Impl::Request& Service::Impl::request_named(const std::string& name) {
+    std::vector<std::string_view> names;
+    for (const Request& each : requests()) {
+        if (each.name == name)
+            return each;
+        names.emplace_back(each.name);
+    }
+    throw UsageError("do", fmt::format("expected a request, got '{}'{}", name,
+                                       files::did_you_mean(name, names)));
+}
+
 /// Makes a command line of the request's members and runs it: so they are checked as there.
 void Service::Impl::perform(const JsonReader& reader, const Report& root) {
     const Report::Object& members = reader.object(root, "a request");
     const std::string& name = reader.string(reader.required(root, "do"), "\"do\"");
-    std::vector<std::string_view> names;
-    for (const Request& each : requests())
-        names.emplace_back(each.name);
-    const auto index =
-        static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-    if (index == names.size())
-        throw UsageError("do", fmt::format("expected a request, got '{}'{}", name,
-                                           files::did_you_mean(name, names)));
-    const Request& request = requests()[index];
+    const Request& request = request_named(name);
     CommandLine line("relumine", "", "");
     Command command = line.root().add_command(request.name, request.description);
     (this->*request.declare)(command);

@@ -211,9 +211,24 @@ void HalfEdgeMesh::simplify(std::size_t num_vertices, float largest_turn) {
     decimater.decimate(num_now - num_vertices);
 }
 
+namespace {
+
+/// Copies what belongs to no vertex and no triangle.
+void copy_lists(const TriangleMesh& from, TriangleMesh& to) {
+    to.materials = from.materials;
+    to.groups = from.groups;
+    to.textures = from.textures;
+    to.lights = from.lights;
+    to.missing = from.missing;
+    to.warnings = from.warnings;
+}
+
+} // namespace
+
 TriangleMesh HalfEdgeMesh::mesh() const {
     const TriangleMesh& source = impl_->source;
     TriangleMesh result;
+    copy_lists(source, result);
     std::vector<bool> stays(source.num_vertices(), true);
     for (const Triangle& triangle : source.triangles)
         for (const std::uint32_t vertex : triangle)
@@ -266,12 +281,6 @@ TriangleMesh HalfEdgeMesh::mesh() const {
         if (!source.triangle_groups.empty())
             result.triangle_groups.push_back(source.triangle_groups[from]);
     }
-    result.materials = source.materials;
-    result.groups = source.groups;
-    result.textures = source.textures;
-    result.lights = source.lights;
-    result.missing = source.missing;
-    result.warnings = source.warnings;
     return result;
 }
 

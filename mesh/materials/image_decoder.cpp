@@ -140,39 +140,9 @@ void check_size(std::span<const std::byte> file, std::uint64_t width, std::uint6
                         width, height, file.size()));
 }
 
-/// Decodes to bytes of RGB (3 channels) or RGBA (4; not JPEG).
-DecodedImage decode(std::span<const std::byte> file, int num_channels, ImageBudget& budget) {
-    if (file.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-        throw std::runtime_error(
-            fmt::format("expected an image below 2 GiB, got {} bytes", file.size()));
-    DecodedImage image{.bytes = {nullptr, std::free}};
-    std::uint64_t bytes_per_pixel = static_cast<std::uint64_t>(num_channels);
-    const auto check = [&](std::uint32_t width, std::uint32_t height) {
-        check_size(file, width, height, bytes_per_pixel, budget);
-        image.width = width;
-        image.height = height;
-    };
-    const auto allocate = [&](std::uint32_t width, std::uint32_t height) {
-        check(width, height);
-        const std::size_t size =
-            std::size_t{width} * height * static_cast<std::size_t>(num_channels);
-        image.bytes.reset(static_cast<std::uint8_t*>(std::malloc(size)));
-        if (!image.bytes)
-            throw std::bad_alloc();
-        return image.bytes.get();
-    };
-    if (as_text(file).starts_with("\xabKTX 20\xbb"))
-        throw std::runtime_error(
-            "expected a PNG, JPEG, WebP, BMP or TGA image, got KTX 2, which is not read");
-    const Format format = format_of(file);
-    if (format == Format::Jpeg) {
-        decode_jpeg(file, allocate);
-        return image;
-    }
-    if (format == Format::WebP) {
-        decode_webp(file, num_channels == 4, allocate);
-        return image;
-    }
+/// Decodes what stb_image reads: PNG, BMP, TGA and some older ones.
+void decode_by_stb(std::span<const std::byte> file, int num_channels, ImageBudget& budget,
+                   DecodedImage& image) {
     const auto* bytes = reinterpret_cast<const stbi_uc*>(file.data());
     const int num_bytes = static_cast<int>(file.size());
     int width = 0, height = 0, channels = 0;
@@ -181,13 +151,14 @@ DecodedImage decode(std::span<const std::byte> file, int num_channels, ImageBudg
         throw std::runtime_error(fmt::format(
             "expected a PNG, JPEG, WebP, BMP or TGA image, got {} bytes of something else",
             file.size()));
-    if (format == Format::Png)
+    if (format_of(file) == Format::Png)
         check_png_chunks(file);
     const bool is_16_bit = stbi_is_16_bit_from_memory(bytes, num_bytes) != 0;
-    bytes_per_pixel =
-        std::max(bytes_per_pixel, static_cast<std::uint64_t>(channels) * (is_16_bit ? 2 : 1));
-    check(static_cast<std::uint32_t>(std::max(width, 0)),
-          static_cast<std::uint32_t>(std::max(height, 0)));
+    const auto bytes_per_pixel =
+        static_cast<std::uint64_t>(std::max(num_channels, channels * (is_16_bit ? 2 : 1)));
+    image.width = static_cast<std::uint32_t>(std::max(width, 0));
+    image.height = static_cast<std::uint32_t>(std::max(height, 0));
+    check_size(file, image.width, image.height, bytes_per_pixel, budget);
     // Pieces double where they were too small. Rows have a byte more, and interlaced ones up to 8
     // pixels.
     largest_piece = 2 * (file.size() + 4096 +
@@ -204,6 +175,34 @@ DecodedImage decode(std::span<const std::byte> file, int num_channels, ImageBudg
                         excerpt(is_piece_refused    ? "more than its pixels take"
                                 : reason == nullptr ? "an unknown fault"
                                                     : reason))); // may quote the file
+}
+
+/// Decodes to bytes of RGB (3 channels) or RGBA (4; not JPEG).
+DecodedImage decode(std::span<const std::byte> file, int num_channels, ImageBudget& budget) {
+    if (file.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+        throw std::runtime_error(
+            fmt::format("expected an image below 2 GiB, got {} bytes", file.size()));
+    if (as_text(file).starts_with("\xabKTX 20\xbb"))
+        throw std::runtime_error(
+            "expected a PNG, JPEG, WebP, BMP or TGA image, got KTX 2, which is not read");
+    DecodedImage image{.bytes = {nullptr, std::free}};
+    const auto allocate = [&](std::uint32_t width, std::uint32_t height) {
+        const auto pixel = static_cast<std::uint64_t>(num_channels);
+        check_size(file, width, height, pixel, budget);
+        image.width = width;
+        image.height = height;
+        image.bytes.reset(static_cast<std::uint8_t*>(std::malloc(pixel * width * height)));
+        if (!image.bytes)
+            throw std::bad_alloc();
+        return image.bytes.get();
+    };
+    const Format format = format_of(file);
+    if (format == Format::Jpeg)
+        decode_jpeg(file, allocate);
+    else if (format == Format::WebP)
+        decode_webp(file, num_channels == 4, allocate);
+    else
+        decode_by_stb(file, num_channels, budget, image);
     return image;
 }
 

@@ -78,20 +78,11 @@ glm::vec3 normal_towards(const mesh::TriangleMesh& mesh, const MeshPoint& point,
     return glm::dot(face, to_eye) < 0.0f ? -normal : normal;
 }
 
-} // namespace
-
-PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& rays,
-                               const PixelView& view, const Work& work) {
+/// Returns what the samples of each row of pixels see: the first surface, or all that a thin one
+/// lets through.
+std::vector<std::vector<Seen>> seen_rows(const RayScene& rays, const PixelView& view,
+                                         const Work& work) {
     const PictureRays picture(view.camera, view.width, view.height, view.samples_per_axis);
-    PixelReceivers result{.receivers = {},
-                          .layout = {.camera = view.camera,
-                                     .width = view.width,
-                                     .height = view.height,
-                                     .samples_per_axis = view.samples_per_axis}};
-    if (result.layout.num_samples() > MaxLayoutPlaces)
-        throw std::invalid_argument(fmt::format("expected at most {} samples in all, got {}",
-                                                MaxLayoutPlaces, result.layout.num_samples()));
-
     std::vector<std::vector<Seen>> rows(view.height);
     const auto trace_row = [&](std::uint32_t y) {
         std::vector<RayScene::Layer> layers;
@@ -121,7 +112,41 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
         if (work.on_progress)
             work.on_progress(std::min(1.0, static_cast<double>(y + Band) / view.height));
     }
+    return rows;
+}
 
+/// Writes the receiver of what a sample sees to its place.
+void place_receiver(const mesh::TriangleMesh& mesh, const glm::vec3& eye, const Seen& seen,
+                    std::size_t place, Receivers& receivers) {
+    const glm::vec3 position = value_at(mesh, mesh.positions, seen.point);
+    // A hit at the eye itself has no direction to the eye. It takes its normal.
+    const glm::vec3 way = eye - position;
+    const glm::vec3 to_eye =
+        glm::length(way) > 0.0f ? glm::normalize(way) : face_normal(mesh, seen.point.triangle);
+    const glm::vec3 normal = normal_towards(mesh, seen.point, to_eye);
+    // The smooth surface is before the facets as seen from its front.
+    const bool is_front = normal == shading_normal(mesh, seen.point);
+    receivers.positions[place] = is_front ? smooth_position(mesh, seen.point) : position;
+    receivers.normals[place] = mapped_towards(mesh, seen.point, normal, is_front, to_eye);
+    receivers.to_eye[place] = to_eye;
+    receivers.points[place] = seen.point;
+    receivers.veils[place] = seen.veil;
+}
+
+} // namespace
+
+PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& rays,
+                               const PixelView& view, const Work& work) {
+    PixelReceivers result{.receivers = {},
+                          .layout = {.camera = view.camera,
+                                     .width = view.width,
+                                     .height = view.height,
+                                     .samples_per_axis = view.samples_per_axis}};
+    if (result.layout.num_samples() > MaxLayoutPlaces)
+        throw std::invalid_argument(fmt::format("expected at most {} samples in all, got {}",
+                                                MaxLayoutPlaces, result.layout.num_samples()));
+
+    const std::vector<std::vector<Seen>> rows = seen_rows(rays, view, work);
     std::vector<std::size_t> first(rows.size() + 1, 0);
     for (std::size_t y = 0; y < rows.size(); ++y)
         first[y + 1] = first[y] + rows[y].size();
@@ -138,23 +163,8 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
     files::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
         std::size_t receiver = first[y];
         for (const Seen& seen : rows[y]) {
-            const glm::vec3 position = value_at(mesh, mesh.positions, seen.point);
-            // A hit at the eye itself has no direction to the eye. It takes its normal.
-            const glm::vec3 way = view.camera.eye - position;
-            const glm::vec3 to_eye = glm::length(way) > 0.0f
-                                         ? glm::normalize(way)
-                                         : face_normal(mesh, seen.point.triangle);
-            const glm::vec3 normal = normal_towards(mesh, seen.point, to_eye);
-            // The smooth surface is before the facets as seen from its front.
-            const bool is_front = normal == shading_normal(mesh, seen.point);
-            receivers.positions[receiver] = is_front ? smooth_position(mesh, seen.point) : position;
-            receivers.normals[receiver] =
-                mapped_towards(mesh, seen.point, normal, is_front, to_eye);
-            receivers.to_eye[receiver] = to_eye;
-            receivers.points[receiver] = seen.point;
-            result.layout.samples[receiver] = seen.sample;
-            receivers.veils[receiver] = seen.veil;
-            ++receiver;
+            place_receiver(mesh, view.camera.eye, seen, receiver, receivers);
+            result.layout.samples[receiver++] = seen.sample;
         }
     });
     if (std::all_of(receivers.veils.begin(), receivers.veils.end(),

@@ -437,13 +437,10 @@ void bind_relighters(py::module_& module) {
              })
         .def("harmonics",
              [](Lit& own) {
-                 std::size_t count = 0;
-                 std::vector<glm::vec3> light = quickly(own, [&](LitScene& lit) {
-                     count = relight::num_harmonics(lit.harmonic_order());
-                     return lit.harmonics();
-                 });
-                 const auto width = static_cast<py::ssize_t>(count);
-                 const auto height = static_cast<py::ssize_t>(light.size()) / width;
+                 std::vector<glm::vec3> light =
+                     quickly(own, [](LitScene& lit) { return lit.harmonics(); });
+                 const auto height = static_cast<py::ssize_t>(own.scene().receivers.size());
+                 const auto width = static_cast<py::ssize_t>(light.size()) / height;
                  return owned(std::move(light), {height, width});
              })
         .def("save_harmonics",
