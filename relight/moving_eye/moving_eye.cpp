@@ -28,18 +28,25 @@ namespace {
 /// errors of a hundred cells add up like so many random numbers.
 constexpr float ShareOfCell = 0.1f;
 
+/// Its cells are half as wide as the lobe of NarrowestLiveRoughness.
+constexpr std::uint32_t DeepestLevel = 8;
+
 /// Returns the level whose cells are no wider than half of the lobe of the smallest alpha.
 std::uint32_t level_for(float alpha) {
     const float cells = std::numbers::pi_v<float> / alpha;
     const auto level = static_cast<std::uint32_t>(std::ceil(std::log2(cells)));
-    return std::clamp(level, 5u, std::uint32_t{prt::MaxGlossyLevel} - 1);
+    return std::clamp(level, 5u, DeepestLevel);
+}
+
+bool is_ggx(const prt::Surface& surface) {
+    return prt::facts_of(surface.highlight).is_roughness;
 }
 
 float smallest_alpha(std::span<const prt::Surface> surfaces) {
     float alpha = 2.0f;
     for (const prt::Surface& surface : surfaces)
-        if (surface.highlight != prt::Highlight::None)
-            alpha = std::min(alpha, 0.5f * prt::narrowness_of(surface));
+        if (is_ggx(surface))
+            alpha = std::min(alpha, prt::ggx_alpha(surface.roughness_or_exponent));
     return alpha;
 }
 
@@ -52,7 +59,7 @@ struct MovingEye::Impl {
           result(of.num_receivers()) {
         for (const std::uint32_t receiver : of.order) {
             positions.push_back(at[receiver]);
-            surfaces.push_back(shiny[receiver]);
+            surfaces.push_back(is_ggx(shiny[receiver]) ? shiny[receiver] : prt::Surface());
         }
     }
 
@@ -163,8 +170,7 @@ MovingEye::MovingEye(const prt::Transfer& transfer, std::span<const glm::vec3> p
                      std::span<const prt::Surface> surfaces) {
     if (positions.size() != transfer.num_receivers() || surfaces.size() != positions.size())
         throw std::invalid_argument("expected one position and one surface per receiver");
-    if (std::all_of(surfaces.begin(), surfaces.end(),
-                    [](const auto& surface) { return surface.highlight == prt::Highlight::None; }))
+    if (std::none_of(surfaces.begin(), surfaces.end(), is_ggx))
         throw std::invalid_argument("expected surfaces with highlights, got none");
     impl_ = std::make_unique<Impl>(transfer, positions, surfaces);
 }

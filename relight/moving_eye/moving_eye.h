@@ -14,6 +14,9 @@
 
 namespace relumine::relight {
 
+/// A narrower highlight comes out wider: cells are a third of a degree wide at least.
+inline constexpr float NarrowestLiveRoughness = 0.11f;
+
 struct EyeOptions {
     /// Relative L2 error of the radiance that cuts are made for.
     float tolerance = 0.01f;
@@ -38,10 +41,10 @@ struct EyeReport {
 class MovingEye {
 public:
     /// The transfer must outlive this object. Its own surfaces are those of light without
-    /// highlights; `surfaces` have them.
+    /// highlights; `surfaces` have them. Other highlights than GGX, coats and sheen are left out.
     ///
     /// Shape:   positions and surfaces are [num_receivers] in the receivers' own order.
-    /// Throws:  std::invalid_argument for other sizes, or where no surface has a highlight.
+    /// Throws:  std::invalid_argument for other sizes, or where no surface has a GGX highlight.
     /// Cost:    a second for half a million receivers.
     /// Memory:  see num_bytes().
     MovingEye(const prt::Transfer& transfer, std::span<const glm::vec3> positions,
