@@ -12,6 +12,7 @@
 #include "app/commands.h"
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
+#include "app/options/eye_options.h"
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
@@ -33,6 +34,7 @@ struct Options {
     std::string screenshot;
     /// The window's size, the exposure, the tone curve and the floor of pictures count.
     relumine::OutputOptions picture = {.width = 1440, .height = 860};
+    EyeOptions eye = {.budget_ms = 25.0};
 };
 
 #ifdef RELUMINE_VIEWER_MISSING
@@ -86,6 +88,7 @@ void report(const viewer::ViewReport& result, const viewer::ViewState& state, co
                     {"clusters", lit.relighter().transfer().num_clusters()},
                     {"receivers", lit.radiance().size()},
                     {"face_resolution", environment_of(lit).resolution},
+                    {"live_highlights", state.live_eye != nullptr},
                     {"drag_events", seconds.size()},
                     {"seconds_drag_mean", mean},
                     {"seconds_drag_worst", worst},
@@ -129,6 +132,11 @@ void run(const Options& options, Session& session) {
                             .shading = shading_of(lit.scene(), options.picture.emission),
                             .picture = options.picture,
                             .load_environment = load};
+    state.eye_options = options.eye;
+    if (has_live_highlights(lit.scene())) {
+        state.live_eye = std::make_unique<LiveEye>(lit);
+        warn_of_smooth_surfaces(*state.live_eye, session);
+    }
     if (!options.layers.empty() && !viewer::open(state, options.layers))
         throw std::runtime_error(state.message);
     state.scene_look.exposure_ev = static_cast<float>(
@@ -158,6 +166,8 @@ void add_view(Command& program, Session& session) {
             each.name == "--tone-map" || each.name == "--floor" || each.name == "--photo-height" ||
             each.name == "--emission")
             command.add(std::move(each));
+    command.add(glossy_tolerance_row(options->eye));
+    command.add(glossy_budget_row(options->eye));
     command.add(size_row(options->picture.width, options->picture.height, "the window's size",
                          {.min = 320}));
     command.add(row("--script", options->script,

@@ -191,10 +191,31 @@ double sum_of(std::span<const glm::vec3> radiance) {
     return sum;
 }
 
+/// Compares the light towards an eye.
+Verification verify_eye(const LitScene& lit, const glm::vec3& eye, const VerifyOptions& options) {
+    if (!lit.bounces().bounced().empty() || !lit.scene().lamps.empty())
+        throw std::invalid_argument("expected the direct light of an environment for an eye");
+    const Scene& scene = lit.scene();
+    LiveEye live(lit);
+    prt::Receivers seen = scene.receivers;
+    seen.surfaces.assign(live.surfaces().begin(), live.surfaces().end());
+    prt::look_from(seen, eye);
+    Verification result;
+    result.receivers = relight::random_receivers(scene.transfer, options.num_samples, options.seed);
+    result.of_file = file_of(lit) != nullptr;
+    const std::vector<glm::dvec3> exact = exact_radiance(
+        lit, seen, result.receivers, options,
+        {.bias = scene.settings.bias, .stop = options.stop, .on_progress = options.on_progress});
+    result.error = relight::compare(result.receivers, exact, live.look(eye, options.eye_options));
+    return result;
+}
+
 } // namespace
 
 Verification verify(const LitScene& lit, const VerifyOptions& options) {
     require_environment(lit);
+    if (options.eye)
+        return verify_eye(lit, *options.eye, options);
     const Scene& scene = lit.scene();
     Verification result;
     result.receivers = relight::random_receivers(scene.transfer, options.num_samples, options.seed,

@@ -21,6 +21,7 @@
 #include "relight/sharp/sharp_lights.h"
 #include "relumine/lighting.h"
 #include "relumine/lit_scene.h"
+#include "relumine/live_eye.h"
 
 namespace relumine {
 
@@ -34,6 +35,10 @@ struct VerifyOptions {
     /// Paths of each receiver that bounces and lamps are compared with; only after bounce(), and of
     /// scenes with lamps
     std::uint32_t num_paths = 256;
+    /// Where the scene has live highlights (relumine/live_eye.h): light towards this eye is
+    /// compared, at the vertices alone and without bounces, and how its cuts are made.
+    std::optional<glm::vec3> eye = {};
+    EyeOptions eye_options = {};
     /// Processes that share the work, each with the whole scene in the same light: each integrates
     /// some of the points, and all get the same result.
     prt::Team& team = prt::alone();
@@ -98,7 +103,9 @@ struct Share {
 /// resampling. Under a map, or when edits changed the environment, the map's texels are. After
 /// bounce() its light is compared with a path tracer, which shares nothing but the rays.
 ///
-/// Throws:  std::logic_error unless an environment lights the scene; Cancelled.
+/// Throws:  std::logic_error unless an environment lights the scene; Cancelled;
+///          std::invalid_argument for an eye where there are no live highlights, or other light
+///          than the environment's.
 /// Cost:    half a million rays for each receiver, or 6 R^2: seconds for 2000 of them.
 [[nodiscard]] Verification verify(const LitScene& lit, const VerifyOptions& options = {});
 

@@ -7,6 +7,8 @@
 #include <thread>
 #include <utility>
 
+#include "relumine/output_options.h"
+
 namespace relumine::viewer {
 
 namespace {
@@ -16,10 +18,14 @@ constexpr std::uint32_t FinestSamples = 3;
 relight::Picture drawn(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
                        const Shading& shading, const Moment& moment, std::uint32_t samples_per_axis,
                        const std::stop_token& stop) {
-    std::vector<glm::vec3> colors = moment.radiance;
-    const std::size_t num_colored = moment.open_floor ? shading.floor.first_vertex : colors.size();
-    for (std::size_t i = 0; i < std::min(colors.size(), num_colored); ++i)
-        colors[i] *= shading.albedo[i];
+    const auto shown = [&](std::vector<glm::vec3> colors) {
+        const std::size_t num_colored =
+            moment.open_floor ? shading.floor.first_vertex : colors.size();
+        for (std::size_t i = 0; i < std::min(colors.size(), num_colored); ++i)
+            colors[i] *= shading.albedo[i];
+        return colors;
+    };
+    const std::vector<glm::vec3> colors = shown(moment.radiance);
     std::vector<prt::Lobes<glm::vec3>> lobes = moment.lobes;
     if (!lobes.empty())
         relight::add_rest(moment.radiance, shading.surfaces, shading.eye_cosines, lobes);
@@ -30,18 +36,28 @@ relight::Picture drawn(const mesh::TriangleMesh& mesh, const prt::RayScene& rays
                                      .samples_per_axis = samples_per_axis,
                                      .stop = stop},
                                     shading.floor, 0);
-    const relight::MeshLight light{.radiance = colors,
-                                   .lights = moment.lights,
-                                   .albedo = shading.albedo,
-                                   .emission = shading.emission,
-                                   .emission_gains = shading.emission_gains,
-                                   .surfaces = shading.surfaces,
-                                   .textures = &shading.textures,
-                                   .lobes = lobes,
-                                   .harmonics = harmonics,
-                                   .eye = shading.eye,
-                                   .bias = shading.bias,
-                                   .open_floor = moment.open_floor};
+    relight::MeshLight light{.radiance = colors,
+                             .lights = moment.lights,
+                             .albedo = shading.albedo,
+                             .emission = shading.emission,
+                             .emission_gains = shading.emission_gains,
+                             .surfaces = shading.surfaces,
+                             .textures = &shading.textures,
+                             .lobes = lobes,
+                             .harmonics = harmonics,
+                             .eye = shading.eye,
+                             .bias = shading.bias,
+                             .open_floor = moment.open_floor};
+    std::optional<relight::Reflections> reflections;
+    std::vector<glm::vec3> mirrored;
+    if (moment.environment != nullptr) {
+        reflections.emplace(rays, shading.bias, OutputOptions{}.highlight_rays, *moment.environment,
+                            light.lights.first(moment.num_environment_lights));
+        mirrored = shown(moment.mirrored);
+        light.reflections = &*reflections;
+        light.mirrored = mirrored;
+        light.eye = moment.camera.eye;
+    }
     return moment.backdrop ? view.draw(light, moment.backdrop) : view.cut_out(light);
 }
 

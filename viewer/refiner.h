@@ -48,6 +48,11 @@ struct Moment {
     std::vector<glm::vec3> harmonics = {};
     /// As relight::MeshLight has it.
     std::optional<glm::vec3> open_floor = {};
+    /// Of surfaces that mirror: as Lighting has them, radiance of all light for albedo 1. Null: the
+    /// picture has no highlights by rays.
+    std::shared_ptr<const cubemap::CubeMap> environment = {};
+    std::vector<glm::vec3> mirrored = {};
+    std::size_t num_environment_lights = 0;
     /// Empty: the picture has alpha.
     relight::Backdrop backdrop;
 };

@@ -51,6 +51,11 @@ Moment moment_of(const ViewState& state, const PixelRectangle& size) {
     moment.open_floor = open_floor(scene, lighting, look, camera.eye());
     moment.lobes = std::move(lighting.lobes);
     moment.harmonics = std::move(lighting.harmonics);
+    if (state.shading.textures.has_mirrors() && lighting.environment != nullptr) {
+        moment.mirrored.assign(lighting.radiance.begin(), lighting.radiance.end());
+        moment.environment = std::make_shared<const cubemap::CubeMap>(*lighting.environment);
+        moment.num_environment_lights = lighting.num_environment_lights;
+    }
     moment.lights = std::move(lighting.lights);
     moment.radiance = std::move(lighting.soft);
     if (moment.lights.empty())
@@ -72,19 +77,28 @@ public:
     /// Sends changes by edits to the graphics card.
     void update(ViewState& state) {
         const LitScene& lit = state.desk.lit();
-        if (const auto version = state.desk.version(); version != version_) {
-            version_ = version;
+        const auto version = state.desk.version();
+        const bool is_relit = version != version_;
+        version_ = version;
+        if (is_relit) {
             if (const std::vector<EmissionGain>& gains = lit.lamps().gains(); gains != gains_)
                 take_emission(state.shading, lit.scene(), gains);
-            std::vector<glm::vec3> colors(lit.radiance().begin(), lit.radiance().end());
             find_floor(state);
+            texture_.upload(environment_of(lit), state.desk.take_changed_texels());
+            if (state.live_eye)
+                state.live_eye->take_light();
+        }
+        if (const glm::vec3 eye = state.camera.eye(); is_relit || (state.live_eye && eye != eye_)) {
+            eye_ = eye;
+            const std::span<const glm::vec3> seen =
+                state.live_eye ? state.live_eye->look(eye, state.eye_options) : lit.radiance();
+            std::vector<glm::vec3> colors(seen.begin(), seen.end());
             for (std::size_t i = 0; i < colors.size(); ++i)
                 if (floor_.look == FloorLook::Grey || i < state.shading.floor.first_vertex)
                     colors[i] *= state.shading.albedo[i];
             for (std::size_t i = 0; i < state.shading.emission.size(); ++i)
                 colors[i] += state.shading.emission[i];
             scene_.upload_radiance(colors);
-            texture_.upload(environment_of(lit), state.desk.take_changed_texels());
         }
         // The heat map stays as it was while a layer is dragged: it costs as much as a relighting.
         if (state.heat_is_stale && state.receiver && state.environment_look.heat &&
@@ -174,6 +188,8 @@ private:
     std::uint64_t version_ = 0;
     /// Those of the shading.
     std::vector<EmissionGain> gains_;
+    /// That the colours are for.
+    glm::vec3 eye_{0.0f};
     Scenery seen_;
     Clock::time_point since_ = Clock::now();
     bool is_refining_ = false, is_refined_ = false;

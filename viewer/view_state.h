@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/visibility/ray_scene.h"
 #include "relight/pictures/picture_view.h"
+#include "relumine/live_eye.h"
 #include "relumine/output.h"
 #include "relumine/questions.h"
 #include "viewer/gestures.h"
@@ -74,6 +76,10 @@ struct ViewState {
     std::string message = {};
     bool message_is_error = false;
     double frame_seconds = 0.0;
+
+    /// Highlights that follow the eye, and how finely; null: the scene has none.
+    std::unique_ptr<LiveEye> live_eye = {};
+    EyeOptions eye_options = {};
 };
 
 /// Returns what is seen behind the mesh now, for a Refiner. It does not change any more.

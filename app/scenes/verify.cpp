@@ -6,6 +6,7 @@
 #include "app/commands.h"
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
+#include "app/options/eye_options.h"
 #include "app/options/lit_scene.h"
 #include "prt/team.h"
 
@@ -22,6 +23,8 @@ struct VerifyArguments {
     BounceOption bounces;
     float albedo = 0.5f;
     std::uint32_t num_paths = VerifyOptions{}.num_paths;
+    std::optional<glm::vec3> eye;
+    EyeOptions eye_options;
 };
 
 /// One sentence that says what a picture has to expect.
@@ -74,6 +77,8 @@ void say_receivers(const Verification& check, const Scene& scene, std::uint32_t 
 
 void run(const VerifyArguments& options, Session& session) {
     LitScene lit = lit_scene(options.scene);
+    if (options.eye)
+        require_live_highlights(lit.scene(), options.scene.path);
     lit.light(load_environment(options.environment, session));
     if (session.team != nullptr) {
         require_same(*session.team, options.scene.path);
@@ -87,6 +92,8 @@ void run(const VerifyArguments& options, Session& session) {
                                             .seed = options.seed,
                                             .num_surface_points = options.num_surface_points,
                                             .num_paths = options.num_paths,
+                                            .eye = options.eye,
+                                            .eye_options = options.eye_options,
                                             .team = session.processes(),
                                             .stop = session.stop(),
                                             .on_progress = session.progress("exact integration")});
@@ -148,6 +155,11 @@ void add_verify(Command& program, Session& session) {
         row("--albedo", options->albedo, "of all surfaces, for bounces", {.min = 0.0, .max = 1.0}));
     command.add(row("--paths", options->num_paths, "paths per receiver that bounces are held to",
                     {.min = 1, .max = 1u << 24}));
+    command.add(row<PointText>("--eye", options->eye,
+                               "X,Y,Z: compares the light towards this eye, of a scene of glossy "
+                               "vertices without --view, at the vertices",
+                               {.example = "1,2,3"}));
+    command.add(glossy_tolerance_row(options->eye_options));
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

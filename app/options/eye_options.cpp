@@ -1,0 +1,37 @@
+#include "app/options/eye_options.h"
+
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace relumine::app {
+
+OptionRow glossy_tolerance_row(EyeOptions& options) {
+    return row("--glossy-tolerance", options.tolerance,
+               "error of highlights that follow the eye, as a part of what a white matt surface "
+               "sends",
+               {.min = 1e-5, .max = 1});
+}
+
+OptionRow glossy_budget_row(EyeOptions& options) {
+    return row("--glossy-budget", options.budget_ms,
+               "milliseconds that highlights may take while the eye moves: the tolerance follows; "
+               "0: --glossy-tolerance counts",
+               {.min = 0, .max = 1e6});
+}
+
+void require_live_highlights(const Scene& scene, const std::filesystem::path& path) {
+    if (!has_live_highlights(scene))
+        throw std::runtime_error(fmt::format(
+            "{}: expected vertices with glossy materials, precomputed without --view, got none",
+            path.string()));
+}
+
+void warn_of_smooth_surfaces(const LiveEye& eye, const Session& session) {
+    if (const std::size_t count = eye.num_too_smooth(); count != 0)
+        session.warn(fmt::format("{} receivers are smoother than roughness {:.2f}: highlights that "
+                                 "follow the eye are wider there",
+                                 count, relight::NarrowestLiveRoughness));
+}
+
+} // namespace relumine::app

@@ -1,0 +1,82 @@
+// Highlights for an eye that moves: nothing of them is precomputed. Light, visibility and lobe are
+// multiplied when the eye is known (docs/glossy.md).
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "prt/transfer/transfer.h"
+#include "relight/relighter.h"
+
+namespace relumine::relight {
+
+/// A narrower highlight comes out wider: cells are a third of a degree wide at least.
+inline constexpr float NarrowestLiveRoughness = 0.11f;
+
+struct EyeOptions {
+    /// Relative L2 error of the radiance that cuts are made for.
+    float tolerance = 0.01f;
+    /// Milliseconds that a look may take; the tolerance follows. 0: the tolerance counts.
+    double budget_ms = 0.0;
+};
+
+struct EyeReport {
+    /// Blocks of 16 receivers that face the eye and have a highlight.
+    std::size_t num_blocks = 0;
+    /// Cells of their cuts, and lights that were traced.
+    std::size_t num_cells = 0;
+    /// What the cuts were made for.
+    float tolerance = 0.0f;
+    double seconds = 0.0;
+};
+
+/// Lights the highlights of a scene's receivers for any eye.
+///
+/// Threads: parallel inside; every result is the same bit by bit for any number of threads, but for
+///          a budget. One thread at a time may call functions that are not const.
+class MovingEye {
+public:
+    /// The transfer must outlive this object. Its own surfaces are those of light without
+    /// highlights; `surfaces` have them. Other highlights than GGX, coats and sheen are left out.
+    ///
+    /// Shape:   positions and surfaces are [num_receivers] in the receivers' own order.
+    /// Throws:  std::invalid_argument for other sizes, or where no surface has a GGX highlight.
+    /// Cost:    a second for half a million receivers.
+    /// Memory:  see num_bytes().
+    MovingEye(const prt::Transfer& transfer, std::span<const glm::vec3> positions,
+              std::span<const prt::Surface> surfaces);
+    ~MovingEye();
+    MovingEye(MovingEye&&) noexcept;
+
+    /// Takes the light of a Relighter of the same transfer. Where it has shadow rays, small bright
+    /// lights are traced as for highlights of a fixed view: also those that fill their cluster.
+    ///
+    /// Cost:    O(6 R^2 + cells), and a shadow ray per receiver and light that stood nowhere
+    ///          before.
+    void set_light(const Relighter& relighter);
+
+    /// Returns the radiance that receivers send to an eye. `radiance` is what they send without
+    /// highlights, with bounces or without.
+    ///
+    /// Shape:   [num_receivers] in the receivers' own order, both. The result is good until the
+    ///          next call.
+    /// Throws:  std::invalid_argument for another size; std::logic_error before set_light().
+    [[nodiscard]] std::span<const glm::vec3>
+    look(const glm::vec3& eye, std::span<const glm::vec3> radiance, const EyeOptions& options = {});
+
+    /// Of the last look.
+    [[nodiscard]] const EyeReport& report() const;
+
+    /// Memory of the visibility above the clusters.
+    [[nodiscard]] std::size_t num_bytes() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace relumine::relight

@@ -1,0 +1,195 @@
+// Highlights for an eye that moves: what a look costs and how far it is from exact integration,
+// beside the plain sum over all visible clusters and a prefiltered environment without visibility.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "data_gen/environments.h"
+#include "prt/glossy/surface_sampling.h"
+#include "relight/moving_eye/moving_eye.h"
+#include "relight/reference/exact.h"
+#include "relumine/relumine.h"
+#include "tests/bench/inputs.h"
+#include "tests/bench/process_usage.h"
+#include "tests/bench/times.h"
+
+using namespace relumine;
+
+namespace {
+
+struct Settings {
+    std::string mesh = "bun_zipper.ply";
+    std::uint32_t floor = 193;
+    /// A scene in place of a precompute.
+    std::string scene;
+    std::vector<float> roughness = {0.3f, 0.15f};
+    float tolerance = relight::EyeOptions{}.tolerance;
+    float transfer_tolerance = prt::PrecomputeOptions{}.tolerance;
+    std::uint32_t resolution = 128;
+    std::size_t num_eyes = 20;
+    /// Of each eye.
+    std::size_t num_samples = 25;
+};
+
+struct NamedMap {
+    std::string name;
+    cubemap::CubeMap map;
+};
+
+std::vector<NamedMap> environments(const bench::Inputs& inputs, std::uint32_t resolution) {
+    std::vector<NamedMap> maps;
+    for (const char* name : {"grace_cross.hdr", "stpeters_cross.hdr", "galileo_cross.hdr",
+                             "beach_cross.hdr", "kitchen_cross.hdr"})
+        maps.push_back({name, inputs.environment(name, resolution)});
+    maps.push_back({"sun and sky", data_gen::sun_and_sky(resolution)});
+    return maps;
+}
+
+/// Eyes all around and above, as far as the automatic camera.
+std::vector<glm::vec3> random_eyes(const Scene& scene, std::size_t count) {
+    const Camera camera = camera_of(scene);
+    const float distance = glm::distance(camera.eye, camera.target);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> part(0.0f, 1.0f);
+    std::vector<glm::vec3> eyes(count);
+    for (glm::vec3& eye : eyes) {
+        const float phi = 2.0f * std::numbers::pi_v<float> * part(random);
+        const float y = 0.05f + 0.75f * part(random), r = std::sqrt(1.0f - y * y);
+        eye = camera.target + distance * glm::vec3(r * std::cos(phi), y, r * std::sin(phi));
+    }
+    return eyes;
+}
+
+/// Receivers that face each eye, and exact radiance of them.
+struct Samples {
+    Samples(const Scene& scene, std::span<const prt::Surface> surfaces,
+            std::span<const glm::vec3> eyes, std::size_t per_eye) {
+        std::mt19937 random(11);
+        const prt::Receivers& all = scene.receivers;
+        std::uniform_int_distribution<std::uint32_t> any(
+            0, static_cast<std::uint32_t>(all.size() - 1));
+        for (const glm::vec3& eye : eyes)
+            for (std::size_t found = 0; found < per_eye;) {
+                const std::uint32_t i = any(random);
+                const glm::vec3 to_eye = glm::normalize(eye - all.positions[i]);
+                if (glm::dot(to_eye, all.normals[i]) < 0.05f ||
+                    surfaces[i].highlight == prt::Highlight::None)
+                    continue;
+                ++found;
+                index.push_back(i);
+                receivers.positions.push_back(all.positions[i]);
+                receivers.normals.push_back(all.normals[i]);
+                receivers.surfaces.push_back(surfaces[i]);
+                receivers.to_eye.push_back(to_eye);
+            }
+    }
+    prt::Receivers receivers;
+    std::vector<std::uint32_t> index;
+};
+
+struct Error {
+    double difference = 0.0, all = 0.0;
+    void add(const glm::dvec3& value, const glm::dvec3& exact) {
+        difference += glm::dot(value - exact, value - exact);
+        all += glm::dot(exact, exact);
+    }
+    [[nodiscard]] double relative_l2() const { return std::sqrt(difference / all); }
+};
+
+void print_rows(float roughness, const Settings& settings, LitScene& lit,
+                const std::vector<NamedMap>& maps) {
+    const Scene& scene = lit.scene();
+    std::vector<prt::Surface> surfaces(scene.receivers.size(),
+                                       {.albedo = glm::vec3(0.3f),
+                                        .specular = glm::vec3(0.5f),
+                                        .highlight = prt::Highlight::GgxWhole,
+                                        .roughness_or_exponent = roughness});
+    const std::vector<bool> is_floor = floor_receivers(scene);
+    for (std::size_t i = 0; i < is_floor.size(); ++i)
+        if (is_floor[i])
+            surfaces[i] = {};
+    double seconds_made = 0.0;
+    const auto start = std::chrono::steady_clock::now();
+    relight::MovingEye live(scene.transfer, scene.receivers.positions, surfaces);
+    seconds_made = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const prt::VisibleCounts& counts = scene.transfer.counts;
+    fmt::print("roughness {}: {} receivers, {} clusters; pyramid {:.1f} MB in {:.2f} s, counts "
+               "{:.1f} MB\n",
+               roughness, scene.receivers.size(), scene.transfer.num_clusters(),
+               1e-6 * static_cast<double>(live.num_bytes()), seconds_made,
+               1e-6 * static_cast<double>(counts.counts.size() + 24 * counts.mixed.size()));
+    const std::vector<glm::vec3> eyes = random_eyes(scene, settings.num_eyes);
+    const Samples samples(scene, surfaces, eyes, settings.num_samples);
+    std::vector<std::uint32_t> order(samples.index.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i)
+        order[i] = i;
+    for (const NamedMap& map : maps) {
+        lit.light(map.map);
+        const auto before_set = std::chrono::steady_clock::now();
+        live.set_light(lit.relighter());
+        const double set_seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - before_set).count();
+        const std::vector<glm::dvec3> exact =
+            relight::exact_radiance(samples.receivers, order, lit.rays().blockers(), map.map,
+                                    {.bias = scene.settings.bias});
+        Error error, matt;
+        const double cpu = bench::cpu_seconds();
+        double seconds = 0.0, cells = 0.0, blocks = 0.0;
+        for (std::size_t eye = 0; eye < eyes.size(); ++eye) {
+            const auto radiance =
+                live.look(eyes[eye], lit.radiance(), {.tolerance = settings.tolerance});
+            seconds += live.report().seconds;
+            cells += static_cast<double>(live.report().num_cells);
+            blocks += static_cast<double>(live.report().num_blocks);
+            for (std::size_t i = eye * settings.num_samples; i < (eye + 1) * settings.num_samples;
+                 ++i) {
+                error.add(glm::dvec3(radiance[samples.index[i]]), exact[i]);
+                matt.add(glm::dvec3(lit.radiance()[samples.index[i]]), exact[i]);
+            }
+        }
+        fmt::print("| {} | {:.0f} cells | {:.1f} cpu ms, {:.1f} ms | {:.4f} | matt {:.3f} | {} "
+                   "sharp, set {:.1f} ms\n",
+                   map.name, cells / blocks,
+                   1e3 * (bench::cpu_seconds() - cpu) / static_cast<double>(eyes.size()),
+                   1e3 * seconds / static_cast<double>(eyes.size()), error.relative_l2(),
+                   matt.relative_l2(), lit.relighter().sharp_lights().size(), 1e3 * set_seconds);
+        std::fflush(stdout);
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    Settings settings;
+    bench::Program program("bench_moving_eye", "highlights for an eye that moves: cost and error");
+    bench::Inputs inputs(program);
+    program.add("--mesh", settings.mesh, "file of meshes/stanford");
+    program.add("--floor", settings.floor, "N x N vertices, 0 for none");
+    program.add("--scene", settings.scene, "a .prt without materials, in place of --mesh");
+    program.add("--roughness", settings.roughness, "glTF's");
+    program.add("--tolerance", settings.transfer_tolerance, "of the clusters");
+    program.add("--glossy-tolerance", settings.tolerance, "of the highlights");
+    program.add("--resolution", settings.resolution, "R of the environments");
+    program.add("--eyes", settings.num_eyes, "eyes around the mesh");
+    program.add("--samples", settings.num_samples, "receivers of each eye");
+    return program.run(argc, argv, [&] {
+        if (inputs.is_tiny()) {
+            settings.roughness = {0.3f};
+            settings.transfer_tolerance = 0.06f;
+            settings.resolution = 32;
+            settings.num_eyes = 3;
+        }
+        LitScene lit(settings.scene.empty() ? precompute(inputs.mesh(settings.mesh, settings.floor),
+                                                         {.tolerance = settings.transfer_tolerance})
+                                            : load_scene(settings.scene));
+        const std::vector<NamedMap> maps = environments(inputs, settings.resolution);
+        for (const float roughness : settings.roughness)
+            print_rows(roughness, settings, lit, maps);
+    });
+}

@@ -1,0 +1,279 @@
+// Highlights for an eye that moves, against the plain sum over clusters and exact integration.
+#include "relight/moving_eye/moving_eye.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "files/parallel.h"
+#include "prt/glossy/brdf.h"
+#include "prt/glossy/ggx_energy.h"
+#include "relight/kernels/cluster_lights.h"
+#include "relight/moving_eye/visibility_pyramid.h"
+#include "relight/reference/exact.h"
+#include "tests/relight/environments.h"
+#include "tests/relight/relit_scene.h"
+
+namespace relumine::relight {
+namespace {
+
+prt::Surface shiny(float roughness) {
+    return {.albedo = glm::vec3(0.3f),
+            .specular = {0.5f, 0.4f, 0.3f},
+            .highlight = prt::Highlight::GgxWhole,
+            .roughness_or_exponent = roughness};
+}
+
+const glm::vec3 Eye(1.5f, 2.5f, 3.0f);
+
+/// The scene's receivers with one surface everywhere, for one eye.
+prt::Receivers seen_from(const glm::vec3& eye, const prt::Surface& surface) {
+    prt::Receivers receivers = scenes::relit_scene().receivers;
+    receivers.surfaces.assign(receivers.size(), surface);
+    prt::look_from(receivers, eye);
+    return receivers;
+}
+
+/// Its light, and an eye that moves.
+struct Lit {
+    Lit(const prt::Surface& surface, cubemap::CubeMap environment,
+        const ShadowRays& rays = scenes::relit_scene().shadow_rays())
+        : relighter(scenes::relit_scene().transfer, rays),
+          eye(scenes::relit_scene().transfer, scenes::relit_scene().receivers.positions,
+              std::vector(scenes::relit_scene().receivers.size(), surface)) {
+        relighter.set_environment(std::move(environment));
+        eye.set_light(relighter);
+    }
+    std::span<const glm::vec3> look(const EyeOptions& options = {}) {
+        return eye.look(Eye, relighter.radiance(), options);
+    }
+    Relighter relighter;
+    MovingEye eye;
+};
+
+/// The plain sum over all clusters: light times visible part times lobe, `parts` lights along each
+/// edge of a cluster.
+std::vector<glm::vec3> plain_sum(const prt::Receivers& receivers, const Relighter& relighter,
+                                 std::uint32_t depth) {
+    const prt::Transfer& transfer = relighter.transfer();
+    struct Light {
+        std::uint32_t cluster;
+        glm::vec3 direction, power;
+    };
+    std::vector<Light> lights;
+    const auto add = [&](const auto& self, std::uint32_t cluster, const prt::Cell& cell,
+                         std::uint32_t levels) -> void {
+        for (std::uint32_t i = 0; levels > 0 && i < 4; ++i)
+            self(self, cluster, cell.child(i), levels - 1);
+        if (levels > 0)
+            return;
+        const VectorIrradiance sum = relighter.binning()->sum(relighter.environment(), cell);
+        const glm::dvec3 power(glm::length(sum.red), glm::length(sum.green), glm::length(sum.blue));
+        if (power != glm::dvec3(0.0))
+            lights.push_back({cluster, glm::normalize(sum.luminance()), power});
+    };
+    for (std::uint32_t i = 0; i < transfer.num_clusters(); ++i)
+        add(add, i, transfer.quadtree.leaves()[i], depth);
+    std::vector<glm::vec3> result(receivers.size());
+    files::parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t place) {
+        const std::uint32_t receiver = transfer.order[place];
+        const glm::vec3 &normal = receivers.normals[receiver], &to_eye = receivers.to_eye[receiver];
+        prt::Lobes<glm::vec3> sums;
+        for (const Light& light : lights) {
+            const auto lobes =
+                prt::evaluate_lobes(receivers.surfaces[receiver], normal, to_eye, light.direction);
+            const auto part =
+                static_cast<float>(transfer.counts.count(place, light.cluster)) / 16.0f;
+            prt::add_scaled(sums, prt::converted<glm::vec3>(lobes), part * light.power);
+        }
+        result[receiver] = prt::reflect(receivers.surfaces[receiver], sums,
+                                        {receivers.surfaces[receiver], normal, to_eye});
+    });
+    return result;
+}
+
+/// Of receivers that face the eye.
+double relative_l2(const prt::Receivers& receivers, std::span<const glm::vec3> actual,
+                   std::span<const glm::vec3> expected) {
+    double difference = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        if (glm::dot(receivers.normals[i], receivers.to_eye[i]) <= 0.0f)
+            continue;
+        const glm::dvec3 error = actual[i] - expected[i];
+        difference += glm::dot(error, error);
+        all += glm::dot(glm::dvec3(expected[i]), glm::dvec3(expected[i]));
+    }
+    return std::sqrt(difference / all);
+}
+
+std::vector<glm::vec3> exact(const prt::Receivers& receivers, const cubemap::CubeMap& environment) {
+    std::vector<std::uint32_t> all(receivers.size());
+    for (std::uint32_t i = 0; i < all.size(); ++i)
+        all[i] = i;
+    const auto radiance = exact_radiance(receivers, all, scenes::relit_scene().rays, environment,
+                                         {.bias = scenes::relit_scene().options.bias});
+    return {radiance.begin(), radiance.end()};
+}
+
+TEST(MovingEye, ThePlainSumIsExactIntegration) {
+    const prt::Receivers receivers = seen_from(Eye, shiny(0.4f));
+    const cubemap::CubeMap sky = scenes::smooth_environment(32);
+    Relighter relighter(scenes::relit_scene().transfer);
+    relighter.set_environment(sky);
+    EXPECT_LT(relative_l2(receivers, plain_sum(receivers, relighter, 1), exact(receivers, sky)),
+              0.02);
+}
+
+TEST(MovingEye, CutsAreThePlainSum) {
+    const prt::Receivers receivers = seen_from(Eye, shiny(0.4f));
+    Lit lit(shiny(0.4f), scenes::random_environment(32, 3), {});
+    const std::vector<glm::vec3> sum = plain_sum(receivers, lit.relighter, 2);
+    const double fine = relative_l2(receivers, lit.look({.tolerance = 1e-3f}), sum);
+    const std::size_t many = lit.eye.report().num_cells;
+    EXPECT_LT(fine, 0.02);
+    EXPECT_LT(relative_l2(receivers, lit.look({.tolerance = 0.05f}), sum), 0.05);
+    EXPECT_LT(lit.eye.report().num_cells, many / 3);
+}
+
+TEST(MovingEye, LooksAreExactIntegration) {
+    for (const float roughness : {0.2f, 0.3f, 0.7f}) {
+        const prt::Receivers receivers = seen_from(Eye, shiny(roughness));
+        const cubemap::CubeMap sky = scenes::smooth_environment(64);
+        Lit lit(shiny(roughness), sky);
+        EXPECT_LT(relative_l2(receivers, lit.look(), exact(receivers, sky)),
+                  roughness < 0.3f ? 0.08 : 0.03)
+            << roughness;
+    }
+}
+
+TEST(MovingEye, TracedLightsHaveTheirHighlightInClosedForm) {
+    cubemap::CubeMap sky(64);
+    sky.at(cubemap::Face::PositiveY, 40, 24) = glm::vec3(5e3f);
+    const prt::Receivers receivers = seen_from(Eye, shiny(0.3f));
+    Lit lit(shiny(0.3f), sky);
+    ASSERT_FALSE(lit.relighter.sharp_lights().empty());
+    EXPECT_LT(relative_l2(receivers, lit.look(), exact(receivers, sky)), 0.01);
+}
+
+TEST(MovingEye, AWhiteMetalIsWhiteUnderAWhiteSky) {
+    const mesh::TriangleMesh sphere = scenes::icosphere(3, 1.0f, glm::vec3(0.0f));
+    const prt::RayScene rays(sphere);
+    const prt::Receivers receivers = prt::vertex_receivers(sphere);
+    const prt::Transfer transfer = prt::precompute(
+        receivers, rays, {.tolerance = 0.05f, .face_resolution = 16, .bias = 1e-4f});
+    Relighter relighter(transfer);
+    relighter.set_environment(cubemap::CubeMap(16, glm::vec3(1.0f)));
+    for (const float roughness : {0.15f, 0.3f, 0.6f, 1.0f}) {
+        const prt::Surface metal{.albedo = glm::vec3(0.0f),
+                                 .specular = glm::vec3(1.0f),
+                                 .highlight = prt::Highlight::GgxWhole,
+                                 .roughness_or_exponent = roughness,
+                                 .metallic = 1.0f};
+        MovingEye eye(transfer, receivers.positions, std::vector(receivers.size(), metal));
+        eye.set_light(relighter);
+        const auto radiance = eye.look({0.0f, 0.0f, 4.0f}, relighter.radiance());
+        for (std::size_t i = 0; i < receivers.size(); ++i)
+            if (const glm::vec3 ray = glm::vec3(0.0f, 0.0f, 4.0f) - receivers.positions[i];
+                glm::dot(receivers.normals[i], glm::normalize(ray)) > 0.3f) {
+                EXPECT_NEAR(radiance[i].g, 1.0f, roughness < 1.0f ? 0.03f : 0.05f)
+                    << roughness << " " << i;
+            }
+    }
+}
+
+TEST(MovingEye, ThreadsAndOtherLooksChangeNoBit) {
+    Lit lit(shiny(0.3f), scenes::random_environment(32, 7));
+    const std::span<const glm::vec3> first = lit.look();
+    const std::vector<glm::vec3> expected(first.begin(), first.end());
+    static_cast<void>(lit.eye.look({-3.0f, 1.0f, 0.0f}, lit.relighter.radiance()));
+    const files::ThreadLimit one(1);
+    const std::span<const glm::vec3> again = lit.look();
+    EXPECT_TRUE(std::equal(again.begin(), again.end(), expected.begin()));
+}
+
+TEST(MovingEye, MattSurfacesAndThoseThatLookAwayStay) {
+    const scenes::RelitScene& scene = scenes::relit_scene();
+    std::vector<prt::Surface> surfaces(scene.receivers.size(), shiny(0.3f));
+    for (std::size_t i = 0; i < surfaces.size(); i += 2)
+        surfaces[i] = {};
+    Relighter relighter(scene.transfer);
+    relighter.set_environment(scenes::smooth_environment(16));
+    MovingEye eye(scene.transfer, scene.receivers.positions, surfaces);
+    eye.set_light(relighter);
+    const auto radiance = eye.look(Eye, relighter.radiance());
+    std::size_t num_changed = 0;
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        const bool faces =
+            glm::dot(scene.receivers.normals[i], Eye - scene.receivers.positions[i]) > 0.0f;
+        if (i % 2 == 0 || !faces) {
+            EXPECT_EQ(radiance[i], relighter.radiance()[i]);
+        } else {
+            num_changed += radiance[i] != relighter.radiance()[i] ? 1 : 0;
+        }
+    }
+    EXPECT_GT(num_changed, surfaces.size() / 10);
+}
+
+TEST(MovingEye, ABudgetMovesTheTolerance) {
+    Lit lit(shiny(0.3f), scenes::random_environment(32, 7));
+    static_cast<void>(lit.look({.budget_ms = 1e-3}));
+    static_cast<void>(lit.look({.budget_ms = 1e-3}));
+    EXPECT_FLOAT_EQ(lit.eye.report().tolerance, 2.0f * EyeOptions{}.tolerance);
+    static_cast<void>(lit.look({.budget_ms = 1e6}));
+    EXPECT_FLOAT_EQ(lit.eye.report().tolerance, EyeOptions{}.tolerance);
+}
+
+TEST(MovingEye, RefusesWhatItCannotLight) {
+    const scenes::RelitScene& scene = scenes::relit_scene();
+    EXPECT_THROW(MovingEye(scene.transfer, scene.receivers.positions, {}), std::invalid_argument);
+    EXPECT_THROW(MovingEye(scene.transfer, scene.receivers.positions,
+                           std::vector<prt::Surface>(scene.receivers.size())),
+                 std::invalid_argument);
+    MovingEye eye(scene.transfer, scene.receivers.positions,
+                  std::vector(scene.receivers.size(), shiny(0.3f)));
+    EXPECT_THROW(static_cast<void>(eye.look(Eye, {})), std::logic_error);
+}
+
+TEST(VisibilityPyramid, HasTheMeansOfItsClusters) {
+    const prt::Transfer& transfer = scenes::relit_scene().transfer;
+    const VisibilityPyramid pyramid(transfer);
+    using Sight = VisibilityPyramid::Sight;
+    std::size_t num_mixed = 0;
+    for (std::size_t block = 0; block < transfer.num_receivers() / prt::BlockSize; block += 7)
+        for (const VisibilityPyramid::Node& node : pyramid.nodes()) {
+            const Sight sight = pyramid.sight(block, node);
+            const VisibilityPyramid::Parts parts =
+                sight == Sight::Mixed ? pyramid.parts(block, node) : VisibilityPyramid::Parts();
+            num_mixed += sight == Sight::Mixed ? 1 : 0;
+            for (std::size_t i = 0; i < prt::BlockSize; ++i) {
+                int least = 16, most = 0, sum = 0;
+                for (std::uint32_t leaf = node.first_leaf; leaf < node.end_leaf; ++leaf) {
+                    const int count = transfer.counts.count(block * prt::BlockSize + i, leaf);
+                    least = std::min(least, count);
+                    most = std::max(most, count);
+                    sum += count;
+                }
+                const float part = sight == Sight::Mixed
+                                       ? 16.0f * static_cast<float>(parts.parts[i]) * parts.unit
+                                   : sight == Sight::Visible ? 16.0f
+                                                             : 0.0f;
+                ASSERT_GE(part, static_cast<float>(least) - 0.04f);
+                ASSERT_LE(part, static_cast<float>(most) + 0.04f);
+                if (node.end_leaf - node.first_leaf <= 4) {
+                    ASSERT_NEAR(part,
+                                static_cast<float>(sum) /
+                                    static_cast<float>(node.end_leaf - node.first_leaf),
+                                1e-5f);
+                }
+            }
+        }
+    EXPECT_GT(num_mixed, 100u);
+    EXPECT_LT(pyramid.num_bytes(),
+              transfer.counts.counts.size() + 24 * transfer.counts.mixed.size());
+}
+
+} // namespace
+} // namespace relumine::relight
