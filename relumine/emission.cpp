@@ -116,7 +116,14 @@ std::vector<glm::vec3> emission_of(const Scene& scene, std::span<const EmissionG
     const auto is_dark = [](const prt::Surface& surface) {
         return surface.emission == glm::vec3(0.0f);
     };
-    if (std::all_of(surfaces.begin(), surfaces.end(), is_dark))
+    // A texture may glow between dark vertices.
+    const bool may_glow =
+        prt::on_vertices(scene.layout) && !surfaces.empty() &&
+        std::any_of(scene.mesh.materials.begin(), scene.mesh.materials.end(),
+                    [](const mesh::Material& material) {
+                        return material.emission != glm::vec3(0.0f) && material.emission_texture;
+                    });
+    if (!may_glow && std::all_of(surfaces.begin(), surfaces.end(), is_dark))
         return result;
     const std::vector<std::uint32_t> groups = receiver_groups(scene);
     const std::vector<glm::vec3> of_groups = group_gains(scene, gains);

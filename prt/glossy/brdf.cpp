@@ -133,6 +133,11 @@ glm::vec3 reflect_whole(const Surface& surface, const Lobes<glm::vec3>& lobes,
 
 } // namespace
 
+float coat_albedo(float roughness, float n_v) {
+    const GgxAlbedo albedo = ggx_albedo(roughness, n_v);
+    return DielectricF0 * (albedo.all - albedo.grazing) + albedo.grazing;
+}
+
 glm::vec3 diffuse_albedo(const Surface& surface, const EyeCosines& n_v) {
     if (surface.highlight != Highlight::GgxWhole)
         return surface.albedo;

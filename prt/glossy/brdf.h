@@ -52,4 +52,8 @@ namespace relumine::prt {
 /// a GgxWhole takes.
 [[nodiscard]] glm::vec3 diffuse_albedo(const Surface& surface, const EyeCosines& n_v);
 
+/// Returns what the lobe of a clear coat reflects of a white sky, without the factor that keeps its
+/// energy, for a cosine between its normal and the eye above 0.
+[[nodiscard]] float coat_albedo(float roughness, float n_v);
+
 } // namespace relumine::prt

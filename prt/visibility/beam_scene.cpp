@@ -12,6 +12,7 @@
 #include "prt/visibility/bit_matrix.h"
 #include "prt/visibility/group_origins.h"
 #include "prt/visibility/parallel_rays.h"
+#include "prt/visibility/see_through.h"
 #include "prt/visibility/shaft.h"
 #include "prt/visibility/shaft_leaves.h"
 #include "prt/visibility/triangle_tree.h"
@@ -122,46 +123,51 @@ bool clear_by_tree(const TriangleTree& tree, std::size_t crowded_shaft, const As
     return true;
 }
 
-/// Returns the triangles of a mesh that let light pass, or those that do not.
-mesh::TriangleMesh chosen_triangles(const mesh::TriangleMesh& mesh, bool let_light_pass) {
+/// Returns the triangles of a mesh that stop all rays, or those that stop some of them.
+mesh::TriangleMesh chosen_triangles(const mesh::TriangleMesh& mesh, const SeeThrough& see_through,
+                                    RayOf of, SeeThrough::All all) {
     mesh::TriangleMesh chosen;
-    if (!mesh::lets_light_pass(mesh) && let_light_pass)
-        return chosen;
     chosen.positions = mesh.positions;
-    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
-        if (mesh.triangle_materials.empty() ||
-            mesh::lets_light_pass(mesh.materials[mesh.triangle_materials[i]]) == let_light_pass)
+    for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i)
+        if (see_through.all_at(i, of) == all)
             chosen.triangles.push_back(mesh.triangles[i]);
     return chosen;
 }
 
-TriangleTree tree_of_opaque(const mesh::TriangleMesh& mesh) {
-    if (!mesh::lets_light_pass(mesh))
-        return triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh));
-    const mesh::TriangleMesh opaque = chosen_triangles(mesh, false);
-    return triangle_tree(opaque.positions, mesh::with_flat_regions_merged(opaque));
-}
-
-TriangleTree tree_of_see_through(const mesh::TriangleMesh& mesh) {
-    const mesh::TriangleMesh see_through = chosen_triangles(mesh, true);
-    return triangle_tree(see_through.positions, see_through.triangles);
-}
-
 } // namespace
+
+struct BeamScene::Trees {
+    Trees(const mesh::TriangleMesh& mesh, const SeeThrough& see_through, RayOf of) {
+        if (!mesh::lets_light_pass(mesh)) {
+            opaque = triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh));
+            return;
+        }
+        const auto chosen = [&](SeeThrough::All all) {
+            return chosen_triangles(mesh, see_through, of, all);
+        };
+        const mesh::TriangleMesh stopping = chosen(SeeThrough::All::Stop);
+        const mesh::TriangleMesh thin = chosen(SeeThrough::All::Differ);
+        opaque = triangle_tree(stopping.positions, mesh::with_flat_regions_merged(stopping));
+        some_pass = triangle_tree(thin.positions, thin.triangles);
+    }
+    /// Of triangles that stop all rays, and of those that stop some of them.
+    TriangleTree opaque, some_pass;
+};
 
 BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact,
                      std::size_t crowded_shaft)
-    : BeamScene(std::make_shared<const TriangleTree>(tree_of_opaque(mesh)),
-                std::make_shared<const TriangleTree>(tree_of_see_through(mesh)), exact,
-                std::min(crowded_shaft, CrowdedShaft)) {}
-
-BeamScene::BeamScene(Tree opaque, Tree see_through, const Blockers& exact,
-                     std::size_t crowded_shaft)
-    : opaque_(std::move(opaque)), see_through_(std::move(see_through)), exact_(&exact),
-      crowded_shaft_(crowded_shaft) {
+    : exact_(&exact), crowded_shaft_(std::min(crowded_shaft, CrowdedShaft)) {
+    const SeeThrough see_through = mesh::lets_light_pass(mesh) ? SeeThrough(mesh) : SeeThrough();
+    trees_ = std::make_unique<const Trees>(mesh, see_through, RayOf::Light);
     if (const Blockers* settled = exact.settled())
-        settled_.reset(new BeamScene(opaque_, see_through_, *settled, crowded_shaft_));
+        settled_.reset(
+            new BeamScene(std::make_unique<const Trees>(mesh, see_through, RayOf::SettledLight),
+                          *settled, crowded_shaft_));
 }
+
+BeamScene::BeamScene(std::unique_ptr<const Trees> trees, const Blockers& exact,
+                     std::size_t crowded_shaft)
+    : trees_(std::move(trees)), exact_(&exact), crowded_shaft_(crowded_shaft) {}
 
 BeamScene::~BeamScene() = default;
 BeamScene::BeamScene(BeamScene&&) noexcept = default;
@@ -179,17 +185,17 @@ void BeamScene::clear_blocked(const ReceiverGroup& group, const DirectionPatch& 
     const PatchPlane plane = patch_plane(patch);
     const Asked asked{group, patch, plane};
     RayWords doubts{};
-    if (!clear_by_tree(*opaque_, crowded_shaft_, asked, rays,
+    if (!clear_by_tree(trees_->opaque, crowded_shaft_, asked, rays,
                        std::span(doubts).first(rays.size()))) {
         exact_->clear_blocked(group, patch, rays);
         return;
     }
-    if (!see_through_->nodes.empty()) {
+    if (!trees_->some_pass.nodes.empty()) {
         // Whatever such a triangle may block is in doubt.
         RayWords clear{}, more{};
         const std::span<std::uint64_t> rest = std::span(clear).first(rays.size());
         std::copy(rays.begin(), rays.end(), rest.begin());
-        const bool is_tested = clear_by_tree(*see_through_, crowded_shaft_, asked, rest,
+        const bool is_tested = clear_by_tree(trees_->some_pass, crowded_shaft_, asked, rest,
                                              std::span(more).first(rays.size()));
         for (std::size_t i = 0; i < rays.size(); ++i)
             doubts[i] |= is_tested ? (rays[i] & ~rest[i]) | more[i] : rays[i];

@@ -11,8 +11,6 @@
 
 namespace relumine::prt {
 
-struct TriangleTree;
-
 /// Answers for a group of receivers and a patch of directions together, with the answers that
 /// another tracer gives ray by ray.
 ///
@@ -33,8 +31,8 @@ struct TriangleTree;
 /// Why nothing changes: rounding errors have bounds, and a test here only decides where its result
 /// is beyond its bound. A ray hits a triangle for certain, misses all of them for certain, or is in
 /// doubt, because it passes an edge within some 1e-6 of its length. `exact` is asked for rays in
-/// doubt and for wide patches. Triangles that let light pass have a tree of their own: every ray
-/// that may hit one of them is in doubt.
+/// doubt and for wide patches. Triangles that let some rays pass have a tree of their own: every
+/// ray that may hit one of them is in doubt.
 ///
 /// A shaft of a fixed angle holds more triangles on a finer mesh, while a group of receivers
 /// shrinks there. So a crowded patch is traced direction by direction, all receivers of the group
@@ -63,10 +61,10 @@ public:
     [[nodiscard]] const Blockers* settled() const override { return settled_.get(); }
 
 private:
-    using Tree = std::shared_ptr<const TriangleTree>;
-    BeamScene(Tree opaque, Tree see_through, const Blockers& exact, std::size_t crowded_shaft);
+    struct Trees;
+    BeamScene(std::unique_ptr<const Trees> trees, const Blockers& exact, std::size_t crowded_shaft);
 
-    Tree opaque_, see_through_;
+    std::unique_ptr<const Trees> trees_;
     const Blockers* exact_;
     std::size_t crowded_shaft_;
     std::unique_ptr<const BeamScene> settled_;

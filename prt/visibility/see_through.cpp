@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <optional>
+
+#include <glm/common.hpp>
 
 #include "cubemap/face.h"
 #include "cubemap/split_mix64.h"
+#include "files/parallel.h"
 
 namespace relumine::prt {
 
@@ -31,6 +36,87 @@ double chance(const SeeThrough::Meeting& meeting) {
     return place - std::floor(place);
 }
 
+/// Alpha knows no colours, and neither do rays of light.
+float part_of(const mesh::Veil& veil) {
+    return (veil.through.r + veil.through.g + veil.through.b) / 3.0f;
+}
+
+/// The least and the largest value of the texels of a texture that a triangle may touch.
+struct TexelRange {
+    glm::vec3 least{std::numeric_limits<float>::infinity()}, most{-least};
+    [[nodiscard]] bool is_even() const { return least == most; }
+};
+
+/// Returns nothing where the triangle covers too many texels for the search to be worth it.
+std::optional<TexelRange> texels_under(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
+                                       const mesh::TextureSlot& slot) {
+    constexpr float MostTexels = 4096.0f;
+    const mesh::Texture& texture = mesh.textures[slot.texture];
+    const glm::vec2 size(texture.width, texture.height);
+    glm::vec2 first(std::numeric_limits<float>::infinity()), last = -first;
+    for (const glm::vec2& corner :
+         {glm::vec2(0.0f, 0.0f), glm::vec2(1.0f, 0.0f), glm::vec2(0.0f, 1.0f)}) {
+        const glm::vec2 uv =
+            slot.uv_from_mesh_uv * mesh::uv_at(mesh, triangle, corner, slot.uv_set) +
+            slot.uv_offset;
+        first = glm::min(first, uv * size);
+        last = glm::max(last, uv * size);
+    }
+    // The texels of bilinear values, and one more for roundings
+    first = glm::floor(first) - 1.0f;
+    last = glm::floor(last) + 2.0f;
+    const glm::vec2 count = last - first;
+    if (!(count.x * count.y <= MostTexels))
+        return std::nullopt;
+    TexelRange range;
+    for (float y = first.y; y < last.y; ++y)
+        for (float x = first.x; x < last.x; ++x) {
+            const auto column =
+                mesh::texels_beside((x + 0.5f) / size.x, texture.width, slot.wrap[0]);
+            const auto row = mesh::texels_beside((y + 0.5f) / size.y, texture.height, slot.wrap[1]);
+            const auto add = [&](std::uint32_t i, std::uint32_t j) {
+                const glm::vec3 value = mesh::texel(texture, i, j, slot.is_srgb);
+                range.least = glm::min(range.least, value);
+                range.most = glm::max(range.most, value);
+            };
+            add(column.first, row.first);
+            add(column.second, row.second);
+        }
+    return range;
+}
+
+/// Returns the part of light that passes a triangle where it is the same all over it.
+std::optional<float> even_part(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
+    const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
+    const bool is_mask = material.alpha_mode == mesh::AlphaMode::Mask;
+    if (is_mask && material.alpha_texture) {
+        const auto alpha = texels_under(mesh, triangle, *material.alpha_texture);
+        if (!alpha)
+            return std::nullopt;
+        constexpr float Rounding = 1e-5f; // of the bilinear mean
+        if (material.alpha * alpha->most.r < material.alpha_cutoff - Rounding)
+            return 1.0f;
+        if (material.alpha * alpha->least.r < material.alpha_cutoff + Rounding)
+            return std::nullopt;
+        if (material.transmission == 0.0f)
+            return 0.0f;
+    }
+    const auto is_even = [&](const std::optional<mesh::TextureSlot>& slot) {
+        if (!slot)
+            return true;
+        const auto range = texels_under(mesh, triangle, *slot);
+        return range && range->is_even();
+    };
+    if (!is_mask && material.alpha_mode != mesh::AlphaMode::Opaque &&
+        !is_even(material.alpha_texture))
+        return std::nullopt;
+    if (material.transmission > 0.0f &&
+        !(is_even(material.transmission_texture) && is_even(material.metallic_roughness_texture) &&
+          is_even(material.base_color_texture)))
+        return std::nullopt;
+    return part_of(mesh::veil(mesh, triangle, glm::vec2(1.0f / 3.0f)));
+}
+
 } // namespace
 
 SeeThrough::SeeThrough(const mesh::TriangleMesh& mesh) {
@@ -48,6 +134,15 @@ SeeThrough::SeeThrough(const mesh::TriangleMesh& mesh) {
         return;
     mesh_ = mesh::blockers_of(mesh);
     mesh_.positions = {};
+    even_.assign(mesh.num_triangles(), -1.0f);
+    const auto num_triangles = static_cast<std::uint32_t>(mesh.num_triangles());
+    files::parallel_for(std::uint32_t{0}, num_triangles, [&](std::uint32_t triangle) {
+        if ((kinds_[triangle] & PassesLight) == 0)
+            return;
+        even_[triangle] = even_part(mesh_, triangle).value_or(-1.0f);
+        if (even_[triangle] == 0.0f)
+            kinds_[triangle] &= static_cast<std::uint8_t>(~(PassesLight | Thin));
+    });
 }
 
 mesh::Veil SeeThrough::veil(std::uint32_t triangle, const glm::vec2& barycentric) const {
@@ -55,13 +150,23 @@ mesh::Veil SeeThrough::veil(std::uint32_t triangle, const glm::vec2& barycentric
                                             : mesh::Veil();
 }
 
+SeeThrough::All SeeThrough::all_at(std::uint32_t triangle, RayOf of) const {
+    if (!may_pass(triangle, of))
+        return All::Stop;
+    const float even = even_[triangle];
+    if (even < 0.0f || (of == RayOf::Light && even < 1.0f))
+        return All::Differ;
+    return even >= 0.5f ? All::Pass : All::Stop;
+}
+
 bool SeeThrough::passes(const Meeting& meeting, RayOf of) const {
     if (of == RayOf::Eye && meeting.is_back && (kinds_[meeting.triangle] & OneSided) != 0)
         return true;
-    const mesh::Veil own = veil(meeting.triangle, meeting.barycentric);
     if (of == RayOf::Eye)
-        return own == mesh::Veil{.weight = 0.0f, .through = glm::vec3(1.0f)};
-    const float part = (own.through.r + own.through.g + own.through.b) / 3.0f;
+        return veil(meeting.triangle, meeting.barycentric) ==
+               mesh::Veil{.weight = 0.0f, .through = glm::vec3(1.0f)};
+    const float even = even_.empty() ? -1.0f : even_[meeting.triangle];
+    const float part = even >= 0.0f ? even : part_of(veil(meeting.triangle, meeting.barycentric));
     if (of == RayOf::SettledLight)
         return part >= 0.5f;
     return part > 0.0f && (part >= 1.0f || chance(meeting) < static_cast<double>(part));

@@ -45,6 +45,11 @@ public:
                (kinds_[triangle] & (of == RayOf::Eye ? PassesLight | OneSided : PassesLight)) != 0;
     }
 
+    /// What all rays of light do that meet a triangle.
+    enum class All : std::uint8_t { Stop, Pass, Differ };
+    /// `of` is not RayOf::Eye.
+    [[nodiscard]] All all_at(std::uint32_t triangle, RayOf of) const;
+
     /// Where a ray meets such a triangle.
     struct Meeting {
         std::uint32_t triangle = 0;
@@ -65,6 +70,9 @@ private:
 
     /// [num_triangles], or empty.
     std::vector<std::uint8_t> kinds_;
+    /// [num_triangles] where light passes any: the part that passes if it is the same all over the
+    /// triangle, and below 0 if rays must look where they meet it.
+    std::vector<float> even_;
     /// mesh::blockers_of() without its positions; empty where no light passes.
     mesh::TriangleMesh mesh_;
     bool has_thin_ = false;

@@ -7,22 +7,36 @@
 #include <glm/geometric.hpp>
 
 #include "prt/glossy/brdf.h"
+#include "prt/glossy/ggx_lobe.h"
+#include "prt/glossy/sheen_lobe.h"
 
 namespace relumine::relight {
 
 namespace {
 
-/// Whether two points of a pixel mirror nearly the same: normals that differ by a fraction of what
-/// the lobe blurs.
+/// Whether a lobe's roughness, or exponent, is nearly that of another.
+bool are_near(float a, float b) {
+    constexpr float LargestStep = 0.1f;
+    return std::abs(a - b) <= LargestStep * std::max(a, LargestStep);
+}
+
+/// Whether normals differ by a fraction of what the lobe blurs.
+bool are_near(const glm::vec3& a, const glm::vec3& b, float alpha) {
+    constexpr float LeastTurn = 0.02f, LargestTurn = 0.1f, ShareOfLobe = 0.25f;
+    const float turn = std::clamp(ShareOfLobe * alpha, LeastTurn, LargestTurn);
+    return glm::dot(a - b, a - b) < turn * turn;
+}
+
+/// Whether two points of a pixel mirror nearly the same.
 bool are_alike(const Mirror& a, const Mirror& b) {
-    constexpr float LargestStep = 0.1f, LeastTurn = 0.02f, LargestTurn = 0.1f, ShareOfLobe = 0.25f;
-    if (a.surface.highlight != b.surface.highlight ||
-        std::abs(a.surface.roughness_or_exponent - b.surface.roughness_or_exponent) >
-            LargestStep * std::max(a.surface.roughness_or_exponent, LargestStep))
-        return false;
-    const float turn = std::clamp(ShareOfLobe * lobe_alpha(a.surface), LeastTurn, LargestTurn);
-    const glm::vec3 difference = a.normal - b.normal;
-    return glm::dot(difference, difference) < turn * turn;
+    const prt::Surface &one = a.surface, &other = b.surface;
+    return one.highlight == other.highlight && prt::has_coat(one) == prt::has_coat(other) &&
+           prt::has_sheen(one) == prt::has_sheen(other) &&
+           are_near(one.roughness_or_exponent, other.roughness_or_exponent) &&
+           are_near(one.coat_roughness, other.coat_roughness) &&
+           are_near(one.sheen_roughness, other.sheen_roughness) &&
+           are_near(a.normal, b.normal, lobe_alpha(one)) &&
+           are_near(one.coat_normal, other.coat_normal, prt::ggx_alpha(one.coat_roughness));
 }
 
 } // namespace
@@ -45,26 +59,29 @@ std::optional<Mirror> Mirrors::at(const prt::MeshPoint& point) const {
         glm::normalize(*light_.eye - prt::value_at(mesh_, mesh_.positions, point));
     if (!(glm::dot(prt::shading_normal(mesh_, point), to_eye) > 0.0f))
         return std::nullopt;
-    glm::vec3 normal = prt::mapped_normal(mesh_, point);
     // A normal map may turn away from the eye what the eye sees.
-    constexpr float LeastCosine = 0.01f;
-    if (const float cosine = glm::dot(normal, to_eye); cosine < LeastCosine)
-        normal = glm::normalize(normal + (LeastCosine - cosine) * to_eye);
-    return Mirror{light_.textures->mirror(point, &view_), normal, to_eye};
+    const auto turned = [&](const glm::vec3& normal) {
+        constexpr float LeastCosine = 0.01f;
+        const float cosine = glm::dot(normal, to_eye);
+        return cosine < LeastCosine ? glm::normalize(normal + (LeastCosine - cosine) * to_eye)
+                                    : normal;
+    };
+    Mirror mirror{light_.textures->mirror(point, &view_), turned(prt::mapped_normal(mesh_, point)),
+                  to_eye};
+    if (prt::has_coat(mirror.surface))
+        mirror.surface.coat_normal = turned(prt::coat_normal(mesh_, point));
+    return mirror;
 }
 
 glm::vec3 Mirrors::soft(const Mirror& mirror, const prt::MeshPoint& point,
                         const glm::vec3& diffuse) {
     const glm::vec3 factor =
         light_.albedo.empty() ? glm::vec3(1.0f) : prt::value_at(mesh_, light_.albedo, point);
-    const float n_v = glm::dot(mirror.normal, mirror.to_eye);
-    const prt::Lobes<glm::vec3> own = lobes_of(mirror.surface, light(mirror, point), n_v);
-    return prt::reflect(mirror.surface,
-                        {.diffuse = diffuse,
-                         .diffuse_grazing = glm::vec3(0.0f),
-                         .specular = factor * own.specular,
-                         .specular_grazing = factor * own.specular_grazing},
-                        n_v);
+    const prt::EyeCosines n_v(mirror.surface, mirror.normal, mirror.to_eye);
+    prt::Lobes<glm::vec3> lobes = lobes_of(mirror.surface, light(mirror, point), n_v);
+    prt::multiply(lobes, factor);
+    lobes.diffuse = diffuse;
+    return prt::reflect(mirror.surface, lobes, n_v);
 }
 
 MirroredLight Mirrors::light(const Mirror& mirror, const prt::MeshPoint& point) {

@@ -400,9 +400,10 @@ private:
             return albedo * white(normal);
         if (mirror) {
             prt::Surface surface = mirror->surface;
+            const float least = light_.reflections->least_roughness();
             if (prt::facts_of(surface.highlight).is_roughness)
-                surface.roughness_or_exponent =
-                    std::max(surface.roughness_or_exponent, light_.reflections->least_roughness());
+                surface.roughness_or_exponent = std::max(surface.roughness_or_exponent, least);
+            surface.coat_roughness = std::max(surface.coat_roughness, least);
             return albedo * reflected(surface, mirror->normal, mirror->to_eye);
         }
         const prt::Surface surface = surface_at(sample);

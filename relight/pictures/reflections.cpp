@@ -13,6 +13,7 @@
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/ggx_energy.h"
 #include "prt/glossy/ggx_lobe.h"
+#include "prt/glossy/sheen_lobe.h"
 #include "relight/kernels/cluster_lights.h"
 
 namespace relumine::relight {
@@ -120,64 +121,131 @@ glm::vec3 Reflections::sky(const glm::vec3& direction, float solid_angle) const 
     if (levels_.empty())
         return glm::vec3(0.0f);
     const auto r = static_cast<float>(levels_[0].resolution);
+    // Bilinear values between means spread as far as squares of three times the area.
+    constexpr float Spread = 3.0f;
     const float texels = solid_angle * 6.0f * r * r / (4.0f * std::numbers::pi_v<float>);
-    const float level = 0.5f * std::log2(std::max(texels, 1.0f));
+    const float level = 0.5f * std::log2(std::max(texels / Spread, 1.0f));
     const auto last = static_cast<float>(levels_.size() - 1);
     return cubemap::sample(levels_[static_cast<std::size_t>(std::min(level + 0.5f, last))],
                            direction);
 }
 
-MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint& point,
-                                 std::uint32_t num_rays, const Surfaces& surfaces) const {
-    const float n_v = glm::dot(point.normal, point.to_eye);
-    if (surface.highlight == prt::Highlight::None || n_v <= 0.0f)
-        return {};
-    const glm::mat3 frame = cubemap::frame_of(point.normal);
-    const glm::vec3 to_eye = point.to_eye * frame;
-    const float alpha = lobe_alpha(surface);
-    const glm::vec3 origin = point.position + bias_ * point.normal;
-    Weighted all, grazing;
-    for (std::uint32_t first = 0; first < num_rays; first += prt::PacketSize) {
+/// Rays from a point, spread as a lobe is.
+struct Reflections::Fan {
+    glm::vec3 origin, normal, to_eye;
+    /// Of a GGX lobe; 0: rays are as dense everywhere above the surface.
+    float alpha;
+    std::uint32_t num_rays;
+    glm::vec2 shift;
+
+    struct Ray {
+        /// In the frame of the normal
+        glm::vec3 direction;
+        float density;
+    };
+    [[nodiscard]] Ray ray(std::uint32_t i, const glm::vec3& local_eye) const {
+        constexpr float Turn = 2.0f * std::numbers::pi_v<float>;
+        const glm::vec2 u = hammersley(i, num_rays, shift);
+        if (alpha > 0.0f) {
+            const glm::vec3 half = visible_half(local_eye, alpha, u);
+            return {2.0f * glm::dot(local_eye, half) * half - local_eye,
+                    density(half, local_eye.z, alpha)};
+        }
+        const float across = std::sqrt(std::max(1.0f - u.x * u.x, 0.0f));
+        return {{across * std::cos(Turn * u.y), across * std::sin(Turn * u.y), u.x}, 1.0f / Turn};
+    }
+};
+
+template<typename Add>
+void Reflections::send(const Fan& fan, const Surfaces& surfaces, const Add& add) const {
+    const glm::mat3 frame = cubemap::frame_of(fan.normal);
+    const glm::vec3 to_eye = fan.to_eye * frame;
+    for (std::uint32_t first = 0; first < fan.num_rays; first += prt::PacketSize) {
         const std::uint32_t count =
-            std::min(num_rays - first, static_cast<std::uint32_t>(prt::PacketSize));
+            std::min(fan.num_rays - first, static_cast<std::uint32_t>(prt::PacketSize));
         prt::DirectionPacket packet{.num_directions = count};
         std::array<float, prt::PacketSize> densities{};
         std::uint32_t above = 0;
         for (std::uint32_t lane = 0; lane < prt::PacketSize; ++lane) {
-            const glm::vec2 u = hammersley(first + lane % count, num_rays, point.shift);
-            const glm::vec3 half = visible_half(to_eye, alpha, u);
-            const glm::vec3 w = 2.0f * glm::dot(to_eye, half) * half - to_eye;
-            packet.set(lane, glm::normalize(frame * w));
-            densities[lane] = density(half, n_v, alpha);
-            above |= (lane < count && w.z > 0.0f ? 1u : 0u) << lane;
+            const Fan::Ray ray = fan.ray(first + lane % count, to_eye);
+            packet.set(lane, glm::normalize(frame * ray.direction));
+            densities[lane] = ray.density;
+            above |= (lane < count && ray.direction.z > 0.0f ? 1u : 0u) << lane;
         }
         std::array<prt::Hit, prt::PacketSize> hits;
-        const std::uint32_t met = above != 0 ? rays_.closest_hits(origin, packet, above, hits) : 0;
+        const std::uint32_t met =
+            above != 0 ? rays_.closest_hits(fan.origin, packet, above, hits) : 0;
         for (std::uint32_t lane = 0; lane < count; ++lane) {
             if ((above >> lane & 1u) == 0)
                 continue;
             const glm::vec3 w = packet.direction(lane);
-            glm::vec3 radiance = sky(w, 1.0f / (static_cast<float>(num_rays) * densities[lane]));
+            const float share = 1.0f / (static_cast<float>(fan.num_rays) * densities[lane]);
+            glm::vec3 radiance = sky(w, share);
             if ((met >> lane & 1u) != 0)
                 radiance = surfaces(hits[lane], w, radiance);
-            const prt::Lobes<float> lobe =
-                prt::evaluate_lobes(surface, point.normal, point.to_eye, w);
-            all.add(lobe.specular / densities[lane], radiance);
-            grazing.add(lobe.specular_grazing / densities[lane], radiance);
+            add(w, densities[lane], radiance);
         }
+    }
+}
+
+MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint& point,
+                                 std::uint32_t num_rays, const Surfaces& surfaces) const {
+    const prt::EyeCosines n_v(surface, point.normal, point.to_eye);
+    if (surface.highlight == prt::Highlight::None || n_v.base <= 0.0f)
+        return {};
+    const auto lobes = [&](const glm::vec3& w) {
+        return prt::evaluate_lobes(surface, point.normal, point.to_eye, w);
+    };
+    Fan fan{.origin = point.position + bias_ * point.normal,
+            .normal = point.normal,
+            .to_eye = point.to_eye,
+            .alpha = lobe_alpha(surface),
+            .num_rays = num_rays,
+            .shift = point.shift};
+    Weighted all, grazing, coat, sheen;
+    send(fan, surfaces, [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
+        const prt::Lobes<float> lobe = lobes(w);
+        all.add(lobe.specular / dense, radiance);
+        grazing.add(lobe.specular_grazing / dense, radiance);
+    });
+    fan.num_rays = (num_rays + 1) / 2;
+    if (prt::has_coat(surface) && n_v.coat > 0.0f) {
+        fan.alpha = prt::ggx_alpha(surface.coat_roughness);
+        if (surface.coat_normal != glm::vec3(0.0f))
+            fan.normal = surface.coat_normal;
+        send(fan, surfaces, [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
+            coat.add(lobes(w).coat / dense, radiance);
+        });
+    }
+    if (prt::has_sheen(surface)) {
+        fan.alpha = 0.0f;
+        fan.normal = point.normal;
+        send(fan, surfaces, [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
+            sheen.add(lobes(w).sheen / dense, radiance);
+        });
     }
     return {.all = all.mean(),
             .grazing = grazing.mean(),
-            .whole = all.weight / static_cast<float>(num_rays)};
+            .whole = all.weight / static_cast<float>(num_rays),
+            .coat = coat.mean(),
+            .sheen = sheen.mean()};
 }
 
-prt::Lobes<glm::vec3> lobes_of(const prt::Surface& surface, const MirroredLight& light, float n_v) {
-    if (n_v <= 0.0f)
+prt::Lobes<glm::vec3> lobes_of(const prt::Surface& surface, const MirroredLight& light,
+                               const prt::EyeCosines& n_v) {
+    if (n_v.base <= 0.0f)
         return {};
     const bool is_known = prt::facts_of(surface.highlight).is_roughness;
-    const prt::GgxAlbedo albedo = is_known ? prt::ggx_albedo(surface.roughness_or_exponent, n_v)
-                                           : prt::GgxAlbedo{.all = light.whole};
-    return {.specular = albedo.all * light.all, .specular_grazing = albedo.grazing * light.grazing};
+    const prt::GgxAlbedo albedo = is_known
+                                      ? prt::ggx_albedo(surface.roughness_or_exponent, n_v.base)
+                                      : prt::GgxAlbedo{.all = light.whole};
+    prt::Lobes<glm::vec3> lobes{.specular = albedo.all * light.all,
+                                .specular_grazing = albedo.grazing * light.grazing};
+    if (prt::has_coat(surface) && n_v.coat > 0.0f)
+        lobes.coat = prt::coat_albedo(surface.coat_roughness, n_v.coat) * light.coat;
+    if (prt::has_sheen(surface))
+        lobes.sheen = prt::sheen_albedo(surface.sheen_roughness, n_v.base) * light.sheen;
+    return lobes;
 }
 
 } // namespace relumine::relight

@@ -25,7 +25,7 @@ namespace relumine::relight {
 /// A point that mirrors.
 struct MirrorPoint {
     glm::vec3 position;
-    /// Unit length, as `to_eye`.
+    /// Unit length, as `to_eye`. A coat has that of its surface, if it has one.
     glm::vec3 normal;
     glm::vec3 to_eye;
     /// Shifts the rays against those of other points, in [0, 1)^2.
@@ -38,12 +38,14 @@ struct MirroredLight {
     glm::vec3 all{0.0f}, grazing{0.0f};
     /// What S sends of a white sky, as the rays found it.
     float whole = 0.0f;
+    /// Weighted by the lobes of a clear coat and of sheen.
+    glm::vec3 coat{0.0f}, sheen{0.0f};
 };
 
-/// Returns the light through a highlight's lobes: `specular` and `specular_grazing`. Exact for GGX
-/// under a sky of one radiance: what its lobes send of it is known.
-[[nodiscard]] prt::Lobes<glm::vec3> lobes_of(const prt::Surface& surface,
-                                             const MirroredLight& light, float n_v);
+/// Returns the light through all lobes but the diffuse ones. Exact for GGX, coats and sheen under a
+/// sky of one radiance: what their lobes send of it is known.
+[[nodiscard]] prt::Lobes<glm::vec3>
+lobes_of(const prt::Surface& surface, const MirroredLight& light, const prt::EyeCosines& n_v);
 
 class Reflections {
 public:
@@ -59,10 +61,10 @@ public:
     Reflections(const prt::RayScene& rays, float bias, std::uint32_t num_rays,
                 const cubemap::CubeMap& environment, std::span<const SharpLight> without);
 
-    /// Returns what the highlight mirrors: black for Highlight::None, and for points that look away
-    /// from the eye.
+    /// Returns what the highlight, the coat and the sheen mirror: black for Highlight::None, and
+    /// for points that look away from the eye.
     ///
-    /// Cost:    num_rays rays.
+    /// Cost:    num_rays rays, and half as many for a coat and for sheen each.
     /// Threads: any.
     [[nodiscard]] MirroredLight light(const prt::Surface& surface, const MirrorPoint& point,
                                       std::uint32_t num_rays, const Surfaces& surfaces) const;
@@ -74,6 +76,10 @@ public:
     [[nodiscard]] float least_roughness() const { return least_roughness_; }
 
 private:
+    struct Fan;
+    /// Calls add(direction, density of rays there, radiance) for each ray of a fan.
+    template<typename Add>
+    void send(const Fan& fan, const Surfaces& surfaces, const Add& add) const;
     [[nodiscard]] glm::vec3 sky(const glm::vec3& direction, float solid_angle) const;
 
     const prt::RayScene& rays_;

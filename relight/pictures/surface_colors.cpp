@@ -53,11 +53,7 @@ prt::Surface SurfaceColors::surface(const prt::MeshPoint& point,
 
 prt::Surface SurfaceColors::mirror(const prt::MeshPoint& point,
                                    const prt::TextureView* view) const {
-    prt::Surface own =
-        prt::surface_at(*mesh_, point.triangle, point.barycentric, prt::GgxForm::Whole, view);
-    own.coat = 0.0f;
-    own.sheen = glm::vec3(0.0f);
-    return own;
+    return prt::surface_at(*mesh_, point.triangle, point.barycentric, prt::GgxForm::Whole, view);
 }
 
 glm::vec3 SurfaceColors::light(std::span<const glm::vec3> vertex_radiance,

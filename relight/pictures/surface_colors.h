@@ -47,8 +47,7 @@ public:
     /// Returns the surface that the materials give to a point, or to a sample of a view.
     [[nodiscard]] prt::Surface surface(const prt::MeshPoint& point,
                                        const prt::TextureView* view = nullptr) const;
-    /// Returns the surface at a point of a triangle that mirrors, with its highlight, but without
-    /// coat and sheen: no rays find these.
+    /// Returns the surface at a point of a triangle that mirrors, with its highlight.
     [[nodiscard]] prt::Surface mirror(const prt::MeshPoint& point,
                                       const prt::TextureView* view = nullptr) const;
     /// Returns the diffuse radiance of albedo 1 at a point of a triangle that has a texture or

@@ -70,6 +70,50 @@ TEST(SeeThrough, PacketsAnswerAsSingleRays) {
     }
 }
 
+/// The card of one leaf as n x n squares.
+mesh::TriangleMesh divided_card(std::uint32_t n, mesh::AlphaMode mode) {
+    mesh::TriangleMesh card = scenes::leaf_card(1, 1.0f, 1.0f, mode);
+    card.positions.clear();
+    card.uvs.clear();
+    card.triangles.clear();
+    for (std::uint32_t y = 0; y <= n; ++y)
+        for (std::uint32_t x = 0; x <= n; ++x) {
+            card.uvs.push_back(glm::vec2(x, y) / static_cast<float>(n));
+            card.positions.emplace_back(card.uvs.back().x - 0.5f, 1.0f, card.uvs.back().y - 0.5f);
+            if (const std::uint32_t i = y * (n + 1) + x; x < n && y < n) {
+                card.triangles.push_back({i, i + n + 2, i + 1});
+                card.triangles.push_back({i, i + n + 1, i + n + 2});
+            }
+        }
+    card.normals.assign(card.num_vertices(), glm::vec3(0.0f, 1.0f, 0.0f));
+    card.triangle_materials.assign(card.num_triangles(), 1);
+    return card;
+}
+
+// Triangles that are all cut out, or all there, are known before rays meet them.
+TEST(SeeThrough, SmallTrianglesPassAsTheirPointsDo) {
+    for (const mesh::AlphaMode mode : {mesh::AlphaMode::Mask, mesh::AlphaMode::Blend}) {
+        const mesh::TriangleMesh card = divided_card(23, mode);
+        const SeeThrough see_through(card);
+        std::mt19937 random(3);
+        std::uniform_real_distribution<float> weight(0.0f, 0.5f);
+        std::size_t num_known = 0;
+        for (std::uint32_t triangle = 0; triangle < card.num_triangles(); ++triangle) {
+            const bool may_pass = see_through.may_pass(triangle, RayOf::Light);
+            num_known += may_pass ? 0 : 1;
+            for (int i = 0; i < 20; ++i) {
+                const glm::vec2 at(weight(random), weight(random));
+                const mesh::Veil veil = mesh::veil(card, triangle, at);
+                EXPECT_EQ(may_pass && see_through.passes({.triangle = triangle, .barycentric = at},
+                                                         RayOf::SettledLight),
+                          veil.through.r >= 0.5f);
+                EXPECT_EQ(see_through.veil(triangle, at), veil);
+            }
+        }
+        EXPECT_GT(num_known, card.num_triangles() / 4);
+    }
+}
+
 TEST(SeeThrough, EyesPassTheBacksOfSingleSidedFacesAndLightDoesNot) {
     mesh::TriangleMesh square = scenes::floor_grid(2, 2.0f);
     square.materials = {{.is_double_sided = false}};

@@ -40,7 +40,7 @@ prt::Lobes<glm::vec3> mirrored(const Reflections& reflections, const prt::Surfac
                                const MirrorPoint& point,
                                const Reflections::Surfaces& surfaces = NoSurface) {
     return lobes_of(surface, reflections.light(surface, point, reflections.num_rays(), surfaces),
-                    glm::dot(point.normal, point.to_eye));
+                    {surface, point.normal, point.to_eye});
 }
 
 /// The sum over texels, each at its middle.
@@ -56,8 +56,7 @@ prt::Lobes<glm::vec3> integrated(const prt::Surface& surface, const MirrorPoint&
                 const glm::vec3 light =
                     environment.at(face, x, y) *
                     static_cast<float>(solid_angles[std::size_t{y} * environment.resolution + x]);
-                sum.specular += lobes.specular * light;
-                sum.specular_grazing += lobes.specular_grazing * light;
+                prt::add_scaled(sum, prt::converted<glm::vec3>(lobes), light);
             }
     return sum;
 }
@@ -84,6 +83,34 @@ TEST(Reflections, OfASmoothSkyAreItsIntegral) {
         }
 }
 
+/// White plaster under a coat and a sheen.
+prt::Surface layered(float roughness) {
+    return {.specular = glm::vec3(0.04f),
+            .highlight = prt::Highlight::GgxWhole,
+            .roughness_or_exponent = roughness,
+            .coat = 1.0f,
+            .coat_roughness = roughness,
+            .sheen = glm::vec3(1.0f),
+            .sheen_roughness = roughness};
+}
+
+TEST(Reflections, OfCoatAndSheenAreTheirIntegral) {
+    const cubemap::CubeMap sky = scenes::smooth_environment(R);
+    const Reflections reflections(nothing(), 0.0f, 4096, sky, {});
+    for (const float roughness : {0.4f, 1.0f})
+        for (const float n_v : {0.9f, 0.4f}) {
+            prt::Surface surface = layered(roughness);
+            surface.coat_normal = glm::normalize(glm::vec3(0.2f, 0.1f, 1.0f));
+            const MirrorPoint point = seen_at(n_v);
+            const auto lobes = mirrored(reflections, surface, point);
+            const auto expected = integrated(surface, point, sky);
+            EXPECT_NEAR(lobes.coat.g, expected.coat.g, 0.02f * expected.coat.g)
+                << roughness << " " << n_v;
+            EXPECT_NEAR(lobes.sheen.g, expected.sheen.g, 0.02f * expected.sheen.g)
+                << roughness << " " << n_v;
+        }
+}
+
 TEST(Reflections, PhongHasNoEnergyToKeep) {
     const cubemap::CubeMap sky = scenes::smooth_environment(R);
     const Reflections reflections(nothing(), 0.0f, 4096, sky, {});
@@ -106,6 +133,12 @@ TEST(Reflections, AWhiteSkyHasNoNoise) {
             const glm::vec3 sent =
                 prt::reflect(surface, mirrored(reflections, surface, point), n_v);
             EXPECT_NEAR(sent.r, 1.0f, 0.01f) << roughness << " " << n_v;
+            // A white sky gives the plaster 1.
+            prt::Lobes<glm::vec3> lobes = mirrored(reflections, layered(roughness), point);
+            lobes.diffuse = glm::vec3(1.0f);
+            const float layers = prt::reflect(layered(roughness), lobes, n_v).r;
+            EXPECT_GT(layers, 0.99f) << roughness << " " << n_v;
+            EXPECT_LT(layers, 1.0f + 1e-5f) << roughness << " " << n_v;
         }
 }
 
