@@ -72,7 +72,7 @@ void require_vertices(const TriangleMesh& mesh) {
 
 } // namespace
 
-void require_sound(const TriangleMesh& mesh) {
+void require_consistent(const TriangleMesh& mesh) {
     require_vertices(mesh);
     const std::size_t num_vertices = mesh.num_vertices(), num_triangles = mesh.num_triangles();
     require_size(mesh.colors.size(), num_vertices, "colours of vertices");

@@ -89,7 +89,7 @@ void for_each_vertex_array(Mesh& mesh, const Use& use) {
 /// nor 0: for meshes made in code. Readers of files make none of these.
 ///
 /// Cost:    O(vertices + triangles).
-void require_sound(const TriangleMesh& mesh);
+void require_consistent(const TriangleMesh& mesh);
 
 /// Axis-aligned box around points.
 struct Bounds {

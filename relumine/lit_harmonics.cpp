@@ -10,7 +10,7 @@ namespace relumine {
 
 std::vector<glm::vec3> LitScene::harmonics() const {
     if (!is_lit_ || harmonics_ == 0)
-        throw std::logic_error("expected a scene that is lit, and an order of harmonics");
+        throw std::logic_error("expected a scene that is lit, with LightOptions::harmonics");
     std::vector<glm::vec3> result = relighter().harmonics();
     for (std::size_t i = 0; i < added_.harmonics.size(); ++i)
         result[i] += added_.harmonics[i];

@@ -306,8 +306,10 @@ BounceReport LitScene::bounce(const Bouncing& how) {
     std::optional<relight::SurfaceBounces> surfaces;
     if (!how.albedo.empty())
         surfaces = bounces_of(*scene_, how.albedo, how.limits);
-    if (!is_lit_ || (!surfaces && !bounces_.is_set()))
-        throw std::logic_error("expected a scene that is lit, and an albedo");
+    if (!is_lit_)
+        throw std::logic_error("expected a scene that is lit");
+    if (!surfaces && !bounces_.is_set())
+        throw std::logic_error("expected an albedo, as bounce_albedo() returns it");
     relight::SharedRows rows;
     if (part_ && part_->bounces)
         rows = {.team = team_,
@@ -520,7 +522,10 @@ UpdateReport set_layers(LitScene& lit, std::vector<cubemap::LightLayer> layers) 
 
 UpdateReport set_layer(LitScene& lit, std::size_t index, const cubemap::LightLayer& layer) {
     LightState next = lit.state();
-    next.layers.at(index) = layer;
+    if (index >= next.layers.size())
+        throw std::out_of_range(
+            fmt::format("expected one of {} layers, got number {}", next.layers.size(), index));
+    next.layers[index] = layer;
     return lit.edit(std::move(next));
 }
 

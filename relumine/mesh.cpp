@@ -252,7 +252,7 @@ float lowest(std::span<const glm::vec3> positions) {
 Mesh sound(Mesh mesh) {
     if (mesh.geometry.normals.empty())
         mesh.geometry.normals = mesh::smooth_normals(mesh.geometry);
-    mesh::require_sound(mesh.geometry);
+    mesh::require_consistent(mesh.geometry);
     return mesh;
 }
 

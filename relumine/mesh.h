@@ -95,7 +95,7 @@ struct MeshOptions {
 /// Returns the mesh with smooth normals where it has none at all. All functions that take a mesh
 /// begin with this, because a mesh made in code may be anything.
 ///
-/// Throws:  std::invalid_argument as mesh::require_sound().
+/// Throws:  std::invalid_argument as mesh::require_consistent().
 [[nodiscard]] Mesh sound(Mesh mesh);
 
 /// Reads an .obj, .gltf, .glb, .ply, .off or .stl file, turns it upright and adds the floor.

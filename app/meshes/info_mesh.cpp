@@ -10,6 +10,7 @@
 #include "files/counted.h"
 #include "mesh/half_edge/diagnosis.h"
 #include "mesh/load.h"
+#include "prt/lamps/lamps.h"
 #include "relight/pictures/mesh_picture.h"
 #include "relumine/material_report.h"
 
@@ -114,6 +115,9 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
         materials.push_back(report_of(mesh, material));
     for (const std::string& group : mesh.groups)
         session.say(fmt::format("group               {}", group));
+    const std::vector<std::string> lamps = prt::lamps_of(mesh).names();
+    for (const std::string& name : lamps)
+        session.say(fmt::format("lamp                {}", name.empty() ? "all that glows" : name));
     for (const std::string& name : mesh.missing)
         session.say(fmt::format("not found           {}", name));
     for (const std::string& warning : mesh.warnings)
@@ -131,6 +135,7 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
                     {"uvs", !mesh.uvs.empty() || !mesh.corner_uvs.empty()},
                     {"materials", materials},
                     {"groups", mesh.groups},
+                    {"lamps", lamps},
                     {"missing", mesh.missing},
                     {"left_out", mesh.warnings}});
 }

@@ -1,9 +1,11 @@
 #include "app/options/output_options.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -85,6 +87,17 @@ std::string OutputOptions::exposure_text(const Painter& painter) const {
         return "";
     return fmt::format("; exposure {:.2f}{}", painter.exposure_ev(path),
                        picture.exposure_ev ? "" : " (auto)");
+}
+
+void require_part_name(const std::string& path) {
+    constexpr std::array<std::string_view, 9> OfWholes = {".prt", ".plan", ".png", ".npy", ".exr",
+                                                          ".hdr", ".ply",  ".glb", ".obj"};
+    const std::string extension = extension_of(path);
+    if (std::find(OfWholes.begin(), OfWholes.end(), extension) != OfWholes.end())
+        throw UsageError("--output",
+                         fmt::format("expected a name for a part, such as {}.part.1, "
+                                     "got that of a whole, '{}'",
+                                     std::filesystem::path(path).stem().string(), path));
 }
 
 void require_extension(const std::string& option, const std::string& path,

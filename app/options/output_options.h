@@ -52,6 +52,9 @@ void require_extension(const std::string& option, const std::string& path,
 /// The same for environments: .exr or .hdr.
 void require_environment_name(const std::string& option, const std::string& path);
 
+/// Throws UsageError for a part's name that a whole scene, picture or array would have.
+void require_part_name(const std::string& path);
+
 /// The names of frames, from --output. Throws UsageError where `path` has no place for a number.
 [[nodiscard]] cubemap::FramePattern frame_names(const std::string& path);
 

@@ -47,6 +47,7 @@ void PlanOption::run(const Command& command, const std::string& output, Engine e
     for (const std::string& name : command.given_options())
         if (std::find(Fitting.begin(), Fitting.end(), name) == Fitting.end())
             throw UsageError(name, "the plan says it already: give it to `relumine plan`");
+    require_part_name(output);
     check_output(output, {plan_});
     Stopwatch watch;
     prt::PrecomputeStatistics statistics;

@@ -115,6 +115,11 @@ public:
         apply_one_by_one();
         bounce();
         write_output();
+        if (layers_.frames.empty())
+            session_.say(
+                fmt::format("{}: {}{}", options_.output.path,
+                            files::counted(lit_.scene().receivers.num_own(), "receiver"),
+                            painter_ ? options_.output.exposure_text(*painter_) : std::string()));
         if (!options_.saved_environment.empty())
             cubemap::save_environment(options_.saved_environment, environment_of(lit_));
         if (options_.watch)

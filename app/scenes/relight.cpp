@@ -233,6 +233,7 @@ void light_scene(const RelightArguments& options, Session& session) {
 /// Lights a part of the receivers.
 void light_one_part(const RelightArguments& options, const Command& command, Session& session) {
     require_numbers(options, command);
+    require_part_name(options.output.path);
     check_output(options.output.path, {options.scene.path, options.environment.path});
     Stopwatch watch;
     Environment environment = load_environment(options.environment, session);

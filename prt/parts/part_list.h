@@ -47,6 +47,10 @@ inline void require_part(const SectionReader& reader) {
 /// Throws:  as SectionReader.
 inline PartHead read_head(const SectionReader& reader, const std::string& section,
                           const std::string& whole_name) {
+    if (whole_name == "plan" && reader.has("lit"))
+        throw std::runtime_error(fmt::format(
+            "{}: expected a part of a scene, got a part of its light, which is joined to a .npy",
+            reader.path().string()));
     const files::Json json = reader.json(section);
     PartHead head;
     try {

@@ -39,16 +39,80 @@ bool are_alike(const Mirror& a, const Mirror& b) {
            are_near(one.coat_normal, other.coat_normal, prt::ggx_alpha(one.coat_roughness));
 }
 
+/// Returns over how many pixels a lobe may be averaged: it blurs more than these.
+std::uint32_t reach_of(float alpha) {
+    constexpr float OfOnePixel = 0.03f, OfAll = 0.1f;
+    return alpha >= OfAll ? Mirrors::Reach : alpha >= OfOnePixel ? 1 : 0;
+}
+
+/// Roberts' R2 sequence: neighbouring pixels get shifts that are far apart.
+glm::vec2 shift_of(std::uint32_t x, std::uint32_t y) {
+    const auto i = static_cast<double>(x), j = static_cast<double>(y);
+    return {glm::fract(glm::dvec2(0.75487766624669276 * i + 0.56984029099805327 * j,
+                                  0.56984029099805327 * i + 0.75487766624669276 * j))};
+}
+
 } // namespace
 
-void Mirrors::begin_pixel(std::uint32_t x, std::uint32_t y,
-                          const std::optional<prt::MeshPoint>& middle) {
+void Mirrors::begin_tile(std::uint32_t left, std::uint32_t top, std::uint32_t width,
+                         std::span<const std::optional<prt::MeshPoint>> middles) {
+    left_ = left;
+    top_ = top;
+    width_ = width;
+    middles_.assign(middles.size(), std::nullopt);
+    for (std::size_t i = 0; i < middles.size(); ++i)
+        if (middles[i])
+            if (const std::optional<Mirror> mirror = at(*middles[i])) {
+                shift_ = shift_of(left + static_cast<std::uint32_t>(i % width),
+                                  top + static_cast<std::uint32_t>(i / width));
+                middles_[i] = {
+                    {*mirror, trace(*mirror, *middles[i], light_.reflections->num_rays())},
+                    prt::value_at(mesh_, mesh_.positions, *middles[i])};
+            }
+}
+
+void Mirrors::begin_pixel(std::uint32_t x, std::uint32_t y) {
     traced_.clear();
-    middle_ = middle;
-    // Roberts' R2 sequence: neighbouring pixels get shifts that are far apart.
-    const auto i = static_cast<double>(x), j = static_cast<double>(y);
-    shift_ = glm::vec2(glm::fract(glm::dvec2(0.75487766624669276 * i + 0.56984029099805327 * j,
-                                             0.56984029099805327 * i + 0.75487766624669276 * j)));
+    x_ = x - left_;
+    y_ = y - top_;
+    shift_ = shift_of(x, y);
+}
+
+MirroredLight Mirrors::shared(const Middle& own) const {
+    const prt::Surface& surface = own.traced.mirror.surface;
+    const std::uint32_t reach = reach_of(lobe_alpha(surface));
+    const std::uint32_t of_coat = reach_of(prt::ggx_alpha(surface.coat_roughness));
+    const auto height = static_cast<std::uint32_t>(middles_.size() / width_);
+    MirroredLight sum, coats;
+    float count = 0.0f, num_coats = 0.0f;
+    for (std::uint32_t y = y_ - std::min(y_, reach); y < std::min(y_ + reach + 1, height); ++y)
+        for (std::uint32_t x = x_ - std::min(x_, reach); x < std::min(x_ + reach + 1, width_);
+             ++x) {
+            const std::optional<Middle>& other = middles_[std::size_t{y} * width_ + x];
+            if (!other || !are_alike(other->traced.mirror, own.traced.mirror))
+                continue;
+            // Of the same stretch of surface, which is nearly flat.
+            constexpr float LargestSlope = 0.25f;
+            const glm::vec3 way = other->position - own.position;
+            if (std::abs(glm::dot(way, own.traced.mirror.normal)) > LargestSlope * glm::length(way))
+                continue;
+            const MirroredLight& light = other->traced.light;
+            count += 1.0f;
+            sum.all += light.all;
+            sum.grazing += light.grazing;
+            sum.whole += light.whole;
+            sum.sheen += light.sheen;
+            if (std::max(x, x_) - std::min(x, x_) <= of_coat &&
+                std::max(y, y_) - std::min(y, y_) <= of_coat) {
+                num_coats += 1.0f;
+                coats.coat += light.coat;
+            }
+        }
+    return {.all = sum.all / count,
+            .grazing = sum.grazing / count,
+            .whole = sum.whole / count,
+            .coat = coats.coat / num_coats,
+            .sheen = sum.sheen / count};
 }
 
 std::optional<Mirror> Mirrors::at(const prt::MeshPoint& point) const {
@@ -85,33 +149,32 @@ glm::vec3 Mirrors::soft(const Mirror& mirror, const prt::MeshPoint& point,
 }
 
 MirroredLight Mirrors::light(const Mirror& mirror, const prt::MeshPoint& point) {
-    if (traced_.empty() && middle_)
-        if (const std::optional<Mirror> middle = at(*middle_); middle && are_alike(*middle, mirror))
-            trace(*middle, *middle_);
+    const std::optional<Middle>& middle = middles_[std::size_t{y_} * width_ + x_];
+    if (traced_.empty() && middle && are_alike(middle->traced.mirror, mirror))
+        traced_.push_back({middle->traced.mirror, shared(*middle)});
     const auto found = std::find_if(traced_.begin(), traced_.end(), [&](const Traced& traced) {
         return are_alike(traced.mirror, mirror);
     });
     if (found != traced_.end())
         return found->light;
-    trace(mirror, point);
+    // A pixel of several normals sums their rays.
+    const std::uint32_t all = light_.reflections->num_rays();
+    traced_.push_back({mirror, trace(mirror, point, traced_.empty() ? all : (all + 1) / 2)});
     return traced_.back().light;
 }
 
-void Mirrors::trace(const Mirror& mirror, const prt::MeshPoint& point) {
+MirroredLight Mirrors::trace(const Mirror& mirror, const prt::MeshPoint& point,
+                             std::uint32_t num_rays) const {
     const auto surfaces = [this](const prt::Hit& hit, const glm::vec3& direction,
                                  const glm::vec3& sky) {
         return seen(hit, direction, sky);
     };
-    // A pixel of several normals sums their rays.
-    const std::uint32_t all = light_.reflections->num_rays();
-    const std::uint32_t num_rays = traced_.empty() ? all : (all + 1) / 2;
-    traced_.push_back(
-        {mirror, light_.reflections->light(mirror.surface,
-                                           {.position = prt::smooth_position(mesh_, point),
-                                            .normal = mirror.normal,
-                                            .to_eye = mirror.to_eye,
-                                            .shift = shift_},
-                                           num_rays, surfaces)});
+    return light_.reflections->light(mirror.surface,
+                                     {.position = prt::smooth_position(mesh_, point),
+                                      .normal = mirror.normal,
+                                      .to_eye = mirror.to_eye,
+                                      .shift = shift_},
+                                     num_rays, surfaces);
 }
 
 /// Returns the radiance of a surface that a ray meets. A floor that catches shadows shows what is

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "mesh/triangle_mesh.h"
@@ -19,17 +20,26 @@ struct Mirror {
 };
 
 /// The mirrors that the samples of a picture's pixels see. Samples of a pixel share their rays
-/// where they see nearly the same surface. For one thread.
+/// where they see nearly the same surface; so do neighbouring pixels, where the lobe is wide and
+/// blurs more than that: each has other rays of it [Keller and Heidrich 2001, "Interleaved
+/// sampling"]. For one thread.
 class Mirrors {
 public:
+    /// So many pixels around a tile share their rays with it.
+    static constexpr std::uint32_t Reach = 2;
+
     /// All must outlive this object. Null: there is nothing behind the mesh but the environment.
     Mirrors(const mesh::TriangleMesh& mesh, const prt::TwinTriangles& twins, const MeshLight& light,
             const FadingFloor& floor, const Backdrop* backdrop, const prt::TextureView& view)
         : mesh_(mesh), twins_(twins), light_(light), floor_(floor), backdrop_(backdrop),
           view_(view) {}
 
-    /// `middle` is what the middle of the pixel sees: the first to be shared.
-    void begin_pixel(std::uint32_t x, std::uint32_t y, const std::optional<prt::MeshPoint>& middle);
+    /// Traces the rays of the middles of pixels: a rectangle of them, `width` to a row, from (left,
+    /// top) on. `middles` are what these see.
+    void begin_tile(std::uint32_t left, std::uint32_t top, std::uint32_t width,
+                    std::span<const std::optional<prt::MeshPoint>> middles);
+    /// Begins a pixel of the tile.
+    void begin_pixel(std::uint32_t x, std::uint32_t y);
 
     /// Returns the mirror at a point; none where nothing mirrors, or
     /// the point looks away from the eye.
@@ -45,10 +55,18 @@ private:
         Mirror mirror;
         MirroredLight light;
     };
+    /// What the middle of a pixel mirrors.
+    struct Middle {
+        Traced traced;
+        glm::vec3 position;
+    };
 
     [[nodiscard]] MirroredLight light(const Mirror& mirror, const prt::MeshPoint& point);
-    /// Traces the rays of a mirror, for the samples that are like it.
-    void trace(const Mirror& mirror, const prt::MeshPoint& point);
+    /// Returns what rays of a mirror find.
+    [[nodiscard]] MirroredLight trace(const Mirror& mirror, const prt::MeshPoint& point,
+                                      std::uint32_t num_rays) const;
+    /// Returns the light of a pixel's middle, with the rays of its neighbours.
+    [[nodiscard]] MirroredLight shared(const Middle& own) const;
     [[nodiscard]] glm::vec3 seen(const prt::Hit& hit, const glm::vec3& direction,
                                  const glm::vec3& sky) const;
 
@@ -59,8 +77,11 @@ private:
     const Backdrop* backdrop_;
     const prt::TextureView& view_;
     glm::vec2 shift_{0.0f};
+    // Of this tile
+    std::uint32_t left_ = 0, top_ = 0, width_ = 0;
+    std::vector<std::optional<Middle>> middles_;
     // Of this pixel
-    std::optional<prt::MeshPoint> middle_;
+    std::uint32_t x_ = 0, y_ = 0;
     std::vector<Traced> traced_;
 };
 

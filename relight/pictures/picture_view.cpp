@@ -159,8 +159,10 @@ public:
     void draw(std::uint32_t x_begin, std::uint32_t y_begin, Picture& picture) {
         const std::uint32_t x_end = std::min(x_begin + TileSize, picture.width);
         const std::uint32_t y_end = std::min(y_begin + TileSize, picture.height);
-        // The tile and, for the lights, a ring of pixels around it.
-        const std::uint32_t ring = packets_.num_packets() != 0 ? 1 : 0;
+        // The tile and a ring of pixels around it, for the lights and for what mirrors.
+        const std::uint32_t ring = light_.reflections != nullptr ? Mirrors::Reach
+                                   : packets_.num_packets() != 0 ? 1
+                                                                 : 0;
         left_ = x_begin - std::min(x_begin, ring);
         top_ = y_begin - std::min(y_begin, ring);
         const std::uint32_t right = std::min(x_end + ring, picture.width);
@@ -171,6 +173,8 @@ public:
             rows_.emplace_back(view_, y, left_, right);
         if (packets_.num_packets() != 0)
             look_at_lights(right, bottom);
+        if (light_.reflections != nullptr)
+            look_into_mirrors(right, bottom);
 
         for (std::uint32_t y = y_begin; y < y_end; ++y)
             for (std::uint32_t x = x_begin; x < x_end; ++x) {
@@ -288,6 +292,17 @@ private:
                     look(sample, lanes_of(x, y));
     }
 
+    void look_into_mirrors(std::uint32_t right, std::uint32_t bottom) {
+        std::vector<std::optional<prt::MeshPoint>> points;
+        for (std::uint32_t y = top_; y < bottom; ++y)
+            for (std::uint32_t x = left_; x < right; ++x) {
+                const Sample& sample = middle(rows_[y - top_].pixel(x));
+                points.push_back(sample.triangle == NoTriangle ? std::nullopt
+                                                               : std::optional(point(sample)));
+            }
+        mirrors_.begin_tile(left_, top_, width_, points);
+    }
+
     /// Whether all pixels around see the same lights.
     [[nodiscard]] bool is_even(std::uint32_t x, std::uint32_t y, std::uint32_t right,
                                std::uint32_t bottom) {
@@ -314,11 +329,7 @@ private:
         glm::vec3 sum(0.0f);
         float alpha = 0.0f;
         passed_.assign(samples.size(), glm::vec3(1.0f));
-        const Sample& in_middle = middle(samples);
-        mirrors_.begin_pixel(x, y,
-                             in_middle.triangle == NoTriangle
-                                 ? std::nullopt
-                                 : std::optional<prt::MeshPoint>(point(in_middle)));
+        mirrors_.begin_pixel(x, y);
         for (std::size_t i = 0; i < samples.size(); ++i) {
             float covered = 0.0f;
             for (const Layer& layer : layers(x, y, static_cast<std::uint32_t>(i), samples[i])) {

@@ -163,6 +163,11 @@ TEST(LightEdits, UndoAndRedoReturnBitwise) {
     }
     EXPECT_FALSE(editor.history().can_redo());
 
+    // An edit without a mark is undone to the last one.
+    set_layers(editor, {});
+    undo(editor);
+    EXPECT_EQ(copy(editor.radiance()), states.back());
+
     // A new edit after an undo forgets what was undone.
     undo(editor);
     set_layers(editor, {});

@@ -1,7 +1,12 @@
 #include "relumine/precompute.h"
 
+#include <cmath>
+#include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
+
+#include "mesh/normals.h"
 #include "prt/receivers/pixel_receivers.h"
 #include "prt/receivers/texel_receivers.h"
 #include "prt/visibility/ray_scene.h"
@@ -39,6 +44,40 @@ TEST(Precompute, IsItsStepsInOneCall) {
     EXPECT_EQ(report.clusters.num_clusters, scene.transfer.num_clusters());
     EXPECT_FALSE(report.highlights);
     EXPECT_FALSE(report.memory);
+}
+
+TEST(Precompute, RefusesAMeshThatContradictsItself) {
+    const auto expect_refused = [](const auto& change, const std::string& message) {
+        mesh::TriangleMesh mesh = two_squares();
+        change(mesh);
+        const auto expect = [&](const auto& call) {
+            EXPECT_THAT(call,
+                        testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr(message)));
+        };
+        expect([&] { static_cast<void>(precompute(mesh)); });
+        expect([&] { static_cast<void>(refined(mesh, {})); });
+        expect([&] { static_cast<void>(simplified(mesh, 4)); });
+    };
+    using Mesh = mesh::TriangleMesh;
+    expect_refused([](Mesh& m) { m.triangles[1][2] = 77; }, "got 77 of triangle 1");
+    expect_refused([](Mesh& m) { m.triangles[0][0] = ~0u; }, "of triangle 0");
+    expect_refused([](Mesh& m) { m.normals.pop_back(); }, "a normal for each of");
+    expect_refused([](Mesh& m) { m.normals[2] *= 3.0f; }, "got 3 at vertex 2");
+    expect_refused([](Mesh& m) { m.normals[2].x = NAN; }, "at vertex 2");
+    expect_refused([](Mesh& m) { m.positions[1].y = INFINITY; }, "at vertex 1");
+    expect_refused([](Mesh& m) { m.colors.resize(1); }, "colours of vertices, got 1");
+    expect_refused([](Mesh& m) { m.triangle_materials.assign(m.num_triangles(), 5); },
+                   "materials below 0, got 5");
+    expect_refused([](Mesh& m) { m.triangle_materials.resize(1); }, "materials of triangles");
+}
+
+TEST(Precompute, GivesAMeshWithoutNormalsSmoothOnes) {
+    mesh::TriangleMesh mesh = boulder();
+    const PrecomputeOptions options{.tolerance = Tolerance, .no_refine = true};
+    mesh.normals = mesh::smooth_normals(mesh);
+    const Scene expected = precompute(mesh, options);
+    mesh.normals.clear();
+    prt::expect_same(precompute(mesh, options).transfer, expected.transfer);
 }
 
 TEST(Precompute, TakesABias) {
