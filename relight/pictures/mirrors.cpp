@@ -1,6 +1,7 @@
 #include "relight/pictures/mirrors.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <glm/common.hpp>
@@ -39,10 +40,11 @@ bool are_alike(const Mirror& a, const Mirror& b) {
            are_near(one.coat_normal, other.coat_normal, prt::ggx_alpha(one.coat_roughness));
 }
 
-/// Returns over how many pixels a lobe may be averaged: it blurs more than these.
+/// Returns over how many pixels around a lobe may be averaged: it blurs more than these.
 std::uint32_t reach_of(float alpha) {
-    constexpr float OfOnePixel = 0.03f, OfAll = 0.1f;
-    return alpha >= OfAll ? Mirrors::Reach : alpha >= OfOnePixel ? 1 : 0;
+    constexpr std::array<float, Mirrors::Reach> Widest = {0.03f, 0.1f, 0.25f};
+    return static_cast<std::uint32_t>(std::upper_bound(Widest.begin(), Widest.end(), alpha) -
+                                      Widest.begin());
 }
 
 /// Roberts' R2 sequence: neighbouring pixels get shifts that are far apart.
@@ -78,25 +80,25 @@ void Mirrors::begin_pixel(std::uint32_t x, std::uint32_t y) {
     shift_ = shift_of(x, y);
 }
 
-MirroredLight Mirrors::shared(const Middle& own) const {
-    const prt::Surface& surface = own.traced.mirror.surface;
-    const std::uint32_t reach = reach_of(lobe_alpha(surface));
-    const std::uint32_t of_coat = reach_of(prt::ggx_alpha(surface.coat_roughness));
+std::optional<MirroredLight> Mirrors::shared(const Mirror& mirror,
+                                             const glm::vec3& position) const {
+    const std::uint32_t reach = reach_of(lobe_alpha(mirror.surface));
+    const std::uint32_t of_coat = reach_of(prt::ggx_alpha(mirror.surface.coat_roughness));
     const auto height = static_cast<std::uint32_t>(middles_.size() / width_);
-    MirroredLight sum, coats;
+    MirroredLight sum;
     float count = 0.0f, num_coats = 0.0f;
     for (std::uint32_t y = y_ - std::min(y_, reach); y < std::min(y_ + reach + 1, height); ++y)
         for (std::uint32_t x = x_ - std::min(x_, reach); x < std::min(x_ + reach + 1, width_);
              ++x) {
-            const std::optional<Middle>& other = middles_[std::size_t{y} * width_ + x];
-            if (!other || !are_alike(other->traced.mirror, own.traced.mirror))
+            const std::optional<Middle>& middle = middles_[std::size_t{y} * width_ + x];
+            if (!middle || !are_alike(middle->traced.mirror, mirror))
                 continue;
             // Of the same stretch of surface, which is nearly flat.
             constexpr float LargestSlope = 0.25f;
-            const glm::vec3 way = other->position - own.position;
-            if (std::abs(glm::dot(way, own.traced.mirror.normal)) > LargestSlope * glm::length(way))
+            const glm::vec3 way = middle->position - position;
+            if (std::abs(glm::dot(way, mirror.normal)) > LargestSlope * glm::length(way))
                 continue;
-            const MirroredLight& light = other->traced.light;
+            const MirroredLight& light = middle->traced.light;
             count += 1.0f;
             sum.all += light.all;
             sum.grazing += light.grazing;
@@ -105,14 +107,16 @@ MirroredLight Mirrors::shared(const Middle& own) const {
             if (std::max(x, x_) - std::min(x, x_) <= of_coat &&
                 std::max(y, y_) - std::min(y, y_) <= of_coat) {
                 num_coats += 1.0f;
-                coats.coat += light.coat;
+                sum.coat += light.coat;
             }
         }
-    return {.all = sum.all / count,
-            .grazing = sum.grazing / count,
-            .whole = sum.whole / count,
-            .coat = coats.coat / num_coats,
-            .sheen = sum.sheen / count};
+    if (count == 0.0f || (prt::has_coat(mirror.surface) && num_coats == 0.0f))
+        return std::nullopt;
+    return MirroredLight{.all = sum.all / count,
+                         .grazing = sum.grazing / count,
+                         .whole = sum.whole / count,
+                         .coat = sum.coat / std::max(num_coats, 1.0f),
+                         .sheen = sum.sheen / count};
 }
 
 std::optional<Mirror> Mirrors::at(const prt::MeshPoint& point) const {
@@ -149,14 +153,15 @@ glm::vec3 Mirrors::soft(const Mirror& mirror, const prt::MeshPoint& point,
 }
 
 MirroredLight Mirrors::light(const Mirror& mirror, const prt::MeshPoint& point) {
-    const std::optional<Middle>& middle = middles_[std::size_t{y_} * width_ + x_];
-    if (traced_.empty() && middle && are_alike(middle->traced.mirror, mirror))
-        traced_.push_back({middle->traced.mirror, shared(*middle)});
     const auto found = std::find_if(traced_.begin(), traced_.end(), [&](const Traced& traced) {
         return are_alike(traced.mirror, mirror);
     });
     if (found != traced_.end())
         return found->light;
+    if (const auto light = shared(mirror, prt::value_at(mesh_, mesh_.positions, point))) {
+        traced_.push_back({mirror, *light});
+        return *light;
+    }
     // A pixel of several normals sums their rays.
     const std::uint32_t all = light_.reflections->num_rays();
     traced_.push_back({mirror, trace(mirror, point, traced_.empty() ? all : (all + 1) / 2)});

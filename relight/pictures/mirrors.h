@@ -26,7 +26,7 @@ struct Mirror {
 class Mirrors {
 public:
     /// So many pixels around a tile share their rays with it.
-    static constexpr std::uint32_t Reach = 2;
+    static constexpr std::uint32_t Reach = 3;
 
     /// All must outlive this object. Null: there is nothing behind the mesh but the environment.
     Mirrors(const mesh::TriangleMesh& mesh, const prt::TwinTriangles& twins, const MeshLight& light,
@@ -65,8 +65,10 @@ private:
     /// Returns what rays of a mirror find.
     [[nodiscard]] MirroredLight trace(const Mirror& mirror, const prt::MeshPoint& point,
                                       std::uint32_t num_rays) const;
-    /// Returns the light of a pixel's middle, with the rays of its neighbours.
-    [[nodiscard]] MirroredLight shared(const Middle& own) const;
+    /// Returns the light that the middles of this pixel and of those around found on the same
+    /// surface; none where they see others.
+    [[nodiscard]] std::optional<MirroredLight> shared(const Mirror& mirror,
+                                                      const glm::vec3& position) const;
     [[nodiscard]] glm::vec3 seen(const prt::Hit& hit, const glm::vec3& direction,
                                  const glm::vec3& sky) const;
 

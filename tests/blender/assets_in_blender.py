@@ -1,6 +1,8 @@
 """Runs in `blender -b`: assets, their files and what changes them; lamps, materials, lightmaps.
 FOLDER follows `--`."""
 
+import contextlib
+import io
 import os
 import sys
 import traceback
@@ -66,6 +68,14 @@ def refusal(call):
     except RuntimeError as error:
         return str(error)
     raise AssertionError("expected an error, got none")
+
+
+def reports(call):
+    """What an operator says; Blender repeats it in the terminal."""
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said):
+        call()
+    return said.getvalue()
 
 
 def states():
@@ -332,6 +342,137 @@ def test_lightmaps():
     picture = drawn(size=64, samples=4)
     light = 0.8 * pixels[:, :, :3]  # of new materials
     assert np.linalg.norm(picture - light) < 0.02 * np.linalg.norm(picture)
+
+
+def test_lightmaps_keep_flat_faces_flat():
+    scene = clear((0.0, 0.0, 0.0))
+    bpy.ops.mesh.primitive_cube_add(rotation=(0.3, 0.0, 0.0), scale=(1.0, 2.0, 0.5))
+    cube = bpy.context.object
+    cube.name = "flat"
+    scene.relumine.receivers, scene.relumine.lightmap_size = "TEXELS", "64"
+    precompute(cube)
+    lamp("SUN", 3.0, rotation=(0.3, 0.0, 0.0), angle=0.0)
+    pixels = np.array(cube["relumine_lightmap"].pixels[:]).reshape(64, 64, 4)[:, :, 0]
+    for face in cube.data.polygons:
+        u, v = np.mean([cube.data.uv_layers.active.data[corner].uv for corner in face.loop_indices],
+                       axis=0) * 64  # fmt: skip
+        middle = pixels[int(v) - 5 : int(v) + 6, int(u) - 5 : int(u) + 6]
+        assert np.allclose(middle, 3.0 / np.pi * (face.normal.z > 0.5), atol=0.02), face.normal
+
+
+def test_lightmaps_say_what_is_wrong_with_uvs():
+    scene = clear()
+    floor = plane("floor", cuts=3)
+    scene.relumine.receivers, scene.relumine.lightmap_size = "TEXELS", "64"
+    assert "Warning" not in reports(lambda: precompute(floor)) and not assets.notes_of(floor)
+    uvs = floor.data.uv_layers.active.data
+    for corner in floor.data.polygons[0].loop_indices:
+        uvs[corner].uv = uvs[floor.data.polygons[4].loop_indices[corner % 4]].uv
+    for corner in floor.data.polygons[2].loop_indices:
+        uvs[corner].uv.x += 1.0
+    said = reports(lambda: precompute(floor))
+    for text in ("texels lie in several triangles", "2 triangles have uvs outside of 0 to 1"):
+        assert "Warning: " in said and text in said, said
+        assert any(text in note for note in assets.notes_of(floor)), assets.notes_of(floor)
+
+
+def test_coarse_meshes_are_named():
+    scene = clear()
+    bpy.ops.mesh.primitive_cube_add()
+    cube = bpy.context.object
+    cube.name = "cube"
+    said = reports(lambda: precompute(cube))
+    note = ("cube: coarse: subdivide it, or use Lightmap; faces are flat, but light is smooth over "
+            "their vertices")  # fmt: skip
+    assert f"Warning: {note}" in said and assets.notes_of(cube) == [note], said
+    bpy.ops.object.shade_smooth()
+    precompute(cube)
+    assert assets.notes_of(cube) == ["cube: coarse: subdivide it, or use Lightmap"]
+    # A modifier's vertices do not hold light; the object's own do.
+    cube.modifiers.new("fine", "SUBSURF").levels = 5
+    precompute(cube)
+    assert len(assets.notes_of(cube)) == 1
+    bpy.ops.object.modifier_apply(modifier="fine")
+    assert "Warning" not in reports(lambda: precompute(cube)) and not assets.notes_of(cube)
+    scene.relumine.receivers, scene.relumine.lightmap_size = "TEXELS", "64"
+    low, other = plane("low", cuts=1), plane("other", cuts=1, location=(0, 0, 3))
+    precompute(low)
+    assert not assets.notes_of(low)
+    scene.relumine.receivers = "VERTICES"
+    precompute(low, other)
+    assert assets.notes_of(other)[0].startswith("low, other: coarse: subdivide them")
+
+
+def test_hidden_blockers_stay_named():
+    clear()
+    floor, roof = plane("floor", cuts=50), plane("roof", location=(0, 0, 1))
+    roof.hide_viewport = True
+    update()
+    note = "roof renders but is hidden here: it blocks no light"
+    assert f"Warning: {note}" in reports(lambda: precompute(floor))
+    assert assets.notes_of(floor) == [note]
+    roof.hide_viewport = False
+    update()
+    precompute(floor)
+    assert assets.notes_of(floor) == []
+
+
+def test_reports():
+    scene = clear()
+    said = reports(bpy.ops.relumine.update)
+    assert "Warning: precompute first" in said and "lit" not in said, said
+    floor = plane("floor")
+    # Found before the precompute, and shown until the next.
+    assets.relumine.precompute, kept = None, assets.relumine.precompute
+    try:
+        where = os.path.join(folder, "nowhere", "floor.prt")
+        text = f"{where}: cannot write: no such folder"
+        assert text in refusal(lambda: precompute(floor, filepath=where))
+    finally:
+        assets.relumine.precompute = kept
+    assert scene.relumine.error == text
+    precompute(floor)
+    assert scene.relumine.error == ""
+    assert "Info: 1 object lit" in reports(bpy.ops.relumine.update)
+    # The last failure is the one that is shown.
+    scene.relumine.error = "older"
+    os.rename("floor.prt", "kept.prt")
+    assert "cannot read" in refusal(bpy.ops.relumine.update)
+    assert "floor.prt: cannot read" in scene.relumine.error
+    os.rename("kept.prt", "floor.prt")
+    bpy.ops.relumine.update()
+    assert scene.relumine.error == ""
+    # An image that is not there.
+    old, scene.world = scene.world, bpy.data.worlds.new("lost")
+    scene.world.use_nodes = True
+    tree = scene.world.node_tree
+    image = bpy.data.images.new("sky", 4, 4)
+    image.source, image.filepath = "FILE", "//lost.exr"
+    texture = tree.nodes.new("ShaderNodeTexEnvironment")
+    texture.image = image
+    tree.links.new(texture.outputs[0], tree.nodes["Background"].inputs[0])
+    update()
+    lost = f"Warning: image sky: cannot read {os.path.join(folder, 'lost.exr')}: no such file"
+    for call in (bpy.ops.relumine.update, lambda: precompute(floor), bpy.ops.relumine.pull_lights):
+        said = reports(call)
+        assert lost in said, said
+    scene.world = old
+
+
+def test_pulled_lights_do_not_light_twice():
+    scene = clear((0.5, 0.5, 0.5))
+    floor = plane("floor", cuts=2)
+    white(floor)
+    alone = drawn(size=9).mean()
+    said = reports(lambda: bpy.ops.relumine.pull_lights(number=16))
+    assert "Info: 16 lights, off in renders: the world still lights; switch one of them on" in said
+    collection = bpy.data.collections["Relumine lights"]
+    assert collection.hide_render and len(collection.objects) == 16
+    assert np.isclose(drawn(size=9).mean(), alone, rtol=0.01)
+    # In place of the world.
+    collection.hide_render, scene.world.color = False, (0.0, 0.0, 0.0)
+    assert np.isclose(drawn(size=9).mean(), alone, rtol=0.1)
+    bpy.data.collections.remove(collection)
 
 
 def test_bounces_have_the_materials_colors():

@@ -1,6 +1,9 @@
 """Assets: objects that were precomputed together, their scene file, and their light."""
 
+import contextlib
 import os
+import threading
+import warnings
 
 import bpy
 import numpy as np
@@ -13,13 +16,15 @@ from .worlds import WorldLight, forget, stamp
 
 #: Keys of objects: the scene file, the vertices in it that are this object's, their digest there;
 #: the object's mesh and place at the precompute, what stood around; whose ties they are; how it
-#: was made.
+#: was made, and what is to be known of that, in lines.
 PATH, FIRST, COUNT, IN_FILE = ("relumine_prt", "relumine_first", "relumine_count",
                                "relumine_in_file")  # fmt: skip
 SHAPE, PLACE, AROUND, OWNER = ("relumine_shape", "relumine_place", "relumine_around",
                                "relumine_owner")  # fmt: skip
 TOLERANCE, BOUNCES, TEXELS = "relumine_tolerance", "relumine_bounces", "relumine_texels"
-TIES = (PATH, FIRST, COUNT, IN_FILE, SHAPE, PLACE, AROUND, OWNER, TOLERANCE, BOUNCES, TEXELS)
+NOTES = "relumine_notes"
+TIES = (PATH, FIRST, COUNT, IN_FILE, SHAPE, PLACE, AROUND, OWNER, TOLERANCE, BOUNCES, TEXELS,
+        NOTES)  # fmt: skip
 
 
 class LiveScene:
@@ -113,6 +118,11 @@ def forget_all():
 
 def lit_objects(scene):
     return [thing for thing in scene.objects if thing.type == "MESH" and PATH in thing]
+
+
+def notes_of(thing):
+    """What is to be known of an object's precompute."""
+    return thing.get(NOTES, "").splitlines()
 
 
 def path_of(thing):
@@ -294,12 +304,32 @@ def check(thing):
                          "press Make meshes single-user")  # fmt: skip
 
 
+@contextlib.contextmanager
+def heard(notes):
+    """Adds the warnings of the engine to notes, those of this thread alone."""
+    thread = threading.get_ident()
+    with warnings.catch_warnings():
+        show = warnings.showwarning
+
+        def hear(message, category, *details, **more):
+            if issubclass(category, relumine.RelumineWarning) and threading.get_ident() == thread:
+                notes.add(str(message))
+            else:
+                show(message, category, *details, **more)
+
+        warnings.simplefilter("always", relumine.RelumineWarning)
+        warnings.showwarning = hear
+        yield
+
+
 class Precompute:
     """Precomputes objects together, so that they shadow each other, and ties them to a file."""
 
     def __init__(self, context, things, path, *, tolerance, bounces=False, texels=0):
         self.scene, self.path, self.texels = context.scene, path, texels
         self.absolute = os.path.normpath(bpy.path.abspath(path))
+        if not os.path.isdir(os.path.dirname(self.absolute) or "."):
+            raise FileNotFoundError(f"{self.absolute}: cannot write: no such folder")
         self.tolerance, self.bounces, self.notes = tolerance, bounces, set()
         if texels and len(things) > 1:
             raise ValueError(f"lightmap: expected one object, got {len(things)}")
@@ -310,8 +340,13 @@ class Precompute:
         depsgraph = context.evaluated_depsgraph_get()
         rendered = geometry.rendered_names(context.view_layer)
         own, extra, self.places = geometry.Pieces(), {}, []
+        shapes = []
         for thing in things:
             self._add(thing, thing.evaluated_get(depsgraph), own, extra)
+            if not texels:
+                shapes.append(geometry.Shape(thing, depsgraph))
+        if shapes:
+            self.notes |= geometry.coarse_notes(shapes, np.concatenate(own.vertices))
         others, notes = geometry.surroundings_of(depsgraph, self.names, rendered, bounces)
         self.notes |= notes
         hidden = geometry.unseen(self.scene, depsgraph, self.names, rendered)
@@ -323,7 +358,8 @@ class Precompute:
             extra["blockers"] = others.arrays()
         if bounces:
             extra["colors"] = np.concatenate(own.colors)
-        self.mesh = relumine.Mesh(*own.arrays(), **extra)
+        with heard(self.notes):
+            self.mesh = relumine.Mesh(*own.arrays(), **extra)
 
     def _refuse_other_assets(self):
         for thing in lit_objects(self.scene):
@@ -342,9 +378,8 @@ class Precompute:
                 split = geometry.with_uvs(mesh, vertices, triangles)
                 if split is None:
                     raise ValueError(f"{thing.name}: expected a UV map for its lightmap, got none")
-                normals = geometry.vertex_normals(mesh, thing.matrix_world)
-                vertices, triangles, extra["uvs"], old = split
-                extra["normals"] = normals[old]
+                vertices, triangles, extra["uvs"], normals, old = split
+                extra["normals"] = geometry.placed_normals(normals, thing.matrix_world)
                 colors = colors[old] if colors is not None else None
         vertices, triangles = geometry.placed(vertices, triangles, thing.matrix_world)
         keys = geometry.key_of(evaluated, thing.matrix_world)
@@ -354,11 +389,12 @@ class Precompute:
     def work(self, progress=None):
         """The long part, which touches nothing of Blender's."""
         receivers = f"texels:{self.texels}x{self.texels}" if self.texels else "vertices"
-        relumine.precompute(
-            self.mesh, tolerance=self.tolerance, output=self.absolute, receivers=receivers,
-            bounces=bool(self.bounces), progress=progress,
-            refine=bool(self.bounces),  # Blender shows its own vertices; bounces gain from more
-        )  # fmt: skip
+        with heard(self.notes):
+            relumine.precompute(
+                self.mesh, tolerance=self.tolerance, output=self.absolute, receivers=receivers,
+                bounces=bool(self.bounces), progress=progress,
+                refine=bool(self.bounces),  # Blender shows its own vertices; bounces gain from more
+            )  # fmt: skip
 
     def tie(self):
         for name, first, count, in_file, (shape, place) in self.places:
@@ -366,7 +402,8 @@ class Precompute:
             if thing is None:
                 continue
             values = (self.path, first, count, in_file, shape, place, self.around, name,
-                      self.tolerance, bool(self.bounces), self.texels)  # fmt: skip
+                      self.tolerance, bool(self.bounces), self.texels,
+                      "\n".join(sorted(self.notes)))  # fmt: skip
             for key, value in zip(TIES, values):
                 thing[key] = value
             for key in ("relumine_copy_of", *(() if self.texels else (LIGHTMAP,))):
@@ -376,6 +413,7 @@ class Precompute:
         _nearest.clear()
         _fill.clear()
         _live.pop(self.absolute, None)
+        self.scene.relumine.error = ""
         relight_quietly(self.scene, force=True)
         look_for_changes(self.scene)
 

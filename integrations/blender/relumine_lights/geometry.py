@@ -9,6 +9,9 @@ from .materials import base_colors
 from .worlds import AXES
 
 SURFACES = {"MESH", "CURVE", "SURFACE", "META", "FONT", "CURVES"}
+#: A longer side of a triangle, in parts of the bounding box's diagonal, is coarse: `relumine
+#: precompute` would add vertices.
+COARSE = 1.0 / 40.0
 
 
 def arrays_of(mesh):
@@ -43,8 +46,39 @@ def placed(vertices, triangles, matrix):
     return world.astype(np.float32), triangles
 
 
+class Shape:
+    """The longest side of the triangles whose vertices show an object's light; are faces flat?"""
+
+    def __init__(self, thing, depsgraph):
+        self.name = thing.name
+        with Evaluated(thing.evaluated_get(depsgraph)) as mesh:
+            # Where a modifier makes vertices, the object's own have the light.
+            shown = mesh if len(mesh.vertices) == len(thing.data.vertices) else thing.data
+            vertices, triangles = placed(*arrays_of(shown), thing.matrix_world)
+            smooth = np.empty(len(mesh.polygons), dtype=bool)
+            mesh.polygons.foreach_get("use_smooth", smooth)
+        corners = vertices[triangles]
+        sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+        self.longest, self.is_flat = float(sides.max(initial=0.0)), not smooth.all()
+
+
+def coarse_notes(shapes, vertices):
+    """What is to be known of shapes whose vertices are few for the size of them all."""
+    size = float(np.linalg.norm(vertices.max(axis=0) - vertices.min(axis=0)))
+    coarse = [shape for shape in shapes if shape.longest > COARSE * size]
+    if not coarse:
+        return set()
+    names = ", ".join(sorted(shape.name for shape in coarse)[:3])
+    names += f" and {len(coarse) - 3} more" if len(coarse) > 3 else ""
+    flat = any(shape.is_flat for shape in coarse)
+    return {f"{names}: coarse: subdivide {'it' if len(coarse) == 1 else 'them'}, or use Lightmap"
+            + ("; faces are flat, but light is smooth over their vertices" if flat else "")
+    }  # fmt: skip
+
+
 def with_uvs(mesh, vertices, triangles):
-    """Vertices are split where the active UV map is: (vertices, triangles, uvs, old vertex)."""
+    """Vertices are split where the active UV map is and at sharp edges: (vertices, triangles, uvs,
+    normals, old vertex)."""
     layer = mesh.uv_layers.active
     if layer is None:
         return None
@@ -53,17 +87,28 @@ def with_uvs(mesh, vertices, triangles):
     corners = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
     mesh.loop_triangles.foreach_get("loops", corners)
     uv = uvs.reshape(-1, 2)[corners]
-    rows = np.column_stack([triangles.reshape(-1).astype(np.float64), uv])
-    unique, inverse = np.unique(rows, axis=0, return_inverse=True)
-    old = unique[:, 0].astype(np.int64)
-    return vertices[old], inverse.reshape(-1, 3), unique[:, 1:].astype(np.float32), old
+    normals = corner_normals(mesh)[corners]
+    rows = np.column_stack([triangles.reshape(-1).astype(np.float64), uv, np.round(normals, 4)])
+    _, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    old = triangles.reshape(-1)[first]
+    return vertices[old], inverse.reshape(-1, 3), uv[first], normals[first], old
 
 
-def vertex_normals(mesh, matrix):
-    normals = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    mesh.vertices.foreach_get("normal", normals)
+def corner_normals(mesh):
+    """(N, 3), those of the faces where they are flat."""
+    normals = np.empty(3 * len(mesh.loops), dtype=np.float32)
+    if hasattr(mesh, "corner_normals"):  # Blender 4.1
+        mesh.corner_normals.foreach_get("vector", normals)
+    else:
+        mesh.calc_normals_split()
+        mesh.loops.foreach_get("normal", normals)
+    return normals.reshape(-1, 3)
+
+
+def placed_normals(normals, matrix):
+    """In Relumine's axes."""
     inverse = np.linalg.inv(np.array(matrix, dtype=np.float64)[:3, :3])
-    world = normals.reshape(-1, 3) @ inverse @ AXES.T
+    world = normals @ inverse @ AXES.T
     return world / np.maximum(np.linalg.norm(world, axis=1, keepdims=True), 1e-30)
 
 

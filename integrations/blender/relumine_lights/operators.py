@@ -17,12 +17,18 @@ def meshes(context):
     return [thing for thing in context.selected_objects if thing.type == "MESH"]
 
 
+def counted(number, word):
+    return f"{number} {word}" if number == 1 else f"{number} {word}s"
+
+
 class Button(bpy.types.Operator):
-    """An operator whose act() may raise what the user should read."""
+    """An operator whose act() may raise what the user should read. It returns what was done, and
+    adds to `doubts`."""
 
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context):
+        self.doubts = []
         try:
             done = self.act(context)
         except ERRORS as error:
@@ -30,6 +36,8 @@ class Button(bpy.types.Operator):
             return {"CANCELLED"}
         if done:
             self.report({"INFO"}, done)
+        for line in self.doubts:
+            self.report({"WARNING"}, line)
         return {"FINISHED"}
 
 
@@ -73,17 +81,21 @@ class RELUMINE_OT_precompute(bpy.types.Operator):
 
     def _end(self):
         self._made.tie()
-        for note in sorted(self._made.notes):
+        for note in (*sorted(self._made.notes), *missing_images(self._made.scene)):
             self.report({"WARNING"}, note)
         return {"FINISHED"}
+
+    def _fail(self, context, error):
+        context.scene.relumine.error = str(error)
+        self.report({"ERROR"}, str(error))
+        return {"CANCELLED"}
 
     def execute(self, context):
         try:
             self._made = self._begin(context)
             self._made.work()
         except ERRORS as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+            return self._fail(context, error)
         return self._end()
 
     def invoke(self, context, event):
@@ -91,8 +103,7 @@ class RELUMINE_OT_precompute(bpy.types.Operator):
         try:
             self._made = self._begin(context)
         except ERRORS as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+            return self._fail(context, error)
 
         def progress(fraction):
             self._fraction = fraction
@@ -129,7 +140,9 @@ class RELUMINE_OT_precompute(bpy.types.Operator):
         context.workspace.status_text_set(None)
         if self._error is None:
             return self._end()
-        self.report({"INFO" if self._cancel else "ERROR"}, str(self._error))
+        if not self._cancel:
+            return self._fail(context, self._error)
+        self.report({"INFO"}, str(self._error))
         return {"CANCELLED"}
 
 
@@ -145,7 +158,7 @@ class RELUMINE_OT_single_user(Button):
             if geometry.is_shared(thing):
                 thing.data = thing.data.copy()
         assets.look_for_changes(context.scene)
-        return f"{len(shared)} objects have a mesh of their own"
+        return f"{counted(len(shared), 'object')} made single-user"
 
 
 class RELUMINE_OT_material(Button):
@@ -173,10 +186,20 @@ class RELUMINE_OT_update(Button):
     def act(self, context):
         assets.forget_all()
         assets.untie_copies(context.scene)
-        count = assets.relight(context.scene, force=True, wait=True)
-        assets.look_for_changes(context.scene)
-        context.scene.relumine.error = ""
-        return f"{count} objects lit"
+        settings = context.scene.relumine
+        settings.error = ""
+        try:
+            count = assets.relight(context.scene, force=True, wait=True)
+        except ERRORS as error:
+            settings.error = str(error)
+            raise
+        finally:
+            assets.look_for_changes(context.scene)
+        if not assets.lit_objects(context.scene):
+            self.doubts.append("precompute first: no object has a transfer")
+            return None
+        self.doubts += missing_images(context.scene)
+        return f"{counted(count, 'object')} lit"
 
 
 class RELUMINE_OT_pull_lights(Button):
@@ -194,11 +217,20 @@ class RELUMINE_OT_pull_lights(Button):
         thing = context.object if self.for_object else None
         if thing is not None and PATH not in thing:
             raise ValueError(f"{thing.name}: expected an object with a precomputed transfer")
-        return f"{pull_lights(context.scene, self.number, thing=thing)} lights"
+        number = pull_lights(context.scene, self.number, thing=thing)
+        self.doubts += missing_images(context.scene)
+        return (f"{counted(number, 'light')}, off in renders: the world still lights; "
+                "switch one of them on")  # fmt: skip
+
+
+def missing_images(scene):
+    """What is to be said of images of the world that are not there; Blender's light is magenta."""
+    return WorldLight(scene, bpy.context.evaluated_depsgraph_get()).missing
 
 
 def pull_lights(scene, number, *, thing=None):
-    """Makes suns of the world by median cut or, with an object, for its scene file."""
+    """Makes suns of the world by median cut or, with an object, for its scene file. They do not
+    render: the world would light twice."""
     world = WorldLight(scene, bpy.context.evaluated_depsgraph_get())
     environment = world.environment(scene.relumine.face_resolution, wait=True)
     if thing is None:
@@ -211,6 +243,7 @@ def pull_lights(scene, number, *, thing=None):
     if collection is None:
         collection = bpy.data.collections.new("Relumine lights")
         scene.collection.children.link(collection)
+    collection.hide_render = True
     for old in list(collection.objects):
         bpy.data.objects.remove(old)
     for index, (direction, irradiance) in enumerate(zip(lights.directions, lights.irradiances)):

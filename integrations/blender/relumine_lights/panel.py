@@ -81,6 +81,8 @@ class RELUMINE_PT_panel(bpy.types.Panel):
         layout, thing = self.layout, context.object
         if thing is not None and PATH in thing:
             layout.label(text=thing[PATH], icon="FILE")
+            for note in assets.notes_of(thing):
+                said(layout, context, note, "INFO")
         for name, state in sorted(assets.states.items()):
             said(layout, context, f"{name} {state}", "ERROR")
         state = assets.states.get(thing.name, "") if thing is not None else ""

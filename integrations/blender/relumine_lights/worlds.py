@@ -84,13 +84,15 @@ class WorldLight:
     turn      (3, 3), takes directions of the picture to those of Blender's world
     key       what changes with the picture
     remarks   what is not followed
+    missing   those of them about images that are not there
     """
 
     def __init__(self, scene, depsgraph=None):
         evaluated = scene if depsgraph is None else scene.evaluated_get(depsgraph)
         world = evaluated.world
         self.kind, self.color, self.path = "color", (0.0, 0.0, 0.0), None
-        self.strength, self.turn, self.remarks = 1.0, Matrix.Identity(3), []
+        self.strength, self.turn = 1.0, Matrix.Identity(3)
+        self.remarks, self.missing = [], []
         self.frame, self._images = scene.frame_current, []
         self.world, self._turned_by, self._strength_of = world and world.original, "", ""
         if world is None:
@@ -166,7 +168,8 @@ class WorldLight:
             if image is not None and image.source in ("FILE", "MOVIE") and not image.packed_file:
                 path = bpy.path.abspath(image.filepath, library=image.library)
                 if not os.path.exists(path):
-                    self.remarks.append(f"{path}: cannot read: no such file")
+                    self.missing.append(f"image {image.name}: cannot read {path}: no such file")
+                    self.remarks.append(self.missing[-1])
 
     def _signature(self, world):
         skipped = {(self._turned_by, "Rotation"), (self._strength_of, "Strength")}
