@@ -12,6 +12,7 @@
 #include "prt/scene/relighting_file.h"
 #include "relumine/output.h"
 #include "relumine/scene.h"
+#include "relumine/scene_bounces.h"
 
 namespace relumine::app {
 
@@ -28,7 +29,7 @@ void export_for_runtime(const ExportArguments& options, Session& session) {
     prt::RelightingScene lean{.scene = load_scene(options.scene)};
     session.poll();
     if (lean.scene.bounces)
-        lean.albedo = bounce_albedo(lean.scene);
+        lean.albedo = bounces_of(lean.scene, bounce_albedo(lean.scene)).albedo;
     const bool has_highlights = lean.scene.transfer.glossy.has_value();
     const bool has_lamps = !lean.scene.lamps.empty();
     const std::size_t num_receivers = lean.scene.receivers.num_own();

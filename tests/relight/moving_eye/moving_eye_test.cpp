@@ -14,6 +14,7 @@
 #include "relight/kernels/cluster_lights.h"
 #include "relight/moving_eye/visibility_pyramid.h"
 #include "relight/reference/exact.h"
+#include "tests/prt/analytic_blockers.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"
 
@@ -160,10 +161,11 @@ TEST(MovingEye, TracedLightsHaveTheirHighlightInClosedForm) {
 
 TEST(MovingEye, AWhiteMetalIsWhiteUnderAWhiteSky) {
     const mesh::TriangleMesh sphere = scenes::icosphere(3, 1.0f, glm::vec3(0.0f));
-    const prt::RayScene rays(sphere);
+    // The facets of the sphere would be in the way of what it mirrors near its horizons.
+    const scenes::AnalyticBlockers open = scenes::no_blockers();
     const prt::Receivers receivers = prt::vertex_receivers(sphere);
     const prt::Transfer transfer = prt::precompute(
-        receivers, rays, {.tolerance = 0.05f, .face_resolution = 16, .bias = 1e-4f});
+        receivers, open, {.tolerance = 0.0135f, .face_resolution = 64, .bias = 1e-4f});
     Relighter relighter(transfer);
     relighter.set_environment(cubemap::CubeMap(16, glm::vec3(1.0f)));
     for (const float roughness : {0.15f, 0.3f, 0.6f, 1.0f}) {
@@ -174,12 +176,13 @@ TEST(MovingEye, AWhiteMetalIsWhiteUnderAWhiteSky) {
                                  .metallic = 1.0f};
         MovingEye eye(transfer, receivers.positions, std::vector(receivers.size(), metal));
         eye.set_light(relighter);
-        const auto radiance = eye.look({0.0f, 0.0f, 4.0f}, relighter.radiance());
+        // A block of so coarse a sphere has lobes 20 degrees apart.
+        const auto radiance =
+            eye.look({0.0f, 0.0f, 4.0f}, relighter.radiance(), {.tolerance = 5e-4f});
         for (std::size_t i = 0; i < receivers.size(); ++i)
             if (const glm::vec3 ray = glm::vec3(0.0f, 0.0f, 4.0f) - receivers.positions[i];
                 glm::dot(receivers.normals[i], glm::normalize(ray)) > 0.3f) {
-                EXPECT_NEAR(radiance[i].g, 1.0f, roughness < 1.0f ? 0.03f : 0.05f)
-                    << roughness << " " << i;
+                EXPECT_NEAR(radiance[i].g, 1.0f, 0.03f) << roughness << " " << i;
             }
     }
 }
