@@ -141,8 +141,8 @@ RELUMINE_API RelumineResult relumine_light_lat_long(RelumineScene* scene, uint32
 /* Distant lights in place of an environment. */
 RELUMINE_API RelumineResult relumine_light_list(RelumineScene* scene, const RelumineLight* lights,
                                                 size_t count);
-/* Turns the environment that was given last, about +Y: light from +Z comes from +X at 90 degrees.
- */
+/* Turns the environment about +Y, from how it stood before its first turn: light from +Z comes from
+ * +X at 90 degrees. Updates since the first turn are lost. */
 RELUMINE_API RelumineResult relumine_turn(RelumineScene* scene, double degrees);
 /* New radiance for the texels [x, x + width) x [y, y + height) of a face of the lit (and turned)
  * cube map. Cost:      in proportion to what these texels light. */

@@ -22,29 +22,34 @@ std::size_t RuntimeScene::num_harmonics() const {
 }
 
 void RuntimeScene::light(cubemap::CubeMap map) {
-    relighter_.set_environment(map);
-    given_ = std::move(map);
+    relighter_.set_environment(std::move(map));
+    unturned_ = {};
     is_lit_ = true;
     has_bounced_ = false;
 }
 
 void RuntimeScene::light(std::span<const lights::DistantLight> lights) {
     relighter_.set_lights(lights);
-    given_ = {};
+    unturned_ = {};
     is_lit_ = true;
     has_bounced_ = false;
 }
 
 void RuntimeScene::turn(double degrees) {
-    if (given_.resolution == 0)
+    if (relighter_.environment().resolution == 0)
         throw NotLit();
-    relighter_.set_environment(cubemap::rotated(given_, degrees));
+    const bool is_first = unturned_.resolution == 0;
+    cubemap::CubeMap turned =
+        cubemap::rotated(is_first ? relighter_.environment() : unturned_, degrees);
+    if (is_first)
+        unturned_ = relighter_.environment();
+    relighter_.set_environment(std::move(turned));
     has_bounced_ = false;
 }
 
 void RuntimeScene::update(const cubemap::TexelRectangle& rectangle,
                           std::span<const glm::vec3> radiance) {
-    if (given_.resolution == 0)
+    if (relighter_.environment().resolution == 0)
         throw NotLit();
     relight::require_radiance(radiance);
     relighter_.update_regions(std::span(&rectangle, 1), [&](cubemap::CubeMap& map) {

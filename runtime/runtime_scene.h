@@ -54,8 +54,8 @@ private:
     prt::Scene scene_;
     relight::Relighter relighter_;
     bool has_harmonics_;
-    /// As it was given, before it is turned; without texels under a list of lights.
-    cubemap::CubeMap given_;
+    /// The environment before its first turn; without texels where there was none.
+    cubemap::CubeMap unturned_;
     bool is_lit_ = false;
     /// Set where the scene has bounces and they have an albedo.
     std::optional<relight::BounceLight> bounces_;
