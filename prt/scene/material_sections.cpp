@@ -33,6 +33,13 @@ Json json_of(const std::optional<TextureSlot>& slot, const Stored& stored) {
     return json;
 }
 
+/// Textures that most materials have not, and whose members they do not have then.
+constexpr std::array RareSlots = {
+    &Material::normal_texture,         &Material::specular_strength_texture,
+    &Material::specular_tint_texture,  &Material::coat_texture,
+    &Material::coat_roughness_texture, &Material::coat_normal_texture,
+    &Material::sheen_texture,          &Material::sheen_roughness_texture};
+
 /// The textures of a material that its picture depends on.
 std::vector<std::optional<TextureSlot> Material::*> color_slots(const Material& material) {
     std::vector<std::optional<TextureSlot> Material::*> slots = {&Material::base_color_texture};
@@ -44,8 +51,9 @@ std::vector<std::optional<TextureSlot> Material::*> color_slots(const Material& 
         slots.push_back(&Material::emission_texture);
     if (material.transmission > 0.0f)
         slots.push_back(&Material::transmission_texture);
-    if (material.normal_texture)
-        slots.push_back(&Material::normal_texture);
+    for (const auto slot : RareSlots)
+        if (material.*slot)
+            slots.push_back(slot);
     return slots;
 }
 
@@ -91,9 +99,18 @@ float fraction(const Json& json) {
     return within(json, 1.0f);
 }
 
-/// Numbers that F0 depends on, where they are not the usual ones.
-constexpr std::array<std::pair<const char*, float Material::*>, 2> Scalars = {
-    {{"ior", &Material::ior}, {"specular_strength", &Material::specular_strength}}};
+/// A number that a material has where it is not the usual one.
+struct Scalar {
+    const char* name;
+    float Material::*member;
+    float most;
+};
+constexpr std::array<Scalar, 5> Scalars = {
+    {{"ior", &Material::ior, 1e6f},
+     {"specular_strength", &Material::specular_strength, 1e6f},
+     {"coat", &Material::coat, 1.0f},
+     {"coat_roughness", &Material::coat_roughness, 1.0f},
+     {"sheen_roughness", &Material::sheen_roughness, 1.0f}}};
 
 glm::vec3 color(const Json& json) {
     return {fraction(json.values().at(0)), fraction(json.values().at(1)),
@@ -175,9 +192,11 @@ Material material_of(const Json& json, std::size_t num_textures) {
             if (material.emission[channel] < 0.0f)
                 throw std::out_of_range("expected an emission of 0 or more");
         }
-    for (const auto& [name, member] : Scalars)
+    for (const auto& [name, member, most] : Scalars)
         if (const Json* value = json.find(name))
-            material.*member = within(*value, 1e6f);
+            material.*member = within(*value, most);
+    if (const Json* sheen = json.find("sheen"))
+        material.sheen = color(*sheen);
     if (const Json* tint = json.find("specular_tint"))
         for (int channel = 0; channel < 3; ++channel)
             material.specular_tint[channel] =
@@ -187,10 +206,13 @@ Material material_of(const Json& json, std::size_t num_textures) {
         material.*slot = slot_of(json.at(name_of(slot)), num_textures);
     if (const Json* own = json.find(name_of(&Material::specular_texture))) // of Phong, too
         material.specular_texture = slot_of(*own, num_textures);
-    if (const Json* normals = json.find(name_of(&Material::normal_texture))) {
-        material.normal_texture = slot_of(*normals, num_textures);
-        material.normal_scale = finite(json.at("normal_scale"));
-    }
+    for (const auto slot : RareSlots)
+        if (const Json* own = json.find(name_of(slot)))
+            material.*slot = slot_of(*own, num_textures);
+    if (const Json* scale = json.find("normal_scale"))
+        material.normal_scale = finite(*scale);
+    if (const Json* scale = json.find("coat_normal_scale"))
+        material.coat_normal_scale = finite(*scale);
     return material;
 }
 
@@ -281,9 +303,13 @@ Json json_of(const Material& material, bool is_kept, bool has_shape, const Store
         json.set("emission", {emission.r, emission.g, emission.b});
     if (material.normal_texture)
         json.set("normal_scale", material.normal_scale);
-    for (const auto& [name, member] : Scalars)
+    if (material.coat_normal_texture)
+        json.set("coat_normal_scale", material.coat_normal_scale);
+    for (const auto& [name, member, most] : Scalars)
         if (material.*member != Material().*member)
             json.set(name, material.*member);
+    if (const glm::vec3& sheen = material.sheen; sheen != glm::vec3(0.0f))
+        json.set("sheen", {sheen.r, sheen.g, sheen.b});
     if (const glm::vec3& tint = material.specular_tint; tint != glm::vec3(1.0f))
         json.set("specular_tint", {tint.r, tint.g, tint.b});
     for (const auto slot : color_slots(material))

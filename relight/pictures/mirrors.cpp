@@ -110,7 +110,9 @@ std::optional<MirroredLight> Mirrors::shared(const Mirror& mirror,
                 sum.coat += light.coat;
             }
         }
-    if (count == 0.0f || (prt::has_coat(mirror.surface) && num_coats == 0.0f))
+    // Few have less noise than rays of one's own, but not their place.
+    constexpr float Least = 4.0f;
+    if (count < Least || (prt::has_coat(mirror.surface) && num_coats == 0.0f))
         return std::nullopt;
     return MirroredLight{.all = sum.all / count,
                          .grazing = sum.grazing / count,
@@ -161,6 +163,11 @@ MirroredLight Mirrors::light(const Mirror& mirror, const prt::MeshPoint& point) 
     if (const auto light = shared(mirror, prt::value_at(mesh_, mesh_.positions, point))) {
         traced_.push_back({mirror, *light});
         return *light;
+    }
+    const std::optional<Middle>& middle = middles_[std::size_t{y_} * width_ + x_];
+    if (traced_.empty() && middle && are_alike(middle->traced.mirror, mirror)) {
+        traced_.push_back(middle->traced);
+        return middle->traced.light;
     }
     // A pixel of several normals sums their rays.
     const std::uint32_t all = light_.reflections->num_rays();

@@ -79,6 +79,26 @@ TEST(MaterialSections, KeepNormalMaps) {
                            [&] { MaterialSections.check(SceneCheck(path), scene); });
 }
 
+TEST(MaterialSections, KeepCoatsAndSheen) {
+    mesh::TriangleMesh mesh = scenes::mapped_square({255, 128, 255});
+    mesh::Material& material = mesh.materials[0];
+    material.model = mesh::MaterialModel::MetallicRoughness;
+    material.coat = 0.75f;
+    material.coat_roughness = 0.25f;
+    material.coat_normal_scale = -2.0f;
+    material.sheen = {1.0f, 0.5f, 0.0f};
+    material.sheen_roughness = 0.5f;
+    for (const auto slot :
+         {&mesh::Material::coat_texture, &mesh::Material::coat_roughness_texture,
+          &mesh::Material::coat_normal_texture, &mesh::Material::sheen_texture,
+          &mesh::Material::sheen_roughness_texture, &mesh::Material::specular_strength_texture,
+          &mesh::Material::specular_tint_texture})
+        material.*slot = material.normal_texture;
+    mesh::Material same = read(written(mesh), mesh).materials.at(0);
+    same.name = material.name;
+    EXPECT_EQ(same, material);
+}
+
 TEST(MaterialSections, KeepTheColoursOfEveryPoint) {
     mesh::TriangleMesh mesh = scenes::textured_square();
     mesh.triangle_materials = {1, 0};
