@@ -64,7 +64,7 @@ EmissionGain EmissionText::read(const std::string& text) {
 }
 
 std::string EmissionText::show(const EmissionGain& gain) {
-    const std::string color = ColorText::show(gain.gain);
+    std::string color = ColorText::show(gain.gain);
     if (gain.name.empty())
         return color;
     return gain.name + (color.find(',') == std::string::npos ? "=" : "=1,") + color;

@@ -138,6 +138,7 @@ RelumineResult open(const RelumineOpenOptions* options, RelumineScene** scene,
         if (own.harmonics != 0)
             relight::require_order(own.harmonics);
         const WithJobs with_jobs(jobs);
+        // NOLINTNEXTLINE(bugprone-unhandled-exception-at-new): run() catches it
         *scene = new RelumineScene{RuntimeScene(scene_of(reader), own.harmonics, jobs)};
     });
 }

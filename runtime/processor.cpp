@@ -4,6 +4,23 @@
 
 #include <hwy/targets.h>
 
+#if HWY_ARCH_X86_64
+#include <cpuid.h>
+#endif
+
+namespace {
+
+#if HWY_ARCH_X86_64
+/// The two that clang 14 has no name for.
+bool has_lzcnt_and_f16c() {
+    unsigned a = 0, b = 0, c = 0, d = 0;
+    const bool has_f16c = __get_cpuid(1, &a, &b, &c, &d) != 0 && (c >> 29 & 1u) != 0;
+    return has_f16c && __get_cpuid(0x80000001u, &a, &b, &c, &d) != 0 && (c >> 5 & 1u) != 0;
+}
+#endif
+
+} // namespace
+
 namespace hwy {
 
 int64_t SupportedTargets() {
@@ -20,8 +37,7 @@ int64_t SupportedTargets() {
             __builtin_cpu_supports("pclmul"), __builtin_cpu_supports("aes")))
         targets |= HWY_SSE4;
     if (has(__builtin_cpu_supports("avx2"), __builtin_cpu_supports("fma"),
-            __builtin_cpu_supports("bmi"), __builtin_cpu_supports("bmi2"),
-            __builtin_cpu_supports("lzcnt"), __builtin_cpu_supports("f16c"))) {
+            __builtin_cpu_supports("bmi"), __builtin_cpu_supports("bmi2"), has_lzcnt_and_f16c())) {
         targets |= HWY_AVX2;
         if (has(__builtin_cpu_supports("avx512f"), __builtin_cpu_supports("avx512vl"),
                 __builtin_cpu_supports("avx512dq"), __builtin_cpu_supports("avx512bw"),

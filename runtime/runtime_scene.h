@@ -29,6 +29,9 @@ public:
     };
 
     RuntimeScene(prt::RelightingScene given, std::uint32_t harmonics, const CallerJobs& jobs);
+    /// Its relighter refers to its scene.
+    RuntimeScene(const RuntimeScene&) = delete;
+    RuntimeScene& operator=(const RuntimeScene&) = delete;
 
     [[nodiscard]] const prt::Scene& scene() const { return scene_; }
     [[nodiscard]] const CallerJobs& jobs() const { return jobs_; }

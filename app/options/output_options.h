@@ -6,6 +6,7 @@
 
 #include "app/command_line/command_line.h"
 #include "app/options/lit_scene.h"
+#include "app/session.h"
 #include "cubemap/image/frame_pattern.h"
 #include "files/extension.h"
 #include "relumine/output.h"

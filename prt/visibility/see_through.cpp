@@ -69,8 +69,10 @@ std::optional<TexelRange> texels_under(const mesh::TriangleMesh& mesh, std::uint
     if (!(count.x * count.y <= MostTexels))
         return std::nullopt;
     TexelRange range;
-    for (float y = first.y; y < last.y; ++y)
-        for (float x = first.x; x < last.x; ++x) {
+    for (int row_index = 0; row_index < static_cast<int>(count.y); ++row_index)
+        for (int column_index = 0; column_index < static_cast<int>(count.x); ++column_index) {
+            const float x = first.x + static_cast<float>(column_index);
+            const float y = first.y + static_cast<float>(row_index);
             const auto column =
                 mesh::texels_beside((x + 0.5f) / size.x, texture.width, slot.wrap[0]);
             const auto row = mesh::texels_beside((y + 0.5f) / size.y, texture.height, slot.wrap[1]);

@@ -1,6 +1,7 @@
 #include "relight/moving_eye/visibility_pyramid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -107,8 +108,8 @@ private:
         if (node.stored != NotStored) {
             set_bit(node, mixed_);
             for (std::size_t i = 0; i < sums.size(); ++i)
-                parts_[node.stored * prt::BlockSize + i] =
-                    static_cast<std::uint8_t>(std::min(below[i] / weights, 1.0f) * 255.0f + 0.5f);
+                parts_[node.stored * prt::BlockSize + i] = static_cast<std::uint8_t>(
+                    std::lround(std::min(below[i] / weights, 1.0f) * 255.0f));
         }
         return weights;
     }
