@@ -68,8 +68,7 @@ void describe_scene(const InfoArguments& options, const Session& session) {
                                               settings.floor_added)));
     session.say(fmt::format("partly seen         {} of {} (block, cluster) pairs",
                             counts.num_mixed(), counts.num_blocks() * counts.num_leaves));
-    for (const std::string& name : scene.lamps.names())
-        session.say(fmt::format("lamp                {}", name.empty() ? "all that glows" : name));
+    say_lamps(scene.lamps.names(), session);
     for (const std::string& line : settings.left_out)
         session.say(fmt::format("left out            {}", line));
     session.say(fmt::format("file                {:.1f} MB{}",

@@ -96,23 +96,14 @@ Struct taken(const Struct* given, const char* name) {
 }
 
 /// Runs the work on a scene, with its threads.
-template<class Work>
-RelumineResult with(RelumineScene* scene, const Work& work) noexcept {
+template<class Scene, class Work>
+RelumineResult with(Scene* scene, const Work& work) noexcept {
     return run([&] {
         require(scene, "scene");
         const WithJobs jobs(scene->own.jobs());
         work(scene->own);
     });
 }
-template<class Work>
-RelumineResult with(const RelumineScene* scene, const Work& work) noexcept {
-    return run([&] {
-        require(scene, "scene");
-        const WithJobs jobs(scene->own.jobs());
-        work(scene->own);
-    });
-}
-
 /// Whatever a file does wrong is one kind of failure.
 template<class MakeReader>
 prt::RelightingScene scene_of(const MakeReader& reader) {

@@ -1,5 +1,6 @@
 #include "app/meshes/info_mesh.h"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -91,6 +92,11 @@ Report diagnosis_report(const mesh::TriangleMesh& mesh, const mesh::Diagnosis& f
 
 } // namespace
 
+void say_lamps(std::span<const std::string> names, const Session& session) {
+    for (const std::string& name : names)
+        session.say(fmt::format("lamp                {}", name.empty() ? "all that glows" : name));
+}
+
 void describe_mesh(const MeshInfoOptions& options, const Session& session) {
     if (!options.picture.empty()) {
         require_extension("--picture", options.picture, {".png"});
@@ -116,8 +122,7 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
     for (const std::string& group : mesh.groups)
         session.say(fmt::format("group               {}", group));
     const std::vector<std::string> lamps = prt::lamps_of(mesh).names();
-    for (const std::string& name : lamps)
-        session.say(fmt::format("lamp                {}", name.empty() ? "all that glows" : name));
+    say_lamps(lamps, session);
     for (const std::string& name : mesh.missing)
         session.say(fmt::format("not found           {}", name));
     for (const std::string& warning : mesh.warnings)

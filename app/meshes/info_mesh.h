@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "app/session.h"
@@ -16,6 +17,9 @@ struct MeshInfoOptions {
     /// Of glTF
     std::optional<mesh::Pose> pose = {};
 };
+
+/// Says the names of what glows, as --emission takes them: a line each.
+void say_lamps(std::span<const std::string> names, const Session& session);
 
 /// Says what a mesh is and what may be wrong with it; docs/meshes.md explains every line.
 void describe_mesh(const MeshInfoOptions& options, const Session& session);

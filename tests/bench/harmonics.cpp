@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "data_gen/environments.h"
 #include "data_gen/scenes.h"
 #include "prt/receivers/point_receivers.h"
 #include "relight/harmonics/harmonics.h"
@@ -38,21 +37,6 @@ struct Settings {
     std::vector<float> tolerances = {ToleranceOfPoints};
     std::vector<std::string> parts = {"grid", "relight", "normals", "points"};
 };
-
-struct NamedMap {
-    std::string name;
-    cubemap::CubeMap map;
-};
-
-/// Five probes, and the sun and sky; generated ones where they are absent.
-std::vector<NamedMap> environments(const bench::Inputs& inputs, std::uint32_t resolution) {
-    std::vector<NamedMap> maps;
-    for (const char* name : {"grace_cross.hdr", "stpeters_cross.hdr", "galileo_cross.hdr",
-                             "beach_cross.hdr", "kitchen_cross.hdr"})
-        maps.push_back({name, inputs.environment(name, resolution)});
-    maps.push_back({"sun and sky", data_gen::sun_and_sky(resolution)});
-    return maps;
-}
 
 double relative_l2(std::span<const glm::dvec3> values, std::span<const glm::dvec3> exact) {
     double error = 0.0, all = 0.0;
@@ -84,14 +68,14 @@ void measure_points(const Settings& settings, const bench::Inputs& inputs,
     const prt::Receivers receivers = prt::point_receivers(points, colonnade, rays);
     std::vector<std::uint32_t> all(points.size());
     std::iota(all.begin(), all.end(), 0u);
-    std::vector<NamedMap> maps = environments(inputs, settings.exact_resolution);
+    std::vector<bench::NamedMap> maps = inputs.probes_and_sky(settings.exact_resolution);
     std::vector<std::vector<glm::dvec3>> exact;
-    for (const NamedMap& map : maps)
+    for (const bench::NamedMap& map : maps)
         exact.push_back(relight::exact_harmonics(receivers, all, rays, map.map, 3, 0.0f));
     fmt::print("\n{} points in the colonnade, coefficients against exact integration, relative "
                "L2\n\n| tolerance | clusters | precompute, s |",
                points.size());
-    for (const NamedMap& map : maps)
+    for (const bench::NamedMap& map : maps)
         fmt::print(" {} |", map.name);
     fmt::print("\n|{}\n", fmt::join(std::vector<std::string>(maps.size() + 3, "---|"), ""));
     for (const float tolerance : settings.tolerances) {
@@ -136,7 +120,7 @@ void measure_normals(const Settings& settings, const bench::Inputs& inputs, cons
     fmt::print("\n| light | irradiance of normals 30 degrees off, bunny, relative L2 | of nine "
                "exact coefficients | largest error at the own normal |\n|---|---|---|---|\n");
     std::vector<double> errors;
-    for (NamedMap& environment : environments(inputs, settings.exact_resolution)) {
+    for (bench::NamedMap& environment : inputs.probes_and_sky(settings.exact_resolution)) {
         const std::vector<glm::dvec3> exact =
             relight::exact_irradiance(bunny.receivers, chosen, normals, lit.rays().of_mesh(),
                                       environment.map, bunny.settings.bias);

@@ -65,4 +65,13 @@ cubemap::LightLayer disc(const glm::dvec3& direction, double part_of_face, doubl
     return layer;
 }
 
+std::vector<NamedMap> Inputs::probes_and_sky(std::uint32_t resolution) const {
+    std::vector<NamedMap> maps;
+    for (const char* name : {"grace_cross.hdr", "stpeters_cross.hdr", "galileo_cross.hdr",
+                             "beach_cross.hdr", "kitchen_cross.hdr"})
+        maps.push_back({name, environment(name, resolution)});
+    maps.push_back({"sun and sky", data_gen::sun_and_sky(resolution)});
+    return maps;
+}
+
 } // namespace relumine::bench

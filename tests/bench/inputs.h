@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "cubemap/cube_map.h"
 #include "cubemap/layers/light_layer.h"
@@ -12,6 +13,11 @@
 #include "tests/bench/program.h"
 
 namespace relumine::bench {
+
+struct NamedMap {
+    std::string name;
+    cubemap::CubeMap map;
+};
 
 /// Where inputs come from. With --tiny: generated, whatever is asked for.
 class Inputs {
@@ -33,6 +39,9 @@ public:
     /// picture. Throws Absent.
     [[nodiscard]] cubemap::CubeMap environment(const std::string& file,
                                                std::uint32_t resolution) const;
+
+    /// Five probes of envs/debevec, and the sun and sky. Throws Absent.
+    [[nodiscard]] std::vector<NamedMap> probes_and_sky(std::uint32_t resolution) const;
 
     [[nodiscard]] bool is_tiny() const { return program_.is_tiny(); }
 

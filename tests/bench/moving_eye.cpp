@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "data_gen/environments.h"
 #include "prt/glossy/surface_sampling.h"
 #include "relight/moving_eye/moving_eye.h"
 #include "relight/reference/exact.h"
@@ -36,20 +35,6 @@ struct Settings {
     /// Of each eye.
     std::size_t num_samples = 25;
 };
-
-struct NamedMap {
-    std::string name;
-    cubemap::CubeMap map;
-};
-
-std::vector<NamedMap> environments(const bench::Inputs& inputs, std::uint32_t resolution) {
-    std::vector<NamedMap> maps;
-    for (const char* name : {"grace_cross.hdr", "stpeters_cross.hdr", "galileo_cross.hdr",
-                             "beach_cross.hdr", "kitchen_cross.hdr"})
-        maps.push_back({name, inputs.environment(name, resolution)});
-    maps.push_back({"sun and sky", data_gen::sun_and_sky(resolution)});
-    return maps;
-}
 
 /// Eyes all around and above, as far as the automatic camera.
 std::vector<glm::vec3> random_eyes(const Scene& scene, std::size_t count) {
@@ -103,7 +88,7 @@ struct Error {
 };
 
 void print_rows(float roughness, const Settings& settings, LitScene& lit,
-                const std::vector<NamedMap>& maps) {
+                const std::vector<bench::NamedMap>& maps) {
     const Scene& scene = lit.scene();
     std::vector<prt::Surface> surfaces(scene.receivers.size(),
                                        {.albedo = glm::vec3(0.3f),
@@ -129,7 +114,7 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
     std::vector<std::uint32_t> order(samples.index.size());
     for (std::uint32_t i = 0; i < order.size(); ++i)
         order[i] = i;
-    for (const NamedMap& map : maps) {
+    for (const bench::NamedMap& map : maps) {
         lit.light(map.map);
         const auto before_set = std::chrono::steady_clock::now();
         live.set_light(lit.relighter());
@@ -188,7 +173,7 @@ int main(int argc, char** argv) {
         LitScene lit(settings.scene.empty() ? precompute(inputs.mesh(settings.mesh, settings.floor),
                                                          {.tolerance = settings.transfer_tolerance})
                                             : load_scene(settings.scene));
-        const std::vector<NamedMap> maps = environments(inputs, settings.resolution);
+        const std::vector<bench::NamedMap> maps = inputs.probes_and_sky(settings.resolution);
         for (const float roughness : settings.roughness)
             print_rows(roughness, settings, lit, maps);
     });
