@@ -130,12 +130,12 @@ Session::Session() {
     }
 }
 
-void Session::set_cancelled_message(const std::string& message) {
+void set_cancelled_message(const std::string& message) {
     const std::scoped_lock lock(shared().mutex);
     shared().cancelled_message = message;
 }
 
-void Session::set_waiting_message(std::function<std::string()> message) {
+void set_waiting_message(std::function<std::string()> message) {
     const std::scoped_lock lock(shared().mutex);
     shared().waiting_message = std::move(message);
 }

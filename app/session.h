@@ -44,11 +44,6 @@ public:
     [[nodiscard]] std::stop_token stop() const { return stop_source_.get_token(); }
     /// Throws prt::Cancelled after Ctrl-C.
     void poll() const;
-    /// What is said when the work is ended from outside, at first "cancelled; nothing was written".
-    static void set_cancelled_message(const std::string& message);
-    /// For processes that share work: what one says that was told to end and waits for the others,
-    /// since one of them may be gone. Its starter kills it soon. An empty message is not said.
-    static void set_waiting_message(std::function<std::string()> message);
 
     /// Shows a bar with the time left on a terminal, a line every tenth elsewhere, nothing in the
     /// first second or with -q. To be called with fractions in [0, 1].
@@ -79,6 +74,12 @@ private:
     mutable std::vector<std::string> warnings_;
     mutable Report more_fields_;
 };
+
+/// What is said when the work is ended from outside, at first "cancelled; nothing was written".
+void set_cancelled_message(const std::string& message);
+/// For processes that share work: what one says that was told to end and waits for the others,
+/// since one of them may be gone. Its starter kills it soon. An empty message is not said.
+void set_waiting_message(std::function<std::string()> message);
 
 /// One line of plain text, whatever the message looked like: what a file holds may be quoted in it.
 [[nodiscard]] std::string one_line(std::string message);

@@ -32,11 +32,6 @@ std::vector<glm::vec3> copy_of(std::span<const glm::vec3> values) {
     return {values.begin(), values.end()};
 }
 
-/// Whether pictures turn the normals between the vertices.
-bool has_mapped_vertices(const Scene& scene) {
-    return prt::on_vertices(scene.layout) && !scene.mesh.corner_tangents.empty();
-}
-
 void require_same_hash(prt::Team& team, const std::filesystem::path& path, std::uint64_t own) {
     const std::vector<std::byte> bytes = prt::to_send(std::span(&own, 1));
     if (team.broadcast(bytes) != bytes)
@@ -380,13 +375,6 @@ void LitScene::add_surfaces(std::span<glm::vec3> own) const {
         add_of_all(of_all, own);
 }
 
-std::vector<glm::vec3> LitScene::bounced() const {
-    std::vector<glm::vec3> result = copy_of(bounces_.bounced());
-    if (!result.empty() && !lamps_.bounced().empty())
-        add(lamps_.bounced(), result);
-    return result;
-}
-
 /// Sums the parts of the light.
 void LitScene::finish() {
     lamps_.find();
@@ -425,65 +413,6 @@ void LitScene::add_mirrored() {
                  part_ ? std::span<const std::uint32_t>(part_->receivers) : receivers, total_);
 }
 
-Lighting LitScene::lighting(bool is_drawn) const {
-    if (!is_lit_)
-        throw std::logic_error("expected a scene that is lit");
-    Lighting result{.radiance = radiance()};
-    if (is_drawn) {
-        if (relighter_)
-            result.lights = relight::picture_lights(*relighter_);
-        if (relighter_ && relighter_->environment().resolution != 0)
-            result.num_environment_lights = result.lights.size();
-        result.lights.insert(result.lights.end(), added_.lights.begin(), added_.lights.end());
-    }
-    if (is_drawn && relighter_ && scene_->transfer.glossy && !scene_->mesh.textures.empty())
-        result.lobes =
-            relighter_->receiver_light().lobes(result.lights.size() == added_.lights.size());
-    if (is_drawn && relighter_ && has_mapped_vertices(*scene_))
-        result.harmonics =
-            relighter_->receiver_light().harmonics(result.lights.size() == added_.lights.size());
-    result.open_floor =
-        added_.open_floor +
-        (relighter_ ? relighter_->open_radiance({0.0f, 1.0f, 0.0f}) : glm::dvec3(0.0));
-    if (!result.lights.empty()) {
-        if (!relighter_)
-            result.soft.resize(added_.soft.size());
-        else if (result.lights.size() > added_.lights.size())
-            result.soft = relighter_->receiver_light().soft_radiance();
-        else
-            result.soft = copy_of(relighter_->radiance());
-        add_surfaces(result.soft);
-        if (!added_.radiance.empty())
-            add(added_.lights.empty() ? added_.radiance : added_.soft, result.soft);
-    }
-    if (team_->has_others()) {
-        const std::vector<std::uint32_t>& order = scene_->transfer.order;
-        const bool has_soft = !result.lights.empty();
-        result.gathered = std::make_shared<const std::vector<glm::vec3>>(
-            gathered(*team_, order, result.radiance));
-        result.radiance = *result.gathered;
-        if (has_soft)
-            result.soft = gathered(*team_, order, result.soft);
-        if (!result.harmonics.empty())
-            result.harmonics =
-                gathered(*team_, order, result.harmonics,
-                         relight::num_harmonics(relighter_->receiver_light().harmonic_order()));
-        if (!team_->is_first())
-            return {};
-    }
-    if (!relighter_ || relighter_->environment().resolution == 0)
-        return result;
-    result.environment = &relighter_->environment();
-    if (!is_drawn || !state_.base || !state_.base->backdrop())
-        return result;
-    if (!is_edited())
-        result.sharp = state_.base->backdrop();
-    else if (state_.shows_base())
-        result.sharp = relight::edited_backdrop(state_.base->backdrop(), *state_.base->map(),
-                                                *result.environment);
-    return result;
-}
-
 void require_same(prt::Team& team, const std::filesystem::path& path,
                   const cubemap::CubeMap* environment) {
     if (team.has_others())
@@ -504,55 +433,15 @@ const cubemap::CubeMap& environment_of(const LitScene& lit) {
     return lit.radiance().empty() ? Nothing : Black;
 }
 
+std::vector<glm::vec3> bounced(const LitScene& lit) {
+    std::vector<glm::vec3> result = copy_of(lit.bounces().bounced());
+    if (!result.empty() && !lit.lamps().bounced().empty())
+        add(lit.lamps().bounced(), result);
+    return result;
+}
+
 BinnedEnvironment bin(const LitScene& lit, cubemap::CubeMap environment) {
     return relight::binner_of(lit.relighter()).bin(std::move(environment));
-}
-
-UpdateReport update(LitScene& lit, Environment environment) {
-    LightState next = lit.state();
-    next.base = base_of(std::move(environment));
-    return lit.edit(std::move(next));
-}
-
-UpdateReport set_layers(LitScene& lit, std::vector<cubemap::LightLayer> layers) {
-    LightState next = lit.state();
-    next.layers = std::move(layers);
-    return lit.edit(std::move(next));
-}
-
-UpdateReport set_layer(LitScene& lit, std::size_t index, const cubemap::LightLayer& layer) {
-    LightState next = lit.state();
-    if (index >= next.layers.size())
-        throw std::out_of_range(
-            fmt::format("expected one of {} layers, got number {}", next.layers.size(), index));
-    next.layers[index] = layer;
-    return lit.edit(std::move(next));
-}
-
-UpdateReport set_rotation(LitScene& lit, double degrees) {
-    LightState next = lit.state();
-    next.rotation_degrees = degrees;
-    return lit.edit(std::move(next));
-}
-
-void mark(LitScene& lit) {
-    lit.edit(lit.state(), Ending::Exact);
-    lit.history().mark(lit.state());
-}
-
-void forget_history(LitScene& lit) {
-    lit.edit(lit.state(), Ending::Exact);
-    lit.history().restart(lit.state());
-}
-
-UpdateReport undo(LitScene& lit) {
-    const LightState* before = lit.history().undo(lit.state());
-    return before == nullptr ? UpdateReport() : lit.edit(*before, Ending::Exact);
-}
-
-UpdateReport redo(LitScene& lit) {
-    const LightState* after = lit.history().redo();
-    return after == nullptr ? UpdateReport() : lit.edit(*after, Ending::Exact);
 }
 
 } // namespace relumine

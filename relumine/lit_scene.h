@@ -118,8 +118,8 @@ public:
 
     /// Changes the environment's base, layers or turn, and updates what depends on it [JN, Section
     /// 5.2]. With another turn or resolution everything is relit. Bounces stay those of the light
-    /// before, until the next call of bounce(). set_layers(), undo() and others below are made of
-    /// it. A base without a map is the present one.
+    /// before, until the next call of bounce(). The functions of light_edits.h are made of it. A
+    /// base without a map is the present one.
     ///
     /// Throws:  std::invalid_argument for a layer that is not valid, a turn that is not finite,
     ///          radiance that is too large, or no environment; nothing has changed then.
@@ -153,10 +153,6 @@ public:
     /// Cost:    O(receivers) once the lamp's light is there. A name that the call before had not
     ///          costs some 20 rays a receiver, and a solution of bounces.
     void dim(std::vector<EmissionGain> gains);
-
-    /// What surfaces send to all receivers, as a part of radiance(): [num_receivers]; empty before
-    /// bounce().
-    [[nodiscard]] std::vector<glm::vec3> bounced() const;
 
     /// Outgoing radiance of this process's receivers, in their order and the unit of the
     /// environment's; without materials for albedo 1. Empty before the first light().
@@ -193,6 +189,7 @@ private:
     };
     LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::ScenePart> part,
              const LightOptions& options);
+    void gather(Lighting& lighting) const;
     [[nodiscard]] bool is_edited() const { return state_.base && state_.base->map(); }
     void require_same_light(const Light& light) const;
     [[nodiscard]] Added light_of_list(std::span<const lights::DistantLight> lights);
@@ -244,34 +241,15 @@ void require_same(prt::Team& team, const std::filesystem::path& path,
 /// Whether an environment lights the scene.
 [[nodiscard]] bool has_environment(const LitScene& lit);
 
+/// What surfaces send to all receivers, as a part of the radiance: [num_receivers]; empty before
+/// LitScene::bounce().
+[[nodiscard]] std::vector<glm::vec3> bounced(const LitScene& lit);
+
 /// Sums an environment into the scene's clusters, for LitScene::light(). An environment that comes
 /// again need not be summed again.
 ///
 /// Throws:  std::invalid_argument as LitScene::light().
 /// Cost:    O(6 R^2). What is returned holds the map; copies of it share the map.
 [[nodiscard]] BinnedEnvironment bin(const LitScene& lit, cubemap::CubeMap environment);
-
-// Edits; they throw as LitScene::edit().
-
-/// Replaces the environment under the layers by another. Only what differs is updated, where both
-/// have the same resolution and nothing is turned: for files that are saved again and again.
-UpdateReport update(LitScene& lit, Environment environment);
-/// Replaces all layers, bottom first, in one update.
-UpdateReport set_layers(LitScene& lit, std::vector<cubemap::LightLayer> layers);
-/// Replaces one layer, as while it is dragged. Throws std::out_of_range for an index, too.
-UpdateReport set_layer(LitScene& lit, std::size_t index, const cubemap::LightLayer& layer);
-/// Turns base and layers together about +Y, from their unturned state. Layers keep the directions
-/// they were given.
-UpdateReport set_rotation(LitScene& lit, double degrees);
-
-/// Marks the present state for undo() to return to. The first edit marks the state before it; other
-/// edits without a mark are not in the history.
-void mark(LitScene& lit);
-/// Forgets all marks; the present state becomes the only one.
-void forget_history(LitScene& lit);
-/// Goes back to the last mark, from that to the mark before, or forward again. The radiance is that
-/// at the mark, bit by bit. Returns an empty report where there is no such mark.
-UpdateReport undo(LitScene& lit);
-UpdateReport redo(LitScene& lit);
 
 } // namespace relumine

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <ctime>
 #include <memory>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,20 +14,17 @@
 
 #include "files/extension.h"
 #include "files/joined.h"
-#include "mesh/load.h"
 #include "prt/glossy/lobe_list.h"
 #include "prt/glossy/sheen_lobe.h"
 #include "prt/parts/part_file.h"
 #include "prt/parts/team_checkpoint.h"
-#include "prt/receivers/pixel_receivers.h"
 #include "prt/receivers/point_receivers.h"
 #include "prt/receivers/receiver_order.h"
 #include "prt/scene/checkpoint_file.h"
 #include "prt/scene/fingerprint.h"
 #include "prt/visibility/ray_scene.h"
-#include "relight/pictures/array_file.h"
-#include "relight/pictures/framing.h"
 #include "relumine/precompute_table.h"
+#include "relumine/receiver_placement.h"
 #include "relumine/scene_materials.h"
 #include "relumine/stages.h"
 
@@ -85,16 +81,6 @@ void compute(prt::Plan& plan, const prt::RayScene& rays, const Stages::Options& 
         bounces.seconds = report.bounces->seconds + seconds.count();
         report.bounces = bounces;
     }
-}
-
-std::vector<glm::vec3> load_points(const std::filesystem::path& path) {
-    if (files::extension_of(path) == ".ply")
-        return mesh::load_points(path);
-    relight::VectorArray array = relight::load_npy(path);
-    if (array.shape.size() != 1)
-        throw std::runtime_error(fmt::format("{}: expected an array of [count, 3], got {} axes",
-                                             path.string(), array.shape.size() + 1));
-    return std::move(array.values);
 }
 
 bool are_in_space(const PrecomputeOptions& options) {
@@ -166,7 +152,7 @@ private:
         prt::RefineReport found;
         mesh = refined_by_itself(
             std::move(mesh), options_.bias,
-            {.stop = work_.stop, .on_progress = progress_of(Stage::Refinement)}, &found);
+            {.stop = work_.stop, .on_progress = progress_of(work_, Stage::Refinement)}, &found);
         if (found.num_added != 0)
             report_.refined = found;
         return mesh;
@@ -198,7 +184,7 @@ private:
         report_.bias = scene_.settings.bias;
         stages().check_scene();
         prt::RayScene rays = ray_scene(scene_.blocking_mesh(), prefix_);
-        place_receivers(rays);
+        place_receivers(scene_, options_, work_, rays, prefix_, report_);
         require_few_clusters();
         report_.num_receivers = scene_.receivers.size();
         set_surfaces();
@@ -302,127 +288,13 @@ private:
                         pairs * 10.0 / prt::BlockSize * 1e-9));
     }
 
-    void place_receivers(const prt::RayScene& rays) {
-        try {
-            if (const auto* pixels = std::get_if<Pixels>(&options_.receivers)) {
-                if (scene_.blockers)
-                    place_pixels(*pixels, ray_scene(scene_.mesh, prefix_));
-                else
-                    place_pixels(*pixels, rays);
-            } else if (const auto* texels = std::get_if<Texels>(&options_.receivers)) {
-                place_texels(*texels);
-            } else if (const auto* points = std::get_if<Points>(&options_.receivers)) {
-                place_points(*points, rays);
-            } else if (const auto* grid = std::get_if<Grid>(&options_.receivers)) {
-                place_grid(*grid, rays);
-            } else {
-                scene_.receivers = prt::vertex_receivers(scene_.mesh);
-            }
-            // Receivers that are no pixels of the view but seen from it.
-            if (options_.view && !std::holds_alternative<Pixels>(options_.receivers)) {
-                const std::optional<prt::Camera>& own = options_.view->camera;
-                scene_.settings.view = own ? *own : camera_of(scene_);
-                prt::look_from(scene_.receivers, scene_.settings.view->eye);
-            }
-            if (options_.bounce_tolerance.value_or(0.0f) > 0.0f &&
-                !scene_.receivers.points.empty()) {
-                prt::add_vertices(scene_.receivers, scene_.mesh);
-                note(fmt::format("and {} vertices, from which light bounces",
-                                 scene_.receivers.num_added));
-            }
-        } catch (const std::invalid_argument& error) {
-            throw std::runtime_error(prefix_ + error.what());
-        }
-    }
-
-    void place_points(const Points& points, const prt::RayScene& rays) {
-        const std::string name = points.file.empty() ? "" : points.file.string() + ": ";
-        std::vector<glm::vec3> of_file;
-        if (!points.file.empty())
-            of_file = load_points(points.file);
-        try {
-            add_points(points.file.empty() ? points.positions : of_file, rays);
-        } catch (const std::invalid_argument& error) {
-            throw std::runtime_error(name + error.what());
-        }
-        prt::PointLayout layout{.count = static_cast<std::uint32_t>(scene_.receivers.size())};
-        layout.indices.resize(layout.count);
-        std::iota(layout.indices.begin(), layout.indices.end(), 0u);
-        scene_.layout = std::move(layout);
-    }
-
-    void place_grid(const Grid& grid, const prt::RayScene& rays) {
-        check(grid);
-        const std::size_t num_own = first_floor_vertex(scene_).value_or(scene_.mesh.num_vertices());
-        const mesh::Bounds box =
-            options_.box.value_or(mesh::bounds(std::span(scene_.mesh.positions).first(num_own)));
-        prt::GridLayout layout{
-            .nx = grid.nx, .ny = grid.ny, .nz = grid.nz, .low = box.min, .high = box.max};
-        add_points(prt::grid_points(layout), rays);
-        layout.indices.resize(scene_.receivers.size());
-        std::iota(layout.indices.begin(), layout.indices.end(), 0u);
-        scene_.layout = std::move(layout);
-    }
-
-    void add_points(std::span<const glm::vec3> points, const prt::RayScene& rays) {
-        const prt::Work work{.stop = work_.stop};
-        scene_.receivers =
-            scene_.blockers
-                ? prt::point_receivers(points, scene_.mesh, ray_scene(scene_.mesh, prefix_), work)
-                : prt::point_receivers(points, scene_.mesh, rays, work);
-        if (const std::size_t inside = prt::num_inside(scene_.receivers); inside != 0)
-            note(fmt::format("{} of {} points lie inside of objects: they take the light of the "
-                             "nearest point outside",
-                             inside, points.size()));
-    }
-
-    void place_pixels(const Pixels& size, const prt::RayScene& rays) {
-        const bool has_camera = options_.view && options_.view->camera;
-        const prt::Camera camera = has_camera
-                                       ? *options_.view->camera
-                                       : camera_of(scene_, static_cast<float>(size.width) /
-                                                               static_cast<float>(size.height));
-        prt::PixelReceivers pixels = prt::pixel_receivers(
-            scene_.mesh, rays,
-            {.camera = camera,
-             .width = size.width,
-             .height = size.height,
-             .samples_per_axis = size.samples_per_axis},
-            {.stop = work_.stop, .on_progress = progress_of(Stage::Receivers)});
-        scene_.receivers = std::move(pixels.receivers);
-        scene_.layout = std::move(pixels.layout);
-        note(fmt::format("{}: {} samples hit the mesh", prt::description(scene_.layout),
-                         scene_.receivers.size()));
-    }
-
-    void place_texels(const Texels& size) {
-        prt::TexelReceivers texels =
-            prt::texel_receivers(scene_.mesh, {.width = size.width, .height = size.height});
-        const prt::AtlasReport& atlas = texels.report;
-        if (atlas.num_overlapping > 0)
-            warn(Warning::ChartsOverlap,
-                 fmt::format("{} texels lie in several triangles, the first at column {}, row {}: "
-                             "charts overlap, the first triangle of the mesh wins",
-                             atlas.num_overlapping, atlas.first_overlap % size.width,
-                             atlas.first_overlap / size.width));
-        if (atlas.num_outside > 0)
-            warn(Warning::UvsOutside,
-                 fmt::format("{} triangles have uvs outside of 0 to 1: cut off there",
-                             atlas.num_outside));
-        if (atlas.num_flat > 0)
-            note(fmt::format("{} triangles have no area in uv and get no texels", atlas.num_flat));
-        report_.atlas = atlas;
-        scene_.receivers = std::move(texels.receivers);
-        scene_.layout = std::move(texels.layout);
-    }
-
     /// The mesh's materials, changed by the option; none where there are neither. The floor keeps
     /// its own.
     void set_surfaces() {
         const mesh::TriangleMesh& mesh = scene_.mesh;
         if (scene_.receivers.have_no_surface) {
             if (!prt::lamps_of(mesh).empty())
-                note("points in space get no light from the scene's own lamps");
+                note(work_, "points in space get no light from the scene's own lamps");
             return;
         }
         scene_.lamps.lights = mesh.lights;
@@ -439,11 +311,11 @@ private:
             };
         scene_.lamps = prt::lamps_of(mesh, surface_of);
         if (const std::vector<std::string> names = scene_.lamps.names(); !names.empty())
-            note(fmt::format(
-                "lamps that --emission dims: {}",
-                files::joined(std::span(names).first(std::min<std::size_t>(names.size(), 8)),
-                              ", ") +
-                    (names.size() > 8 ? ", ..." : "")));
+            note(work_, fmt::format("lamps that --emission dims: {}",
+                                    files::joined(std::span(names).first(
+                                                      std::min<std::size_t>(names.size(), 8)),
+                                                  ", ") +
+                                        (names.size() > 8 ? ", ..." : "")));
         prt::Receivers& receivers = scene_.receivers;
         const prt::GgxForm form = receivers.to_eye.empty() ? prt::GgxForm::Published : options_.ggx;
         if (receivers.points.empty()) {
@@ -502,7 +374,7 @@ private:
             surface = prt::without_highlight(surface);
         }
         if (report_.num_highlights_left_out != 0)
-            warn(Warning::HighlightsWithoutView,
+            warn(work_, Warning::HighlightsWithoutView,
                  fmt::format("{} receivers have highlights, and there is no view: pictures trace "
                              "them, all else is diffuse",
                              report_.num_highlights_left_out));
@@ -517,7 +389,7 @@ private:
                        surface.roughness_or_exponent < narrowest;
             }));
         if (report_.num_too_smooth != 0)
-            warn(Warning::TooSmooth,
+            warn(work_, Warning::TooSmooth,
                  fmt::format("{} receivers are smoother than roughness {:.3f}: cells of the "
                              "quadtree cannot hold so sharp a highlight, it comes out wider",
                              report_.num_too_smooth, narrowest));
@@ -532,7 +404,7 @@ private:
         // A disk that stays full need not be told of every twenty seconds.
         const auto warn_once = [this, last = std::string()](const std::string& message) mutable {
             if (std::exchange(last, message) != message)
-                warn(Warning::Checkpoint, message);
+                warn(work_, Warning::Checkpoint, message);
         };
         checkpoint_ = std::make_unique<prt::CheckpointFile>(
             options_.output,
@@ -546,30 +418,14 @@ private:
         if (work_.team.has_others())
             team_checkpoint_.emplace(work_.team, checkpoint_.get());
         if (checkpoint_->exists())
-            note(fmt::format("going on from {}",
-                             prt::CheckpointFile::folder_for(options_.output).string()));
+            note(work_, fmt::format("going on from {}",
+                                    prt::CheckpointFile::folder_for(options_.output).string()));
     }
 
-    [[nodiscard]] std::function<void(double)> progress_of(Stage stage) const {
-        if (!work_.on_progress)
-            return {};
-        return [&on_progress = work_.on_progress, stage](double fraction) {
-            on_progress(stage, fraction);
-        };
-    }
     void poll() const {
         if (work_.stop.stop_requested())
             throw Cancelled();
     }
-    void warn(Warning kind, const std::string& message) const {
-        if (work_.on_warning)
-            work_.on_warning(kind, message);
-    }
-    void note(const std::string& message) const {
-        if (work_.on_note)
-            work_.on_note(message);
-    }
-
     const PrecomputeOptions& options_;
     const PrecomputeWork& work_;
     bool is_plan_ = false;

@@ -17,6 +17,7 @@
 #include "relumine/fit.h"
 #include "relumine/harmonics_file.h"
 #include "relumine/light.h"
+#include "relumine/light_edits.h"
 #include "relumine/light_mix.h"
 #include "relumine/lit_scene.h"
 #include "relumine/material.h"

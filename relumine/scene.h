@@ -37,6 +37,11 @@ using relight::Camera;
     return scene.transfer.num_receivers() != 0;
 }
 
+/// Whether pictures turn the normals between the vertices.
+[[nodiscard]] inline bool has_mapped_vertices(const Scene& scene) {
+    return prt::on_vertices(scene.layout) && !scene.mesh.corner_tangents.empty();
+}
+
 /// Returns the RMS tolerance of the scene's clusters, 1/sr, whichever form it was given in.
 [[nodiscard]] float rms_tolerance(const Scene& scene);
 

@@ -16,6 +16,7 @@
 #include "prt/scene/section_file.h"
 #include "relumine/precompute_table.h"
 #include "relumine/scene.h"
+#include "relumine/stages.h"
 
 namespace relumine {
 
@@ -108,9 +109,7 @@ Scene cached_precompute(const SceneCache& cache, Mesh mesh, const PrecomputeOpti
         save_scene(file, scene);
         remove_oldest(cache, file);
     } catch (const std::runtime_error& failed) {
-        if (work.on_warning)
-            work.on_warning(Warning::Checkpoint,
-                            fmt::format("{}; the scene is not kept", failed.what()));
+        warn(work, Warning::Checkpoint, fmt::format("{}; the scene is not kept", failed.what()));
     }
     return scene;
 }

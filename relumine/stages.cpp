@@ -44,6 +44,24 @@ std::string megabytes(std::uint64_t bytes) {
                             : fmt::format("{} MB", (bytes + Megabyte - 1) / Megabyte);
 }
 
+void warn(const PrecomputeWork& work, Warning kind, const std::string& message) {
+    if (work.on_warning)
+        work.on_warning(kind, message);
+}
+
+void note(const PrecomputeWork& work, const std::string& message) {
+    if (work.on_note)
+        work.on_note(message);
+}
+
+std::function<void(double)> progress_of(const PrecomputeWork& work, Stage stage) {
+    if (!work.on_progress)
+        return {};
+    return [&on_progress = work.on_progress, stage](double fraction) {
+        on_progress(stage, fraction);
+    };
+}
+
 prt::RayScene ray_scene(const mesh::TriangleMesh& mesh, const std::string& prefix) {
     try {
         return prt::RayScene(mesh);
@@ -93,9 +111,8 @@ void Stages::limit_clusters(const prt::Blockers& blockers, prt::PrecomputeOption
                                    estimate.num_clusters));
     clusters.max_column_bytes = prt::max_column_bytes(sizes(), clusters.plane_bytes, most);
     report_.memory = estimate;
-    if (work_.on_note)
-        work_.on_note(fmt::format("memory: about {} for about {} clusters",
-                                  megabytes(estimate.peak_bytes), estimate.num_clusters));
+    note(work_, fmt::format("memory: about {} for about {} clusters",
+                            megabytes(estimate.peak_bytes), estimate.num_clusters));
 }
 
 prt::PrecomputeOptions Stages::cluster_options() const {
@@ -108,15 +125,11 @@ prt::PrecomputeOptions Stages::cluster_options() const {
 }
 
 prt::Work Stages::work_for(Stage stage, bool more_follows) const {
-    prt::Work work{.team = work_.team,
-                   .checkpoint = options_.checkpoint,
-                   .more_follows = more_follows,
-                   .stop = work_.stop};
-    if (work_.on_progress)
-        work.on_progress = [&show = work_.on_progress, stage](double fraction) {
-            show(stage, fraction);
-        };
-    return work;
+    return {.team = work_.team,
+            .checkpoint = options_.checkpoint,
+            .more_follows = more_follows,
+            .stop = work_.stop,
+            .on_progress = progress_of(work_, stage)};
 }
 
 /// Calls find(blockers, options, work).
@@ -176,8 +189,7 @@ prt::PartLight Stages::run(const prt::RayScene& rays) {
         } catch (const MemoryLimitExceeded& error) {
             if (!plan_.bounces->is_automatic)
                 throw;
-            if (work_.on_note)
-                work_.on_note(fmt::format("bounces are left out: {}", error.what()));
+            note(work_, fmt::format("bounces are left out: {}", error.what()));
         }
     }
     light.counts = std::exchange(transfer.counts, {});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -16,6 +17,12 @@ namespace relumine {
 
 /// Returns what answers ray queries about a mesh. `prefix` begins messages.
 [[nodiscard]] prt::RayScene ray_scene(const mesh::TriangleMesh& mesh, const std::string& prefix);
+
+// What a precompute tells its caller, who need not listen.
+void warn(const PrecomputeWork& work, Warning kind, const std::string& message);
+void note(const PrecomputeWork& work, const std::string& message);
+/// Null where nobody listens.
+[[nodiscard]] std::function<void(double)> progress_of(const PrecomputeWork& work, Stage stage);
 
 /// Clusters, highlights and bounces of the receivers that this process or part has.
 class Stages {

@@ -12,6 +12,7 @@
 
 #include "cubemap/layers/light_layer.h"
 #include "cubemap/texel_rectangle.h"
+#include "relumine/light_edits.h"
 #include "relumine/lit_scene.h"
 
 namespace relumine::viewer {

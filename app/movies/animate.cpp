@@ -105,7 +105,7 @@ public:
             totals_.seconds_write += watch.lap();
             ++totals_.num_lit;
             if (!options_.output.path.empty())
-                Session::set_cancelled_message(cancelled_message());
+                set_cancelled_message(cancelled_message());
             if (progress)
                 progress(static_cast<double>(i + 1) / static_cast<double>(todo_.size()));
         }

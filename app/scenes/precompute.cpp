@@ -114,7 +114,7 @@ Scene precomputed(Mesh mesh, const PrecomputeOptions& options, const PrecomputeW
         if (report.checkpoint.empty())
             throw;
         // To free what was computed may take longer than a second signal is waited for.
-        Session::set_cancelled_message(with_checkpoint(error.what()));
+        set_cancelled_message(with_checkpoint(error.what()));
         throw std::runtime_error(with_checkpoint(error.what()));
     }
 }
@@ -375,7 +375,7 @@ void write_report(const PrecomputeArguments& options, const PrecomputeOptions& w
 void say_how_to_go_on(const std::filesystem::path& output, const prt::Team& team) {
     if (!team.has_others() || team.part().index > 1)
         return;
-    Session::set_waiting_message([folder = prt::CheckpointFile::folder_for(output)] {
+    set_waiting_message([folder = prt::CheckpointFile::folder_for(output)] {
         return std::filesystem::exists(folder)
                    ? fmt::format("ended before the work was done; the same command with --resume "
                                  "goes on from {}",

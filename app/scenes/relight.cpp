@@ -206,7 +206,7 @@ void light_scene(const RelightArguments& options, Session& session) {
             save_harmonics(lit, options.harmonics); // of the first process, with these parts
         return;
     }
-    const std::vector<glm::vec3> bounced = lit.bounced();
+    const std::vector<glm::vec3> bounced = relumine::bounced(lit);
     if (options.only_bounces)
         keep_bounces(lighting, bounced, options.scene.path);
     Painter painter(lit, output);

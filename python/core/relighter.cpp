@@ -433,7 +433,7 @@ void bind_relighters(py::module_& module) {
         .def("bounce", &bounce)
         .def("bounced",
              [](Lit& own) {
-                 return owned(quickly(own, [](LitScene& lit) { return lit.bounced(); }));
+                 return owned(quickly(own, [](LitScene& lit) { return relumine::bounced(lit); }));
              })
         .def("harmonics",
              [](Lit& own) {

@@ -15,6 +15,7 @@
 #include "lights/light_clusters.h"
 #include "lights/place_lights.h"
 #include "relight/relighter.h"
+#include "relumine/light_edits.h"
 #include "relumine/lit_scene.h"
 #include "relumine/precompute.h"
 

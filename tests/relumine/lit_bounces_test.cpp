@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "relumine/light_edits.h"
 #include "relumine/lit_scene.h"
 #include "relumine/output.h"
 #include "relumine/questions.h"

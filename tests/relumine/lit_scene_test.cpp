@@ -1,3 +1,4 @@
+#include "relumine/light_edits.h"
 #include "relumine/lit_scene.h"
 
 #include <algorithm>

@@ -1,0 +1,107 @@
+// What LitScene tells of its light.
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+
+#include "relight/harmonics/harmonics.h"
+#include "relight/receiver_light.h"
+#include "relight/sharp/light_packets.h"
+#include "relumine/gathered.h"
+#include "relumine/lit_scene.h"
+
+namespace relumine {
+
+std::vector<glm::vec3> LitScene::harmonics() const {
+    if (!is_lit_ || harmonics_ == 0)
+        throw std::logic_error("expected a scene that is lit, with LightOptions::harmonics");
+    std::vector<glm::vec3> result = relighter().harmonics();
+    for (std::size_t i = 0; i < added_.harmonics.size(); ++i)
+        result[i] += added_.harmonics[i];
+    const prt::Transfer& transfer = relighter().transfer();
+    const std::size_t width = relight::num_harmonics(harmonics_);
+    if (!bounces_.bounced().empty() || !lamps_.direct().empty()) {
+        std::vector<glm::vec3> bounced(transfer.num_receivers(), glm::vec3(0.0f));
+        add_surfaces(bounced);
+        for (std::size_t place = 0; place < transfer.num_receivers(); ++place) {
+            const std::uint32_t receiver = transfer.order[place];
+            glm::dvec3 arriving(bounced[receiver]);
+            // What surfaces send on, before their colours.
+            for (int channel = 0; channel < 3 && !transfer.surfaces.empty(); ++channel) {
+                const float albedo = transfer.surfaces[place].albedo[channel];
+                arriving[channel] = albedo > 0.0f ? arriving[channel] / albedo : 0.0;
+            }
+            const std::span<glm::vec3> light = std::span(result).subspan(receiver * width, width);
+            const glm::vec3& normal = transfer.normals[place];
+            relight::bind_irradiance(
+                light, normal, relight::irradiance(light, normal) + std::numbers::pi * arriving);
+        }
+    }
+    return team_->has_others() ? gathered(*team_, scene_->transfer.order, result, width) : result;
+}
+
+/// The first process gets what all have.
+void LitScene::gather(Lighting& lighting) const {
+    const std::vector<std::uint32_t>& order = scene_->transfer.order;
+    lighting.gathered =
+        std::make_shared<const std::vector<glm::vec3>>(gathered(*team_, order, lighting.radiance));
+    lighting.radiance = *lighting.gathered;
+    if (!lighting.lights.empty())
+        lighting.soft = gathered(*team_, order, lighting.soft);
+    if (!lighting.harmonics.empty())
+        lighting.harmonics =
+            gathered(*team_, order, lighting.harmonics,
+                     relight::num_harmonics(relighter_->receiver_light().harmonic_order()));
+}
+
+Lighting LitScene::lighting(bool is_drawn) const {
+    if (!is_lit_)
+        throw std::logic_error("expected a scene that is lit");
+    Lighting result{.radiance = radiance()};
+    if (is_drawn) {
+        if (relighter_)
+            result.lights = relight::picture_lights(*relighter_);
+        if (relighter_ && relighter_->environment().resolution != 0)
+            result.num_environment_lights = result.lights.size();
+        result.lights.insert(result.lights.end(), added_.lights.begin(), added_.lights.end());
+    }
+    if (is_drawn && relighter_ && scene_->transfer.glossy && !scene_->mesh.textures.empty())
+        result.lobes =
+            relighter_->receiver_light().lobes(result.lights.size() == added_.lights.size());
+    if (is_drawn && relighter_ && has_mapped_vertices(*scene_))
+        result.harmonics =
+            relighter_->receiver_light().harmonics(result.lights.size() == added_.lights.size());
+    result.open_floor =
+        added_.open_floor +
+        (relighter_ ? relighter_->open_radiance({0.0f, 1.0f, 0.0f}) : glm::dvec3(0.0));
+    if (!result.lights.empty()) {
+        if (!relighter_)
+            result.soft.resize(added_.soft.size());
+        else if (result.lights.size() > added_.lights.size())
+            result.soft = relighter_->receiver_light().soft_radiance();
+        else
+            result.soft.assign(relighter_->radiance().begin(), relighter_->radiance().end());
+        add_surfaces(result.soft);
+        const std::vector<glm::vec3>& of_list =
+            added_.lights.empty() ? added_.radiance : added_.soft;
+        for (std::size_t i = 0; i < of_list.size(); ++i)
+            result.soft[i] += of_list[i];
+    }
+    if (team_->has_others()) {
+        gather(result);
+        if (!team_->is_first())
+            return {};
+    }
+    if (!relighter_ || relighter_->environment().resolution == 0)
+        return result;
+    result.environment = &relighter_->environment();
+    if (!is_drawn || !state_.base || !state_.base->backdrop())
+        return result;
+    if (!is_edited())
+        result.sharp = state_.base->backdrop();
+    else if (state_.shows_base())
+        result.sharp = relight::edited_backdrop(state_.base->backdrop(), *state_.base->map(),
+                                                *result.environment);
+    return result;
+}
+
+} // namespace relumine
