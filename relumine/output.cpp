@@ -32,48 +32,6 @@ bool is_linear_data(const std::string& extension) {
     return extension == ".exr" || extension == ".npy";
 }
 
-void require_fit(const Scene& scene, std::span<const glm::vec3> radiance) {
-    if (radiance.size() != scene.receivers.size())
-        throw std::invalid_argument(fmt::format("expected the radiance of {} receivers, got {}",
-                                                scene.receivers.size(), radiance.size()));
-}
-
-/// Whether the colours are looked at, computed with, or send light on.
-enum class Purpose { Show, Compute, Bounce };
-
-constexpr float PlasterAlbedo = 0.5f;
-
-/// Returns what each receiver's radiance is multiplied with, [num_receivers].
-std::vector<glm::vec3> factors(const Scene& scene, const Albedo& albedo) {
-    if (const auto* factor = std::get_if<glm::vec3>(&albedo))
-        return std::vector(scene.receivers.size(), *factor);
-    return prt::colors_at(scene.mesh, scene.receivers);
-}
-
-/// The same with what the options leave open.
-std::vector<glm::vec3> factors(const Scene& scene, const OutputOptions& options, Purpose purpose) {
-    const bool is_shown = purpose == Purpose::Bounce ||
-                          (purpose == Purpose::Show && prt::kind_of(scene.layout).are_seen);
-    // A point in space reflects nothing.
-    Albedo albedo = scene.receivers.have_no_surface ? Albedo(glm::vec3(1.0f)) : options.albedo;
-    if (std::holds_alternative<AutomaticAlbedo>(albedo)) {
-        if (!is_shown || !scene.receivers.surfaces.empty())
-            albedo = glm::vec3(1.0f);
-        else if (!scene.mesh.colors.empty())
-            albedo = MeshColors{};
-        else
-            albedo = glm::vec3(PlasterAlbedo);
-    }
-    std::vector<glm::vec3> result = factors(scene, albedo);
-    const std::vector<bool> is_floor = floor_receivers(scene);
-    const glm::vec3 floor = options.floor_albedo.value_or(glm::vec3(is_shown ? FloorAlbedo : 1.0f));
-    for (std::size_t i = 0; i < is_floor.size(); ++i)
-        if (is_floor[i] &&
-            (scene.receivers.surfaces.empty() || scene.receivers.surfaces[i] == prt::Surface()))
-            result[i] = floor;
-    return result;
-}
-
 /// Radiance is finite, but its product with albedo and exposure need not be.
 void require_finite(const std::filesystem::path& path, std::span<const glm::vec3> values,
                     double exposure_ev = 0.0) {
@@ -85,38 +43,7 @@ void require_finite(const std::filesystem::path& path, std::span<const glm::vec3
                             path.string(), std::numeric_limits<float>::max()));
 }
 
-std::vector<glm::vec3> product(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
-    std::vector<glm::vec3> result(a.begin(), a.end());
-    for (std::size_t i = 0; i < result.size(); ++i)
-        result[i] *= b[i];
-    return result;
-}
-
-void add(std::span<const glm::vec3> emission, std::vector<glm::vec3>& colors) {
-    for (std::size_t i = 0; i < std::min(emission.size(), colors.size()); ++i)
-        colors[i] += emission[i];
-}
-
 } // namespace
-
-std::vector<glm::vec3> picture_albedo(const Scene& scene, const OutputOptions& options) {
-    return factors(scene, options, Purpose::Show);
-}
-
-std::vector<glm::vec3> bounce_albedo(const Scene& scene, const OutputOptions& options) {
-    return factors(scene, options, Purpose::Bounce);
-}
-
-std::vector<glm::vec3> colors_of(const Scene& scene, std::span<const glm::vec3> radiance,
-                                 const Albedo& albedo) {
-    require_fit(scene, radiance);
-    std::vector<glm::vec3> colors =
-        product(radiance, std::holds_alternative<AutomaticAlbedo>(albedo)
-                              ? factors(scene, OutputOptions{}, Purpose::Compute)
-                              : factors(scene, albedo));
-    add(emission_of(scene), colors);
-    return colors;
-}
 
 struct Painter::Impl {
     Impl(const LitScene& lit, const OutputOptions& given)
@@ -146,7 +73,7 @@ struct Painter::Impl {
     /// What pixels or texels show.
     [[nodiscard]] std::vector<glm::vec3> own_colors(const Lighting& lighting) {
         std::vector<glm::vec3> colors = product(own(lighting.radiance), shown_factors());
-        add(emission, colors);
+        add_emission(emission, colors);
         return colors;
     }
 
@@ -164,7 +91,7 @@ struct Painter::Impl {
 
     const std::vector<glm::vec3>& shown_factors() {
         if (shown.empty())
-            shown = factors(scene, options, Purpose::Show);
+            shown = picture_albedo(scene, options);
         return shown;
     }
 
@@ -421,7 +348,7 @@ struct Painter::Impl {
                                    std::span<const glm::vec3> albedo, double ev) const {
         require_fit(scene, radiance);
         std::vector<glm::vec3> values = product(own(radiance), albedo);
-        add(emission, values);
+        add_emission(emission, values);
         const auto scale = static_cast<float>(std::exp2(ev));
         for (glm::vec3& value : values)
             value *= scale;
@@ -471,7 +398,7 @@ Picture Painter::draw(const Lighting& lighting) {
 }
 
 std::vector<glm::vec3> Painter::values(std::span<const glm::vec3> radiance) const {
-    return impl_->exposed(radiance, factors(impl_->scene, impl_->options, Purpose::Compute),
+    return impl_->exposed(radiance, computed_albedo(impl_->scene, impl_->options),
                           impl_->options.exposure_ev.value_or(0.0));
 }
 

@@ -17,33 +17,12 @@
 #include "relumine/lighting.h"
 #include "relumine/lit_scene.h"
 #include "relumine/output_options.h"
+#include "relumine/receiver_colors.h"
 #include "relumine/scene.h"
 
 namespace relumine {
 
 using relight::Picture;
-
-/// Returns radiance times albedo and the emission, [num_receivers]. The floor has the albedo of the
-/// mesh.
-///
-/// Throws:  std::invalid_argument for another number of radiances, for MeshColors of a mesh without
-///          colours.
-[[nodiscard]] std::vector<glm::vec3> colors_of(const Scene& scene,
-                                               std::span<const glm::vec3> radiance,
-                                               const Albedo& albedo = glm::vec3(1.0f));
-
-/// Returns what pictures multiply each receiver's radiance with, [num_receivers].
-///
-/// Throws:  std::invalid_argument for MeshColors of a mesh without colours.
-[[nodiscard]] std::vector<glm::vec3> picture_albedo(const Scene& scene,
-                                                    const OutputOptions& options = {});
-
-/// Returns the albedo with which light bounces, [num_receivers]: that of pictures, also for texels,
-/// which themselves stay for albedo 1.
-///
-/// Throws:  as picture_albedo().
-[[nodiscard]] std::vector<glm::vec3> bounce_albedo(const Scene& scene,
-                                                   const OutputOptions& options = {});
 
 /// Draws and writes many pictures of one scene from one camera. What the camera sees is found once,
 /// and one exposure is chosen for all. draw() and save() of a LitScene are the short forms for one
