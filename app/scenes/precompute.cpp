@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -371,17 +372,28 @@ void write_report(const PrecomputeArguments& options, const PrecomputeOptions& w
 }
 
 /// Where one of several processes was killed, mpirun ends the others before they can meet again.
-/// The first two name the checkpoint: one of them is left.
-void say_how_to_go_on(const std::filesystem::path& output, const prt::Team& team) {
+/// The first one names the checkpoint, or where it is gone, the second one: one of them is left.
+void say_how_to_go_on(const std::filesystem::path& output, const Session& session) {
+    const prt::Team& team = session.processes();
     if (!team.has_others() || team.part().index > 1)
         return;
-    set_waiting_message([folder = prt::CheckpointFile::folder_for(output)] {
-        return std::filesystem::exists(folder)
+    const auto message = [folder = prt::CheckpointFile::folder_for(output)] {
+        std::error_code error;
+        return std::filesystem::exists(folder, error)
                    ? fmt::format("ended before the work was done; the same command with --resume "
                                  "goes on from {}",
                                  folder.string())
-                   : std::string();
-    });
+                   : "ended before the work was done; nothing was written";
+    };
+    set_waiting_message(message, session.is_first_alive);
+}
+
+/// Whoever asks to go on should know that nothing was kept, as after a wrong --output.
+void say_new_beginning(const PrecomputeArguments& options, const Session& session) {
+    const std::filesystem::path folder = prt::CheckpointFile::folder_for(options.output);
+    if (std::error_code error; options.precompute.resume && !std::filesystem::exists(folder, error))
+        session.say(
+            fmt::format("--resume: {} is not there, the work begins anew", folder.string()));
 }
 
 void run(const PrecomputeArguments& options, const Command& command, Session& session) {
@@ -393,7 +405,7 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
         return options.parts.run(command, options.output, options.precompute.engine, work, session);
     if (options.mesh.empty())
         throw UsageError("MESH", "expected a mesh, got none");
-    say_how_to_go_on(options.output, work.team);
+    say_how_to_go_on(options.output, session);
     if (!work.team.is_first()) {
         const Patience for_checkpoints;
         return assist(work);
@@ -408,6 +420,7 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
         !std::holds_alternative<Vertices>(options.precompute.receivers))
         throw UsageError(options.simplify != 0 ? "--simplify" : "--refine",
                          "expected vertices as receivers");
+    say_new_beginning(options, session);
     Mesh mesh = made_mesh(options, session);
     const PrecomputeOptions asked = precompute_options(options, mesh.geometry);
     if (options.is_plan)
