@@ -21,6 +21,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "app/progress_lines.h"
 #include "files/output_file.h"
 #include "files/printable.h"
 #include "prt/precompute.h"
@@ -205,7 +206,7 @@ std::function<void(double)> Session::progress(const std::string& what) {
         /// And with what: the run may take up another one
         double first_fraction = 0.0;
         double last_shown = 0.0;
-        int last_tenth = 0;
+        ProgressLines lines = {};
     };
     const bool terminal = ::isatty(STDERR_FILENO) != 0;
     return [this, what, terminal, state = State{}](double fraction) mutable {
@@ -228,9 +229,8 @@ std::function<void(double)> Session::progress(const std::string& what) {
             std::fflush(stderr);
             bar_open_ = true;
             shared().is_bar_open = true;
-        } else if (const int tenth = static_cast<int>(10.0 * fraction); tenth > state.last_tenth) {
-            state.last_tenth = tenth;
-            fmt::print(stderr, "{}: {} %, about {} left\n", what, 10 * tenth, left);
+        } else if (state.lines.is_due(fraction, elapsed)) {
+            fmt::print(stderr, "{}: {:.0f} %, about {} left\n", what, 100.0 * fraction, left);
         }
     };
 }

@@ -47,8 +47,8 @@ public:
     /// Throws prt::Cancelled after Ctrl-C.
     void poll() const;
 
-    /// Shows a bar with the time left on a terminal, a line every tenth elsewhere, nothing in the
-    /// first second or with -q. To be called with fractions in [0, 1].
+    /// Shows a bar with the time left on a terminal, lines elsewhere (ProgressLines), nothing in
+    /// the first second or with -q. To be called with fractions in [0, 1].
     [[nodiscard]] std::function<void(double)> progress(const std::string& what);
     /// Ends the bar's line. Harmless when there is none.
     void end_progress() const;
