@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -19,12 +18,12 @@
 #include "app/options/plan_option.h"
 #include "app/options/receiver_options.h"
 #include "app/options/refine_options.h"
+#include "app/scenes/checkpoint_words.h"
 #include "app/scenes/first_scene.h"
 #include "files/counted.h"
 #include "mesh/customs.h"
 #include "mesh/floor.h"
 #include "mesh/half_edge/winding.h"
-#include "prt/scene/checkpoint_file.h"
 #include "relumine/precompute_table.h"
 #include "relumine/scene_cache.h"
 
@@ -371,31 +370,6 @@ void write_report(const PrecomputeArguments& options, const PrecomputeOptions& w
     session.report(report);
 }
 
-/// Where one of several processes was killed, mpirun ends the others before they can meet again.
-/// The first one names the checkpoint, or where it is gone, the second one: one of them is left.
-void say_how_to_go_on(const std::filesystem::path& output, const Session& session) {
-    const prt::Team& team = session.processes();
-    if (!team.has_others() || team.part().index > 1)
-        return;
-    const auto message = [folder = prt::CheckpointFile::folder_for(output)] {
-        std::error_code error;
-        return std::filesystem::exists(folder, error)
-                   ? fmt::format("ended before the work was done; the same command with --resume "
-                                 "goes on from {}",
-                                 folder.string())
-                   : "ended before the work was done; nothing was written";
-    };
-    set_waiting_message(message, session.is_first_alive);
-}
-
-/// Whoever asks to go on should know that nothing was kept, as after a wrong --output.
-void say_new_beginning(const PrecomputeArguments& options, const Session& session) {
-    const std::filesystem::path folder = prt::CheckpointFile::folder_for(options.output);
-    if (std::error_code error; options.precompute.resume && !std::filesystem::exists(folder, error))
-        session.say(
-            fmt::format("--resume: {} is not there, the work begins anew", folder.string()));
-}
-
 void run(const PrecomputeArguments& options, const Command& command, Session& session) {
     if (options.parts.is_given() && session.team != nullptr)
         throw UsageError("--plan", "expected a mesh: parts of a plan share nothing, `relumine "
@@ -420,7 +394,8 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
         !std::holds_alternative<Vertices>(options.precompute.receivers))
         throw UsageError(options.simplify != 0 ? "--simplify" : "--refine",
                          "expected vertices as receivers");
-    say_new_beginning(options, session);
+    if (options.precompute.resume)
+        say_new_beginning(options.output, session);
     Mesh mesh = made_mesh(options, session);
     const PrecomputeOptions asked = precompute_options(options, mesh.geometry);
     if (options.is_plan)
