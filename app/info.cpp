@@ -14,9 +14,11 @@
 #include "app/options/environment_options.h"
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
+#include "app/scenes/info_part.h"
 #include "cubemap/image/environment.h"
 #include "files/output_file.h"
 #include "mesh/load.h"
+#include "prt/parts/part_facts.h"
 #include "prt/scene/scene_file.h"
 #include "relumine/mesh.h"
 
@@ -99,21 +101,35 @@ void describe_scene(const InfoArguments& options, const Session& session) {
     session.report(result);
 }
 
+/// A .prt file is a scene, or what reads it says what it is. Plans and parts may have any name.
+prt::SceneFileKind kind_of(const std::string& path) {
+    if (extension_of(path) == ".prt")
+        return prt::SceneFileKind::Scene;
+    if (cubemap::is_environment_name(path) || mesh::has_mesh_extension(path))
+        return prt::SceneFileKind::Other;
+    return prt::scene_file_kind(path);
+}
+
 void run(const InfoArguments& options, const Session& session) {
     for (const std::filesystem::path& file : cubemap::environment_files(options.path))
         static_cast<void>(files::size(file)); // a name that is not there says so first
-    const std::string extension = extension_of(options.path);
-    if (!options.picture.empty() && extension == ".prt")
+    const prt::SceneFileKind kind = kind_of(options.path);
+    const bool is_of_prt = kind != prt::SceneFileKind::Other;
+    if (!options.picture.empty() && is_of_prt)
         throw UsageError(
             "--picture",
             fmt::format("expected an environment or a mesh to draw, got '{}'", options.path));
-    if (options.check && extension != ".prt")
+    if (options.check && !is_of_prt)
         throw UsageError("--check", fmt::format("expected a scene (.prt), got '{}'", options.path));
     if (options.pose && !mesh::has_mesh_extension(options.path))
         throw UsageError("--pose",
                          fmt::format("expected a mesh (.glb, .gltf), got '{}'", options.path));
-    if (extension == ".prt")
+    if (kind == prt::SceneFileKind::Scene)
         describe_scene(options, session);
+    else if (kind == prt::SceneFileKind::Plan)
+        describe_plan(options.path, session);
+    else if (is_of_prt)
+        describe_part(options.path, session);
     else if (cubemap::is_environment_name(options.path))
         describe_environment({options.path, options.layout, options.picture}, session);
     else
@@ -123,11 +139,11 @@ void run(const InfoArguments& options, const Session& session) {
 } // namespace
 
 void add_info(Command& program, Session& session) {
-    Command command =
-        program.add_command("info", "what a file is: a scene, an environment or a mesh");
+    Command command = program.add_command(
+        "info", "what a file is: a scene, a plan or a part of one, an environment or a mesh");
     auto options = std::make_shared<InfoArguments>();
     command.add(row("FILE", options->path,
-                    ".prt, .exr, .hdr, .obj, .gltf, .glb, .ply, .off or .stl",
+                    ".prt, .exr, .hdr, .obj, .gltf, .glb, .ply, .off or .stl, a plan or a part",
                     {.file = true, .required = true}));
     command.add(row<LayoutText>("--layout", options->layout,
                                 "layout of an environment, where the file does not tell"));

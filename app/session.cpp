@@ -21,6 +21,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "app/progress_lines.h"
 #include "files/output_file.h"
 #include "files/printable.h"
 #include "prt/precompute.h"
@@ -61,8 +62,13 @@ struct Shared {
     std::mutex mutex;
     /// True once the main thread has said how the work ended after a signal.
     bool is_said = false;
+    /// What waits for other processes has said that it was told to end.
+    bool is_waiting_said = false;
+    bool leaves_words_to_others = false;
     std::string cancelled_message = "cancelled; nothing was written";
     std::function<std::string()> waiting_message = {};
+    std::function<bool()> does_another_say_it = {};
+    bool is_signalled = false;
 };
 Shared& shared() {
     static auto& all = *new Shared;
@@ -74,20 +80,29 @@ Shared& shared() {
     std::string text = shared().is_bar_open ? "\r\033[K" : "";
     // Nobody holds the mutex for long.
     const std::scoped_lock lock(shared().mutex);
-    if (shared().is_said)
+    if (shared().is_said || shared().is_waiting_said || shared().leaves_words_to_others)
         ::_exit(1);
     text += fmt::format("{}: {}\n", program_invocation_short_name, shared().cancelled_message);
     static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
     ::_exit(1);
 }
 
+/// Whoever was killed is gone before the others are signalled; whoever ends with them is not.
+void find_who_says_it() {
+    const std::scoped_lock lock(shared().mutex);
+    shared().is_signalled = true;
+    if (shared().does_another_say_it && shared().does_another_say_it())
+        shared().waiting_message = {};
+}
+
 /// Says once that this process waits for others.
 void say_waiting() {
     const std::scoped_lock lock(shared().mutex);
     const auto message = std::exchange(shared().waiting_message, {});
-    const std::string text = message && !shared().is_said ? message() : "";
-    if (!text.empty())
-        fmt::print(stderr, "relumine-mpi: {}\n", text);
+    if (!message || shared().is_said)
+        return;
+    fmt::print(stderr, "relumine-mpi: {}\n", message());
+    shared().is_waiting_said = true;
 }
 
 } // namespace
@@ -104,6 +119,7 @@ Session::Session() {
         int signal = 0;
         sigwait(&signals, &signal);
         const double first = now();
+        find_who_says_it();
         source.request_stop();
         // What polls ends by itself before, with its own message. Libraries that read, write or
         // compress do not poll.
@@ -135,9 +151,18 @@ void set_cancelled_message(const std::string& message) {
     shared().cancelled_message = message;
 }
 
-void set_waiting_message(std::function<std::string()> message) {
+void leave_last_words_to_others() {
     const std::scoped_lock lock(shared().mutex);
+    shared().leaves_words_to_others = true;
+}
+
+void set_waiting_message(std::function<std::string()> message,
+                         std::function<bool()> does_another_say_it) {
+    const std::scoped_lock lock(shared().mutex);
+    if (shared().is_signalled && does_another_say_it)
+        return; // too late to ask: the other may have ended since
     shared().waiting_message = std::move(message);
+    shared().does_another_say_it = std::move(does_another_say_it);
 }
 
 Patience::Patience() {
@@ -181,7 +206,7 @@ std::function<void(double)> Session::progress(const std::string& what) {
         /// And with what: the run may take up another one
         double first_fraction = 0.0;
         double last_shown = 0.0;
-        int last_tenth = 0;
+        ProgressLines lines = {};
     };
     const bool terminal = ::isatty(STDERR_FILENO) != 0;
     return [this, what, terminal, state = State{}](double fraction) mutable {
@@ -204,9 +229,8 @@ std::function<void(double)> Session::progress(const std::string& what) {
             std::fflush(stderr);
             bar_open_ = true;
             shared().is_bar_open = true;
-        } else if (const int tenth = static_cast<int>(10.0 * fraction); tenth > state.last_tenth) {
-            state.last_tenth = tenth;
-            fmt::print(stderr, "{}: {} %, about {} left\n", what, 10 * tenth, left);
+        } else if (state.lines.is_due(fraction, elapsed)) {
+            fmt::print(stderr, "{}: {:.0f} %, about {} left\n", what, 100.0 * fraction, left);
         }
     };
 }
@@ -239,12 +263,14 @@ void Session::warn(const std::string& message) const {
     warnings_.push_back(message);
 }
 
-void Session::complain(const std::string& message) const {
+void Session::complain(const std::string& message, const char* program) const {
     end_progress();
     const std::scoped_lock lock(shared().mutex);
+    if (shared().is_waiting_said && message.starts_with("cancelled"))
+        return;
     shared().is_said = stop_source_.stop_requested();
     // Not fmt::print, which throws where stderr cannot be written.
-    std::fputs(fmt::format("relumine: {}\n", one_line(message)).c_str(), stderr);
+    std::fputs(fmt::format("{}: {}\n", program, one_line(message)).c_str(), stderr);
 }
 
 void Session::add_to_report(const std::string& name, const Report& value) const {

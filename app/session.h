@@ -28,6 +28,8 @@ public:
     unsigned num_threads = 0;
     /// The processes that share the command's work, of `relumine-mpi`; null: there is but this one.
     prt::Team* team = nullptr;
+    /// In the others: whether the first process is known to be alive. Empty: nobody knows.
+    std::function<bool()> is_first_alive = {};
 
     Session();
 
@@ -45,8 +47,8 @@ public:
     /// Throws prt::Cancelled after Ctrl-C.
     void poll() const;
 
-    /// Shows a bar with the time left on a terminal, a line every tenth elsewhere, nothing in the
-    /// first second or with -q. To be called with fractions in [0, 1].
+    /// Shows a bar with the time left on a terminal, lines elsewhere (ProgressLines), nothing in
+    /// the first second or with -q. To be called with fractions in [0, 1].
     [[nodiscard]] std::function<void(double)> progress(const std::string& what);
     /// Ends the bar's line. Harmless when there is none.
     void end_progress() const;
@@ -57,8 +59,9 @@ public:
     void detail(const std::string& line) const;
     /// One line on stderr, "warning: ..."; nothing with -q. The report has it, too.
     void warn(const std::string& message) const;
-    /// One line on stderr, "relumine: ...", for a failure after which the command goes on.
-    void complain(const std::string& message) const;
+    /// One line on stderr, "relumine: ...", for a failure after which the command goes on. Of an
+    /// end by a signal that was told of already, nothing.
+    void complain(const std::string& message, const char* program = "relumine") const;
     /// Adds a field to the report of this run.
     void add_to_report(const std::string& name, const Report& value) const;
     /// What add_to_report() and warn() have gathered since the start or the last call.
@@ -77,9 +80,13 @@ private:
 
 /// What is said when the work is ended from outside, at first "cancelled; nothing was written".
 void set_cancelled_message(const std::string& message);
+/// Another process says that the work was ended from outside, and this one does not.
+void leave_last_words_to_others();
 /// For processes that share work: what one says that was told to end and waits for the others,
-/// since one of them may be gone. Its starter kills it soon. An empty message is not said.
-void set_waiting_message(std::function<std::string()> message);
+/// since one of them may be gone. Its starter kills it soon. Nothing is said where
+/// `does_another_say_it`, which is asked when the signal comes.
+void set_waiting_message(std::function<std::string()> message,
+                         std::function<bool()> does_another_say_it = {});
 
 /// One line of plain text, whatever the message looked like: what a file holds may be quoted in it.
 [[nodiscard]] std::string one_line(std::string message);

@@ -88,6 +88,7 @@ foreach(component IN LISTS components)
 endforeach()
 
 if(NOT PROJECT_IS_TOP_LEVEL)
+    relumine_copy_public_headers()
     return()
 endif()
 

@@ -16,10 +16,11 @@ endif()
 # is static or shared as BUILD_SHARED_LIBS says; an INTERNAL one is always static and is not installed.
 #
 # Users spell "relumine/NAME/file.h", and "relumine/file.h" for the door's: no header of theirs is in the way. Installed
-# headers do so, too (cmake/one_root.cmake); a link in the build folder makes that spelling right for those who add this
-# project as a folder.
+# headers do so, too (cmake/one_root.cmake). This project's own examples and tests reach the headers in that spelling by
+# links in the build folder; a project that adds this one as a folder gets copies there, which are like installed ones.
 
 include(GNUInstallDirs)
+include(${CMAKE_CURRENT_LIST_DIR}/public_header.cmake)
 
 add_library(relumine_warnings INTERFACE)
 target_compile_options(relumine_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion)
@@ -46,6 +47,29 @@ function(relumine_verify_headers name)
     add_dependencies(verify_headers ${verify})
 endfunction()
 
+# What users of the libraries find headers in, without an install.
+set(relumine_includes ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include)
+if(NOT PROJECT_IS_TOP_LEVEL)
+    include_directories(${relumine_includes})
+    set(relumine_includes ${PROJECT_BINARY_DIR}/public)
+endif()
+
+# Copies the public headers as users read them, and again where one has changed.
+function(relumine_copy_public_headers)
+    get_property(headers GLOBAL PROPERTY RELUMINE_PUBLIC_HEADERS)
+    get_property(folders GLOBAL PROPERTY RELUMINE_LIBRARIES)
+    list(REMOVE_ITEM folders relumine)
+    list(JOIN folders "|" folders)
+    foreach(header IN LISTS headers)
+        file(READ ${PROJECT_SOURCE_DIR}/${header} text)
+        relumine_public_header(text "${folders}")
+        string(REGEX REPLACE "^relumine/" "" path ${header})
+        file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/public/relumine/${path} CONTENT "${text}" @ONLY)
+    endforeach()
+    list(TRANSFORM headers PREPEND ${PROJECT_SOURCE_DIR}/)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${headers})
+endfunction()
+
 function(relumine_library name)
     cmake_parse_arguments(arg "INTERNAL" "" "HEADERS;PRIVATE_HEADERS;SOURCES" ${ARGN})
     set(kind "")
@@ -55,8 +79,7 @@ function(relumine_library name)
     add_library(relumine_${name} ${kind} ${arg_SOURCES} ${arg_PRIVATE_HEADERS})
     add_library(relumine::${name} ALIAS relumine_${name})
     target_include_directories(relumine_${name} PUBLIC
-        $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
-        $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+        "$<BUILD_INTERFACE:${relumine_includes}>" $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     target_compile_features(relumine_${name} PUBLIC cxx_std_20)
     set_target_properties(relumine_${name} PROPERTIES
         EXPORT_NAME ${name}

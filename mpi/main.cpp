@@ -2,16 +2,21 @@
 // share.
 #include <algorithm>
 #include <array>
+#include <csignal>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <new>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "app/command_line/command_line.h"
 #include "app/commands.h"
@@ -42,6 +47,30 @@ std::string meet(const std::vector<std::string>& arguments, Communicator& team) 
     for (const std::vector<std::byte>& bytes : team.gather(packed(processors())))
         all.push_back(unpacked_processors(bytes));
     return idle_processors(all);
+}
+
+/// Returns what says whether the first process is known to be alive. Only processes of its host
+/// can know.
+std::function<bool()> watch_over_first(Communicator& team) {
+    const std::string own = fmt::format("{}\n{}", processors().host, ::getpid());
+    const auto bytes = std::as_bytes(std::span(own));
+    std::string first;
+    for (const std::byte byte : team.broadcast({bytes.begin(), bytes.end()}))
+        first += static_cast<char>(byte);
+    const std::size_t end = first.find('\n');
+    if (team.part().index == 0 || first.substr(0, end) != own.substr(0, own.find('\n')))
+        return {};
+    return [pid = static_cast<::pid_t>(std::stol(first.substr(end)))] {
+        return ::kill(pid, 0) == 0;
+    };
+}
+
+/// What starters of processes tell before MPI does.
+bool is_started_as_other() {
+    for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "SLURM_PROCID"})
+        if (const char* rank = std::getenv(name))
+            return std::string_view(rank) != "0";
+    return false;
 }
 
 /// Throws for a command that `relumine` has and this program does not.
@@ -78,12 +107,15 @@ int code_of(const app::CommandLine& program, Communicator& team, const std::func
 int run(const std::vector<std::string>& arguments, app::Session& session, Communicator& team) {
     const bool is_first = team.part().index == 0;
     const auto complain = [&](const std::string& message) {
-        std::fputs(fmt::format("relumine-mpi: {}{}\n",
-                               is_first ? "" : fmt::format("process {}: ", team.part().index),
-                               app::one_line(message))
-                       .c_str(),
-                   stderr);
+        session.complain(fmt::format("{}{}",
+                                     is_first ? "" : fmt::format("process {}: ", team.part().index),
+                                     message),
+                         "relumine-mpi");
+        // The starter ends those that are left when the first one of them has ended.
+        app::leave_last_words_to_others();
     };
+    if (!is_first)
+        app::leave_last_words_to_others();
     app::CommandLine program("relumine-mpi",
                              "Shares the work of one command out to the processes that mpirun or "
                              "srun starts. `relumine` has the other commands. Exit code 0: done, "
@@ -117,6 +149,7 @@ int run(const std::vector<std::string>& arguments, app::Session& session, Commun
     });
     const auto work = [&] {
         idle = meet(arguments, team);
+        session.is_first_alive = watch_over_first(team);
         require_command(arguments);
         const std::string text = program.run(arguments);
         if (is_first)
@@ -131,6 +164,8 @@ int run(const std::vector<std::string>& arguments, app::Session& session, Commun
 } // namespace relumine::mpi
 
 int main(int argc, char** argv) {
+    if (relumine::mpi::is_started_as_other())
+        relumine::app::leave_last_words_to_others();
     // Before MPI starts threads, which must leave signals to the session.
     relumine::app::Session session;
     relumine::mpi::Communicator team;

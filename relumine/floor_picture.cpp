@@ -54,7 +54,7 @@ FloorLook floor_look(const Scene& scene, const Lighting& lighting, const OutputO
         return FloorLook::Grey;
     if (options.floor != FloorLook::Automatic)
         return options.floor;
-    return is_colored || relight::has_ground(*lighting.environment, *lighting.open_floor)
+    return is_colored || relight::has_ground(lighting.behind(), *lighting.open_floor)
                ? FloorLook::Photo
                : FloorLook::Studio;
 }

@@ -209,4 +209,12 @@ void LayerCompositor::accept() {
     next_.base.reset();
 }
 
+std::shared_ptr<const cubemap::CubeMap> seen_environment(const LightState& state) {
+    if (!state.base || !state.base->map() || !cubemap::hides_from_camera(state.layers))
+        return nullptr;
+    LightState seen = state;
+    seen.layers = cubemap::seen_layers(state.layers);
+    return std::make_shared<const cubemap::CubeMap>(LayerCompositor(seen).whole());
+}
+
 } // namespace relumine

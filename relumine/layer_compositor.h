@@ -68,4 +68,9 @@ private:
     std::vector<TouchedTexels> known_;
 };
 
+/// Returns what the camera sees of a state's environment. Null where it sees all that gives light.
+///
+/// Cost:    O(texels) where layers are hidden, nothing elsewhere.
+[[nodiscard]] std::shared_ptr<const cubemap::CubeMap> seen_environment(const LightState& state);
+
 } // namespace relumine

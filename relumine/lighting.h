@@ -21,7 +21,9 @@ struct Lighting {
     std::span<const glm::vec3> radiance;
     /// Must outlive this object. Null: there is nothing behind the mesh but black.
     const cubemap::CubeMap* environment = nullptr;
-    /// The environment from its own pixels. Empty: from the cube map.
+    /// What is seen of it behind the mesh. Null: all of it.
+    std::shared_ptr<const cubemap::CubeMap> seen = nullptr;
+    /// What is seen, from the environment's own pixels. Empty: from the cube map.
     relight::Backdrop sharp = {};
     /// The lights that are traced one by one, and [num_receivers] radiance without them. Empty:
     /// radiance has all light.
@@ -41,6 +43,9 @@ struct Lighting {
     std::optional<glm::vec3> open_floor = {};
     /// What `radiance` points to, where it was gathered from several processes.
     std::shared_ptr<const std::vector<glm::vec3>> gathered = {};
+
+    /// What is behind the mesh. Not where there is nothing.
+    [[nodiscard]] const cubemap::CubeMap& behind() const { return seen ? *seen : *environment; }
 };
 
 } // namespace relumine

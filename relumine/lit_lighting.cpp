@@ -7,6 +7,7 @@
 #include "relight/receiver_light.h"
 #include "relight/sharp/light_packets.h"
 #include "relumine/gathered.h"
+#include "relumine/layer_compositor.h"
 #include "relumine/lit_scene.h"
 
 namespace relumine {
@@ -94,13 +95,15 @@ Lighting LitScene::lighting(bool is_drawn) const {
     if (!relighter_ || relighter_->environment().resolution == 0)
         return result;
     result.environment = &relighter_->environment();
+    if (is_drawn)
+        result.seen = seen_environment(state_);
     if (!is_drawn || !state_.base || !state_.base->backdrop())
         return result;
     if (!is_edited())
         result.sharp = state_.base->backdrop();
     else if (state_.shows_base())
-        result.sharp = relight::edited_backdrop(state_.base->backdrop(), *state_.base->map(),
-                                                *result.environment);
+        result.sharp =
+            relight::edited_backdrop(state_.base->backdrop(), *state_.base->map(), result.behind());
     return result;
 }
 

@@ -190,8 +190,8 @@ struct Painter::Impl {
             return relight::plain_backdrop(glm::vec3(0.0f));
         if (const double blur = std::get<EnvironmentBehind>(options.background).blur_degrees;
             blur > 0.0)
-            return relight::blurred_backdrop(*lighting.environment, blur);
-        return lighting.sharp ? lighting.sharp : relight::map_backdrop(*lighting.environment);
+            return relight::blurred_backdrop(lighting.behind(), blur);
+        return lighting.sharp ? lighting.sharp : relight::map_backdrop(lighting.behind());
     }
 
     /// Of pixels, without added vertices; empty where all are opaque.

@@ -52,15 +52,6 @@ bool has_direction(cubemap::Region shape) {
                        [](const auto& field) { return field.direction != nullptr; });
 }
 
-/// Stays on the same line if a button with this label fits there.
-void next(const char* label) {
-    const ImGuiStyle& style = ImGui::GetStyle();
-    const float width = ImGui::CalcTextSize(label).x + 2.0f * style.FramePadding.x;
-    const float end = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-    if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= end)
-        ImGui::SameLine();
-}
-
 void add_buttons(ViewState& state) {
     std::function<void()> later;
     for (const cubemap::Region& shape : files::one_of_each<cubemap::Region>())
@@ -69,22 +60,22 @@ void add_buttons(ViewState& state) {
             if (ImGui::Button(("+ " + name).c_str()))
                 add(state.desk, new_layer(state, name, as_added(shape), cubemap::Emit{}));
             hint(words(shape).hint);
-            next("+ Soft box");
+            next_button("+ Soft box");
         }
     if (ImGui::Button("+ Gain"))
         add(state.desk,
             new_layer(state, "Gain", cubemap::Disc{.radius_degrees = 20.0, .softness = 0.5},
                       cubemap::Gain{.factor = 0.25f}));
     hint("a disc that dims or brightens what is there");
-    next("+ Lasso");
+    next_button("+ Lasso");
     if (ImGui::Button("+ Lasso"))
         state.tool = Tool::Lasso;
     hint(cubemap::Lasso::Words.hint);
-    next("+ Stroke");
+    next_button("+ Stroke");
     if (ImGui::Button("+ Stroke"))
         state.tool = Tool::Paint;
     hint(cubemap::Stroke::Words.hint);
-    next("+ Preset");
+    next_button("+ Preset");
     if (ImGui::Button("+ Preset"))
         ImGui::OpenPopup("presets");
     hint("a light as studios have them");
@@ -97,11 +88,11 @@ void add_buttons(ViewState& state) {
         }
         ImGui::EndPopup();
     }
-    next("+ Image");
+    next_button("+ Image");
     if (ImGui::Button("+ Image"))
         add_image(state, state.path);
     hint("the picture named below, .exr or .hdr, as a layer; or drop one on the window");
-    next("Undo Redo ");
+    next_button("Undo Redo ");
     ImGui::BeginDisabled(!state.desk.history().can_undo());
     if (ImGui::Button("Undo"))
         later = [&state] {
@@ -297,6 +288,8 @@ void layer_fields(ViewState& state, std::size_t index) {
         for (const cubemap::LayerField& field : part)
             if (has_row(field))
                 form.row(field);
+    form.note(ImGui::Checkbox("In the picture", &form.layer().camera));
+    hint("off: it gives light and is not seen behind the scene");
     ImGui::PopItemWidth();
     form.apply();
 }
@@ -307,7 +300,7 @@ int num_field_rows(const ViewState& state) {
         return 0;
     cubemap::LightLayer layer = state.desk.layers()[*state.desk.selected()];
     const std::vector<cubemap::LayerField> all = fields(layer);
-    return 2 + static_cast<int>(std::count_if(all.begin(), all.end(), has_row));
+    return 3 + static_cast<int>(std::count_if(all.begin(), all.end(), has_row));
 }
 
 void files(ViewState& state) {

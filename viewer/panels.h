@@ -19,4 +19,10 @@ void drop_dialogue(ViewState& state);
 /// `over_picture`, nothing is drawn behind it.
 void begin_panel(const char* name, const PixelRectangle& place, bool over_picture = false);
 
+// What follows stays on the same line if it fits there: so wide, a button or a checkbox with a
+// label.
+void next_item(float width);
+void next_button(const char* label);
+void next_checkbox(const char* label);
+
 } // namespace relumine::viewer

@@ -41,7 +41,7 @@ void dimmers(ViewState& state) {
     const prt::Lamps& lamps = state.desk.lit().scene().lamps;
     if (lamps.empty())
         return;
-    ImGui::SameLine();
+    next_button("Lamps");
     if (ImGui::Button("Lamps"))
         ImGui::OpenPopup("lamps");
     if (ImGui::IsItemHovered())
@@ -62,24 +62,25 @@ void tools(ViewState& state, const PixelRectangle& place, const PixelRectangle& 
     ImGui::SetNextItemWidth(150.0f);
     ImGui::SliderFloat("##scene exposure", &state.scene_look.exposure_ev, -10.0f, 10.0f,
                        "%+.2f EV");
-    ImGui::SameLine();
+    next_checkbox("Wireframe");
     ImGui::Checkbox("Wireframe", &state.scene_look.wireframe);
-    ImGui::SameLine();
+    next_checkbox("Background");
     ImGui::Checkbox("Background", &state.scene_look.background);
-    ImGui::SameLine();
+    next_button("Frame all");
     if (ImGui::Button("Frame all"))
         state.camera = camera_on_all(state.desk.lit().scene(), picture, state.picture);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("F: the camera that relumine relight takes");
-    ImGui::SameLine();
+    next_button("Save picture");
     if (ImGui::Button("Save picture"))
         save_picture(state, picture, new_picture(state));
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("P: a new picture as relumine relight draws it, .png or .exr, of the "
                           "name in the field of files or picture-1.png and on");
-    ImGui::SameLine();
     int click = static_cast<int>(state.click);
-    ImGui::SetNextItemWidth(130.0f);
+    constexpr float ChoiceWidth = 130.0f;
+    next_item(ChoiceWidth);
+    ImGui::SetNextItemWidth(ChoiceWidth);
     if (ImGui::Combo("##click", &click, "click: asks\0click: lights\0click: mirrors\0"))
         state.click = static_cast<Click>(click);
     if (ImGui::IsItemHovered())
@@ -162,6 +163,21 @@ void draw_receiver(const ViewState& state, const PixelRectangle& place) {
 }
 
 } // namespace
+
+void next_item(float width) {
+    const float end = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    if (ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width <= end)
+        ImGui::SameLine();
+}
+
+void next_button(const char* label) {
+    next_item(ImGui::CalcTextSize(label).x + 2.0f * ImGui::GetStyle().FramePadding.x);
+}
+
+void next_checkbox(const char* label) {
+    next_item(ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x +
+              ImGui::CalcTextSize(label).x);
+}
 
 void begin_panel(const char* name, const PixelRectangle& place, bool over_picture) {
     ImGui::SetNextWindowPos({static_cast<float>(place.x), static_cast<float>(place.y)});

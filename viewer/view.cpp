@@ -8,6 +8,7 @@
 
 #include <imgui.h>
 
+#include "relumine/layer_compositor.h"
 #include "relumine/questions.h"
 #include "viewer/cube_texture.h"
 #include "viewer/environment_renderer.h"
@@ -85,6 +86,10 @@ public:
                 take_emission(state.shading, lit.scene(), gains);
             find_floor(state);
             texture_.upload(environment_of(lit), state.desk.take_changed_texels());
+            const auto seen = seen_environment(lit.state());
+            hides_layers_ = seen != nullptr;
+            if (seen)
+                behind_.upload(*seen, cubemap::all_texels(seen->resolution));
             if (state.live_eye)
                 state.live_eye->take_light();
         }
@@ -154,7 +159,8 @@ public:
             scene_.draw_picture(state.scene_look);
         } else {
             target_.begin(place.width, place.height);
-            scene_.draw(state.camera, layout.scene, texture_, state.scene_look, floor_);
+            scene_.draw(state.camera, layout.scene, hides_layers_ ? behind_ : texture_,
+                        state.scene_look, floor_);
             target_.show_at(place.x, place.y);
         }
         window.set_viewport(layout.environment);
@@ -185,6 +191,9 @@ private:
     EnvironmentRenderer environment_;
     MultisampleTarget target_;
     CubeTexture texture_;
+    /// What the camera sees of it, where layers are hidden from it.
+    CubeTexture behind_;
+    bool hides_layers_ = false;
     std::uint64_t version_ = 0;
     /// Those of the shading.
     std::vector<EmissionGain> gains_;

@@ -15,6 +15,7 @@
 #include "cubemap/layers/image_pyramid.h"
 #include "cubemap/resample/save_environment.h"
 #include "relight/pictures/framing.h"
+#include "relumine/layer_compositor.h"
 
 namespace relumine::viewer {
 
@@ -70,7 +71,9 @@ relight::Backdrop backdrop_of(const ViewState& state) {
                 return sharp(glm::vec3(unturned * glm::dvec3(w)));
             };
     // A copy: the environment may change while the picture is drawn.
-    const auto now = std::make_shared<const cubemap::CubeMap>(environment_of(state.desk.lit()));
+    auto now = seen_environment(light);
+    if (!now)
+        now = std::make_shared<const cubemap::CubeMap>(environment_of(state.desk.lit()));
     if (pixels && light.shows_base())
         return [now, base = light.base,
                 edited = relight::edited_backdrop(pixels, *light.base->map(), *now)](

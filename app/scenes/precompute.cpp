@@ -18,12 +18,12 @@
 #include "app/options/plan_option.h"
 #include "app/options/receiver_options.h"
 #include "app/options/refine_options.h"
+#include "app/scenes/checkpoint_words.h"
 #include "app/scenes/first_scene.h"
 #include "files/counted.h"
 #include "mesh/customs.h"
 #include "mesh/floor.h"
 #include "mesh/half_edge/winding.h"
-#include "prt/scene/checkpoint_file.h"
 #include "relumine/precompute_table.h"
 #include "relumine/scene_cache.h"
 
@@ -370,20 +370,6 @@ void write_report(const PrecomputeArguments& options, const PrecomputeOptions& w
     session.report(report);
 }
 
-/// Where one of several processes was killed, mpirun ends the others before they can meet again.
-/// The first two name the checkpoint: one of them is left.
-void say_how_to_go_on(const std::filesystem::path& output, const prt::Team& team) {
-    if (!team.has_others() || team.part().index > 1)
-        return;
-    set_waiting_message([folder = prt::CheckpointFile::folder_for(output)] {
-        return std::filesystem::exists(folder)
-                   ? fmt::format("ended before the work was done; the same command with --resume "
-                                 "goes on from {}",
-                                 folder.string())
-                   : std::string();
-    });
-}
-
 void run(const PrecomputeArguments& options, const Command& command, Session& session) {
     if (options.parts.is_given() && session.team != nullptr)
         throw UsageError("--plan", "expected a mesh: parts of a plan share nothing, `relumine "
@@ -393,7 +379,7 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
         return options.parts.run(command, options.output, options.precompute.engine, work, session);
     if (options.mesh.empty())
         throw UsageError("MESH", "expected a mesh, got none");
-    say_how_to_go_on(options.output, work.team);
+    say_how_to_go_on(options.output, session);
     if (!work.team.is_first()) {
         const Patience for_checkpoints;
         return assist(work);
@@ -408,6 +394,8 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
         !std::holds_alternative<Vertices>(options.precompute.receivers))
         throw UsageError(options.simplify != 0 ? "--simplify" : "--refine",
                          "expected vertices as receivers");
+    if (options.precompute.resume)
+        say_new_beginning(options.output, session);
     Mesh mesh = made_mesh(options, session);
     const PrecomputeOptions asked = precompute_options(options, mesh.geometry);
     if (options.is_plan)

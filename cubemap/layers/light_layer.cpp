@@ -81,6 +81,7 @@ void validate(const LightLayer& layer) {
 std::vector<LayerField> own_fields(LightLayer& layer) {
     return {{.name = "on", .flag = &layer.on},
             {.name = "solo", .flag = &layer.solo},
+            {.name = "camera", .flag = &layer.camera},
             {.name = "gain_ev",
              .other_name = "exposure",
              .range = {-100.0, 100.0},
@@ -115,6 +116,20 @@ bool has_solo(std::span<const LightLayer> layers) {
 
 bool shines(const LightLayer& layer, bool is_solo) {
     return layer.on && (layer.solo || !is_solo);
+}
+
+bool hides_from_camera(std::span<const LightLayer> layers) {
+    const bool is_solo = has_solo(layers);
+    return std::any_of(layers.begin(), layers.end(), [&](const LightLayer& layer) {
+        return !layer.camera && shines(layer, is_solo);
+    });
+}
+
+std::vector<LightLayer> seen_layers(std::span<const LightLayer> layers) {
+    std::vector<LightLayer> result = without_solo(layers);
+    for (LightLayer& layer : result)
+        layer.on = layer.on && layer.camera;
+    return result;
 }
 
 std::vector<LightLayer> without_solo(std::span<const LightLayer> layers) {

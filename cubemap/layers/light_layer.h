@@ -60,6 +60,8 @@ struct LightLayer {
     bool on = true;
     /// Where a layer that is on has it, only such layers shine, over black.
     bool solo = false;
+    /// False: gives light, also to mirrors, and is not seen behind the scene.
+    bool camera = true;
     /// Stops, in [-100, 100]. 2^gain_ev multiplies the radiance of Emit and ImagePatch, and the
     /// factor of Gain.
     double gain_ev = 0.0;
@@ -90,6 +92,13 @@ void validate(const LightLayer& layer);
 
 /// Returns true if a layer gives light; `is_solo`: has_solo() of all layers.
 [[nodiscard]] bool shines(const LightLayer& layer, bool is_solo);
+
+/// Returns true if a layer that shines is not seen by the camera.
+[[nodiscard]] bool hides_from_camera(std::span<const LightLayer> layers);
+
+/// Returns what the camera sees of layers, without `solo`: as without_solo(), and layers that are
+/// hidden from the camera are off.
+[[nodiscard]] std::vector<LightLayer> seen_layers(std::span<const LightLayer> layers);
 
 /// Returns layers that give the same light without `solo`. Under has_solo() the layers that do not
 /// shine are off, and two more layers below all others make the environment black.

@@ -48,6 +48,7 @@ def run_doxygen():
         GENERATE_LATEX = NO
         GENERATE_XML = YES
         XML_PROGRAMLISTING = NO
+        DOT_GRAPH_MAX_NODES = 500
         EXTRACT_ALL = YES
         ENABLE_PREPROCESSING = YES
         MACRO_EXPANSION = YES

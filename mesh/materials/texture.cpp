@@ -30,9 +30,20 @@ glm::vec3 decoded(const Channels& texel, bool is_srgb) {
     return glm::vec3(texel[0], texel[1], texel[2]) / 255.0f;
 }
 
+/// std::floor(), which is a call where a processor need not have an instruction for it.
+double whole_below(double x) {
+    constexpr double Whole = 0x1p52; // from here on all are
+    if (!(std::abs(x) < Whole))
+        return x;
+    const auto towards_zero = static_cast<double>(static_cast<std::int64_t>(x));
+    return towards_zero > x ? towards_zero - 1.0 : towards_zero;
+}
+
 /// Returns the texel for an integer coordinate that may lie outside 0..size-1.
 std::uint32_t wrapped(std::int64_t i, std::uint32_t size, Wrap wrap) {
     const std::int64_t n = size;
+    if (i >= 0 && i < n) // as nearly all do: a division takes as long as the rest of a lookup
+        return static_cast<std::uint32_t>(i);
     if (wrap == Wrap::Clamp)
         return static_cast<std::uint32_t>(std::clamp<std::int64_t>(i, 0, n - 1));
     const std::int64_t period = wrap == Wrap::Mirror ? 2 * n : n;
@@ -95,9 +106,9 @@ TexelPair texels_beside(float coordinate, std::uint32_t size, Wrap wrap) {
     // In double. A repeating coordinate is first brought near 0, so large coordinates keep the
     // fraction that their float has.
     double x = std::isfinite(coordinate) ? double{coordinate} : 0.0;
-    x = wrap == Wrap::Clamp ? std::clamp(x, 0.0, 1.0) : x - 2.0 * std::floor(0.5 * x);
+    x = wrap == Wrap::Clamp ? std::clamp(x, 0.0, 1.0) : x - 2.0 * whole_below(0.5 * x);
     x = x * size - 0.5;
-    const double below = std::floor(x);
+    const double below = whole_below(x);
     const auto i = static_cast<std::int64_t>(below);
     return {wrapped(i, size, wrap), wrapped(i + 1, size, wrap), static_cast<float>(x - below)};
 }

@@ -311,6 +311,13 @@ std::vector<std::byte> packed_sections(const NewSections& sections) {
     return writer.take_bytes();
 }
 
+bool begins_as_sections(const std::filesystem::path& path) {
+    if (files::size(path) < Magic.size())
+        return false;
+    const std::vector<std::byte> first = files::read(path, 0, Magic.size());
+    return std::memcmp(first.data(), Magic.data(), Magic.size()) == 0;
+}
+
 PackedSections::PackedSections(const std::filesystem::path& path)
     : PackedSections(path, files::read(path)) {}
 

@@ -157,6 +157,10 @@ private:
     mutable std::uint64_t budget_;
 };
 
+/// Whether a file begins as a file of sections does.
+/// Throws:  std::runtime_error that names the path where it cannot be read.
+[[nodiscard]] bool begins_as_sections(const std::filesystem::path& path);
+
 /// Unpacks all sections of a file.
 /// Throws:  as PackedSections does.
 [[nodiscard]] Sections read_sections(const std::filesystem::path& path);

@@ -128,13 +128,17 @@ struct Candidate {
     [[nodiscard]] bool passes(RayOf of) const {
         if (!buffers.see_through.may_pass(triangle, of))
             return false;
+        if (of != RayOf::Eye)
+            if (const auto all = buffers.see_through.all_at(triangle, of);
+                all != SeeThrough::All::Differ)
+                return all == SeeThrough::All::Pass;
         const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
         return buffers.see_through.passes(
             {.triangle = triangle,
              .barycentric = glm::vec2(meeting_of(corners, direction).barycentric),
              .origin = origin,
              .direction = glm::vec3(direction),
-             .is_back = glm::dot(normal, direction) > 0.0},
+             .is_back = of == RayOf::Eye && glm::dot(normal, direction) > 0.0},
             of);
     }
 
@@ -295,13 +299,14 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
     std::vector<mesh::Triangle> triangles = mesh.triangles;
     const auto nowhere = static_cast<std::uint32_t>(positions.size());
     positions.emplace_back(std::numeric_limits<float>::quiet_NaN());
-    for (mesh::Triangle& triangle : triangles)
-        if (has_no_area(mesh, triangle))
-            triangle = {nowhere, nowhere, nowhere};
+    SeeThrough see_through(mesh);
+    for (std::uint32_t i = 0; i < triangles.size(); ++i)
+        if (has_no_area(mesh, triangles[i]) || see_through.is_cut_out(i))
+            triangles[i] = {nowhere, nowhere, nowhere};
     impl_->buffers = {
         .positions = fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions),
         .triangles = fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles),
-        .see_through = SeeThrough(mesh)};
+        .see_through = std::move(see_through)};
     rtcSetGeometryUserData(geometry, &impl_->buffers);
     rtcSetGeometryOccludedFilterFunction(geometry, keep_blockers);
     rtcSetGeometryIntersectFilterFunction(geometry, keep_nearest);

@@ -11,6 +11,7 @@
 #include "cubemap/face.h"
 #include "cubemap/split_mix64.h"
 #include "files/parallel.h"
+#include "mesh/tangents.h"
 
 namespace relumine::prt {
 
@@ -145,6 +146,52 @@ SeeThrough::SeeThrough(const mesh::TriangleMesh& mesh) {
         if (even_[triangle] == 0.0f)
             kinds_[triangle] &= static_cast<std::uint8_t>(~(PassesLight | Thin));
     });
+    find_masks();
+}
+
+void SeeThrough::find_masks() {
+    std::vector<std::uint32_t> mask_of_material;
+    for (const mesh::Material& material : mesh_.materials) {
+        std::uint32_t& mask = mask_of_material.emplace_back(NotMasked);
+        if (material.alpha_mode != mesh::AlphaMode::Mask || !material.alpha_texture ||
+            material.transmission > 0.0f)
+            continue;
+        const auto known = std::find_if(masks_.begin(), masks_.end(), [&](const MaskCells& cells) {
+            return cells.are_of(material);
+        });
+        mask = static_cast<std::uint32_t>(known - masks_.begin());
+        if (known == masks_.end())
+            masks_.emplace_back(material, mesh_.textures[material.alpha_texture->texture]);
+    }
+    if (!masks_.empty())
+        find_masked_triangles(mask_of_material);
+}
+
+void SeeThrough::find_masked_triangles(const std::vector<std::uint32_t>& mask_of_material) {
+    masked_of_.assign(kinds_.size(), NotMasked);
+    for (std::uint32_t triangle = 0; triangle < masked_of_.size(); ++triangle) {
+        const std::uint32_t material = mesh_.triangle_materials[triangle];
+        const std::uint32_t mask = mask_of_material[material];
+        if (mask == NotMasked || even_[triangle] >= 0.0f)
+            continue;
+        masked_of_[triangle] = static_cast<std::uint32_t>(masked_.size());
+        Masked& masked = masked_.emplace_back(Masked{.mask = mask});
+        const mesh::TextureSlot& slot = *mesh_.materials[material].alpha_texture;
+        for (std::size_t k = 0; k < 3; ++k)
+            masked.uvs[k] =
+                slot.uv_from_mesh_uv * mesh::corner_uv(mesh_, triangle, k, slot.uv_set) +
+                slot.uv_offset;
+    }
+}
+
+MaskCells::Cell SeeThrough::cell_at(std::uint32_t triangle, const glm::vec2& barycentric) const {
+    if (masked_of_.empty() || masked_of_[triangle] == NotMasked)
+        return MaskCells::Cell::Mixed;
+    // Up to a rounding, as veil() finds it: at the border of two cells, either is right.
+    const Masked& masked = masked_[masked_of_[triangle]];
+    const auto& [a, b, c] = masked.uvs;
+    return masks_[masked.mask].at(a * (1.0f - barycentric.x - barycentric.y) + b * barycentric.x +
+                                  c * barycentric.y);
 }
 
 mesh::Veil SeeThrough::veil(std::uint32_t triangle, const glm::vec2& barycentric) const {
@@ -164,10 +211,14 @@ SeeThrough::All SeeThrough::all_at(std::uint32_t triangle, RayOf of) const {
 bool SeeThrough::passes(const Meeting& meeting, RayOf of) const {
     if (of == RayOf::Eye && meeting.is_back && (kinds_[meeting.triangle] & OneSided) != 0)
         return true;
+    const float even = even_.empty() ? -1.0f : even_[meeting.triangle];
+    if (even < 0.0f)
+        if (const MaskCells::Cell cell = cell_at(meeting.triangle, meeting.barycentric);
+            cell != MaskCells::Cell::Mixed)
+            return cell == MaskCells::Cell::CutOut;
     if (of == RayOf::Eye)
         return veil(meeting.triangle, meeting.barycentric) ==
                mesh::Veil{.weight = 0.0f, .through = glm::vec3(1.0f)};
-    const float even = even_.empty() ? -1.0f : even_[meeting.triangle];
     const float part = even >= 0.0f ? even : part_of(veil(meeting.triangle, meeting.barycentric));
     if (of == RayOf::SettledLight)
         return part >= 0.5f;

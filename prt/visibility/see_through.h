@@ -1,6 +1,7 @@
 // What rays do not stop at: cut-out and thin surfaces, and backs that are not shown.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -9,6 +10,7 @@
 
 #include "mesh/opacity.h"
 #include "mesh/triangle_mesh.h"
+#include "prt/visibility/mask_cells.h"
 
 namespace relumine::prt {
 
@@ -45,6 +47,10 @@ public:
                (kinds_[triangle] & (of == RayOf::Eye ? PassesLight | OneSided : PassesLight)) != 0;
     }
 
+    /// Whether a mask cuts out all of a triangle: no ray stops there.
+    [[nodiscard]] bool is_cut_out(std::uint32_t triangle) const {
+        return !even_.empty() && even_[triangle] == 1.0f && (kinds_[triangle] & Thin) == 0;
+    }
     /// What all rays of light do that meet a triangle.
     enum class All : std::uint8_t { Stop, Pass, Differ };
     /// `of` is not RayOf::Eye.
@@ -66,6 +72,12 @@ public:
     [[nodiscard]] mesh::Veil veil(std::uint32_t triangle, const glm::vec2& barycentric) const;
 
 private:
+    void find_masks();
+    void find_masked_triangles(const std::vector<std::uint32_t>& mask_of_material);
+    /// Looks it up in the mask's cells.
+    [[nodiscard]] MaskCells::Cell cell_at(std::uint32_t triangle,
+                                          const glm::vec2& barycentric) const;
+
     static constexpr std::uint8_t PassesLight = 1, OneSided = 2, Thin = 4;
 
     /// [num_triangles], or empty.
@@ -75,6 +87,17 @@ private:
     std::vector<float> even_;
     /// mesh::blockers_of() without its positions; empty where no light passes.
     mesh::TriangleMesh mesh_;
+    /// Of masks that are no glass.
+    std::vector<MaskCells> masks_;
+    /// A triangle that a mask cuts in part: the mask and the corners' places in its texture.
+    struct Masked {
+        std::uint32_t mask = 0;
+        std::array<glm::vec2, 3> uvs = {};
+    };
+    std::vector<Masked> masked_;
+    static constexpr std::uint32_t NotMasked = 0xffffffff;
+    /// [num_triangles] index into masked_ or NotMasked; empty where there are no masks.
+    std::vector<std::uint32_t> masked_of_;
     bool has_thin_ = false;
 };
 

@@ -93,7 +93,7 @@ class Layer:
     """A region, what happens in it, and how strongly: `gain_ev` in stops.
 
     `kelvin`, from 1000 to 15000, multiplies by a colour. Where a layer has `solo`, only such layers
-    shine.
+    shine. One with `camera` False gives light and is not seen behind the scene.
 
     Directions point from the scene to the light, +Y up; colours are linear RGB. A layer is the same
     as a dictionary of a layer file, and functions take both.
@@ -110,6 +110,7 @@ class Layer:
     gain_ev: float = 0.0
     kelvin: float = 0.0
     solo: bool = False
+    camera: bool = True
 
     def to_dict(self) -> Dict[str, Any]:
         """The layer as a layer file has it."""
@@ -117,6 +118,7 @@ class Layer:
             "name": self.name,
             "on": self.on,
             "solo": self.solo,
+            "camera": self.camera,
             "gain_ev": self.gain_ev,
             "kelvin": self.kelvin,
             "type": self.region.type,
@@ -146,6 +148,7 @@ def parsed(text: str) -> List[Layer]:
                 values.get("gain_ev", 0.0),
                 values.get("kelvin", 0.0),
                 values.get("solo", False),
+                values.get("camera", True),
             )
         )
     return result

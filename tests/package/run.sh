@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Builds the consumer against an installed Relumine and runs it: run.sh prefix|deb BUILD WORK [CMAKE_ARGS...]
+# Builds the consumer against an installed Relumine and runs it: run.sh prefix|deb|folder BUILD WORK [CMAKE_ARGS...]
 #   prefix  what `cmake --install` puts into a folder
 #   deb     the Debian packages that cpack makes, unpacked
+#   folder  the source as a folder of the consumer's project: its own part of that is compiled, not linked
 # BUILD is a finished build of Relumine, WORK a folder to be made anew. Fails where the consumer includes a header
 # that is not Relumine's, GLM's, the compiler's or the C library's.
 set -euo pipefail
@@ -14,8 +15,27 @@ fail() {
     exit 1
 }
 
+# The packages of the headers that the consumer in a folder read, beside Relumine's, which lie in another one. Each is known.
+check_headers() {
+    local headers others packages wrong
+    headers=$(cd "$1" && ninja -t deps | sed -n 's/^    //p' | xargs realpath | sort -u)
+    grep -q "^$2/relumine/" <<<"$headers" || fail "no header of Relumine was read"
+    others=$(grep -v -e "^$2/relumine/" -e "^$source/" <<<"$headers")
+    packages=$(xargs dpkg-query -S <<<"$others" | sed 's/:.*//' | sort -u)
+    echo "headers of ${packages//$'\n'/ }"
+    wrong=$(grep -vE '^(libglm-dev|libc6-dev|linux-libc-dev|libstdc\+\+-[0-9]+-dev|libgcc-[0-9]+-dev|libclang-common-[0-9]+-dev)$' <<<"$packages" || true)
+    [ -z "$wrong" ] || fail "the consumer read headers of ${wrong//$'\n'/ }"
+}
+
 rm -rf "$work"
 mkdir -p "$work"
+if [ "$kind" = folder ]; then
+    cmake -S "$source" -B "$work/build" -G Ninja -DRELUMINE_FOLDER="$(realpath "$source/../../..")" "$@" >"$work/configure.log" 2>&1 ||
+        { cat "$work/configure.log" >&2; exit 1; }
+    cmake --build "$work/build" --target CMakeFiles/consumer.dir/main.cpp.o >"$work/build.log" || { cat "$work/build.log" >&2; exit 1; }
+    check_headers "$work/build" "$(realpath "$work")/build/relumine/public"
+    exit
+fi
 case $kind in
 prefix)
     root=$work/prefix
@@ -85,14 +105,17 @@ if "$compiler" -fsyntax-only -DGLM_FORCE_INTRINSICS -DGLM_FORCE_DEFAULT_ALIGNED_
 fi
 grep -q "vectors without alignment" "$work/aligned.log" || fail "$(cat "$work/aligned.log")"
 
-# All headers that the compiler read: Relumine's lie under the root, the others belong to Debian packages.
-headers=$(cd "$work/build" && ninja -t deps | sed -n 's/^    //p' | xargs realpath | sort -u)
-grep -q "^$(realpath "$root")/include/relumine/" <<<"$headers" || fail "no header of Relumine was read"
-others=$(grep -v -e "^$(realpath "$root")/include/relumine/" -e "^$source/" <<<"$headers")
-packages=$(xargs dpkg-query -S <<<"$others" | sed 's/:.*//' | sort -u)
-echo "headers of ${packages//$'\n'/ }"
-wrong=$(grep -vE '^(libglm-dev|libc6-dev|linux-libc-dev|libstdc\+\+-[0-9]+-dev|libgcc-[0-9]+-dev|libclang-common-[0-9]+-dev)$' <<<"$packages" || true)
-[ -z "$wrong" ] || fail "the consumer read headers of ${wrong//$'\n'/ }"
+# An older language is refused in one line, by whichever header comes first.
+for header in relumine.h cubemap/kelvin.h; do
+    # shellcheck disable=SC2046
+    if echo "#include \"relumine/$header\"" | "$compiler" -fsyntax-only -x c++ - $(flags --cflags) -std=c++17 2>"$work/older.log"; then
+        fail "$header: C++17 compiles"
+    fi
+    [ "$(grep -c 'error:' "$work/older.log")" -eq 2 ] && grep -m 1 'error:' "$work/older.log" | grep -q 'Relumine needs C++20: compile with -std=c++20' ||
+        fail "$header: $(cat "$work/older.log")"
+done
+
+check_headers "$work/build" "$(realpath "$root")/include"
 
 # The runtime asks for nothing but itself, by CMake as by pkg-config.
 if [ -e "$root/include/relumine_runtime.h" ]; then

@@ -106,7 +106,8 @@ def test_layer_files(folder, relighter):
         relumine.Layer("dim", relumine.Lasso([(-1, 0.2, 0.3), (-1, 0.9, 0.3), (-1, 0.9, -0.4)]),
                        relumine.Gain(0.25, (1, 0.9, 0.8)), gain_ev=-1.0, on=False),
         relumine.Layer("box", relumine.Rectangle((-1, 0.5, 0.2), 50, 30, 10, 0.3),
-                       relumine.Emit((6, 6, 6.5)), kelvin=5600, solo=True),
+                       relumine.Emit((6, 6, 6.5)), kelvin=5600, solo=True,
+                       camera=False),
         relumine.Layer("glow", relumine.Stroke([(-1, 0, -1), (0, 0.1, -1)], 3),
                        relumine.Emit((2, 1, 0.5))),
     ]  # fmt: skip

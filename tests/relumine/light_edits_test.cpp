@@ -54,6 +54,7 @@ cubemap::LightLayer random_layer(std::mt19937& random) {
     layer.on = unit(random) < 0.9;
     layer.gain_ev = 4.0 * unit(random) - 2.0;
     layer.solo = unit(random) < 0.1;
+    layer.camera = unit(random) < 0.7; // which changes no light
     layer.kelvin = unit(random) < 0.3 ? 1000.0 + 9000.0 * unit(random) : 0.0;
     return layer;
 }

@@ -210,6 +210,39 @@ TEST_F(Output, AFloorWithoutShadowsIsThePhotograph) {
     }
 }
 
+TEST_F(Output, ALayerThatIsHiddenFromTheCameraIsLightAlone) {
+    cubemap::LightLayer box;
+    box.name = "box";
+    box.region = cubemap::Disc{.direction = {0, 0, -1}, .radius_degrees = 60.0};
+    box.effect = cubemap::Emit{.radiance = glm::vec3(3.0f)};
+    const OutputOptions options{.width = 40, .height = 30, .samples_per_axis = 1};
+    OutputOptions clear = options;
+    clear.background = NothingBehind{};
+    LitScene scene = lit();
+    const Picture before = draw(scene, options), mesh = draw(scene, clear);
+    set_layers(scene, {box});
+    const Picture seen = draw(scene, options), lit_mesh = draw(scene, clear);
+    box.camera = false;
+    for (const bool is_solo : {false, true}) {
+        box.solo = is_solo;
+        set_layers(scene, {box});
+        const Picture hidden = draw(scene, options);
+        std::size_t num_behind = 0, num_changed = 0, num_on_mesh = 0;
+        for (std::size_t i = 0; i < mesh.alpha.size(); ++i)
+            if (mesh.alpha[i] == 0.0f) {
+                ++num_behind;
+                num_changed += seen.pixels[i] != before.pixels[i] ? 1 : 0;
+                EXPECT_EQ(hidden.pixels[i], is_solo ? glm::vec3(0.0f) : before.pixels[i]);
+            } else if (mesh.alpha[i] == 1.0f && !is_solo) {
+                num_on_mesh += lit_mesh.pixels[i] != mesh.pixels[i] ? 1 : 0;
+                EXPECT_EQ(hidden.pixels[i], seen.pixels[i]) << "its light stays";
+            }
+        EXPECT_GT(num_behind, 100u);
+        EXPECT_GT(num_changed, 20u) << "there is something to hide";
+        EXPECT_TRUE(is_solo || num_on_mesh > 20);
+    }
+}
+
 TEST_F(Output, AFloorCatchesShadows) {
     LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
     lit.light(sunny());

@@ -155,6 +155,23 @@ wait "$run" || true
 check "a survivor names --resume: $(grep -m 1 '^relumine-mpi: ' kill.log || true)" \
     grep -q '^relumine-mpi: .* --resume goes on from killed.prt.checkpoint' kill.log
 rm -rf killed.prt.checkpoint
+# Told to end by its user or the batch system, the whole says one line.
+for signal in TERM INT; do
+    for seconds in 0 20; do
+        for delay in 0.3 1 2.5; do
+            start 3 precompute knot.ply --floor 60 --tolerance 0.002 --checkpoint-seconds "$seconds" -o ended.prt --threads 1 -q \
+                >ended.log 2>&1 &
+            run=$!
+            sleep "$delay"
+            kill -"$signal" "$(pgrep -P "$run" -x mpirun || echo "$run")"
+            code=0
+            wait "$run" || code=$?
+            check "SIG$signal after $delay s: $(grep '^relumine-mpi: ' ended.log || true)" \
+                test "$code" -ne 0 -a "$(grep -c '^relumine-mpi: ' ended.log)" -le 1 -a ! -e ended.prt
+            rm -rf ended.prt.checkpoint
+        done
+    done
+done
 check "no checkpoint is left" test ! -e killed.prt.checkpoint
 
 refuses() { # NAME CODE TEXT COMMAND...: one line of relumine-mpi, which has the text; nothing written

@@ -64,7 +64,7 @@ protected:
     }
 
     /// Exit code of `relumine view` with a script; its words are in out.txt and err.txt.
-    [[nodiscard]] int play(const std::string& script) const {
+    [[nodiscard]] int play(const std::string& script, int width = Width) const {
         std::ofstream(folder_ / "script") << script;
         // The program's words and exit code are kept inside: xvfb-run may fail to remove its own
         // folder when a program ends soon.
@@ -72,7 +72,7 @@ protected:
             << fmt::format("'{}' view scene.prt env.exr --script script --size "
                            "{}x{} --exposure 0 --json >out.txt 2>err.txt\n"
                            "echo $? >code.txt\n",
-                           RELUMINE_BINARY, Width, Height);
+                           RELUMINE_BINARY, width, Height);
         std::filesystem::remove(folder_ / "code.txt");
         const std::string command = fmt::format(
             "cd '{}' && LIBGL_ALWAYS_SOFTWARE=1 ASAN_OPTIONS=detect_leaks=0 "
@@ -281,6 +281,22 @@ TEST_F(WindowTest, ASavedPictureIsThatOfRelightFromTheCameraItTells) {
     EXPECT_EQ(play("save_picture own.jpeg\n"), 1);
     EXPECT_EQ(words("err.txt"), "relumine: script line 1: own.jpeg: expected .png or .exr for a "
                                 "picture, got '.jpeg'\n");
+}
+
+TEST_F(WindowTest, NoToolIsCutOffInANarrowWindow) {
+    // In a window that is narrower than the row of tools, they stand in several.
+    for (const int width : {800, 1000}) {
+        const PixelRectangle tools = panel_layout(width, Height).scene_tools;
+        std::string script;
+        for (int y = tools.y + 42; y < tools.y + tools.height; y += 25)
+            for (int x = tools.x + 16; x < tools.x + tools.width && x < 260; x += 20)
+                script += fmt::format("click {} {}\n", x, y);
+        std::filesystem::remove(folder_ / "picture-1.png");
+        ASSERT_EQ(play(script + fmt::format("screenshot {}.png\n", width), width), 0)
+            << words("err.txt");
+        EXPECT_TRUE(std::filesystem::exists(folder_ / "picture-1.png"))
+            << "*Save picture* is in none of the rows at a width of " << width;
+    }
 }
 
 TEST_F(WindowTest, ASoloLightShinesAlone) {

@@ -173,6 +173,44 @@ TEST_F(PlanTest, WrongUsageIsNamed) {
     misuse({"plan", "knot.ply", "-o", "scene.plan", "--two-sided"}, "--two-sided");
 }
 
+TEST_F(PlanTest, InfoSaysWhatAPlanAndItsPartsAre) {
+    plan();
+    succeed(part("1/2", "first"));
+    succeed(part("2/2", "second.part"));
+    const nlohmann::json planned = succeed({"info", "scene.plan", "--json"}).json();
+    EXPECT_EQ(planned["kind"], "plan");
+    EXPECT_EQ(planned["source"], "knot.ply");
+    std::size_t num_receivers = 0;
+    for (const char* name : {"first", "second.part"}) {
+        const nlohmann::json info = succeed({"info", name, "--json"}).json();
+        EXPECT_EQ(info["kind"], "part");
+        EXPECT_EQ(info["parts"], 2);
+        EXPECT_EQ(info["plan"], planned["plan"]);
+        num_receivers += info["receivers"].get<std::size_t>();
+    }
+    EXPECT_EQ(num_receivers, planned["receivers"].get<std::size_t>());
+    const auto said = [&](const std::string& name, const std::string& text) {
+        const std::string out = succeed({"info", name, "--check"}).out;
+        EXPECT_NE(out.find(text), std::string::npos) << out;
+    };
+    said("scene.plan", "plan                of a precompute of knot.ply, complete; its name is " +
+                           planned["plan"].get<std::string>());
+    said("scene.plan", "parts               as many as you like");
+    said("first", "part                1 of 2 of a planned precompute");
+    said("first", ", which this part carries");
+    said("second.part", "part                2 of 2 of a planned precompute");
+    misuse({"info", "scene.plan", "--picture", "a.png"}, "--picture");
+    succeed({"join", "first", "second.part", "-o", "scene.prt", "-q"});
+    succeed({"generate", "sun_sky", "-o", ".", "--face-resolution", "16", "-q"});
+    succeed({"relight", "scene.prt", "sun_sky.exr", "--part", "1/3", "--bounces", "0", "-o",
+             "sky.part.1", "-q"});
+    EXPECT_EQ(succeed({"info", "sky.part.1", "--json"}).json()["kind"], "part of light");
+    said("sky.part.1", "part                1 of 3 of a scene's light");
+    // Cut short, as by a full disk elsewhere.
+    write("second.part", read("second.part").substr(0, 1000));
+    fail({"info", "second.part"}, {"second.part: expected", "truncated"});
+}
+
 TEST_F(PlanTest, HighlightsJoinToTheSameFileFromAnyNumberOfParts) {
     const std::vector<std::string> shine = {
         "--view",      "auto", "--material",         "ggx:roughness=0.4,f0=0.04",

@@ -95,6 +95,18 @@ TEST_F(Resume, KilledWithACheckpointItIsTakenUp) {
     EXPECT_EQ(read("scene.prt"), expected);
 }
 
+TEST_F(Resume, WithoutACheckpointItSaysThatItBeginsAnew) {
+    write("mesh.obj", octahedron_obj());
+    std::vector<std::string> words = {"precompute", "mesh.obj",    "-o",
+                                      "scene.prt",  "--no-refine", "--tolerance",
+                                      "1",          "--min-depth", "0"};
+    EXPECT_EQ(succeed(words).out.find("anew"), std::string::npos);
+    words.emplace_back("--resume");
+    EXPECT_EQ(succeed(words).out.find(
+                  "--resume: scene.prt.checkpoint is not there, the work begins anew\n"),
+              0u);
+}
+
 TEST_F(Resume, HighlightsAreTakenUpToo) {
     succeed({"generate", "knot", "-o", ".", "--vertices", "1200", "-q"});
     const std::vector<std::string> scene = {"--tolerance", "0.05",       "--view",

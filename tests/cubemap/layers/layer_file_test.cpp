@@ -209,13 +209,14 @@ TEST_F(LayerFile, PresetsTakeADirectionAndAnyFieldOfTheirShape) {
     for (const LayerPreset& preset : layer_presets()) {
         const std::string text = fmt::format(
             R"({{"version": 1, "layers": [{{"name": "a", "preset": "{}", "direction": [3, 1, 2],
-                 "kelvin": 5600, "exposure": 1.5, "solo": true}}]}})",
+                 "kelvin": 5600, "exposure": 1.5, "solo": true, "camera": false}}]}})",
             preset.name);
         const LightLayer layer = load_layers(write(text)).layers.at(0);
         EXPECT_EQ(layer.name, "a");
         EXPECT_EQ(layer.kelvin, 5600.0);
         EXPECT_EQ(layer.gain_ev, 1.5);
         EXPECT_TRUE(layer.solo);
+        EXPECT_FALSE(layer.camera);
         EXPECT_EQ(layer.effect, preset.layer.effect);
         EXPECT_LT(angle_between(middle(layer.region), {3, 1, 2}), 1e-6);
         save_layers(folder_ / "saved.json", {.layers = {layer}});

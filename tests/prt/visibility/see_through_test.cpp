@@ -1,6 +1,7 @@
 #include "prt/visibility/see_through.h"
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <glm/geometric.hpp>
@@ -112,6 +113,38 @@ TEST(SeeThrough, SmallTrianglesPassAsTheirPointsDo) {
         }
         EXPECT_GT(num_known, card.num_triangles() / 4);
     }
+}
+
+TEST(SeeThrough, CellsOfAMaskSayWhatItsTextureDoes) {
+    mesh::TriangleMesh card = scenes::leaf_card(1, 1.0f, 1.0f);
+    mesh::Material& material = card.materials[1];
+    const mesh::Texture& texture = card.textures[0];
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> place(-3.0f, 3.0f);
+    for (const mesh::Wrap wrap : {mesh::Wrap::Repeat, mesh::Wrap::Mirror, mesh::Wrap::Clamp})
+        for (const float cutoff : {0.1f, 0.5f, 0.9f}) {
+            material.alpha_texture->wrap = {wrap, wrap};
+            material.alpha_cutoff = cutoff;
+            const MaskCells cells(material, texture);
+            int num_mixed = 0;
+            for (int i = 0; i < 5000; ++i) {
+                glm::vec2 uv(place(random), place(random));
+                if (i % 5 == 0) // where texels end
+                    uv = glm::round(uv * 64.0f) / 64.0f;
+                const MaskCells::Cell cell = cells.at(uv);
+                if (cell == MaskCells::Cell::Mixed)
+                    ++num_mixed;
+                else
+                    ASSERT_EQ(cell == MaskCells::Cell::There,
+                              sample(texture, *material.alpha_texture, uv).r >= cutoff)
+                        << uv.x << ", " << uv.y << ", wrap " << static_cast<int>(wrap);
+            }
+            EXPECT_GT(num_mixed, 0);
+            EXPECT_LT(num_mixed, 2000) << "most points need no look at the texture itself";
+        }
+    const MaskCells cells(material, texture);
+    EXPECT_EQ(cells.at({std::numeric_limits<float>::quiet_NaN(), 0.0f}), MaskCells::Cell::Mixed);
+    EXPECT_EQ(cells.at({0.0f, -1e30f}), MaskCells::Cell::Mixed);
 }
 
 TEST(SeeThrough, EyesPassTheBacksOfSingleSidedFacesAndLightDoesNot) {

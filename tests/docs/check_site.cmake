@@ -1,0 +1,15 @@
+# The site has every page of a folder of documents: cmake -DROOT=FOLDER -P check_site.cmake
+# `./dev docs` would fail, but few run it.
+cmake_minimum_required(VERSION 3.24)
+file(GLOB pages RELATIVE "${ROOT}/docs" "${ROOT}/docs/*.md")
+file(READ "${ROOT}/docs/site/index.md" index)
+set(missing "")
+foreach(page IN LISTS pages)
+    string(REGEX REPLACE "\\.md$" "" name "${page}")
+    if(NOT index MATCHES "\n\\.\\./${name}\n")
+        list(APPEND missing "docs/${page}")
+    endif()
+endforeach()
+if(missing)
+    message(FATAL_ERROR "docs/site/index.md: expected all pages, got none of ${missing}")
+endif()
