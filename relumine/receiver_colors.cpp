@@ -86,9 +86,8 @@ std::vector<glm::vec3> colors_of(const Scene& scene, std::span<const glm::vec3> 
                                  const Albedo& albedo) {
     require_fit(scene, radiance);
     std::vector<glm::vec3> colors =
-        product(radiance, std::holds_alternative<AutomaticAlbedo>(albedo)
-                              ? computed_albedo(scene)
-                              : factors(scene, albedo));
+        product(radiance, std::holds_alternative<AutomaticAlbedo>(albedo) ? computed_albedo(scene)
+                                                                          : factors(scene, albedo));
     add_emission(emission_of(scene), colors);
     return colors;
 }
