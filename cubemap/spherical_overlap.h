@@ -56,6 +56,10 @@ namespace relumine::cubemap {
 /// Threads: use one object per thread; it keeps its buffers.
 class TexelOverlaps {
 public:
+    // Solid angles of pieces have an error of 3e-7 in cells of 1/128 of a face. No caller needs
+    // finer cells.
+    static constexpr std::uint32_t FinestCell = 128;
+
     explicit TexelOverlaps(std::uint32_t resolution)
         : resolution_(resolution), cells_per_texel_((FinestCell + resolution - 1) / resolution),
           num_cells_(resolution * cells_per_texel_) {}
@@ -82,10 +86,6 @@ public:
     }
 
 private:
-    // Solid angles of pieces have an error of 3e-7 in cells of 1/128 of a face. No caller needs
-    // finer cells.
-    static constexpr std::uint32_t FinestCell = 128;
-
     /// Axes of a face: to the right and down in its image, and outwards.
     struct Axes {
         glm::dvec3 right, down, out;

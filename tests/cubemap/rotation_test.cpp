@@ -1,10 +1,14 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "cubemap/cube_map.h"
+#include "cubemap/spherical_overlap.h"
 #include "tests/cubemap/test_images.h"
 
 namespace relumine::cubemap {
@@ -77,6 +81,81 @@ TEST(Rotation, PowerAndConstantsAreKept) {
                 ASSERT_NEAR(texel.x, 2.0f, 1e-6f);
         }
     }
+}
+
+/// A texel of a turned map by itself, and the largest radiance that it meets.
+struct PlainTexel {
+    glm::dvec3 mean = glm::dvec3(0.0);
+    double largest = 0.0;
+};
+PlainTexel turned_texel(const CubeMap& map, const glm::dmat3& turn, Face face, std::uint32_t x,
+                        std::uint32_t y) {
+    const double n = map.resolution;
+    const auto corner = [&](std::uint32_t i, std::uint32_t j) {
+        return glm::transpose(turn) * cube_point(face, i / n, j / n);
+    };
+    std::array<glm::dvec3, 4> corners = {corner(x, y), corner(x + 1, y), corner(x + 1, y + 1),
+                                         corner(x, y + 1)};
+    if (glm::determinant(turn) < 0.0)
+        std::swap(corners[1], corners[3]);
+    PlainTexel result;
+    double weights = 0.0;
+    TexelOverlaps(map.resolution)
+        .find(corners, [&](Face from, std::uint32_t column, std::uint32_t row, double weight) {
+            const glm::dvec3 texel(map.at(from, column, row));
+            result.mean += texel * weight;
+            result.largest = std::max({result.largest, texel.x, texel.y, texel.z});
+            weights += weight;
+        });
+    result.mean /= weights;
+    return result;
+}
+
+TEST(Rotation, LargeMapsTurnAsTexelByTexel) {
+    const glm::dmat3 mirror = {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
+    for (const std::uint32_t resolution : {128u, 200u, 513u}) {
+        CubeMap map = random_map(resolution);
+        // Suns beside dark texels.
+        for (std::size_t i = 0; i < map.texels.size(); i += 977)
+            map.texels[i] *= 1e5f;
+        for (const glm::dmat3& turn : {turn_about_y(33.0), turn_about_y(1e-3), turn_about_y(45.0),
+                                       turn_about_x(71.0), turn_about_x(-90.0) * turn_about_y(13.0),
+                                       turn_about_y(20.0) * turn_about_x(-50.0) * mirror}) {
+            const CubeMap result = turned(map, turn);
+            EXPECT_NEAR(total_power(result).y / total_power(map).y, 1.0, 1e-6);
+            // Prime to the width, so that all columns come.
+            for (std::size_t i = 0; i < map.texels.size(); i += 61) {
+                const std::size_t in_face = i % (std::size_t{resolution} * resolution);
+                const auto face = static_cast<Face>(i / (std::size_t{resolution} * resolution));
+                const PlainTexel plain =
+                    turned_texel(map, turn, face, static_cast<std::uint32_t>(in_face % resolution),
+                                 static_cast<std::uint32_t>(in_face / resolution));
+                for (int channel = 0; channel < 3; ++channel)
+                    ASSERT_NEAR(double{result.texels[i][channel]}, plain.mean[channel],
+                                2e-6 * plain.mean[channel] + 5e-7 * plain.largest)
+                        << resolution << " " << i;
+            }
+        }
+    }
+}
+
+TEST(Rotation, ATexelThatMeetsNoLightStaysDark) {
+    CubeMap map(256);
+    map.at(Face::PositiveZ, 100, 120) = glm::vec3(1e6f);
+    const glm::dmat3 turn = turn_about_y(17.0) * turn_about_x(-31.0);
+    const CubeMap result = turned(map, turn);
+    std::size_t num_lit = 0;
+    for (std::size_t i = 0; i < map.texels.size(); ++i) {
+        if (result.texels[i].x == 0.0f)
+            continue;
+        ++num_lit;
+        const auto face = static_cast<Face>(i / (256u * 256u));
+        const PlainTexel plain = turned_texel(map, turn, face, static_cast<std::uint32_t>(i % 256u),
+                                              static_cast<std::uint32_t>(i / 256u % 256u));
+        EXPECT_NEAR(double{result.texels[i].x}, plain.mean.x, 0.5) << i;
+    }
+    EXPECT_GE(num_lit, 4u);
+    EXPECT_LE(num_lit, 16u);
 }
 
 TEST(Rotation, IrradianceTurnsWithTheLight) {
