@@ -79,12 +79,15 @@ private:
     }
 
     void find_corners(Face face, std::uint32_t y, CornerLine& line) const {
+        const double n = map_.resolution;
         line.faces.resize(map_.resolution + 1);
         line.points.resize(map_.resolution + 1);
+        const glm::dvec3 first = corner(face, 0, y),
+                         across = corner(face, map_.resolution, y) - first;
         for (std::uint32_t x = 0; x <= map_.resolution; ++x) {
-            const FacePoint point = face_point(corner(face, x, y));
+            const FacePoint point = face_point(first + across * (x / n));
             line.faces[x] = point.face;
-            line.points[x] = glm::dvec2(point.s, point.t) * static_cast<double>(map_.resolution);
+            line.points[x] = glm::dvec2(point.s, point.t) * n;
         }
     }
 

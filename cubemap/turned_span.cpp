@@ -96,13 +96,19 @@ public:
         sign_ = hn::IfThenElse(goes_right_, number(1.0f), number(-1.0f));
         const Vec left = hn::Min(x_, end_x_), right = hn::Max(x_, end_x_);
         const auto is_here = hn::Gt(high_, low_);
+        is_in_row_ = !hn::AllFalse(Lanes(), is_here);
+        if (!is_in_row_)
+            return;
         for (const Vec y : {start, end}) {
             const Vec x = hn::Min(hn::Max(x_at(y), left), right);
             least_x = hn::IfThenElse(is_here, hn::Min(least_x, x), least_x);
             most_x = hn::IfThenElse(is_here, hn::Max(most_x, x), most_x);
         }
-        crossing_ = crossing_at(hn::Zero(Lanes()));
     }
+    /// Whether any has a part in the row.
+    [[nodiscard]] bool is_in_row() const { return is_in_row_; }
+    /// Goes to the left side of a column of that row.
+    void begin_column(Vec column) { crossing_ = crossing_at(column); }
 
     /// What lies to the left of the edge in the texel whose left side is the column and whose
     /// middle has this height; then goes to the next texel.
@@ -140,34 +146,50 @@ private:
     Vec x_, y_, end_x_, end_y_, x_per_y_, y_per_x_;
     hn::Mask<Lanes> goes_right_;
     Vec low_, high_, right_end_, sign_, crossing_;
+    bool is_in_row_ = false;
 };
 
-/// Colours of texels, and their weights.
+/// Colours of texels, and their weights. Each quadrilateral has a vector of its own: gathers are
+/// slower.
 class Means {
 public:
-    void add(Vec weight, IntVec texel, const glm::vec3* face) {
-        const Lanes d;
-        const IntLanes di;
-        const auto* values = reinterpret_cast<const float*>(face);
-        const IntVec red = hn::Add(hn::Add(texel, texel), texel);
-        red_ = hn::MulAdd(weight, hn::GatherIndex(d, values, red), red_);
-        green_ =
-            hn::MulAdd(weight, hn::GatherIndex(d, values, hn::Add(red, hn::Set(di, 1))), green_);
-        blue_ = hn::MulAdd(weight, hn::GatherIndex(d, values, hn::Add(red, hn::Set(di, 2))), blue_);
+    Means(const glm::vec3* face, std::size_t num_texels)
+        : values_(reinterpret_cast<const float*>(face)),
+          last_(static_cast<std::int32_t>(num_texels - 1)), tail_{face[last_].x, face[last_].y,
+                                                                  face[last_].z} {}
+
+    void add(Vec weight, IntVec texel) {
+        const Color d;
+        HWY_ALIGN std::array<float, TurnedSpan::MaxSize> weights;
+        HWY_ALIGN std::array<std::int32_t, TurnedSpan::MaxSize> texels;
+        hn::Store(weight, Lanes(), weights.data());
+        hn::Store(texel, IntLanes(), texels.data());
+        for (std::size_t i = 0; i < hn::Lanes(Lanes()); ++i) {
+            // A vector has four numbers, one more than a colour.
+            const float* color =
+                texels[i] == last_ ? tail_.data() : values_ + std::ptrdiff_t{3} * texels[i];
+            float* sum = sums_.data() + 4 * i;
+            for (std::size_t j = 0; j < 4; j += hn::Lanes(d))
+                hn::Store(hn::MulAdd(hn::Set(d, weights[i]), hn::LoadU(d, color + j),
+                                     hn::Load(d, sum + j)),
+                          d, sum + j);
+        }
         weights_ = hn::Add(weights_, weight);
     }
     void store(std::size_t count, glm::vec3* means) const {
-        const Lanes d;
-        HWY_ALIGN std::array<float, TurnedSpan::MaxSize> r{}, g{}, b{};
-        hn::Store(hn::Div(red_, weights_), d, r.data());
-        hn::Store(hn::Div(green_, weights_), d, g.data());
-        hn::Store(hn::Div(blue_, weights_), d, b.data());
+        HWY_ALIGN std::array<float, TurnedSpan::MaxSize> weights{};
+        hn::Store(weights_, Lanes(), weights.data());
         for (std::size_t i = 0; i < count; ++i)
-            means[i] = {r[i], g[i], b[i]};
+            means[i] = glm::vec3(sums_[4 * i], sums_[4 * i + 1], sums_[4 * i + 2]) / weights[i];
     }
 
 private:
-    Vec red_ = number(0.0f), green_ = number(0.0f), blue_ = number(0.0f), weights_ = number(0.0f);
+    using Color = hn::CappedTag<float, 4>;
+    const float* values_;
+    std::int32_t last_;
+    std::array<float, 4> tail_;
+    HWY_ALIGN std::array<float, 4 * TurnedSpan::MaxSize> sums_ = {};
+    Vec weights_ = number(0.0f);
 };
 
 /// The number of texels from 0 that the quadrilaterals reach.
@@ -186,7 +208,7 @@ void mean_under_lanes(const TurnedSpan& span, std::size_t first, const glm::vec3
     const Lanes d;
     const IntLanes di;
     const std::size_t end = std::min(span.size, first + hn::Lanes(d));
-    const int num_rows = reach(span.y, first, end), num_columns = reach(span.x, first, end);
+    const int num_rows = reach(span.y, first, end);
     Edge edges[4] = {{span, 0, first}, {span, 1, first}, {span, 2, first}, {span, 3, first}};
     const IntVec column = hn::LoadU(di, span.column.data() + first);
     const IntVec row = hn::LoadU(di, span.row.data() + first);
@@ -196,28 +218,33 @@ void mean_under_lanes(const TurnedSpan& span, std::size_t first, const glm::vec3
         return hn::MulAdd(hn::Add(hn::ConvertTo(d, texel), number(0.5f)), number(scale),
                           number(-1.0f));
     };
-    Means sums;
+    Means sums(face, static_cast<std::size_t>(resolution) * static_cast<std::size_t>(resolution));
     for (int r = 0; r < num_rows; ++r) {
         const Vec top = number(static_cast<float>(r)), middle_y = hn::Add(top, number(0.5f));
         const IntVec texel_row = hn::Min(hn::Add(row, hn::Set(di, r)), last);
-        Vec least_x = number(1e9f), most_x = number(-1e9f);
+        Vec least_x = number(1e6f), most_x = number(0.0f);
         for (Edge& edge : edges)
             edge.begin_row(top, least_x, most_x);
-        for (int c = 0; c < num_columns; ++c) {
+        const int first_column = static_cast<int>(hn::GetLane(hn::MinOfLanes(d, least_x)));
+        const auto end_column = static_cast<int>(std::ceil(hn::GetLane(hn::MaxOfLanes(d, most_x))));
+        for (Edge& edge : edges)
+            edge.begin_column(number(static_cast<float>(first_column)));
+        for (int c = first_column; c < end_column; ++c) {
             const Vec left = number(static_cast<float>(c));
             const IntVec texel_column = hn::Min(hn::Add(column, hn::Set(di, c)), last);
             const Density density(middle(texel_column), middle(texel_row), scale);
             Vec sum = hn::Zero(d);
             for (Edge& edge : edges)
-                sum = hn::Add(sum, edge.left_in_texel(left, middle_y, density));
+                if (edge.is_in_row())
+                    sum = hn::Add(sum, edge.left_in_texel(left, middle_y, density));
             // What lies beside the quadrilateral gets nothing, not even rounding.
             const auto is_under =
                 hn::And(hn::Lt(left, most_x), hn::Gt(hn::Add(left, number(1.0f)), least_x));
             const Vec weight = hn::IfThenElseZero(
                 is_under, hn::Mul(density.at_middle(), hn::Max(sum, hn::Zero(d))));
             if (!hn::AllFalse(d, hn::Gt(weight, hn::Zero(d))))
-                sums.add(weight, hn::Add(hn::Mul(texel_row, hn::Set(di, resolution)), texel_column),
-                         face);
+                sums.add(weight,
+                         hn::Add(hn::Mul(texel_row, hn::Set(di, resolution)), texel_column));
         }
     }
     sums.store(end - first, means + first);
