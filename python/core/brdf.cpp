@@ -1,0 +1,44 @@
+#include "brdf.h"
+
+#include <pybind11/stl/filesystem.h>
+
+#include "arrays.h"
+#include "run.h"
+
+namespace relumine::python {
+
+namespace {
+
+using Pointer = std::shared_ptr<Brdf>;
+
+Pointer loaded(const std::filesystem::path& path) {
+    const Release release;
+    return std::make_shared<Brdf>(Brdf{mesh::load_brdf(path)});
+}
+
+/// [N, 2, 3] directions to the light and to the eye.
+Array questions() {
+    const Release release;
+    std::vector<float> numbers;
+    for (const auto& [light, eye] : mesh::brdf_questions())
+        numbers.insert(numbers.end(), {light.x, light.y, light.z, eye.x, eye.y, eye.z});
+    const auto count = static_cast<py::ssize_t>(numbers.size() / 6);
+    return owned(std::move(numbers), {count, 2, 3});
+}
+
+Pointer from_answers(const py::buffer& answers) {
+    const std::vector<glm::vec3> values = vec3s(answers);
+    const Release release;
+    return std::make_shared<Brdf>(Brdf{mesh::brdf_of(values)});
+}
+
+} // namespace
+
+void bind_brdfs(py::module_& module) {
+    py::class_<Brdf, Pointer>(module, "Brdf");
+    module.def("load_brdf", &loaded);
+    module.def("brdf_questions", &questions);
+    module.def("brdf_of", &from_answers);
+}
+
+} // namespace relumine::python
