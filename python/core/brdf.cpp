@@ -32,6 +32,17 @@ Pointer from_answers(const py::buffer& answers) {
     return std::make_shared<Brdf>(Brdf{mesh::brdf_of(values)});
 }
 
+/// [90 * 90 * 90, 3] values at the places of a table.
+Pointer from_values(const py::buffer& array) {
+    const std::vector<glm::vec3> colors = vec3s(array);
+    const Release release;
+    std::vector<float> values(3 * colors.size());
+    for (std::size_t color = 0; color < 3; ++color)
+        for (std::size_t i = 0; i < colors.size(); ++i)
+            values[color * colors.size() + i] = colors[i][static_cast<int>(color)];
+    return std::make_shared<Brdf>(Brdf{std::make_shared<const mesh::BrdfTable>(std::move(values))});
+}
+
 } // namespace
 
 void bind_brdfs(py::module_& module) {
@@ -39,6 +50,7 @@ void bind_brdfs(py::module_& module) {
     module.def("load_brdf", &loaded);
     module.def("brdf_questions", &questions);
     module.def("brdf_of", &from_answers);
+    module.def("brdf_table", &from_values);
 }
 
 } // namespace relumine::python

@@ -6,10 +6,10 @@ import os
 from typing import Callable
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import view
+from ._arrays import floats, view
 from ._core import Brdf as CoreBrdf
 from ._files import Path, errors
 
@@ -17,7 +17,7 @@ from ._files import Path, errors
 class Brdf:
     """Any isotropic BRDF, as a table. A material of precompute(), for scenes with a view.
 
-    Made by Brdf.load() and Brdf.of().
+    Made by Brdf.load(), Brdf.table() and Brdf.of().
     """
 
     _core: CoreBrdf
@@ -33,6 +33,19 @@ class Brdf:
         """Reads a .binary file of the MERL database. Raises OSError with the file's name."""
         with errors(path):
             return cls._of(_core.load_brdf(os.fspath(path)))
+
+    @classmethod
+    def table(cls, values: ArrayLike) -> "Brdf":
+        """Takes a table.
+
+        values  (3, 90, 90, 90) in 1/sr: red, green and blue by theta_h (it grows with the square
+                of its index), theta_d and phi_d (a quarter of a turn), at the middles of places.
+                Where light or eye is below the horizon they may be anything
+
+        Raises ValueError where it is negative or not finite, or reflects more than arrives.
+        """
+        given = floats("values", values, 3, 90, 90, 90, finite=False)
+        return cls._of(_core.brdf_table(np.ascontiguousarray(given.reshape(3, -1).T)))
 
     @classmethod
     def of(

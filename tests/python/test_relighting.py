@@ -124,6 +124,14 @@ def test_any_brdf(arrays, tmp_path):
     matt = relumine.Brdf.of(lambda light, eye: np.full((len(light), 3), (0.5, 0.25, 0.1)) / np.pi)
     expected = radiance(relumine.Lambert((0.5, 0.25, 0.1)))
     assert radiance({"": matt}) == pytest.approx(expected, abs=1e-5)
+    values = np.empty((3, 90, 90, 90))
+    values[:] = np.reshape((0.5, 0.25, 0.1), (3, 1, 1, 1)) / np.pi
+    assert radiance(relumine.Brdf.table(values)) == pytest.approx(expected, abs=1e-5)
+    with pytest.raises(ValueError, match="values"):
+        relumine.Brdf.table(values[:2])
+    values[1, 0, 0, 0] = np.nan
+    with pytest.raises(ValueError, match="0 or more, got nan of green"):
+        relumine.Brdf.table(values)
     for function, wrong in (
         (lambda light, eye: np.ones(len(light)), "reflects at most what arrives, got 3.14"),
         (lambda light, eye: 0.3 * light[:, 2], "reciprocal"),
