@@ -329,8 +329,10 @@ std::shared_ptr<const BrdfTable> brdf_of(std::span<const glm::vec3> answers) {
                 values[color * BrdfTable::NumPlaces + i] = answers[next][static_cast<int>(color)];
             ++next;
         }
+    // A value that is no number is told as such, not as one that is not reciprocal.
+    auto table = std::make_shared<const BrdfTable>(std::move(values));
     check(answers.subspan(num_above));
-    return std::make_shared<const BrdfTable>(std::move(values));
+    return table;
 }
 
 std::shared_ptr<const BrdfTable>

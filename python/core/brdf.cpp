@@ -9,9 +9,9 @@ namespace relumine::python {
 
 namespace {
 
-using Pointer = std::shared_ptr<Brdf>;
+using BrdfPointer = std::shared_ptr<Brdf>;
 
-Pointer loaded(const std::filesystem::path& path) {
+BrdfPointer loaded(const std::filesystem::path& path) {
     const Release release;
     return std::make_shared<Brdf>(Brdf{mesh::load_brdf(path)});
 }
@@ -26,14 +26,14 @@ Array questions() {
     return owned(std::move(numbers), {count, 2, 3});
 }
 
-Pointer from_answers(const py::buffer& answers) {
+BrdfPointer from_answers(const py::buffer& answers) {
     const std::vector<glm::vec3> values = vec3s(answers);
     const Release release;
     return std::make_shared<Brdf>(Brdf{mesh::brdf_of(values)});
 }
 
 /// [90 * 90 * 90, 3] values at the places of a table.
-Pointer from_values(const py::buffer& array) {
+BrdfPointer from_values(const py::buffer& array) {
     const std::vector<glm::vec3> colors = vec3s(array);
     const Release release;
     std::vector<float> values(3 * colors.size());
@@ -46,7 +46,7 @@ Pointer from_values(const py::buffer& array) {
 } // namespace
 
 void bind_brdfs(py::module_& module) {
-    py::class_<Brdf, Pointer>(module, "Brdf");
+    py::class_<Brdf, BrdfPointer>(module, "Brdf");
     module.def("load_brdf", &loaded);
     module.def("brdf_questions", &questions);
     module.def("brdf_of", &from_answers);

@@ -67,7 +67,7 @@ std::shared_ptr<const mesh::BrdfTable> ggx_table(float roughness) {
     return mesh::brdf_of([roughness](const mesh::BrdfDirections& at) {
         const glm::vec3 h = glm::normalize(at.to_light + at.to_eye);
         const prt::LobeGeometry geometry{at.to_light.z, at.to_eye.z, h.x * h.x + h.y * h.y};
-        return glm::vec3(0.3f, 0.1f, 0.05f) + glm::vec3(0.25f, 0.5f, 0.75f) *
+        return glm::vec3(0.25f, 0.1f, 0.05f) + glm::vec3(0.25f, 0.5f, 0.75f) *
                                                   prt::GgxLobe::specular(roughness, geometry) /
                                                   at.to_light.z / 2.0f;
     });
@@ -104,7 +104,7 @@ TEST(Highlights, ATableOfAFormulaLooksLikeTheFormula) {
         pixels.surface = everywhere(surface);
         return picture_of(lit_under(mesh, sky, pixels));
     };
-    Picture expected = part({.albedo = std::numbers::pi_v<float> * glm::vec3(0.3f, 0.1f, 0.05f)});
+    Picture expected = part({.albedo = std::numbers::pi_v<float> * glm::vec3(0.25f, 0.1f, 0.05f)});
     const Picture highlight = part({.albedo = glm::vec3(0.0f),
                                     .specular = glm::vec3(1.0f),
                                     .highlight = prt::Highlight::Ggx,
