@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Callable
+from typing import Any, Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -50,7 +50,7 @@ class Brdf:
     @classmethod
     def of(
         cls,
-        function: Callable[[NDArray[np.float32], NDArray[np.float32]], "NDArray[np.floating]"],
+        function: Callable[[NDArray[np.float32], NDArray[np.float32]], "NDArray[np.floating[Any]]"],
     ) -> "Brdf":
         """Tabulates a function. It is called once, with all directions.
 
@@ -69,7 +69,7 @@ class Brdf:
         return cls._of(_core.brdf_of(_answers(values, len(directions))))
 
 
-def _answers(values: "NDArray[np.floating]", count: int) -> NDArray[np.float32]:
+def _answers(values: "NDArray[np.floating[Any]]", count: int) -> NDArray[np.float32]:
     """What the function gave, with a shape that fits."""
     if values.shape != (count, 3) or values.dtype.kind not in "iuf":
         raise ValueError(
