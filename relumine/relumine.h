@@ -13,6 +13,7 @@
 
 // IWYU pragma: begin_exports
 #include "cubemap/layers/layer_file.h"
+#include "relumine/camera_path.h"
 #include "relumine/environment.h"
 #include "relumine/fit.h"
 #include "relumine/harmonics_file.h"

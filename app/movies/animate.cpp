@@ -63,10 +63,10 @@ public:
         static_cast<void>(options.bounces.applies_to(scene(), options.scene.path));
         lit_.dim(options.output.picture.emission);
         OutputOptions seen = options.output;
-        if (options.turns_camera() && pattern_) {
+        if (options.moves_camera() && pattern_) {
             require_vertices(scene(), options.scene.path);
             camera_ = camera_of(scene(), options.output.for_scene(scene()));
-            seen.picture.camera = camera_at(1);
+            seen.picture.camera = camera_of_frame(std::min<std::size_t>(1, sequence.size() - 1));
         }
         if (session.is_first())
             seen.warn_of_eye(scene(), session);
@@ -142,8 +142,10 @@ private:
 
     [[nodiscard]] const Scene& scene() const { return lit_.scene(); }
 
-    /// The camera turned about its target.
-    [[nodiscard]] Camera camera_at(std::size_t frame) const {
+    /// The camera on its path, or turned about its target.
+    [[nodiscard]] Camera camera_of_frame(std::size_t frame) const {
+        if (options_.camera_path)
+            return options_.camera_on_path(sequence_.number(frame), *camera_);
         Camera camera = *camera_;
         camera.eye = camera.target + glm::vec3(cubemap::turn_about_y(options_.turn_degrees(frame)) *
                                                glm::dvec3(camera.eye - camera.target));
@@ -151,7 +153,7 @@ private:
     }
     void look_at(std::size_t frame) {
         if (camera_)
-            writer_.look_from(camera_at(frame));
+            writer_.look_from(camera_of_frame(frame));
     }
 
     /// Whether the frame is to be a picture.
@@ -282,7 +284,8 @@ private:
         if (still_)
             return *still_;
         PreparedFrame result = prepare_anew(frame);
-        if (options_.turntable > 0 && sequence_.path(0) == sequence_.path(sequence_.size() - 1) &&
+        if ((options_.turntable > 0 || options_.camera_path) &&
+            sequence_.path(0) == sequence_.path(sequence_.size() - 1) &&
             !options_.turns_environment())
             still_ = result;
         return result;
@@ -422,7 +425,7 @@ private:
     LitScene lit_;
     relight::EnvironmentBinner binner_;
     Painter writer_;
-    /// Of --turntable at its first frame.
+    /// Of --turntable at its first frame. Its field of view also serves a path without one.
     std::optional<Camera> camera_;
     /// The environment that lights all frames.
     std::optional<PreparedFrame> still_;
@@ -469,6 +472,7 @@ void add_animate(Command& program, Session& session) {
     session.add_common_options(command);
     command.on_run([options, &session] {
         options->scene.highlight_rays = options->output.picture.highlight_rays;
+        options->load_camera();
         run(*options, session);
     });
 }

@@ -34,7 +34,11 @@ void AnimateOptions::add_to(Command& command) {
              {.max = 100000}),
          row("--turns", turns,
              "of --turntable: what turns; under an object the environment stays where it is",
-             {.choices = {"camera", "object", "environment"}})});
+             {.choices = {"camera", "object", "environment"}}),
+         row("--camera-path", camera_file,
+             "the camera moves: a .json of key frames of eye, target and fov_degrees; one "
+             "environment lights all frames up to the last key",
+             {.file = true})});
     command.add_all(options_of(environment));
     command.add_all(
         {row("--method", method,
@@ -73,6 +77,36 @@ void AnimateOptions::add_to(Command& command) {
                     {.shapes_frames = false}));
 }
 
+void AnimateOptions::load_camera() {
+    if (camera_file.empty())
+        return;
+    const relumine::OutputOptions& picture = output.picture;
+    const auto refuse_beside = [](bool is_given, const char* option) {
+        if (is_given)
+            throw UsageError("--camera-path",
+                             fmt::format("expected either it or {}, got both", option));
+    };
+    refuse_beside(turntable > 0, "--turntable");
+    refuse_beside(picture.camera_place.has_value(), "--camera");
+    refuse_beside(picture.eye.has_value(), "--eye");
+    refuse_beside(picture.target.has_value(), "--target");
+    const std::string extension = extension_of(output.path);
+    if (extension != ".png" && extension != ".exr")
+        throw UsageError(
+            "--camera-path",
+            fmt::format("expected --output with .png or .exr frames, got '{}'", output.path));
+    camera_path = load_camera_path(camera_file);
+    refuse_beside(camera_path->names_fov && picture.fov_degrees.has_value(),
+                  "--fov where the file has fov_degrees");
+}
+
+Camera AnimateOptions::camera_on_path(std::int64_t number, const Camera& other) const {
+    Camera camera = camera_at(camera_path.value(), static_cast<double>(number));
+    if (!camera_path->names_fov)
+        camera.fov_degrees = other.fov_degrees;
+    return camera;
+}
+
 std::vector<cubemap::FrameFile> AnimateOptions::frame_files() const {
     std::optional<cubemap::FrameRange> chosen;
     try {
@@ -82,12 +116,13 @@ std::vector<cubemap::FrameFile> AnimateOptions::frame_files() const {
         throw UsageError("--frames", error.what());
     }
     std::vector<cubemap::FrameFile> files = cubemap::find_frames(frames, chosen);
-    if (turntable == 0 || files.size() == turntable)
+    // One environment is numbered from 0 on; a sequence keeps its numbers, which a path means.
+    if (camera_path ? files.size() != 1 : turntable == 0 || files.size() == turntable)
         return files;
     if (files.size() != 1)
         throw UsageError("--turntable", fmt::format("expected one environment or {}, got {}",
                                                     turntable, files.size()));
-    files.resize(turntable, files.front());
+    files.resize(camera_path ? camera_path->num_frames() : turntable, files.front());
     for (std::size_t i = 0; i < files.size(); ++i)
         files[i].number = static_cast<std::int64_t>(i);
     return files;
@@ -129,6 +164,7 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
                 throw std::runtime_error(
                     fmt::format("{}: expected an output other than the input frames", path));
     }
+    check_cameras(sequence);
     if (!vertices.empty()) {
         require_extension("--vertices", vertices, {".npy"});
         check_output(vertices, {scene.path});
@@ -158,9 +194,21 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
     }
 }
 
+void AnimateOptions::check_cameras(const cubemap::FrameSequence& sequence) const {
+    if (!camera_path)
+        return;
+    for (const cubemap::FrameFile& frame : sequence.files())
+        if (!has_direction(camera_on_path(frame.number, {})))
+            throw std::runtime_error(fmt::format("{}: expected eye and target apart at all frames, "
+                                                 "got the same point at frame {}",
+                                                 camera_file, frame.number));
+}
+
 std::string AnimateOptions::settings(const cubemap::FrameSequence& sequence) const {
     std::string all =
         fmt::format("{}\n{}\n{}", version(), FrameRecord::stamp(scene.path), command_->settings());
+    if (camera_path)
+        all += '\n' + FrameRecord::stamp(camera_file);
     if (method == "clusters") // every frame depends on all
         for (const cubemap::FrameFile& frame : sequence.files())
             for (const fs::path& file : cubemap::environment_files(frame.path))

@@ -12,6 +12,7 @@
 #include "app/options/output_options.h"
 #include "cubemap/image/frame_pattern.h"
 #include "cubemap/image/frame_sequence.h"
+#include "relumine/camera_path.h"
 
 namespace relumine::app {
 
@@ -57,15 +58,28 @@ struct AnimateOptions {
     [[nodiscard]] bool turns_camera() const { return turntable > 0 && turns != "environment"; }
     [[nodiscard]] bool turns_environment() const { return turntable > 0 && turns != "camera"; }
 
+    /// --camera-path: a file of key frames. Empty: the camera stands still or turns.
+    std::string camera_file;
+    /// What the file says, once load_camera() has read it.
+    std::optional<CameraPath> camera_path;
+    [[nodiscard]] bool moves_camera() const { return camera_path || turns_camera(); }
+
     void add_to(Command& command);
 
-    /// The frames that FRAMES names; with --turntable one environment many times. Throws
-    /// std::runtime_error as cubemap::find_frames().
+    /// Reads --camera-path. Throws UsageError beside options that also place the camera, and what
+    /// load_camera_path() throws.
+    void load_camera();
+
+    /// The frames that FRAMES names; with --turntable or --camera-path one environment many times.
+    /// Throws std::runtime_error as cubemap::find_frames().
     [[nodiscard]] std::vector<cubemap::FrameFile> frame_files() const;
     /// The environment's options at a frame: turned with --turntable.
     [[nodiscard]] EnvironmentOptions environment_at(std::size_t frame) const;
     /// How far --turntable has turned at a frame.
     [[nodiscard]] double turn_degrees(std::size_t frame) const;
+    /// The camera of --camera-path at the frame of a number. Without a field of view in the file it
+    /// has that of `other`.
+    [[nodiscard]] Camera camera_on_path(std::int64_t number, const Camera& other) const;
     /// Refuses what cannot be done before any work is.
     void check(const cubemap::FrameSequence& sequence) const;
     /// The pattern of -o, nothing without -o. Throws std::runtime_error where the number has no
@@ -75,6 +89,9 @@ struct AnimateOptions {
     [[nodiscard]] std::string settings(const cubemap::FrameSequence& sequence) const;
 
 private:
+    /// Refuses frames at which the eye meets its target.
+    void check_cameras(const cubemap::FrameSequence& sequence) const;
+
     std::optional<Command> command_;
 };
 

@@ -1,5 +1,6 @@
 // `relumine generate sequence` and `relumine animate`: from nothing to frames.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -82,6 +83,73 @@ TEST_F(Animate, ATurntableTurnsTheCameraTheObjectOrTheEnvironment) {
            "--turntable");
     misuse(with({"animate", "scene.prt", "lamp.hdr", "-o", "bad.%d.exr", "--turns", "moon"}),
            "--turns");
+}
+
+/// The example of docs/animate.md: each frame is what relight draws from the camera of the path.
+TEST_F(Animate, ACameraGoesAlongItsPath) {
+    write("lamp.hdr", lamp_hdr(10));
+    write("walk.json", R"({
+    "version": 1,
+    "frames": [
+        {"frame": 0, "eye": [0, 1, 4], "target": [0, 0, 0], "fov_degrees": 35},
+        {"frame": 4, "eye": [3, 1, 3], "target": [0, 0, 0]},
+        {"frame": 6, "eye": [3, 1, 3], "target": [0, 0.5, 0], "fov_degrees": 20}
+    ]
+})");
+    const std::vector<std::string> command = {
+        "animate",      "scene.prt", "lamp.hdr",      "-o",        "walk.%d.exr", "--size", "40x30",
+        "--background", "none",      "--camera-path", "walk.json", "--resume",    "--json"};
+    EXPECT_EQ(succeed(command).json()["frames"], 7);
+    const std::vector<std::array<std::string, 4>> keys = {{"0", "0,1,4", "0,0,0", "35"},
+                                                          {"4", "3,1,3", "0,0,0", "35"},
+                                                          {"6", "3,1,3", "0,0.5,0", "20"}};
+    for (const auto& [frame, eye, target, fov] : keys) {
+        succeed({"relight", "scene.prt", "lamp.hdr", "-o", "one.exr", "--size", "40x30",
+                 "--background", "none", "--eye", eye, "--target", target, "--fov", fov, "-q"});
+        const auto expected = exr_channels(folder() / "one.exr");
+        const auto seen = exr_channels(folder() / ("walk." + frame + ".exr"));
+        double difference = 0.0, sum = 0.0;
+        for (std::size_t i = 0; i < expected.at("R").size(); ++i) {
+            difference += std::abs(seen.at("R")[i] - expected.at("R")[i]);
+            sum += expected.at("R")[i];
+        }
+        EXPECT_GT(sum, 0.0);
+        EXPECT_LT(difference, 1e-3 * sum) << frame;
+    }
+    EXPECT_NE(read("walk.1.exr"), read("walk.2.exr"));
+    // The record knows the path.
+    EXPECT_EQ(succeed(command).json()["frames_kept"], 7);
+    write("walk.json", R"({"version": 1, "frames": [
+        {"frame": 0, "eye": [0, 1, 5], "target": [0, 0, 0]},
+        {"frame": 6, "eye": [3, 1, 3], "target": [0, 0, 0]}]})");
+    EXPECT_EQ(succeed(command).json()["frames_kept"], 0);
+}
+
+TEST_F(Animate, ACameraPathThatCannotBeIsToldInOneLine) {
+    write("lamp.hdr", lamp_hdr(10));
+    write("path.json", R"({"version": 1, "frames": [
+        {"frame": 0, "eye": [0, 0, 4], "target": [0, 0, 0]},
+        {"frame": 2, "eye": [0, 0, -4], "target": [0, 0, 0]}]})");
+    write("one.json", R"({"version": 1, "frames": [
+        {"frame": 0, "eye": [0, 0, 4], "target": [0, 0, 0]}]})");
+    const auto with = [](const std::string& path, const std::vector<std::string>& more) {
+        std::vector<std::string> all = {"animate",       "scene.prt", "lamp.hdr",
+                                        "--camera-path", path,        "-q"};
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    };
+    const std::vector<std::string> pictures = {"-o", "bad.%d.png"};
+    fail(with("path.json", pictures), {"path.json: expected eye and target apart", "frame 1"});
+    fail(with("one.json", pictures), {"one.json:1: expected at least 2 key frames, got 1"});
+    fail(with("none.json", pictures), {"none.json: cannot read"});
+    misuse(with("path.json", {"-o", "bad.%d.npy"}), "--camera-path: expected --output with .png");
+    for (const std::vector<std::string>& other : {std::vector<std::string>{"--turntable", "4"},
+                                                  {"--eye", "1,2,3"},
+                                                  {"--target", "0,0,1"}}) {
+        std::vector<std::string> both = pictures;
+        both.insert(both.end(), other.begin(), other.end());
+        misuse(with("path.json", both), "got both");
+    }
 }
 
 TEST_F(Animate, EveryFrameIsWhatRelightMakesOfIt) {
