@@ -42,7 +42,8 @@ bool has_live_highlights(const Scene& scene) {
                        [&](std::uint32_t material) {
                            const mesh::Material& own = mesh.materials[material];
                            return prt::has_highlight(own) &&
-                                  own.model != mesh::MaterialModel::Phong;
+                                  own.model != mesh::MaterialModel::Phong &&
+                                  own.model != mesh::MaterialModel::Measured;
                        });
 }
 

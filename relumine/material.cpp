@@ -15,6 +15,8 @@
 namespace relumine {
 
 prt::Surface SurfaceMaterial::applied_to(const prt::Surface& surface) const {
+    if (table)
+        return prt::measured_surface(table);
     glm::vec3 specular_color(0.0f);
     if (specular)
         specular_color = *specular;

@@ -1,6 +1,7 @@
 // Surfaces in place of a mesh's materials, for the whole mesh or for one of its groups.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,6 +25,9 @@ struct SurfaceMaterial {
     std::optional<glm::vec3> albedo = {};
     /// F0, or Ks of Blinn-Phong. Without it 0.04 where the mesh has no F0 of its own.
     std::optional<glm::vec3> specular = {};
+    /// Measured: the table, and the file that it is of.
+    std::shared_ptr<const mesh::BrdfTable> table = {};
+    std::string file = {};
 
     /// Returns the surface in place of the mesh's.
     [[nodiscard]] prt::Surface applied_to(const prt::Surface& surface) const;

@@ -51,6 +51,7 @@ Json report_of(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
                    {"model", model == Model::Phong               ? "phong"
                              : model == Model::MetallicRoughness ? "metallic-roughness"
                              : model == Model::Unlit             ? "unlit"
+                             : model == Model::Measured          ? "measured"
                                                                  : "specular-glossiness"},
                    {"base_color", material.base_color},
                    {"base_color_texture", texture(material.base_color_texture)}};
@@ -69,6 +70,10 @@ Json report_of(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
     } else {
         result.set("roughness", material.roughness);
         result.set("metallic_roughness_texture", texture(material.metallic_roughness_texture));
+        if (material.roughness_texture)
+            result.set("roughness_texture", texture(material.roughness_texture));
+        if (material.metallic_texture)
+            result.set("metallic_texture", texture(material.metallic_texture));
     }
     if (material.normal_texture) {
         result.set("normal_texture", texture(material.normal_texture));

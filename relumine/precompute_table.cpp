@@ -89,14 +89,28 @@ struct Parser {
                                    : glm::vec3(numbers[0], numbers[1], numbers[2]);
     }
 
+    /// brdf:FILE
+    [[nodiscard]] SurfaceMaterial measured(const std::string& file) const {
+        if (file.empty())
+            refuse_text(fmt::format("{}:FILE, a .binary file", model->name), text);
+        return {
+            .group = group(), .highlight = highlight, .table = mesh::load_brdf(file), .file = file};
+    }
+
+    [[nodiscard]] std::string group() const {
+        return text.substr(0, start_of_model > 0 ? start_of_model - 1 : 0);
+    }
+
     SurfaceMaterial parse() {
         find_model();
         if (start_of_model == 1)
             refuse_text("a group's name before =", text);
         const std::size_t end = start_of_model + model->name.size() + 1;
+        if (model->is_table)
+            return measured(text.substr(std::min(end, text.size())));
         if (end < text.size())
             read_values(text.substr(end));
-        SurfaceMaterial result{.group = text.substr(0, start_of_model > 0 ? start_of_model - 1 : 0),
+        SurfaceMaterial result{.group = group(),
                                .highlight = highlight,
                                .albedo = color(model->albedo),
                                .specular = color(model->specular)};
@@ -261,6 +275,8 @@ SurfaceMaterial MaterialText::read(const std::string& text) {
 std::string MaterialText::show(const SurfaceMaterial& material) {
     const prt::LobeFacts& model = prt::facts_of(material.highlight);
     std::vector<std::string> values;
+    if (material.table)
+        values.push_back(material.file);
     if (material.albedo)
         values.push_back(fmt::format("{}={}", model.albedo, ColorText::show(*material.albedo)));
     if (material.specular)
@@ -275,7 +291,9 @@ OptionRow material_row(std::vector<SurfaceMaterial>& materials) {
     return row<MaterialText>(
         "--material", materials,
         "surface in place of the file's: ggx:roughness=0.3,albedo=0.5,f0=0.04, "
-        "blinn:exponent=50,kd=0.3,ks=0.2 or lambert:albedo=0.8; GROUP=... for one object; "
+        "blinn:exponent=50,kd=0.3,ks=0.2, lambert:albedo=0.8 or brdf:FILE (a measured BRDF, "
+        ".binary "
+        "of the MERL database); GROUP=... for one object; "
         "the floor of --floor is `floor`, and Lambert unless named");
 }
 

@@ -20,6 +20,8 @@ const char* name_of(const mesh::Material& material) {
         return "metallic-roughness";
     case Model::SpecularGlossiness:
         return "specular-glossiness";
+    case Model::Measured:
+        return "measured";
     case Model::Unlit:
         break;
     }
@@ -46,8 +48,13 @@ public:
         return {m.name,
                 name_of(m),
                 of(m.base_color, m.base_color_texture),
-                is_metal ? of(m.metallic, m.metallic_roughness_texture) : "",
-                is_phong || is_unlit ? "" : of(m.roughness, m.metallic_roughness_texture),
+                is_metal ? of(m.metallic, m.metallic_texture ? m.metallic_texture
+                                                             : m.metallic_roughness_texture)
+                         : "",
+                is_phong || is_unlit
+                    ? ""
+                    : of(m.roughness,
+                         m.roughness_texture ? m.roughness_texture : m.metallic_roughness_texture),
                 specular(),
                 is_phong && m.specular != usual.specular ? fmt::format("{}", m.exponent) : "",
                 m.emission != usual.emission ? of(m.emission, m.emission_texture) : "",

@@ -186,9 +186,9 @@ void MtlLibrary::forget(std::uint32_t texture, std::size_t num_before) {
 
 /// Notes statements that change what a surface looks like and are not read.
 void MtlLibrary::note_unread(std::span<const std::string_view> words) {
-    constexpr std::array<std::string_view, 15> Maps = {
-        "map_Ns", "map_Bump", "map_bump", "bump",    "disp",   "refl",     "map_Tr", "map_Pr",
-        "map_Pm", "map_Ps",   "map_Pc",   "map_Pcr", "map_Tf", "map_disp", "decal"};
+    constexpr std::array<std::string_view, 13> Maps = {
+        "map_Ns", "map_Bump", "map_bump", "bump",   "disp",     "refl", "map_Tr",
+        "map_Ps", "map_Pc",   "map_Pcr",  "map_Tf", "map_disp", "decal"};
     constexpr std::array<std::string_view, 2> Numbers = {"aniso", "anisor"};
     const std::string_view keyword = words[0];
     const auto is_only = [&](std::string_view digit) { // 0, 0.0, 1.000 ...
@@ -278,9 +278,15 @@ void MtlLibrary::read_alpha_map(Material& material, const TextReader& reader,
 }
 
 /// Reads the extension for physically based rendering.
-bool MtlLibrary::read_physical(Material& material, const TextReader& reader) {
+bool MtlLibrary::read_physical(Material& material, const TextReader& reader,
+                               const std::filesystem::path& folder) {
     const std::vector<std::string_view>& words = reader.words();
     const std::string_view keyword = words[0];
+    const auto map = [&](std::optional<TextureSlot>& slot) {
+        slot = texture(std::span(words).subspan(1), reader, folder);
+        if (slot)
+            slot->is_srgb = false;
+    };
     if (keyword == "Pr")
         material.roughness = scalar(reader, 1.0);
     else if (keyword == "Pm")
@@ -291,6 +297,10 @@ bool MtlLibrary::read_physical(Material& material, const TextReader& reader) {
         material.coat_roughness = scalar(reader, 1.0);
     else if (keyword == "Ps")
         material.sheen = glm::vec3(scalar(reader, 1.0));
+    else if (keyword == "map_Pr")
+        map(material.roughness_texture);
+    else if (keyword == "map_Pm")
+        map(material.metallic_texture);
     else
         return false;
     material.model = MaterialModel::MetallicRoughness;
@@ -327,7 +337,7 @@ void MtlLibrary::read_value(Material& material, const TextReader& reader,
              ((keyword == "map_Bump" || keyword == "map_bump" || keyword == "bump") &&
               material.normal_texture == std::nullopt))
         read_normal_map(material, reader, folder);
-    else if (!read_physical(material, reader))
+    else if (!read_physical(material, reader, folder))
         note_unread(words);
 }
 
@@ -338,6 +348,8 @@ void MtlLibrary::finish(Material& material) {
     // A map says something beside a factor of 0, which many programs write, and beside none.
     if (material.emission_texture && material.emission == glm::vec3(0.0f))
         material.emission = glm::vec3(1.0f);
+    if (material.metallic_texture && material.metallic == 0.0f)
+        material.metallic = 1.0f;
     if (material.model == MaterialModel::Phong) {
         if (material.specular_texture && material.specular == glm::vec3(0.0f))
             material.specular = glm::vec3(1.0f);

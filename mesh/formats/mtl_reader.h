@@ -52,7 +52,8 @@ private:
                          const std::filesystem::path& folder);
     void read_alpha_map(Material& material, const class TextReader& reader,
                         const std::filesystem::path& folder);
-    [[nodiscard]] static bool read_physical(Material& material, const class TextReader& reader);
+    [[nodiscard]] bool read_physical(Material& material, const class TextReader& reader,
+                                     const std::filesystem::path& folder);
     void finish(Material& material);
     void note_unread(std::span<const std::string_view> words);
     [[nodiscard]] std::optional<std::uint32_t> texture_of(const std::filesystem::path& path,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +14,8 @@
 #include <glm/vec3.hpp>
 
 namespace relumine::mesh {
+
+class BrdfTable;
 
 /// How a texture continues outside the unit square.
 enum class Wrap : std::uint8_t { Repeat, Clamp, Mirror };
@@ -44,6 +47,8 @@ enum class MaterialModel : std::uint8_t {
     SpecularGlossiness,
     /// KHR_materials_unlit of glTF: the base colour is radiance, and light changes nothing.
     Unlit,
+    /// A table: Material::measured. No file of a mesh has it; users give it.
+    Measured,
 };
 
 /// What a material's alpha does (glTF's alphaMode).
@@ -82,7 +87,10 @@ struct Material {
     std::optional<TextureSlot> base_color_texture = {};
     /// Its G multiplies roughness, its B metallic.
     std::optional<TextureSlot> metallic_roughness_texture = {};
-    /// SpecularGlossiness: its RGB multiplies specular.
+    /// MetallicRoughness, of MTL: their R multiply roughness and metallic.
+    std::optional<TextureSlot> roughness_texture = {};
+    std::optional<TextureSlot> metallic_texture = {};
+    /// SpecularGlossiness, and Phong: its RGB multiplies specular.
     std::optional<TextureSlot> specular_texture = {};
     /// Radiance of its own, >= 0: glTF's factor times KHR_materials_emissive_strength.
     glm::vec3 emission{0.0f};
@@ -140,6 +148,8 @@ struct Material {
     float sheen_roughness = 0.0f;
     /// Its R multiplies sheen_roughness.
     std::optional<TextureSlot> sheen_roughness_texture = {};
+    /// Measured: the table. `specular` multiplies it.
+    std::shared_ptr<const BrdfTable> measured = {};
 
     bool operator==(const Material&) const = default;
 };
@@ -151,9 +161,11 @@ struct SlotName {
 };
 
 /// All textures of a material; the colours come first.
-inline constexpr std::array<SlotName, 14> TextureSlots = {
+inline constexpr std::array<SlotName, 16> TextureSlots = {
     {{&Material::base_color_texture, "base_texture"},
      {&Material::metallic_roughness_texture, "metallic_texture"},
+     {&Material::roughness_texture, "own_roughness_texture"},
+     {&Material::metallic_texture, "own_metallic_texture"},
      {&Material::specular_texture, "specular_texture"},
      {&Material::emission_texture, "emission_texture"},
      {&Material::normal_texture, "normal_texture"},

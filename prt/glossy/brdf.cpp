@@ -56,8 +56,18 @@ Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal,
         return lobes;
     const glm::vec3 half = to_eye + w;
     const LobeGeometry at{n_w, n_v, squared_sine(normal, half)};
-    lobes.specular = with_lobe(surface.highlight, [&](auto lobe) {
-        return lobe.specular(surface.roughness_or_exponent, at);
+    if (surface.highlight == Highlight::Measured) {
+        const glm::vec3 colors = MeasuredLobe::colors(*surface.table, at);
+        lobes.specular = colors.r;
+        lobes.specular_grazing = colors.g;
+        lobes.diffuse_grazing = colors.b;
+        return lobes;
+    }
+    lobes.specular = with_lobe(surface.highlight, [&]<typename Lobe>(Lobe) {
+        if constexpr (Lobe::Facts.is_table)
+            return 0.0f;
+        else
+            return Lobe::specular(surface.roughness_or_exponent, at);
     });
     if (has_sheen(surface))
         lobes.sheen = SheenLobe::value(surface.sheen_roughness, at);
@@ -149,6 +159,10 @@ glm::vec3 reflect(const Surface& surface, const Lobes<glm::vec3>& lobes, const E
         return reflect_whole(surface, lobes, n_v);
     if (surface.highlight == Highlight::None)
         return surface.albedo * lobes.diffuse;
+    if (surface.highlight == Highlight::Measured)
+        return surface.albedo * lobes.diffuse +
+               surface.specular *
+                   glm::vec3(lobes.specular.r, lobes.specular_grazing.g, lobes.diffuse_grazing.b);
     if (!facts_of(surface.highlight).has_fresnel)
         return surface.albedo * lobes.diffuse + surface.specular * lobes.specular;
     // The grazing part of a lobe is no more than the lobe. Each is summed over cells of its own, so

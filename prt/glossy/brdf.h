@@ -19,6 +19,9 @@
 // sheen a lobe between both (prt/glossy/sheen_lobe.h). Each leaves to what is under it what it does
 // not reflect of a white sky.
 //
+// A measured BRDF is albedo D plus three lobes, for red, green and blue, in the places of S, Sc and
+// Dc: prt/glossy/measured_lobe.h.
+//
 // Above, E and Ec are the integrals of S and Sc over all lights (prt/glossy/ggx_energy.h): R is
 // what the highlight reflects of a white sky.
 #pragma once

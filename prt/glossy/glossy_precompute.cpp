@@ -36,6 +36,12 @@ constexpr std::size_t BlocksPerThreadAndStep = 256;
 /// good to some percent.
 constexpr std::size_t TrialBlocks = 256;
 
+/// The integral of (n.w / pi)^2 over the hemisphere.
+constexpr double WholeDiffusePower = 2.0 / (3.0 * std::numbers::pi);
+
+/// The lobes that measured surfaces take, one for each colour.
+constexpr std::size_t NumColors = 3;
+
 /// Quantises a lobe. Bytes hold the square root: so a highlight's foot, shared by many directions,
 /// keeps its digits beside the peak.
 LobeCuts quantised(const LobeCut& cut) {
@@ -130,6 +136,7 @@ public:
 
 private:
     BlockToRefine block_at(std::size_t block, std::vector<glm::vec3>& origins) const;
+    double lambert_power(std::size_t block, std::uint32_t lanes, int color) const;
     FinishedBlock refine(std::size_t block) const;
     void do_all_blocks();
 
@@ -169,6 +176,20 @@ BlockToRefine GlossyPrecompute::block_at(std::size_t block, std::vector<glm::vec
     return result;
 }
 
+/// Returns the power of the Lambertian parts of a block's measured surfaces in the colour of a
+/// lobe.
+double GlossyPrecompute::lambert_power(std::size_t block, std::uint32_t lanes, int color) const {
+    double power = 0.0;
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const std::size_t place =
+            block * BlockSize + static_cast<std::size_t>(std::countr_zero(lanes));
+        const double albedo =
+            double{receivers_.surfaces[transfer_.order[places_[place]]].albedo[color]};
+        power += albedo * albedo * WholeDiffusePower;
+    }
+    return power;
+}
+
 FinishedBlock GlossyPrecompute::refine(std::size_t block) const {
     std::vector<glm::vec3> origins;
     const BlockToRefine to_refine = block_at(block, origins);
@@ -182,11 +203,17 @@ FinishedBlock GlossyPrecompute::refine(std::size_t block) const {
             entries.begin.push_back(0);
             continue;
         }
-        // The integral of (n.w / pi)^2 over the hemisphere is 2 / (3 pi).
         if (lobe == GlossyLobe::DiffuseGrazing)
             limits.reference_power =
-                std::popcount(to_refine.surfaces.lanes_with(GlossyLobe::DiffuseGrazing)) * 2.0 /
-                (3.0 * std::numbers::pi);
+                std::popcount(to_refine.surfaces.lanes_with(GlossyLobe::DiffuseGrazing)) *
+                WholeDiffusePower;
+        // Each colour of a measured BRDF has its own power.
+        if (to_refine.has_measured() && i < NumColors) {
+            limits.reference_power = 0.0;
+            limits.added_power = lambert_power(
+                block, to_refine.surfaces.lanes[static_cast<std::size_t>(Highlight::Measured)],
+                static_cast<int>(i));
+        }
         // Layers have their own power.
         if (lobe == GlossyLobe::Coat || lobe == GlossyLobe::Sheen)
             limits = {.tolerance = tightened(options_.tolerance, to_refine.mirrors(lobe)),

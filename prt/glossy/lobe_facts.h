@@ -24,6 +24,8 @@ struct LobeFacts {
     bool has_diffuse_grazing = false;
     /// The shape is a roughness: cells of the quadtree cannot hold the smallest.
     bool is_roughness = false;
+    /// The surface has a table. Its red, green and blue take the places of S, Sc and Dc.
+    bool is_table = false;
 };
 
 /// F0 of glass and plastic: glTF 2.0, Appendix B.

@@ -1,5 +1,6 @@
 #include "prt/glossy/lobe_kernel.h"
 
+#include <bit>
 #include <numbers>
 
 #include <glm/geometric.hpp>
@@ -101,6 +102,7 @@ struct LobeTerms {
 // The lobes, 16 receivers at a time: functions `specular(LOBE, LobeTerms)`.
 #include "prt/glossy/blinn_phong_lobe-inl.h"
 #include "prt/glossy/ggx_lobe-inl.h"
+#include "prt/glossy/measured_lobe-inl.h"
 #include "prt/glossy/sheen_lobe-inl.h"
 
 /// Returns the highlights of all lobes that the block has.
@@ -108,6 +110,8 @@ template<std::size_t I = 1>
 Vector all_specular(const LobeTerms& terms) {
     if constexpr (I == NumHighlights) {
         return hn::Zero(Tag());
+    } else if constexpr (std::tuple_element_t<I, LobeList>::Facts.is_table) {
+        return all_specular<I + 1>(terms);
     } else {
         const auto others = all_specular<I + 1>(terms);
         const std::uint32_t lanes = terms.surfaces.lanes[I];
@@ -125,6 +129,14 @@ Vector grazing(const LobeTerms& terms, std::uint32_t lanes, Vector value) {
 
 Vector diffuse(const LobeTerms& terms) {
     return hn::Mul(terms.n_w, hn::Set(Tag(), std::numbers::inv_pi_v<float>));
+}
+
+/// Puts a colour of measured surfaces in the place of a lobe.
+Vector with_measured(const LobeTerms& terms, std::size_t color, Vector others) {
+    const std::uint32_t lanes = terms.surfaces.lanes[static_cast<std::size_t>(Highlight::Measured)];
+    if (lanes == 0)
+        return others;
+    return hn::IfThenElse(terms.lanes(lanes), measured(terms, color), others);
 }
 
 /// What clear coats mirror.
@@ -152,11 +164,11 @@ void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe,
     const auto evaluated = [&](const LobeTerms& terms, const glm::vec3& direction) {
         switch (lobe) {
         case GlossyLobe::Specular:
-            return all_specular(terms);
+            return with_measured(terms, 0, all_specular(terms));
         case GlossyLobe::SpecularGrazing:
-            return grazing(terms, lanes, all_specular(terms));
+            return with_measured(terms, 1, grazing(terms, lanes, all_specular(terms)));
         case GlossyLobe::DiffuseGrazing:
-            return grazing(terms, lanes, diffuse(terms));
+            return with_measured(terms, 2, grazing(terms, lanes, diffuse(terms)));
         case GlossyLobe::Coat:
             return coat(surfaces, direction, terms.lane);
         case GlossyLobe::Sheen:
@@ -177,9 +189,11 @@ void evaluate_lobes(const BlockSurfaces& surfaces, const glm::vec3& direction,
     for (std::size_t lane = 0; lane < BlockSize; lane += hn::Lanes(Tag())) {
         const LobeTerms terms(surfaces, direction, lane);
         const auto highlight = all_specular(terms);
-        hn::StoreU(highlight, Tag(), values[0].data() + lane);
-        hn::StoreU(grazing(terms, lanes, highlight), Tag(), values[1].data() + lane);
-        hn::StoreU(grazing(terms, diffuse_lanes, diffuse(terms)), Tag(), values[2].data() + lane);
+        hn::StoreU(with_measured(terms, 0, highlight), Tag(), values[0].data() + lane);
+        hn::StoreU(with_measured(terms, 1, grazing(terms, lanes, highlight)), Tag(),
+                   values[1].data() + lane);
+        hn::StoreU(with_measured(terms, 2, grazing(terms, diffuse_lanes, diffuse(terms))), Tag(),
+                   values[2].data() + lane);
         hn::StoreU(surfaces.coat_lanes == 0 ? hn::Zero(Tag()) : coat(surfaces, direction, lane),
                    Tag(), values[3].data() + lane);
         hn::StoreU(surfaces.sheen_lanes == 0 ? hn::Zero(Tag()) : sheen(terms), Tag(),
@@ -208,6 +222,7 @@ void BlockSurfaces::set(std::size_t lane, const Surface& surface, const glm::vec
     if (!(normal_dot_eye[lane] > 0.0f) || surface.highlight == Highlight::None)
         return;
     lanes[static_cast<std::size_t>(surface.highlight)] |= 1u << lane;
+    tables[lane] = surface.table.get();
     const std::array<float, 2> own = with_lobe(surface.highlight, [&](auto lobe) {
         return lobe.parameters(surface.roughness_or_exponent);
     });
@@ -245,7 +260,7 @@ std::uint32_t BlockSurfaces::lanes_with(GlossyLobe lobe) const {
     std::uint32_t bits = 0;
     for (std::size_t i = 1; i < NumHighlights; ++i) {
         const LobeFacts& facts = facts_of(static_cast<Highlight>(i));
-        if (lobe == GlossyLobe::Specular ||
+        if (lobe == GlossyLobe::Specular || facts.is_table ||
             (lobe == GlossyLobe::SpecularGrazing ? facts.has_fresnel : facts.has_diffuse_grazing))
             bits |= lanes[i];
     }

@@ -23,6 +23,8 @@ struct alignas(64) BlockSurfaces {
     std::array<Floats, 2> parameters{};
     /// By Highlight: bit i is set where receiver i has it and its eye is above the horizon.
     std::array<std::uint32_t, NumHighlights> lanes{};
+    /// Of measured receivers.
+    std::array<const mesh::BrdfTable*, BlockSize> tables{};
     /// Receivers with a clear coat, and with sheen.
     std::uint32_t coat_lanes = 0, sheen_lanes = 0;
     /// Of the coat, as above.

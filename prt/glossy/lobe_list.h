@@ -9,6 +9,7 @@
 #include "prt/glossy/blinn_phong_lobe.h"
 #include "prt/glossy/ggx_lobe.h"
 #include "prt/glossy/ggx_whole_lobe.h"
+#include "prt/glossy/measured_lobe.h"
 #include "prt/receivers/surface.h"
 
 namespace relumine::prt {
@@ -23,7 +24,7 @@ struct MattLobe {
 };
 
 /// By Highlight, which is the number in files.
-using LobeList = std::tuple<MattLobe, GgxLobe, BlinnPhongLobe, GgxWholeLobe>;
+using LobeList = std::tuple<MattLobe, GgxLobe, BlinnPhongLobe, GgxWholeLobe, MeasuredLobe>;
 
 inline constexpr std::size_t NumHighlights = std::tuple_size_v<LobeList>;
 static_assert([]<std::size_t... I>(std::index_sequence<I...>) {

@@ -152,7 +152,8 @@ LobeCut LobeRefiner::run() {
 }
 
 double LobeRefiner::budget() const {
-    const double power = limits_.reference_power > 0.0 ? limits_.reference_power : power_;
+    const double power =
+        limits_.reference_power > 0.0 ? limits_.reference_power : power_ + limits_.added_power;
     return static_cast<double>(limits_.tolerance) * static_cast<double>(limits_.tolerance) * power;
 }
 

@@ -32,9 +32,14 @@ struct BlockToRefine {
 
     /// Of a lobe. Sheen has no narrow highlight.
     [[nodiscard]] Mirrors mirrors(GlossyLobe lobe) const {
-        return lobe == GlossyLobe::Coat                                          ? of_coat
-               : lobe == GlossyLobe::Sheen || lobe == GlossyLobe::DiffuseGrazing ? Mirrors()
-                                                                                 : of_base;
+        return lobe == GlossyLobe::Coat ? of_coat
+               : lobe == GlossyLobe::Sheen ||
+                       (lobe == GlossyLobe::DiffuseGrazing && !has_measured())
+                   ? Mirrors()
+                   : of_base;
+    }
+    [[nodiscard]] bool has_measured() const {
+        return surfaces.lanes[static_cast<std::size_t>(Highlight::Measured)] != 0;
     }
     /// Index of the block in the transfer.
     std::size_t block = 0;
@@ -62,6 +67,8 @@ struct RefinementLimits {
     std::uint32_t max_level = 10;
     /// The power that the tolerance is relative to; 0: the lobe's own power.
     double reference_power = 0.0;
+    /// Without it: power beside the lobe, of the Lambertian part of measured surfaces.
+    double added_power = 0.0;
 };
 
 /// Cuts the lobe of a block as precompute_glossy() says.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include <glm/common.hpp>
 
@@ -81,6 +82,12 @@ Surface reflecting(const MaterialPoint& point, GgxForm form) {
                 .highlight = Highlight::BlinnPhong,
                 .roughness_or_exponent = material.exponent};
     }
+    if (material.model == mesh::MaterialModel::Measured) {
+        Surface surface = measured_surface(material.measured);
+        surface.albedo = base;
+        surface.specular = material.specular;
+        return surface;
+    }
     const Highlight highlight = form == GgxForm::Whole ? Highlight::GgxWhole : Highlight::Ggx;
     float metallic = material.metallic, roughness = material.roughness;
     if (const auto& slot = material.metallic_roughness_texture) {
@@ -88,6 +95,8 @@ Surface reflecting(const MaterialPoint& point, GgxForm form) {
         roughness *= texel.g;
         metallic *= texel.b;
     }
+    roughness = point.textured(roughness, material.roughness_texture).r;
+    metallic = point.textured(metallic, material.metallic_texture).r;
     if (material.model == mesh::MaterialModel::SpecularGlossiness) {
         const glm::vec3 specular = point.textured(material.specular, material.specular_texture);
         const float left = 1.0f - std::max({specular.r, specular.g, specular.b});
@@ -144,6 +153,14 @@ glm::vec3 emission_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
     return point.textured(material.emission, material.emission_texture);
 }
 
+Surface measured_surface(std::shared_ptr<const mesh::BrdfTable> table) {
+    return {.albedo = glm::min(table->lambert(), 1.0f),
+            .specular = glm::vec3(1.0f),
+            .highlight = Highlight::Measured,
+            .roughness_or_exponent = table->roughness(),
+            .table = std::move(table)};
+}
+
 bool has_highlight(const mesh::Material& material) {
     if (material.model == mesh::MaterialModel::Phong)
         return material.specular != glm::vec3(0.0f);
@@ -156,7 +173,10 @@ mesh::Material material_of(const Surface& surface) {
         return material;
     material.base_color = surface.albedo;
     material.specular = surface.specular;
-    if (facts_of(surface.highlight).is_roughness) {
+    if (surface.highlight == Highlight::Measured) {
+        material.model = mesh::MaterialModel::Measured;
+        material.measured = surface.table;
+    } else if (facts_of(surface.highlight).is_roughness) {
         material.model = mesh::MaterialModel::SpecularGlossiness;
         material.roughness = surface.roughness_or_exponent;
     } else {
@@ -180,6 +200,10 @@ Surface without_highlight(Surface surface) {
     if (facts_of(surface.highlight).has_fresnel)
         surface.albedo =
             glm::min(surface.albedo + glm::max(surface.specular - DielectricF0, 0.0f), 1.0f);
+    if (surface.highlight == Highlight::Measured)
+        surface.albedo = glm::min(
+            surface.albedo + surface.specular * surface.table->rest_albedo(MeanCosine), 1.0f);
+    surface.table.reset();
     surface.highlight = Highlight::None;
     surface.metallic = 0.0f;
     return surface;

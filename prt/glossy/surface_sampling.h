@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -25,7 +26,8 @@ enum class GgxForm { Whole, Published };
 /// albedo = base (1 - metallic) and F0 = mix(0.04, base, metallic), specular-glossiness materials
 /// GGX with albedo = base, or base (1 - max F0) as published. A dielectric's own F0 takes the place
 /// of 0.04. The normal of a clear coat is the receiver's. Phong materials give Blinn-Phong
-/// where Ks > 0, Lambert otherwise. Unlit materials are black and emit their colour.
+/// where Ks > 0, Lambert otherwise. Measured materials have their table. Unlit materials are black
+/// and emit their colour.
 [[nodiscard]] Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
                                  const glm::vec2& barycentric, GgxForm form = GgxForm::Whole,
                                  const TextureView* view = nullptr);
@@ -34,6 +36,9 @@ enum class GgxForm { Whole, Published };
 /// no light.
 [[nodiscard]] glm::vec3 emission_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
                                     const glm::vec2& barycentric);
+
+/// Returns the surface of a measured BRDF.
+[[nodiscard]] Surface measured_surface(std::shared_ptr<const mesh::BrdfTable> table);
 
 /// Whether surfaces of a material have a highlight.
 [[nodiscard]] bool has_highlight(const mesh::Material& material);

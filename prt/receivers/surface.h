@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+
+#include "mesh/materials/brdf_table.h"
 
 namespace relumine::prt {
 
@@ -19,6 +22,8 @@ enum class Highlight : std::uint8_t {
     /// GGX that keeps its energy: what one scattering loses comes back, and the diffuse part has
     /// what the highlight leaves.
     GgxWhole,
+    /// A table of any BRDF: Surface::table.
+    Measured,
 };
 
 /// Reflection of one receiver. Colours may change after a precompute; the kind and width of the
@@ -26,11 +31,13 @@ enum class Highlight : std::uint8_t {
 struct Surface {
     /// Diffuse reflectance, 0..1.
     glm::vec3 albedo{1.0f};
-    /// GGX: F0, the reflectance at normal incidence. Blinn-Phong: Ks.
+    /// GGX: F0, the reflectance at normal incidence. Blinn-Phong: Ks. Measured: the factor on what
+    /// the table has beyond the albedo.
     glm::vec3 specular{0.0f};
     /// Gives `roughness_or_exponent` its meaning.
     Highlight highlight = Highlight::None;
     /// GGX: glTF's roughness, 0..1 (alpha is its square). Blinn-Phong: the exponent, >= 0.
+    /// Measured: the roughness of a GGX that is about as wide.
     float roughness_or_exponent = 1.0f;
     /// GgxWhole: the part of the surface that is bare metal, 0..1; specular is the mean of both.
     float metallic = 0.0f;
@@ -48,6 +55,8 @@ struct Surface {
     /// GgxWhole: the colour of sheen, under the coat, 0..1, and its roughness.
     glm::vec3 sheen{0.0f};
     float sheen_roughness = 0.0f;
+    /// Measured: never null.
+    std::shared_ptr<const mesh::BrdfTable> table = {};
 
     bool operator==(const Surface&) const = default;
 };

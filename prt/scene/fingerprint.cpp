@@ -8,6 +8,7 @@
 #include "mesh/opacity.h"
 #include "prt/arithmetic.h"
 #include "prt/receivers/surface.h"
+#include "prt/scene/brdf_tables.h"
 
 namespace relumine::prt {
 
@@ -95,6 +96,8 @@ Fingerprint fingerprint(const Scene& scene, std::optional<float> bounce_toleranc
         result.emplace_back("bounces", text(*bounce_tolerance));
         result.emplace_back("two-sided", settings.two_sided_bounces ? "yes" : "no");
     }
+    for (const auto& table : brdf_tables(scene))
+        result.emplace_back("BRDF", Hash().add(table->values()).text());
     if (settings.glossy_tolerance) {
         result.emplace_back("glossy tolerance", text(*settings.glossy_tolerance));
         result.emplace_back(

@@ -5,6 +5,7 @@
 
 #include "mesh/opacity.h"
 #include "prt/glossy/surface_sampling.h"
+#include "prt/scene/brdf_tables.h"
 #include "prt/scene/json_members.h"
 #include "prt/scene/section_group.h"
 
@@ -47,6 +48,9 @@ std::vector<std::optional<TextureSlot> Material::*> color_slots(const Material& 
         slots.push_back(&Material::metallic_roughness_texture);
     if (material.model == mesh::MaterialModel::SpecularGlossiness || material.specular_texture)
         slots.push_back(&Material::specular_texture);
+    for (const auto slot : {&Material::roughness_texture, &Material::metallic_texture})
+        if (material.*slot)
+            slots.push_back(slot);
     if (material.emission != glm::vec3(0.0f))
         slots.push_back(&Material::emission_texture);
     if (material.transmission > 0.0f)
@@ -172,9 +176,9 @@ void read_alpha(const Json& json, std::size_t num_textures, Material& material) 
     material.alpha_texture = slot_of(json.at("alpha_texture"), num_textures);
 }
 
-Material material_of(const Json& json, std::size_t num_textures) {
+Material material_of(const Json& json, std::size_t num_textures, const BrdfTables& tables) {
     Material material;
-    material.model = static_cast<mesh::MaterialModel>(below(json.at("model"), 4));
+    material.model = static_cast<mesh::MaterialModel>(below(json.at("model"), 5));
     material.base_color = color(json.at("base"));
     material.metallic = fraction(json.at("metallic"));
     material.specular = color(json.at("specular"));
@@ -201,11 +205,17 @@ Material material_of(const Json& json, std::size_t num_textures) {
         for (int channel = 0; channel < 3; ++channel)
             material.specular_tint[channel] =
                 within(tint->values().at(static_cast<std::size_t>(channel)), 1e6f);
+    if (material.model == mesh::MaterialModel::Measured)
+        material.measured =
+            tables.at(below(json.at("brdf"), static_cast<std::uint32_t>(tables.size())));
     read_alpha(json, num_textures, material);
     for (const auto slot : color_slots(material))
         material.*slot = slot_of(json.at(name_of(slot)), num_textures);
-    if (const Json* own = json.find(name_of(&Material::specular_texture))) // of Phong, too
-        material.specular_texture = slot_of(*own, num_textures);
+    // Of Phong, and of MTL.
+    for (const auto slot :
+         {&Material::specular_texture, &Material::roughness_texture, &Material::metallic_texture})
+        if (const Json* own = json.find(name_of(slot)))
+            material.*slot = slot_of(*own, num_textures);
     for (const auto slot : RareSlots)
         if (const Json* own = json.find(name_of(slot)))
             material.*slot = slot_of(*own, num_textures);
@@ -318,6 +328,19 @@ Json json_of(const Material& material, bool is_kept, bool has_shape, const Store
     return json;
 }
 
+/// Tells measured materials the numbers of their tables.
+void add_measured(const std::vector<Material>& materials, const BrdfTables& tables, Json& json) {
+    Json result = Json::Array{};
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        Json own = json.values()[i];
+        if (materials[i].measured)
+            own.set("brdf", std::find(tables.begin(), tables.end(), materials[i].measured) -
+                                tables.begin());
+        result.push_back(std::move(own));
+    }
+    json = std::move(result);
+}
+
 /// What gives a textured mesh its colours between the vertices, and tells rays what they may pass:
 /// materials, the image files as they were, materials of triangles, uvs of corners. Other meshes
 /// add nothing.
@@ -342,6 +365,7 @@ void add_materials(NewSections& sections, const Scene& scene) {
     for (const Material& material : mesh.materials)
         materials.push_back(json_of(material, is_kept(material), shows && mirrors(scene, material),
                                     textures.stored));
+    add_measured(mesh.materials, brdf_tables(scene), materials);
     Json json = Json::Object{};
     textures.describe(json);
     json.set("materials", std::move(materials));
@@ -422,7 +446,7 @@ void read_materials(const SectionReader& reader, Scene& scene) {
     try {
         read_textures(reader, json, mesh);
         for (const Json& material : json.at("materials").values())
-            mesh.materials.push_back(material_of(material, mesh.textures.size()));
+            mesh.materials.push_back(material_of(material, mesh.textures.size(), scene.brdfs));
     } catch (const std::exception&) {
         reader.fail("materials", "JSON with materials and their images");
     }

@@ -7,6 +7,7 @@
 #include "files/one_of_each.h"
 #include "prt/glossy/lobe_list.h"
 #include "prt/scene/bounce_sections.h"
+#include "prt/scene/brdf_tables.h"
 #include "prt/scene/json_members.h"
 #include "prt/scene/section_group.h"
 #include "prt/visibility/ray_scene.h"
@@ -151,6 +152,32 @@ void add_surfaces(NewSections& sections, const std::vector<Surface>& surfaces) {
     });
 }
 
+/// The numbers of the tables of measured surfaces, counted from 1; 0 for others.
+void add_table_numbers(NewSections& sections, const Scene& scene) {
+    const BrdfTables tables = brdf_tables(scene);
+    std::vector<std::uint32_t> numbers;
+    for (const Surface& surface : scene.receivers.surfaces)
+        numbers.push_back(
+            surface.table
+                ? static_cast<std::uint32_t>(
+                      std::find(tables.begin(), tables.end(), surface.table) - tables.begin()) +
+                      1
+                : 0);
+    if (std::any_of(numbers.begin(), numbers.end(), [](auto number) { return number != 0; }))
+        sections["r_brdf"] = bytes_of(numbers);
+}
+
+void read_table_numbers(const SectionReader& reader, const BrdfTables& tables,
+                        std::vector<Surface>& surfaces) {
+    const auto numbers = reader.elements<std::uint32_t>("r_brdf", surfaces.size(), true);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if (numbers[i] > tables.size())
+            reader.fail("r_brdf", "numbers of tables");
+        if (numbers[i] != 0)
+            surfaces[i].table = tables[numbers[i] - 1];
+    }
+}
+
 std::vector<Surface> read_surfaces(const SectionReader& reader, std::size_t count) {
     if (!reader.has("r_albedo"))
         return {};
@@ -231,6 +258,8 @@ void check_surfaces(const SceneCheck& check, const std::vector<Surface>& surface
         [](const Surface& s) { return s.emission; });
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const LobeFacts& lobe = facts_of(surfaces[i].highlight);
+        check.that(!lobe.is_table || surfaces[i].table != nullptr, "a table of each measured BRDF",
+                   fmt::format("element {} without", i));
         const float shape = surfaces[i].roughness_or_exponent;
         if (!(shape >= 0.0f && shape <= lobe.largest_shape + RangeSlack))
             check.fail(fmt::format("{} of 0 to {}", lobe.shape.empty() ? "roughness" : lobe.shape,
@@ -270,6 +299,7 @@ void add_receivers(NewSections& sections, const Scene& scene) {
         sections["r_to_eye"] = SectionContent::view(receivers.to_eye);
     if (!receivers.surfaces.empty())
         add_surfaces(sections, receivers.surfaces);
+    add_table_numbers(sections, scene);
 }
 
 void read_points_in_space(const SectionReader& reader, std::size_t num_own, Receivers& receivers) {
@@ -327,6 +357,7 @@ void read_receivers(const SectionReader& reader, Scene& scene) {
     }
     receivers.to_eye = reader.elements<glm::vec3>("r_to_eye", receivers.size(), true);
     receivers.surfaces = read_surfaces(reader, receivers.size());
+    read_table_numbers(reader, scene.brdfs, receivers.surfaces);
 }
 
 } // namespace

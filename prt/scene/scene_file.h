@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mesh/triangle_mesh.h"
 #include "prt/bounces/bounce_matrix.h"
@@ -64,6 +66,8 @@ struct Scene {
     std::optional<BounceMatrix> bounces = {};
     /// What gives light in the scene itself.
     Lamps lamps = {};
+    /// Tables of BRDFs by their number in the file; load_scene() fills them in.
+    std::vector<std::shared_ptr<const mesh::BrdfTable>> brdfs = {};
 
     [[nodiscard]] const mesh::TriangleMesh& blocking_mesh() const {
         return blockers ? *blockers : mesh;

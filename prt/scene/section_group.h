@@ -25,13 +25,13 @@ struct SectionGroup {
     bool is_light = false;
 };
 
-extern const SectionGroup SettingsSections, MeshSections, MaterialSections, ReceiverSections,
-    LampSections, ClusterSections, CountSections, GlossySections, BounceSections;
+extern const SectionGroup SettingsSections, MeshSections, BrdfSections, MaterialSections,
+    ReceiverSections, LampSections, ClusterSections, CountSections, GlossySections, BounceSections;
 
 /// The list, in the order in which groups are read and checked.
-inline const std::array AllSections = {&SettingsSections, &MeshSections,   &MaterialSections,
-                                       &ReceiverSections, &LampSections,   &ClusterSections,
-                                       &CountSections,    &GlossySections, &BounceSections};
+inline const std::array AllSections = {
+    &SettingsSections, &MeshSections,    &BrdfSections,  &MaterialSections, &ReceiverSections,
+    &LampSections,     &ClusterSections, &CountSections, &GlossySections,   &BounceSections};
 
 /// Whether rays can start at a place of the scene, lifted by its bias.
 [[nodiscard]] bool can_start_rays(const Scene& scene, const glm::vec3& place);

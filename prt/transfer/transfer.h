@@ -42,7 +42,8 @@ struct Transfer {
 };
 
 /// Copies the receivers' surfaces into the transfer, and for a glossy part their directions to the
-/// eye.
+/// eye. Receivers with an eye and highlights of which nothing is stored get a glossy part without
+/// cells.
 void set_surfaces(Transfer& transfer, const Receivers& receivers);
 
 } // namespace relumine::prt

@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 
 #include "arrays.h"
+#include "brdf.h"
 #include "files/parallel.h"
 #include "options.h"
 #include "relumine/relumine.h"
@@ -46,6 +47,7 @@ PYBIND11_MODULE(_core, module) {
     bind_arrays(module);
     bind_run(module);
     bind_options(module);
+    bind_brdfs(module);
     bind_scenes(module);
     bind_environments(module);
     bind_lights(module);

@@ -8,6 +8,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "arrays.h"
+#include "brdf.h"
 #include "mesh/normals.h"
 #include "options.h"
 #include "relumine/material_report.h"
@@ -145,6 +146,27 @@ std::function<void(Stage, double)> joined(const std::function<void(double)>& on_
     };
 }
 
+/// Texts as --material has them, and tables with the names of their groups.
+std::vector<SurfaceMaterial> materials_of(const py::object& given) {
+    std::vector<SurfaceMaterial> result;
+    for (const py::handle each : given) {
+        std::vector<SurfaceMaterial> one;
+        if (py::isinstance<py::tuple>(each)) {
+            const auto [group, brdf] = each.cast<std::pair<std::string, std::shared_ptr<Brdf>>>();
+            one.push_back({.group = group,
+                           .highlight = prt::Highlight::Measured,
+                           .table = brdf->table,
+                           .file = {}});
+        } else {
+            py::dict text;
+            text["material"] = each;
+            take({material_row(one)}, text);
+        }
+        result.insert(result.end(), one.begin(), one.end());
+    }
+    return result;
+}
+
 /// The options of a precompute with the surfaces of a mesh. Receivers that are an array are points.
 PrecomputeOptions work_options(const Mesh& mesh, const py::dict& all_given) {
     PrecomputeOptions options;
@@ -153,10 +175,10 @@ PrecomputeOptions work_options(const Mesh& mesh, const py::dict& all_given) {
         options.receivers = Points{.positions = vec3s(receivers.cast<py::buffer>())};
         given.attr("pop")("receivers");
     }
-    std::vector<SurfaceMaterial> materials;
+    const std::vector<SurfaceMaterial> materials =
+        materials_of(given.attr("pop")("material", py::list()));
     std::string output;
     OptionTable table = options_of(options);
-    table.push_back(material_row(materials));
     table.push_back(row("--output", output, "the .prt file to write"));
     take(table, given);
     check(options);

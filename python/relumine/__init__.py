@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
 
 from . import _arrays, _core
+from ._brdf import Brdf
 from ._environment import Environment
 from ._files import FileError
 from ._harmonics import irradiance
@@ -42,7 +43,7 @@ from ._scene import Blinn, Ggx, Lambert, Scene, join, plan, precompute, precompu
 
 __version__: str = _core.__version__
 __all__ = [
-    "FACES", "Blinn", "Bounces", "Emit", "Environment", "FileError", "Frame", "Gain", "Ggx",
+    "FACES", "Blinn", "Bounces", "Brdf", "Emit", "Environment", "FileError", "Frame", "Gain", "Ggx",
     "Image", "Lambert", "Layer", "LightList", "Mesh", "Picture",
     "RelightTimes", "Relighter", "RelumineWarning", "Scene", "Share", "Update",
     "Verification", "irradiance", "join", "load_layers", "plan", "precompute", "precompute_part", "save_layers",

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import Floats, Indices, expect, floats, view, whole
+from ._brdf import Brdf
 from ._core import Scene as CoreScene
 from ._files import Path, errors
 from ._mesh import Mesh, warn
@@ -41,19 +42,22 @@ class Lambert(NamedTuple):
     albedo: Optional[Color] = None
 
 
-Material = Union[Ggx, Blinn, Lambert]
+Material = Union[Ggx, Blinn, Lambert, Brdf]
 
 
-def _materials(material: Union[Material, Mapping[str, Material], None]) -> List[str]:
-    """Materials as --material has them."""
+def _materials(material: Union[Material, Mapping[str, Material], None]) -> List[Any]:
+    """Materials as --material has them, or a group's name and its table."""
     if material is None:
         return []
-    if isinstance(material, (Ggx, Blinn, Lambert)):
+    if isinstance(material, (Ggx, Blinn, Lambert, Brdf)):
         material = {"": material}
-    result: List[str] = []
+    result: List[Any] = []
     for group, surface in material.items():
+        if isinstance(surface, Brdf):
+            result.append((group, surface._core))
+            continue
         if not isinstance(surface, (Ggx, Blinn, Lambert)):
-            raise ValueError(f"material: expected Ggx, Blinn or Lambert, got {surface!r}")
+            raise ValueError(f"material: expected Ggx, Blinn, Lambert or Brdf, got {surface!r}")
         values = ",".join(
             f"{name}={','.join(repr(float(each)) for each in np.atleast_1d(value))}"
             for name, value in surface._asdict().items()
@@ -110,7 +114,7 @@ def precompute(
                keeps it as it is
     view       the eye of highlights and the camera of pixels: "auto", (eye, target) or
                (eye, target, fov)
-    material   Ggx, Blinn or Lambert in place of the mesh's materials, or {group: material};
+    material   Ggx, Blinn, Lambert or Brdf in place of the mesh's materials, or {group: material};
                "floor" is the added floor
     ggx        "whole": highlights of GGX keep their energy; "published": glTF's formula
     highlights "stored": exact and free of noise; "traced": rays find them when pixels are lit; None:

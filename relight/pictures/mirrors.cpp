@@ -31,7 +31,8 @@ bool are_near(const glm::vec3& a, const glm::vec3& b, float alpha) {
 /// Whether two points of a pixel mirror nearly the same.
 bool are_alike(const Mirror& a, const Mirror& b) {
     const prt::Surface &one = a.surface, &other = b.surface;
-    return one.highlight == other.highlight && prt::has_coat(one) == prt::has_coat(other) &&
+    return one.highlight == other.highlight && one.table == other.table &&
+           prt::has_coat(one) == prt::has_coat(other) &&
            prt::has_sheen(one) == prt::has_sheen(other) &&
            are_near(one.roughness_or_exponent, other.roughness_or_exponent) &&
            are_near(one.coat_roughness, other.coat_roughness) &&

@@ -54,16 +54,28 @@ float density(const glm::vec3& half, float n_v, float alpha) {
     return a2 / (std::numbers::pi_v<float> * d * d) * 0.5f / mask;
 }
 
-/// Sums of weights and of weighted radiance.
+/// Sums of weights and of weighted radiance, by colour.
 struct Weighted {
-    float weight = 0.0f;
+    glm::vec3 weight{0.0f};
     glm::vec3 sum{0.0f};
-    void add(float w, const glm::vec3& radiance) {
+    void add(const glm::vec3& w, const glm::vec3& radiance) {
         weight += w;
         sum += w * radiance;
     }
-    [[nodiscard]] glm::vec3 mean() const { return weight > 0.0f ? sum / weight : glm::vec3(0.0f); }
+    [[nodiscard]] glm::vec3 mean() const {
+        glm::vec3 result(0.0f);
+        for (int color = 0; color < 3; ++color)
+            if (weight[color] > 0.0f)
+                result[color] = sum[color] / weight[color];
+        return result;
+    }
 };
+
+/// What a highlight sends, by colour; of a measured one each colour has its own lobe.
+glm::vec3 highlight_of(const prt::Surface& surface, const prt::Lobes<float>& lobes) {
+    return surface.table ? glm::vec3(lobes.specular, lobes.specular_grazing, lobes.diffuse_grazing)
+                         : glm::vec3(lobes.specular);
+}
 
 } // namespace
 
@@ -205,8 +217,8 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
     Weighted all, grazing, coat, sheen;
     send(fan, surfaces, [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
         const prt::Lobes<float> lobe = lobes(w);
-        all.add(lobe.specular / dense, radiance);
-        grazing.add(lobe.specular_grazing / dense, radiance);
+        all.add(highlight_of(surface, lobe) / dense, radiance);
+        grazing.add(glm::vec3(lobe.specular_grazing / dense), radiance);
     });
     fan.num_rays = (num_rays + 1) / 2;
     if (prt::has_coat(surface) && n_v.coat > 0.0f) {
@@ -214,19 +226,19 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
         if (surface.coat_normal != glm::vec3(0.0f))
             fan.normal = surface.coat_normal;
         send(fan, surfaces, [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
-            coat.add(lobes(w).coat / dense, radiance);
+            coat.add(glm::vec3(lobes(w).coat / dense), radiance);
         });
     }
     if (prt::has_sheen(surface)) {
         fan.alpha = 0.0f;
         fan.normal = point.normal;
         send(fan, surfaces, [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
-            sheen.add(lobes(w).sheen / dense, radiance);
+            sheen.add(glm::vec3(lobes(w).sheen / dense), radiance);
         });
     }
     return {.all = all.mean(),
             .grazing = grazing.mean(),
-            .whole = all.weight / static_cast<float>(num_rays),
+            .whole = all.weight.r / static_cast<float>(num_rays),
             .coat = coat.mean(),
             .sheen = sheen.mean()};
 }
@@ -235,6 +247,10 @@ prt::Lobes<glm::vec3> lobes_of(const prt::Surface& surface, const MirroredLight&
                                const prt::EyeCosines& n_v) {
     if (n_v.base <= 0.0f)
         return {};
+    if (surface.table) {
+        const glm::vec3 colors = surface.table->rest_albedo(n_v.base) * light.all;
+        return {.diffuse_grazing = colors, .specular = colors, .specular_grazing = colors};
+    }
     const bool is_known = prt::facts_of(surface.highlight).is_roughness;
     const prt::GgxAlbedo albedo = is_known
                                       ? prt::ggx_albedo(surface.roughness_or_exponent, n_v.base)

@@ -42,8 +42,9 @@ struct MirroredLight {
     glm::vec3 coat{0.0f}, sheen{0.0f};
 };
 
-/// Returns the light through all lobes but the diffuse ones. Exact for GGX, coats and sheen under a
-/// sky of one radiance: what their lobes send of it is known.
+/// Returns the light through all lobes but the diffuse ones. Exact for GGX, measured BRDFs, coats
+/// and sheen under a sky of one radiance: what their lobes send of it is known. A measured BRDF has
+/// its blue in the place of Dc.
 [[nodiscard]] prt::Lobes<glm::vec3>
 lobes_of(const prt::Surface& surface, const MirroredLight& light, const prt::EyeCosines& n_v);
 

@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 87> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 89> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -93,6 +93,8 @@ inline constexpr std::array<std::string_view, 87> SectionNames = {"settings",
                                                                   "block_second_uvs",
                                                                   "block_corner_uvs",
                                                                   "layout_layers",
-                                                                  "r_veils"};
+                                                                  "r_veils",
+                                                                  "brdf_tables",
+                                                                  "r_brdf"};
 
 } // namespace relumine::fuzz

@@ -110,6 +110,41 @@ def test_materials(arrays, sky):
         relumine.precompute(*arrays, material={"hat": relumine.Lambert()})
 
 
+def test_any_brdf(arrays, tmp_path):
+    """A Lambertian function is a Lambertian surface; what no surface does is refused."""
+    view = ((0, 1, 5), (0, 0, 0), 40)
+    white = relumine.Environment(np.ones((6, 8, 8, 3)))
+
+    def radiance(material):
+        scene = relumine.precompute(*arrays, tolerance=0.1, material=material, view=view)
+        relighter = relumine.Relighter(scene)
+        relighter.set_environment(white)
+        return relighter.radiance.copy()
+
+    matt = relumine.Brdf.of(lambda light, eye: np.full((len(light), 3), (0.5, 0.25, 0.1)) / np.pi)
+    expected = radiance(relumine.Lambert((0.5, 0.25, 0.1)))
+    assert radiance({"": matt}) == pytest.approx(expected, abs=1e-5)
+    values = np.empty((3, 90, 90, 90))
+    values[:] = np.reshape((0.5, 0.25, 0.1), (3, 1, 1, 1)) / np.pi
+    assert radiance(relumine.Brdf.table(values)) == pytest.approx(expected, abs=1e-5)
+    with pytest.raises(ValueError, match="values"):
+        relumine.Brdf.table(values[:2])
+    values[1, 0, 0, 0] = np.nan
+    with pytest.raises(ValueError, match="0 or more, got nan of green"):
+        relumine.Brdf.table(values)
+    for function, wrong in (
+        (lambda light, eye: np.ones(len(light)), "reflects at most what arrives, got 3.14"),
+        (lambda light, eye: 0.3 * light[:, 2], "reciprocal"),
+        (lambda light, eye: -light[:, 2], "0 or more"),
+        (lambda light, eye: np.ones(3), r"function: expected numbers of shape \(\d+, 3\)"),
+    ):
+        with pytest.raises(ValueError, match=wrong):
+            relumine.Brdf.of(function)
+    (tmp_path / "bad.binary").write_bytes(b"MERL")
+    with pytest.raises(relumine.FileError, match="expected a table of a BRDF, got 4 bytes"):
+        relumine.Brdf.load(tmp_path / "bad.binary")
+
+
 def test_pictures(relighter):
     picture = relighter.picture(size=(80, 60), background="none", camera=(30, 25))
     assert picture.shape == (60, 80, 4) and picture.dtype == np.float32

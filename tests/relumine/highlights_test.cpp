@@ -62,6 +62,17 @@ TEST(Highlights, AWhiteMetalIsWhiteInAFurnace) {
     }
 }
 
+/// GGX without its Lambertian part as a table, of another strength in each colour.
+std::shared_ptr<const mesh::BrdfTable> ggx_table(float roughness) {
+    return mesh::brdf_of([roughness](const mesh::BrdfDirections& at) {
+        const glm::vec3 h = glm::normalize(at.to_light + at.to_eye);
+        const prt::LobeGeometry geometry{at.to_light.z, at.to_eye.z, h.x * h.x + h.y * h.y};
+        return glm::vec3(0.25f, 0.1f, 0.05f) + glm::vec3(0.25f, 0.5f, 0.75f) *
+                                                  prt::GgxLobe::specular(roughness, geometry) /
+                                                  at.to_light.z / 2.0f;
+    });
+}
+
 /// Mean absolute difference over the mean, where both pictures show the sphere whole.
 double relative_difference(const Picture& a, const Picture& b) {
     double sum = 0.0, difference = 0.0;
@@ -73,6 +84,39 @@ double relative_difference(const Picture& a, const Picture& b) {
             }
     EXPECT_GT(sum, 1.0);
     return difference / sum;
+}
+
+TEST(Highlights, ATableOfAFormulaLooksLikeTheFormula) {
+    const cubemap::CubeMap sky = data_gen::two_soft_boxes(64);
+    const mesh::TriangleMesh mesh = scenes::icosphere(5, 0.5f, glm::vec3(0.0f));
+    const auto table = ggx_table(0.4f);
+    PrecomputeOptions pixels{.receivers = Pixels{.width = 48, .height = 48, .samples_per_axis = 2}};
+    pixels.view = View{.camera = Front};
+    pixels.highlights = Highlights::Stored;
+    pixels.surface = everywhere(prt::measured_surface(table));
+    const auto picture_of = [&](const LitScene& lit) {
+        return Painter(lit, {.background = NothingBehind{}}).draw(lit.lighting());
+    };
+    const Picture measured = picture_of(lit_under(mesh, sky, pixels));
+    // One scattering of F0 and a Lambertian part beside it: Blinn-Phong has such a sum, so the
+    // parts are drawn each by itself.
+    const auto part = [&](const prt::Surface& surface) {
+        pixels.surface = everywhere(surface);
+        return picture_of(lit_under(mesh, sky, pixels));
+    };
+    Picture expected = part({.albedo = std::numbers::pi_v<float> * glm::vec3(0.25f, 0.1f, 0.05f)});
+    const Picture highlight = part({.albedo = glm::vec3(0.0f),
+                                    .specular = glm::vec3(1.0f),
+                                    .highlight = prt::Highlight::Ggx,
+                                    .roughness_or_exponent = 0.4f});
+    for (std::size_t i = 0; i < expected.pixels.size(); ++i)
+        expected.pixels[i] += glm::vec3(0.125f, 0.25f, 0.375f) * highlight.pixels[i];
+    EXPECT_LT(relative_difference(measured, expected), 0.02);
+
+    PrecomputeOptions vertices;
+    vertices.surface = pixels.surface = everywhere(prt::measured_surface(table));
+    const Picture traced = drawn(lit_under(mesh, sky, vertices), {.highlight_rays = 256});
+    EXPECT_LT(relative_difference(traced, expected), 0.04);
 }
 
 TEST(Highlights, PixelsTraceWhatIsNotStored) {

@@ -254,16 +254,21 @@ TEST_F(MtlTest, AlphaOfAnImageOfColours) {
 
 TEST_F(MtlTest, PhysicallyBasedExtension) {
     static_cast<void>(write("r.png", png(1, 1, {{64, 64, 64}})));
+    static_cast<void>(write("m.png", png(1, 1, {{128, 128, 128}})));
     const TriangleMesh mesh =
-        with_mtl("newmtl m\nKd 0.5\nPr 0.5\nPm 0.25\nPc 0.75\nPcr 0.125\nPs 0.25\nmap_Pr r.png\n");
+        with_mtl("newmtl m\nKd 0.5\nPr 0.5\nPm 0\nPc 0.75\nPcr 0.125\nPs 0.25\n"
+                 "map_Pr r.png\nmap_Pm m.png\n");
     const Material& m = mesh.materials[0];
     EXPECT_EQ(m.model, MaterialModel::MetallicRoughness);
     EXPECT_EQ(m.roughness, 0.5f);
-    EXPECT_EQ(m.metallic, 0.25f);
+    EXPECT_EQ(m.metallic, 1.0f) << "the map alone";
     EXPECT_EQ(m.coat, 0.75f);
     EXPECT_EQ(m.coat_roughness, 0.125f);
     EXPECT_EQ(m.sheen, glm::vec3(0.25f));
-    EXPECT_THAT(mesh.warnings, ElementsAre("the materials have map_Pr, which is not read"));
+    EXPECT_EQ(mesh.textures[m.roughness_texture->texture].texels[0], (Rgb8{64, 64, 64}));
+    EXPECT_EQ(mesh.textures[m.metallic_texture->texture].texels[0], (Rgb8{128, 128, 128}));
+    EXPECT_FALSE(m.roughness_texture->is_srgb);
+    EXPECT_THAT(mesh.warnings, ElementsAre());
 }
 
 /// Every slot takes images of 1 pixel and of 16 bits, and goes without what cannot be read.
@@ -273,7 +278,8 @@ TEST_F(MtlTest, ImagesOfAllSlots) {
     std::string huge = four_colors();
     huge[16] = 0, huge[17] = 1; // 65538 pixels wide
     static_cast<void>(write("huge.png", huge));
-    for (const std::string statement : {"map_Kd", "map_Ks", "map_Ke", "map_d", "norm"}) {
+    for (const std::string statement :
+         {"map_Kd", "map_Ks", "map_Ke", "map_d", "map_Pr", "map_Pm", "norm"}) {
         for (const std::string image : {"one.png", "deep.png"}) {
             const TriangleMesh mesh = with_mtl("newmtl m\n" + statement + " " + image + "\n");
             ASSERT_EQ(mesh.textures.size(), 1u) << statement << image;

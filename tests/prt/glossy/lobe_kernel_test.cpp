@@ -13,6 +13,16 @@
 namespace relumine::prt {
 namespace {
 
+/// The table of GGX with a colour of its own.
+std::shared_ptr<const mesh::BrdfTable> ggx_table(float roughness) {
+    return mesh::brdf_of([roughness](const mesh::BrdfDirections& at) {
+        const glm::vec3 h = glm::normalize(at.to_light + at.to_eye);
+        const LobeGeometry geometry{at.to_light.z, at.to_eye.z, h.x * h.x + h.y * h.y};
+        return glm::vec3(0.5f, 1.0f, 0.25f) * GgxLobe::specular(roughness, geometry) /
+               at.to_light.z;
+    });
+}
+
 /// Receivers of all kinds, some with the eye below the horizon.
 struct RandomBlock {
     std::array<Surface, BlockSize> surfaces;
@@ -20,6 +30,7 @@ struct RandomBlock {
     BlockSurfaces block;
 
     explicit RandomBlock(std::uint32_t seed) {
+        static const auto rough = ggx_table(0.8f), smooth = ggx_table(0.3f);
         std::mt19937 random(seed);
         std::uniform_real_distribution<float> unit(0.0f, 1.0f);
         for (std::size_t i = 0; i < BlockSize; ++i) {
@@ -34,6 +45,8 @@ struct RandomBlock {
                            .coat_roughness = unit(random),
                            .sheen = glm::vec3(unit(random) < 0.5f ? 0.0f : 1.0f),
                            .sheen_roughness = unit(random)};
+            if (highlight == Highlight::Measured)
+                surfaces[i].table = i % 3 == 0 ? rough : smooth;
             if (i % 2 == 0)
                 surfaces[i].coat_normal = scenes::random_direction(random);
             block.set(i, surfaces[i], normals[i], to_eye[i]);

@@ -9,6 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/materials/brdf_table.h"
+#include "prt/glossy/lobe_list.h"
+#include "prt/glossy/surface_sampling.h"
 #include "prt/precompute.h"
 #include "prt/receivers/pixel_receivers.h"
 #include "prt/receivers/point_receivers.h"
@@ -158,6 +161,35 @@ TEST_F(ReceiverSectionsTest, PixelsThatSeeThroughSurfacesComeBack) {
     refused(good, "r_veils", 0, std::numeric_limits<float>::quiet_NaN());
 }
 
+TEST_F(ReceiverSectionsTest, TablesOfBrdfsComeBack) {
+    Scene scene = pixel_scene();
+    add_surfaces(scene);
+    const std::array<std::shared_ptr<const mesh::BrdfTable>, 2> tables = {
+        mesh::brdf_of([](const auto&) { return glm::vec3(0.1f); }),
+        mesh::brdf_of([](const auto& at) {
+            return glm::vec3(0.1f + 0.1f * at.to_light.z * at.to_eye.z, 0.1f, 0.2f);
+        })};
+    for (std::size_t i = 0; i < 4; ++i)
+        scene.receivers.surfaces[i] = measured_surface(tables[i % 2]);
+    save_scene(file_, scene);
+    const Scene loaded = load_scene(file_);
+    ASSERT_EQ(loaded.brdfs.size(), 2u);
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Surface& surface = loaded.receivers.surfaces[i];
+        ASSERT_EQ(surface.table, loaded.brdfs[i % 2]);
+        EXPECT_EQ(surface.albedo, scene.receivers.surfaces[i].albedo);
+        const std::vector<float> values = surface.table->values(), own = tables[i % 2]->values();
+        for (std::size_t k = 0; k < values.size(); k += 991)
+            EXPECT_NEAR(values[k], own[k], 1e-6f);
+    }
+    EXPECT_EQ(loaded.receivers.surfaces[4].table, nullptr);
+    const Sections good = read_sections(file_);
+    refused(good, "r_brdf", 1, std::uint32_t{3});
+    refused(good, "a table of each measured BRDF", [](Sections& s) { s.erase("r_brdf"); });
+    refused(good, "brdf_tables", 7, -1.0f);
+    refused(good, "brdf_tables", [](Sections& s) { s.at("brdf_tables").resize(400); });
+}
+
 TEST_F(ReceiverSectionsTest, TexelsComeBack) {
     Scene scene = texel_scene();
     expect_round_trip(scene);
@@ -305,7 +337,7 @@ TEST_F(ReceiverSectionsTest, NumbersOutOfRange) {
     refused(good, "r_barycentric", 3, -0.1f);
     refused(good, "r_barycentric", 3, 1.5f);
     refused(good, "r_triangles", 3, static_cast<std::uint32_t>(scene.mesh.num_triangles()));
-    refused(good, "r_highlight", 3, std::uint8_t{4});
+    refused(good, "r_highlight", 3, std::uint8_t{NumHighlights});
     // A sample more than there are receivers, and bits behind the last sample.
     refused(good, "'r_positions'", [](Sections& s) {
         for (std::byte& byte : s.at("layout_mask"))
