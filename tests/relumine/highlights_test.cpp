@@ -68,8 +68,8 @@ std::shared_ptr<const mesh::BrdfTable> ggx_table(float roughness) {
         const glm::vec3 h = glm::normalize(at.to_light + at.to_eye);
         const prt::LobeGeometry geometry{at.to_light.z, at.to_eye.z, h.x * h.x + h.y * h.y};
         return glm::vec3(0.25f, 0.1f, 0.05f) + glm::vec3(0.25f, 0.5f, 0.75f) *
-                                                  prt::GgxLobe::specular(roughness, geometry) /
-                                                  at.to_light.z / 2.0f;
+                                                   prt::GgxLobe::specular(roughness, geometry) /
+                                                   at.to_light.z / 2.0f;
     });
 }
 
