@@ -50,6 +50,16 @@ void BM_Bin(benchmark::State& state) {
 }
 BENCHMARK(BM_Bin)->Arg(256)->Arg(1024)->Unit(benchmark::kMillisecond)->UseRealTime();
 
+/// By an angle about no axis of the faces.
+void BM_Turn(benchmark::State& state) {
+    const auto resolution = static_cast<std::uint32_t>(state.range(0));
+    const cubemap::CubeMap map(is_tiny ? 64 : resolution, glm::vec3(1.0f));
+    const glm::dmat3 turn = cubemap::turn_about_x(20.0) * cubemap::turn_about_y(33.0);
+    for (auto _ : state)
+        benchmark::DoNotOptimize(cubemap::turned(map, turn));
+}
+BENCHMARK(BM_Turn)->Arg(256)->Arg(512)->Arg(1024)->Unit(benchmark::kMillisecond)->UseRealTime();
+
 void BM_Relight(benchmark::State& state) {
     relight::Relighter relighter(Fixture::instance().transfer);
     const cubemap::CubeMap map = data_gen::two_soft_boxes(64);
