@@ -20,7 +20,8 @@
     X(exr)                                                                                         \
     X(gltf)                                                                                        \
     X(hdr)                                                                                         \
-    X(layers) X(lights) X(mtl) X(obj) X(off) X(ply) X(prt) X(requests) X(sections) X(stl) X(texture)
+    X(layers)                                                                                      \
+    X(lights) X(mtl) X(obj) X(off) X(ply) X(prt) X(requests) X(sections) X(stl) X(texture) X(zstd)
 
 #define RELUMINE_DECLARE(name)                                                                     \
     extern "C" int relumine_fuzz_##name(const std::uint8_t* data, std::size_t size);
