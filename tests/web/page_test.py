@@ -1,4 +1,4 @@
-"""The page of `relumine export web` in a real browser: page_test.py PROGRAM SCENE.prt FOLDER.
+"""The page of `relumine export web` in a real browser: page_test.py PROGRAM SCENE.prt FOLDER [TEST...].
 
 FOLDER gets the exported pages and screenshots.
 """
@@ -14,6 +14,7 @@ import unittest
 from browser import Browser, QuietHandler, serve
 
 program, scene, folder = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
+names = sys.argv[4:]
 RADIANCE = "await settled(); return btoa(new Uint8Array(v.radiance.buffer).reduce((t, b) => t + String.fromCharCode(b), ''));"
 LIGHT_RESOLUTION = 128
 
@@ -115,4 +116,4 @@ class Light(Exported):
 
 if __name__ == "__main__":
     folder.mkdir(parents=True, exist_ok=True)
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    unittest.main(argv=[sys.argv[0], *names], verbosity=2)
