@@ -175,6 +175,13 @@ cubemap::CubeMap cube_map_of(std::uint32_t width, std::uint32_t height, std::uin
         image, resolution != 0 ? resolution : std::max((width + 2) / 4, 1u));
 }
 
+void write_map(const cubemap::CubeMap& map, float* rgb, std::size_t count) {
+    require(rgb, "rgb");
+    require_count(count, 3 * map.texels.size());
+    for (const glm::vec3& texel : map.texels)
+        rgb = std::copy_n(&texel.x, 3, rgb);
+}
+
 cubemap::TexelRectangle rectangle_of(std::uint32_t face, std::uint32_t x, std::uint32_t y,
                                      std::uint32_t width, std::uint32_t height) {
     if (face >= cubemap::NumFaces)
@@ -210,6 +217,7 @@ RelumineInfo info_of(const RuntimeScene& own) {
     info.width = grid.width;
     info.height = grid.height;
     info.tolerance = scene.settings.tolerance;
+    info.resolution = own.environment().resolution;
     return info;
 }
 
@@ -324,6 +332,10 @@ RelumineResult relumine_turn(RelumineScene* scene, double degrees) {
     return with(scene, [&](RuntimeScene& own) { own.turn(degrees); });
 }
 
+RelumineResult relumine_turn_coarse(RelumineScene* scene, double degrees, uint32_t resolution) {
+    return with(scene, [&](RuntimeScene& own) { own.turn(degrees, resolution); });
+}
+
 RelumineResult relumine_update(RelumineScene* scene, uint32_t face, uint32_t x, uint32_t y,
                                uint32_t width, uint32_t height, const float* rgb) {
     return with(scene, [&](RuntimeScene& own) {
@@ -386,4 +398,17 @@ RelumineResult relumine_harmonics(const RelumineScene* scene, float* rgb, size_t
         for (const glm::vec3& value : light)
             rgb = std::copy_n(&value.x, 3, rgb);
     });
+}
+
+RelumineResult relumine_environment(const RelumineScene* scene, float* rgb, size_t count) {
+    return with(scene, [&](const RuntimeScene& own) {
+        own.require_environment();
+        write_map(own.environment(), rgb, count);
+    });
+}
+
+RelumineResult relumine_contribution(const RelumineScene* scene, uint32_t receiver, float* rgb,
+                                     size_t count) {
+    return with(
+        scene, [&](const RuntimeScene& own) { write_map(own.contribution(receiver), rgb, count); });
 }

@@ -81,6 +81,7 @@ typedef struct RelumineInfo {
     uint32_t has_bounces;   /* 1: relumine_bounce() works */
     uint32_t width, height; /* of a picture or a lightmap; 0 otherwise */
     float tolerance;        /* of the precompute, 1/sr */
+    uint32_t resolution;    /* of the cube map that lights the scene; 0 where none does */
 } RelumineInfo;
 
 /* A light so far away that its direction is the same everywhere. */
@@ -144,6 +145,11 @@ RELUMINE_API RelumineResult relumine_light_list(RelumineScene* scene, const Relu
 /* Turns the environment about +Y, from how it stood before its first turn: light from +Z comes from
  * +X at 90 degrees. Updates since the first turn are lost. */
 RELUMINE_API RelumineResult relumine_turn(RelumineScene* scene, double degrees);
+/* The same with a coarser copy of the map, halved until an edge has at most `resolution` texels:
+ * for light that turns while it is looked at. Its texels are those that relumine_update() changes.
+ */
+RELUMINE_API RelumineResult relumine_turn_coarse(RelumineScene* scene, double degrees,
+                                                 uint32_t resolution);
 /* New radiance for the texels [x, x + width) x [y, y + height) of a face of the lit (and turned)
  * cube map. Cost:      in proportion to what these texels light. */
 RELUMINE_API RelumineResult relumine_update(RelumineScene* scene, uint32_t face, uint32_t x,
@@ -165,6 +171,14 @@ RELUMINE_API RelumineResult relumine_radiance(const RelumineScene* scene, float*
 /* The same as IEEE half floats; what is larger than 65,504 becomes 65,504. */
 RELUMINE_API RelumineResult relumine_radiance_half(const RelumineScene* scene, uint16_t* rgb,
                                                    size_t count);
+/* The cube map that lights the scene, turned and updated; count: 18 x resolution^2. */
+RELUMINE_API RelumineResult relumine_environment(const RelumineScene* scene, float* rgb,
+                                                 size_t count);
+/* What lights a receiver: the cube map, each texel times the part of its light that arrives, also
+ * by way of other surfaces once the light has bounced. The sum of all texels times their solid
+ * angles is the receiver's radiance. count: 18 x resolution^2. */
+RELUMINE_API RelumineResult relumine_contribution(const RelumineScene* scene, uint32_t receiver,
+                                                  float* rgb, size_t count);
 /* The arriving light, bounces left out; count: 3 x num_harmonics x num_receivers,
  * [receiver][coefficient][channel]. docs/harmonics.md says basis, order, sign and scale. */
 RELUMINE_API RelumineResult relumine_harmonics(const RelumineScene* scene, float* rgb,

@@ -1,7 +1,11 @@
 #include "runtime/runtime_scene.h"
 
+#include <stdexcept>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "relight/adjoint/contribution.h"
 #include "relight/binned_environment.h"
 #include "relight/harmonics/harmonics.h"
 #include "relight/receiver_light.h"
@@ -24,6 +28,7 @@ std::size_t RuntimeScene::num_harmonics() const {
 void RuntimeScene::light(cubemap::CubeMap map) {
     relighter_.set_environment(std::move(map));
     unturned_ = {};
+    coarse_ = {};
     is_lit_ = true;
     has_bounced_ = false;
 }
@@ -31,16 +36,30 @@ void RuntimeScene::light(cubemap::CubeMap map) {
 void RuntimeScene::light(std::span<const lights::DistantLight> lights) {
     relighter_.set_lights(lights);
     unturned_ = {};
+    coarse_ = {};
     is_lit_ = true;
     has_bounced_ = false;
 }
 
-void RuntimeScene::turn(double degrees) {
-    if (relighter_.environment().resolution == 0)
-        throw NotLit();
+void RuntimeScene::turn(double degrees, std::uint32_t most_resolution) {
+    require_environment();
+    if (most_resolution == 0)
+        throw std::invalid_argument("resolution: expected at least 1, got 0");
     const bool is_first = unturned_.resolution == 0;
-    cubemap::CubeMap turned =
-        cubemap::rotated(is_first ? relighter_.environment() : unturned_, degrees);
+    const cubemap::CubeMap* from = is_first ? &relighter_.environment() : &unturned_;
+    const auto is_too_fine = [&](const cubemap::CubeMap& map) {
+        return map.resolution > most_resolution && map.resolution % 2 == 0;
+    };
+    if (is_too_fine(*from)) {
+        // The last one serves again unless it is too fine, or coarser than it need be.
+        if (coarse_.resolution == 0 || is_too_fine(coarse_) ||
+            2 * std::uint64_t{coarse_.resolution} <= most_resolution)
+            coarse_ = *from;
+        while (is_too_fine(coarse_))
+            coarse_ = cubemap::halved(coarse_);
+        from = &coarse_;
+    }
+    cubemap::CubeMap turned = cubemap::rotated(*from, degrees);
     if (is_first)
         unturned_ = relighter_.environment();
     relighter_.set_environment(std::move(turned));
@@ -49,8 +68,7 @@ void RuntimeScene::turn(double degrees) {
 
 void RuntimeScene::update(const cubemap::TexelRectangle& rectangle,
                           std::span<const glm::vec3> radiance) {
-    if (relighter_.environment().resolution == 0)
-        throw NotLit();
+    require_environment();
     relight::require_radiance(radiance);
     relighter_.update_regions(std::span(&rectangle, 1), [&](cubemap::CubeMap& map) {
         auto from = radiance.begin();
@@ -69,6 +87,7 @@ void RuntimeScene::set_albedo(std::span<const glm::vec3> albedo) {
     relight::BounceLight bounces(*scene_.bounces, scene_.transfer);
     bounces.set_albedo(albedo);
     bounces_.emplace(std::move(bounces));
+    surface_bounces_ = {.matrix = &*scene_.bounces, .albedo = {albedo.begin(), albedo.end()}};
     has_bounced_ = false;
 }
 
@@ -81,6 +100,7 @@ void RuntimeScene::bounce(const relight::BounceLimits& limits, bool is_step) {
         bounces_->step(direct);
     else
         bounces_->solve(direct, limits);
+    surface_bounces_.limits = limits;
     has_bounced_ = true;
 }
 
@@ -96,6 +116,20 @@ std::vector<glm::vec3> RuntimeScene::harmonics() const {
     std::vector<glm::vec3> all = relighter_.harmonics();
     all.resize(num_receivers() * num_harmonics());
     return all;
+}
+
+cubemap::CubeMap RuntimeScene::contribution(std::uint32_t receiver) const {
+    require_environment();
+    if (receiver >= num_receivers())
+        throw std::invalid_argument(
+            fmt::format("receiver: expected less than {}, got {}", num_receivers(), receiver));
+    return relight::contribution_map(relighter_, {&receiver, 1},
+                                     has_bounced_ ? &surface_bounces_ : nullptr);
+}
+
+void RuntimeScene::require_environment() const {
+    if (relighter_.environment().resolution == 0)
+        throw NotLit();
 }
 
 void RuntimeScene::require_light() const {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -41,16 +42,22 @@ public:
 
     void light(cubemap::CubeMap map);
     void light(std::span<const lights::DistantLight> lights);
-    void turn(double degrees);
+    void turn(double degrees) { turn(degrees, std::numeric_limits<std::uint32_t>::max()); }
+    void turn(double degrees, std::uint32_t most_resolution);
     void update(const cubemap::TexelRectangle& rectangle, std::span<const glm::vec3> radiance);
 
     void set_albedo(std::span<const glm::vec3> albedo);
     void bounce(const relight::BounceLimits& limits, bool is_step);
 
     void require_light() const;
+    void require_environment() const;
     /// The light of the surfaces themselves, and what bounces add.
     [[nodiscard]] glm::vec3 radiance(std::size_t receiver) const;
     [[nodiscard]] std::vector<glm::vec3> harmonics() const;
+
+    /// Without texels where no cube map lights the scene.
+    [[nodiscard]] const cubemap::CubeMap& environment() const { return relighter_.environment(); }
+    [[nodiscard]] cubemap::CubeMap contribution(std::uint32_t receiver) const;
 
 private:
     CallerJobs jobs_;
@@ -59,9 +66,13 @@ private:
     bool has_harmonics_;
     /// The environment before its first turn; without texels where there was none.
     cubemap::CubeMap unturned_;
+    /// The same, halved for the last turn that asked for a coarser one.
+    cubemap::CubeMap coarse_;
     bool is_lit_ = false;
     /// Set where the scene has bounces and they have an albedo.
     std::optional<relight::BounceLight> bounces_;
+    /// Of bounces_, and how light bounced last.
+    relight::SurfaceBounces surface_bounces_;
     bool has_bounced_ = false;
 };
 

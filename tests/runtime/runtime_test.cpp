@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -296,6 +297,89 @@ TEST(Runtime, BrokenFilesAreRefusedFromMemoryToo) {
             << at;
         bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
     }
+}
+
+TEST(Runtime, CoarseTurnsTurnTheHalvedMap) {
+    const cubemap::CubeMap map = scenes::random_environment(Resolution, 6);
+    relight::Relighter relighter(stored().scene.transfer);
+    const Opened opened;
+    EXPECT_EQ(relumine_turn_coarse(opened.scene, 1.0, 8), RELUMINE_NOT_LIT);
+    opened.light(map);
+    const cubemap::CubeMap half = cubemap::halved(map), quarter = cubemap::halved(half);
+    struct Step {
+        std::uint32_t resolution;
+        const cubemap::CubeMap& map;
+    };
+    // Coarser, finer and as fine as it was; each turn begins with the map that was given.
+    for (const Step& step : {Step{16, half}, Step{15, quarter}, Step{31, half}, Step{16, half},
+                             Step{8, quarter}, Step{32, map}, Step{100, map}}) {
+        EXPECT_EQ(relumine_turn_coarse(opened.scene, 30.0, step.resolution), RELUMINE_OK);
+        relighter.set_environment(cubemap::rotated(step.map, 30.0));
+        expect_equal(opened.radiance(), relighter.radiance());
+    }
+    EXPECT_EQ(relumine_turn(opened.scene, 30.0), RELUMINE_OK);
+    expect_equal(opened.radiance(), relighter.radiance());
+    EXPECT_EQ(relumine_turn_coarse(opened.scene, 30.0, 0), RELUMINE_WRONG_ARGUMENT);
+    // A map that cannot be halved any further.
+    opened.light(scenes::random_environment(6, 7));
+    EXPECT_EQ(relumine_turn_coarse(opened.scene, 30.0, 2), RELUMINE_OK);
+    EXPECT_EQ(relumine_contribution(opened.scene, 0, nullptr, 54), RELUMINE_WRONG_ARGUMENT);
+}
+
+glm::dvec3 total(const std::vector<glm::vec3>& texels, std::uint32_t resolution) {
+    const std::vector<double> solid_angles = cubemap::texel_solid_angles(resolution);
+    glm::dvec3 sum(0.0);
+    for (std::size_t i = 0; i < texels.size(); ++i)
+        sum += glm::dvec3(texels[i]) * solid_angles[i % solid_angles.size()];
+    return sum;
+}
+
+TEST(Runtime, WhatLightsAReceiverAddsUpToItsRadiance) {
+    const cubemap::CubeMap map = scenes::random_environment(Resolution, 5);
+    const Opened opened;
+    const std::size_t size = map.texels.size();
+    std::vector<glm::vec3> texels(size);
+    EXPECT_EQ(relumine_contribution(opened.scene, 0, &texels[0].x, 3 * size), RELUMINE_NOT_LIT);
+    EXPECT_EQ(relumine_environment(opened.scene, &texels[0].x, 3 * size), RELUMINE_NOT_LIT);
+    opened.light(map);
+    EXPECT_EQ(relumine_environment(opened.scene, &texels[0].x, 3 * size), RELUMINE_OK);
+    EXPECT_EQ(texels, map.texels);
+    const std::vector<glm::vec3> albedo(opened.info.num_receivers, glm::vec3(0.5f));
+    ASSERT_EQ(relumine_set_albedo(opened.scene, &albedo[0].x, 3 * albedo.size()), RELUMINE_OK);
+    for (const bool with_bounces : {false, true}) {
+        if (with_bounces) {
+            const RelumineBounces how{
+                .size = sizeof how, .num_bounces = 0, .tolerance = 1e-5f, .is_step = 0};
+            ASSERT_EQ(relumine_bounce(opened.scene, &how), RELUMINE_OK);
+        }
+        const std::vector<glm::vec3> radiance = opened.radiance();
+        for (std::uint32_t receiver = 0; receiver < radiance.size(); receiver += 37) {
+            ASSERT_EQ(relumine_contribution(opened.scene, receiver, &texels[0].x, 3 * size),
+                      RELUMINE_OK);
+            const glm::dvec3 sum = total(texels, Resolution);
+            for (int channel = 0; channel < 3; ++channel)
+                ASSERT_NEAR(sum[channel], radiance[receiver][channel], 1e-3) << receiver;
+        }
+    }
+    EXPECT_EQ(
+        relumine_contribution(opened.scene, opened.info.num_receivers, &texels[0].x, 3 * size),
+        RELUMINE_WRONG_ARGUMENT);
+    EXPECT_EQ(relumine_contribution(opened.scene, 0, &texels[0].x, 3 * size - 3),
+              RELUMINE_WRONG_ARGUMENT);
+}
+
+TEST(Runtime, InfoOfAnOlderProgramEndsEarlier) {
+    const Opened opened;
+    opened.light(scenes::random_environment(Resolution, 5));
+    RelumineInfo info{};
+    info.resolution = 7;
+    info.size = offsetof(RelumineInfo, resolution);
+    EXPECT_EQ(relumine_info(opened.scene, &info), RELUMINE_OK);
+    EXPECT_EQ(info.num_receivers, opened.info.num_receivers);
+    EXPECT_EQ(info.resolution, 7u);
+    info.size = sizeof info;
+    EXPECT_EQ(relumine_info(opened.scene, &info), RELUMINE_OK);
+    EXPECT_EQ(info.resolution, Resolution);
 }
 
 } // namespace

@@ -44,7 +44,9 @@ int main(int argc, char** argv) {
         map[i] *= 10.0f;
     require(relumine_update(scene, Face, X, Y, Width, Height, map) == RELUMINE_OK, "update");
     write_radiance(scene, rgb, count, out);
-    require(relumine_turn(scene, 33.0) == RELUMINE_OK, "turn");
+    require(relumine_turn(scene, 58.0) == RELUMINE_OK, "turn");
+    write_radiance(scene, rgb, count, out);
+    require(relumine_turn_coarse(scene, 20.0, resolution / 2) == RELUMINE_OK, "turn");
     write_radiance(scene, rgb, count, out);
     require(relumine_harmonics(scene, rgb, num_harmonics) == RELUMINE_OK, "harmonics");
     require(fwrite(rgb, sizeof *rgb, num_harmonics, out) == num_harmonics, "write");

@@ -10,8 +10,9 @@ import {after, test} from 'node:test';
 import {pathToFileURL} from 'node:url';
 
 const [folder, scene, lightScene] = process.argv.slice(2);
-const {Relighter, RelumineError} = await import(pathToFileURL(path.resolve(folder, 'relumine.js')));
-const resolution = 48;
+const {Relighter, RelighterWorker, RelumineError} = await import(pathToFileURL(path.resolve(folder, 'relumine.js')));
+// Fine enough for maps to be turned by vectors (cubemap/rotation.cpp).
+const resolution = 144;
 const scratch = fs.mkdtempSync(path.join(os.tmpdir(), 'relumine-web-'));
 after(() => fs.rmSync(scratch, {recursive: true}));
 
@@ -58,8 +59,11 @@ test('radiance is the native one after each step', async () => {
     const bright = map.map((value, i) => (i < 3 * 7 * 4 ? Math.fround(10 * value) : value));
     relighter.update(2, 3, 5, 7, 4, bright.subarray(0, 3 * 7 * 4));
     assertEqual(relighter.radiance(), take(count), 'update');
-    relighter.turn(33);
+    relighter.turn(58);
     assertEqual(relighter.radiance(), take(count), 'turn');
+    relighter.turn(20, {resolution: resolution / 2});
+    assert.equal(relighter.resolution, resolution / 2);
+    assertEqual(relighter.radiance(), take(count), 'coarse turn');
     assertEqual(relighter.harmonics(), take(9 * count), 'harmonics');
     relighter.bounce();
     assertEqual(relighter.radiance(), take(count), 'bounce');
@@ -99,6 +103,62 @@ test('halves are radiance, and arrays are filled in place', async () => {
     relighter.dispose();
 });
 
+/** The solid angle of a texel of a cube map: corners' angles, Manne's formula. */
+function solidAngle(x, y, resolution) {
+    const corner = (i, j) => {
+        const [u, v] = [2 * i / resolution - 1, 2 * j / resolution - 1];
+        return Math.atan2(u * v, Math.sqrt(u * u + v * v + 1));
+    };
+    return corner(x, y) - corner(x + 1, y) - corner(x, y + 1) + corner(x + 1, y + 1);
+}
+
+test('what lights a point adds up to its radiance', async () => {
+    const relighter = await Relighter.open(fs.readFileSync(scene));
+    assert.equal(relighter.resolution, 0);
+    const map = environment();
+    relighter.light({cubeMap: map});
+    assert.equal(relighter.resolution, resolution);
+    assert.deepEqual(relighter.environment(), map);
+    relighter.update(4, 1, 2, 1, 1, [7, 8, 9]);
+    assert.deepEqual([...relighter.environment().subarray(3 * (4 * resolution ** 2 + 2 * resolution + 1)).subarray(0, 3)], [7, 8, 9]);
+    const radiance = relighter.radiance();
+    for (const receiver of [0, 100, relighter.info.numReceivers - 1]) {
+        const texels = relighter.contribution(receiver);
+        let sum = 0;
+        for (let i = 0; i < texels.length / 3; ++i)
+            sum += texels[3 * i] * solidAngle(i % resolution, Math.floor(i / resolution) % resolution, resolution);
+        assert.ok(Math.abs(sum - radiance[3 * receiver]) < 1e-3 * radiance[3 * receiver] + 1e-6, `${sum}, ${radiance[3 * receiver]}`);
+    }
+    assert.throws(() => relighter.contribution(relighter.info.numReceivers), {message: /receiver: expected less than/});
+    relighter.dispose();
+});
+
+test('a worker gives the same, in the order of calls', async () => {
+    const map = environment();
+    const relighter = await Relighter.open(fs.readFileSync(scene));
+    const worker = await RelighterWorker.open(pathToFileURL(path.resolve(scene)));
+    assert.deepEqual(worker.info, relighter.info);
+    relighter.light({cubeMap: map});
+    const before = relighter.radiance();
+    relighter.turn(20);
+    worker.light({cubeMap: map});
+    const first = worker.radiance();
+    worker.turn(20);
+    const into = new Float32Array(before.length);
+    const second = worker.radiance(into);
+    assert.equal(into.length, 0); // handed over
+    assert.deepEqual(await first, before);
+    assert.deepEqual(await second, relighter.radiance());
+    assert.equal(await worker.resolution(), resolution);
+    assert.deepEqual(await worker.triangles(), relighter.triangles());
+    await assert.rejects(worker.update(9, 0, 0, 1, 1, [1, 1, 1]),
+                         {name: 'RelumineError', code: 'WRONG_ARGUMENT', message: /face: expected/});
+    await assert.rejects(RelighterWorker.open(new Uint8Array(4)), {code: 'WRONG_FILE'});
+    worker.dispose();
+    await assert.rejects(worker.radiance(), {message: /after dispose/});
+    relighter.dispose();
+});
+
 test('what is wrong is said in one sentence', async () => {
     const bytes = fs.readFileSync(scene);
     const rejects = (source, code, message) =>
@@ -127,7 +187,7 @@ test('what is wrong is said in one sentence', async () => {
     throws(() => relighter.update(6, 0, 0, 1, 1, [1, 1, 1]), 'WRONG_ARGUMENT', /face: expected 0 to 5/);
     throws(() => relighter.update(0, 0, 0, 2, 1, [1, 1, 1]), 'WRONG_ARGUMENT', /rgb: expected 6 numbers, got 3/);
     throws(() => relighter.update(0, -1, 0, 1, 1, [1, 1, 1]), 'WRONG_ARGUMENT', /x: expected a whole number/);
-    throws(() => relighter.radiance(new Float32Array(3)), 'WRONG_ARGUMENT', /numbers to fill, got 3/);
+    throws(() => relighter.radiance(new Float32Array(3)), 'WRONG_ARGUMENT', /Float32Array of \d+ numbers to fill, got Float32Array of 3/);
     throws(() => relighter.harmonics(), 'NOT_THERE', /opened with harmonics/);
     throws(() => relighter.places(), 'NOT_THERE', /vertices/);
     relighter.dispose();

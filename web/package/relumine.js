@@ -3,24 +3,26 @@
 import { RelumineError, Runtime, bytesOf } from './wasm_module.js';
 
 export { RelumineError } from './wasm_module.js';
+export { RelighterWorker } from './relighter_worker.js';
 
 const kinds = ['vertices', 'pixels', 'texels', 'points'];
 
-function require(isRight, message) {
-    if (!isRight)
-        throw new RelumineError('WRONG_ARGUMENT', message);
+function fail(message) {
+    throw new RelumineError('WRONG_ARGUMENT', message);
 }
 
 function requireNumbers(values, count, name) {
-    const isArray = Array.isArray(values) || (ArrayBuffer.isView(values) && !(values instanceof DataView));
-    require(isArray, `${name}: expected an array of numbers, got ${values}`);
-    require(values.length === count, `${name}: expected ${count} numbers, got ${values.length}`);
+    if (!Array.isArray(values) && (!ArrayBuffer.isView(values) || values instanceof DataView))
+        fail(`${name}: expected an array of numbers, got ${values}`);
+    if (values.length !== count)
+        fail(`${name}: expected ${count} numbers, got ${values.length}`);
 }
 
 const isSize = (value) => Number.isInteger(value) && value >= 0 && value < 2 ** 31;
 
 function requireSize(value, name) {
-    require(isSize(value), `${name}: expected a whole number from 0, got ${value}`);
+    if (!isSize(value))
+        fail(`${name}: expected a whole number from 0, got ${value}`);
 }
 
 export class Relighter {
@@ -28,8 +30,7 @@ export class Relighter {
     #scene = 0;
 
     get #runtime() {
-        require(this.#loaded !== undefined, 'expected a scene, got one after dispose()');
-        return this.#loaded;
+        return this.#loaded ?? fail('expected a scene, got one after dispose()');
     }
 
     static async open(source, {wasm, harmonics = 0} = {}) {
@@ -55,7 +56,7 @@ export class Relighter {
     #askInfo() {
         const names = ['kind', 'numReceivers', 'numClusters', 'numVertices', 'numTriangles', 'numHarmonics', 'hasBounces',
                        'width', 'height'];
-        const size = 4 * (names.length + 2);
+        const size = 4 * (names.length + 3);
         return this.#runtime.with(size, (at) => {
             this.#runtime.view().setUint32(at, size, true);
             this.#call('info', at);
@@ -64,7 +65,7 @@ export class Relighter {
             names.forEach((name, i) => { info[name] = view.getUint32(at + 4 * (i + 1), true); });
             info.kind = kinds[info.kind];
             info.hasBounces = info.hasBounces === 1;
-            info.tolerance = view.getFloat32(at + size - 4, true);
+            info.tolerance = view.getFloat32(at + size - 8, true);
             return Object.freeze(info);
         });
     }
@@ -74,18 +75,28 @@ export class Relighter {
     }
 
     /** Fills the caller's array, or a new one, by the function of this name. */
-    #filled(name, Type, count, into) {
+    #filled(name, Type, count, into, ...given) {
         const result = into ?? new Type(count);
-        require(result instanceof Type, `expected a ${Type.name} to fill, got ${result}`);
-        require(result.length === count, `expected ${count} numbers to fill, got ${result.length}`);
+        if (!(result instanceof Type) || result.length !== count)
+            fail(`expected a ${Type.name} of ${count} numbers to fill, got ${result?.constructor?.name} of ${result?.length}`);
         this.#runtime.with(Type.BYTES_PER_ELEMENT * count, (at) => {
-            this.#call(name, at, count);
+            this.#call(name, ...given, at, count);
             result.set(this.#runtime.array(Type, at, count));
         });
         return result;
     }
 
     get #numValues() { return 3 * this.info.numReceivers; }
+
+    /** Of the cube map that lights the scene; 0 where none does. */
+    get resolution() {
+        const size = 48;
+        return this.#runtime.with(size, (at) => {
+            this.#runtime.view().setUint32(at, size, true);
+            this.#call('info', at);
+            return this.#runtime.view().getUint32(at + size - 4, true);
+        });
+    }
 
     positions(into) { return this.#filled('positions', Float32Array, this.#numValues, into); }
     normals(into) { return this.#filled('normals', Float32Array, this.#numValues, into); }
@@ -94,7 +105,8 @@ export class Relighter {
 
     light(given) {
         const kind = ['cubeMap', 'latLong', 'lights'].filter((name) => given?.[name] !== undefined);
-        require(kind.length === 1, 'expected one of cubeMap, latLong and lights');
+        if (kind.length !== 1)
+            fail('expected one of cubeMap, latLong and lights');
         if (kind[0] === 'cubeMap')
             this.#lightCubeMap(given.cubeMap, given.resolution);
         else if (kind[0] === 'latLong')
@@ -104,7 +116,8 @@ export class Relighter {
     }
 
     #lightCubeMap(texels, resolution = Math.sqrt((texels.length ?? 0) / 18)) {
-        require(isSize(resolution), 'cubeMap: expected [6][resolution][resolution][3] numbers');
+        if (!isSize(resolution))
+            fail('cubeMap: expected [6][resolution][resolution][3] numbers');
         requireNumbers(texels, 18 * resolution * resolution, 'cubeMap');
         this.#runtime.withNumbers(Float32Array, texels, (at) => this.#call('light_cube_map', resolution, at));
     }
@@ -119,7 +132,8 @@ export class Relighter {
     }
 
     #lightList(lights) {
-        require(Array.isArray(lights), `lights: expected a list, got ${lights}`);
+        if (!Array.isArray(lights))
+            fail(`lights: expected a list, got ${lights}`);
         const numbers = lights.flatMap(({direction, irradiance}) => {
             requireNumbers(direction, 3, 'direction');
             requireNumbers(irradiance, 3, 'irradiance');
@@ -135,7 +149,14 @@ export class Relighter {
         this.#runtime.withNumbers(Float32Array, rgb, (at) => this.#call('update', face, x, y, width, height, at));
     }
 
-    turn(degrees) { this.#call('turn', degrees); }
+    turn(degrees, {resolution} = {}) {
+        if (resolution === undefined) {
+            this.#call('turn', degrees);
+            return;
+        }
+        requireSize(resolution, 'resolution');
+        this.#call('turn_coarse', degrees, resolution);
+    }
 
     setAlbedo(rgb) {
         requireNumbers(rgb, this.#numValues, 'albedo');
@@ -159,6 +180,12 @@ export class Relighter {
     radianceHalf(into) { return this.#filled('radiance_half', Uint16Array, this.#numValues, into); }
     harmonics(into) {
         return this.#filled('harmonics', Float32Array, this.#numValues * this.info.numHarmonics, into);
+    }
+
+    environment(into) { return this.#filled('environment', Float32Array, 18 * this.resolution ** 2, into); }
+    contribution(receiver, into) {
+        requireSize(receiver, 'receiver');
+        return this.#filled('contribution', Float32Array, 18 * this.resolution ** 2, into, receiver);
     }
 
     dispose() {

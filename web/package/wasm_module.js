@@ -20,6 +20,8 @@ export async function bytesOf(source) {
         return new Uint8Array(source);
     if (ArrayBuffer.isView(source))
         return new Uint8Array(source.buffer, source.byteOffset, source.byteLength);
+    if (typeof source === 'string' && source.startsWith('file:'))
+        source = new URL(source);
     if (isFile(source) && typeof process !== 'undefined')
         return new Uint8Array(await (await import('node:fs/promises')).readFile(source));
     if (typeof source === 'string' || source instanceof URL)
