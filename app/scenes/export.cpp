@@ -8,6 +8,7 @@
 
 #include "app/commands.h"
 #include "app/options/output_options.h"
+#include "app/web/export_web.h"
 #include "files/counted.h"
 #include "prt/scene/relighting_file.h"
 #include "relumine/output.h"
@@ -49,7 +50,8 @@ void export_for_runtime(const ExportArguments& options, Session& session) {
 } // namespace
 
 void add_export(Command& program, Session& session) {
-    Command group = program.add_command("export", "scenes for other programs: `export runtime`");
+    Command group =
+        program.add_command("export", "scenes for other programs: `export runtime`, `export web`");
     Command command = group.add_command(
         "runtime", "what the library relumine_runtime takes of a scene: SCENE.prt -> OUT.relight");
     auto options = std::make_shared<ExportArguments>();
@@ -59,6 +61,7 @@ void add_export(Command& program, Session& session) {
                     {.file = true, .required = true}));
     session.add_common_options(command);
     command.on_run([options, &session] { export_for_runtime(*options, session); });
+    add_export_web(group, session);
 }
 
 } // namespace relumine::app

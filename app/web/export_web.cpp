@@ -1,0 +1,275 @@
+// `relumine export web`: a scene as a page that anyone can open.
+#include "app/web/export_web.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "app/options/output_options.h"
+#include "app/web/page_parts.h"
+#include "app/web/web_environments.h"
+#include "app/web/web_files.h"
+#include "app/web/web_look.h"
+#include "files/counted.h"
+#include "files/output_file.h"
+#include "prt/scene/relighting_file.h"
+#include "relight/pictures/framing.h"
+#include "relight/pictures/tone_curve.h"
+#include "relumine/coarsen.h"
+#include "relumine/receiver_colors.h"
+#include "relumine/scene_bounces.h"
+#include "relumine/version.h"
+
+namespace relumine::app {
+
+namespace {
+
+struct ExportWebArguments {
+    std::string scene;
+    std::vector<std::string> environments;
+    std::string output;
+    float tolerance = 0.03f;
+    std::size_t num_samples = 500;
+    bool single_file = false;
+    bool no_bounces = false;
+    bool force = false;
+    std::optional<double> max_bytes;
+    std::string title;
+};
+
+/// What a page cannot show of a scene, in words.
+std::vector<std::string> left_out_of(const Scene& scene) {
+    std::vector<std::string> left;
+    if (scene.transfer.glossy)
+        left.push_back("highlights, which are for one eye");
+    else if (std::any_of(scene.receivers.surfaces.begin(), scene.receivers.surfaces.end(),
+                         [](const prt::Surface& surface) {
+                             return surface.highlight != prt::Highlight::None;
+                         }))
+        left.push_back("highlights: surfaces are matte");
+    if (!scene.lamps.empty())
+        left.push_back("the scene's own lamps");
+    return left;
+}
+
+std::vector<std::byte> runtime_scene(Scene scene) {
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / fmt::format("relumine_web_{}.relight", ::getpid());
+    prt::RelightingScene lean{.scene = std::move(scene)};
+    if (lean.scene.bounces)
+        lean.albedo = bounces_of(lean.scene, bounce_albedo(lean.scene)).albedo;
+    prt::save_relighting_scene(path, std::move(lean));
+    std::vector<std::byte> bytes = files::read(path);
+    std::filesystem::remove(path);
+    return bytes;
+}
+
+files::Json camera_of_page(const Scene& scene) {
+    const Camera camera = camera_of(scene);
+    return {{"eye", camera.eye}, {"target", camera.target}, {"fov", camera.fov_degrees}};
+}
+
+files::Json subject_of(const Scene& scene) {
+    const mesh::Bounds bounds = relight::subject_bounds(scene.mesh);
+    return {{"center", bounds.center()}, {"radius", 0.5f * bounds.diagonal()}};
+}
+
+files::Json tone_of_page() {
+    files::Json::Array names;
+    for (const std::string_view name : relight::ToneCurveNames)
+        names.push_back(std::string(name));
+    files::Json tone = {{"source", relight::on_screen_source()}};
+    tone.set("names", std::move(names));
+    return tone;
+}
+
+struct PageWords {
+    std::string title = {};
+    /// What the page leaves out of the scene
+    std::vector<std::string> left_out = {};
+};
+
+/// The page's files but the parts that all pages have.
+struct Page {
+    WebFiles files = {};
+    double worst = 0.0;
+    std::size_t num_clusters = 0;
+    float tolerance = 0.0f;
+    bool has_bounces = false;
+};
+
+Page made_page(const Scene& scene, const ExportWebArguments& options, const PageWords& words,
+               Session& session) {
+    Page page{.num_clusters = scene.transfer.num_clusters(),
+              .tolerance = rms_tolerance(scene),
+              .has_bounces = scene.bounces.has_value()};
+    WebEnvironments environments =
+        web_environments(options.environments, scene, options.num_samples, session);
+    WebLook look = web_look(scene);
+    files::Json::Array left;
+    for (const std::string& what : words.left_out)
+        left.push_back(what);
+    files::Json manifest = {{"version", 1},
+                            {"relumine", std::string(version())},
+                            {"title", words.title},
+                            {"scene", "scene.relight"},
+                            {"clusters", page.num_clusters},
+                            {"tolerance", page.tolerance},
+                            {"look", look.look},
+                            {"floor", look.floor},
+                            {"camera", camera_of_page(scene)},
+                            {"subject", subject_of(scene)},
+                            {"tone", tone_of_page()},
+                            {"environments", environments.list}};
+    manifest.set("lamps", files::Json::Array{});
+    manifest.set("leftOut", std::move(left));
+    page.worst = environments.worst;
+    page.files.push_back({"scene.json", bytes_of(manifest.text())});
+    page.files.push_back({"scene.relight", runtime_scene(scene)});
+    for (WebFiles* const more : {&look.files, &environments.files})
+        for (WebFile& file : *more)
+            page.files.push_back(std::move(file));
+    return page;
+}
+
+/// All that is written.
+WebFiles written(const Page& page, const WebFiles& parts, const ExportWebArguments& options,
+                 const PageWords& words) {
+    if (options.single_file)
+        return {{"index.html", bytes_of(single_page(parts, page.files, words.title))}};
+    WebFiles all = {{"index.html", bytes_of(folder_page(parts, words.title))}};
+    for (const WebFile& part : parts)
+        if (part.name != PageTemplate)
+            all.push_back(part);
+    all.insert(all.end(), page.files.begin(), page.files.end());
+    return all;
+}
+
+/// Gives up what costs most, until the page is small enough: bounces, then clusters.
+WebFiles fitted(Scene scene, const ExportWebArguments& options, const WebFiles& parts,
+                const PageWords& words, Page& page, Session& session) {
+    constexpr float Step = 1.3f, Coarsest = 0.2f;
+    for (;;) {
+        page = made_page(scene, options, words, session);
+        WebFiles files = written(page, parts, options, words);
+        const auto size = static_cast<double>(size_of(files));
+        if (!options.max_bytes || size <= *options.max_bytes)
+            return files;
+        const float next = rms_tolerance(scene) * Step;
+        if (scene.bounces) {
+            scene.bounces.reset();
+            session.warn("--max-bytes: the light between surfaces is left out");
+        } else if (next <= Coarsest) {
+            scene = coarsened(std::move(scene), next, session.stop());
+            session.warn(fmt::format("--max-bytes: --tolerance becomes {:.3g}", next));
+        } else {
+            throw std::runtime_error(
+                fmt::format("--max-bytes: expected at least {:.0f} for this scene, got {:.0f}",
+                            size, *options.max_bytes));
+        }
+    }
+}
+
+Scene scene_of_page(const ExportWebArguments& options, PageWords& words, Session& session) {
+    Scene scene = load_scene(options.scene);
+    if (!prt::on_vertices(scene.layout))
+        throw std::runtime_error(fmt::format(
+            "{}: expected a scene of vertices, got one of {}: a page turns the scene around",
+            options.scene, prt::kind_of(scene.layout).name));
+    if (!has_clusters(scene))
+        throw std::runtime_error(fmt::format("{}: expected a scene with clusters", options.scene));
+    if (options.no_bounces)
+        scene.bounces.reset();
+    words.left_out = left_out_of(scene);
+    for (const std::string& what : words.left_out)
+        session.warn(fmt::format("{}: left out: {}", options.scene, what));
+    scene.transfer.glossy.reset();
+    scene.lamps = {};
+    if (rms_tolerance(scene) < options.tolerance)
+        scene = coarsened(std::move(scene), options.tolerance, session.stop(),
+                          session.progress("joining clusters"));
+    session.end_progress();
+    return scene;
+}
+
+void export_web(const ExportWebArguments& options, Session& session) {
+    const std::filesystem::path output = options.output;
+    if (options.single_file)
+        require_extension("--output", options.output, {".html"});
+    std::vector<std::string> inputs = options.environments;
+    inputs.push_back(options.scene);
+    if (options.single_file)
+        check_output(options.output, inputs);
+    else
+        check_folder(output, options.force);
+    const WebFiles parts = find_page_parts();
+    PageWords words{.title = options.title.empty()
+                                 ? std::filesystem::path(options.scene).stem().string()
+                                 : options.title};
+    Scene scene = scene_of_page(options, words, session);
+    Page page;
+    WebFiles files = fitted(std::move(scene), options, parts, words, page, session);
+    session.poll();
+    const std::uint64_t size = size_of(files);
+    std::uint64_t of_environments = 0;
+    for (const WebFile& file : page.files)
+        of_environments += file.name.starts_with("environments/") ? file.bytes.size() : 0;
+    if (options.single_file) {
+        files.front().name = output.filename().string();
+        write_folder(output.parent_path().empty() ? "." : output.parent_path(), files);
+    } else {
+        write_folder(output, files);
+    }
+    session.say(fmt::format("{}: {} clusters, {:.1f} MB, of which environments {:.1f} MB{}",
+                            options.output, page.num_clusters, 1e-6 * static_cast<double>(size),
+                            1e-6 * static_cast<double>(of_environments),
+                            options.num_samples == 0 ? ""
+                                                     : fmt::format("; the light is within {:.2g} %",
+                                                                   100.0 * page.worst)));
+    session.report({{"clusters", page.num_clusters},
+                    {"tolerance", page.tolerance},
+                    {"bounces", page.has_bounces},
+                    {"bytes", size},
+                    {"bytes_environments", of_environments},
+                    {"relative_l2", page.worst}});
+}
+
+} // namespace
+
+void add_export_web(Command& group, Session& session) {
+    Command command = group.add_command(
+        "web", "a page that lights the scene in any browser: SCENE.prt [ENV...] -> folder");
+    auto options = std::make_shared<ExportWebArguments>();
+    command.add(row("SCENE", options->scene, "scene of `relumine precompute`, of vertices",
+                    {.file = true, .required = true}));
+    command.add(row("ENV", options->environments,
+                    "environments to choose from; none: some are made", {.file = true}));
+    command.add(row("-o,--output", options->output,
+                    "the folder to write, or OUT.html of a single file",
+                    {.folder = true, .required = true}));
+    command.add(
+        row("--tolerance", options->tolerance,
+            "clusters are joined up to this tolerance, 1/sr; a scene's own larger one stays",
+            {.min = 1e-6, .max = 1.0}));
+    command.add(row("--samples", options->num_samples,
+                    "receivers whose light is compared with exact integration, 0 for none"));
+    command.add(row("--title", options->title, "of the page (the scene's name)"));
+    command.add(row("--no-bounces", options->no_bounces, "leaves out the light between surfaces"));
+    command.add(row("--single-file", options->single_file,
+                    "one .html with all within, which opens by a double click"));
+    command.add(row("--max-bytes", options->max_bytes,
+                    "largest size of all files: bounces and clusters are given up for it",
+                    {.min = 1, .type = "BYTES"}));
+    command.add(row("--force", options->force, "writes into a folder that is not empty"));
+    session.add_common_options(command);
+    command.on_run([options, &session] { export_web(*options, session); });
+}
+
+} // namespace relumine::app

@@ -1,0 +1,21 @@
+// What the page draws of a mesh besides its light: colours, textures, which triangles are the
+// floor.
+#pragma once
+
+#include "app/web/web_files.h"
+#include "files/json.h"
+#include "relumine/scene.h"
+
+namespace relumine::app {
+
+struct WebLook {
+    /// look.bin.gz, and the images of textures
+    WebFiles files;
+    /// Members `look` and `floor` of scene.json
+    files::Json look, floor;
+};
+
+/// Surfaces are matte: what they mirror counts as colour.
+[[nodiscard]] WebLook web_look(const Scene& scene);
+
+} // namespace relumine::app

@@ -1,0 +1,300 @@
+// What is seen: the lit mesh, its floor, the environment behind, and the camera.
+import * as THREE from 'three';
+import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+
+const vertexShader = `
+in vec3 radiance;
+in vec3 albedo;
+out vec3 lit;
+out vec3 tint;
+out vec2 place;
+out vec3 world;
+void main() {
+    lit = radiance;
+    tint = albedo;
+    place = uv;
+    world = position;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+}`;
+
+const screen = `
+uniform float exposure;
+uniform int curve;
+vec3 encoded(vec3 linear) {
+    return mix(12.92 * linear, 1.055 * pow(max(linear, 1e-6), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, linear));
+}`;
+
+const surfaceShader = `
+in vec3 lit;
+in vec3 tint;
+in vec2 place;
+in vec3 world;
+out vec4 color;
+uniform sampler2D map;
+uniform mat3 mapFromUv;
+uniform vec3 emission;
+uniform vec3 floorPlace; // x, z, radius; 0: no floor
+uniform float alpha;
+void main() {
+    vec4 texel = texture(map, (mapFromUv * vec3(place, 1.0)).xy);
+    vec3 seen = lit * tint * texel.rgb + emission;
+    float shown = alpha;
+    if (floorPlace.z > 0.0)
+        shown = 1.0 - smoothstep(0.4, 1.0, distance(world.xz, floorPlace.xy) / floorPlace.z);
+    color = vec4(encoded(on_screen(curve, seen * exposure)), shown);
+}`;
+
+const skyVertexShader = `
+out vec2 at;
+void main() {
+    at = position.xy;
+    gl_Position = vec4(position.xy, 1.0, 1.0);
+}`;
+
+const skyShader = `
+in vec2 at;
+out vec4 color;
+uniform mat4 worldFromClip;
+uniform sampler2D sky;
+uniform float turn;
+uniform float blur; // a mip level
+uniform vec3 plainLow;
+uniform vec3 plainHigh;
+uniform float isPlain;
+vec3 look(vec3 w, float level) {
+    // +Z in the middle, +X to its left, +Y at the top.
+    float longitude = atan(w.x, w.z) - turn;
+    float u = fract(0.5 - longitude / 6.28318530718);
+    float v = acos(clamp(w.y, -1.0, 1.0)) / 3.14159265359;
+    return textureLod(sky, vec2(u, v), level).rgb;
+}
+void main() {
+    vec4 far = worldFromClip * vec4(at, 1.0, 1.0);
+    vec4 near = worldFromClip * vec4(at, -1.0, 1.0);
+    vec3 w = normalize(far.xyz / far.w - near.xyz / near.w);
+    if (isPlain > 0.5) {
+        vec3 plain = mix(plainLow, plainHigh, smoothstep(-0.6, 0.7, w.y));
+        color = vec4(plain, 1.0);
+        return;
+    }
+    vec3 sum = vec3(0.0);
+    float weights = 0.0;
+    // Taps on a disc: mip levels alone show their texels.
+    vec3 right = normalize(cross(w, abs(w.y) > 0.99 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
+    vec3 up = cross(right, w);
+    int taps = blur > 0.0 ? 24 : 1;
+    float reach = blur > 0.0 ? 0.0062 * exp2(blur) : 0.0;
+    for (int i = 0; i < taps; ++i) {
+        float r = sqrt((float(i) + 0.5) / float(taps)), a = 2.39996323 * float(i);
+        float weight = exp(-2.0 * r * r);
+        vec3 tap = normalize(w + reach * r * (cos(a) * right + sin(a) * up));
+        sum += weight * look(tap, max(blur - 0.5, 0.0));
+        weights += weight;
+    }
+    color = vec4(encoded(on_screen(curve, sum / weights * exposure)), 1.0);
+}`;
+
+function white() {
+    const texture = new THREE.DataTexture(new Uint8Array([255, 255, 255, 255]), 1, 1);
+    texture.needsUpdate = true;
+    return texture;
+}
+
+export class Stage {
+    #shared;
+    #white = white();
+
+    constructor(canvas, toneSource) {
+        this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, powerPreference: 'high-performance'});
+        this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // the shaders do it
+        this.toneSource = toneSource;
+        this.scene = new THREE.Scene();
+        this.camera = new THREE.PerspectiveCamera(35, 1, 0.01, 100);
+        this.controls = new OrbitControls(this.camera, canvas);
+        this.controls.enableDamping = true;
+        this.controls.dampingFactor = 0.12;
+        this.controls.addEventListener('change', () => this.ask());
+        this.#shared = {exposure: {value: 1}, curve: {value: 0}};
+        this.#addSky();
+        this.onFrame = () => {};
+    }
+
+    #addSky() {
+        this.sky = new THREE.ShaderMaterial({
+            glslVersion: THREE.GLSL3, depthTest: false, depthWrite: false,
+            vertexShader: skyVertexShader,
+            fragmentShader: `${screen}\n${this.toneSource}\n${skyShader}`,
+            uniforms: {
+                ...this.#shared, worldFromClip: {value: new THREE.Matrix4()}, sky: {value: this.#white}, turn: {value: 0},
+                blur: {value: 2.5}, isPlain: {value: 1}, plainLow: {value: new THREE.Color()}, plainHigh: {value: new THREE.Color()},
+            },
+        });
+        const triangle = new THREE.BufferGeometry();
+        triangle.setAttribute('position', new THREE.BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
+        const mesh = new THREE.Mesh(triangle, this.sky);
+        mesh.frustumCulled = false;
+        mesh.renderOrder = -1;
+        this.scene.add(mesh);
+    }
+
+    /** Shows a mesh: arrays, groups [{start, count, material}] and their materials. */
+    setMesh({positions, normals, triangles, uvs, albedo, groups, materials, floor}) {
+        const count = positions.length / 3;
+        const geometry = new THREE.BufferGeometry();
+        geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
+        geometry.setAttribute('normal', new THREE.BufferAttribute(normals, 3));
+        geometry.setAttribute('uv', new THREE.BufferAttribute(uvs ?? new Float32Array(2 * count), 2));
+        geometry.setAttribute('albedo', new THREE.BufferAttribute(albedo, 3));
+        this.radiance = new THREE.BufferAttribute(new Float32Array(3 * count), 3);
+        this.radiance.setUsage(THREE.DynamicDrawUsage);
+        geometry.setAttribute('radiance', this.radiance);
+        geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
+        for (const {start, count: size, material} of groups)
+            geometry.addGroup(start, size, material);
+        this.mesh = new THREE.Mesh(geometry, materials.map((material) => this.#material(material, floor)));
+        this.mesh.frustumCulled = false;
+        this.scene.add(this.mesh);
+    }
+
+    #material({map, mapFromUv, emission, isFloor, alpha = 1}, floor) {
+        return new THREE.ShaderMaterial({
+            glslVersion: THREE.GLSL3, vertexShader,
+            fragmentShader: `${screen}\n${this.toneSource}\n${surfaceShader}`,
+            side: THREE.DoubleSide, transparent: isFloor === true || alpha < 1, depthWrite: alpha === 1 && isFloor !== true,
+            uniforms: {
+                ...this.#shared, map: {value: map ?? this.#white}, mapFromUv: {value: mapFromUv ?? new THREE.Matrix3()},
+                emission: {value: new THREE.Vector3(...(emission ?? [0, 0, 0]))}, alpha: {value: alpha},
+                floorPlace: {value: isFloor ? new THREE.Vector3(floor.center[0], floor.center[2], floor.radius) : new THREE.Vector3()},
+            },
+        });
+    }
+
+    /** Returns the array that was shown before, to be filled again. */
+    setRadiance(radiance) {
+        const before = this.radiance.array;
+        this.radiance.array = radiance;
+        this.radiance.needsUpdate = true;
+        this.ask();
+        return before;
+    }
+
+    /** Shows a lat-long of half floats behind the scene. */
+    setSky({data, width, height}) {
+        this.sky.uniforms.sky.value.dispose?.();
+        const texture = new THREE.DataTexture(data, width, height, THREE.RGBAFormat, THREE.HalfFloatType);
+        texture.wrapS = THREE.RepeatWrapping;
+        texture.minFilter = THREE.LinearMipmapLinearFilter;
+        texture.magFilter = THREE.LinearFilter;
+        texture.generateMipmaps = true;
+        texture.needsUpdate = true;
+        this.sky.uniforms.sky.value = texture;
+        this.ask();
+    }
+
+    setLook({exposure, curve, turn, isPlain, blur, plain}) {
+        this.#shared.exposure.value = 2 ** exposure;
+        this.#shared.curve.value = curve;
+        this.sky.uniforms.turn.value = turn * Math.PI / 180;
+        this.sky.uniforms.isPlain.value = isPlain ? 1 : 0;
+        this.sky.uniforms.blur.value = blur;
+        if (plain) {
+            this.sky.uniforms.plainLow.value.setRGB(...plain[0]);
+            this.sky.uniforms.plainHigh.value.setRGB(...plain[1]);
+        }
+        this.ask();
+    }
+
+    /** The camera of the scene's pictures, farther away where the window is narrow. */
+    setCamera({eye, target, fov, radius}) {
+        this.home = {eye, target, fov, radius};
+        const aspect = this.camera.aspect;
+        const scale = aspect < 1.2 ? 1.2 / Math.max(aspect, 0.45) : 1;
+        this.camera.fov = fov;
+        this.controls.target.set(...target);
+        this.camera.position.set(...eye).sub(this.controls.target).multiplyScalar(scale).add(this.controls.target);
+        this.controls.minDistance = 0.3 * radius;
+        this.controls.maxDistance = 40 * radius;
+        this.camera.near = 0.01 * radius;
+        this.camera.far = 200 * radius;
+        this.camera.updateProjectionMatrix();
+        this.controls.update();
+        this.ask();
+    }
+
+    /** The part of the picture, in pixels, that controls leave free: its middle shows the camera's target. */
+    setFree({right, bottom}) {
+        this.free = {right, bottom};
+        this.#centre();
+    }
+
+    #centre() {
+        const {width, height} = this.size, {right, bottom} = this.free ?? {right: 0, bottom: 0};
+        this.camera.setViewOffset(width, height, right / 2, bottom / 2, width, height);
+        this.ask();
+    }
+
+    resize(width, height) {
+        if (width === 0 || height === 0)
+            return;
+        this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+        this.renderer.setSize(width, height, false);
+        this.camera.aspect = width / height;
+        this.camera.updateProjectionMatrix();
+        this.size = {width, height};
+        this.#centre();
+    }
+
+    /** Draws at the next frame of the screen. */
+    ask() {
+        this.frame ??= requestAnimationFrame(() => {
+            this.frame = undefined;
+            this.draw();
+        });
+    }
+
+    draw() {
+        if (this.controls.update())
+            this.ask();
+        this.camera.updateMatrixWorld();
+        this.sky.uniforms.worldFromClip.value
+            .copy(this.camera.projectionMatrix).multiply(this.camera.matrixWorldInverse).invert();
+        this.renderer.render(this.scene, this.camera);
+        this.onFrame();
+    }
+
+    /** Turns the camera by steps of 10 degrees: to the right and up. */
+    orbit([right, up]) {
+        const offset = this.camera.position.clone().sub(this.controls.target);
+        const place = new THREE.Spherical().setFromVector3(offset);
+        place.theta += right * Math.PI / 18;
+        place.phi = Math.min(Math.max(place.phi - up * Math.PI / 18, 0.05), Math.PI - 0.05);
+        this.camera.position.setFromSpherical(place).add(this.controls.target);
+        this.controls.update();
+        this.ask();
+    }
+
+    /** The point of the mesh under a place of the canvas, in pixels; undefined beside the mesh. */
+    hit(x, y) {
+        const ray = new THREE.Raycaster();
+        ray.setFromCamera(new THREE.Vector2(2 * x / this.size.width - 1, 1 - 2 * y / this.size.height), this.camera);
+        const [first] = ray.intersectObject(this.mesh, false);
+        if (!first)
+            return undefined;
+        const corners = [first.face.a, first.face.b, first.face.c];
+        const {position} = this.mesh.geometry.attributes;
+        const distance = (vertex) => new THREE.Vector3().fromBufferAttribute(position, vertex).distanceTo(first.point);
+        corners.sort((a, b) => distance(a) - distance(b));
+        return {point: first.point, vertex: corners[0]};
+    }
+
+    /** Where a point of the world is on the canvas, and whether it is in front of the camera. */
+    onCanvas(point) {
+        const p = new THREE.Vector3(...point).project(this.camera);
+        return {x: (p.x + 1) / 2 * this.size.width, y: (1 - p.y) / 2 * this.size.height, isInFront: p.z < 1};
+    }
+
+    end() {
+        this.controls.dispose();
+        this.renderer.dispose();
+    }
+}
