@@ -18,6 +18,7 @@ constexpr double MiddleBehind = 0.18; // the median of a photograph behind is li
 constexpr double LargestRaise = 0.6;  // by no more than so many stops
 constexpr double BurntShare = 0.25;   // of a photograph behind may be brighter than Burnt, and more
 constexpr double Burnt = 1.4;         // where what is lit
+constexpr double BurntFloor = 0.02;   // of the picture may be a floor that is brighter, where
 constexpr double DarkestAsset = 3.0;  // would be so many stops below Bright
 
 /// The brightness of a part of what is lit, and its weight.
@@ -49,7 +50,7 @@ std::vector<Sample> samples_of(std::span<const glm::vec3> colors, std::span<cons
 } // namespace
 
 float suitable_exposure_ev(std::span<const glm::vec3> colors, std::span<const float> weights,
-                           std::span<const glm::vec3> behind) {
+                           std::span<const glm::vec3> behind, const MeteredFloor& floor) {
     const std::vector<Sample> photograph = samples_of(behind, {});
     std::vector<Sample> samples = samples_of(colors, weights);
     if (samples.empty())
@@ -68,13 +69,20 @@ float suitable_exposure_ev(std::span<const glm::vec3> colors, std::span<const fl
         ev = std::clamp(std::log2(Middle / middle), ev, ev + LargestLift);
     else
         ev += LargestLift;
-    if (photograph.empty())
-        return rounded(ev);
     const auto size = static_cast<double>(photograph.size());
-    if (const double middle = exceeded_by(0.5, photograph, size); middle > 0.0)
-        ev = std::clamp(std::log2(MiddleBehind / middle), ev, ev + LargestRaise);
-    if (const double most = exceeded_by(BurntShare, photograph, size); most > 0.0)
-        ev = std::min(ev, std::max(std::log2(Burnt / most), lowest));
+    const auto spare = [&](double most) {
+        if (most > 0.0)
+            ev = std::min(ev, std::max(std::log2(Burnt / most), lowest));
+    };
+    if (!photograph.empty()) {
+        if (const double middle = exceeded_by(0.5, photograph, size); middle > 0.0)
+            ev = std::clamp(std::log2(MiddleBehind / middle), ev, ev + LargestRaise);
+        spare(exceeded_by(BurntShare, photograph, size));
+    }
+    const std::vector<Sample> ground = samples_of(floor.colors, {});
+    const auto ground_size = static_cast<double>(ground.size());
+    if (ground_size * floor.share > BurntFloor)
+        spare(exceeded_by(BurntFloor / (ground_size * floor.share), ground, ground_size));
     return rounded(ev);
 }
 

@@ -7,6 +7,13 @@
 
 namespace relumine::relight {
 
+/// What a picture shows of a floor that lies under what is lit.
+struct MeteredFloor {
+    std::span<const glm::vec3> colors = {};
+    /// The part of the picture that each of them is.
+    double share = 0.0;
+};
+
 /// Returns the exposure in stops that suits what is lit: its bright parts (the 95th percentile of
 /// the largest channel) come out a little below white. Where most of it would stay dark, it is
 /// brightened by up to a stop and a half more. Hundredths of a stop, from -100 to 100; 0 where
@@ -18,10 +25,14 @@ namespace relumine::relight {
 /// dark that its bright parts would fall below a tenth of white. Where nothing is lit, the
 /// photograph itself is exposed.
 ///
+/// Nor may a floor under lamps burn out: all of it but a fiftieth of the picture stays within half
+/// a stop above white, with the same bound on how dark what is lit may be.
+///
 /// Shape:   weights is [colors.size()], or empty where all count alike.
 /// Cost:    O(n log n).
 [[nodiscard]] float suitable_exposure_ev(std::span<const glm::vec3> colors,
                                          std::span<const float> weights = {},
-                                         std::span<const glm::vec3> behind = {});
+                                         std::span<const glm::vec3> behind = {},
+                                         const MeteredFloor& floor = {});
 
 } // namespace relumine::relight

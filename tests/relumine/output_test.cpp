@@ -9,6 +9,7 @@
 #include "cubemap/image/environment.h"
 #include "mesh/floor.h"
 #include "mesh/load.h"
+#include "tests/prt/scenes.h"
 #include "tests/prt/textured_square.h"
 #include "tests/relight/environments.h"
 #include "tests/relumine/small_scenes.h"
@@ -291,6 +292,52 @@ TEST_F(Output, ExposureIsThatOfTheMeshAndNotOfItsFloor) {
             .choose_exposure_ev(lit.lighting());
     };
     EXPECT_EQ(exposure(0.05f), exposure(5.0f));
+}
+
+const Camera LookingDown{
+    .eye = {1.0f, 2.0f, 4.0f}, .target = {0.0f, 0.2f, 0.0f}, .fov_degrees = 30};
+
+/// A dark post on a floor, under a lamp that the picture does not show.
+Scene post_under_lamp(const ReceiverChoice& receivers) {
+    Mesh mesh(scenes::joined(scenes::box({-0.1f, 0.0f, -0.1f}, {0.1f, 1.2f, 0.1f}),
+                             scenes::box({-0.3f, 2.5f, -0.3f}, {0.3f, 2.6f, 0.3f})));
+    mesh.geometry.materials = {{.name = "post", .base_color = glm::vec3(0.1f)},
+                               {.name = "lamp", .emission = glm::vec3(800.0f)}};
+    mesh.geometry.triangle_materials.assign(24, 0);
+    std::fill_n(mesh.geometry.triangle_materials.begin() + 12, 12, 1u);
+    mesh::append_floor(mesh.geometry, 24, 6.0f);
+    mesh.floor_vertices = 24;
+    PrecomputeOptions options{.tolerance = 0.2f, .receivers = receivers, .no_refine = true};
+    if (std::holds_alternative<Pixels>(receivers))
+        options.view = View{.camera = LookingDown};
+    return precompute(std::move(mesh), options);
+}
+
+TEST_F(Output, ExposureDoesNotBurnAFloorUnderLamps) {
+    for (const ReceiverChoice& receivers :
+         {ReceiverChoice(Vertices{}), ReceiverChoice(Pixels{.width = 80, .height = 60})}) {
+        LitScene lit(post_under_lamp(receivers));
+        lit.light(cubemap::CubeMap(8, glm::vec3(0.05f)));
+        OutputOptions options{.floor = FloorLook::Grey,
+                              .floor_albedo = glm::vec3(0.5f),
+                              .width = 80,
+                              .height = 60,
+                              .samples_per_axis = 1,
+                              .background = glm::vec3(0.0f)};
+        options.camera = LookingDown;
+        const auto bright_share = [&](double ev) {
+            const Picture picture = draw(lit, options);
+            const auto num_bright = std::count_if(
+                picture.pixels.begin(), picture.pixels.end(), [&](const glm::vec3& pixel) {
+                    const float brightest = std::max({pixel.r, pixel.g, pixel.b});
+                    return std::exp2(ev) * double{brightest} > 1.45;
+                });
+            return static_cast<double>(num_bright) / static_cast<double>(picture.pixels.size());
+        };
+        const double with_lamp = Painter(lit, options).choose_exposure_ev(lit.lighting());
+        EXPECT_LT(bright_share(with_lamp), 0.03);
+        EXPECT_GT(bright_share(with_lamp + 1.0), 0.03);
+    }
 }
 
 // What a window shows may burn out, or the room would be dark.

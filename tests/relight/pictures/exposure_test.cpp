@@ -67,5 +67,21 @@ TEST(Exposure, LeavesAPhotographBehindAsItIs) {
     EXPECT_EQ(suitable_exposure_ev({}, {}, bright), suitable_exposure_ev(bright));
 }
 
+TEST(Exposure, DoesNotBurnTheFloor) {
+    const std::vector<glm::vec3> lit(100, glm::vec3(0.8f));
+    const float alone = suitable_exposure_ev(lit);
+    const auto with_floor = [&](float brightness, std::size_t num_bright) {
+        std::vector<glm::vec3> floor(200, glm::vec3(0.1f));
+        std::fill_n(floor.begin(), num_bright, glm::vec3(brightness));
+        return suitable_exposure_ev(lit, {}, {}, {.colors = floor, .share = 0.001});
+    };
+    // A pool of light may burn out in a fiftieth of the picture, and not in more of it.
+    EXPECT_EQ(with_floor(5.6f, 20), alone);
+    EXPECT_NEAR(with_floor(5.6f, 21), -2.0f, 0.01f);
+    EXPECT_EQ(with_floor(1.0f, 200), alone);
+    // What is lit stays visible.
+    EXPECT_NEAR(with_floor(1e4f, 200), alone - 3.0f, 0.01f);
+}
+
 } // namespace
 } // namespace relumine::relight
