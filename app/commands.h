@@ -23,6 +23,7 @@ void add_info(Command& program, Session& session);
 void add_generate(Command& program, Session& session);
 void add_mesh(Command& program, Session& session);
 void add_env(Command& program, Session& session);
+void add_coarsen(Command& program, Session& session);
 void add_export(Command& program, Session& session);
 void add_view(Command& program, Session& session);
 void add_serve(Command& program, Session& session);

@@ -26,6 +26,7 @@ void add_commands(CommandLine& line, Session& session) {
     add_generate(program, session);
     add_mesh(program, session);
     add_env(program, session);
+    add_coarsen(program, session);
     add_export(program, session);
     add_view(program, session);
     add_serve(program, session);

@@ -61,7 +61,7 @@ public:
     static constexpr std::uint32_t FinestCell = 128;
 
     explicit TexelOverlaps(std::uint32_t resolution)
-        : resolution_(resolution), cells_per_texel_((FinestCell + resolution - 1) / resolution),
+        : cells_per_texel_((FinestCell + resolution - 1) / resolution),
           num_cells_(resolution * cells_per_texel_) {}
 
     /// Calls `visit(face, x, y, solid_angle)` for the texels that the polygon overlaps; a texel may
@@ -155,7 +155,7 @@ private:
             scaled_.push_back(point * (2.0 / num_cells_) - 1.0);
     }
 
-    std::uint32_t resolution_, cells_per_texel_, num_cells_;
+    std::uint32_t cells_per_texel_, num_cells_;
     std::vector<glm::dvec3> clipped_, kept_;
     Polygon polygon_, scaled_;
     GridCutter cutter_;

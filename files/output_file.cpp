@@ -206,7 +206,7 @@ void abandon_outputs() {
 
 void save_text(const std::filesystem::path& path, std::string_view text) {
     OutputFile file(path);
-    file.write(std::as_bytes(std::span(text)));
+    file.write(std::as_bytes(std::span(text.data(), text.size())));
     file.commit();
 }
 
@@ -216,7 +216,8 @@ void append_text(const std::filesystem::path& path, std::string_view text) {
     if (!file.is_open() || ::fstat(file.get(), &status) != 0)
         fail(path, "write", errno);
     const auto size = static_cast<std::uint64_t>(status.st_size);
-    write_at(path, file.get(), size, std::as_bytes(std::span(text)), text.size(), size);
+    write_at(path, file.get(), size, std::as_bytes(std::span(text.data(), text.size())),
+             text.size(), size);
 }
 
 namespace {

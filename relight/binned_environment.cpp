@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -10,6 +9,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include "files/parallel.h"
 
@@ -35,8 +35,8 @@ bool are_surely_good(std::span<const glm::vec3> texels) {
     const float* values = &texels.front().x;
     std::uint32_t bad = 0;
     for (std::size_t i = 0; i < 3 * texels.size(); ++i) {
-        const auto bits = std::bit_cast<std::uint32_t>(values[i]);
-        bad |= bits | (std::bit_cast<std::uint32_t>(MaxRadiance) - bits);
+        const auto bits = glm::floatBitsToUint(values[i]);
+        bad |= bits | (glm::floatBitsToUint(MaxRadiance) - bits);
     }
     return (bad & Negative) == 0;
 }

@@ -47,8 +47,8 @@ void require_finite(const std::filesystem::path& path, std::span<const glm::vec3
 
 struct Painter::Impl {
     Impl(const LitScene& lit, const OutputOptions& given)
-        : scene(lit.scene()), rays(lit.rays().of_mesh()), options(given),
-          floor(picture_floor(scene, options)) {
+        : scene(lit.scene()), rays(lit.rays().of_mesh()), beams(lit.rays().for_moving_lights()),
+          options(given), floor(picture_floor(scene, options)) {
         take_emission();
         // The transfer of a scene that processes share has no highlights.
         if (is_on_vertices())
@@ -120,8 +120,10 @@ struct Painter::Impl {
         light.surfaces = scene.receivers.surfaces;
         light.albedo = shown_factors();
         light.bias = scene.settings.bias;
-        if (traces)
+        if (traces) {
             light.lights = lighting.lights;
+            light.blockers = &beams;
+        }
         std::optional<relight::Reflections> reflections;
         std::vector<glm::vec3> mirrored;
         if (textures.has_mirrors() && options.highlight_rays != 0) {
@@ -357,6 +359,8 @@ struct Painter::Impl {
 
     const Scene& scene;
     const prt::RayScene& rays;
+    /// For the sun.
+    const prt::Blockers& beams;
     OutputOptions options;
     /// [num_receivers] or empty: none.
     std::vector<glm::vec3> emission;

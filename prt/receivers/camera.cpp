@@ -61,8 +61,11 @@ PictureRays::PictureRays(const Camera& camera, std::uint32_t width, std::uint32_
 }
 
 glm::vec3 PictureRays::direction(std::uint32_t x, std::uint32_t y, std::uint32_t i) const {
-    return glm::normalize(corner_ + (static_cast<float>(x) + places_[i].x) * right_ +
-                          (static_cast<float>(y) + places_[i].y) * down_);
+    return direction(glm::vec2(x, y) + places_[i]);
+}
+
+glm::vec3 PictureRays::direction(const glm::vec2& place) const {
+    return glm::normalize(corner_ + place.x * right_ + place.y * down_);
 }
 
 } // namespace relumine::prt

@@ -45,10 +45,14 @@ public:
     /// Returns the unit direction of sample i of pixel (x, y). Pixels count from the top left;
     /// samples count row by row.
     [[nodiscard]] glm::vec3 direction(std::uint32_t x, std::uint32_t y, std::uint32_t i) const;
+    /// Returns the unit direction of a place in the picture, in pixels from its top left corner.
+    [[nodiscard]] glm::vec3 direction(const glm::vec2& place) const;
     /// Returns the steps between samples, at distance 1.
     [[nodiscard]] glm::vec3 right() const { return right_ / static_cast<float>(samples_per_axis_); }
     [[nodiscard]] glm::vec3 down() const { return down_ / static_cast<float>(samples_per_axis_); }
     [[nodiscard]] const glm::vec3& forward() const { return forward_; }
+    /// Returns where the picture's top left corner lies, at distance 1.
+    [[nodiscard]] const glm::vec3& corner() const { return corner_; }
 
 private:
     std::uint32_t samples_per_axis_;

@@ -117,9 +117,12 @@ std::vector<std::uint32_t> spatial_order(const Receivers& receivers) {
         std::partition_point(places.begin(), end_of_receiving, [&](const Place& place) {
             return place.receiver < receivers.num_own();
         });
-    sort_into_groups({places.begin(), end_of_own});
-    sort_into_groups({end_of_own, end_of_receiving});
-    sort_into_groups({end_of_receiving, places.end()});
+    const std::span<Place> all(places);
+    const auto num_own = static_cast<std::size_t>(end_of_own - places.begin());
+    const auto num_receiving = static_cast<std::size_t>(end_of_receiving - places.begin());
+    sort_into_groups(all.first(num_own));
+    sort_into_groups(all.subspan(num_own, num_receiving - num_own));
+    sort_into_groups(all.subspan(num_receiving));
 
     std::vector<std::uint32_t> order(places.size());
     std::transform(places.begin(), places.end(), order.begin(),

@@ -427,6 +427,13 @@ bool RayScene::is_thin(std::uint32_t triangle) const {
     return impl_->buffers.see_through.is_thin(triangle);
 }
 
+RayScene::Stops RayScene::stops(std::uint32_t triangle) const {
+    const SeeThrough& see_through = impl_->buffers.see_through;
+    if (see_through.may_pass(triangle, RayOf::Light))
+        return Stops::Somewhere;
+    return see_through.is_one_sided(triangle) ? Stops::Front : Stops::BothSides;
+}
+
 std::optional<Hit> RayScene::closest_hit(const glm::vec3& origin, const glm::vec3& direction,
                                          RayOf of) const {
     Query query(false, of);

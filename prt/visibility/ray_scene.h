@@ -87,6 +87,9 @@ public:
     static constexpr std::size_t MostLayers = 64;
     /// Whether there may be more layers behind a triangle.
     [[nodiscard]] bool is_thin(std::uint32_t triangle) const;
+    /// Where an eye's ray stops that meets a triangle.
+    enum class Stops : std::uint8_t { BothSides, Front, Somewhere };
+    [[nodiscard]] Stops stops(std::uint32_t triangle) const;
 
     [[nodiscard]] const Blockers* settled() const override;
 

@@ -47,6 +47,11 @@ public:
                (kinds_[triangle] & (of == RayOf::Eye ? PassesLight | OneSided : PassesLight)) != 0;
     }
 
+    /// Whether the eye sees a triangle's front alone.
+    [[nodiscard]] bool is_one_sided(std::uint32_t triangle) const {
+        return !kinds_.empty() && (kinds_[triangle] & OneSided) != 0;
+    }
+
     /// Whether a mask cuts out all of a triangle: no ray stops there.
     [[nodiscard]] bool is_cut_out(std::uint32_t triangle) const {
         return !even_.empty() && even_[triangle] == 1.0f && (kinds_[triangle] & Thin) == 0;

@@ -38,8 +38,10 @@ BandSums::BandSums(std::uint32_t face_resolution, std::span<const prt::Cell> cel
         if (!is_free)
             continue;
         is_summed_[i] = true;
-        for (std::size_t step = begin; step < end; ++step)
-            std::ranges::fill(row(step), static_cast<std::uint32_t>(i));
+        for (std::size_t step = begin; step < end; ++step) {
+            const auto own = row(step);
+            std::fill(own.begin(), own.end(), static_cast<std::uint32_t>(i));
+        }
     }
 }
 

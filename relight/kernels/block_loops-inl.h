@@ -15,6 +15,7 @@
 #include <hwy/highway.h>
 
 #include "relight/kernels/block_kernels.h"
+#include "relight/kernels/wasm_doubles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::relight::HWY_NAMESPACE {

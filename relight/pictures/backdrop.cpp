@@ -63,12 +63,13 @@ constexpr auto Always = [](std::int64_t, std::int64_t) {
     return true;
 };
 
-glm::vec3 lat_long(const EnvironmentImage& image, const glm::dvec3& w) {
+/// Returns the place of a direction in a lat-long image.
+glm::dvec2 lat_long(const EnvironmentImage& image, const glm::dvec3& w) {
     const double u = 0.5 - std::atan2(w.x, w.z) / (2.0 * std::numbers::pi);
     const double v = 0.5 - std::asin(std::clamp(w.y, -1.0, 1.0)) / std::numbers::pi;
     if (image.sampling == cubemap::Sampling::Borders)
-        return bilinear(image, {u * (image.width - 1.0), v * (image.height - 1.0)}, false, Always);
-    return bilinear(image, {u * image.width - 0.5, v * image.height - 0.5}, true, Always);
+        return {u * (image.width - 1.0), v * (image.height - 1.0)};
+    return {u * image.width - 0.5, v * image.height - 0.5};
 }
 
 glm::vec3 projected(const EnvironmentImage& image, const cubemap::Projection& projection,
@@ -127,25 +128,18 @@ cubemap::CubeMap blurred(const cubemap::CubeMap& map, double degrees) {
     return result;
 }
 
-/// Returns the mean of a backdrop over a pixel whose corners see nearly the same of it.
-std::optional<glm::vec3> even_backdrop(const prt::PictureRays& rays, std::uint32_t x,
-                                       std::uint32_t y, const Backdrop& backdrop) {
-    const std::uint32_t side = rays.samples_per_axis();
-    if (side <= 2)
-        return std::nullopt;
-    glm::vec3 low(std::numeric_limits<float>::infinity()), high(0.0f), sum(0.0f);
-    for (const std::uint32_t corner : {0u, side - 1, side * (side - 1), side * side - 1}) {
-        const glm::vec3 seen = backdrop(rays.direction(x, y, corner));
-        low = glm::min(low, seen);
-        high = glm::max(high, seen);
-        sum += seen;
-    }
-    constexpr float Alike = 0.9f;
-    return glm::all(glm::greaterThanEqual(low, Alike * high)) ? std::optional(sum / 4.0f)
-                                                              : std::nullopt;
+} // namespace
+
+glm::vec3 Chart::seen(const ChartSpot& at) const {
+    const glm::vec3 shown = bilinear(*image, at.place, is_closed, Always);
+    return at.hidden > 0.0f ? glm::mix(shown, hiding, at.hidden) : shown;
 }
 
-} // namespace
+Backdrop::Backdrop(Chart chart) : chart_(std::make_shared<const Chart>(std::move(chart))) {
+    seen_ = [own = chart_](const glm::vec3& direction) {
+        return own->seen(own->spot(direction));
+    };
+}
 
 Backdrop plain_backdrop(const glm::vec3& color) {
     return [color](const glm::vec3&) {
@@ -170,11 +164,20 @@ Backdrop image_backdrop(std::shared_ptr<const EnvironmentImage> image, const glm
             return cubemap::sample(*map, glm::vec3(image_from_world * glm::dvec3(direction)));
         };
     }
-    return [image = std::move(image), image_from_world](const glm::vec3& direction) {
-        const glm::dvec3 w = glm::normalize(image_from_world * glm::dvec3(direction));
-        const cubemap::Projection* projection = cubemap::projection(image->layout);
-        return projection == nullptr ? lat_long(*image, w) : projected(*image, *projection, w);
+    if (const cubemap::Projection* projection = cubemap::projection(image->layout))
+        return
+            [image = std::move(image), image_from_world, projection](const glm::vec3& direction) {
+                return projected(*image, *projection,
+                                 glm::normalize(image_from_world * glm::dvec3(direction)));
+            };
+    Chart chart;
+    chart.image = image;
+    chart.is_closed = image->sampling != cubemap::Sampling::Borders;
+    chart.spot = [image = std::move(image), image_from_world](const glm::vec3& direction) {
+        return ChartSpot{
+            .place = lat_long(*image, glm::normalize(image_from_world * glm::dvec3(direction)))};
     };
+    return Backdrop(std::move(chart));
 }
 
 Backdrop backdrop_of(const cubemap::EnvironmentFile& file) {
@@ -207,19 +210,6 @@ Backdrop blurred_backdrop(const cubemap::CubeMap& map, double degrees) {
     return [soft](const glm::vec3& direction) {
         return cubemap::sample(*soft, direction);
     };
-}
-
-glm::vec3 seen_behind(const prt::PictureRays& rays, std::uint32_t x, std::uint32_t y,
-                      std::span<const glm::vec3> passed, const Backdrop& backdrop) {
-    const auto num = static_cast<float>(passed.size());
-    const bool is_open = std::find(passed.begin(), passed.end(), glm::vec3(0.0f)) == passed.end();
-    if (const auto even = is_open ? even_backdrop(rays, x, y, backdrop) : std::nullopt)
-        return std::accumulate(passed.begin(), passed.end(), glm::vec3(0.0f)) / num * *even;
-    glm::vec3 sum(0.0f);
-    for (std::uint32_t i = 0; i < passed.size(); ++i)
-        if (passed[i] != glm::vec3(0.0f))
-            sum += passed[i] * backdrop(rays.direction(x, y, i));
-    return sum / num;
 }
 
 } // namespace relumine::relight

@@ -1,24 +1,69 @@
 // What is seen behind a mesh.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <functional>
 #include <memory>
-#include <span>
+#include <type_traits>
+#include <utility>
 
 #include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
 #include "cubemap/image/environment.h"
 #include "cubemap/image/environment_file.h"
-#include "prt/receivers/camera.h"
 
 namespace relumine::relight {
 
+/// Where a direction falls in the image of a chart.
+struct ChartSpot {
+    /// In pixels from the top left one's centre.
+    glm::dvec2 place{0.0};
+    /// The part of the image that a plain colour hides.
+    float hidden = 0.0f;
+};
+
+/// A backdrop as an image whose places follow the directions smoothly, but for a seam: what many
+/// directions side by side see is found faster than one by one.
+struct Chart {
+    /// Columns go on at the other side where it is closed.
+    std::shared_ptr<const cubemap::EnvironmentImage> image;
+    bool is_closed = false;
+    std::function<ChartSpot(const glm::vec3& direction)> spot;
+    glm::vec3 hiding{0.0f};
+
+    /// Returns what a spot shows.
+    [[nodiscard]] glm::vec3 seen(const ChartSpot& at) const;
+};
+
 /// Returns the radiance that a ray of a unit direction finds. May be called from any number of
 /// threads at once.
-using Backdrop = std::function<glm::vec3(const glm::vec3& direction)>;
+class Backdrop {
+public:
+    using Seen = std::function<glm::vec3(const glm::vec3& direction)>;
+
+    /// Empty: nothing is known to be behind.
+    Backdrop() = default;
+    Backdrop(std::nullptr_t) {}
+    template<typename Callable>
+    requires(!std::is_same_v<std::remove_cvref_t<Callable>, Backdrop> &&
+             std::is_constructible_v<Seen, Callable>) Backdrop(Callable&& seen)
+        : seen_(std::forward<Callable>(seen)) {}
+    explicit Backdrop(Chart chart);
+
+    [[nodiscard]] glm::vec3 operator()(const glm::vec3& direction) const {
+        return seen_(direction);
+    }
+    [[nodiscard]] explicit operator bool() const { return static_cast<bool>(seen_); }
+    /// Null: there is none.
+    [[nodiscard]] const Chart* chart() const { return chart_.get(); }
+
+private:
+    Seen seen_;
+    std::shared_ptr<const Chart> chart_;
+};
 
 [[nodiscard]] Backdrop plain_backdrop(const glm::vec3& color);
 
@@ -46,13 +91,5 @@ using Backdrop = std::function<glm::vec3(const glm::vec3& direction)>;
 ///
 /// Cost:    O(1 / degrees^2): a tenth of a second at 5 degrees.
 [[nodiscard]] Backdrop blurred_backdrop(const cubemap::CubeMap& map, double degrees);
-
-/// Returns what a pixel shows of a backdrop: the mean over its samples, of which each lets through
-/// what `passed` says, [samples per pixel].
-///
-/// Where the corners of an open pixel see nearly the same, nothing else is asked: most pixels are
-/// narrower than the photograph's, which has nothing in between then.
-[[nodiscard]] glm::vec3 seen_behind(const prt::PictureRays& rays, std::uint32_t x, std::uint32_t y,
-                                    std::span<const glm::vec3> passed, const Backdrop& backdrop);
 
 } // namespace relumine::relight

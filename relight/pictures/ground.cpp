@@ -33,6 +33,13 @@ glm::dvec3 Ground::point(const glm::vec3& eye, const glm::vec3& direction) const
 }
 
 Backdrop grounded_backdrop(Backdrop backdrop, const Ground& ground, const glm::vec3& eye) {
+    if (const Chart* own = backdrop.chart()) {
+        Chart chart = *own;
+        chart.spot = [spot = own->spot, ground, eye](const glm::vec3& direction) {
+            return spot(glm::vec3(glm::normalize(ground.point(eye, direction))));
+        };
+        return Backdrop(std::move(chart));
+    }
     return [backdrop = std::move(backdrop), ground, eye](const glm::vec3& direction) {
         return backdrop(glm::vec3(glm::normalize(ground.point(eye, direction))));
     };
@@ -40,17 +47,29 @@ Backdrop grounded_backdrop(Backdrop backdrop, const Ground& ground, const glm::v
 
 Backdrop sweep_backdrop(Backdrop backdrop, const glm::vec3& color, const Ground& ground,
                         const glm::vec3& eye) {
-    return [backdrop = std::move(backdrop), color, ground, eye](const glm::vec3& direction) {
-        const glm::vec3 behind = backdrop(direction);
+    // The part of the backdrop that the sweep hides.
+    const auto hidden = [ground, eye](const glm::vec3& direction) {
         const glm::dvec3 way(direction);
         const double drop = double{eye.y} - ground.camera.y + ground.height;
         if (!(way.y < 0.0 && drop > 0.0))
-            return behind;
+            return 0.0f;
         const glm::dvec3 at = ground.point(eye, direction);
         const double distance = std::max(std::hypot(at.x, at.z) / ground.height, SweepBegin);
         const double t =
             std::max((1.0 / distance - 1.0 / SweepEnd) / (1.0 / SweepBegin - 1.0 / SweepEnd), 0.0);
-        return glm::mix(behind, color, static_cast<float>(t * t * (3.0 - 2.0 * t)));
+        return static_cast<float>(t * t * (3.0 - 2.0 * t));
+    };
+    const Chart* own = backdrop.chart();
+    if (own != nullptr && own->hiding == glm::vec3(0.0f)) {
+        Chart chart = *own;
+        chart.hiding = color;
+        chart.spot = [spot = own->spot, hidden](const glm::vec3& direction) {
+            return ChartSpot{.place = spot(direction).place, .hidden = hidden(direction)};
+        };
+        return Backdrop(std::move(chart));
+    }
+    return [backdrop = std::move(backdrop), color, hidden](const glm::vec3& direction) {
+        return glm::mix(backdrop(direction), color, hidden(direction));
     };
 }
 

@@ -17,8 +17,8 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/camera.h"
 #include "prt/receivers/surface.h"
+#include "prt/visibility/blockers.h"
 #include "prt/visibility/ray_scene.h"
-#include "prt/visibility/twin_triangles.h"
 #include "relight/pictures/backdrop.h"
 #include "relight/pictures/reflections.h"
 #include "relight/pictures/surface_colors.h"
@@ -67,6 +67,9 @@ struct MeshLight {
     /// Traced at every point that is seen, with its own normal: their shadows are as sharp as the
     /// picture, on any mesh.
     std::span<const SharpLight> lights = {};
+    /// What blocks the lights: the mesh. Null: the picture's rays are asked. LazyBeamScene is
+    /// faster, with the same answers.
+    const prt::Blockers* blockers = nullptr;
     /// [num_vertices] factor on what the lights give.
     std::span<const glm::vec3> albedo = {};
     /// [num_vertices] radiance that surfaces give of their own, or empty: none. Triangles with a
@@ -107,23 +110,27 @@ struct MeshLight {
 /// `radiance` in place of `open`: their ratio, and 1 where it is not opaque.
 [[nodiscard]] glm::vec3 caught(const glm::vec3& radiance, const glm::vec3& open, float opacity);
 
+class EyeSamples;
+
 /// A camera's view of a still scene, traced once and drawn in any light.
 class PictureView {
 public:
-    /// Traces the rays and keeps 12 bytes per sample, if they come to at most `max_bytes`.
-    /// Otherwise they are traced anew each time. The mesh and rays must outlive this object.
+    /// Finds what the samples see and keeps 12 bytes for each, if they come to at most `max_bytes`.
+    /// Otherwise it is found anew each time. The mesh and rays must outlive this object.
     ///
     /// Throws:  std::invalid_argument for a camera without a direction, a field of view outside
     ///          (0, 180), a size outside 1..16384.
     PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& rays, const Camera& camera,
                 const PictureOptions& options = {}, const FadingFloor& floor = {},
                 std::size_t max_bytes = std::size_t{1} << 30);
+    ~PictureView();
+    PictureView(PictureView&&) noexcept;
 
     /// Draws the mesh alone. Alpha is the part of each pixel that it covers; pixels are
     /// premultiplied.
     ///
-    /// Lights are traced at the middle of each pixel, and at all its samples where any of the
-    /// pixels around sees other lights.
+    /// Lights are traced at the middle of each pixel. Those that a pixel and the pixels around it
+    /// disagree about are traced at all of its samples.
     ///
     /// Throws:  std::invalid_argument where there is not one radiance, albedo or surface per
     ///          vertex.
@@ -135,30 +142,15 @@ public:
     [[nodiscard]] Picture draw(const MeshLight& light, const Backdrop& backdrop) const;
 
 private:
-    /// The point where a sample's ray meets the mesh.
-    struct Sample {
-        std::uint32_t triangle;
-        /// Weights of the triangle's second and third vertex.
-        float second, third;
-    };
-    class Row;
-    class Tile;
-
-    void trace(std::uint32_t y, std::uint32_t x_begin, std::uint32_t x_end,
-               std::span<Sample> samples) const;
-    [[nodiscard]] float opacity(const Sample& sample) const;
     [[nodiscard]] Picture drawn(const MeshLight& light, const Backdrop* backdrop) const;
 
     const mesh::TriangleMesh& mesh_;
     const prt::RayScene& rays_;
-    Camera camera_;
+    glm::vec3 eye_;
     PictureOptions options_;
     FadingFloor floor_;
     prt::PictureRays grid_;
-    /// [height * width * samples per pixel]; empty when they are traced anew.
-    std::vector<Sample> samples_;
-    /// The other side of surfaces that the mesh has twice.
-    std::unique_ptr<const prt::TwinTriangles> twins_;
+    std::unique_ptr<const EyeSamples> samples_;
 };
 
 } // namespace relumine::relight

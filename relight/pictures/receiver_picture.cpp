@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "files/parallel.h"
+#include "relight/pictures/backdrop_pixels.h"
 
 namespace relumine::relight {
 
@@ -140,7 +141,7 @@ Picture compose(const prt::PixelLayout& layout, std::span<const glm::vec3> radia
     return averaged(
         layout, radiance, opacity, veils,
         [&](auto x, auto y, const auto& passed) {
-            return seen_behind(rays, x, y, passed, backdrop);
+            return BackdropPixels(rays, backdrop, {x, y, x + 1, y + 1}).seen(x, y, passed);
         },
         false);
 }

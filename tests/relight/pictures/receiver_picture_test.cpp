@@ -55,8 +55,9 @@ TEST(ReceiverPicture, EqualsADirectDrawOfTheSameRadiance) {
                 .draw({.radiance = colors}, map_backdrop(sky));
         ASSERT_EQ(composed.pixels.size(), drawn.pixels.size());
         EXPECT_TRUE(composed.alpha.empty());
+        // Samples beside an edge may lie in either triangle.
         for (std::size_t i = 0; i < drawn.pixels.size(); ++i)
-            EXPECT_LT(difference(composed.pixels[i], drawn.pixels[i]), 1e-5f) << i;
+            EXPECT_LT(difference(composed.pixels[i], drawn.pixels[i]), 1e-4f) << i;
 
         // Cut out and laid over the background alone, it is the same picture.
         const Picture cut_out = compose_cut_out(pixels.layout, radiance);
@@ -66,7 +67,7 @@ TEST(ReceiverPicture, EqualsADirectDrawOfTheSameRadiance) {
             const float alpha = cut_out.alpha[i];
             if (alpha == 1.0f || alpha == 0.0f) {
                 const glm::vec3 over = cut_out.pixels[i] + (1.0f - alpha) * empty.pixels[i];
-                EXPECT_LT(difference(over, drawn.pixels[i]), n == 1 ? 1e-5f : 1e-2f) << i;
+                EXPECT_LT(difference(over, drawn.pixels[i]), n == 1 ? 1e-4f : 1e-2f) << i;
             }
         }
     }

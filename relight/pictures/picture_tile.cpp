@@ -1,0 +1,187 @@
+#include "relight/pictures/picture_tile.h"
+
+#include <algorithm>
+
+namespace relumine::relight {
+
+namespace {
+
+/// Alpha knows no colours.
+float opacity_of(const glm::vec3& passed) {
+    return std::clamp(1.0f - (passed.r + passed.g + passed.b) / 3.0f, 0.0f, 1.0f);
+}
+
+bool is_none(std::span<const std::uint16_t> lights) {
+    return std::all_of(lights.begin(), lights.end(), [](std::uint16_t word) { return word == 0; });
+}
+
+} // namespace
+
+PictureTile::PictureTile(const TileScene& scene)
+    : scene_(scene), rays_{.blockers = &scene.rays, .bias = scene.light.bias},
+      mirrors_(scene.mesh, scene.samples.twins(), scene.light, scene.floor, scene.backdrop,
+               texture_view_),
+      shading_(scene.mesh, scene.light, scene.packets, texture_view_),
+      lights_(scene.mesh,
+              scene.light.blockers != nullptr ? *scene.light.blockers
+                                              : static_cast<const prt::Blockers&>(scene.rays),
+              scene.light.bias, scene.beams),
+      own_lights_(scene.packets.num_packets()) {
+    if (scene.light.textures != nullptr && scene.light.textures->maps() != nullptr)
+        texture_view_ = {*scene.light.textures->maps(), scene.eye, scene.grid};
+}
+
+void PictureTile::draw(std::uint32_t tile, Picture& picture) {
+    // The tile and a ring of pixels around it, for the lights and for what mirrors.
+    static_assert(Mirrors::Reach <= PictureTiles::LargestRing);
+    const bool traces = scene_.packets.num_packets() != 0;
+    const std::uint32_t ring = scene_.light.reflections != nullptr ? Mirrors::Reach
+                               : traces                            ? 1
+                                                                   : 0;
+    const PixelRectangle inner = scene_.tiles.pixels(tile, 0);
+    const SampleRectangle seen = scene_.samples.of(tile, ring);
+    if (traces)
+        lights_.trace(seen, inner);
+    if (scene_.light.reflections != nullptr)
+        look_into_mirrors(seen);
+    std::optional<BackdropPixels> behind;
+    if (scene_.backdrop != nullptr)
+        behind.emplace(scene_.grid, *scene_.backdrop, inner);
+    for (std::uint32_t y = inner.top; y < inner.bottom; ++y)
+        for (std::uint32_t x = inner.left; x < inner.right; ++x) {
+            const std::size_t pixel = std::size_t{y} * picture.width + x;
+            const auto [color, alpha] = drawn(x, y, seen.pixel(x, y));
+            picture.pixels[pixel] = color;
+            if (!behind)
+                picture.alpha[pixel] = alpha;
+            else if (alpha < 1.0f || scene_.light.open_floor)
+                picture.pixels[pixel] += behind->seen(x, y, passed_);
+        }
+}
+
+void PictureTile::look_into_mirrors(const SampleRectangle& seen) {
+    const PixelRectangle& pixels = seen.pixels();
+    std::vector<std::optional<prt::MeshPoint>> points;
+    for (std::uint32_t y = pixels.top; y < pixels.bottom; ++y)
+        for (std::uint32_t x = pixels.left; x < pixels.right; ++x) {
+            const EyeSample& sample = seen.middle(x, y);
+            points.push_back(sample.hits() ? std::optional(sample.point()) : std::nullopt);
+        }
+    mirrors_.begin_tile(pixels.left, pixels.top, static_cast<std::uint32_t>(pixels.width()),
+                        points);
+}
+
+PictureTile::Pixel PictureTile::drawn(std::uint32_t x, std::uint32_t y,
+                                      std::span<const EyeSample> samples) {
+    passed_.assign(samples.size(), glm::vec3(1.0f));
+    mirrors_.begin_pixel(x, y);
+    find_parts(samples, scene_.packets.num_packets() == 0 || lights_.is_even(x, y));
+    glm::vec3 sum(0.0f);
+    float alpha = 0.0f;
+    for (Part& part : parts_) {
+        const EyeSample mean{part.sum.triangle, part.sum.second / part.count,
+                             part.sum.third / part.count};
+        const Shown seen = shown(x, y, part.first, mean);
+        sum += part.count * seen.color;
+        alpha += part.count * seen.covered;
+        if (seen.passed != glm::vec3(1.0f))
+            for (std::size_t i = part.first; i < samples.size(); ++i)
+                if (part_of_[i] == static_cast<std::size_t>(&part - parts_.data()))
+                    passed_[i] = seen.passed;
+    }
+    const auto count = static_cast<float>(samples.size());
+    return {.color = sum / count, .alpha = alpha / count};
+}
+
+bool PictureTile::is_linear(std::uint32_t triangle) const {
+    return scene_.light.reflections == nullptr && !shading_.has_texture(triangle) &&
+           !scene_.rays.is_thin(triangle);
+}
+
+void PictureTile::find_parts(std::span<const EyeSample> samples, bool is_even) {
+    /// Samples look for their triangle among so many parts, those before them.
+    constexpr std::size_t Looks = 8;
+    constexpr std::size_t NoPart = ~std::size_t{0};
+    parts_.clear();
+    part_of_.assign(samples.size(), NoPart);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const EyeSample& sample = samples[i];
+        if (!sample.hits())
+            continue;
+        std::size_t part = parts_.size();
+        if (is_even && is_linear(sample.triangle))
+            for (std::size_t k = 1; k <= std::min(Looks, parts_.size()); ++k)
+                if (parts_[parts_.size() - k].sum.triangle == sample.triangle) {
+                    part = parts_.size() - k;
+                    break;
+                }
+        if (part == parts_.size())
+            parts_.push_back({.sum = {sample.triangle, 0.0f, 0.0f}, .count = 0.0f, .first = i});
+        Part& own = parts_[part];
+        own.sum.second += sample.second;
+        own.sum.third += sample.third;
+        own.count += 1.0f;
+        part_of_[i] = part;
+    }
+}
+
+PictureTile::Shown PictureTile::shown(std::uint32_t x, std::uint32_t y, std::size_t i,
+                                      const EyeSample& first) {
+    const MeshLight& light = scene_.light;
+    const bool traces = scene_.packets.num_packets() != 0;
+    Shown result;
+    for (const Layer& layer : layers(x, y, i, first)) {
+        const EyeSample& sample = layer.sample;
+        const float opacity = this->opacity(sample);
+        if (opacity == 0.0f)
+            continue;
+        const prt::MeshPoint at = sample.point();
+        const bool is_caught = catches(sample);
+        const std::optional<Mirror> mirror = mirrors_.at(at);
+        glm::vec3 radiance = shading_.soft(at, mirror, mirrors_);
+        if (traces) {
+            std::span<const std::uint16_t> lights = own_lights_;
+            if (layer.is_first)
+                lights = lights_.of(x, y, i);
+            else
+                scene_.packets.visible(prt::smooth_position(scene_.mesh, at),
+                                       prt::mapped_normal(scene_.mesh, at), rays_, own_lights_);
+            if (!is_none(lights))
+                radiance += is_caught ? shading_.white(prt::shading_normal(scene_.mesh, at), lights)
+                                      : shading_.traced(at, mirror, lights);
+        }
+        if (!is_caught)
+            result.color += result.passed * (layer.veil.weight * opacity) *
+                            (radiance + shading_.emitted(at, mirror));
+        const glm::vec3 passed = is_caught ? caught(radiance, *light.open_floor, opacity)
+                                           : 1.0f - opacity * (1.0f - layer.veil.through);
+        result.passed *= passed;
+        result.covered +=
+            (1.0f - result.covered) *
+            (is_caught || layer.veil.through != glm::vec3(0.0f) ? opacity_of(passed) : opacity);
+    }
+    return result;
+}
+
+std::span<const PictureTile::Layer> PictureTile::layers(std::uint32_t x, std::uint32_t y,
+                                                        std::size_t i, const EyeSample& first) {
+    layers_.assign(1, {first});
+    if (!scene_.rays.is_thin(first.triangle))
+        return layers_;
+    scene_.rays.layers(scene_.eye, scene_.grid.direction(x, y, static_cast<std::uint32_t>(i)),
+                       found_);
+    layers_.clear();
+    for (const prt::RayScene::Layer& layer : found_)
+        layers_.push_back({{layer.hit.triangle, layer.hit.barycentric.x, layer.hit.barycentric.y},
+                           layer.veil,
+                           layers_.empty()});
+    return layers_;
+}
+
+float PictureTile::opacity(const EyeSample& sample) const {
+    if (!scene_.floor.has(scene_.mesh.triangles[sample.triangle]))
+        return 1.0f;
+    return scene_.floor.opacity(prt::value_at(scene_.mesh, scene_.mesh.positions, sample.point()));
+}
+
+} // namespace relumine::relight

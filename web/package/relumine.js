@@ -1,0 +1,168 @@
+// Relighting in JavaScript: a scene that `relumine precompute` made, lit by any environment. relumine.d.ts says what
+// each function takes and returns.
+import { RelumineError, Runtime, bytesOf } from './wasm_module.js';
+
+export { RelumineError } from './wasm_module.js';
+
+const kinds = ['vertices', 'pixels', 'texels', 'points'];
+
+function require(isRight, message) {
+    if (!isRight)
+        throw new RelumineError('WRONG_ARGUMENT', message);
+}
+
+function requireNumbers(values, count, name) {
+    const isArray = Array.isArray(values) || (ArrayBuffer.isView(values) && !(values instanceof DataView));
+    require(isArray, `${name}: expected an array of numbers, got ${values}`);
+    require(values.length === count, `${name}: expected ${count} numbers, got ${values.length}`);
+}
+
+const isSize = (value) => Number.isInteger(value) && value >= 0 && value < 2 ** 31;
+
+function requireSize(value, name) {
+    require(isSize(value), `${name}: expected a whole number from 0, got ${value}`);
+}
+
+export class Relighter {
+    #loaded;
+    #scene = 0;
+
+    get #runtime() {
+        require(this.#loaded !== undefined, 'expected a scene, got one after dispose()');
+        return this.#loaded;
+    }
+
+    static async open(source, {wasm, harmonics = 0} = {}) {
+        requireSize(harmonics, 'harmonics');
+        const relighter = new Relighter();
+        const bytes = await bytesOf(source);
+        relighter.#loaded = await Runtime.make(wasm);
+        relighter.#open(bytes, harmonics);
+        return relighter;
+    }
+
+    #open(bytes, harmonics) {
+        const runtime = this.#runtime;
+        runtime.withNumbers(Uint32Array, [12, 0, harmonics, 0], (options) =>
+            runtime.withNumbers(Uint8Array, bytes, (at, count) => {
+                // The last of the options' words is for the answer.
+                runtime.call('open_bytes', at, count, options, options + 12);
+                this.#scene = runtime.view().getUint32(options + 12, true);
+            }));
+        this.info = this.#askInfo();
+    }
+
+    #askInfo() {
+        const names = ['kind', 'numReceivers', 'numClusters', 'numVertices', 'numTriangles', 'numHarmonics', 'hasBounces',
+                       'width', 'height'];
+        const size = 4 * (names.length + 2);
+        return this.#runtime.with(size, (at) => {
+            this.#runtime.view().setUint32(at, size, true);
+            this.#call('info', at);
+            const view = this.#runtime.view();
+            const info = {};
+            names.forEach((name, i) => { info[name] = view.getUint32(at + 4 * (i + 1), true); });
+            info.kind = kinds[info.kind];
+            info.hasBounces = info.hasBounces === 1;
+            info.tolerance = view.getFloat32(at + size - 4, true);
+            return Object.freeze(info);
+        });
+    }
+
+    #call(name, ...given) {
+        this.#runtime.call(name, this.#scene, ...given);
+    }
+
+    /** Fills the caller's array, or a new one, by the function of this name. */
+    #filled(name, Type, count, into) {
+        const result = into ?? new Type(count);
+        require(result instanceof Type, `expected a ${Type.name} to fill, got ${result}`);
+        require(result.length === count, `expected ${count} numbers to fill, got ${result.length}`);
+        this.#runtime.with(Type.BYTES_PER_ELEMENT * count, (at) => {
+            this.#call(name, at, count);
+            result.set(this.#runtime.array(Type, at, count));
+        });
+        return result;
+    }
+
+    get #numValues() { return 3 * this.info.numReceivers; }
+
+    positions(into) { return this.#filled('positions', Float32Array, this.#numValues, into); }
+    normals(into) { return this.#filled('normals', Float32Array, this.#numValues, into); }
+    triangles(into) { return this.#filled('triangles', Uint32Array, 3 * this.info.numTriangles, into); }
+    places(into) { return this.#filled('places', Uint32Array, this.info.numReceivers, into); }
+
+    light(given) {
+        const kind = ['cubeMap', 'latLong', 'lights'].filter((name) => given?.[name] !== undefined);
+        require(kind.length === 1, 'expected one of cubeMap, latLong and lights');
+        if (kind[0] === 'cubeMap')
+            this.#lightCubeMap(given.cubeMap, given.resolution);
+        else if (kind[0] === 'latLong')
+            this.#lightLatLong(given.latLong, given.width, given.height, given.resolution ?? 0);
+        else
+            this.#lightList(given.lights);
+    }
+
+    #lightCubeMap(texels, resolution = Math.sqrt((texels.length ?? 0) / 18)) {
+        require(isSize(resolution), 'cubeMap: expected [6][resolution][resolution][3] numbers');
+        requireNumbers(texels, 18 * resolution * resolution, 'cubeMap');
+        this.#runtime.withNumbers(Float32Array, texels, (at) => this.#call('light_cube_map', resolution, at));
+    }
+
+    #lightLatLong(pixels, width, height, resolution) {
+        requireSize(width, 'width');
+        requireSize(height, 'height');
+        requireSize(resolution, 'resolution');
+        requireNumbers(pixels, 3 * width * height, 'latLong');
+        this.#runtime.withNumbers(Float32Array, pixels,
+                                  (at) => this.#call('light_lat_long', width, height, resolution, at));
+    }
+
+    #lightList(lights) {
+        require(Array.isArray(lights), `lights: expected a list, got ${lights}`);
+        const numbers = lights.flatMap(({direction, irradiance}) => {
+            requireNumbers(direction, 3, 'direction');
+            requireNumbers(irradiance, 3, 'irradiance');
+            return [...direction, ...irradiance];
+        });
+        this.#runtime.withNumbers(Float32Array, numbers, (at) => this.#call('light_list', at, lights.length));
+    }
+
+    update(face, x, y, width, height, rgb) {
+        for (const [name, value] of Object.entries({face, x, y, width, height}))
+            requireSize(value, name);
+        requireNumbers(rgb, 3 * width * height, 'rgb');
+        this.#runtime.withNumbers(Float32Array, rgb, (at) => this.#call('update', face, x, y, width, height, at));
+    }
+
+    turn(degrees) { this.#call('turn', degrees); }
+
+    setAlbedo(rgb) {
+        requireNumbers(rgb, this.#numValues, 'albedo');
+        this.#runtime.withNumbers(Float32Array, rgb, (at, count) => this.#call('set_albedo', at, count));
+    }
+
+    bounce({numBounces = 0, tolerance = 0, step = false} = {}) {
+        requireSize(numBounces, 'numBounces');
+        const size = 16;
+        this.#runtime.with(size, (at) => {
+            const view = this.#runtime.view();
+            view.setUint32(at, size, true);
+            view.setUint32(at + 4, numBounces, true);
+            view.setFloat32(at + 8, tolerance, true);
+            view.setUint32(at + 12, step ? 1 : 0, true);
+            this.#call('bounce', at);
+        });
+    }
+
+    radiance(into) { return this.#filled('radiance', Float32Array, this.#numValues, into); }
+    radianceHalf(into) { return this.#filled('radiance_half', Uint16Array, this.#numValues, into); }
+    harmonics(into) {
+        return this.#filled('harmonics', Float32Array, this.#numValues * this.info.numHarmonics, into);
+    }
+
+    dispose() {
+        this.#loaded?.functions.relumine_close(this.#scene);
+        this.#loaded = undefined;
+    }
+}
