@@ -95,7 +95,7 @@ public:
         std::vector<glm::vec3> radiance;
         double seconds = 0.0;
     };
-    /// Adds a row, and a picture under the first map.
+    /// Adds a row, and a picture under the map of pictures.
     void add(const Row& row, const std::function<Relit(const cubemap::CubeMap&)>& relight) {
         nlohmann::json errors;
         double sum = 0.0, seconds = 0.0;
@@ -105,7 +105,7 @@ public:
             errors[maps_[i].name] = error;
             sum += error;
             seconds += relit.seconds / static_cast<double>(maps_.size());
-            if (i == 0)
+            if (i == PictureMap)
                 draw(fmt::format("{} {} {}", name_, row.method, row.setting), relit.radiance);
         }
         const double milliseconds = 1e3 * seconds;
@@ -140,7 +140,7 @@ public:
         });
     }
 
-    /// The scene under the first map as it is, for pictures to be held to.
+    /// The scene under the map of pictures as it is, for pictures to be held to.
     void draw_exact() {
         if (settings_.pictures.empty())
             return;
@@ -149,11 +149,14 @@ public:
         std::iota(all.begin(), all.end(), 0u);
         const std::vector<glm::dvec3> exact =
             relight::exact_radiance(scene.receivers, all, lit_.rays().of_mesh(),
-                                    cubemap::halved(maps_.front().map), {.bias = bias_});
+                                    cubemap::halved(maps_[PictureMap].map), {.bias = bias_});
         draw(name_ + " exact", std::vector<glm::vec3>(exact.begin(), exact.end()));
     }
 
 private:
+    /// St. Peter's: small windows, a bright sky behind them.
+    static constexpr std::size_t PictureMap = 1;
+
     void draw(const std::string& title, std::span<const glm::vec3> radiance) {
         if (settings_.pictures.empty())
             return;
@@ -164,7 +167,7 @@ private:
             painter_ = std::make_unique<Painter>(
                 lit_, OutputOptions{.floor = FloorLook::Grey, .width = 480, .height = 360});
         painter_->save(settings_.pictures / (file + ".png"),
-                       {.radiance = radiance, .environment = &maps_.front().map});
+                       {.radiance = radiance, .environment = &maps_[PictureMap].map});
     }
 
     std::string name_;
