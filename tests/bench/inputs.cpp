@@ -48,13 +48,21 @@ Scene Inputs::bunny() const {
     return precompute(std::move(bunny));
 }
 
-cubemap::CubeMap Inputs::environment(const std::string& file, std::uint32_t resolution) const {
+cubemap::CubeMap Inputs::map_of(const std::filesystem::path& file, std::uint32_t resolution) const {
     if (is_tiny())
         return data_gen::two_soft_boxes(TinyResolution);
-    const std::filesystem::path path = std::filesystem::path("envs/debevec") / file;
+    const std::filesystem::path path = "envs" / file;
     if (!std::filesystem::exists(data_ / path))
         throw Absent(path);
     return load_environment(data_ / path, {.face_resolution = resolution}).map;
+}
+
+cubemap::CubeMap Inputs::environment(const std::string& file, std::uint32_t resolution) const {
+    return map_of(std::filesystem::path("debevec") / file, resolution);
+}
+
+cubemap::CubeMap Inputs::studio(std::uint32_t resolution) const {
+    return map_of("polyhaven/studio_small_03_1k.hdr", resolution);
 }
 
 cubemap::LightLayer disc(const glm::dvec3& direction, double part_of_face, double intensity) {

@@ -43,9 +43,15 @@ public:
     /// Five probes of envs/debevec, and the sun and sky. Throws Absent.
     [[nodiscard]] std::vector<NamedMap> probes_and_sky(std::uint32_t resolution) const;
 
+    /// A studio with small bright lamps, of envs/polyhaven. Throws Absent.
+    [[nodiscard]] cubemap::CubeMap studio(std::uint32_t resolution) const;
+
     [[nodiscard]] bool is_tiny() const { return program_.is_tiny(); }
 
 private:
+    [[nodiscard]] cubemap::CubeMap map_of(const std::filesystem::path& file,
+                                          std::uint32_t resolution) const;
+
     Program& program_;
     std::filesystem::path data_;
     std::filesystem::path scene_;
