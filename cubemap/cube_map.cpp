@@ -110,6 +110,13 @@ CubeMap halved(const CubeMap& map) {
     return result;
 }
 
+CubeMap halved_to(const CubeMap& map, std::uint32_t most) {
+    CubeMap result = map;
+    while (result.resolution > most && result.resolution % 2 == 0)
+        result = halved(result);
+    return result;
+}
+
 glm::vec3 sample(const CubeMap& map, const glm::vec3& direction) {
     const FacePoint point = face_point(glm::dvec3(direction));
     const auto resolution = static_cast<std::int64_t>(map.resolution);

@@ -54,6 +54,9 @@ struct CubeMap {
 /// over their solid angles.
 [[nodiscard]] CubeMap halved(const CubeMap& map);
 
+/// Returns the map halved until it has at most `most` texels along an edge, or an odd number.
+[[nodiscard]] CubeMap halved_to(const CubeMap& map, std::uint32_t most);
+
 /// Returns the radiance seen in a direction. Values between texel centres are bilinear, also across
 /// the edges of faces.
 [[nodiscard]] glm::vec3 sample(const CubeMap& map, const glm::vec3& direction);

@@ -28,10 +28,10 @@ UpdateReport set_layer(LitScene& lit, std::size_t index, const cubemap::LightLay
     return lit.edit(std::move(next));
 }
 
-UpdateReport set_rotation(LitScene& lit, double degrees) {
+UpdateReport set_rotation(LitScene& lit, double degrees, Ending ending) {
     LightState next = lit.state();
     next.rotation_degrees = degrees;
-    return lit.edit(std::move(next));
+    return lit.edit(std::move(next), ending);
 }
 
 void mark(LitScene& lit) {

@@ -20,8 +20,8 @@ UpdateReport set_layers(LitScene& lit, std::vector<cubemap::LightLayer> layers);
 /// Replaces one layer, as while it is dragged. Throws std::out_of_range for an index, too.
 UpdateReport set_layer(LitScene& lit, std::size_t index, const cubemap::LightLayer& layer);
 /// Turns base and layers together about +Y, from their unturned state. Layers keep the directions
-/// they were given.
-UpdateReport set_rotation(LitScene& lit, double degrees);
+/// they were given. Ending::Moving is for a slider while it moves.
+UpdateReport set_rotation(LitScene& lit, double degrees, Ending ending = Ending::Quick);
 
 /// Marks the present state for undo() to return to. The first edit marks the state before it; other
 /// edits without a mark are not in the history.

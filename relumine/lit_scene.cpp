@@ -201,7 +201,22 @@ UpdateReport LitScene::relight_all(const LightState& next) {
     LayerCompositor compositor(next);
     UpdateReport report = relighter_->set_environment(compositor.whole());
     compositor_ = std::move(compositor);
+    coarse_.is_shown = false;
     report.texels = compositor_.changed();
+    return report;
+}
+
+/// Relights by a map that is quick to turn.
+UpdateReport LitScene::relight_coarse(const LightState& next) {
+    if (coarse_.of != next.base)
+        coarse_ = {.of = next.base,
+                   .base =
+                       std::make_shared<const LightBase>(std::make_shared<const cubemap::CubeMap>(
+                           cubemap::halved_to(*next.base->map(), MovingResolution)))};
+    LightState coarse = next;
+    coarse.base = coarse_.base;
+    const UpdateReport report = relight_all(coarse);
+    coarse_.is_shown = true;
     return report;
 }
 
@@ -251,16 +266,19 @@ UpdateReport LitScene::edit(LightState next, Ending ending) {
         begin_edits();
     if (!has_base)
         next.base = state_.base;
-    const bool is_whole = is_dark || next.rotation_degrees != state_.rotation_degrees ||
+    const bool is_moving = ending == Ending::Moving && !is_dark && next.rotation_degrees != 0.0 &&
+                           next.base->map()->resolution > MovingResolution;
+    const bool is_whole = is_dark || coarse_.is_shown ||
+                          next.rotation_degrees != state_.rotation_degrees ||
                           (next.base != state_.base &&
                            (next.rotation_degrees != 0.0 ||
                             next.base->map()->resolution != state_.base->map()->resolution));
     UpdateReport report;
     if (is_whole) {
-        report = relight_all(next);
+        report = is_moving ? relight_coarse(next) : relight_all(next);
         bounces_.forget();
         lamps_.forget_bounces();
-    } else if (ending == Ending::Quick || next != state_) {
+    } else if (ending != Ending::Exact || next != state_) {
         report = update(next);
     }
     if (is_dark)

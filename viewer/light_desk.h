@@ -40,7 +40,7 @@ public:
     void select(std::optional<std::size_t> index) { selected_ = index; }
 
     /// Changes the light. finish() makes all edits since the last step of undo one step.
-    void edit(LightState next);
+    void edit(LightState next, Ending ending = Ending::Quick);
     void finish();
     void undo();
     void redo();
@@ -84,6 +84,7 @@ void set_dimmer(LightDesk& desk, const std::string& name, const glm::vec3& gain)
 void change(LightDesk& desk, std::size_t index, const cubemap::LightLayer& layer);
 /// Moves a layer so that its middle is at a direction, as seen after the rotation.
 void move_middle(LightDesk& desk, std::size_t index, const glm::dvec3& direction);
+/// While the slider moves the turn is that of a coarser map: see Ending::Moving.
 void set_rotation(LightDesk& desk, double degrees);
 void set_base(LightDesk& desk, Environment environment);
 /// Adds a layer on top, selects it and returns its index. The name gets a number if a layer has the

@@ -201,9 +201,11 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
         .def("set_layer", &set_layer)
         .def("layers", &layers_text)
         .def("set_rotation",
-             [](Lit& own, double degrees) {
-                 return update_of(change(
-                     own, [&](LitScene& lit) { return relumine::set_rotation(lit, degrees); }));
+             [](Lit& own, double degrees, bool moving) {
+                 return update_of(change(own, [&](LitScene& lit) {
+                     return relumine::set_rotation(lit, degrees,
+                                                   moving ? Ending::Moving : Ending::Quick);
+                 }));
              })
         .def("mark", &mark)
         .def("undo", [](Lit& own) { return update_of(change(own, &relumine::undo)); })

@@ -290,12 +290,14 @@ class Relighter:
         with naming_layers():
             return Update(*self._core.set_layer(index, text_of([layer])))
 
-    def set_rotation(self, degrees: float) -> Update:
+    def set_rotation(self, degrees: float, moving: bool = False) -> Update:
         """Turns the environment and its layers about +Y: light from +Z comes from +X at 90.
 
-        It stays for environments that are set later.
+        It stays for environments that are set later. `moving`, for a slider while it moves, turns a
+        map of at most 256 texels along a face's edge: some ten times as quick for fine maps, within
+        1 %. Any other edit, mark() included, brings the whole map back.
         """
-        return Update(*self._core.set_rotation(real("degrees", degrees)))
+        return Update(*self._core.set_rotation(real("degrees", degrees), bool(moving)))
 
     def mark(self) -> None:
         """Marks the present layers and environment as a state that undo() comes back to."""

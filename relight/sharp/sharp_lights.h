@@ -30,15 +30,17 @@ struct SharpLight {
     bool operator==(const SharpLight&) const = default;
 };
 
-/// Returns the sharp lights of an environment, clusters ascending. There are a few dozen at most:
-/// large sources have no sharp cells. Deterministic.
+/// Returns the sharp lights of an environment, clusters ascending. Under fine clusters there are a
+/// few dozen at most, as large sources have no sharp cells; under coarse ones, some hundred.
+/// Deterministic.
 ///
 /// Cells two levels below a cluster are candidates. A candidate of power p is sharp when p is large
 /// beside the map's power P. In the cluster, a point light of power p may make an error of
 /// tolerance p. This error must exceed 0.25 % of the mean radiance P / (4 pi).
 ///
 /// Also, the candidate or a sister must hold more than an eighth of the cluster's power, unless
-/// cells with even light are to count, too (`even_too`).
+/// cells with even light are to count, too (`even_too`). It is cut into lights of 0.2 degrees, but
+/// no further than a 64th of its own power and, unless `even_too`, a 256th of the map's.
 ///
 /// Shape:   powers is [clusters.size()]: the length of each cluster's full vector irradiance, in
 ///          luminance.

@@ -274,6 +274,50 @@ TEST(LightEdits, RefusesABadBaseAndStaysAsItWas) {
     EXPECT_EQ(environment_of(editor).texels, texels) << "the turned base is the old one";
 }
 
+TEST(LightEdits, AMovingTurnIsNearAndLeavesNoTrace) {
+    // Twice as fine as what moves, with a lamp between its texels.
+    cubemap::CubeMap base(2 * MovingResolution, glm::vec3(0.2f, 0.3f, 0.4f));
+    for (std::uint32_t y = 101; y < 108; ++y)
+        for (std::uint32_t x = 203; x < 211; ++x)
+            base.at(cubemap::Face::PositiveZ, x, y) = glm::vec3(4000.0f, 3000.0f, 2000.0f);
+    const cubemap::LightLayer lamp = named_disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f));
+    LitScene moving = scenes::relit_clusters(), exact = scenes::relit_clusters();
+    for (LitScene* lit : {&moving, &exact}) {
+        lit->light(base);
+        set_layers(*lit, {lamp});
+    }
+    for (const double degrees : {11.0, 47.5, -20.0}) {
+        set_rotation(moving, degrees, Ending::Moving);
+        set_rotation(exact, degrees);
+        EXPECT_EQ(environment_of(moving).resolution, MovingResolution);
+        EXPECT_EQ(moving.state().base->map()->resolution, 2 * MovingResolution);
+        EXPECT_LT(relative_difference(moving.radiance(), exact.radiance()), 0.01) << degrees;
+    }
+    // Whatever comes next, the whole map is back.
+    mark(exact);
+    LitScene by_layer = scenes::relit_clusters();
+    by_layer.light(base);
+    set_layers(by_layer, {lamp});
+    set_rotation(by_layer, -20.0, Ending::Moving);
+    set_layer(by_layer, 0, lamp);
+    EXPECT_EQ(environment_of(by_layer).texels, environment_of(exact).texels);
+    mark(moving);
+    EXPECT_EQ(environment_of(moving).texels, environment_of(exact).texels);
+    EXPECT_EQ(copy(moving.radiance()), copy(exact.radiance()));
+    set_rotation(moving, 90.0, Ending::Moving);
+    undo(moving);
+    EXPECT_EQ(copy(moving.radiance()), copy(exact.radiance()));
+}
+
+TEST(LightEdits, MapsThatAreQuickToTurnAreTurnedWhole) {
+    LitScene moving = scenes::relit_clusters(), exact = scenes::relit_clusters();
+    for (LitScene* lit : {&moving, &exact})
+        lit->light(scenes::random_environment(16, 2));
+    set_rotation(moving, 30.0, Ending::Moving);
+    set_rotation(exact, 30.0);
+    EXPECT_EQ(copy(moving.radiance()), copy(exact.radiance()));
+}
+
 TEST(LightEdits, PaintingOnTouchesOnlyTheNewPieceAndLeavesNoTrace) {
     const cubemap::CubeMap base = scenes::random_environment(64, 4);
     std::mt19937 random(5);
