@@ -57,9 +57,9 @@ protected:
     }
 
     [[nodiscard]] std::vector<std::string> commands() const {
-        return {"precompute", "plan",  "join",     "relight", "animate", "edit", "verify",
-                "lights",     "info",  "generate", "env",     "mesh",    "view", "completion",
-                "man",        "serve", "help",     "fit",     "export"};
+        return {"precompute", "plan",  "join",     "relight", "animate", "edit",   "verify",
+                "lights",     "info",  "generate", "env",     "mesh",    "view",   "completion",
+                "man",        "serve", "help",     "fit",     "export",  "coarsen"};
     }
 };
 
@@ -135,7 +135,7 @@ TEST_F(Documentation, OtherShellsReadTheirScripts) {
 TEST_F(Documentation, EveryCommandHasAPageWithAllItsOptions) {
     succeed({"man", "-o", "pages/man1"});
     std::vector<std::string> all = commands();
-    all.insert(all.end(), {"relumine", "env-convert", "export-runtime", "mesh-repair",
+    all.insert(all.end(), {"relumine", "env-convert", "export-runtime", "export-web", "mesh-repair",
                            "mesh-refine", "mesh-simplify"});
     EXPECT_EQ(std::distance(fs::directory_iterator(folder() / "pages/man1"), {}),
               static_cast<std::ptrdiff_t>(all.size()));
