@@ -42,53 +42,58 @@ bool lets_eye_pass(const Material& material) {
 
 namespace {
 
-struct Point {
-    const TriangleMesh& mesh;
-    const Material& material;
-    std::uint32_t triangle;
-    glm::vec2 barycentric;
-
-    [[nodiscard]] glm::vec3 textured(const glm::vec3& value,
-                                     const std::optional<TextureSlot>& slot) const {
-        return slot ? value * sample(mesh.textures[slot->texture], *slot,
-                                     uv_at(mesh, triangle, barycentric, slot->uv_set))
-                    : value;
-    }
-};
-
-/// What goes on through a surface of glass.
-glm::vec3 through_glass(const Point& point) {
+/// What goes on through a surface of glass. `textured` multiplies a value with its texture.
+template<typename Textured>
+glm::vec3 through_glass(const Material& material, const Textured& textured) {
     constexpr float Reflected = 0.04f;
-    const Material& material = point.material;
     const float metallic =
-        point.textured(glm::vec3(material.metallic), material.metallic_roughness_texture).b;
-    const float part =
-        point.textured(glm::vec3(material.transmission), material.transmission_texture).r *
-        (1.0f - metallic) * (1.0f - Reflected);
-    const glm::vec3 tint = point.textured(material.base_color, material.base_color_texture);
+        textured(glm::vec3(material.metallic), material.metallic_roughness_texture).b;
+    const float part = textured(glm::vec3(material.transmission), material.transmission_texture).r *
+                       (1.0f - metallic) * (1.0f - Reflected);
+    const glm::vec3 tint = textured(material.base_color, material.base_color_texture);
     if (material.thickness == 0.0f)
         return part * tint;
     const float way = 0.5f * material.thickness / material.attenuation_distance;
     return part * glm::sqrt(tint) * glm::pow(material.attenuation_color, glm::vec3(way));
 }
 
-} // namespace
-
-Veil veil(const TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& barycentric) {
-    const Material& material = mesh.materials[mesh.triangle_materials[triangle]];
+template<typename Textured>
+Veil veil_of(const Material& material, const Textured& textured) {
     if (!lets_light_pass(material))
         return {};
-    const Point point{mesh, material, triangle, barycentric};
     Veil veil;
     if (material.alpha_mode != AlphaMode::Opaque) {
-        veil.weight = point.textured(glm::vec3(material.alpha), material.alpha_texture).r;
+        veil.weight = textured(glm::vec3(material.alpha), material.alpha_texture).r;
         if (material.alpha_mode == AlphaMode::Mask)
             veil.weight = veil.weight < material.alpha_cutoff ? 0.0f : 1.0f;
         veil.through = glm::vec3(1.0f - veil.weight);
     }
     if (material.transmission > 0.0f)
-        veil.through += veil.weight * through_glass(point);
+        veil.through += veil.weight * through_glass(material, textured);
     return veil;
+}
+
+} // namespace
+
+Veil veil(const TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& barycentric) {
+    return veil_of(mesh.materials[mesh.triangle_materials[triangle]],
+                   [&](const glm::vec3& value, const std::optional<TextureSlot>& slot) {
+                       return slot
+                                  ? value * sample(mesh.textures[slot->texture], *slot,
+                                                   uv_at(mesh, triangle, barycentric, slot->uv_set))
+                                  : value;
+                   });
+}
+
+Veil veil(const Material& material, std::span<const Texture> textures, const glm::vec2& place) {
+    return veil_of(material, [&](const glm::vec3& value, const std::optional<TextureSlot>& slot) {
+        if (!slot)
+            return value;
+        TextureSlot own = *slot;
+        own.uv_from_mesh_uv = glm::mat2(1.0f);
+        own.uv_offset = glm::vec2(0.0f);
+        return value * sample(textures[slot->texture], own, place);
+    });
 }
 
 Material passed_as(Material material, const Material& other) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -43,6 +44,10 @@ struct Veil {
 /// surfaces of a body share the base colour and what the way through the body takes.
 [[nodiscard]] Veil veil(const TriangleMesh& mesh, std::uint32_t triangle,
                         const glm::vec2& barycentric);
+
+/// Returns the veil where all textures of a material are looked up at one place of theirs.
+[[nodiscard]] Veil veil(const Material& material, std::span<const Texture> textures,
+                        const glm::vec2& place);
 
 /// Returns the material with the alpha, glass and sides of another.
 [[nodiscard]] Material passed_as(Material material, const Material& other);

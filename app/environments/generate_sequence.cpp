@@ -1,6 +1,7 @@
 #include "app/environments/generate_sequence.h"
 
 #include <filesystem>
+#include <future>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -72,14 +73,25 @@ void generate_sequence(const GenerateSequenceOptions& options, const std::string
     files::make_folder(folder);
     const auto progress = session.progress("frames");
     std::uint32_t resolution = 0;
+    // A frame is compressed and written by one thread while the next one is made. The future waits
+    // for it even where making fails.
+    std::future<void> saved;
+    const auto wait = [&](std::size_t num_frames) {
+        if (saved.valid())
+            saved.get();
+        if (progress)
+            progress(static_cast<double>(num_frames) / static_cast<double>(options.num_frames));
+    };
     for (std::size_t frame = 0; frame < options.num_frames; ++frame) {
         session.poll();
-        const cubemap::CubeMap map = make(frame);
+        cubemap::CubeMap map = make(frame);
         resolution = map.resolution;
-        cubemap::save_environment(pattern->name(static_cast<std::int64_t>(frame)), map, layout);
-        if (progress)
-            progress(static_cast<double>(frame + 1) / static_cast<double>(options.num_frames));
+        wait(frame);
+        saved = std::async(std::launch::async, [&pattern, layout, frame, map = std::move(map)] {
+            cubemap::save_environment(pattern->name(static_cast<std::int64_t>(frame)), map, layout);
+        });
     }
+    wait(options.num_frames);
     session.end_progress();
     session.say(fmt::format("{}: {} frames, {}, R = {}", name, options.num_frames,
                             cubemap::name(layout), resolution));

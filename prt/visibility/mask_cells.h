@@ -12,6 +12,7 @@
 
 #include "mesh/materials/material.h"
 #include "mesh/materials/texture.h"
+#include "prt/visibility/texel_index.h"
 
 namespace relumine::prt {
 
@@ -28,29 +29,12 @@ public:
 
     /// Says what the alpha at a uv of the texture is. A lookup decides where it is mixed.
     [[nodiscard]] Cell at(const glm::vec2& uv) const {
-        if (!(std::abs(uv.x) < Farthest && std::abs(uv.y) < Farthest))
+        if (!has_texel(uv))
             return Cell::Mixed;
-        return cells_[std::size_t{nearest(uv.y, 1)} * size_[0] + nearest(uv.x, 0)];
+        return cells_[texel_index(uv, size_, slot_.wrap)];
     }
 
 private:
-    static constexpr float Farthest = 1e6f;
-
-    /// The texel that has a coordinate. The two of a bilinear lookup are this one and a neighbour.
-    [[nodiscard]] std::uint32_t nearest(float x, std::size_t axis) const {
-        const auto towards_zero = static_cast<int>(x);
-        const int below = towards_zero - (static_cast<float>(towards_zero) > x ? 1 : 0);
-        if (slot_.wrap[axis] == mesh::Wrap::Clamp)
-            x = std::clamp(x, 0.0f, 1.0f);
-        else {
-            x -= static_cast<float>(below);
-            if (slot_.wrap[axis] == mesh::Wrap::Mirror && (below & 1) != 0)
-                x = 1.0f - x;
-        }
-        return std::min(static_cast<std::uint32_t>(x * static_cast<float>(size_[axis])),
-                        size_[axis] - 1);
-    }
-
     mesh::TextureSlot slot_;
     float alpha_, cutoff_;
     std::array<std::uint32_t, 2> size_;

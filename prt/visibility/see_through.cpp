@@ -120,6 +120,22 @@ std::optional<float> even_part(const mesh::TriangleMesh& mesh, std::uint32_t tri
     return part_of(mesh::veil(mesh, triangle, glm::vec2(1.0f / 3.0f)));
 }
 
+/// Returns the mean of a value over a triangle, from the middles of its 64 even parts.
+template<typename Value>
+float mean_over_triangle(const Value& value) {
+    constexpr int Steps = 8;
+    float sum = 0.0f;
+    for (int i = 0; i < Steps; ++i)
+        for (int j = 0; j < 2 * (Steps - i) - 1; ++j) {
+            // Parts of a row stand upright and upside down in turn.
+            const float third = j % 2 == 0 ? 1.0f / 3.0f : 2.0f / 3.0f;
+            sum +=
+                value(glm::vec2(static_cast<float>(j / 2) + third, static_cast<float>(i) + third) /
+                      static_cast<float>(Steps));
+        }
+    return sum / (Steps * Steps);
+}
+
 } // namespace
 
 SeeThrough::SeeThrough(const mesh::TriangleMesh& mesh) {
@@ -147,12 +163,13 @@ SeeThrough::SeeThrough(const mesh::TriangleMesh& mesh) {
             kinds_[triangle] &= static_cast<std::uint8_t>(~(PassesLight | Thin));
     });
     find_masks();
+    find_glass();
 }
 
 void SeeThrough::find_masks() {
     std::vector<std::uint32_t> mask_of_material;
     for (const mesh::Material& material : mesh_.materials) {
-        std::uint32_t& mask = mask_of_material.emplace_back(NotMasked);
+        std::uint32_t& mask = mask_of_material.emplace_back(NotMapped);
         if (material.alpha_mode != mesh::AlphaMode::Mask || !material.alpha_texture ||
             material.transmission > 0.0f)
             continue;
@@ -164,34 +181,63 @@ void SeeThrough::find_masks() {
             masks_.emplace_back(material, mesh_.textures[material.alpha_texture->texture]);
     }
     if (!masks_.empty())
-        find_masked_triangles(mask_of_material);
+        find_mapped_triangles(mask_of_material, false);
 }
 
-void SeeThrough::find_masked_triangles(const std::vector<std::uint32_t>& mask_of_material) {
-    masked_of_.assign(kinds_.size(), NotMasked);
-    for (std::uint32_t triangle = 0; triangle < masked_of_.size(); ++triangle) {
+void SeeThrough::find_glass() {
+    std::vector<std::uint32_t> of_material(mesh_.materials.size(), NotMapped);
+    for (std::size_t i = 0; i < of_material.size(); ++i)
+        if (GlassCells::are_for(mesh_.materials[i])) {
+            of_material[i] = static_cast<std::uint32_t>(glass_.size());
+            glass_.emplace_back(mesh_.materials[i], mesh_.textures);
+        }
+    if (!glass_.empty())
+        find_mapped_triangles(of_material, true);
+}
+
+void SeeThrough::find_mapped_triangles(const std::vector<std::uint32_t>& of_material,
+                                       bool are_glass) {
+    mapped_of_.resize(kinds_.size(), NotMapped);
+    for (std::uint32_t triangle = 0; triangle < mapped_of_.size(); ++triangle) {
         const std::uint32_t material = mesh_.triangle_materials[triangle];
-        const std::uint32_t mask = mask_of_material[material];
-        if (mask == NotMasked || even_[triangle] >= 0.0f)
+        const std::uint32_t cells = of_material[material];
+        if (cells == NotMapped || even_[triangle] >= 0.0f)
             continue;
-        masked_of_[triangle] = static_cast<std::uint32_t>(masked_.size());
-        Masked& masked = masked_.emplace_back(Masked{.mask = mask});
-        const mesh::TextureSlot& slot = *mesh_.materials[material].alpha_texture;
+        mapped_of_[triangle] = static_cast<std::uint32_t>(mapped_.size());
+        Mapped& mapped = mapped_.emplace_back(Mapped{.cells = cells, .is_glass = are_glass});
+        const mesh::TextureSlot& slot =
+            are_glass ? glass_[cells].slot() : *mesh_.materials[material].alpha_texture;
         for (std::size_t k = 0; k < 3; ++k)
-            masked.uvs[k] =
+            mapped.uvs[k] =
                 slot.uv_from_mesh_uv * mesh::corner_uv(mesh_, triangle, k, slot.uv_set) +
                 slot.uv_offset;
+        if (are_glass)
+            mapped.mean = mean_over_triangle(
+                [&](const glm::vec2& at) { return glass_[cells].at(mapped.place(at)); });
     }
 }
 
 MaskCells::Cell SeeThrough::cell_at(std::uint32_t triangle, const glm::vec2& barycentric) const {
-    if (masked_of_.empty() || masked_of_[triangle] == NotMasked)
+    if (mapped_of_.empty() || mapped_of_[triangle] == NotMapped)
         return MaskCells::Cell::Mixed;
     // Up to a rounding, as veil() finds it: at the border of two cells, either is right.
-    const Masked& masked = masked_[masked_of_[triangle]];
-    const auto& [a, b, c] = masked.uvs;
-    return masks_[masked.mask].at(a * (1.0f - barycentric.x - barycentric.y) + b * barycentric.x +
-                                  c * barycentric.y);
+    const Mapped& mapped = mapped_[mapped_of_[triangle]];
+    return mapped.is_glass ? MaskCells::Cell::Mixed
+                           : masks_[mapped.cells].at(mapped.place(barycentric));
+}
+
+const SeeThrough::Mapped* SeeThrough::glass_of(std::uint32_t triangle) const {
+    if (glass_.empty() || mapped_of_[triangle] == NotMapped)
+        return nullptr;
+    const Mapped& mapped = mapped_[mapped_of_[triangle]];
+    return mapped.is_glass ? &mapped : nullptr;
+}
+
+float SeeThrough::part_at(std::uint32_t triangle, const glm::vec2& barycentric, RayOf of) const {
+    if (const Mapped* glass = glass_of(triangle))
+        return of == RayOf::SettledLight ? glass->mean
+                                         : glass_[glass->cells].at(glass->place(barycentric));
+    return part_of(veil(triangle, barycentric));
 }
 
 mesh::Veil SeeThrough::veil(std::uint32_t triangle, const glm::vec2& barycentric) const {
@@ -202,7 +248,8 @@ mesh::Veil SeeThrough::veil(std::uint32_t triangle, const glm::vec2& barycentric
 SeeThrough::All SeeThrough::all_at(std::uint32_t triangle, RayOf of) const {
     if (!may_pass(triangle, of))
         return All::Stop;
-    const float even = even_[triangle];
+    const Mapped* glass = of == RayOf::SettledLight ? glass_of(triangle) : nullptr;
+    const float even = glass != nullptr ? glass->mean : even_[triangle];
     if (even < 0.0f || (of == RayOf::Light && even < 1.0f))
         return All::Differ;
     return even >= 0.5f ? All::Pass : All::Stop;
@@ -219,7 +266,7 @@ bool SeeThrough::passes(const Meeting& meeting, RayOf of) const {
     if (of == RayOf::Eye)
         return veil(meeting.triangle, meeting.barycentric) ==
                mesh::Veil{.weight = 0.0f, .through = glm::vec3(1.0f)};
-    const float part = even >= 0.0f ? even : part_of(veil(meeting.triangle, meeting.barycentric));
+    const float part = even >= 0.0f ? even : part_at(meeting.triangle, meeting.barycentric, of);
     if (of == RayOf::SettledLight)
         return part >= 0.5f;
     return part > 0.0f && (part >= 1.0f || chance(meeting) < static_cast<double>(part));

@@ -10,6 +10,7 @@
 
 #include "mesh/opacity.h"
 #include "mesh/triangle_mesh.h"
+#include "prt/visibility/glass_cells.h"
 #include "prt/visibility/mask_cells.h"
 
 namespace relumine::prt {
@@ -20,8 +21,9 @@ enum class RayOf : std::uint8_t {
     /// surface's mean transmittance over the colours says. Chances of rays from one place are
     /// spread evenly over directions, so that their sums are nearly right.
     Light,
-    /// Cut-out points, and thin surfaces that take half of the light or less. Clusters are chosen
-    /// by these rays: chance would split them all.
+    /// Cut-out points, and thin surfaces that take half of the light or less; of glass with
+    /// textures, triangles that do so on average. Clusters are chosen by these rays: chance, and
+    /// the grain of a texture, would split them all.
     SettledLight,
     /// What is not drawn: points of no weight, and backs of single-sided triangles.
     Eye,
@@ -77,11 +79,34 @@ public:
     [[nodiscard]] mesh::Veil veil(std::uint32_t triangle, const glm::vec2& barycentric) const;
 
 private:
+    /// A triangle that has cells: those of a mask that cuts it in part, or those of glass, and the
+    /// corners' places in the texture.
+    struct Mapped {
+        std::uint32_t cells = 0;
+        bool is_glass = false;
+        /// Of glass: the mean part that passes the triangle.
+        float mean = 0.0f;
+        std::array<glm::vec2, 3> uvs = {};
+
+        [[nodiscard]] glm::vec2 place(const glm::vec2& barycentric) const {
+            const auto& [a, b, c] = uvs;
+            return a * (1.0f - barycentric.x - barycentric.y) + b * barycentric.x +
+                   c * barycentric.y;
+        }
+    };
+
     void find_masks();
-    void find_masked_triangles(const std::vector<std::uint32_t>& mask_of_material);
+    void find_glass();
+    /// Gives cells to the triangles of materials that have a number.
+    void find_mapped_triangles(const std::vector<std::uint32_t>& of_material, bool are_glass);
     /// Looks it up in the mask's cells.
     [[nodiscard]] MaskCells::Cell cell_at(std::uint32_t triangle,
                                           const glm::vec2& barycentric) const;
+    /// Returns a triangle's cells of glass; null where it has none.
+    [[nodiscard]] const Mapped* glass_of(std::uint32_t triangle) const;
+    /// Returns the part of light that passes a point.
+    [[nodiscard]] float part_at(std::uint32_t triangle, const glm::vec2& barycentric,
+                                RayOf of) const;
 
     static constexpr std::uint8_t PassesLight = 1, OneSided = 2, Thin = 4;
 
@@ -92,17 +117,13 @@ private:
     std::vector<float> even_;
     /// mesh::blockers_of() without its positions; empty where no light passes.
     mesh::TriangleMesh mesh_;
-    /// Of masks that are no glass.
+    /// Of masks that are no glass, and of glass.
     std::vector<MaskCells> masks_;
-    /// A triangle that a mask cuts in part: the mask and the corners' places in its texture.
-    struct Masked {
-        std::uint32_t mask = 0;
-        std::array<glm::vec2, 3> uvs = {};
-    };
-    std::vector<Masked> masked_;
-    static constexpr std::uint32_t NotMasked = 0xffffffff;
-    /// [num_triangles] index into masked_ or NotMasked; empty where there are no masks.
-    std::vector<std::uint32_t> masked_of_;
+    std::vector<GlassCells> glass_;
+    std::vector<Mapped> mapped_;
+    static constexpr std::uint32_t NotMapped = 0xffffffff;
+    /// [num_triangles] index into mapped_ or NotMapped; empty where there are no cells.
+    std::vector<std::uint32_t> mapped_of_;
     bool has_thin_ = false;
 };
 

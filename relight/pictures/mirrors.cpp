@@ -166,12 +166,15 @@ MirroredLight Mirrors::light(const Mirror& mirror, const prt::MeshPoint& point) 
         return *light;
     }
     const std::optional<Middle>& middle = middles_[std::size_t{y_} * width_ + x_];
-    if (traced_.empty() && middle && are_alike(middle->traced.mirror, mirror)) {
+    // Where a wide lobe turns from pixel to pixel, the pixel has as many rays as a few would share.
+    constexpr std::uint32_t RaysOfFour = 4;
+    const bool is_wide = reach_of(lobe_alpha(mirror.surface)) > 0;
+    const std::uint32_t all = light_.reflections->num_rays() * (is_wide ? RaysOfFour : 1);
+    if (!is_wide && traced_.empty() && middle && are_alike(middle->traced.mirror, mirror)) {
         traced_.push_back(middle->traced);
         return middle->traced.light;
     }
     // A pixel of several normals sums their rays.
-    const std::uint32_t all = light_.reflections->num_rays();
     traced_.push_back({mirror, trace(mirror, point, traced_.empty() ? all : (all + 1) / 2)});
     return traced_.back().light;
 }

@@ -22,7 +22,7 @@ PictureTile::PictureTile(const TileScene& scene)
       mirrors_(scene.mesh, scene.samples.twins(), scene.light, scene.floor, scene.backdrop,
                texture_view_),
       shading_(scene.mesh, scene.light, scene.packets, texture_view_),
-      lights_(scene.mesh,
+      lights_(scene.mesh, scene.rays,
               scene.light.blockers != nullptr ? *scene.light.blockers
                                               : static_cast<const prt::Blockers&>(scene.rays),
               scene.light.bias, scene.beams),

@@ -9,7 +9,9 @@
 #include <glm/vec3.hpp>
 
 #include "mesh/triangle_mesh.h"
+#include "prt/receivers/mesh_point.h"
 #include "prt/visibility/blockers.h"
+#include "prt/visibility/ray_scene.h"
 #include "relight/pictures/eye_samples.h"
 #include "relight/sharp/light_packets.h"
 #include "relight/sharp/sharp_lights.h"
@@ -37,6 +39,13 @@ private:
     std::size_t num_lights_ = 0;
 };
 
+/// Returns where the shadow rays of a point start: on the smooth surface that the vertex normals
+/// pretend, but where something stands between the point and that surface. A low-poly wall with
+/// smooth normals pretends to bulge through the beams before it.
+[[nodiscard]] glm::vec3 shadow_ray_origin(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
+                                          const prt::MeshPoint& at, const glm::vec3& normal,
+                                          float bias);
+
 /// Traces the lights at the middle of every pixel of a tile and of a ring of one pixel around it.
 /// Where a pixel and those around it do not see the same lights, the lights that they disagree
 /// about are traced at all of its samples. For one thread.
@@ -44,10 +53,10 @@ private:
 /// Lights are bits, as LightPackets has them: bit i of word p is light 16 p + i.
 class PixelLights {
 public:
-    /// All must outlive this object.
-    PixelLights(const mesh::TriangleMesh& mesh, const prt::Blockers& blockers, float bias,
-                const LightBeams& lights)
-        : mesh_(mesh), blockers_(blockers), bias_(bias), lights_(lights) {}
+    /// All must outlive this object. `blockers` answer for the lights as `rays` would.
+    PixelLights(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
+                const prt::Blockers& blockers, float bias, const LightBeams& lights)
+        : mesh_(mesh), rays_(rays), blockers_(blockers), bias_(bias), lights_(lights) {}
 
     /// Traces a tile: `seen` are its samples and those of the ring, `inner` its pixels.
     void trace(const SampleRectangle& seen, const PixelRectangle& inner);
@@ -78,6 +87,7 @@ private:
     void trace_uneven(const SampleRectangle& seen, const PixelRectangle& inner);
 
     const mesh::TriangleMesh& mesh_;
+    const prt::RayScene& rays_;
     const prt::Blockers& blockers_;
     float bias_;
     const LightBeams& lights_;

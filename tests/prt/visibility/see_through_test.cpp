@@ -3,10 +3,13 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "mesh/opacity.h"
+#include "prt/visibility/glass_cells.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/prt/leaf_card.h"
 #include "tests/prt/scenes.h"
@@ -169,6 +172,90 @@ TEST(SeeThrough, AFactorBelowTheCutoffRemovesTheSurface) {
     EXPECT_FALSE(RayScene(square).occluded(-up, up));
     square.materials[0].alpha_cutoff = 0.4f;
     EXPECT_TRUE(RayScene(square).occluded(-up, up)) << "at the cutoff it is there";
+}
+
+/// A square of glass, [-1, 1] x [-1, 1], whose parts a texture of 40 x 30 random texels says.
+mesh::TriangleMesh textured_glass() {
+    mesh::TriangleMesh mesh = scenes::floor_grid(2, 2.0f);
+    for (const glm::vec3& position : mesh.positions)
+        mesh.uvs.emplace_back(0.5f * (position.x + 1.0f), 0.5f * (position.z + 1.0f));
+    mesh::Texture texture{.name = "parts", .width = 40, .height = 30, .texels = {}};
+    std::mt19937 random(4);
+    for (int i = 0; i < 40 * 30; ++i)
+        texture.texels.push_back({static_cast<std::uint8_t>(random() % 256),
+                                  static_cast<std::uint8_t>(random() % 256), 0});
+    mesh.textures = {std::move(texture)};
+    mesh::Material glass{.name = "glass", .transmission = 0.9f};
+    glass.transmission_texture = mesh::TextureSlot{.texture = 0};
+    glass.base_color_texture = mesh::TextureSlot{.texture = 0};
+    mesh.materials = {glass};
+    mesh.triangle_materials.assign(mesh.num_triangles(), 0);
+    return mesh;
+}
+
+TEST(GlassCells, HoldThePartsOfTexels) {
+    const mesh::TriangleMesh mesh = textured_glass();
+    ASSERT_TRUE(GlassCells::are_for(mesh.materials[0]));
+    const GlassCells cells(mesh.materials[0], mesh.textures);
+    for (int y = 0; y < 30; ++y)
+        for (int x = 0; x < 40; ++x) {
+            const glm::vec2 uv((static_cast<float>(x) + 0.5f) / 40.0f,
+                               (static_cast<float>(y) + 0.5f) / 30.0f);
+            const glm::vec3 through = mesh::veil(mesh.materials[0], mesh.textures, uv).through;
+            EXPECT_NEAR(cells.at(uv), (through.r + through.g + through.b) / 3.0f, 1e-5f);
+            // The texture repeats.
+            EXPECT_NEAR(cells.at(uv + glm::vec2(3.0f, -2.0f)), cells.at(uv), 1e-5f);
+        }
+    // Textures that lie in other ways have no place in common, and clear glass needs no cells.
+    mesh::Material other = mesh.materials[0];
+    other.base_color_texture->uv_offset = {0.5f, 0.0f};
+    EXPECT_FALSE(GlassCells::are_for(other));
+    EXPECT_FALSE(GlassCells::are_for({.name = "clear", .transmission = 1.0f}));
+}
+
+TEST(GlassCells, LetTheMeanPartOfRaysPass) {
+    mesh::TriangleMesh mesh = textured_glass();
+    // The mean of a product of two noises depends on how they are filtered.
+    mesh.materials[0].base_color_texture.reset();
+    const RayScene rays(mesh);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> place(-0.99f, 0.99f);
+    double expected = 0.0, num_passed = 0.0;
+    constexpr int NumRays = 20'000;
+    for (int i = 0; i < NumRays; ++i) {
+        const glm::vec3 at(place(random), 0.0f, place(random));
+        const glm::vec2 uv(0.5f * (at.x + 1.0f), 0.5f * (at.z + 1.0f));
+        const glm::vec3 through = mesh::veil(mesh.materials[0], mesh.textures, uv).through;
+        expected += static_cast<double>((through.r + through.g + through.b) / 3.0f);
+        num_passed += rays.occluded(at + glm::vec3(0, 1, 0), {0, -1, 0}) ? 0.0 : 1.0;
+    }
+    EXPECT_GT(expected / NumRays, 0.05);
+    EXPECT_NEAR(num_passed / NumRays, expected / NumRays, 0.01);
+}
+
+// The grain of a texture must not split clusters: all rays that choose them stop or pass.
+TEST(GlassCells, StopOrPassAsAWholeWhereClustersAreChosen) {
+    for (const float transmission : {0.05f, 1.0f}) {
+        mesh::TriangleMesh mesh = textured_glass();
+        for (auto& texel : mesh.textures[0].texels)
+            texel[0] = static_cast<std::uint8_t>(128 + texel[0] / 2); // the mean part is 0.72
+        mesh.materials[0].base_color_texture.reset();
+        mesh.materials[0].transmission = transmission;
+        const RayScene rays(mesh);
+        ASSERT_NE(rays.settled(), nullptr);
+        const SeeThrough see_through(mesh);
+        for (std::uint32_t triangle = 0; triangle < 2; ++triangle) {
+            EXPECT_EQ(see_through.all_at(triangle, RayOf::Light), SeeThrough::All::Differ);
+            EXPECT_EQ(see_through.all_at(triangle, RayOf::SettledLight),
+                      transmission < 0.5f ? SeeThrough::All::Stop : SeeThrough::All::Pass);
+        }
+        DirectionPacket packet;
+        for (std::size_t lane = 0; lane < PacketSize; ++lane)
+            packet.set(lane, glm::normalize(glm::vec3(0.05f * static_cast<float>(lane), -1, 0.2f)));
+        packet.num_directions = PacketSize;
+        EXPECT_EQ(rays.settled()->occluded({-0.2f, 0.5f, 0.1f}, packet, 0xffff),
+                  transmission < 0.5f ? 0xffffu : 0u);
+    }
 }
 
 } // namespace

@@ -1,7 +1,9 @@
 #include "relight/pictures/pixel_lights.h"
 
+#include <cmath>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
@@ -36,7 +38,7 @@ TEST(PixelLights, AreThoseOfRaysOneByOne) {
     const PictureTiles tiles{.width = 96, .height = 64};
     const prt::PictureRays grid(camera, tiles.width, tiles.height, 3);
     const EyeSamples samples(mesh, rays, camera.eye, grid, tiles, 0, {});
-    PixelLights pixel_lights(mesh, rays, Bias, beams);
+    PixelLights pixel_lights(mesh, rays, rays, Bias, beams);
     std::vector<std::uint16_t> expected(packets.num_packets());
     std::size_t num_even = 0, num_uneven = 0, num_wrong = 0, num_rays = 0;
     for (std::uint32_t tile = 0; tile < tiles.count(); ++tile) {
@@ -65,6 +67,26 @@ TEST(PixelLights, AreThoseOfRaysOneByOne) {
     EXPECT_GT(num_uneven, 200u);
     // A shadow may lie between the middles of pixels.
     EXPECT_LE(num_wrong, num_rays / 200);
+}
+
+/// A wall of one square whose normals pretend that it bulges by a quarter of its side, and a beam
+/// close before it.
+TEST(PixelLights, StartInFrontOfNothing) {
+    mesh::TriangleMesh wall = scenes::floor_grid(2, 2.0f);
+    for (std::size_t i = 0; i < 4; ++i)
+        wall.normals[i] = glm::normalize(glm::vec3(0.7f, 1.0f, 0.7f) *
+                                         (glm::sign(wall.positions[i]) + glm::vec3(0, 1, 0)));
+    const mesh::TriangleMesh beam = scenes::box({-2, 0.05f, -0.5f}, {2, 0.15f, 0.5f});
+    const mesh::TriangleMesh mesh = scenes::joined(wall, beam);
+    const prt::RayScene rays(mesh), alone(wall);
+    constexpr float Bias = 1e-4f;
+    const prt::MeshPoint below{.triangle = 0, .barycentric = {0.25f, 0.25f}};
+    const glm::vec3 own = prt::value_at(mesh, mesh.positions, below), up(0, 1, 0);
+    const glm::vec3 smooth = prt::ray_origin(prt::smooth_position(mesh, below), up, Bias);
+    ASSERT_GT(smooth.y, 0.05f) << "inside of the beam or above it";
+    ASSERT_LT(std::abs(smooth.z), 0.4f);
+    EXPECT_EQ(shadow_ray_origin(mesh, rays, below, up, Bias), prt::ray_origin(own, up, Bias));
+    EXPECT_EQ(shadow_ray_origin(wall, alone, below, up, Bias), smooth);
 }
 
 } // namespace
