@@ -153,28 +153,37 @@ WebFiles written(const Page& page, const WebFiles& parts, const ExportWebArgumen
 }
 
 /// Gives up what costs most, until the page is small enough: bounces, then clusters.
-WebFiles fitted(Scene scene, const ExportWebArguments& options, const WebFiles& parts,
-                const PageWords& words, Page& page, Session& session) {
+Scene fitted(Scene scene, ExportWebArguments options, const WebFiles& parts, const PageWords& words,
+             Session& session) {
     constexpr float Step = 1.3f, Coarsest = 0.2f;
+    // What is not verified yet takes a few words more.
+    const double words_of_errors = 128.0 * static_cast<double>(options.environments.size() + 2);
+    options.num_samples = 0;
+    std::vector<std::string> given_up;
     for (;;) {
-        page = made_page(scene, options, words, session);
-        WebFiles files = written(page, parts, options, words);
-        const auto size = static_cast<double>(size_of(files));
-        if (!options.max_bytes || size <= *options.max_bytes)
-            return files;
+        const Page page = made_page(scene, options, words, session);
+        const double size =
+            static_cast<double>(size_of(written(page, parts, options, words))) + words_of_errors;
+        if (size <= *options.max_bytes)
+            break;
         const float next = rms_tolerance(scene) * Step;
         if (scene.bounces) {
             scene.bounces.reset();
-            session.warn("--max-bytes: the light between surfaces is left out");
+            given_up = {"the light between surfaces is left out"};
         } else if (next <= Coarsest) {
             scene = coarsened(std::move(scene), next, session.stop());
-            session.warn(fmt::format("--max-bytes: --tolerance becomes {:.3g}", next));
+            given_up.resize(1);
+            given_up.push_back(fmt::format("--tolerance becomes {:.3g}", next));
         } else {
             throw std::runtime_error(
                 fmt::format("--max-bytes: expected at least {:.0f} for this scene, got {:.0f}",
                             size, *options.max_bytes));
         }
     }
+    for (const std::string& what : given_up)
+        if (!what.empty())
+            session.warn("--max-bytes: " + what);
+    return scene;
 }
 
 Scene scene_of_page(const ExportWebArguments& options, PageWords& words, Session& session) {
@@ -214,8 +223,10 @@ void export_web(const ExportWebArguments& options, Session& session) {
                                  ? std::filesystem::path(options.scene).stem().string()
                                  : options.title};
     Scene scene = scene_of_page(options, words, session);
-    Page page;
-    WebFiles files = fitted(std::move(scene), options, parts, words, page, session);
+    if (options.max_bytes)
+        scene = fitted(std::move(scene), options, parts, words, session);
+    const Page page = made_page(scene, options, words, session);
+    WebFiles files = written(page, parts, options, words);
     session.poll();
     const std::uint64_t size = size_of(files);
     std::uint64_t of_environments = 0;

@@ -4,6 +4,7 @@ FOLDER gets the exported pages and screenshots.
 """
 import array
 import base64
+import math
 import pathlib
 import shutil
 import struct
@@ -112,6 +113,250 @@ class Light(Exported):
         picture = self.browser.driver.get_screenshot_as_png()
         self.assertGreater(len(picture), 50_000, "a picture with details")
         self.assertIn("of exact integration", self.browser.run("return $('.error-line').textContent;"))
+
+
+def drag(browser, selector, dx, dy):
+    """As a mouse does it, in ten steps; returns what the worker took for each."""
+    return browser.run("""
+        const element = $(given[0]), box = element.getBoundingClientRect();
+        const [x, y] = [box.left + box.width / 2, box.top + box.height / 2];
+        const tell = (name, i) => element.dispatchEvent(new PointerEvent(name, {
+            clientX: x + given[1] * i / 10, clientY: y + given[2] * i / 10, pointerId: 1, bubbles: true, button: 0}));
+        element.setPointerCapture = () => {};
+        tell('pointerdown', 0);
+        const times = [];
+        for (let i = 1; i <= 10; ++i) {
+            const light = new Promise((resolve) => v.addEventListener('light', resolve, {once: true}));
+            tell('pointermove', i);
+            await light;
+            times.push(v.times);
+        }
+        tell('pointerup', 10);
+        await settled();
+        return times;""", selector, dx, dy)
+
+
+class Lights(Exported):
+    options = ["--no-bounces"]
+
+    def test_are_dragged_undone_and_saved(self):
+        plain = self.radiance()
+        self.browser.run("$('[data-add=box]').click(); await settled();")
+        with_light = self.radiance()
+        self.assertGreater(sum(with_light), 1.1 * sum(plain))
+        before = self.browser.run("return v.state.lights[0].direction;")
+        times = drag(self.browser, ".handle", 160, 60)
+        self.assertTrue(all(step["isDragged"] and step["isStep"] for step in times))
+        after = self.browser.run("return v.state.lights[0].direction;")
+        self.assertGreater(sum((a - b) ** 2 for a, b in zip(before, after)), 0.01)
+        dragged = self.radiance()
+        self.assertGreater(largest_error(dragged, with_light), 0.05)
+        # A second browser's page, brought to the same state at once, has the same light.
+        state = self.browser.run("return v.state;")
+        self.setUp()
+        self.browser.run("v.state = given[0]; await settled();", state)
+        self.assertLess(largest_error(self.radiance(), dragged), 1e-5)
+        # What is saved lights the scene as the page does: its lights have soft edges, and pixels of another size.
+        self.assertLess(largest_error(self.radiance(), self.native(self.saved(), "--bounces", 0)), 0.02)
+
+    def test_undo_goes_back_step_by_step(self):
+        plain = self.radiance()
+        self.browser.run("$('[data-add=disc]').click(); await settled();")
+        one = self.radiance()
+        drag(self.browser, ".handle", -80, 40)
+        moved = self.radiance()
+        self.browser.run("v.shadowRoot.querySelector('[data-do=undo]').click(); await settled();")
+        self.assertLess(largest_error(self.radiance(), one), 1e-6)
+        self.browser.run("v.dispatchEvent(new KeyboardEvent('keydown', {key: 'z', ctrlKey: true})); await settled();")
+        self.assertLess(largest_error(self.radiance(), plain), 1e-6)
+        self.browser.run("v.redo(); v.redo(); await settled();")
+        self.assertLess(largest_error(self.radiance(), moved), 1e-5)
+
+    def test_turn_follows_the_slider(self):
+        self.browser.run("const slider = $('[data-set=turn]'); for (let i = 1; i <= 10; ++i) { slider.value = 9 * i;"
+                         " slider.dispatchEvent(new Event('input', {bubbles: true})); await new Promise((r) => setTimeout(r, 20)); }"
+                         " slider.dispatchEvent(new Event('change', {bubbles: true})); await settled();")
+        turned = self.native(self.site / "environments/1.hdr", "--bounces", 0, "--rotate", 90)
+        self.assertLess(largest_error(self.radiance(), turned), 1e-5)
+
+    def test_keys_move_a_light(self):
+        self.browser.run("v.addLight('disc', [0, 0.5, 1]); await settled(); $('.handle').focus();"
+                         "$('.handle').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowRight', bubbles: true})); await settled();")
+        x, _, z = self.browser.run("return v.state.lights[0].direction;")
+        self.assertAlmostEqual(math.degrees(math.atan2(x, z)), 3, places=3)
+
+
+class Files(Exported):
+    options = ["--no-bounces"]
+
+    def drop(self, path, name=None):
+        self.browser.run("""
+            const bytes = Uint8Array.from(atob(given[0]), (c) => c.charCodeAt(0));
+            const data = new DataTransfer();
+            data.items.add(new File([bytes], given[1]));
+            v.dispatchEvent(new DragEvent('drop', {dataTransfer: data, bubbles: true, cancelable: true}));
+            await new Promise((r) => setTimeout(r, 300));
+            await settled();""", base64.b64encode(path.read_bytes()).decode(), name or path.name)
+
+    def test_hdr_and_exr_are_dropped(self):
+        relumine("generate", "soft_boxes", "-o", ".", "--face-resolution", 128)
+        relumine("env", "convert", "soft_boxes_latlong.exr", "-o", "dropped.hdr")
+        relumine("env", "convert", "soft_boxes_latlong.exr", "-o", "dropped.exr")
+        for name in ("dropped.hdr", "dropped.exr"):
+            self.drop(folder / name)
+            self.assertEqual(self.browser.run("return $('.strip [aria-selected=true]').title;"), "dropped")
+            expected = self.native(folder / name, "--bounces", 0)
+            self.assertLess(largest_error(self.radiance(), expected), 1e-5 if name.endswith("hdr") else 0.01, name)
+
+    def test_what_is_none_is_said_in_one_sentence(self):
+        before = self.radiance()
+        bad = folder / "bad.hdr"
+        bad.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 64 +X 128\n1234")
+        self.drop(bad)
+        self.assertEqual(self.browser.run("return $('.message p').textContent;"), "bad.hdr cannot be read: expected whole rows.")
+        self.drop(bad, "picture.png")
+        self.assertEqual(self.browser.run("return $('.message p').textContent;"), "picture.png: expected a .hdr or .exr file.")
+        self.assertEqual(self.radiance(), before)
+
+
+class Phone(Exported):
+    size = (390, 844)
+    options = ["--no-bounces"]
+
+    def test_is_readable_in_both_themes(self):
+        for theme in ("dark", "light"):
+            self.browser.run("v.setAttribute('theme', given[0]); await settled();", theme)
+            self.browser.picture(folder / f"phone-{theme}.png")
+            self.assertTrue(self.browser.run("return $('aside').classList.contains('closed');"), "the picture comes first")
+            self.browser.run("$('[data-do=panel]').click(); await settled();")
+            self.browser.picture(folder / f"phone-{theme}-controls.png")
+            # Nothing sticks out, text has eleven pixels or more, and what is touched has 34.
+            self.assertEqual(self.browser.run("""
+                const faults = [];
+                for (const element of v.shadowRoot.querySelectorAll('button, input, select, h1, h2, p, span, output')) {
+                    const box = element.getBoundingClientRect();
+                    if (box.width === 0 || element.closest('.strip, .loading, .handles'))
+                        continue;
+                    if (box.left < -1 || box.right > innerWidth + 1)
+                        faults.push(`${element.className || element.tagName} sticks out: ${box.left} to ${box.right}`);
+                    if (element.matches('p, span, output, h2') && parseFloat(getComputedStyle(element).fontSize) < 10.5)
+                        faults.push(`${element.textContent} is small`);
+                    if (element.matches('.icon') && !element.closest('h2') && box.height < 34)
+                        faults.push(`${element.dataset.do} is hard to hit`);
+                }
+                return faults;"""), [])
+            self.browser.run("$('[data-do=panel]').click(); await settled();")
+
+    def test_a_finger_drags_a_light(self):
+        self.browser.run("$('[data-do=panel]').click(); $('[data-add=box]').click(); await settled(); $('[data-do=panel]').click();")
+        before = self.browser.run("await settled(); return v.state.lights[0].direction;")
+        box = self.browser.run("const b = $('.handle').getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2];")
+        tell = lambda kind, x, y: self.browser.driver.execute_cdp_cmd("Input.dispatchTouchEvent", {
+            "type": kind, "touchPoints": [] if kind == "touchEnd" else [{"x": x, "y": y}]})
+        tell("touchStart", *box)
+        for i in range(1, 6):
+            tell("touchMove", box[0] + 12 * i, box[1] + 8 * i)
+        tell("touchEnd", *box)
+        after = self.browser.run("await settled(); return v.state.lights[0].direction;")
+        self.assertGreater(sum((a - b) ** 2 for a, b in zip(before, after)), 0.01)
+
+
+class Questions(Exported):
+    def test_a_click_tells_what_lights_the_point(self):
+        self.browser.run("v.addLight('box', [1, 1, 1]); await settled();")
+        answer = self.browser.run("const box = $('canvas').getBoundingClientRect();"
+                                  "const answer = await v.ask(0.39 * box.width, 0.45 * box.height); await settled(); return answer;")
+        radiance = self.radiance()
+        i = 3 * answer["receiver"]
+        expected = 0.2126 * radiance[i] + 0.7152 * radiance[i + 1] + 0.0722 * radiance[i + 2]
+        self.assertAlmostEqual(answer["total"] / expected, 1, delta=2e-3, msg="the sum of all that lights it is its light")
+        self.assertLessEqual(sum(share["share"] for share in answer["shares"]), 1.001)
+        self.assertIn("Soft box", [share["name"] for share in answer["shares"]])
+        self.assertFalse(self.browser.run("return $('.who').hidden;"))
+        self.browser.picture(folder / "question.png")
+        self.browser.run("v.dispatchEvent(new KeyboardEvent('keydown', {key: 'Escape'}));")
+        self.assertTrue(self.browser.run("return $('.who').hidden && $('.pin').hidden;"))
+
+
+class Failing(unittest.TestCase):
+    """Pages that cannot be shown say so in one sentence."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.site = folder / "failing"
+        shutil.rmtree(cls.site, ignore_errors=True)
+        relumine("export", "web", scene, "-o", cls.site, "--samples", 0, "--tolerance", 0.06, "--no-bounces")
+
+    def sentence(self, url, prelude=""):
+        browser = Browser()
+        try:
+            if prelude:
+                browser.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": prelude})
+            browser.open(url)
+            return browser.run("await v.ready.catch(() => {}); return $('.loading.failed p').textContent;")
+        finally:
+            browser.close()
+
+    def test_a_broken_scene(self):
+        bytes_ = bytearray((self.site / "scene.relight").read_bytes())
+        bytes_[len(bytes_) // 2] ^= 16
+        broken = folder / "broken"
+        shutil.rmtree(broken, ignore_errors=True)
+        shutil.copytree(self.site, broken)
+        (broken / "scene.relight").write_bytes(bytes_)
+        self.assertRegex(self.sentence(serve(broken)), r"^The scene cannot be opened: memory: .*$")
+        (broken / "scene.relight").unlink()
+        self.assertEqual(self.sentence(serve(broken)), "scene.relight cannot be loaded: 404 File not found.")
+
+    def test_a_browser_without_simd(self):
+        # As such a browser does: it refuses to compile the module.
+        prelude = "WebAssembly.compile = () => Promise.reject(new WebAssembly.CompileError('invalid value type 0x7b'));"
+        worker = ("const W = Worker; Worker = class extends W { constructor(url) { const r = new XMLHttpRequest();"
+                  "r.open('GET', url, false); r.send();"
+                  f"super(URL.createObjectURL(new Blob([{prelude!r} + r.responseText]))); }} }};")
+        self.assertRegex(self.sentence(serve(self.site), worker), r"^The scene cannot be opened: this browser needs WebAssembly with SIMD")
+        self.assertEqual(self.sentence(serve(self.site), "delete window.WebAssembly;"),
+                         "This browser cannot run the scene's light: it needs WebAssembly.")
+
+    def test_a_folder_without_a_server(self):
+        browser = Browser()
+        try:
+            browser.open((self.site / "index.html").as_uri())
+            self.assertEqual(browser.run("await new Promise((r) => setTimeout(r, 500)); return v.textContent;"),
+                             "A browser does not let a page read other files of this computer. Put the folder on a web "
+                             "server, or export with --single-file.")
+        finally:
+            browser.close()
+
+
+class SingleFile(unittest.TestCase):
+    def test_opens_from_a_file(self):
+        relumine("export", "web", scene, "-o", "single.html", "--single-file", "--samples", 0, "--tolerance", 0.06)
+        browser = Browser()
+        try:
+            browser.open((folder / "single.html").as_uri())
+            light = floats(browser.run(RADIANCE))
+            self.assertGreater(max(light), 0.1)
+            self.assertEqual([url for url in browser.requests() if url.startswith("http")], [])
+            self.assertEqual(browser.run("await v.ready; return [...v.shadowRoot.querySelectorAll('.strip img')].every((i) => i.naturalWidth > 0);"), True)
+            browser.picture(folder / "single.png")
+        finally:
+            browser.close()
+
+    def test_is_an_element_of_other_pages(self):
+        site = folder / "element"
+        shutil.rmtree(site, ignore_errors=True)
+        relumine("export", "web", scene, "-o", site / "bunny", "--samples", 0, "--tolerance", 0.06, "--no-bounces")
+        (site / "index.html").write_text(
+            "<!doctype html><style>relumine-viewer { height: 360px; width: 640px; }</style><h1>Mine</h1>"
+            "<script type=module src=bunny/relumine-viewer.js></script><relumine-viewer src=bunny theme=light></relumine-viewer>")
+        browser = Browser()
+        try:
+            browser.open(serve(site))
+            self.assertEqual(browser.run("await settled(); return [$('canvas').clientWidth, $('canvas').clientHeight];"), [640, 360])
+            browser.picture(folder / "element.png")
+        finally:
+            browser.close()
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ const esbuild = createRequire(path.join(modules, 'x'))('esbuild');
 
 const common = {
     bundle: true, minify: true, write: false, target: ['chrome95', 'firefox100', 'safari16.4'], nodePaths: [modules],
-    legalComments: 'none', external: ['node:fs/promises'], loader: {'.css': 'text'}, logLevel: 'warning',
+    legalComments: 'none', external: ['node:*'], loader: {'.css': 'text'}, logLevel: 'warning',
 };
 const build = async (options) => (await esbuild.build({...common, ...options})).outputFiles[0].text;
 

@@ -1,20 +1,22 @@
-// The lights as handles on a sphere around the scene: dragged by pointer, moved by arrow keys.
+// The lights as handles on a sphere around the picture's middle: dragged by pointer, moved by arrow keys.
 import * as THREE from 'three';
 import {kelvinColor, normalized} from './lights.js';
 
 export class Handles {
     #elements = new Map();
     #layer;
+    #ring;
     #stage;
     #drag;
 
     /** `on`: {change(light, isStep), select(id), selected(), remove(id)} */
-    constructor(layer, stage, {center, radius}, on) {
+    constructor(layer, stage, on) {
         this.#layer = layer;
         this.#stage = stage;
-        this.center = new THREE.Vector3(...center);
-        this.radius = radius;
         this.on = on;
+        this.#ring = document.createElement('div');
+        this.#ring.className = 'sphere';
+        layer.append(this.#ring);
     }
 
     set(lights) {
@@ -53,6 +55,18 @@ export class Handles {
         return element;
     }
 
+    /** The sphere in pixels, in the middle of what the controls leave free. */
+    get #sphere() {
+        const {width, height} = this.#stage.size, {right, bottom} = this.#stage.free;
+        const radius = Math.max(40, 0.46 * Math.min(width - right - 40, height - bottom - 100));
+        return {x: (width - right) / 2, y: (height - bottom) / 2, radius};
+    }
+
+    /** x to the right, y up, z towards the eye. */
+    #toCamera(direction) {
+        return new THREE.Vector3(...normalized(direction)).applyQuaternion(this.#stage.camera.quaternion.clone().invert());
+    }
+
     #begin(event, element) {
         event.preventDefault();
         element.focus();
@@ -61,14 +75,10 @@ export class Handles {
         this.on.select(light.id);
         const box = element.getBoundingClientRect();
         this.#drag = {
-            light, isFar: this.#isFar(light.direction), wasOutside: false,
+            light, side: this.#toCamera(light.direction).z < 0 ? -1 : 1, wasOutside: false,
             dx: event.clientX - (box.left + box.width / 2), dy: event.clientY - (box.top + box.height / 2),
         };
-    }
-
-    #isFar(direction) {
-        const toCamera = this.#stage.camera.position.clone().sub(this.center);
-        return toCamera.dot(new THREE.Vector3(...direction)) < this.radius;
+        this.#layer.classList.add('dragging');
     }
 
     #move(event) {
@@ -81,28 +91,24 @@ export class Handles {
 
     /** Past the rim of the sphere a light goes to its other side. */
     #directionAt(x, y) {
-        const {camera, size} = this.#stage;
-        const ray = new THREE.Raycaster();
-        ray.setFromCamera(new THREE.Vector2(2 * x / size.width - 1, 1 - 2 * y / size.height), camera);
-        const {origin, direction} = ray.ray;
-        const toCenter = this.center.clone().sub(origin);
-        const along = toCenter.dot(direction);
-        const squared = this.radius ** 2 - (toCenter.lengthSq() - along ** 2);
-        if (squared < 0) {
-            this.#drag.wasOutside = true;
-            const nearest = origin.clone().addScaledVector(direction, along).sub(this.center).normalize();
-            return nearest.toArray();
+        const sphere = this.#sphere, drag = this.#drag;
+        const [u, v] = [(x - sphere.x) / sphere.radius, (sphere.y - y) / sphere.radius];
+        const squared = u * u + v * v;
+        let place;
+        if (squared >= 1) {
+            drag.wasOutside = true;
+            place = new THREE.Vector3(u, v, 0).normalize();
+        } else {
+            if (drag.wasOutside)
+                drag.side = -drag.side;
+            drag.wasOutside = false;
+            place = new THREE.Vector3(u, v, drag.side * Math.sqrt(1 - squared));
         }
-        if (this.#drag.wasOutside) {
-            this.#drag.isFar = !this.#drag.isFar;
-            this.#drag.wasOutside = false;
-        }
-        const isInside = toCenter.lengthSq() < this.radius ** 2;
-        const at = along + (this.#drag.isFar || isInside ? 1 : -1) * Math.sqrt(squared);
-        return origin.clone().addScaledVector(direction, at).sub(this.center).normalize().toArray();
+        return place.applyQuaternion(this.#stage.camera.quaternion).normalize().toArray();
     }
 
     #end() {
+        this.#layer.classList.remove('dragging');
         if (this.#drag)
             this.on.change(undefined, false);
         this.#drag = undefined;
@@ -129,13 +135,14 @@ export class Handles {
 
     /** Puts the handles where the camera sees them. */
     place() {
+        if (!this.#stage.size)
+            return;
+        const sphere = this.#sphere;
+        this.#ring.style.cssText = `left: ${sphere.x - sphere.radius}px; top: ${sphere.y - sphere.radius}px; width: ${2 * sphere.radius}px; height: ${2 * sphere.radius}px`;
         for (const element of this.#elements.values()) {
-            const direction = normalized(element.light.direction);
-            const point = direction.map((value, k) => this.center.getComponent(k) + value * this.radius);
-            const {x, y, isInFront} = this.#stage.onCanvas(point);
-            element.style.transform = `translate(${x}px, ${y}px)`;
-            element.hidden = !isInFront;
-            element.classList.toggle('far', this.#isFar(direction));
+            const {x, y, z} = this.#toCamera(element.light.direction);
+            element.style.transform = `translate(${sphere.x + x * sphere.radius}px, ${sphere.y - y * sphere.radius}px)`;
+            element.classList.toggle('far', z < 0);
         }
     }
 }

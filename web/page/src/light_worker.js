@@ -125,8 +125,12 @@ const operations = {
         return {radiance: target, milliseconds: performance.now() - start, isTurned, isDragged, isStep: isStep === true};
     },
 
-    transfer({receiver, resolution}) {
-        return {transfer: base.relighter.transfer(receiver, resolution)};
+    /** Cube maps of what lights a receiver: by the environment, and by the lights. */
+    contributions({receiver}) {
+        const answer = {base: base.relighter.contribution(receiver)};
+        if (extra !== undefined && now.lights.length > 0)
+            answer.extra = extra.relighter.contribution(receiver);
+        return answer;
     },
 };
 

@@ -22,6 +22,10 @@ uniform float exposure;
 uniform int curve;
 vec3 encoded(vec3 linear) {
     return mix(12.92 * linear, 1.055 * pow(max(linear, 1e-6), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, linear));
+}
+// Half a step of noise, so that slow gradients have no bands.
+vec3 dithered(vec3 shown) {
+    return shown + (fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5453) - 0.5) / 255.0;
 }`;
 
 const surfaceShader = `
@@ -41,7 +45,7 @@ void main() {
     float shown = alpha;
     if (floorPlace.z > 0.0)
         shown = 1.0 - smoothstep(0.4, 1.0, distance(world.xz, floorPlace.xy) / floorPlace.z);
-    color = vec4(encoded(on_screen(curve, seen * exposure)), shown);
+    color = vec4(dithered(encoded(on_screen(curve, seen * exposure))), shown);
 }`;
 
 const skyVertexShader = `
@@ -74,7 +78,7 @@ void main() {
     vec3 w = normalize(far.xyz / far.w - near.xyz / near.w);
     if (isPlain > 0.5) {
         vec3 plain = mix(plainLow, plainHigh, smoothstep(-0.6, 0.7, w.y));
-        color = vec4(plain, 1.0);
+        color = vec4(dithered(plain), 1.0);
         return;
     }
     vec3 sum = vec3(0.0);
@@ -91,7 +95,7 @@ void main() {
         sum += weight * look(tap, max(blur - 0.5, 0.0));
         weights += weight;
     }
-    color = vec4(encoded(on_screen(curve, sum / weights * exposure)), 1.0);
+    color = vec4(dithered(encoded(on_screen(curve, sum / weights * exposure))), 1.0);
 }`;
 
 function white() {
@@ -102,6 +106,7 @@ function white() {
 
 export class Stage {
     #shared;
+    free = {right: 0, bottom: 0};
     #white = white();
 
     constructor(canvas, toneSource) {
@@ -228,7 +233,7 @@ export class Stage {
     }
 
     #centre() {
-        const {width, height} = this.size, {right, bottom} = this.free ?? {right: 0, bottom: 0};
+        const {width, height} = this.size, {right, bottom} = this.free;
         this.camera.setViewOffset(width, height, right / 2, bottom / 2, width, height);
         this.ask();
     }
@@ -260,6 +265,12 @@ export class Stage {
             .copy(this.camera.projectionMatrix).multiply(this.camera.matrixWorldInverse).invert();
         this.renderer.render(this.scene, this.camera);
         this.onFrame();
+    }
+
+    /** Of the camera about the target, from +Z to +X. */
+    get azimuth() {
+        const {x, z} = this.camera.position.clone().sub(this.controls.target);
+        return Math.atan2(x, z);
     }
 
     /** Turns the camera by steps of 10 degrees: to the right and up. */

@@ -11,8 +11,8 @@ import {Stage} from './stage.js';
 import style from './style.css';
 import {contributions, drawContributions} from './who.js';
 
-const mostSky = 2048, lightResolution = 128, transferResolution = 64;
-const plains = {dark: [[0.012, 0.013, 0.016], [0.05, 0.054, 0.062]], light: [[0.62, 0.64, 0.68], [0.9, 0.91, 0.93]]};
+const mostSky = 2048, lightResolution = 128;
+const plains = {dark: [[0.055, 0.058, 0.066], [0.13, 0.137, 0.152]], light: [[0.62, 0.64, 0.68], [0.9, 0.91, 0.93]]};
 
 class RelumineViewer extends HTMLElement {
     static observedAttributes = ['theme', 'src'];
@@ -128,8 +128,7 @@ class RelumineViewer extends HTMLElement {
         new ResizeObserver(fit).observe(this);
         fit();
         this.#stage.setCamera({...this.#manifest.camera, radius: this.#manifest.subject.radius});
-        this.#handles = new Handles(this.find('.handles'), this.#stage,
-            {center: this.#manifest.subject.center, radius: 1.75 * this.#manifest.subject.radius}, {
+        this.#handles = new Handles(this.find('.handles'), this.#stage, {
                 change: (light, isStep) => (light ? this.#desk.setLight(light, isStep) : this.#desk.set({})),
                 select: (id) => this.#select(id), selected: () => this.#desk.selected,
                 remove: (id) => this.#desk.removeLight(id),
@@ -357,9 +356,10 @@ class RelumineViewer extends HTMLElement {
     /** The picture's middle is that of what the controls leave free. */
     #leaveFree() {
         const isNarrow = this.clientWidth < 700, isOpen = !this.find('aside').classList.contains('closed');
-        const footer = this.find('footer').offsetHeight - 30;
+        const footer = this.find('footer').offsetHeight - 30, right = !isNarrow && isOpen ? 288 : 0;
+        this.find('footer').style.setProperty('--aside', `${right}px`);
         this.#stage?.setFree({
-            right: !isNarrow && isOpen ? 288 : 0, bottom: footer + (isNarrow && isOpen ? this.find('aside').offsetHeight : 0),
+            right, bottom: footer + (isNarrow && isOpen ? this.find('aside').offsetHeight : 0),
         });
     }
 
@@ -371,10 +371,8 @@ class RelumineViewer extends HTMLElement {
 
     /** Where a photographer puts the first light: beside the camera, above it; the next ones around. */
     #keyDirection() {
-        const {camera, controls} = this.#stage;
-        const toCamera = camera.position.clone().sub(controls.target);
         const turns = [-40, 55, 160, -120, 100];
-        const azimuth = Math.atan2(toCamera.x, toCamera.z) + turns[this.#desk.state.lights.length % turns.length] * Math.PI / 180;
+        const azimuth = this.#stage.azimuth + turns[this.#desk.state.lights.length % turns.length] * Math.PI / 180;
         const elevation = 0.65;
         return [Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation), Math.cos(elevation) * Math.cos(azimuth)];
     }
@@ -454,8 +452,8 @@ class RelumineViewer extends HTMLElement {
         if (!hit)
             return this.#closeWho();
         const receiver = this.#look.receivers ? this.#look.receivers[hit.vertex] : hit.vertex;
-        const {transfer} = await this.#client.ask('transfer', {receiver, resolution: transferResolution});
-        const found = contributions(transfer, transferResolution, this.#composed(), this.#lights());
+        const found = contributions(await this.#client.ask('contributions', {receiver}), this.#composed(), this.#lights(),
+            this.#stage.azimuth);
         drawContributions(this.find('.who canvas'), found);
         const list = this.find('.who ul');
         list.innerHTML = '';

@@ -1,8 +1,9 @@
-// What lights a point: its transfer times the environment, as a picture and in words.
+// What lights a point, as a picture and in words.
 import {forPixels, shrunk} from './environments.js';
-import {coverageOf, radianceOf} from './lights.js';
+import {coverageOf, normalized, onFaces, radianceOf} from './lights.js';
 
 const luminance = (rgb, i) => 0.2126 * rgb[3 * i] + 0.7152 * rgb[3 * i + 1] + 0.0722 * rgb[3 * i + 2];
+const resolutionOf = (cubeMap) => Math.sqrt(cubeMap.length / 18);
 
 /** Returns the texel of a direction in a cube map of [6][R][R], faces as in cubemap/face.h. */
 function texelAt([x, y, z], resolution) {
@@ -18,50 +19,71 @@ function texelAt([x, y, z], resolution) {
     return (face * resolution + at(v)) * resolution + at(u);
 }
 
-function sideOf([x, y, z]) {
+/** Where light comes from as the eye sees it; `azimuth` is the eye's. */
+function sideOf([x, y, z], azimuth) {
     if (y > 0.8)
         return 'from above';
     if (y < -0.35)
         return 'from below';
     const sides = ['front', 'front right', 'right', 'back right', 'back', 'back left', 'left', 'front left'];
-    const turn = Math.round(Math.atan2(x, z) / (Math.PI / 4));
-    return `from the ${sides[(turn + 8) % 8]}${y > 0.4 ? ', high' : ''}`;
+    const turn = Math.round((Math.atan2(x, z) - azimuth) / (Math.PI / 4));
+    return `from the ${sides[(turn + 16) % 8]}${y > 0.4 ? ', high' : ''}`;
+}
+
+/** Calls use(i, solid angle, direction) for the texels of a cube map. */
+function forTexels(resolution, use) {
+    let i = 0;
+    for (const onFace of onFaces)
+        for (let y = 0; y < resolution; ++y)
+            for (let x = 0; x < resolution; ++x, ++i) {
+                const place = onFace(2 * (x + 0.5) / resolution - 1, 2 * (y + 0.5) / resolution - 1);
+                use(i, 4 / resolution ** 2 / Math.hypot(...place) ** 3, normalized(place));
+            }
 }
 
 /**
- * `transfer`: [6][R][R], 1/sr, of the point; `environment` is the composed one. Returns {picture, shares, total}: the
- * contribution of each pixel of a lat-long of 256 x 128, and who gives how much.
+ * `base` and `extra` are cube maps of what arrives by the environment and by the lights (or undefined). Returns what
+ * a lat-long shows of them, and who gives how much: shares of the whole.
  */
-export function contributions(transfer, resolution, environment, lights) {
-    const small = shrunk(environment, 256);
-    const {width, height, rgb} = small;
-    const picture = new Float32Array(width * height);
-    const shining = lights.filter((light) => light.on).map((light) => ({
-        name: light.name, sum: 0, coverage: coverageOf(light, 360 / width),
-        luminance: luminance(radianceOf(light), 0),
-    }));
-    const sectors = new Map();
+export function contributions({base, extra}, environment, lights, azimuth) {
+    const sectors = new Map(), given = new Map();
     let total = 0;
-    forPixels(width, height, (i, x, y, weight, w) => {
-        const part = transfer[texelAt(w, resolution)];
-        if (part <= 0)
-            return;
-        picture[i] = part * luminance(rgb, i);
-        let given = picture[i] * weight;
-        total += given;
-        for (const light of shining) {
-            const own = part * weight * light.coverage(w) * light.luminance;
-            light.sum += own;
-            given -= own;
-        }
-        const side = sideOf(w);
-        sectors.set(side, (sectors.get(side) ?? 0) + Math.max(given, 0));
+    forTexels(resolutionOf(base), (i, angle, w) => {
+        const part = angle * luminance(base, i);
+        total += part;
+        const side = sideOf(w, azimuth);
+        sectors.set(side, (sectors.get(side) ?? 0) + part);
     });
-    const shares = shining.map(({name, sum}) => ({name, share: sum / total}));
+    if (extra) {
+        const shining = lights.filter((light) => light.on).map((light) => ({
+            name: light.name, coverage: coverageOf(light, 90 / resolutionOf(extra)), luminance: luminance(radianceOf(light), 0),
+        }));
+        forTexels(resolutionOf(extra), (i, angle, w) => {
+            const part = angle * luminance(extra, i);
+            if (part <= 0)
+                return;
+            total += part;
+            const own = shining.map((light) => light.coverage(w) * light.luminance);
+            const all = own.reduce((sum, value) => sum + value, 0);
+            shining.forEach(({name}, k) => all > 0 && given.set(name, (given.get(name) ?? 0) + part * own[k] / all));
+        });
+    }
+    const shares = [...given].map(([name, sum]) => ({name, share: sum / total}));
     for (const [side, sum] of [...sectors].sort((a, b) => b[1] - a[1]).slice(0, 3))
         shares.push({name: `Environment ${side}`, share: sum / total});
     shares.sort((a, b) => b.share - a.share);
-    return {picture, width, height, small, total, shares: shares.filter(({share}) => share >= 0.01)};
+    return {...pictureOf(base, extra, environment), total, shares: shares.filter(({share}) => share >= 0.01)};
+}
+
+function pictureOf(base, extra, environment) {
+    const small = shrunk(environment, 256);
+    const picture = new Float32Array(small.width * small.height);
+    forPixels(small.width, small.height, (i, x, y, weight, w) => {
+        picture[i] = luminance(base, texelAt(w, resolutionOf(base)));
+        if (extra)
+            picture[i] += luminance(extra, texelAt(w, resolutionOf(extra)));
+    });
+    return {picture, small, width: small.width, height: small.height};
 }
 
 /** Draws the contributions in warm colours over the environment in grey. */
