@@ -146,9 +146,8 @@ std::size_t ReceiverLight::update(const ClusterSums& sums, std::span<const std::
     return std::min(num_blocks * prt::BlockSize, radiance_.size());
 }
 
-glm::dvec3 ReceiverLight::of_point_from_cluster(std::size_t place, std::size_t cluster) const {
-    return static_cast<double>(transfer_.counts.count(place, cluster)) *
-           harmonics_->mean_from_cluster(cluster);
+glm::dvec3 ReceiverLight::mean_from_cluster(std::size_t cluster) const {
+    return harmonics_->mean_from_cluster(cluster);
 }
 
 void ReceiverLight::light_glossy(std::size_t block) {

@@ -59,8 +59,9 @@ public:
     ///
     /// Shape:   [num_receivers], as radiance().
     [[nodiscard]] std::vector<prt::Lobes<glm::vec3>> lobes(bool with_sharp_lights) const;
-    /// Returns what a point in space has from one cluster, without its sharp lights.
-    [[nodiscard]] glm::dvec3 of_point_from_cluster(std::size_t place, std::size_t cluster) const;
+    /// Returns what a point in space has from one cluster of which it counts 1, without its sharp
+    /// lights.
+    [[nodiscard]] glm::dvec3 mean_from_cluster(std::size_t cluster) const;
     /// Returns the arriving light as it was summed, not bound, all of it or without what the sharp
     /// lights give.
     ///

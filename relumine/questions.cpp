@@ -276,6 +276,12 @@ cubemap::CubeMap adjoint(const LitScene& lit, std::span<const glm::vec3> weights
                             lit.bounces().bounced().empty() ? nullptr : &lit.bounces().surfaces());
 }
 
+relight::Transport transport(const LitScene& lit, const relight::TransportOptions& options) {
+    if (lit.radiance().empty())
+        throw std::logic_error("expected a scene that is lit, got one without light");
+    return relight::transport(lit.relighter(), options);
+}
+
 void relight_batch(const LitScene& lit, std::span<const cubemap::CubeMap> environments,
                    std::span<glm::vec3> radiance) {
     relight::relight_batch(lit.relighter(), environments, radiance);

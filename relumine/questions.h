@@ -17,6 +17,7 @@
 #include "cubemap/layers/light_layer.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/team.h"
+#include "relight/adjoint/transport.h"
 #include "relight/reference/exact.h"
 #include "relight/sharp/sharp_lights.h"
 #include "relumine/lighting.h"
@@ -126,6 +127,13 @@ struct Share {
 /// Throws:  std::invalid_argument for another number of weights, weights that are not finite, and
 ///          receivers with highlights; std::logic_error unless an environment lights the scene.
 [[nodiscard]] cubemap::CubeMap adjoint(const LitScene& lit, std::span<const glm::vec3> weights);
+
+/// Returns the scene's direct light as a sparse matrix and the light that it is multiplied with:
+/// docs/operator.md
+///
+/// Throws:  as relight::transport(); std::logic_error for a scene without light.
+[[nodiscard]] relight::Transport transport(const LitScene& lit,
+                                           const relight::TransportOptions& options = {});
 
 /// Lights the scene with one environment after the other, and leaves its own light as it is. Direct
 /// light, as it is after LitScene::light() of the map.

@@ -131,7 +131,8 @@ Given given_to_points(const Relighter& relighter, std::span<const glm::vec3> wei
     files::parallel_for(std::size_t{0}, given.by_clusters.size(), [&](std::size_t cluster) {
         for (const std::size_t place : places)
             given.by_clusters[cluster] +=
-                glm::dvec3(weights[order[place]]) * light.of_point_from_cluster(place, cluster);
+                glm::dvec3(weights[order[place]]) * light.mean_from_cluster(cluster) *
+                static_cast<double>(relighter.transfer().counts.count(place, cluster));
     });
     for (std::size_t i = 0; i < sharp.size(); ++i) {
         const std::span<const std::uint16_t> reached = light.traced().reached(sharp[i]);
