@@ -70,7 +70,8 @@ void Mirrors::begin_tile(std::uint32_t left, std::uint32_t top, std::uint32_t wi
                                   top + static_cast<std::uint32_t>(i / width));
                 middles_[i] = {
                     {*mirror, trace(*mirror, *middles[i], light_.reflections->num_rays())},
-                    prt::value_at(mesh_, mesh_.positions, *middles[i])};
+                    prt::value_at(mesh_, mesh_.positions, *middles[i]),
+                    *middles[i]};
             }
 }
 
@@ -166,13 +167,14 @@ MirroredLight Mirrors::light(const Mirror& mirror, const prt::MeshPoint& point) 
         return *light;
     }
     const std::optional<Middle>& middle = middles_[std::size_t{y_} * width_ + x_];
-    // Where a wide lobe turns from pixel to pixel, the pixel has as many rays as a few would share.
-    constexpr std::uint32_t RaysOfFour = 4;
+    // Where a wide lobe turns from pixel to pixel, a pixel has as many rays as four would share.
     const bool is_wide = reach_of(lobe_alpha(mirror.surface)) > 0;
-    const std::uint32_t all = light_.reflections->num_rays() * (is_wide ? RaysOfFour : 1);
-    if (!is_wide && traced_.empty() && middle && are_alike(middle->traced.mirror, mirror)) {
+    const std::uint32_t all = light_.reflections->num_rays() * (is_wide ? 4 : 1);
+    if (traced_.empty() && middle && are_alike(middle->traced.mirror, mirror)) {
         traced_.push_back(middle->traced);
-        return middle->traced.light;
+        if (is_wide)
+            traced_.back().light = trace(middle->traced.mirror, middle->point, all);
+        return traced_.back().light;
     }
     // A pixel of several normals sums their rays.
     traced_.push_back({mirror, trace(mirror, point, traced_.empty() ? all : (all + 1) / 2)});

@@ -59,6 +59,7 @@ private:
     struct Middle {
         Traced traced;
         glm::vec3 position;
+        prt::MeshPoint point;
     };
 
     [[nodiscard]] MirroredLight light(const Mirror& mirror, const prt::MeshPoint& point);
