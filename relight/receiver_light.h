@@ -78,6 +78,10 @@ public:
     }
     /// Sharp lights left out.
     [[nodiscard]] const ClusterLights& cluster_lights() const { return lights_; }
+    /// Null: no harmonics are kept.
+    [[nodiscard]] const HarmonicLight* harmonic_light() const {
+        return harmonics_ ? &*harmonics_ : nullptr;
+    }
     [[nodiscard]] const TracedLight& traced() const { return traced_; }
 
 private:

@@ -283,6 +283,9 @@ std::vector<glm::vec3> Relighter::harmonics() const {
 std::span<const glm::vec3> Relighter::diffuse_radiance() const {
     return light_->diffuse_radiance();
 }
+VectorIrradiance Relighter::cluster_light(std::size_t cluster) const {
+    return ClusterSums{.all = sums_, .sharp = sharp_lights_}.without_sharp(cluster);
+}
 glm::dvec3 Relighter::open_radiance(const glm::vec3& normal) const {
     glm::dvec3 sum(0.0);
     std::vector<VectorIrradiance> soft = sums_;

@@ -150,6 +150,8 @@ public:
     [[nodiscard]] const ReceiverLight& receiver_light() const { return *light_; }
     /// How environment() is summed into clusters; null where there is none.
     [[nodiscard]] const LightBinning* binning() const { return binning_.get(); }
+    /// Returns the light of a cluster without its sharp lights.
+    [[nodiscard]] VectorIrradiance cluster_light(std::size_t cluster) const;
     [[nodiscard]] std::span<const SharpLight> sharp_lights() const { return sharp_lights_; }
     [[nodiscard]] const ShadowRays& shadow_rays() const { return rays_; }
 

@@ -175,6 +175,8 @@ public:
     ///
     /// Throws:  std::logic_error before the first light() and without LightOptions::harmonics.
     [[nodiscard]] std::vector<glm::vec3> harmonics() const;
+    /// LightOptions::harmonics
+    [[nodiscard]] std::uint32_t harmonic_order() const { return harmonics_; }
 
     /// Returns what a picture is drawn of, or its radiance alone. It points into this object, and
     /// is good until the light changes. Of processes that share the light, all call it; the first

@@ -14,6 +14,7 @@
 #include "prt/receivers/pixel_receivers.h"
 #include "relight/adjoint/adjoint.h"
 #include "relight/adjoint/contribution.h"
+#include "relight/adjoint/harmonic_adjoint.h"
 #include "relight/batch.h"
 #include "relight/pictures/framing.h"
 #include "relight/receiver_light.h"
@@ -27,6 +28,11 @@ namespace {
 void require_environment(const LitScene& lit) {
     if (!has_environment(lit))
         throw std::logic_error("expected a scene lit by an environment");
+}
+
+/// Null: no light bounces.
+const relight::SurfaceBounces* surfaces_of(const LitScene& lit) {
+    return lit.bounces().bounced().empty() ? nullptr : &lit.bounces().surfaces();
 }
 
 /// Returns compute(indices): a value for each index. Where processes share the work, each computes
@@ -272,8 +278,16 @@ cubemap::CubeMap contribution_map(const LitScene& lit, std::span<const std::uint
 
 cubemap::CubeMap adjoint(const LitScene& lit, std::span<const glm::vec3> weights) {
     require_environment(lit);
-    return relight::adjoint(lit.relighter(), weights,
-                            lit.bounces().bounced().empty() ? nullptr : &lit.bounces().surfaces());
+    if (lit.relighter().transfer().have_no_surface)
+        return relight::points_adjoint(lit.relighter(), weights);
+    return relight::adjoint(lit.relighter(), weights, surfaces_of(lit));
+}
+
+cubemap::CubeMap harmonics_adjoint(const LitScene& lit, std::span<const glm::vec3> weights) {
+    require_environment(lit);
+    if (lit.harmonic_order() == 0)
+        throw std::logic_error("expected a scene lit with harmonics, got one without");
+    return relight::harmonics_adjoint(lit.relighter(), weights, surfaces_of(lit));
 }
 
 relight::Transport transport(const LitScene& lit, const relight::TransportOptions& options) {

@@ -128,6 +128,13 @@ struct Share {
 ///          receivers with highlights; std::logic_error unless an environment lights the scene.
 [[nodiscard]] cubemap::CubeMap adjoint(const LitScene& lit, std::span<const glm::vec3> weights);
 
+/// The same, given the derivative by harmonics().
+///
+/// Shape:   weights is [num_receivers][order^2] in the receivers' order.
+/// Throws:  as adjoint(), and std::logic_error for a scene without LightOptions::harmonics.
+[[nodiscard]] cubemap::CubeMap harmonics_adjoint(const LitScene& lit,
+                                                 std::span<const glm::vec3> weights);
+
 /// Returns the scene's direct light as a sparse matrix and the light that it is multiplied with:
 /// docs/operator.md
 ///

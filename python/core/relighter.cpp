@@ -270,6 +270,15 @@ Array adjoint(const LitPointer& own, const py::buffer& weights) {
     return owned(std::move(map.texels), {6, r, r});
 }
 
+/// `weights` is [num_receivers * order^2, 3].
+Array harmonics_adjoint(const LitPointer& own, const py::buffer& weights) {
+    const std::vector<glm::vec3> values = vec3s(weights);
+    cubemap::CubeMap map =
+        quickly(*own, [&](LitScene& lit) { return relumine::harmonics_adjoint(lit, values); });
+    const auto r = static_cast<py::ssize_t>(map.resolution);
+    return owned(std::move(map.texels), {6, r, r});
+}
+
 /// Row beginnings, columns, values of each channel, and the light.
 py::tuple transport(const LitPointer& own, std::size_t max_entries) {
     relight::Transport found = slowly(own, py::none(), [=](LitScene& lit, const Reins&) {
@@ -326,6 +335,7 @@ void bind_questions(py::class_<Lit, LitPointer>& type) {
         .def("lit_by", &lit_by)
         .def("contribution_map", &contribution_map)
         .def("adjoint", &adjoint)
+        .def("harmonics_adjoint", &harmonics_adjoint)
         .def("transport", &transport)
         .def("relight_batch", &relight_batch)
         .def("sees", &sees)

@@ -168,6 +168,7 @@ class Relighter:
         self._scene = scene
         if harmonics not in (0, 2, 3):
             raise ValueError(f"harmonics: expected 0, 2 or 3, got {harmonics!r}")
+        self._order = harmonics
         self._lit: Optional[_core.Relighter] = _core.Relighter(
             scene._core, clusters_only, harmonics
         )
@@ -448,6 +449,28 @@ class Relighter:
             raise RuntimeError("expected a scene that is lit, got one without light")
         with errors():
             result: Floats = view(self._core.adjoint(values))
+        return result
+
+    def harmonics_adjoint(self, weights: ArrayLike) -> Floats:
+        """The same for `harmonics`: (6, R, R, 3), the derivative of a loss by each texel.
+
+        weights  (num_receivers, 4 or 9, 3): the derivative of the loss by `harmonics`
+
+        >>> with relumine.Relighter(scene, harmonics=2) as lit:
+        ...     _ = lit.set_environment(environment)
+        ...     gradient = lit.harmonics_adjoint(np.ones((scene.num_receivers, 4, 3)))
+        ...     total = (lit.environment * gradient).sum(dtype=float)
+        ...     bool(np.isclose(total, lit.harmonics.sum(dtype=float), rtol=1e-4))
+        True
+        """
+        if self._order == 0:
+            raise RuntimeError("expected a relighter with harmonics, got one without")
+        count = self._scene.num_receivers
+        values = floats("weights", weights, count, self._order**2, 3)
+        if not self._core.is_lit:
+            raise RuntimeError("expected a scene that is lit, got one without light")
+        with errors():
+            result: Floats = view(self._core.harmonics_adjoint(values))
         return result
 
     def transport(self, *, max_entries: int = 100_000_000) -> Transport:

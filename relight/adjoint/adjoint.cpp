@@ -19,17 +19,6 @@ namespace relumine::relight {
 
 namespace {
 
-void require_weights(std::span<const glm::vec3> weights, std::size_t num_receivers) {
-    if (weights.size() != num_receivers)
-        throw std::invalid_argument(
-            fmt::format("expected weights of {} receivers, got {}", num_receivers, weights.size()));
-    for (const glm::vec3& weight : weights)
-        for (int channel = 0; channel < 3; ++channel)
-            if (!std::isfinite(weight[channel]))
-                throw std::invalid_argument(
-                    fmt::format("expected finite weights, got {}", weight[channel]));
-}
-
 /// The light of a cluster as the kernels have it.
 struct KernelLight {
     std::array<glm::dvec3, 3> vectors;
@@ -149,6 +138,22 @@ VectorIrradiance derivative_by(const SharpLight& light, std::span<const std::uin
 
 } // namespace
 
+void require_weights(std::span<const glm::vec3> weights, std::size_t count) {
+    if (weights.size() != count)
+        throw std::invalid_argument(
+            fmt::format("expected {} weights, got {}", count, weights.size()));
+    for (const glm::vec3& weight : weights)
+        for (int channel = 0; channel < 3; ++channel)
+            if (!std::isfinite(weight[channel]))
+                throw std::invalid_argument(
+                    fmt::format("expected finite weights, got {}", weight[channel]));
+}
+
+void require_environment(const Relighter& relighter) {
+    if (relighter.binning() == nullptr || relighter.environment().resolution == 0)
+        throw std::invalid_argument("expected an environment, got none");
+}
+
 LightDerivative light_derivative(const Relighter& relighter, std::span<const glm::vec3> weights) {
     const prt::Transfer& transfer = relighter.transfer();
     if (transfer.have_no_surface)
@@ -203,8 +208,7 @@ LightDerivative light_derivative(const Relighter& relighter, std::span<const glm
 cubemap::CubeMap adjoint(const Relighter& relighter, std::span<const glm::vec3> weights,
                          const SurfaceBounces* bounces) {
     const prt::Transfer& transfer = relighter.transfer();
-    if (relighter.binning() == nullptr || relighter.environment().resolution == 0)
-        throw std::invalid_argument("expected an environment, got none");
+    require_environment(relighter);
     if (transfer.glossy)
         throw std::invalid_argument("expected receivers without highlights, got some with");
     require_weights(weights, transfer.num_receivers());
@@ -217,10 +221,12 @@ cubemap::CubeMap adjoint(const Relighter& relighter, std::span<const glm::vec3> 
         for (std::size_t i = 0; i < direct.size(); ++i)
             direct[i] += bounced[i];
     }
-    const LightDerivative derivative = light_derivative(relighter, direct);
+    return by_texels(relighter, light_derivative(relighter, direct));
+}
 
+cubemap::CubeMap by_texels(const Relighter& relighter, const LightDerivative& derivative) {
     const LightBinning& binning = *relighter.binning();
-    const std::span<const prt::Cell> cells = transfer.quadtree.leaves();
+    const std::span<const prt::Cell> cells = relighter.transfer().quadtree.leaves();
     cubemap::CubeMap result(relighter.environment().resolution);
     // Cells may share texels with others of their face only.
     files::parallel_for(std::size_t{0}, cubemap::NumFaces, [&](std::size_t face) {

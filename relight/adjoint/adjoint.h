@@ -37,6 +37,18 @@ struct LightDerivative {
 [[nodiscard]] LightDerivative light_derivative(const Relighter& relighter,
                                                std::span<const glm::vec3> weights);
 
+/// Returns the derivative by the texels of the relighter's environment, given the derivative by its
+/// clusters and sharp lights.
+[[nodiscard]] cubemap::CubeMap by_texels(const Relighter& relighter,
+                                         const LightDerivative& derivative);
+
+/// Throws std::invalid_argument for another number of weights than `count`, and for weights that
+/// are not finite.
+void require_weights(std::span<const glm::vec3> weights, std::size_t count);
+
+/// Throws std::invalid_argument for a relighter that no environment lights.
+void require_environment(const Relighter& relighter);
+
 /// Returns the derivative by the texels of the relighter's environment, given the derivative by
 /// radiance(): T* w for the T of the present environment. <T e, w> = <e, T* w> for this environment
 /// e. With `bounces`, radiance() with the light that reaches receivers from surfaces.

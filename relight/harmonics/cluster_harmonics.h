@@ -64,6 +64,8 @@ public:
     [[nodiscard]] std::span<const EightDoubles> prefix() const { return prefix_; }
     /// Lines of numbers that hold those of a cluster.
     [[nodiscard]] std::size_t eights() const { return (stride() + 7) / 8; }
+    /// The length of the mean direction of an even cell, at most 1.
+    [[nodiscard]] double coherence(std::size_t cluster) const { return coherences_[cluster]; }
     /// [num_clusters * 3] red, green and blue of each cluster's flux.
     [[nodiscard]] std::span<const float> fluxes() const { return fluxes_; }
     /// [num_clusters] ascending.

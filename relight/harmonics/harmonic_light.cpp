@@ -17,9 +17,7 @@ HarmonicLight::HarmonicLight(const prt::Transfer& transfer, std::uint32_t order)
       mixed_(visible_.size() * prt::BlockSize), brightness_(transfer.counts.num_blocks()) {}
 
 HarmonicBlocks HarmonicLight::blocks() {
-    return {.visible = visible_.data(),
-            .mixed = mixed_.data(),
-            .above = transfer_.have_no_surface ? 1.0f : 0.5f};
+    return {.visible = visible_.data(), .mixed = mixed_.data(), .above = part_above()};
 }
 
 void HarmonicLight::take_traced(std::span<const SharpLight> lights, const TracedLight& traced) {

@@ -7,19 +7,6 @@
 
 namespace relumine::relight {
 
-namespace {
-
-/// Returns the basis functions, each times its band's factor: the irradiance that a coefficient of
-/// 1 gives to a normal.
-std::array<double, MaxHarmonics> irradiance_harmonics(const glm::vec3& normal) {
-    std::array<double, MaxHarmonics> values = harmonics(glm::dvec3(normal));
-    for (std::size_t k = 0; k < values.size(); ++k)
-        values[k] *= IrradianceFactors[band_of(k)];
-    return values;
-}
-
-} // namespace
-
 std::array<double, MaxHarmonics> harmonics(const glm::dvec3& d) {
     const double pi = std::numbers::pi;
     const double c0 = 0.5 / std::sqrt(pi);
@@ -34,6 +21,13 @@ std::array<double, MaxHarmonics> harmonics(const glm::dvec3& d) {
             0.25 * std::sqrt(5.0 / pi) * (3.0 * d.z * d.z - 1.0),
             c2 * d.x * d.z,
             0.5 * c2 * (d.x * d.x - d.y * d.y)};
+}
+
+std::array<double, MaxHarmonics> irradiance_harmonics(const glm::vec3& normal) {
+    std::array<double, MaxHarmonics> values = harmonics(glm::dvec3(normal));
+    for (std::size_t k = 0; k < values.size(); ++k)
+        values[k] *= IrradianceFactors[band_of(k)];
+    return values;
 }
 
 glm::dvec3 irradiance(std::span<const glm::vec3> light, const glm::vec3& normal) {

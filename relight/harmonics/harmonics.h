@@ -41,6 +41,10 @@ inline constexpr std::array<std::string_view, MaxHarmonics> HarmonicNames = {
 /// 3]: 1; y, z, x; xy, yz, 3 z^2 - 1, xz, x^2 - y^2, with their constants.
 [[nodiscard]] std::array<double, MaxHarmonics> harmonics(const glm::dvec3& direction);
 
+/// Returns the basis functions, each times its band's factor: the irradiance that a coefficient of
+/// 1 gives to a normal.
+[[nodiscard]] std::array<double, MaxHarmonics> irradiance_harmonics(const glm::vec3& normal);
+
 /// Returns the irradiance of a normal under arriving light, which the coefficients are. It may be a
 /// little below zero, because nine coefficients ring.
 ///

@@ -40,6 +40,33 @@ def test_the_adjoint_refuses_wrong_weights(scene):
         relighter.adjoint(np.ones(scene.num_receivers))
 
 
+@pytest.mark.parametrize("order", [2, 3])
+def test_the_adjoint_of_harmonics_is_the_transpose(scene, order):
+    random = np.random.default_rng(order)
+    relighter = relumine.Relighter(scene, harmonics=order)
+    with pytest.raises(RuntimeError, match="expected a scene that is lit"):
+        relighter.harmonics_adjoint(np.ones((scene.num_receivers, order**2, 3)))
+    for _ in range(3):
+        relighter.set_environment(relumine.Environment(random.random((6, 16, 16, 3))))
+        weights = random.uniform(-0.5, 1, relighter.harmonics.shape)
+        backward = inner(relighter.environment, relighter.harmonics_adjoint(weights))
+        assert backward == pytest.approx(inner(relighter.harmonics, weights), rel=1e-5)
+    with pytest.raises(ValueError, match="weights: expected shape"):
+        relighter.harmonics_adjoint(np.ones((scene.num_receivers, 3)))
+    with pytest.raises(RuntimeError, match="with harmonics"):
+        relumine.Relighter(scene).harmonics_adjoint(weights)
+
+
+def test_the_adjoint_of_points_is_the_transpose(arrays):
+    random = np.random.default_rng(8)
+    points = relumine.precompute(*arrays, receivers=random.uniform(-2, 2, (40, 3)))
+    relighter = relumine.Relighter(points)
+    relighter.set_environment(relumine.Environment(random.random((6, 16, 16, 3))))
+    weights = random.uniform(-0.5, 1, (40, 3))
+    backward = inner(relighter.environment, relighter.adjoint(weights))
+    assert backward == pytest.approx(inner(relighter.radiance, weights), rel=1e-5)
+
+
 def test_a_batch_is_what_single_environments_give(scene):
     random = np.random.default_rng(4)
     cubes = random.random((5, 6, 8, 8, 3)).astype(np.float32)

@@ -1,0 +1,300 @@
+#include "relight/adjoint/harmonic_adjoint_kernel.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "files/parallel.h"
+#include "prt/clusters/lattice.h"
+
+// Highway compiles the block below once per instruction set and picks one at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "relight/adjoint/harmonic_adjoint_kernel.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace relumine::relight::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+namespace {
+
+using Lane = hn::CappedTag<float, prt::BlockSize>;
+using Floats = hn::Vec<Lane>;
+constexpr std::size_t WordClusters = 64;
+constexpr std::size_t MostStride = 3 * MaxHarmonics;
+
+/// 16 receivers' sums of a channel.
+struct alignas(64) LaneSum {
+    std::array<float, prt::BlockSize> lanes{};
+
+    HWY_INLINE void add(std::size_t lane, Floats value) {
+        const Lane d;
+        hn::Store(hn::Add(hn::Load(d, lanes.data() + lane), value), d, lanes.data() + lane);
+    }
+    HWY_INLINE void multiply_add(std::size_t lane, Floats a, Floats b) {
+        const Lane d;
+        hn::Store(hn::MulAdd(a, b, hn::Load(d, lanes.data() + lane)), d, lanes.data() + lane);
+    }
+    /// In the same order for vectors of any width.
+    [[nodiscard]] double sum() const {
+        std::array<double, 4> parts{};
+        for (std::size_t i = 0; i < lanes.size(); ++i)
+            parts[i % parts.size()] += static_cast<double>(lanes[i]);
+        return (parts[0] + parts[1]) + (parts[2] + parts[3]);
+    }
+};
+
+template<class Visit>
+HWY_INLINE void visit_bits(std::uint64_t bits, const Visit& visit) {
+    for (; bits != 0; bits &= bits - 1)
+        visit(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
+/// What one block has of the clusters of a word that add up per receiver.
+struct BlockPairs {
+    std::uint64_t mixed = 0, across = 0;
+    /// Counts of the word's first mixed cluster.
+    const std::uint8_t* counts = nullptr;
+
+    [[nodiscard]] const std::uint8_t* counts_of(std::size_t cluster) const {
+        return counts + static_cast<std::size_t>(
+                            std::popcount(mixed & ((std::uint64_t{1} << cluster) - 1))) *
+                            prt::BlockSize;
+    }
+};
+
+/// The pairs of a tile and a word.
+struct TilePairs {
+    std::array<BlockPairs, prt::VisibleCounts::TileBlocks> blocks;
+    /// Blocks that have any, and clusters that have any.
+    std::uint64_t has_pairs = 0, clusters = 0;
+};
+
+/// What the clusters of a group sum up, of one word and tile.
+template<std::size_t Count>
+struct GroupSums {
+    std::array<std::array<LaneSum, 3>, WordClusters> fluxes;
+    std::array<LaneSum, 3 * Count> bases;
+
+    void clear(std::uint64_t clusters) {
+        visit_bits(clusters, [&](std::size_t cluster) { fluxes[cluster] = {}; });
+        bases = {};
+    }
+};
+
+/// Returns the part of a group that is above the receivers' horizons, as light_harmonics() has it.
+HWY_INLINE Floats part_above(const HarmonicGroup& group, const BlockNormals& normals,
+                             std::size_t lane, float middle_above) {
+    const Lane d;
+    auto above = hn::Set(d, middle_above);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        above = hn::MulAdd(hn::LoadU(d, normals.axes[axis].data() + lane),
+                           hn::Set(d, group.slope[axis]), above);
+    return hn::Min(hn::Max(above, hn::Zero(d)), hn::Set(d, 1.0f));
+}
+
+/// Adds a block to the clusters of a group. `basis` is the group's, `flux` the word's first
+/// cluster's.
+template<std::size_t Count>
+HWY_INLINE void add_block(const BlockPairs& pairs, std::uint64_t of_group, Floats above,
+                          std::size_t lane, const float* weights, const float* basis,
+                          const float* flux, GroupSums<Count>& sums) {
+    const Lane d;
+    const hn::Rebind<std::uint8_t, Lane> bytes;
+    const hn::Rebind<std::int32_t, Lane> integers;
+    std::array<LaneSum, 3> counted; // the weights of a flux
+    std::array<LaneSum, 3> flows;   // counts times fluxes
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        auto sum = hn::Zero(d);
+        for (std::size_t k = channel * Count; k < (channel + 1) * Count; ++k)
+            sum = hn::MulAdd(hn::LoadU(d, weights + k * prt::BlockSize + lane),
+                             hn::Set(d, basis[k]), sum);
+        hn::Store(hn::Mul(sum, above), d, counted[channel].lanes.data() + lane);
+    }
+    const auto add = [&](std::size_t cluster, Floats count) HWY_ATTR {
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            sums.fluxes[cluster][channel].multiply_add(
+                lane, count, hn::Load(d, counted[channel].lanes.data() + lane));
+            flows[channel].multiply_add(lane, count, hn::Set(d, flux[cluster * 3 + channel]));
+        }
+    };
+    visit_bits(of_group & pairs.mixed, [&](std::size_t cluster) HWY_ATTR {
+        add(cluster,
+            hn::ConvertTo(
+                d, hn::PromoteTo(integers, hn::LoadU(bytes, pairs.counts_of(cluster) + lane))));
+    });
+    visit_bits(of_group & pairs.across, [&](std::size_t cluster) HWY_ATTR {
+        add(cluster, hn::Set(d, static_cast<float>(prt::FullCount)));
+    });
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        const auto flow = hn::Mul(above, hn::Load(d, flows[channel].lanes.data() + lane));
+        for (std::size_t k = channel * Count; k < (channel + 1) * Count; ++k)
+            sums.bases[k].multiply_add(lane, flow,
+                                       hn::LoadU(d, weights + k * prt::BlockSize + lane));
+    }
+}
+
+/// Adds the pairs of a tile and a word, group by group.
+template<std::size_t Count>
+void add_pairs(const BlockScene& scene, std::size_t begin, std::size_t w, const TilePairs& tile,
+               const ClusterHarmonics& lights, float middle_above, const HarmonicWeights& weights,
+               GroupSums<Count>& scratch, HarmonicSums& sums) {
+    const std::size_t cluster = w * WordClusters;
+    for (std::uint64_t rest = tile.clusters; rest != 0;) {
+        const std::size_t index =
+            lights.group_of()[cluster + static_cast<std::size_t>(std::countr_zero(rest))];
+        const HarmonicGroup& group = lights.groups()[index];
+        const std::size_t end = group.end - cluster;
+        const std::uint64_t of_group =
+            end < WordClusters ? rest & ((std::uint64_t{1} << end) - 1) : rest;
+        rest &= ~of_group;
+        scratch.clear(of_group);
+        visit_bits(tile.has_pairs, [&](std::size_t block) {
+            const BlockPairs& pairs = tile.blocks[block];
+            if ((of_group & (pairs.mixed | pairs.across)) == 0)
+                return;
+            for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Lane()))
+                add_block<Count>(
+                    pairs, of_group,
+                    part_above(group, scene.normals[begin + block], lane, middle_above), lane,
+                    weights.lanes.data() + (begin + block) * 3 * Count * prt::BlockSize,
+                    lights.bases().data() + index * 3 * Count, lights.fluxes().data() + cluster * 3,
+                    scratch);
+        });
+        visit_bits(of_group, [&](std::size_t bit) {
+            for (std::size_t channel = 0; channel < 3; ++channel)
+                sums.fluxes[(cluster + bit) * 3 + channel] += scratch.fluxes[bit][channel].sum();
+        });
+        const std::size_t slot = sums.first_slot[w] + index - lights.group_of()[cluster];
+        for (std::size_t k = 0; k < 3 * Count; ++k)
+            sums.bases[slot * 3 * Count + k] += scratch.bases[k].sum();
+    }
+}
+
+/// Adds the runs of clusters that a block sees whole: where one begins, and where it has ended.
+void add_runs(std::uint64_t edges, std::uint64_t visible, const double* whole, std::size_t stride,
+              double* steps, std::size_t num_clusters) {
+    visit_bits(edges, [&](std::size_t cluster) {
+        if (cluster >= num_clusters)
+            return;
+        const double sign = (visible >> cluster & 1u) != 0 ? 1.0 : -1.0;
+        for (std::size_t i = 0; i < stride; ++i)
+            steps[cluster * stride + i] += sign * whole[i];
+    });
+}
+
+/// Adds a tile to the clusters of words [first_word, last_word).
+template<std::size_t Count>
+void add_tile(const BlockScene& scene, std::size_t tile_index, std::size_t first_word,
+              std::size_t last_word, const ClusterHarmonics& lights, float above,
+              const HarmonicWeights& weights, GroupSums<Count>& scratch, HarmonicSums& sums) {
+    const prt::VisibleCounts& counts = scene.counts;
+    const std::size_t begin = counts.tile_begin(tile_index);
+    const TileWord* words = scene.words.words.data() + tile_index * counts.words_per_block();
+    const std::uint64_t all = counts.tile_blocks(tile_index);
+    const auto whole_of = [&](std::size_t block, std::size_t w) {
+        return counts.visible[counts.word(begin + block, w)] &
+               ~scene.words.across_of(words[w], block);
+    };
+    std::uint64_t inside = 0; // blocks in the middle of a run
+    visit_bits(first_word > 0 ? all : 0, [&](std::size_t block) {
+        inside |= whole_of(block, first_word - 1) >> 63 << block;
+    });
+    for (std::size_t w = first_word; w < last_word; ++w) {
+        TilePairs pairs;
+        visit_bits(all, [&](std::size_t block) {
+            const std::uint64_t visible = whole_of(block, w);
+            add_runs(visible ^ (visible << 1 | (inside >> block & 1u)), visible,
+                     weights.whole.data() + (begin + block) * 3 * Count, 3 * Count,
+                     sums.whole_steps.data() + w * WordClusters * 3 * Count,
+                     counts.num_leaves - w * WordClusters);
+            inside = (inside & ~(std::uint64_t{1} << block)) | visible >> 63 << block;
+            const std::size_t word = counts.word(begin + block, w);
+            const BlockPairs of_block{.mixed = counts.mixed[word],
+                                      .across = scene.words.across_of(words[w], block),
+                                      .counts = counts.counts.data() +
+                                                counts.mixed_before[word] * prt::BlockSize};
+            if ((of_block.mixed | of_block.across) == 0)
+                return;
+            pairs.blocks[block] = of_block;
+            pairs.has_pairs |= std::uint64_t{1} << block;
+            pairs.clusters |= of_block.mixed | of_block.across;
+        });
+        add_pairs<Count>(scene, begin, w, pairs, lights, above, weights, scratch, sums);
+    }
+}
+
+template<std::size_t Count>
+void add_tiles(const BlockScene& scene, std::size_t first_word, std::size_t last_word,
+               const ClusterHarmonics& lights, float above, const HarmonicWeights& weights,
+               HarmonicSums& sums) {
+    GroupSums<Count> scratch;
+    for (std::size_t tile = 0; tile < scene.counts.num_tiles(); ++tile)
+        add_tile<Count>(scene, tile, first_word, last_word, lights, above, weights, scratch, sums);
+}
+
+} // namespace
+
+void add_by_order(const BlockScene& scene, std::size_t first_word, std::size_t last_word,
+                  const ClusterHarmonics& lights, float above, const HarmonicWeights& weights,
+                  HarmonicSums& sums) {
+    if (lights.order() == 1)
+        add_tiles<1>(scene, first_word, last_word, lights, above, weights, sums);
+    else if (lights.order() == 2)
+        add_tiles<4>(scene, first_word, last_word, lights, above, weights, sums);
+    else
+        add_tiles<9>(scene, first_word, last_word, lights, above, weights, sums);
+}
+
+} // namespace relumine::relight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace relumine::relight {
+
+namespace {
+HWY_EXPORT(add_by_order);
+} // namespace
+
+void add_receivers(const BlockScene& scene, std::size_t first_word, std::size_t last_word,
+                   const ClusterHarmonics& lights, float above, const HarmonicWeights& weights,
+                   HarmonicSums& sums) {
+    HWY_DYNAMIC_DISPATCH(add_by_order)
+    (scene, first_word, last_word, lights, above, weights, sums);
+}
+
+HarmonicWeights::HarmonicWeights(std::span<const glm::vec3> weights,
+                                 std::span<const std::uint32_t> order_of)
+    : stride(3 * weights.size() / order_of.size()) {
+    const std::size_t num_blocks = (order_of.size() + prt::BlockSize - 1) / prt::BlockSize;
+    const std::size_t count = stride / 3;
+    lanes.resize(num_blocks * stride * prt::BlockSize);
+    whole.resize(num_blocks * stride);
+    files::parallel_for(std::size_t{0}, num_blocks, [&](std::size_t block) {
+        const std::size_t begin = block * prt::BlockSize;
+        for (std::size_t place = begin; place < std::min(begin + prt::BlockSize, order_of.size());
+             ++place)
+            for (std::size_t i = 0; i < stride; ++i) {
+                const float weight =
+                    weights[order_of[place] * count + i % count][static_cast<int>(i / count)];
+                lanes[(block * stride + i) * prt::BlockSize + place - begin] = weight;
+                whole[block * stride + i] +=
+                    static_cast<double>(prt::FullCount) * static_cast<double>(weight);
+            }
+    });
+}
+
+HarmonicSums::HarmonicSums(const ClusterHarmonics& lights)
+    : whole_steps(lights.group_of().size() * lights.stride()),
+      fluxes(lights.group_of().size() * 3) {
+    const std::span<const std::uint32_t> groups = lights.group_of();
+    first_slot.push_back(0);
+    for (std::size_t first = 0; first < groups.size(); first += 64)
+        first_slot.push_back(first_slot.back() + groups[std::min(first + 64, groups.size()) - 1] -
+                             groups[first] + 1);
+    bases.resize(first_slot.back() * lights.stride());
+}
+
+} // namespace relumine::relight
+#endif // HWY_ONCE
