@@ -72,6 +72,12 @@ export function halfTexture({width, height, rgb}) {
     return {data, width, height};
 }
 
+/** Floats of bytes of half floats. */
+export function halfNumbers(bytes) {
+    const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    return Float32Array.from({length: bytes.byteLength / 2}, (_, i) => DataUtils.fromHalfFloat(view.getUint16(2 * i, true)));
+}
+
 /** Calls use(i, x, y, weight, direction) for the pixels of a lat-long; weights are solid angles. */
 export function forPixels(width, height, use) {
     for (let y = 0; y < height; ++y) {

@@ -1,7 +1,7 @@
 // <relumine-viewer src="folder/">: a scene that `relumine export web` wrote, in light that can be changed.
 import {Assets, PageError} from './assets.js';
 import {Desk} from './desk.js';
-import {brightness, composed, halfTexture, readEnvironment, shrunk, thumbnail} from './environments.js';
+import {brightness, composed, halfNumbers, halfTexture, readEnvironment, shrunk, thumbnail} from './environments.js';
 import {Handles} from './handles.js';
 import {hdrFile} from './hdr_file.js';
 import {LightClient} from './light_client.js';
@@ -92,7 +92,7 @@ class RelumineViewer extends HTMLElement {
         picture.catch(() => {});
         const lamps = Promise.all(manifest.lamps.map(async ({file}) => {
             const bytes = await this.#assets.bytes(file);
-            return new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength));
+            return halfNumbers(bytes);
         }));
         lamps.catch(() => {});
         const opened = await this.#client.ask('open', {
