@@ -5,7 +5,6 @@ import {PageError} from './assets.js';
 import {readHdr} from './hdr_file.js';
 import {coverageOf, radianceOf} from './lights.js';
 
-const largestHalf = 65504;
 const mostPixels = 8192 * 4096;
 
 function readExr(name, bytes) {
@@ -58,18 +57,6 @@ export function shrunk(environment, most) {
         [width, height, rgb] = [w, h, half];
     }
     return {width, height, rgb};
-}
-
-/** The same as half floats with alpha, rows from the top, for a texture. */
-export function halfTexture({width, height, rgb}) {
-    const data = new Uint16Array(4 * width * height);
-    const one = DataUtils.toHalfFloat(1);
-    for (let i = 0; i < width * height; ++i) {
-        for (let k = 0; k < 3; ++k)
-            data[4 * i + k] = DataUtils.toHalfFloat(Math.min(rgb[3 * i + k], largestHalf));
-        data[4 * i + 3] = one;
-    }
-    return {data, width, height};
 }
 
 /** Floats of bytes of half floats. */
