@@ -16,6 +16,7 @@
 #include "app/web/page_parts.h"
 #include "app/web/web_environments.h"
 #include "app/web/web_files.h"
+#include "app/web/web_lamps.h"
 #include "app/web/web_look.h"
 #include "files/counted.h"
 #include "files/output_file.h"
@@ -54,8 +55,6 @@ std::vector<std::string> left_out_of(const Scene& scene) {
                              return surface.highlight != prt::Highlight::None;
                          }))
         left.push_back("highlights: surfaces are matte");
-    if (!scene.lamps.empty())
-        left.push_back("the scene's own lamps");
     return left;
 }
 
@@ -113,6 +112,7 @@ Page made_page(const Scene& scene, const ExportWebArguments& options, const Page
     WebEnvironments environments =
         web_environments(options.environments, scene, options.num_samples, session);
     WebLook look = web_look(scene);
+    WebLamps lamps = web_lamps(scene, session);
     files::Json::Array left;
     for (const std::string& what : words.left_out)
         left.push_back(what);
@@ -128,12 +128,12 @@ Page made_page(const Scene& scene, const ExportWebArguments& options, const Page
                             {"subject", subject_of(scene)},
                             {"tone", tone_of_page()},
                             {"environments", environments.list}};
-    manifest.set("lamps", files::Json::Array{});
+    manifest.set("lamps", lamps.list);
     manifest.set("leftOut", std::move(left));
     page.worst = environments.worst;
     page.files.push_back({"scene.json", bytes_of(manifest.text())});
     page.files.push_back({"scene.relight", runtime_scene(scene)});
-    for (WebFiles* const more : {&look.files, &environments.files})
+    for (WebFiles* const more : {&look.files, &lamps.files, &environments.files})
         for (WebFile& file : *more)
             page.files.push_back(std::move(file));
     return page;
@@ -200,7 +200,6 @@ Scene scene_of_page(const ExportWebArguments& options, PageWords& words, Session
     for (const std::string& what : words.left_out)
         session.warn(fmt::format("{}: left out: {}", options.scene, what));
     scene.transfer.glossy.reset();
-    scene.lamps = {};
     if (rms_tolerance(scene) < options.tolerance)
         scene = coarsened(std::move(scene), options.tolerance, session.stop(),
                           session.progress("joining clusters"));

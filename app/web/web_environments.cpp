@@ -110,8 +110,8 @@ std::vector<Named> environments_of(const std::vector<std::string>& paths, Sessio
         result.push_back(std::move(named));
         session.poll();
     }
-    for (const data_gen::Environment& made : data_gen::environments())
-        for (const auto& [name, title] : Made)
+    for (const auto& [name, title] : Made)
+        for (const data_gen::Environment& made : data_gen::environments())
             if (paths.empty() && made.name == name)
                 result.push_back({.name = std::string(title), .map = made.make(PictureResolution)});
     return result;
@@ -136,8 +136,13 @@ WebEnvironments web_environments(const std::vector<std::string>& paths, const Sc
                                  std::size_t num_samples, Session& session) {
     const std::vector<Named> environments = environments_of(paths, session);
     std::unique_ptr<LitScene> lit;
-    if (num_samples != 0)
-        lit = std::make_unique<LitScene>(Scene(scene), LightOptions{.clusters_only = true});
+    if (num_samples != 0) {
+        // The light of lamps is not the environment's.
+        Scene without_lamps = scene;
+        without_lamps.lamps = {};
+        lit = std::make_unique<LitScene>(std::move(without_lamps),
+                                         LightOptions{.clusters_only = true});
+    }
     WebEnvironments result;
     files::Json::Array list;
     for (std::size_t i = 0; i < environments.size(); ++i) {

@@ -45,11 +45,7 @@ class LookMaker {
 public:
     explicit LookMaker(const Scene& scene)
         : scene_(scene), mesh_(scene.mesh), first_floor_(first_floor_vertex(scene)),
-          albedo_(picture_albedo(scene)) {
-        for (std::size_t i = 0; i < scene.receivers.surfaces.size() && i < albedo_.size(); ++i)
-            albedo_[i] =
-                glm::min(albedo_[i] + scene.receivers.surfaces[i].specular, glm::vec3(1.0f));
-    }
+          albedo_(web_albedo(scene)) {}
 
     [[nodiscard]] WebLook make() {
         add_triangles();
@@ -197,6 +193,17 @@ private:
 };
 
 } // namespace
+
+std::vector<glm::vec3> web_albedo(const Scene& scene) {
+    constexpr float Least = 0.01f;
+    std::vector<glm::vec3> albedo = picture_albedo(scene);
+    for (std::size_t i = 0; i < albedo.size(); ++i) {
+        if (i < scene.receivers.surfaces.size())
+            albedo[i] += scene.receivers.surfaces[i].specular;
+        albedo[i] = glm::clamp(albedo[i], Least, 1.0f);
+    }
+    return albedo;
+}
 
 WebLook web_look(const Scene& scene) {
     return LookMaker(scene).make();

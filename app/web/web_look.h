@@ -2,6 +2,10 @@
 // floor.
 #pragma once
 
+#include <vector>
+
+#include <glm/vec3.hpp>
+
 #include "app/web/web_files.h"
 #include "files/json.h"
 #include "relumine/scene.h"
@@ -14,6 +18,10 @@ struct WebLook {
     /// Members `look` and `floor` of scene.json
     files::Json look, floor;
 };
+
+/// Returns what the page multiplies each vertex's light with where there is no texture: never 0, so
+/// that what glows can be divided by it.
+[[nodiscard]] std::vector<glm::vec3> web_albedo(const Scene& scene);
 
 /// Surfaces are matte: what they mirror counts as colour.
 [[nodiscard]] WebLook web_look(const Scene& scene);

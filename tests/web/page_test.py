@@ -278,6 +278,36 @@ class Questions(Exported):
         self.assertTrue(self.browser.run("return $('.who').hidden && $('.pin').hidden;"))
 
 
+class Lamps(unittest.TestCase):
+    def test_are_dimmed(self):
+        # A lamp over a grey box; the box's vertices come first.
+        (folder / "lamp.mtl").write_text("newmtl grey\nKd 0.5 0.5 0.5\nnewmtl bulb\nKd 0.5 0.5 0.5\nKe 8 6 3\n")
+        corners = [(x, y, z) for x in (-1, 1) for y in (0, 1) for z in (-1, 1)]
+        text = "mtllib lamp.mtl\n" + "".join(f"v {x} {y} {z}\n" for x, y, z in corners)
+        text += "o box\nusemtl grey\nf 3 4 8 7\nf 1 2 4 3\nf 5 7 8 6\nf 2 6 8 4\nf 1 3 7 5\n"
+        text += "v -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\no lamp\nusemtl bulb\nf 9 10 11 12\n"
+        (folder / "lamp.obj").write_text(text)
+        relumine("precompute", "lamp.obj", "-o", "lamp.prt", "--tolerance", 0.06, "--bounces", "--no-refine", "--floor", 9)
+        relumine("export", "web", "lamp.prt", "-o", "lamp", "--force", "--samples", 0, "--tolerance", 0.06)
+        light = {}
+        for gain in (0, 1):
+            relumine("relight", "lamp.prt", "lamp/environments/1.hdr", "--clusters-only", "--bounces", "all",
+                     "--emission", gain, "-o", "lamp.npy")
+            light[gain] = npy(folder / "lamp.npy")
+        browser = Browser()
+        try:
+            browser.open(serve(folder / "lamp"))
+            shown = {gain: floats(browser.run(f"await v.ready; v.state = {{lamps: [{gain}]}}; {RADIANCE}")) for gain in (0, 1, 2)}
+            self.assertEqual(browser.run("return $('.lamps .slider span').textContent;"), "lamp")
+            browser.picture(folder / "lamp.png")
+        finally:
+            browser.close()
+        box = range(24)
+        native = [(light[1][i] - light[0][i]) / 0.5 for i in box]
+        self.assertLess(largest_error([shown[1][i] - shown[0][i] for i in box], native), 2e-3, "half floats")
+        self.assertLess(largest_error([shown[2][i] - shown[0][i] for i in box], [2 * value for value in native]), 2e-3)
+
+
 class Failing(unittest.TestCase):
     """Pages that cannot be shown say so in one sentence."""
 

@@ -5,7 +5,6 @@ import {PageError} from './assets.js';
 import {readHdr} from './hdr_file.js';
 import {coverageOf, radianceOf} from './lights.js';
 
-const largestHalf = 65504;
 const mostPixels = 8192 * 4096;
 
 function readExr(name, bytes) {
@@ -60,16 +59,10 @@ export function shrunk(environment, most) {
     return {width, height, rgb};
 }
 
-/** The same as half floats with alpha, rows from the top, for a texture. */
-export function halfTexture({width, height, rgb}) {
-    const data = new Uint16Array(4 * width * height);
-    const one = DataUtils.toHalfFloat(1);
-    for (let i = 0; i < width * height; ++i) {
-        for (let k = 0; k < 3; ++k)
-            data[4 * i + k] = DataUtils.toHalfFloat(Math.min(rgb[3 * i + k], largestHalf));
-        data[4 * i + 3] = one;
-    }
-    return {data, width, height};
+/** Floats of bytes of half floats. */
+export function halfNumbers(bytes) {
+    const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    return Float32Array.from({length: bytes.byteLength / 2}, (_, i) => DataUtils.fromHalfFloat(view.getUint16(2 * i, true)));
 }
 
 /** Calls use(i, x, y, weight, direction) for the pixels of a lat-long; weights are solid angles. */

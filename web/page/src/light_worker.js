@@ -84,6 +84,8 @@ const operations = {
 
     /** Takes a lat-long; the next state is lit by it. */
     environment({latLong, width, height, resolution}) {
+        if (base !== undefined)
+            base.bounced = undefined;
         environment = new TurnedEnvironment(latLong, width, height, resolution);
         now.turn = undefined;
         return {};
@@ -101,12 +103,11 @@ const operations = {
             base.relighter.light(isStep ? environment.quick(state.turn) : environment.exact(state.turn));
         if (isDragged)
             await setLights(state.lights);
-        const isFirst = now.turn === undefined;
         const count = 3 * base.relighter.info.numReceivers;
         const target = into?.length === count ? into : new Float32Array(count);
         // A light that is dragged leaves the environment's radiance as it was.
         if (isBaseNew || base.radiance === undefined)
-            base.radiance = baseRadiance(bounces, !isStep || isFirst, base.radiance);
+            base.radiance = baseRadiance(bounces, !isStep, base.radiance);
         target.set(base.radiance);
         if (extra !== undefined && state.lights.length > 0) {
             const isExtraNew = isDragged || isOther || (now.isDragStep && !isStep);

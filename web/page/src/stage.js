@@ -61,16 +61,14 @@ out vec4 color;
 uniform mat4 worldFromClip;
 uniform sampler2D sky;
 uniform float turn;
-uniform float blur; // a mip level
 uniform vec3 plainLow;
 uniform vec3 plainHigh;
 uniform float isPlain;
-vec3 look(vec3 w, float level) {
+vec3 look(vec3 w) {
     // +Z in the middle, +X to its left, +Y at the top.
     float longitude = atan(w.x, w.z) - turn;
-    float u = fract(0.5 - longitude / 6.28318530718);
     float v = acos(clamp(w.y, -1.0, 1.0)) / 3.14159265359;
-    return textureLod(sky, vec2(u, v), level).rgb;
+    return textureLod(sky, vec2(0.5 - longitude / 6.28318530718, v), 0.0).rgb;
 }
 void main() {
     vec4 far = worldFromClip * vec4(at, 1.0, 1.0);
@@ -81,21 +79,7 @@ void main() {
         color = vec4(dithered(plain), 1.0);
         return;
     }
-    vec3 sum = vec3(0.0);
-    float weights = 0.0;
-    // Taps on a disc: mip levels alone show their texels.
-    vec3 right = normalize(cross(w, abs(w.y) > 0.99 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
-    vec3 up = cross(right, w);
-    int taps = blur > 0.0 ? 24 : 1;
-    float reach = blur > 0.0 ? 0.0062 * exp2(blur) : 0.0;
-    for (int i = 0; i < taps; ++i) {
-        float r = sqrt((float(i) + 0.5) / float(taps)), a = 2.39996323 * float(i);
-        float weight = exp(-2.0 * r * r);
-        vec3 tap = normalize(w + reach * r * (cos(a) * right + sin(a) * up));
-        sum += weight * look(tap, max(blur - 0.5, 0.0));
-        weights += weight;
-    }
-    color = vec4(dithered(encoded(on_screen(curve, sum / weights * exposure))), 1.0);
+    color = vec4(dithered(encoded(on_screen(curve, look(w) * exposure))), 1.0);
 }`;
 
 function white() {
@@ -131,7 +115,7 @@ export class Stage {
             fragmentShader: `${screen}\n${this.toneSource}\n${skyShader}`,
             uniforms: {
                 ...this.#shared, worldFromClip: {value: new THREE.Matrix4()}, sky: {value: this.#white}, turn: {value: 0},
-                blur: {value: 2.5}, isPlain: {value: 1}, plainLow: {value: new THREE.Color()}, plainHigh: {value: new THREE.Color()},
+                isPlain: {value: 1}, plainLow: {value: new THREE.Color()}, plainHigh: {value: new THREE.Color()},
             },
         });
         const triangle = new THREE.BufferGeometry();
@@ -183,25 +167,23 @@ export class Stage {
         return before;
     }
 
-    /** Shows a lat-long of half floats behind the scene. */
+    /** Shows what skyTexture() made behind the scene. */
     setSky({data, width, height}) {
         this.sky.uniforms.sky.value.dispose?.();
         const texture = new THREE.DataTexture(data, width, height, THREE.RGBAFormat, THREE.HalfFloatType);
         texture.wrapS = THREE.RepeatWrapping;
-        texture.minFilter = THREE.LinearMipmapLinearFilter;
+        texture.minFilter = THREE.LinearFilter;
         texture.magFilter = THREE.LinearFilter;
-        texture.generateMipmaps = true;
         texture.needsUpdate = true;
         this.sky.uniforms.sky.value = texture;
         this.ask();
     }
 
-    setLook({exposure, curve, turn, isPlain, blur, plain}) {
+    setLook({exposure, curve, turn, isPlain, plain}) {
         this.#shared.exposure.value = 2 ** exposure;
         this.#shared.curve.value = curve;
         this.sky.uniforms.turn.value = turn * Math.PI / 180;
         this.sky.uniforms.isPlain.value = isPlain ? 1 : 0;
-        this.sky.uniforms.blur.value = blur;
         if (plain) {
             this.sky.uniforms.plainLow.value.setRGB(...plain[0]);
             this.sky.uniforms.plainHigh.value.setRGB(...plain[1]);

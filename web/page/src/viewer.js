@@ -1,13 +1,14 @@
 // <relumine-viewer src="folder/">: a scene that `relumine export web` wrote, in light that can be changed.
 import {Assets, PageError} from './assets.js';
 import {Desk} from './desk.js';
-import {brightness, composed, halfTexture, readEnvironment, shrunk, thumbnail} from './environments.js';
+import {brightness, composed, halfNumbers, readEnvironment, shrunk, thumbnail} from './environments.js';
 import {Handles} from './handles.js';
 import {hdrFile} from './hdr_file.js';
 import {LightClient} from './light_client.js';
 import {lookOf} from './look.js';
 import {Panel, markup} from './panel.js';
 import {Stage} from './stage.js';
+import {skyTexture} from './sky.js';
 import style from './style.css';
 import {contributions, drawContributions} from './who.js';
 
@@ -64,6 +65,9 @@ class RelumineViewer extends HTMLElement {
     get isSettled() { return this.#client.isSettled && this.settleTimer === undefined; }
     /** Radiance of the scene's vertices for albedo 1, 3 numbers each. */
     get radiance() { return this.lastRadiance.slice(); }
+    /** A step of a drag of a light, or of a turn; setting `state` ends it. */
+    drag(light) { this.#desk.setLight(light, true); }
+    turn(degrees) { this.#desk.set({turn: degrees}, true); }
     undo() { this.#desk.undo(); }
     redo() { this.#desk.redo(); }
     addLight(type = 'disc', direction = this.#keyDirection()) { return this.#desk.addLight(type, direction); }
@@ -74,7 +78,6 @@ class RelumineViewer extends HTMLElement {
     // --- loading ---
 
     async #load() {
-        const start = performance.now();
         this.#assets = new Assets(this.getAttribute('src') ?? '.');
         if (typeof WebAssembly === 'undefined')
             throw new PageError('This browser cannot run the scene\'s light: it needs WebAssembly.');
@@ -92,7 +95,7 @@ class RelumineViewer extends HTMLElement {
         picture.catch(() => {});
         const lamps = Promise.all(manifest.lamps.map(async ({file}) => {
             const bytes = await this.#assets.bytes(file);
-            return new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength));
+            return halfNumbers(bytes);
         }));
         lamps.catch(() => {});
         const opened = await this.#client.ask('open', {
@@ -108,7 +111,6 @@ class RelumineViewer extends HTMLElement {
         this.find('h1').textContent = manifest.title;
         this.#listEnvironments();
         await this.#useEnvironment(first.id);
-        this.loadMilliseconds = performance.now() - start;
     }
 
     find(selector) { return this.shadowRoot.querySelector(selector); }
@@ -187,9 +189,10 @@ class RelumineViewer extends HTMLElement {
         this.#shownEnvironment = id;
         this.isExposed = environment.exposure !== undefined;
         await this.#client.ask('environment', {latLong: picture.rgb, width: picture.width, height: picture.height, resolution: lightResolution});
-        this.#stage.setSky(halfTexture(picture));
+        this.#stage.setSky(environment.sky ??= skyTexture(picture));
         this.find('.error-line').textContent = this.#errorLine(environment);
-        this.#relight(false);
+        // At once, then exactly.
+        this.#relight(true);
         this.#showLook();
     }
 
@@ -197,8 +200,7 @@ class RelumineViewer extends HTMLElement {
         const {leftOut} = this.#manifest;
         const left = leftOut.length > 0 ? ` Left out: ${leftOut.join(', ')}.` : '';
         if (!verified)
-            return `Light within ${this.#percent(Math.max(...this.#manifest.environments.map((e) => e.verified?.relativeL2 ?? 0)))} of exact in the scene's own environments.${left}`
-                .replace(/^Light within 0 % .*?\./, 'Light not verified.');
+            return `Light not verified.${left}`;
         return `Light within ${this.#percent(verified.relativeL2)} of exact integration here.${left}`;
     }
 
@@ -246,7 +248,6 @@ class RelumineViewer extends HTMLElement {
 
     #takeRadiance({radiance, ...times}) {
         this.times = times;
-        (this.allTimes ??= []).push(times);
         this.lastRadiance = radiance;
         const {receivers} = this.#look;
         if (receivers) {
@@ -259,10 +260,11 @@ class RelumineViewer extends HTMLElement {
             this.#stage.setRadiance(radiance.slice());
         }
         if (!this.isExposed)
-            this.#expose(radiance);
+            this.#expose(radiance, times.isStep);
         if (this.find('.loading').className === 'loading') {
             this.find('.loading').className = 'loading done';
             this.#stage.draw();
+            this.firstMilliseconds = performance.now();
             this.readied.resolve(this);
             this.dispatchEvent(new Event('ready'));
         }
@@ -270,7 +272,7 @@ class RelumineViewer extends HTMLElement {
     }
 
     /** What is bright on the mesh comes out a little below white. */
-    #expose(radiance) {
+    #expose(radiance, isStep) {
         const {albedo, receivers} = this.#look;
         const values = [];
         const count = albedo.length / 3, step = Math.max(1, Math.floor(count / 20000));
@@ -281,7 +283,7 @@ class RelumineViewer extends HTMLElement {
         values.sort((a, b) => a - b);
         const bright = values[Math.floor(0.95 * (values.length - 1))];
         this.current.exposure = bright > 0 ? Math.log2(0.72 / bright) : 0;
-        this.isExposed = true;
+        this.isExposed = !isStep;
         this.#showLook();
     }
 
@@ -300,7 +302,7 @@ class RelumineViewer extends HTMLElement {
         this.#applyTheme();
         this.#stage.setLook({
             exposure: (this.current?.exposure ?? 0) + state.exposure, curve: state.tone, turn: state.turn,
-            isPlain: state.background === 'plain', blur: 2.6, plain: plains[this.getAttribute('theme') ?? 'dark'],
+            isPlain: state.background === 'plain', plain: plains[this.getAttribute('theme') ?? 'dark'],
         });
         this.#handles.set(state.lights);
         this.#panel.show(state, {selected: this.#desk.selected, canUndo: this.#desk.history.canUndo, canRedo: this.#desk.history.canRedo});
