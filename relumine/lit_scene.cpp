@@ -54,7 +54,7 @@ LitScene::LitScene(prt::ScenePart part, const LightOptions& options)
 LitScene::LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::ScenePart> part,
                    const LightOptions& options)
     : scene_(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(scene)),
-      rays_(std::make_unique<const SceneRays>(*scene_)),
+      rays_(std::make_unique<const SceneRays>(*scene_)), own_blockers_(options.blockers),
       team_(part && options.team != nullptr ? options.team : &prt::alone()), path_(options.path),
       harmonics_(options.harmonics), lamps_(*scene_, *rays_),
       mirrors_(*scene_, *rays_, options.highlight_rays) {
@@ -66,7 +66,8 @@ LitScene::LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::Scen
                                                 scene_->receivers.size(),
                                                 scene_->transfer.num_receivers()));
     if (!options.clusters_only)
-        shadow_rays_ = {.blockers = &rays_->for_moving_lights(),
+        shadow_rays_ = {.blockers =
+                            own_blockers_ ? own_blockers_.get() : &rays_->for_moving_lights(),
                         .positions = part ? part->positions : scene_->receivers.positions,
                         .bias = scene_->settings.bias,
                         .tolerance = rms_tolerance(*scene_)};

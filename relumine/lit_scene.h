@@ -15,6 +15,7 @@
 #include "cubemap/texel_rectangle.h"
 #include "prt/parts/scene_part.h"
 #include "prt/team.h"
+#include "prt/visibility/blockers.h"
 #include "relight/relighter.h"
 #include "relumine/layer_compositor.h"
 #include "relumine/light.h"
@@ -36,6 +37,10 @@ struct LightOptions {
     std::uint32_t harmonics = 0;
     /// Of a pixel whose highlights are not stored: rays that find them. 0: none.
     std::uint32_t highlight_rays = DefaultHighlightRays;
+    /// What keeps sharp lights and distant lights from the receivers, as
+    /// PrecomputeOptions::blockers. Null: the scene's triangles. Pictures trace the mesh all the
+    /// same, and so do questions: verify(), sees().
+    std::shared_ptr<const prt::Blockers> blockers = {};
     /// Of a part: the processes that share the light, each with its own. It must outlive the
     /// LitScene. Null: this one has no others.
     prt::Team* team = nullptr;
@@ -218,6 +223,8 @@ private:
 
     std::shared_ptr<const Scene> scene_;
     std::unique_ptr<const SceneRays> rays_;
+    /// LightOptions::blockers
+    std::shared_ptr<const prt::Blockers> own_blockers_;
     /// Without its scene. Null: this process has all receivers.
     std::unique_ptr<const prt::ScenePart> part_;
     /// Never null.

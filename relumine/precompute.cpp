@@ -148,7 +148,7 @@ private:
         if (!std::holds_alternative<Vertices>(options_.receivers) &&
             !(options_.bounce_tolerance.value_or(0.0f) > 0.0f))
             return mesh;
-        mesh.is_open = mesh.is_open && !options_.no_refine;
+        mesh.is_open = mesh.is_open && !options_.no_refine && options_.blockers == nullptr;
         prt::RefineReport found;
         mesh = refined_by_itself(
             std::move(mesh), options_.bias,
@@ -160,6 +160,8 @@ private:
 
     void check_options() const {
         check_points(options_);
+        if (options_.blockers != nullptr)
+            check_own_blockers();
         if (options_.bounce_tolerance && !(*options_.bounce_tolerance >= 0.0f))
             throw std::invalid_argument(fmt::format("expected a tolerance of bounces >= 0, got {}",
                                                     *options_.bounce_tolerance));
@@ -177,6 +179,19 @@ private:
                                                     options_.checkpoint_seconds));
     }
 
+    /// Parts, processes and checkpoints know the mesh alone, and so do bounces.
+    void check_own_blockers() const {
+        if (is_plan_ || work_.team.has_others())
+            throw std::invalid_argument(
+                "expected triangles as blockers where the work is shared, got others");
+        if (options_.resume)
+            throw std::invalid_argument(
+                "expected triangles as blockers of work that is resumed, got others");
+        if (options_.bounce_tolerance.value_or(0.0f) > 0.0f)
+            throw std::invalid_argument(
+                "expected triangles as blockers of light that bounces, got others");
+    }
+
     /// Makes the plan: mesh, receivers and what is asked for. Returns what answers ray queries.
     prt::RayScene prepare() {
         report_.num_vertices = scene_.mesh.num_vertices();
@@ -190,6 +205,9 @@ private:
         set_surfaces();
         poll();
         if (prt::has_highlights(scene_.receivers) && !are_traced()) {
+            if (options_.blockers != nullptr)
+                throw std::invalid_argument(
+                    "expected triangles as blockers of stored highlights, got others");
             scene_.settings.glossy_tolerance = options_.glossy_tolerance;
             warn_of_smooth_surfaces();
         }
@@ -216,6 +234,8 @@ private:
     /// What was asked for. Where nothing was, vertices bounce light if surfaces are before them.
     [[nodiscard]] float bounce_tolerance(const prt::RayScene& rays) const {
         constexpr double LeastClosure = 0.01;
+        if (options_.blockers != nullptr)
+            return 0.0f;
         if (options_.bounce_tolerance)
             return *options_.bounce_tolerance;
         return prt::on_vertices(scene_.layout) &&
@@ -245,6 +265,7 @@ private:
 
     [[nodiscard]] Stages::Options stage_options() {
         Stages::Options options{.engine = options_.engine,
+                                .blockers = options_.blockers,
                                 .max_memory = options_.max_memory,
                                 .prefix = prefix_,
                                 .checkpoint = checkpoint_.get()};
@@ -398,6 +419,8 @@ private:
     void open_checkpoint() {
         if (work_.team.has_others())
             team_checkpoint_.emplace(work_.team, nullptr);
+        if (options_.blockers != nullptr)
+            return;
         if (options_.output.empty() || !(options_.checkpoint_seconds > 0.0 || options_.resume))
             return;
         constexpr double Never = 1e9;

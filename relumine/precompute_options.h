@@ -23,6 +23,7 @@
 #include "prt/receivers/camera.h"
 #include "prt/receivers/texel_receivers.h"
 #include "prt/refinement/refine.h"
+#include "prt/visibility/blockers.h"
 #include "prt/work.h"
 
 namespace relumine {
@@ -134,6 +135,11 @@ struct PrecomputeOptions {
     /// Lift of the rays' origins off the surface, in the mesh's unit; automatic unless given
     std::optional<float> bias = {};
     Engine engine = Engine::Beams;
+    /// What blocks light in place of the mesh's triangles; null: these do. It must outlive the
+    /// call. The scene does not keep it: LightOptions::blockers. The mesh then gets no vertices
+    /// where its own shadows are, light does not bounce unless it is asked for, which is refused,
+    /// as stored highlights are, and there are no checkpoints.
+    const prt::Blockers* blockers = nullptr;
 
     /// What is lit
     ReceiverChoice receivers = Vertices{};

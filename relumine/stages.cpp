@@ -136,9 +136,10 @@ prt::Work Stages::work_for(Stage stage, bool more_follows) const {
 template<typename Find>
 void Stages::find_clusters(const prt::RayScene& rays, const Find& find) {
     std::optional<prt::BeamScene> beams;
-    if (options_.engine == Engine::Beams)
+    if (options_.engine == Engine::Beams && options_.blockers == nullptr)
         beams.emplace(scene_.blocking_mesh(), rays);
-    const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
+    const prt::Blockers& of_mesh = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
+    const prt::Blockers& blockers = options_.blockers != nullptr ? *options_.blockers : of_mesh;
     const bool more_follows = scene_.settings.glossy_tolerance || plan_.bounces;
     try {
         prt::PrecomputeOptions clusters = cluster_options();

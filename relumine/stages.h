@@ -29,6 +29,8 @@ class Stages {
 public:
     struct Options {
         Engine engine = Engine::Beams;
+        /// As PrecomputeOptions::blockers
+        const prt::Blockers* blockers = nullptr;
         /// As PrecomputeOptions::max_memory
         std::optional<std::uint64_t> max_memory = {};
         /// Begins all messages: "bunny.ply: " or nothing

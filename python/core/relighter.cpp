@@ -8,6 +8,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "arrays.h"
+#include "blockers.h"
 #include "cubemap/layers/layer_file.h"
 #include "cubemap/layers/layer_list.h"
 #include "files/json_reader.h"
@@ -430,11 +431,12 @@ py::tuple bounce(Lit& own, const std::optional<std::uint32_t>& bounces, const py
 void bind_relighters(py::module_& module) {
     py::class_<Lit, LitPointer> type(module, "Relighter");
     type.def(py::init([](const std::shared_ptr<Scene>& scene, bool clusters_only,
-                         std::uint32_t harmonics) {
-            return in_background(py::none(), [=](const Reins&) {
-                return std::make_shared<Lit>(
-                    scene, LightOptions{.clusters_only = clusters_only, .harmonics = harmonics});
-            });
+                         std::uint32_t harmonics, const py::object& blocked) {
+            const LightOptions options{.clusters_only = clusters_only,
+                                       .harmonics = harmonics,
+                                       .blockers = blockers_of(blocked)};
+            return in_background(
+                py::none(), [=](const Reins&) { return std::make_shared<Lit>(scene, options); });
         }))
         .def_property_readonly("is_lit", &Lit::is_lit)
         .def_property_readonly("radiance",

@@ -8,6 +8,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "arrays.h"
+#include "blockers.h"
 #include "brdf.h"
 #include "mesh/normals.h"
 #include "options.h"
@@ -219,12 +220,19 @@ Precomputed worked(const py::object& progress, PrecomputeOptions options, Comput
 }
 
 /// Returns the scene, figures and warnings.
-py::tuple precomputed(const MeshPointer& mesh, const py::dict& given, const py::object& progress) {
-    const Precomputed result = worked(
-        progress, work_options(*mesh, given),
-        [mesh](const PrecomputeOptions& options, const PrecomputeWork& work, Precomputed& found) {
-            found.scene = std::make_shared<Scene>(precompute(*mesh, options, work, &found.report));
-        });
+py::tuple precomputed(const MeshPointer& mesh, const py::dict& given, const py::object& blocked,
+                      const py::object& progress) {
+    PrecomputeOptions all = work_options(*mesh, given);
+    const std::shared_ptr<const prt::Blockers> blockers = blockers_of(blocked);
+    all.blockers = blockers.get();
+    // The work owns the blockers.
+    const Precomputed result =
+        worked(progress, std::move(all),
+               [mesh, blockers](const PrecomputeOptions& options, const PrecomputeWork& work,
+                                Precomputed& found) {
+                   found.scene =
+                       std::make_shared<Scene>(precompute(*mesh, options, work, &found.report));
+               });
     return py::make_tuple(result.scene, report_of(result.report), result.warnings);
 }
 

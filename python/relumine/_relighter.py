@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import Floats, Indices, expect, floats, indices, real, view, whole
+from ._blockers import BlockersFunction, asked
 from ._environment import Environment, _options
 from ._files import Path, errors
 from ._layers import Layer, Region, naming_layers, parsed, region_text, text_of
@@ -139,6 +140,7 @@ class Relighter:
 
     clusters_only  lights the sun through its cluster too, without shadow rays: faster, softer
     harmonics      2 or 3: keeps the arriving light as `harmonics` of this order; 0: none
+    blockers_function  what keeps sharp lights away, as in precompute(); None: the scene's own
     surface_albedo, surface_specular  as Scene.recolored()
 
     Calls release Python's lock, so that threads relight at the same time; two threads on one
@@ -157,6 +159,7 @@ class Relighter:
         *,
         clusters_only: bool = False,
         harmonics: int = 0,
+        blockers_function: Optional[BlockersFunction] = None,
         surface_albedo: Optional[Color] = None,
         surface_specular: Optional[Color] = None,
     ) -> None:
@@ -169,8 +172,11 @@ class Relighter:
         if harmonics not in (0, 2, 3):
             raise ValueError(f"harmonics: expected 0, 2 or 3, got {harmonics!r}")
         self._order = harmonics
+        self._blockers = scene.blockers_function
+        if blockers_function is not None:
+            self._blockers = blockers_function
         self._lit: Optional[_core.Relighter] = _core.Relighter(
-            scene._core, clusters_only, harmonics
+            scene._core, clusters_only, harmonics, asked(self._blockers)
         )
 
     @property
@@ -183,6 +189,10 @@ class Relighter:
         if self._lit is None:
             raise RuntimeError("expected a relighter that is open, got one that was closed")
         return self._lit
+
+    def _require_triangles(self) -> None:
+        if self._blockers is not None:
+            raise RuntimeError("expected a scene without a blockers_function: triangles are asked")
 
     def close(self) -> None:
         """Frees the memory. A `with` statement does so at its end."""
@@ -373,6 +383,7 @@ class Relighter:
         >>> relighter.verify(20).relative_l2 < 0.2
         True
         """
+        self._require_triangles()
         found = self._core.verify(
             whole("samples", samples),
             whole("seed", seed, most=2**64 - 1),
@@ -502,6 +513,7 @@ class Relighter:
         >>> relighter.sees([[0, 5, 0], [0, -5, 0]]).shape
         (6912, 2)
         """
+        self._require_triangles()
         result: NDArray[np.bool_] = view(
             self._core.sees(floats("points", points, None, 3))
         ).astype(bool)

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import Floats, Indices, expect, floats, view, whole
+from ._blockers import BlockersFunction, asked
 from ._brdf import Brdf
 from ._core import Scene as CoreScene
 from ._files import Path, errors
@@ -84,6 +85,7 @@ def precompute(
     face_resolution: Optional[int] = None,
     bias: Optional[float] = None,
     engine: str = "beam",
+    blockers_function: Optional[BlockersFunction] = None,
     receivers: Union[str, ArrayLike] = "vertices",
     box: Any = None,
     refine: bool = True,
@@ -106,6 +108,10 @@ def precompute(
     tolerance  RMS error of the transfer allowed within a cluster, in 1/sr (0.0135; 0.025 where
                vertices were added; 0.1 for points)
     epsilon    the paper's form of it; excludes `tolerance`
+    blockers_function
+               what blocks light in place of the mesh's triangles: called with (N, 3) origins and
+               (N, 3) unit directions, some thousand rays at a time, it returns (N,) booleans, True
+               where a ray is blocked. Not with `bounces`, stored highlights or `resume`
     receivers  "vertices"; "pixels:WxH[:N]", what a fixed camera sees; "texels:WxH", a lightmap;
                "grid:NXxNYxNZ", "points:FILE" or an array (N, 3): points in space, which have no
                surface and see the whole sphere
@@ -163,10 +169,13 @@ def precompute(
         "resume": resume,
     }
     with errors(output or "", only=True):
-        core, report, warnings = _core.precompute(mesh._core, options, progress)
+        core, report, warnings = _core.precompute(
+            mesh._core, options, asked(blockers_function), progress
+        )
     warn(warnings)
     scene = Scene._of(core)
     scene.report = report
+    scene.blockers_function = blockers_function
     return scene
 
 
@@ -255,12 +264,15 @@ class Scene:
     _core: CoreScene
     #: Figures of the precompute; empty for a scene that was loaded.
     report: Dict[str, Any]
+    #: What was given to precompute(); a `.prt` file does not have it.
+    blockers_function: Optional[BlockersFunction]
 
     @classmethod
     def _of(cls, core: CoreScene) -> "Scene":
         scene = cls.__new__(cls)
         scene._core = core
         scene.report = {}
+        scene.blockers_function = None
         return scene
 
     @classmethod
@@ -290,7 +302,7 @@ class Scene:
             except ValueError:
                 raise TypeError("scene: expected clusters, got a scene without") from None
             with open(path, "rb") as file:
-                return _scene_from, (file.read(), self.report)
+                return _scene_from, (file.read(), self.report, self.blockers_function)
 
     def save(self, path: Path) -> int:
         """Writes a .prt file, whole or not at all. Returns its size in bytes."""
@@ -375,7 +387,9 @@ class Scene:
         """
         colors = {"surface_albedo": surface_albedo, "surface_specular": surface_specular}
         with errors():
-            return Scene._of(_core.recoloured(self._core, colors))
+            scene = Scene._of(_core.recoloured(self._core, colors))
+        scene.blockers_function = self.blockers_function
+        return scene
 
     def __repr__(self) -> str:
         return (
@@ -384,7 +398,9 @@ class Scene:
         )
 
 
-def _scene_from(content: bytes, report: Dict[str, Any]) -> Scene:
+def _scene_from(
+    content: bytes, report: Dict[str, Any], blockers_function: Optional[BlockersFunction] = None
+) -> Scene:
     """The scene that a .prt file's bytes hold: what pickles call."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "scene.prt")
@@ -392,4 +408,5 @@ def _scene_from(content: bytes, report: Dict[str, Any]) -> Scene:
             file.write(content)
         scene = Scene.load(path)
     scene.report = report
+    scene.blockers_function = blockers_function
     return scene

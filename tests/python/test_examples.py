@@ -35,6 +35,7 @@ def files(tmp_path_factory):
         (["fit_lights.py", "boulder.ply", "out.png"], (640, 240)),
         (["gradient.py", "boulder.prt", "sky.exr", "out.png"], (320, 240)),
         (["torch_gradient.py", "boulder.prt", "out.png"], (320, 240)),
+        (["own_blockers.py", "out.png"], (640, 480)),
         (["error_plot.py", "boulder.ply", "sky.exr", "out.png", "20"], (720, 480)),
     ],
     ids=lambda value: value[0] if isinstance(value[0], str) else "",
