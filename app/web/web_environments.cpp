@@ -65,8 +65,9 @@ std::vector<std::byte> thumbnail(const cubemap::CubeMap& map) {
         for (std::uint32_t x = 0; x < ThumbWidth; ++x) {
             glm::vec3 mean(0.0f);
             for (int i = 0; i < Samples * Samples; ++i) {
-                const double u = (x + (i % Samples + 0.5) / Samples) / ThumbWidth;
-                const double v = (y + (i / Samples + 0.5) / Samples) / ThumbHeight;
+                const int column = i % Samples, row = i / Samples;
+                const double u = (x + (column + 0.5) / Samples) / ThumbWidth;
+                const double v = (y + (row + 0.5) / Samples) / ThumbHeight;
                 const double longitude = std::numbers::pi * (1.0 - 2.0 * u);
                 const double latitude = 0.5 * std::numbers::pi * (1.0 - 2.0 * v) * 0.92;
                 const cubemap::FacePoint point = cubemap::face_point(

@@ -24,6 +24,7 @@ constexpr float LargestHalf = 65504.0f;
 /// Factors that leave one lamp.
 std::vector<EmissionGain> only(const std::vector<std::string>& names, const std::string& shining) {
     std::vector<EmissionGain> gains;
+    gains.reserve(names.size());
     for (const std::string& name : names)
         gains.push_back({.name = name, .gain = glm::vec3(name == shining ? 1.0f : 0.0f)});
     return gains;

@@ -267,6 +267,7 @@ bool Coarsening::holds(const Cell& cell) const {
 Quadtree Coarsening::tree(Progress& progress) const {
     std::unordered_set<std::uint32_t> split;
     std::vector<Cell> level;
+    level.reserve(cubemap::NumFaces);
     for (const cubemap::Face face : cubemap::AllFaces)
         level.push_back({.face = face});
     for (double depth = 1.0; !level.empty(); ++depth) {

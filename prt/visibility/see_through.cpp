@@ -129,8 +129,9 @@ float mean_over_triangle(const Value& value) {
         for (int j = 0; j < 2 * (Steps - i) - 1; ++j) {
             // Parts of a row stand upright and upside down in turn.
             const float third = j % 2 == 0 ? 1.0f / 3.0f : 2.0f / 3.0f;
+            const int column = j / 2;
             sum +=
-                value(glm::vec2(static_cast<float>(j / 2) + third, static_cast<float>(i) + third) /
+                value(glm::vec2(static_cast<float>(column) + third, static_cast<float>(i) + third) /
                       static_cast<float>(Steps));
         }
     return sum / (Steps * Steps);

@@ -48,9 +48,9 @@ public:
     Backdrop() = default;
     Backdrop(std::nullptr_t) {}
     template<typename Callable>
-    requires(!std::is_same_v<std::remove_cvref_t<Callable>, Backdrop> &&
-             std::is_constructible_v<Seen, Callable>) Backdrop(Callable&& seen)
-        : seen_(std::forward<Callable>(seen)) {}
+    requires(!std::is_same_v<Callable, Backdrop> && std::is_constructible_v<Seen, Callable>)
+        Backdrop(Callable seen)
+        : seen_(std::move(seen)) {}
     explicit Backdrop(Chart chart);
 
     [[nodiscard]] glm::vec3 operator()(const glm::vec3& direction) const {

@@ -115,7 +115,9 @@ public:
         for (std::int32_t y = 0; y < height; ++y) {
             const SampleSpan span = cutter.row(static_cast<float>(y), width);
             const auto start = static_cast<float>(depth + y * depth_down);
-            const std::size_t row = static_cast<std::size_t>((y0 + y) * width_ + x0);
+            const std::size_t row =
+                static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(width_) +
+                static_cast<std::size_t>(x0);
             for (std::int32_t x = span.begin; x < span.end; ++x) {
                 const float near = start + static_cast<float>(x) * change;
                 float& nearest = nearest_[row + static_cast<std::size_t>(x)];
