@@ -31,6 +31,10 @@ void require_fitting(const FitTarget& target, const LitScene& lit) {
 void require_diffuse(const LitScene& lit) {
     if (lit.scene().transfer.glossy)
         throw std::invalid_argument("expected a scene without highlights, got one with");
+}
+
+void require_surfaces(const LitScene& lit) {
+    require_diffuse(lit);
     if (lit.scene().transfer.have_no_surface)
         throw std::invalid_argument("expected a scene of surfaces, got points in space");
 }
@@ -325,7 +329,7 @@ cubemap::CubeMap fit_environment(LitScene& lit, const FitTarget& target,
 std::vector<lights::DistantLight> fit_lights(LitScene& lit, const FitTarget& target,
                                              std::size_t count, const FitWork& work) {
     require_fitting(target, lit);
-    require_diffuse(lit);
+    require_surfaces(lit);
     // Surfaces reflect a part of what receivers of albedo 1 would.
     std::vector<glm::vec3> radiance = target.radiance;
     std::vector<float> weights = target.weights;
@@ -348,7 +352,7 @@ std::vector<lights::DistantLight> fit_lights_to_picture(LitScene& lit, const Pic
                                                         const OutputOptions& options,
                                                         std::size_t count, double& distance,
                                                         const FitWork& work) {
-    require_diffuse(lit);
+    require_surfaces(lit);
     const Scene& scene = lit.scene();
     if (!prt::on_vertices(scene.layout))
         throw std::invalid_argument("expected a scene of vertices");

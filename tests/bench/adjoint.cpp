@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "relight/adjoint/adjoint.h"
+#include "relight/harmonics/harmonics.h"
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
 #include "tests/bench/times.h"
@@ -42,6 +43,30 @@ void measure_adjoint(const cubemap::CubeMap& environment, const char* name, LitS
     const double right = inner(environment.texels, derivative.texels);
     fmt::print("| {} | {:.2f} ms | {:.2f} ms | {:.2f} | {:.1e} |\n", name, 1e3 * forward_seconds,
                1e3 * backward_seconds, backward_seconds / forward_seconds,
+               std::abs(left - right) / std::abs(left));
+}
+
+/// The same of nine coefficients, in processor time, which other programs hardly change.
+void measure_harmonics(const cubemap::CubeMap& environment, const Scene& scene) {
+    LitScene lit(scene, {.clusters_only = true, .harmonics = 3});
+    lit.light(environment);
+    std::vector<glm::vec3> weights(lit.radiance().size() * relight::MaxHarmonics);
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        weights[i] = glm::vec3(1.0f + 0.5f * std::sin(static_cast<float>(i)));
+    std::vector<double> forward, backward;
+    cubemap::CubeMap derivative;
+    constexpr int Passes = 5;
+    for (int pass = 0; pass < Passes; ++pass) {
+        forward.push_back(bench::processor_seconds_of([&] { lit.light(environment); }));
+        backward.push_back(
+            bench::processor_seconds_of([&] { derivative = harmonics_adjoint(lit, weights); }));
+    }
+    const double left = inner(lit.harmonics(), weights);
+    const double right = inner(environment.texels, derivative.texels);
+    fmt::print("\nnine coefficients, processor time: relight {:.1f} ms, adjoint {:.1f} ms, ratio "
+               "{:.2f}; <T e, w> against <e, T* w> {:.1e}\n",
+               1e3 * bench::median(forward), 1e3 * bench::median(backward),
+               bench::median(backward) / bench::median(forward),
                std::abs(left - right) / std::abs(left));
 }
 
@@ -93,6 +118,7 @@ int main(int argc, char** argv) {
                     fmt::format("{}{}", file, clusters_only ? "" : ", sharp lights traced").c_str(),
                     lit);
         }
+        measure_harmonics(inputs.environment("beach_cross.hdr", resolution), scene);
         LitScene lit(scene, {.clusters_only = true});
         const cubemap::CubeMap beach = inputs.environment("beach_cross.hdr", 64);
         for (int round = 0; round < 3; ++round)

@@ -1,6 +1,10 @@
 #include "relumine/precompute.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -10,6 +14,8 @@
 #include "prt/receivers/pixel_receivers.h"
 #include "prt/receivers/texel_receivers.h"
 #include "prt/visibility/ray_scene.h"
+#include "relumine/lit_scene.h"
+#include "tests/prt/analytic_blockers.h"
 #include "tests/prt/same_transfer.h"
 #include "tests/relumine/small_scenes.h"
 
@@ -44,6 +50,62 @@ TEST(Precompute, IsItsStepsInOneCall) {
     EXPECT_EQ(report.clusters.num_clusters, scene.transfer.num_clusters());
     EXPECT_FALSE(report.highlights);
     EXPECT_FALSE(report.memory);
+}
+
+TEST(Precompute, AsksBlockersOfOnesOwn) {
+    // A ball over a floor that sees nothing else.
+    const glm::dvec3 centre(0.1, 1.2, 0.0);
+    constexpr double Radius = 0.6;
+    const auto ball =
+        std::make_shared<scenes::AnalyticBlockers>(scenes::sphere_blocker(centre, Radius));
+    mesh::TriangleMesh floor;
+    constexpr std::uint32_t N = 17;
+    for (std::uint32_t i = 0; i < N * N; ++i)
+        floor.positions.push_back({0.25f * static_cast<float>(i / N) - 2.0f, 0.0f,
+                                   0.25f * static_cast<float>(i % N) - 2.0f});
+    for (std::uint32_t i = 0; i + N < N * N; ++i)
+        if (i % N + 1 < N) {
+            floor.triangles.push_back({i, i + 1, i + N + 1});
+            floor.triangles.push_back({i, i + N + 1, i + N});
+        }
+    floor.normals = mesh::smooth_normals(floor);
+    const PrecomputeOptions options{.tolerance = 0.05f, .min_level = 4, .blockers = ball.get()};
+    LitScene lit(precompute(Mesh(floor), options), {.blockers = ball});
+    ASSERT_EQ(lit.scene().receivers.size(), floor.num_vertices());
+
+    cubemap::CubeMap white(8);
+    std::fill(white.texels.begin(), white.texels.end(), glm::vec3(1.0f));
+    lit.light(white);
+    const glm::dvec3 to_light = glm::normalize(glm::dvec3(0.2, 1.0, 0.1));
+    const std::vector<glm::vec3> under_sky(lit.radiance().begin(), lit.radiance().end());
+    lit.light(Light(std::vector<lights::DistantLight>{
+        {.direction = to_light, .irradiance = glm::dvec3(1.0), .solid_angle = 1e-4}}));
+    std::size_t num_dark = 0;
+    for (std::size_t i = 0; i < under_sky.size(); ++i) {
+        const glm::dvec3 to_centre = centre - glm::dvec3(floor.positions[i]);
+        const double distance = glm::length(to_centre);
+        // The form factor of a ball above the horizon.
+        const double hidden = to_centre.y / distance * (Radius / distance) * (Radius / distance);
+        EXPECT_NEAR(under_sky[i].g, 1.0 - hidden, 0.02) << i;
+        const double off = glm::length(glm::cross(to_centre, to_light));
+        if (std::abs(off - Radius) < 2e-3)
+            continue; // at the very edge of the shadow
+        num_dark += off < Radius ? 1 : 0;
+        EXPECT_NEAR(lit.radiance()[i].g, off < Radius ? 0.0 : to_light.y / std::numbers::pi, 1e-5)
+            << i;
+    }
+    EXPECT_GT(num_dark, 5u);
+
+    const auto expect_refused = [&](PrecomputeOptions changed, const PrecomputeWork& work = {}) {
+        changed.blockers = ball.get();
+        EXPECT_THAT([&] { static_cast<void>(precompute(Mesh(floor), changed, work)); },
+                    testing::ThrowsMessage<std::invalid_argument>(
+                        testing::HasSubstr("expected triangles as blockers")));
+    };
+    expect_refused({.bounce_tolerance = 0.02f});
+    expect_refused({.resume = true});
+    EXPECT_THROW(plan(Mesh(floor), {.blockers = ball.get(), .output = "floor.plan"}),
+                 std::invalid_argument);
 }
 
 TEST(Precompute, RefusesAMeshThatContradictsItself) {

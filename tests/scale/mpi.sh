@@ -60,7 +60,8 @@ texels=(squares.obj --receivers texels:96x96 --tolerance 0.03)
 bouncing=(knot.ply --floor 50 --tolerance 0.05 --bounces)
 bouncing_texels=(squares.obj --receivers texels:64x64 --tolerance 0.05 --bounces --two-sided)
 bouncing_glossy=("${glossy[@]}" --bounces 0.02)
-for kind in vertices glossy texels bouncing bouncing_texels bouncing_glossy; do
+points=(knot.ply --receivers grid:20x12x10 --face-resolution 32)
+for kind in vertices glossy texels bouncing bouncing_texels bouncing_glossy points; do
     declare -n options=$kind
     "$relumine" precompute "${options[@]}" -o "$kind.prt" -q
     for ranks in 1 2 3 5 8; do
@@ -91,6 +92,13 @@ light glossy .png --size 120x90
 light bouncing_glossy .npy
 light texels .npy
 light texels .exr
+light points .npy
+"$relumine" relight points.prt sun_sky.exr -o whole.npy --harmonics coefficients.npy -q
+for ranks in 2 5; do
+    start "$ranks" relight points.prt sun_sky.exr -o shared.npy --harmonics shared_coefficients.npy --threads 1 -q
+    check "coefficients of points, $ranks ranks" cmp -s coefficients.npy shared_coefficients.npy
+done
+rm -f shared.npy
 light bouncing .npy
 light bouncing .png --size 200x150
 light bouncing .ply --bounces 2

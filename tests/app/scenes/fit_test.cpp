@@ -1,11 +1,14 @@
 // `relumine fit`: light that is found again, and what cannot be fitted.
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include "tests/app/command.h"
+#include "tests/app/formats.h"
 #include "tests/app/small_files.h"
 
 namespace relumine::app {
@@ -71,6 +74,74 @@ TEST_F(Fit, FindsGainsAndAnEnvironment) {
         succeed({"fit", "c.prt", "white.npy", "-o", "env.exr", "--face-resolution", "4", "--json"})
             .json();
     EXPECT_LT(report["relative_l2"], 0.01);
+}
+
+/// An environment that was fitted, and how.
+struct FittedEnvironment {
+    double distance = 0.0;
+    /// Mean over the sphere, and the mean squared difference of neighbours in rows over its square.
+    double mean = 0.0, roughness = 0.0;
+    /// The part of the sphere that has more than a hundredth of the brightest light.
+    double lit_part = 0.0;
+    double brightest = 0.0;
+};
+
+class FitEnvironment : public Fit {
+protected:
+    FittedEnvironment fit(const std::string& smooth, const std::string& sparse) {
+        FittedEnvironment result;
+        result.distance =
+            succeed({"fit", "c.prt", "lit.npy", "-o", "env.exr", "--face-resolution", "4",
+                     "--iterations", "2000", "--smooth", smooth, "--sparse", sparse, "--json"})
+                .json()["relative_l2"];
+        const std::vector<float> green = exr_channels(folder() / "env.exr").at("G");
+        const Size size = exr_size(read("env.exr"));
+        result.brightest = *std::max_element(green.begin(), green.end());
+        double sum = 0.0, lit = 0.0, squares = 0.0;
+        for (std::size_t i = 0; i < green.size(); ++i) {
+            const std::size_t row = i / size.width;
+            const double part =
+                std::sin(3.14159265 * (static_cast<double>(row) + 0.5) / size.height);
+            const std::size_t next = row * size.width + (i + 1) % size.width;
+            const double difference =
+                static_cast<double>(green[i]) - static_cast<double>(green[next]);
+            sum += part;
+            result.mean += part * static_cast<double>(green[i]);
+            squares += part * difference * difference;
+            lit += static_cast<double>(green[i]) > 0.01 * result.brightest ? part : 0.0;
+        }
+        result.mean /= sum;
+        result.lit_part = lit / sum;
+        result.roughness = squares / sum / (result.mean * result.mean);
+        return result;
+    }
+};
+
+/// The more it weighs, the more alike neighbours are, and the farther the light is from the target.
+TEST_F(FitEnvironment, SmoothMakesNeighboursAlike) {
+    const FittedEnvironment rough = fit("0", "0"), some = fit("0.1", "0"), much = fit("1000", "0");
+    EXPECT_LT(some.roughness, 0.5 * rough.roughness);
+    EXPECT_LT(much.roughness, 1e-3 * some.roughness);
+    EXPECT_GT(some.distance, rough.distance);
+    EXPECT_GT(much.distance, some.distance);
+    // Nearly one radiance from everywhere, as bright as suits the target.
+    EXPECT_NEAR(much.brightest, much.mean, 0.02 * much.mean);
+}
+
+/// The more it weighs, the less light there is, from fewer directions.
+TEST_F(FitEnvironment, SparseLeavesLittleLight) {
+    const FittedEnvironment full = fit("0", "0"), some = fit("0", "0.3"), few = fit("0", "1"),
+                            none = fit("0", "1000000");
+    EXPECT_LT(some.mean, 0.7 * full.mean);
+    EXPECT_LT(few.mean, 0.7 * some.mean);
+    EXPECT_LT(some.lit_part, 0.8 * full.lit_part);
+    EXPECT_LT(few.lit_part, 0.8 * some.lit_part);
+    EXPECT_GT(few.lit_part, 0.0);
+    EXPECT_GT(some.distance, full.distance);
+    EXPECT_GT(few.distance, some.distance);
+    // No texel lowers the distance by as much as it costs.
+    EXPECT_EQ(none.brightest, 0.0);
+    EXPECT_NEAR(none.distance, 1.0, 1e-6);
 }
 
 TEST_F(Fit, RefusesWhatCannotBeFitted) {

@@ -102,6 +102,40 @@ TEST_F(PointsCommand, PartsAndThreadsMakeTheSameBytes) {
     EXPECT_EQ(read("parts.npy"), read("whole.npy"));
 }
 
+TEST_F(PointsCommand, PartsOfAFileOfPointsMakeTheSameBytes) {
+    // More points than two tiles of 1,024, so that three parts have something to share.
+    std::string ply = "ply\nformat ascii 1.0\nelement vertex 2600\nproperty float x\nproperty "
+                      "float y\nproperty float z\nend_header\n";
+    for (int i = 0; i < 2600; ++i)
+        ply += std::to_string(0.11 * (i % 20) - 1.1) + " " + std::to_string(0.2 * (i / 200)) + " " +
+               std::to_string(0.3 * (i / 20 % 10) - 1.5) + "\n";
+    write("many.ply", ply);
+    succeed({"plan", "mesh.obj", "-o", "scene.plan", "--receivers", "points:many.ply",
+             "--face-resolution", "16", "-q"});
+    for (const int count : {1, 3}) {
+        std::vector<std::string> join = {"join"};
+        for (int i = count; i >= 1; --i) {
+            join.push_back(std::to_string(i) + ".part");
+            succeed({"precompute", "--plan", "scene.plan", "--part",
+                     std::to_string(i) + "/" + std::to_string(count), "-o", join.back(), "-q"});
+        }
+        join.insert(join.end(), {"-o", std::to_string(count) + ".prt", "-q"});
+        succeed(join);
+    }
+    EXPECT_EQ(read("1.prt"), read("3.prt"));
+}
+
+TEST_F(PointsCommand, AnEnvironmentIsFittedToPoints) {
+    precompute("grid:4x4x4", {"--box", "-3,2,-3,3,4,3"});
+    write("lamp.hdr", lamp_hdr(40));
+    succeed({"relight", "scene.prt", "lamp.hdr", "-o", "lit.npy", "--clusters-only", "-q"});
+    const auto report = succeed({"fit", "scene.prt", "lit.npy", "-o", "env.exr",
+                                 "--face-resolution", "8", "--smooth", "0", "--json"})
+                            .json();
+    EXPECT_LT(report["relative_l2"], 0.005);
+    fail({"fit", "scene.prt", "lit.npy", "--lights", "1", "-o", "lamp.json"}, {"points in space"});
+}
+
 TEST_F(PointsCommand, VerticesHaveHarmonicsToo) {
     succeed({"precompute", "mesh.obj", "-o", "scene.prt", "-q", "--no-refine"});
     succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.npy", "--harmonics", "sh.npy",
