@@ -363,7 +363,7 @@ void make_quick(Settings& settings) {
     settings.num_samples = 500;
     settings.resolution = 32;
     settings.tolerances = {0.06f, 0.03f, 0.02f, 0.0135f};
-    settings.paper_tolerances = {0.06f, 0.02f};
+    settings.paper_tolerances = {0.06f, 0.03f, 0.02f};
     settings.orders = {3, 5, 8, 12};
     settings.dense_resolutions = {8, 16, 32};
     settings.wavelet_megabytes = {1, 4, 16};

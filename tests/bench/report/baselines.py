@@ -25,6 +25,10 @@ FAMILIES = {
 }
 
 
+#: As many bytes, where sizes come in steps.
+SLACK = 1.05
+
+
 def family(method):
     return FAMILIES.get(method, "clustered components (Sloan)" if method.startswith("CPCA") else method)
 
@@ -34,13 +38,13 @@ def mean_error(row):
 
 
 def best_baseline(rows, own, environment=None):
-    """Returns the baseline of the least error that stores no more than `own`, None where there is none.
+    """Returns the baseline of the least error that stores no more than `own` but for SLACK, None where there is none.
     What stores nothing, traced lights, is no baseline at equal bytes."""
     error = mean_error if environment is None else lambda row: row["relative_l2"][environment]
     others = [
         row
         for row in rows
-        if not row["method"].startswith(OWN) and 0 < row["stored_bytes"] <= own["stored_bytes"]
+        if not row["method"].startswith(OWN) and 0 < row["stored_bytes"] <= SLACK * own["stored_bytes"]
     ]
     return min(others, key=error, default=None)
 
@@ -136,7 +140,7 @@ def pictures(rows, folder, scene):
     limit = own_default(rows)["stored_bytes"]
     chosen = {}
     for row in rows:
-        if row["stored_bytes"] <= 1.05 * limit:
+        if row["stored_bytes"] <= SLACK * limit:
             best = chosen.get(family(row["method"]))
             if best is None or mean_error(row) < mean_error(best):
                 chosen[family(row["method"])] = row
