@@ -55,6 +55,12 @@ std::vector<std::string> left_out_of(const Scene& scene) {
                              return surface.highlight != prt::Highlight::None;
                          }))
         left.push_back("highlights: surfaces are matte");
+    if (std::any_of(scene.mesh.materials.begin(), scene.mesh.materials.end(),
+                    [](const mesh::Material& material) {
+                        return material.alpha_mode != mesh::AlphaMode::Opaque ||
+                               material.transmission > 0.0f;
+                    }))
+        left.push_back("alpha and glass: surfaces are opaque, though light passes them");
     return left;
 }
 

@@ -122,6 +122,18 @@ TEST_F(ExportWeb, SaysWhatItLeavesOut) {
     EXPECT_EQ(manifest()["leftOut"][0], "highlights, which are for one eye");
 }
 
+TEST_F(ExportWeb, SaysThatGlassIsOpaque) {
+    write("glass.mtl", "newmtl glass\nKd 1 1 1\nd 0.5\n");
+    write("glass.obj", "mtllib glass.mtl\nusemtl glass\n" + read("mesh.obj"));
+    succeed({"precompute", "glass.obj", "-o", "scene.prt", "--tolerance", "0.1", "--no-refine",
+             "--face-resolution", "32", "-q"});
+    const auto run =
+        succeed({"export", "web", "scene.prt", "white.hdr", "-o", "site", "--samples", "0"});
+    EXPECT_THAT(run.err, HasSubstr("left out: alpha and glass: surfaces are opaque"));
+    EXPECT_EQ(manifest()["leftOut"][0],
+              "alpha and glass: surfaces are opaque, though light passes them");
+}
+
 TEST_F(ExportWeb, RefusesInOneLineAndWritesNothing) {
     precompute({"--tolerance", "0.1"});
     const std::vector<std::string> fine = {"export", "web",  "scene.prt", "white.hdr",
