@@ -111,10 +111,9 @@ CubeMap halved(const CubeMap& map) {
 }
 
 CubeMap halved_to(const CubeMap& map, std::uint32_t most) {
-    CubeMap result = map;
-    while (result.resolution > most && result.resolution % 2 == 0)
-        result = halved(result);
-    return result;
+    if (map.resolution <= most || map.resolution % 2 != 0)
+        return map;
+    return halved_to(halved(map), most);
 }
 
 glm::vec3 sample(const CubeMap& map, const glm::vec3& direction) {

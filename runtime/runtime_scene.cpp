@@ -54,9 +54,7 @@ void RuntimeScene::turn(double degrees, std::uint32_t most_resolution) {
         // The last one serves again unless it is too fine, or coarser than it need be.
         if (coarse_.resolution == 0 || is_too_fine(coarse_) ||
             2 * std::uint64_t{coarse_.resolution} <= most_resolution)
-            coarse_ = *from;
-        while (is_too_fine(coarse_))
-            coarse_ = cubemap::halved(coarse_);
+            coarse_ = cubemap::halved_to(*from, most_resolution);
         from = &coarse_;
     }
     cubemap::CubeMap turned = cubemap::rotated(*from, degrees);

@@ -6,11 +6,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "app/options/output_options.h"
 #include "app/web/page_parts.h"
@@ -45,6 +45,9 @@ struct ExportWebArguments {
     std::string title;
 };
 
+/// What the page's runtime opens.
+constexpr std::string_view SceneFile = "scene.relight";
+
 /// What a page cannot show of a scene, in words.
 std::vector<std::string> left_out_of(const Scene& scene) {
     std::vector<std::string> left;
@@ -65,15 +68,12 @@ std::vector<std::string> left_out_of(const Scene& scene) {
 }
 
 std::vector<std::byte> runtime_scene(Scene scene) {
-    const std::filesystem::path path =
-        std::filesystem::temp_directory_path() / fmt::format("relumine_web_{}.relight", ::getpid());
     prt::RelightingScene lean{.scene = std::move(scene)};
     if (lean.scene.bounces)
         lean.albedo = bounces_of(lean.scene, bounce_albedo(lean.scene)).albedo;
-    prt::save_relighting_scene(path, std::move(lean));
-    std::vector<std::byte> bytes = files::read(path);
-    std::filesystem::remove(path);
-    return bytes;
+    return bytes_written("scene.relight", [&](const std::filesystem::path& path) {
+        prt::save_relighting_scene(path, std::move(lean));
+    });
 }
 
 files::Json camera_of_page(const Scene& scene) {
@@ -125,7 +125,7 @@ Page made_page(const Scene& scene, const ExportWebArguments& options, const Page
     files::Json manifest = {{"version", 1},
                             {"relumine", std::string(version())},
                             {"title", words.title},
-                            {"scene", "scene.relight"},
+                            {"scene", std::string(SceneFile)},
                             {"clusters", page.num_clusters},
                             {"tolerance", page.tolerance},
                             {"look", look.look},
@@ -138,11 +138,16 @@ Page made_page(const Scene& scene, const ExportWebArguments& options, const Page
     manifest.set("leftOut", std::move(left));
     page.worst = environments.worst;
     page.files.push_back({"scene.json", bytes_of(manifest.text())});
-    page.files.push_back({"scene.relight", runtime_scene(scene)});
+    page.files.push_back({std::string(SceneFile), runtime_scene(scene)});
     for (WebFiles* const more : {&look.files, &lamps.files, &environments.files})
         for (WebFile& file : *more)
             page.files.push_back(std::move(file));
     return page;
+}
+
+WebFile& file_named(WebFiles& files, std::string_view name) {
+    return *std::find_if(files.begin(), files.end(),
+                         [&](const WebFile& file) { return file.name == name; });
 }
 
 /// All that is written.
@@ -166,8 +171,8 @@ Scene fitted(Scene scene, ExportWebArguments options, const WebFiles& parts, con
     const double words_of_errors = 128.0 * static_cast<double>(options.environments.size() + 2);
     options.num_samples = 0;
     std::vector<std::string> given_up;
+    Page page = made_page(scene, options, words, session);
     for (;;) {
-        const Page page = made_page(scene, options, words, session);
         const double size =
             static_cast<double>(size_of(written(page, parts, options, words))) + words_of_errors;
         if (size <= *options.max_bytes)
@@ -176,10 +181,13 @@ Scene fitted(Scene scene, ExportWebArguments options, const WebFiles& parts, con
         if (scene.bounces) {
             scene.bounces.reset();
             given_up = {"the light between surfaces is left out"};
+            page = made_page(scene, options, words, session);
         } else if (next <= Coarsest) {
             scene = coarsened(std::move(scene), next, session.stop());
             given_up.resize(1);
             given_up.push_back(fmt::format("--tolerance becomes {:.3g}", next));
+            // Nothing else depends on the clusters but some digits.
+            file_named(page.files, SceneFile).bytes = runtime_scene(scene);
         } else {
             throw std::runtime_error(
                 fmt::format("--max-bytes: expected at least {:.0f} for this scene, got {:.0f}",

@@ -8,12 +8,10 @@
 #include <numbers>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "cubemap/luminance.h"
 #include "cubemap/resample/save_environment.h"
 #include "data_gen/environments.h"
-#include "files/output_file.h"
 #include "mesh/materials/srgb.h"
 #include "relight/pictures/png_file.h"
 #include "relight/pictures/tone_curve.h"
@@ -32,28 +30,10 @@ constexpr std::uint32_t ThumbWidth = 236, ThumbHeight = 124;
 constexpr std::array<std::pair<std::string_view, std::string_view>, 2> Made = {
     {{"soft_boxes", "Two soft boxes"}, {"sun_sky", "Sun and sky"}}};
 
-/// A file of its own in the system's folder for such, gone at the end.
-class Scratch {
-public:
-    explicit Scratch(const std::string& name)
-        : path_(std::filesystem::temp_directory_path() /
-                fmt::format("relumine_web_{}_{}", ::getpid(), name)) {}
-    ~Scratch() {
-        std::error_code error;
-        std::filesystem::remove(path_, error);
-    }
-    Scratch(const Scratch&) = delete;
-    Scratch& operator=(const Scratch&) = delete;
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
-
 std::vector<std::byte> hdr_of(const cubemap::CubeMap& map) {
-    const Scratch file("environment.hdr");
-    cubemap::save_environment(file.path(), map, cubemap::Layout::LatLong);
-    return files::read(file.path());
+    return bytes_written("environment.hdr", [&](const std::filesystem::path& path) {
+        cubemap::save_environment(path, map, cubemap::Layout::LatLong);
+    });
 }
 
 /// The middle of the environment, with the horizon, as a screen shows it.

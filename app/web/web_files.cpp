@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "app/web/page_parts.h"
 #include "files/output_file.h"
@@ -76,6 +77,22 @@ std::uint64_t size_of(const WebFiles& files) {
 std::vector<std::byte> bytes_of(std::string_view text) {
     const auto* const first = reinterpret_cast<const std::byte*>(text.data());
     return {first, first + text.size()};
+}
+
+std::vector<std::byte>
+bytes_written(std::string_view name,
+              const std::function<void(const std::filesystem::path& path)>& write) {
+    struct Scratch {
+        std::filesystem::path path;
+        ~Scratch() {
+            std::error_code error;
+            std::filesystem::remove(path, error);
+        }
+    };
+    const Scratch file{std::filesystem::temp_directory_path() /
+                       fmt::format("relumine_web_{}_{}", ::getpid(), name)};
+    write(file.path);
+    return files::read(file.path);
 }
 
 std::string folder_page(const WebFiles& parts, const std::string& title) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,12 @@ using WebFiles = std::vector<WebFile>;
 
 [[nodiscard]] std::uint64_t size_of(const WebFiles& files);
 [[nodiscard]] std::vector<std::byte> bytes_of(std::string_view text);
+
+/// Returns what `write` puts into the file whose path it gets: one of its own in the system's
+/// folder for such, gone afterwards.
+[[nodiscard]] std::vector<std::byte>
+bytes_written(std::string_view name,
+              const std::function<void(const std::filesystem::path& path)>& write);
 
 /// Returns the page with the places of its template filled: {{title}}, {{assets}}, {{script}}.
 ///

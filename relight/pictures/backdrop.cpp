@@ -104,9 +104,7 @@ cubemap::CubeMap blurred(const cubemap::CubeMap& map, double degrees) {
     // Texels of less than half of sigma hold all that the blur leaves.
     const double needed = 0.5 * std::numbers::pi / (0.45 * sigma);
     const auto resolution = static_cast<std::uint32_t>(std::clamp(std::ceil(needed), 8.0, 384.0));
-    cubemap::CubeMap source = map;
-    while (source.resolution % 2 == 0 && source.resolution / 2 >= resolution)
-        source = cubemap::halved(source);
+    const cubemap::CubeMap source = cubemap::halved_to(map, 2 * resolution - 1);
     const std::vector<glm::dvec3> spread = gaussian_spread(sigma);
     cubemap::CubeMap result(resolution);
     files::parallel_for(std::uint32_t{0}, 6 * resolution, [&](std::uint32_t row) {
