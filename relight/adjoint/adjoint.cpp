@@ -13,6 +13,7 @@
 #include "files/parallel.h"
 #include "prt/clusters/lattice.h"
 #include "relight/adjoint/adjoint_kernel.h"
+#include "relight/adjoint/word_ranges.h"
 #include "relight/receiver_light.h"
 
 namespace relumine::relight {
@@ -100,17 +101,10 @@ VectorIrradiance scaled(const Vectors& vectors, double scale) {
 /// else writes, and goes through all tiles.
 ClusterWeights summed_weights(const BlockScene& scene, const Gates& gates,
                               const BlockWeights& weights) {
-    // Few tasks, as each reads the weights of all receivers.
-    constexpr std::size_t TasksPerThread = 4;
     ClusterWeights sums(scene.counts.num_leaves);
-    const std::size_t num_words = scene.counts.words_per_block();
-    files::parallel_for(
-        files::IndexRange<std::size_t>(
-            0, num_words,
-            std::max<std::size_t>(1, num_words / (TasksPerThread * files::num_threads()))),
-        [&](const auto& words) {
-            add_receivers(scene, words.begin(), words.end(), gates, weights, sums);
-        });
+    for_word_ranges(scene.counts, [&](std::size_t first, std::size_t last) {
+        add_receivers(scene, first, last, gates, weights, sums);
+    });
     return sums;
 }
 

@@ -14,6 +14,7 @@
 #include "files/parallel.h"
 #include "prt/clusters/lattice.h"
 #include "relight/adjoint/harmonic_adjoint_kernel.h"
+#include "relight/adjoint/word_ranges.h"
 #include "relight/receiver_light.h"
 
 namespace relumine::relight {
@@ -68,18 +69,12 @@ VectorIrradiance by_light(const double* weights, std::size_t count, const glm::d
 /// Sums the weights of all receivers into clusters. A thread has words of clusters.
 HarmonicSums summed_weights(const ReceiverLight& light, const HarmonicWeights& weights) {
     const float above = light.harmonic_light()->part_above();
-    constexpr std::size_t TasksPerThread = 4;
     const BlockScene scene = light.block_scene();
     const ClusterHarmonics& lights = light.harmonic_light()->lights();
     HarmonicSums sums(lights);
-    const std::size_t num_words = scene.counts.words_per_block();
-    files::parallel_for(
-        files::IndexRange<std::size_t>(
-            0, num_words,
-            std::max<std::size_t>(1, num_words / (TasksPerThread * files::num_threads()))),
-        [&](const auto& words) {
-            add_receivers(scene, words.begin(), words.end(), lights, above, weights, sums);
-        });
+    for_word_ranges(scene.counts, [&](std::size_t first, std::size_t last) {
+        add_receivers(scene, first, last, lights, above, weights, sums);
+    });
     for (std::size_t i = lights.stride(); i < sums.whole_steps.size(); ++i)
         sums.whole_steps[i] += sums.whole_steps[i - lights.stride()];
     return sums;

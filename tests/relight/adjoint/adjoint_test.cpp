@@ -12,6 +12,7 @@
 
 #include "files/parallel.h"
 #include "tests/prt/scenes.h"
+#include "tests/relight/adjoint/inner_products.h"
 #include "tests/relight/bounces/bouncing_scene.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"
@@ -19,25 +20,11 @@
 namespace relumine::relight {
 namespace {
 
+using scenes::inner;
 using scenes::random_environment;
+using scenes::random_weights;
 using scenes::relit_scene;
 using scenes::smooth_environment;
-
-std::vector<glm::vec3> random_weights(std::size_t count, std::uint32_t seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> weight(-0.5f, 1.0f);
-    std::vector<glm::vec3> weights(count);
-    for (glm::vec3& value : weights)
-        value = {weight(random), weight(random), weight(random)};
-    return weights;
-}
-
-double inner(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        sum += glm::dot(glm::dvec3(a[i]), glm::dvec3(b[i]));
-    return sum;
-}
 
 /// <T e, w> against <e, T* w>, relative.
 void expect_transposed(const Relighter& relighter, std::span<const glm::vec3> radiance,

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "files/parallel.h"
+#include "tests/relight/adjoint/inner_products.h"
 #include "tests/relight/bounces/bouncing_scene.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"
@@ -19,32 +20,18 @@
 namespace relumine::relight {
 namespace {
 
+using scenes::inner;
 using scenes::random_environment;
+using scenes::random_weights;
 using scenes::relit_scene;
-
-std::vector<glm::vec3> random_coefficients(std::size_t count, std::uint32_t seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> weight(-0.5f, 1.0f);
-    std::vector<glm::vec3> weights(count);
-    for (glm::vec3& value : weights)
-        value = {weight(random), weight(random), weight(random)};
-    return weights;
-}
-
-double dot_of(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        sum += glm::dot(glm::dvec3(a[i]), glm::dvec3(b[i]));
-    return sum;
-}
 
 /// <T e, w> against <e, T* w>, relative to what the products are summed from.
 void expect_transposed_harmonics(const Relighter& relighter, std::span<const glm::vec3> light,
                                  const SurfaceBounces* bounces, std::uint32_t seed) {
-    const std::vector<glm::vec3> weights = random_coefficients(light.size(), seed);
-    const double forward = dot_of(light, weights);
-    const double backward = dot_of(relighter.environment().texels,
-                                   harmonics_adjoint(relighter, weights, bounces).texels);
+    const std::vector<glm::vec3> weights = random_weights(light.size(), seed);
+    const double forward = inner(light, weights);
+    const double backward = inner(relighter.environment().texels,
+                                  harmonics_adjoint(relighter, weights, bounces).texels);
     EXPECT_NEAR(backward, forward, 1e-5 * std::abs(forward)) << "seed " << seed;
 }
 
@@ -114,7 +101,7 @@ TEST(HarmonicsAdjoint, IsTheDerivativeOfTheCoefficients) {
         for (std::uint32_t seed = 0; seed < 4; ++seed) {
             relighter->set_environment(smooth);
             const std::vector<glm::vec3> weights =
-                random_coefficients(relighter->harmonics().size(), seed);
+                random_weights(relighter->harmonics().size(), seed);
             cubemap::CubeMap step = random_environment(32, seed, 1.0f);
             if (seed % 2 == 0) { // One face alone.
                 const std::size_t of_face = step.texels.size() / cubemap::NumFaces;
@@ -122,14 +109,14 @@ TEST(HarmonicsAdjoint, IsTheDerivativeOfTheCoefficients) {
                     step.texels[i] *= i / of_face == seed ? 1.0f : 0.0f;
             }
             const double expected =
-                0.1 * dot_of(step.texels, harmonics_adjoint(*relighter, weights).texels);
+                0.1 * inner(step.texels, harmonics_adjoint(*relighter, weights).texels);
             std::array<double, 2> losses{};
             for (const std::size_t side : {0u, 1u}) {
                 cubemap::CubeMap moved = smooth;
                 for (std::size_t i = 0; i < moved.texels.size(); ++i)
                     moved.texels[i] += (side == 0 ? 0.05f : -0.05f) * step.texels[i];
                 relighter->set_environment(moved);
-                losses[side] = dot_of(relighter->harmonics(), weights);
+                losses[side] = inner(relighter->harmonics(), weights);
             }
             EXPECT_NEAR(losses[0] - losses[1], expected, 2e-3 * std::abs(expected)) << seed;
         }
@@ -140,10 +127,10 @@ TEST(HarmonicsAdjoint, OfPointsKnowsTheirRadiance) {
     const prt::Transfer points = points_of_scene();
     Relighter relighter(points);
     relighter.set_environment(random_environment(32, 4));
-    const std::vector<glm::vec3> weights = random_coefficients(points.num_receivers(), 3);
-    const double forward = dot_of(relighter.radiance(), weights);
+    const std::vector<glm::vec3> weights = random_weights(points.num_receivers(), 3);
+    const double forward = inner(relighter.radiance(), weights);
     const double backward =
-        dot_of(relighter.environment().texels, points_adjoint(relighter, weights).texels);
+        inner(relighter.environment().texels, points_adjoint(relighter, weights).texels);
     EXPECT_NEAR(backward, forward, 1e-5 * std::abs(forward));
 
     // In the open, a texel counts by its solid angle, but for the flux of a cluster, which is told
@@ -170,7 +157,7 @@ TEST(HarmonicsAdjoint, OfPointsKnowsTheirRadiance) {
 TEST(HarmonicsAdjoint, IsTheSameForAnyNumberOfThreads) {
     Relighter relighter(relit_scene().transfer, {}, 3);
     relighter.set_environment(random_environment(32, 11));
-    const std::vector<glm::vec3> weights = random_coefficients(relighter.harmonics().size(), 1);
+    const std::vector<glm::vec3> weights = random_weights(relighter.harmonics().size(), 1);
     const cubemap::CubeMap expected = harmonics_adjoint(relighter, weights);
     for (const std::size_t threads : {1u, 3u, 8u}) {
         const files::ThreadLimit limit(threads);
