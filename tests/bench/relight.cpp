@@ -14,7 +14,8 @@
 #include <nlohmann/json.hpp>
 
 #include "relumine/relumine.h"
-#include "tests/bench/dense_table.h"
+#include "tests/bench/baselines/features.h"
+#include "tests/bench/baselines/packed_matrix.h"
 #include "tests/bench/inputs.h"
 #include "tests/bench/memory_bandwidth.h"
 #include "tests/bench/times.h"
@@ -72,14 +73,12 @@ void measure_relighting(const Settings& settings, const bench::Inputs& inputs, L
     const prt::VisibleCounts& counts = scene.transfer.counts;
     const double bytes = static_cast<double>(counts.counts.size() + 16 * counts.mixed.size());
 
-    const bench::DenseTable table = bench::dense_table(scene.transfer);
-    std::vector<glm::vec3> light;
-    for (const relight::VectorIrradiance& sum :
-         relight::LightBinning(beach.resolution).sums(beach, scene.transfer.quadtree.leaves()))
-        light.emplace_back(glm::length(sum.red), glm::length(sum.green), glm::length(sum.blue));
+    const bench::Features clusters = bench::cluster_features(scene.transfer);
+    const auto table = bench::packed<std::uint8_t>(clusters.rows);
+    const std::vector<glm::vec3> light = clusters.project(beach);
     std::vector<glm::vec3> dense_radiance;
     const double dense =
-        bench::median_seconds([&] { bench::relight(table, light, dense_radiance); });
+        bench::median_seconds([&] { bench::multiply(table, light, dense_radiance); });
     double difference = 0.0, norm = 0.0;
     for (std::size_t place = 0; place < scene.transfer.num_receivers(); ++place) {
         const glm::dvec3 ours(relighter.radiance()[scene.transfer.order[place]]);

@@ -46,7 +46,8 @@ struct Settings {
     /// Of environments, and of what is integrated exactly.
     std::uint32_t map_resolution = 256;
     std::vector<float> tolerances = {0.06f, 0.03f, 0.02f, 0.0135f, 0.008f};
-    std::vector<float> paper_tolerances = {0.06f, 0.03f, 0.02f};
+    /// Of the paper's way to store clusters, which takes gigabytes below it.
+    float finest_of_paper = 0.02f;
     std::vector<std::uint32_t> orders = {3, 4, 5, 6, 8, 10, 12};
     std::vector<std::uint32_t> dense_resolutions = {4, 8, 16, 32, 64};
     std::vector<std::size_t> wavelet_megabytes = {1, 2, 4, 8, 16, 32};
@@ -72,16 +73,14 @@ public:
         std::shuffle(chosen_.begin(), chosen_.end(), std::mt19937(1));
         chosen_.resize(std::min(chosen_.size(), settings.num_samples));
         std::ranges::sort(chosen_);
-        bias_ = precompute(mesh, {.tolerance = 1.0f, .no_refine = true, .bounce_tolerance = 0.0f})
-                    .settings.bias;
         for (const bench::NamedMap& map : maps)
             exact_.push_back(relight::exact_radiance(
-                scene.receivers, chosen_, lit_.rays().of_mesh(), map.map, {.bias = bias_}));
+                scene.receivers, chosen_, lit_.rays().of_mesh(), map.map, {.bias = bias()}));
     }
 
     [[nodiscard]] const Mesh& mesh() const { return mesh_; }
     [[nodiscard]] const LitScene& lit() const { return lit_; }
-    [[nodiscard]] float bias() const { return bias_; }
+    [[nodiscard]] float bias() const { return lit_.scene().settings.bias; }
     [[nodiscard]] const Settings& settings() const { return settings_; }
 
     struct Row {
@@ -149,7 +148,7 @@ public:
         std::iota(all.begin(), all.end(), 0u);
         const std::vector<glm::dvec3> exact =
             relight::exact_radiance(scene.receivers, all, lit_.rays().of_mesh(),
-                                    cubemap::halved(maps_[PictureMap].map), {.bias = bias_});
+                                    cubemap::halved(maps_[PictureMap].map), {.bias = bias()});
         draw(name_ + " exact", std::vector<glm::vec3>(exact.begin(), exact.end()));
     }
 
@@ -176,7 +175,6 @@ private:
     const std::vector<bench::NamedMap>& maps_;
     nlohmann::json& rows_;
     LitScene lit_;
-    float bias_;
     std::vector<std::uint32_t> chosen_;
     /// [maps][chosen]
     std::vector<std::vector<glm::dvec3>> exact_;
@@ -206,47 +204,47 @@ void add_packed(Comparison& comparison, const std::string& method, const std::st
                           });
 }
 
-void add_relumine(Comparison& comparison, bool clusters_only) {
-    const fs::path file = fs::temp_directory_path() / "relumine_bench_baselines.prt";
-    for (const float tolerance : comparison.settings().tolerances) {
-        PrecomputeReport report;
-        Scene scene = precompute(
-            comparison.mesh(),
-            {.tolerance = tolerance, .no_refine = true, .bounce_tolerance = 0.0f}, {}, &report);
-        const std::uint64_t stored = save_scene(file, scene);
-        fs::remove(file);
-        const prt::VisibleCounts& counts = scene.transfer.counts;
-        const std::size_t bytes = counts.counts.size() + 8 * counts.visible.size() +
-                                  8 * counts.mixed.size() + 8 * counts.mixed_before.size();
-        LitScene lit(std::move(scene), {.clusters_only = clusters_only});
-        comparison.add({.method = clusters_only ? "relumine, clusters alone" : "relumine",
-                        .setting = fmt::format("tolerance {}", tolerance),
-                        .bytes = bytes,
-                        .stored_bytes = stored,
-                        .seconds_precompute = report.clusters.seconds},
-                       [&](const cubemap::CubeMap& map) {
-                           std::vector<double> seconds;
-                           for (int i = 0; i < 5; ++i) {
-                               const UpdateReport times = lit.light(cubemap::CubeMap(map));
-                               seconds.push_back(times.seconds_trace + times.seconds_relight);
-                           }
-                           return Comparison::Relit{
-                               .radiance = {lit.radiance().begin(), lit.radiance().end()},
-                               .seconds = bench::median(seconds)};
-                       });
-    }
+/// Ours, with the shadow rays of small lights or without.
+void add_relumine(Comparison& comparison, const std::shared_ptr<const Scene>& scene,
+                  Comparison::Row row, bool clusters_only) {
+    row.method = clusters_only ? "relumine, clusters alone" : "relumine";
+    LitScene lit(scene, {.clusters_only = clusters_only});
+    comparison.add(row, [&](const cubemap::CubeMap& map) {
+        std::vector<double> seconds;
+        for (int i = 0; i < 5; ++i) {
+            const UpdateReport times = lit.light(cubemap::CubeMap(map));
+            seconds.push_back(times.seconds_trace + times.seconds_relight);
+        }
+        return Comparison::Relit{.radiance = {lit.radiance().begin(), lit.radiance().end()},
+                                 .seconds = bench::median(seconds)};
+    });
 }
 
-void add_paper(Comparison& comparison) {
-    for (const float tolerance : comparison.settings().paper_tolerances) {
+/// Ours and the paper's, which store the same clusters in different ways.
+void add_clusters(Comparison& comparison) {
+    const fs::path file = fs::temp_directory_path() / "relumine_bench_baselines.prt";
+    const Settings& settings = comparison.settings();
+    for (const float tolerance : settings.tolerances) {
         PrecomputeReport report;
-        const Scene scene = precompute(
+        const auto scene = std::make_shared<const Scene>(precompute(
             comparison.mesh(),
-            {.tolerance = tolerance, .no_refine = true, .bounce_tolerance = 0.0f}, {}, &report);
-        add_packed<std::int8_t>(comparison, "clusters in bytes",
-                                fmt::format("{} clusters", scene.transfer.num_clusters()),
-                                scene.transfer.order, bench::cluster_features(scene.transfer),
-                                report.clusters.seconds);
+            {.tolerance = tolerance, .no_refine = true, .bounce_tolerance = 0.0f}, {}, &report));
+        const std::uint64_t stored = save_scene(file, *scene);
+        fs::remove(file);
+        const prt::VisibleCounts& counts = scene->transfer.counts;
+        const Comparison::Row row{.method = {},
+                                  .setting = fmt::format("tolerance {}", tolerance),
+                                  .bytes = counts.counts.size() + 8 * counts.visible.size() +
+                                           8 * counts.mixed.size() + 8 * counts.mixed_before.size(),
+                                  .stored_bytes = stored,
+                                  .seconds_precompute = report.clusters.seconds};
+        add_relumine(comparison, scene, row, false);
+        add_relumine(comparison, scene, row, true);
+        if (tolerance >= settings.finest_of_paper)
+            add_packed<std::int8_t>(comparison, "clusters in bytes",
+                                    fmt::format("{} clusters", scene->transfer.num_clusters()),
+                                    scene->transfer.order, bench::cluster_features(scene->transfer),
+                                    report.clusters.seconds);
     }
 }
 
@@ -316,9 +314,7 @@ void add_lights(Comparison& comparison) {
 void compare_all(Comparison& comparison) {
     const Settings& settings = comparison.settings();
     comparison.draw_exact();
-    add_relumine(comparison, false);
-    add_relumine(comparison, true);
-    add_paper(comparison);
+    add_clusters(comparison);
     add_lights(comparison);
     const bench::Stopwatch watch;
     const bench::DenseTransport dense(comparison.mesh(), settings.resolution);
@@ -363,7 +359,6 @@ void make_quick(Settings& settings) {
     settings.num_samples = 500;
     settings.resolution = 32;
     settings.tolerances = {0.06f, 0.03f, 0.02f, 0.0135f};
-    settings.paper_tolerances = {0.06f, 0.03f, 0.02f};
     settings.orders = {3, 5, 8, 12};
     settings.dense_resolutions = {8, 16, 32};
     settings.wavelet_megabytes = {1, 4, 16};
@@ -392,7 +387,6 @@ int main(int argc, char** argv) {
                         .resolution = 16,
                         .map_resolution = 16,
                         .tolerances = {0.2f},
-                        .paper_tolerances = {0.2f},
                         .orders = {3, 4},
                         .dense_resolutions = {4, 16},
                         .wavelet_megabytes = {1},

@@ -98,9 +98,7 @@ BlockedRows DenseTransport::rows(std::uint32_t coarser_resolution) const {
 }
 
 std::vector<glm::vec3> mean_radiance(const cubemap::CubeMap& map, std::uint32_t resolution) {
-    cubemap::CubeMap coarse = map;
-    while (coarse.resolution > resolution)
-        coarse = cubemap::halved(coarse);
+    const cubemap::CubeMap coarse = cubemap::halved_to(map, resolution);
     if (coarse.resolution != resolution)
         throw std::invalid_argument(
             fmt::format("expected a map that halves to {}, got {}", resolution, map.resolution));

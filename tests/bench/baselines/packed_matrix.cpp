@@ -47,6 +47,10 @@ void sum_bytes(const std::int8_t* values, const glm::vec3* light, std::size_t nu
                float* sums) {
     sum_block(values, light, num_columns, sums);
 }
+void sum_unsigned_bytes(const std::uint8_t* values, const glm::vec3* light, std::size_t num_columns,
+                        float* sums) {
+    sum_block(values, light, num_columns, sums);
+}
 void sum_words(const std::int16_t* values, const glm::vec3* light, std::size_t num_columns,
                float* sums) {
     sum_block(values, light, num_columns, sums);
@@ -59,6 +63,7 @@ HWY_AFTER_NAMESPACE();
 namespace relumine::bench {
 
 HWY_EXPORT(sum_bytes);
+HWY_EXPORT(sum_unsigned_bytes);
 HWY_EXPORT(sum_words);
 
 namespace {
@@ -67,6 +72,9 @@ constexpr std::size_t Lanes = 16;
 
 void sum(const std::int8_t* values, const glm::vec3* light, std::size_t count, float* sums) {
     HWY_DYNAMIC_DISPATCH(sum_bytes)(values, light, count, sums);
+}
+void sum(const std::uint8_t* values, const glm::vec3* light, std::size_t count, float* sums) {
+    HWY_DYNAMIC_DISPATCH(sum_unsigned_bytes)(values, light, count, sums);
 }
 void sum(const std::int16_t* values, const glm::vec3* light, std::size_t count, float* sums) {
     HWY_DYNAMIC_DISPATCH(sum_words)(values, light, count, sums);
@@ -136,8 +144,11 @@ void multiply(const PackedMatrix<Integer>& matrix, std::span<const glm::vec3> li
 }
 
 template PackedMatrix<std::int8_t> packed(const BlockedRows&);
+template PackedMatrix<std::uint8_t> packed(const BlockedRows&);
 template PackedMatrix<std::int16_t> packed(const BlockedRows&);
 template void multiply(const PackedMatrix<std::int8_t>&, std::span<const glm::vec3>,
+                       std::vector<glm::vec3>&);
+template void multiply(const PackedMatrix<std::uint8_t>&, std::span<const glm::vec3>,
                        std::vector<glm::vec3>&);
 template void multiply(const PackedMatrix<std::int16_t>&, std::span<const glm::vec3>,
                        std::vector<glm::vec3>&);

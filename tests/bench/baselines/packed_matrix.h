@@ -36,8 +36,8 @@ struct PackedMatrix {
     }
 };
 
-/// Rounds rows to integers; the largest of a column gets the largest integer. Integer is int8_t or
-/// int16_t.
+/// Rounds rows to integers; the largest of a column gets the largest integer. Integer is int8_t,
+/// int16_t, or uint8_t for rows that are not negative.
 template<typename Integer>
 [[nodiscard]] PackedMatrix<Integer> packed(const BlockedRows& rows);
 

@@ -49,6 +49,19 @@ def best_baseline(rows, own, environment=None):
     return min(others, key=error, default=None)
 
 
+def best_rows(rows):
+    """Returns {method: its row of the least error that stores no more than our default}, ours first."""
+    own = own_default(rows)
+    chosen = {FAMILIES[OWN]: own}
+    for row in rows:
+        name = family(row["method"])
+        if row["method"] == OWN or row["stored_bytes"] > SLACK * own["stored_bytes"]:
+            continue
+        if name not in chosen or mean_error(row) < mean_error(chosen[name]):
+            chosen[name] = row
+    return chosen
+
+
 def ratios(rows, own):
     """Returns {environment: error of the best baseline over ours} at equal bytes."""
     result = {}
@@ -137,13 +150,8 @@ def pictures(rows, folder, scene):
     exact = Path(folder) / f"{scene}_exact.png"
     if not exact.exists():
         return ""
-    limit = own_default(rows)["stored_bytes"]
-    chosen = {}
-    for row in rows:
-        if row["stored_bytes"] <= SLACK * limit:
-            best = chosen.get(family(row["method"]))
-            if best is None or mean_error(row) < mean_error(best):
-                chosen[family(row["method"])] = row
+    chosen = best_rows(rows)
+    limit = chosen[FAMILIES[OWN]]["stored_bytes"]
     cards = []
     reference = image(exact)
     for name, row in chosen.items():

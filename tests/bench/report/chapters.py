@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Callable, List, Optional
 
-from tables import first, tables
+from tables import data_rows, first, tables
 
 
 @dataclass
@@ -67,7 +67,7 @@ def growth(text):
 
 
 def adjoint(text):
-    rows = [row for table in tables(text) for row in table[1:] if "traced" not in row[0]]
+    rows = [row for row in data_rows(text) if "traced" not in row[0]]
     if rows:
         ratios = sorted(float(row[3]) for row in rows)
         batch = first(r"ratio ([\d.]+)", text)
@@ -97,7 +97,7 @@ def video(text):
 
 
 def light_lists(text):
-    rows = [row for table in tables(text) for row in table[1:]]
+    rows = data_rows(text)
     best = [(row[0], row[1], float(row[2])) for row in rows if row[1] == "64"]
     if best:
         best.sort(key=lambda row: row[2])
@@ -105,7 +105,7 @@ def light_lists(text):
 
 
 def layouts(text):
-    rows = [row for table in tables(text) for row in table[1:]]
+    rows = data_rows(text)
     powers = [float(row[2].rstrip(" %")) for row in rows if row[2].endswith("%")]
     if powers:
         return f"Of {len(rows)} ways through the layouts none changes the light's power by more than {max(powers):g} %."
@@ -127,13 +127,13 @@ def moving_eye(text):
 
 def service(text):
     drift = first(r"at the end \(([^)]*)\)", text)
-    rows = [row for table in tables(text) for row in table[1:]]
+    rows = data_rows(text)
     if rows and drift:
         return f"After {rows[0][0]} and {rows[1][0]} memory has grown by {drift.lstrip('+')}, and the worst edit took {rows[0][3]}."
 
 
 def scale(text):
-    rows = [row for table in tables(text) for row in table[1:]]
+    rows = data_rows(text)
     if rows:
         last = [row for row in rows if row[0] == "1000 M" and row[1] == "256"]
         if last:
@@ -141,26 +141,26 @@ def scale(text):
 
 
 def coarse(text):
-    rows = [row for table in tables(text) for row in table[1:]]
+    rows = data_rows(text)
     if rows:
         return f"First pictures of {len(rows)} coarse meshes as they come, beside receivers in every pixel: mean difference of 255 for each light in the table."
 
 
 def refinement(text):
-    rows = [row for table in tables(text) for row in table[1:] if "refined" in row[0]]
+    rows = [row for row in data_rows(text) if "refined" in row[0]]
     if rows:
         return f"Refined where light needs it, {rows[0][0].split(',')[0]} has {rows[0][2]} as much error as with as many vertices spread evenly (in brackets)."
 
 
 def frames(text):
-    rows = [row for table in tables(text) for row in table[1:]]
+    rows = data_rows(text)
     if rows:
         slow = min(rows, key=lambda row: float(row[-1]))
         return f"Of the sequences, “{slow[0]}” is the slowest: {slow[-1]} frames a second."
 
 
 def glossy(text):
-    rows = [row for table in tables(text) for row in table[1:]]
+    rows = data_rows(text)
     if rows:
         return f"Highlights of roughness {rows[0][0]} from a fixed eye are relit with the rest in {rows[0][8]}."
 

@@ -41,20 +41,6 @@ method that stores no more than Relumine's default, or 5 % more.
 """
 
 
-def best_rows(rows):
-    """Returns the best row of each method at our default's bytes, ours first."""
-    own = baselines.own_default(rows)
-    chosen = {}
-    for row in rows:
-        name = baselines.family(row["method"])
-        if row["stored_bytes"] > baselines.SLACK * own["stored_bytes"]:
-            continue
-        if name not in chosen or baselines.mean_error(row) < baselines.mean_error(chosen[name]):
-            chosen[name] = row
-    chosen[baselines.FAMILIES[baselines.OWN]] = own
-    return chosen
-
-
 def baselines_markdown(chapter):
     parts = ["## At equal bytes", baselines.finding(chapter["figures"]), METHODS.rstrip()]
     for scene, rows in baselines.by_scene(chapter["figures"]).items():
@@ -64,7 +50,7 @@ def baselines_markdown(chapter):
             "| method | setting | MB stored | MB in memory | precompute, s | relight, ms | error |",
             "|---|---|---|---|---|---|---|",
         ]
-        for name, row in best_rows(rows).items():
+        for name, row in baselines.best_rows(rows).items():
             lines.append(
                 f"| {name} | {row['setting']} | {row['stored_bytes'] / 1e6:.2f} | {row['bytes'] / 1e6:.1f} | "
                 f"{row['seconds_precompute']:.1f} | {row['milliseconds_relight']:.2f} | {baselines.mean_error(row):.4f} |"

@@ -28,6 +28,11 @@ def tables(text):
     return [lines for kind, lines in blocks(text) if kind == "table"]
 
 
+def data_rows(text):
+    """Returns the rows of all tables, without their heads."""
+    return [row for table in tables(text) for row in table[1:]]
+
+
 def is_number(cell):
     return re.match(r"[-+]?[0-9.]+(e[-+]?\d+)?( ?(%|x|s|ms|us|min|MB|GB|M|G|h))?$", cell) is not None
 
