@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "prt/receivers/lit_position.h"
 #include "prt/receivers/pixel_receivers.h"
 #include "prt/work.h"
 #include "relight/light_fit/non_negative_fit.h"
@@ -366,8 +367,10 @@ std::vector<lights::DistantLight> fit_lights_to_picture(LitScene& lit, const Pic
     Gathered gathered(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
         const prt::MeshPoint& point = points[i].point;
-        positions.push_back(prt::smooth_position(scene.mesh, point));
-        transfer.normals.push_back(prt::shading_normal(scene.mesh, point));
+        const glm::vec3 normal = prt::shading_normal(scene.mesh, point);
+        positions.push_back(prt::lit_position(scene.mesh, lit.rays().of_mesh(), point, normal,
+                                              scene.settings.bias));
+        transfer.normals.push_back(normal);
         transfer.order.push_back(static_cast<std::uint32_t>(i));
         gathered.add(i, picture.pixels[points[i].pixel],
                      prt::value_at(scene.mesh, of_vertices, point), 1.0);

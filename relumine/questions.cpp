@@ -11,6 +11,7 @@
 
 #include "cubemap/layers/layer_composite.h"
 #include "files/parallel.h"
+#include "prt/receivers/lit_position.h"
 #include "prt/receivers/pixel_receivers.h"
 #include "relight/adjoint/adjoint.h"
 #include "relight/adjoint/contribution.h"
@@ -134,8 +135,9 @@ std::optional<Verification::Surface> verify_points(const LitScene& lit,
     std::vector<glm::vec3> shown;
     for (const prt::MeshPoint& point : points) {
         indices.push_back(static_cast<std::uint32_t>(indices.size()));
-        const glm::vec3 position = prt::smooth_position(scene.mesh, point);
         const glm::vec3 normal = prt::shading_normal(scene.mesh, point);
+        const glm::vec3 position =
+            prt::lit_position(scene.mesh, lit.rays().of_mesh(), point, normal, rays.bias);
         receivers.positions.push_back(position);
         receivers.normals.push_back(normal);
         shown.push_back(prt::value_at(scene.mesh, at_vertices, point) +

@@ -15,6 +15,7 @@
 #include "files/extension.h"
 #include "mesh/load.h"
 #include "mesh/triangle_mesh.h"
+#include "prt/receivers/lit_position.h"
 #include "prt/receivers/pixel_receivers.h"
 #include "prt/receivers/point_receivers.h"
 #include "relight/pictures/array_file.h"
@@ -80,6 +81,10 @@ private:
         return own_rays_.emplace(ray_scene(scene_.mesh, prefix_));
     }
 
+    void leave_obstacles() {
+        prt::leave_obstacles(scene_.mesh, rays_, scene_.settings.bias, scene_.receivers);
+    }
+
     void place_points(const Points& points) {
         const std::string name = points.file.empty() ? "" : points.file.string() + ": ";
         std::vector<glm::vec3> of_file;
@@ -133,6 +138,7 @@ private:
              .samples_per_axis = size.samples_per_axis},
             {.stop = work_.stop, .on_progress = progress_of(work_, Stage::Receivers)});
         scene_.receivers = std::move(pixels.receivers);
+        leave_obstacles();
         scene_.layout = std::move(pixels.layout);
         note(work_, fmt::format("{}: {} samples hit the mesh", prt::description(scene_.layout),
                                 scene_.receivers.size()));
@@ -157,6 +163,7 @@ private:
                  fmt::format("{} triangles have no area in uv and get no texels", atlas.num_flat));
         report_.atlas = atlas;
         scene_.receivers = std::move(texels.receivers);
+        leave_obstacles();
         scene_.layout = std::move(texels.layout);
     }
 

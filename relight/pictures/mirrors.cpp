@@ -10,6 +10,7 @@
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/ggx_lobe.h"
 #include "prt/glossy/sheen_lobe.h"
+#include "prt/receivers/lit_position.h"
 
 namespace relumine::relight {
 
@@ -187,12 +188,13 @@ MirroredLight Mirrors::trace(const Mirror& mirror, const prt::MeshPoint& point,
                                  const glm::vec3& sky) {
         return seen(hit, direction, sky);
     };
-    return light_.reflections->light(mirror.surface,
-                                     {.position = prt::smooth_position(mesh_, point),
-                                      .normal = mirror.normal,
-                                      .to_eye = mirror.to_eye,
-                                      .shift = shift_},
-                                     num_rays, surfaces);
+    return light_.reflections->light(
+        mirror.surface,
+        {.position = prt::lit_position(mesh_, rays_, point, mirror.normal, light_.bias),
+         .normal = mirror.normal,
+         .to_eye = mirror.to_eye,
+         .shift = shift_},
+        num_rays, surfaces);
 }
 
 /// Returns the radiance of a surface that a ray meets. A floor that catches shadows shows what is

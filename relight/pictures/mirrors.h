@@ -29,10 +29,11 @@ public:
     static constexpr std::uint32_t Reach = 3;
 
     /// All must outlive this object. Null: there is nothing behind the mesh but the environment.
-    Mirrors(const mesh::TriangleMesh& mesh, const prt::TwinTriangles& twins, const MeshLight& light,
-            const FadingFloor& floor, const Backdrop* backdrop, const prt::TextureView& view)
-        : mesh_(mesh), twins_(twins), light_(light), floor_(floor), backdrop_(backdrop),
-          view_(view) {}
+    Mirrors(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
+            const prt::TwinTriangles& twins, const MeshLight& light, const FadingFloor& floor,
+            const Backdrop* backdrop, const prt::TextureView& view)
+        : mesh_(mesh), rays_(rays), twins_(twins), light_(light), floor_(floor),
+          backdrop_(backdrop), view_(view) {}
 
     /// Traces the rays of the middles of pixels: a rectangle of them, `width` to a row, from (left,
     /// top) on. `middles` are what these see.
@@ -74,6 +75,7 @@ private:
                                  const glm::vec3& sky) const;
 
     const mesh::TriangleMesh& mesh_;
+    const prt::RayScene& rays_;
     const prt::TwinTriangles& twins_;
     const MeshLight& light_;
     const FadingFloor& floor_;

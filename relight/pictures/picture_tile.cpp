@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "prt/receivers/lit_position.h"
+
 namespace relumine::relight {
 
 namespace {
@@ -19,8 +21,8 @@ bool is_none(std::span<const std::uint16_t> lights) {
 
 PictureTile::PictureTile(const TileScene& scene)
     : scene_(scene), rays_{.blockers = &scene.rays, .bias = scene.light.bias},
-      mirrors_(scene.mesh, scene.samples.twins(), scene.light, scene.floor, scene.backdrop,
-               texture_view_),
+      mirrors_(scene.mesh, scene.rays, scene.samples.twins(), scene.light, scene.floor,
+               scene.backdrop, texture_view_),
       shading_(scene.mesh, scene.light, scene.packets, texture_view_),
       lights_(scene.mesh, scene.rays,
               scene.light.blockers != nullptr ? *scene.light.blockers
@@ -144,8 +146,7 @@ PictureTile::Shown PictureTile::shown(std::uint32_t x, std::uint32_t y, std::siz
             if (layer.is_first)
                 lights = lights_.of(x, y, i);
             else
-                scene_.packets.visible(prt::smooth_position(scene_.mesh, at),
-                                       prt::mapped_normal(scene_.mesh, at), rays_, own_lights_);
+                trace_own(at);
             if (!is_none(lights))
                 radiance += is_caught ? shading_.white(prt::shading_normal(scene_.mesh, at), lights)
                                       : shading_.traced(at, mirror, lights);
@@ -161,6 +162,12 @@ PictureTile::Shown PictureTile::shown(std::uint32_t x, std::uint32_t y, std::siz
             (is_caught || layer.veil.through != glm::vec3(0.0f) ? opacity_of(passed) : opacity);
     }
     return result;
+}
+
+void PictureTile::trace_own(const prt::MeshPoint& at) {
+    const glm::vec3 normal = prt::mapped_normal(scene_.mesh, at);
+    scene_.packets.visible(prt::lit_position(scene_.mesh, scene_.rays, at, normal, rays_.bias),
+                           normal, rays_, own_lights_);
 }
 
 std::span<const PictureTile::Layer> PictureTile::layers(std::uint32_t x, std::uint32_t y,

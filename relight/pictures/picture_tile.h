@@ -80,6 +80,8 @@ private:
     void find_parts(std::span<const EyeSample> samples, bool is_even);
     [[nodiscard]] Shown shown(std::uint32_t x, std::uint32_t y, std::size_t i,
                               const EyeSample& sample);
+    /// Finds the lights that reach a point: own_lights_.
+    void trace_own(const prt::MeshPoint& at);
     [[nodiscard]] std::span<const Layer> layers(std::uint32_t x, std::uint32_t y, std::size_t i,
                                                 const EyeSample& first);
     [[nodiscard]] float opacity(const EyeSample& sample) const;

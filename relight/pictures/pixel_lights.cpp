@@ -7,7 +7,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "prt/receivers/mesh_point.h"
+#include "prt/receivers/lit_position.h"
 
 namespace relumine::relight {
 
@@ -30,18 +30,6 @@ LightBeams::LightBeams(std::span<const SharpLight> lights) : num_lights_(lights.
     }
 }
 
-glm::vec3 shadow_ray_origin(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
-                            const prt::MeshPoint& at, const glm::vec3& normal, float bias) {
-    // As much room must be left beyond the smooth surface, or the next thing nearly touches it.
-    constexpr float Room = 2.0f;
-    const glm::vec3 smooth = prt::ray_origin(prt::smooth_position(mesh, at), normal, bias);
-    const glm::vec3 own = prt::ray_origin(prt::value_at(mesh, mesh.positions, at), normal, bias);
-    const glm::vec3 way = smooth - own;
-    // What is closer than the bias is no obstacle to a point without a way, either.
-    const bool leads_away = glm::dot(way, way) > bias * bias;
-    return leads_away && rays.occluded(own, way, Room) ? own : smooth;
-}
-
 /// Points whose lights are found together.
 class PixelLights::Group {
 public:
@@ -54,7 +42,8 @@ public:
     void add(const EyeSample& sample, std::span<std::uint16_t> lights) {
         const prt::MeshPoint at = sample.point();
         const glm::vec3 normal = prt::mapped_normal(of_.mesh_, at);
-        origins_[size_] = shadow_ray_origin(of_.mesh_, of_.rays_, at, normal, of_.bias_);
+        origins_[size_] = prt::ray_origin(
+            prt::lit_position(of_.mesh_, of_.rays_, at, normal, of_.bias_), normal, of_.bias_);
         normals_[size_] = normal;
         lights_[size_] = lights;
         mean_normal_ += normal;

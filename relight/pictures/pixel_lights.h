@@ -39,13 +39,6 @@ private:
     std::size_t num_lights_ = 0;
 };
 
-/// Returns where the shadow rays of a point start: on the smooth surface that the vertex normals
-/// pretend, but where something stands between the point and that surface. A low-poly wall with
-/// smooth normals pretends to bulge through the beams before it.
-[[nodiscard]] glm::vec3 shadow_ray_origin(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
-                                          const prt::MeshPoint& at, const glm::vec3& normal,
-                                          float bias);
-
 /// Traces the lights at the middle of every pixel of a tile and of a ring of one pixel around it.
 /// Where a pixel and those around it do not see the same lights, the lights that they disagree
 /// about are traced at all of its samples. For one thread.

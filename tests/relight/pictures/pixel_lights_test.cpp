@@ -69,25 +69,5 @@ TEST(PixelLights, AreThoseOfRaysOneByOne) {
     EXPECT_LE(num_wrong, num_rays / 200);
 }
 
-/// A wall of one square whose normals pretend that it bulges by a quarter of its side, and a beam
-/// close before it.
-TEST(PixelLights, StartInFrontOfNothing) {
-    mesh::TriangleMesh wall = scenes::floor_grid(2, 2.0f);
-    for (std::size_t i = 0; i < 4; ++i)
-        wall.normals[i] = glm::normalize(glm::vec3(0.7f, 1.0f, 0.7f) *
-                                         (glm::sign(wall.positions[i]) + glm::vec3(0, 1, 0)));
-    const mesh::TriangleMesh beam = scenes::box({-2, 0.05f, -0.5f}, {2, 0.15f, 0.5f});
-    const mesh::TriangleMesh mesh = scenes::joined(wall, beam);
-    const prt::RayScene rays(mesh), alone(wall);
-    constexpr float Bias = 1e-4f;
-    const prt::MeshPoint below{.triangle = 0, .barycentric = {0.25f, 0.25f}};
-    const glm::vec3 own = prt::value_at(mesh, mesh.positions, below), up(0, 1, 0);
-    const glm::vec3 smooth = prt::ray_origin(prt::smooth_position(mesh, below), up, Bias);
-    ASSERT_GT(smooth.y, 0.05f) << "inside of the beam or above it";
-    ASSERT_LT(std::abs(smooth.z), 0.4f);
-    EXPECT_EQ(shadow_ray_origin(mesh, rays, below, up, Bias), prt::ray_origin(own, up, Bias));
-    EXPECT_EQ(shadow_ray_origin(wall, alone, below, up, Bias), smooth);
-}
-
 } // namespace
 } // namespace relumine::relight
