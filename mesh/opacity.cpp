@@ -42,19 +42,37 @@ bool lets_eye_pass(const Material& material) {
 
 namespace {
 
-/// What goes on through a surface of glass. `textured` multiplies a value with its texture.
+/// Returns the parts by which a surface of glass multiplies what goes on through it. `textured`
+/// multiplies a value with its texture.
 template<typename Textured>
-glm::vec3 through_glass(const Material& material, const Textured& textured) {
-    constexpr float Reflected = 0.04f;
+glm::vec3 glass_tint(const Material& material, const Textured& textured) {
     const float metallic =
         textured(glm::vec3(material.metallic), material.metallic_roughness_texture).b;
     const float part = textured(glm::vec3(material.transmission), material.transmission_texture).r *
-                       (1.0f - metallic) * (1.0f - Reflected);
+                       (1.0f - metallic);
     const glm::vec3 tint = textured(material.base_color, material.base_color_texture);
+    return part * (material.thickness == 0.0f ? tint : glm::sqrt(tint));
+}
+
+/// What goes on through a surface of glass.
+template<typename Textured>
+glm::vec3 through_glass(const Material& material, const Textured& textured) {
+    constexpr float Reflected = 0.04f;
+    const glm::vec3 through = (1.0f - Reflected) * glass_tint(material, textured);
     if (material.thickness == 0.0f)
-        return part * tint;
+        return through;
     const float way = 0.5f * material.thickness / material.attenuation_distance;
-    return part * glm::sqrt(tint) * glm::pow(material.attenuation_color, glm::vec3(way));
+    return through * glm::pow(material.attenuation_color, glm::vec3(way));
+}
+
+/// Looks the textures of a triangle's material up at a point.
+auto textured_at(const TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& barycentric) {
+    return [&mesh, triangle, barycentric](const glm::vec3& value,
+                                          const std::optional<TextureSlot>& slot) {
+        return slot ? value * sample(mesh.textures[slot->texture], *slot,
+                                     uv_at(mesh, triangle, barycentric, slot->uv_set))
+                    : value;
+    };
 }
 
 template<typename Textured>
@@ -77,12 +95,13 @@ Veil veil_of(const Material& material, const Textured& textured) {
 
 Veil veil(const TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& barycentric) {
     return veil_of(mesh.materials[mesh.triangle_materials[triangle]],
-                   [&](const glm::vec3& value, const std::optional<TextureSlot>& slot) {
-                       return slot
-                                  ? value * sample(mesh.textures[slot->texture], *slot,
-                                                   uv_at(mesh, triangle, barycentric, slot->uv_set))
-                                  : value;
-                   });
+                   textured_at(mesh, triangle, barycentric));
+}
+
+glm::vec3 glass_tint(const TriangleMesh& mesh, std::uint32_t triangle,
+                     const glm::vec2& barycentric) {
+    return glass_tint(mesh.materials[mesh.triangle_materials[triangle]],
+                      textured_at(mesh, triangle, barycentric));
 }
 
 Veil veil(const Material& material, std::span<const Texture> textures, const glm::vec2& place) {

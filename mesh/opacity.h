@@ -45,6 +45,12 @@ struct Veil {
 [[nodiscard]] Veil veil(const TriangleMesh& mesh, std::uint32_t triangle,
                         const glm::vec2& barycentric);
 
+/// Returns by what a surface of glass multiplies the light that goes on through it and is not
+/// mirrored: its transmission, and of its base colour what veil() takes. The way through a body
+/// takes more.
+[[nodiscard]] glm::vec3 glass_tint(const TriangleMesh& mesh, std::uint32_t triangle,
+                                   const glm::vec2& barycentric);
+
 /// Returns the veil where all textures of a material are looked up at one place of theirs.
 [[nodiscard]] Veil veil(const Material& material, std::span<const Texture> textures,
                         const glm::vec2& place);

@@ -136,7 +136,7 @@ void LeftOut::material(const Json& description) {
     const Json& volume = child(extensions, "KHR_materials_volume");
     if (number(child(extensions, "KHR_materials_transmission"), "transmissionFactor", 0.0) > 0.0)
         count("of glass (KHR_materials_transmission)",
-              "light goes straight on, without refraction and blur, and its shadows are grey");
+              "light goes straight on and its shadows are grey; pictures of vertices refract");
     if (volume.find("thicknessTexture"))
         count("with a texture of thickness, which is not read", "the factor counts everywhere");
     if (description.find("occlusionTexture"))

@@ -128,7 +128,7 @@ struct Candidate {
     [[nodiscard]] bool passes(RayOf of) const {
         if (!buffers.see_through.may_pass(triangle, of))
             return false;
-        if (of != RayOf::Eye)
+        if (!is_eye(of))
             if (const auto all = buffers.see_through.all_at(triangle, of);
                 all != SeeThrough::All::Differ)
                 return all == SeeThrough::All::Pass;
@@ -138,7 +138,7 @@ struct Candidate {
              .barycentric = glm::vec2(meeting_of(corners, direction).barycentric),
              .origin = origin,
              .direction = glm::vec3(direction),
-             .is_back = of == RayOf::Eye && glm::dot(normal, direction) > 0.0},
+             .is_back = is_eye(of) && glm::dot(normal, direction) > 0.0},
             of);
     }
 

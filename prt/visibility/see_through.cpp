@@ -257,14 +257,16 @@ SeeThrough::All SeeThrough::all_at(std::uint32_t triangle, RayOf of) const {
 }
 
 bool SeeThrough::passes(const Meeting& meeting, RayOf of) const {
-    if (of == RayOf::Eye && meeting.is_back && (kinds_[meeting.triangle] & OneSided) != 0)
+    const std::uint8_t kind = kinds_[meeting.triangle];
+    if (is_eye(of) && meeting.is_back && (kind & OneSided) != 0 &&
+        (of == RayOf::Eye || (kind & Thin) == 0))
         return true;
     const float even = even_.empty() ? -1.0f : even_[meeting.triangle];
     if (even < 0.0f)
         if (const MaskCells::Cell cell = cell_at(meeting.triangle, meeting.barycentric);
             cell != MaskCells::Cell::Mixed)
             return cell == MaskCells::Cell::CutOut;
-    if (of == RayOf::Eye)
+    if (is_eye(of))
         return veil(meeting.triangle, meeting.barycentric) ==
                mesh::Veil{.weight = 0.0f, .through = glm::vec3(1.0f)};
     const float part = even >= 0.0f ? even : part_at(meeting.triangle, meeting.barycentric, of);

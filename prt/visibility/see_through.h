@@ -27,7 +27,13 @@ enum class RayOf : std::uint8_t {
     SettledLight,
     /// What is not drawn: points of no weight, and backs of single-sided triangles.
     Eye,
+    /// The same, but for the backs of what is thin: of an eye that looks through a body of glass.
+    EyeInGlass,
 };
+
+[[nodiscard]] constexpr bool is_eye(RayOf of) {
+    return of == RayOf::Eye || of == RayOf::EyeInGlass;
+}
 
 /// The one place that says which points of triangles a ray passes.
 class SeeThrough {
@@ -46,7 +52,7 @@ public:
     /// Whether rays may pass a triangle; false for nearly all, and cheap.
     [[nodiscard]] bool may_pass(std::uint32_t triangle, RayOf of) const {
         return !kinds_.empty() &&
-               (kinds_[triangle] & (of == RayOf::Eye ? PassesLight | OneSided : PassesLight)) != 0;
+               (kinds_[triangle] & (is_eye(of) ? PassesLight | OneSided : PassesLight)) != 0;
     }
 
     /// Whether the eye sees a triangle's front alone.
@@ -60,7 +66,7 @@ public:
     }
     /// What all rays of light do that meet a triangle.
     enum class All : std::uint8_t { Stop, Pass, Differ };
-    /// `of` is not RayOf::Eye.
+    /// `of` is a ray of light.
     [[nodiscard]] All all_at(std::uint32_t triangle, RayOf of) const;
 
     /// Where a ray meets such a triangle.

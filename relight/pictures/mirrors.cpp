@@ -197,8 +197,6 @@ MirroredLight Mirrors::trace(const Mirror& mirror, const prt::MeshPoint& point,
         num_rays, surfaces);
 }
 
-/// Returns the radiance of a surface that a ray meets. A floor that catches shadows shows what is
-/// behind it, as in the picture.
 glm::vec3 Mirrors::seen(const prt::Hit& hit, const glm::vec3& direction,
                         const glm::vec3& sky) const {
     const prt::Hit facing = twins_.facing(hit, direction);

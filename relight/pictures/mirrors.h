@@ -51,6 +51,14 @@ public:
     [[nodiscard]] glm::vec3 soft(const Mirror& mirror, const prt::MeshPoint& point,
                                  const glm::vec3& diffuse);
 
+    /// Returns the radiance of a surface that a ray meets, before `sky`. A floor that catches
+    /// shadows shows what is behind it, as in the picture.
+    [[nodiscard]] glm::vec3 seen(const prt::Hit& hit, const glm::vec3& direction,
+                                 const glm::vec3& sky) const;
+
+    /// How the rays of this pixel are shifted: MirrorPoint::shift.
+    [[nodiscard]] const glm::vec2& shift() const { return shift_; }
+
 private:
     struct Traced {
         Mirror mirror;
@@ -71,8 +79,6 @@ private:
     /// surface; none where they see others.
     [[nodiscard]] std::optional<MirroredLight> shared(const Mirror& mirror,
                                                       const glm::vec3& position) const;
-    [[nodiscard]] glm::vec3 seen(const prt::Hit& hit, const glm::vec3& direction,
-                                 const glm::vec3& sky) const;
 
     const mesh::TriangleMesh& mesh_;
     const prt::RayScene& rays_;

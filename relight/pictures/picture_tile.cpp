@@ -23,6 +23,7 @@ PictureTile::PictureTile(const TileScene& scene)
     : scene_(scene), rays_{.blockers = &scene.rays, .bias = scene.light.bias},
       mirrors_(scene.mesh, scene.rays, scene.samples.twins(), scene.light, scene.floor,
                scene.backdrop, texture_view_),
+      refractions_(scene.mesh, scene.rays, scene.light, mirrors_),
       shading_(scene.mesh, scene.light, scene.packets, texture_view_),
       lights_(scene.mesh, scene.rays,
               scene.light.blockers != nullptr ? *scene.light.blockers
@@ -154,6 +155,16 @@ PictureTile::Shown PictureTile::shown(std::uint32_t x, std::uint32_t y, std::siz
         if (!is_caught)
             result.color += result.passed * (layer.veil.weight * opacity) *
                             (radiance + shading_.emitted(at, mirror));
+        if (mirror && refractions_.bends(*mirror, at)) {
+            result.color +=
+                result.passed * layer.veil.weight *
+                refractions_.light(*mirror, at, static_cast<std::uint32_t>(i), mirrors_.shift());
+            result.passed *= 1.0f - layer.veil.weight;
+            result.covered += (1.0f - result.covered) * layer.veil.weight;
+            if (layer.veil.weight == 1.0f)
+                break;
+            continue;
+        }
         const glm::vec3 passed = is_caught ? caught(radiance, *light.open_floor, opacity)
                                            : 1.0f - opacity * (1.0f - layer.veil.through);
         result.passed *= passed;

@@ -17,6 +17,7 @@
 #include "relight/pictures/mirrors.h"
 #include "relight/pictures/picture_view.h"
 #include "relight/pictures/pixel_lights.h"
+#include "relight/pictures/refractions.h"
 #include "relight/pictures/sample_shading.h"
 #include "relight/sharp/light_packets.h"
 #include "relight/sharp/shadow_rays.h"
@@ -95,6 +96,7 @@ private:
     /// Used where triangles have textures.
     prt::TextureView texture_view_;
     Mirrors mirrors_;
+    Refractions refractions_;
     SampleShading shading_;
     PixelLights lights_;
     /// Scratch: [packets]

@@ -15,44 +15,11 @@
 #include "prt/glossy/ggx_lobe.h"
 #include "prt/glossy/sheen_lobe.h"
 #include "relight/kernels/cluster_lights.h"
+#include "relight/pictures/visible_normals.h"
 
 namespace relumine::relight {
 
 namespace {
-
-/// Returns point i of n of Hammersley's, shifted around the unit square.
-glm::vec2 hammersley(std::uint32_t i, std::uint32_t n, const glm::vec2& shift) {
-    std::uint32_t bits = i;
-    float inverse = 0.0f;
-    for (float digit = 0.5f; bits != 0; bits >>= 1, digit *= 0.5f)
-        inverse += (bits & 1u) != 0 ? digit : 0.0f;
-    return glm::fract(glm::vec2((static_cast<float>(i) + 0.5f) / static_cast<float>(n), inverse) +
-                      shift);
-}
-
-/// Returns a half vector that an eye sees, in the frame of the normal [Heitz 2018, Listing 1].
-glm::vec3 visible_half(const glm::vec3& to_eye, float alpha, const glm::vec2& u) {
-    const glm::vec3 v = glm::normalize(glm::vec3(alpha * to_eye.x, alpha * to_eye.y, to_eye.z));
-    const float length2 = v.x * v.x + v.y * v.y;
-    const glm::vec3 t1 = length2 > 0.0f ? glm::vec3(-v.y, v.x, 0.0f) / std::sqrt(length2)
-                                        : glm::vec3(1.0f, 0.0f, 0.0f);
-    const glm::vec3 t2 = glm::cross(v, t1);
-    const float r = std::sqrt(u.x);
-    const float phi = 2.0f * std::numbers::pi_v<float> * u.y;
-    const float x = r * std::cos(phi);
-    const float s = 0.5f * (1.0f + v.z);
-    const float y = (1.0f - s) * std::sqrt(std::max(1.0f - x * x, 0.0f)) + s * r * std::sin(phi);
-    const glm::vec3 h = x * t1 + y * t2 + std::sqrt(std::max(1.0f - x * x - y * y, 0.0f)) * v;
-    return glm::normalize(glm::vec3(alpha * h.x, alpha * h.y, std::max(h.z, 1e-6f)));
-}
-
-/// Returns the density of directions whose half vector visible_half() chose: D G1 / (4 n.v).
-float density(const glm::vec3& half, float n_v, float alpha) {
-    const float a2 = alpha * alpha;
-    const float d = half.x * half.x + half.y * half.y + a2 * half.z * half.z;
-    const float mask = n_v + std::sqrt(n_v * n_v * (1.0f - a2) + a2);
-    return a2 / (std::numbers::pi_v<float> * d * d) * 0.5f / mask;
-}
 
 /// Sums of weights and of weighted radiance, by colour.
 struct Weighted {
@@ -128,7 +95,6 @@ Reflections::Reflections(const prt::RayScene& rays, float bias, std::uint32_t nu
         levels_.push_back(cubemap::halved(levels_.back()));
 }
 
-/// Returns the mean radiance around a direction.
 glm::vec3 Reflections::sky(const glm::vec3& direction, float solid_angle) const {
     if (levels_.empty())
         return glm::vec3(0.0f);
@@ -161,7 +127,7 @@ struct Reflections::Fan {
         if (alpha > 0.0f) {
             const glm::vec3 half = visible_half(local_eye, alpha, u);
             return {2.0f * glm::dot(local_eye, half) * half - local_eye,
-                    density(half, local_eye.z, alpha)};
+                    mirrored_density(half, local_eye.z, alpha)};
         }
         const float across = std::sqrt(std::max(1.0f - u.x * u.x, 0.0f));
         return {{across * std::cos(Turn * u.y), across * std::sin(Turn * u.y), u.x}, 1.0f / Turn};

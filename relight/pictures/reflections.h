@@ -70,6 +70,10 @@ public:
     [[nodiscard]] MirroredLight light(const prt::Surface& surface, const MirrorPoint& point,
                                       std::uint32_t num_rays, const Surfaces& surfaces) const;
 
+    /// Returns the mean radiance of the environment around a direction, but of the lights that it
+    /// is without.
+    [[nodiscard]] glm::vec3 sky(const glm::vec3& direction, float solid_angle) const;
+
     [[nodiscard]] std::uint32_t num_rays() const { return num_rays_; }
 
     /// Returns the least roughness of highlights of lights that are points: they stand for cells of
@@ -81,7 +85,6 @@ private:
     /// Calls add(direction, density of rays there, radiance) for each ray of a fan.
     template<typename Add>
     void send(const Fan& fan, const Surfaces& surfaces, const Add& add) const;
-    [[nodiscard]] glm::vec3 sky(const glm::vec3& direction, float solid_angle) const;
 
     const prt::RayScene& rays_;
     float bias_;

@@ -536,8 +536,8 @@ TEST_F(GltfTest, Glass) {
     EXPECT_THAT(
         mesh.warnings,
         testing::UnorderedElementsAre(
-            "2 materials of glass (KHR_materials_transmission): light goes straight on, without "
-            "refraction and blur, and its shadows are grey",
+            "2 materials of glass (KHR_materials_transmission): light goes straight on and its "
+            "shadows are grey; pictures of vertices refract",
             "2 materials with a texture of thickness, which is not read: the factor counts "
             "everywhere"));
     model.json["materials"][1]["extensions"]["KHR_materials_volume"]["thicknessFactor"] = -1;

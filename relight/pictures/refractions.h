@@ -1,0 +1,54 @@
+// What is seen through glass that bends or spreads it, found by rays.
+//
+// Based on: KHR_materials_transmission, KHR_materials_volume; B. Walter et al., "Microfacet Models
+// for Refraction through Rough Surfaces", EGSR 2007 (facets refract).
+#pragma once
+
+#include <cstdint>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "mesh/triangle_mesh.h"
+#include "prt/receivers/mesh_point.h"
+#include "prt/visibility/ray_scene.h"
+#include "relight/pictures/mirrors.h"
+#include "relight/pictures/picture_view.h"
+
+namespace relumine::relight {
+
+/// Follows the eye's rays through bodies of glass (KHR_materials_volume), which refract them by
+/// their index and take light on the way, and through rough sheets, which spread them. At each
+/// surface a ray goes one way: on, or back where all of it is mirrored. What the inner side of a
+/// surface mirrors beyond that leaves elsewhere, and is taken to go on, so glass loses no light.
+class Refractions {
+public:
+    /// All must outlive this object. Used where `light` has reflections.
+    Refractions(const mesh::TriangleMesh& mesh, const prt::RayScene& rays, const MeshLight& light,
+                const Mirrors& mirrors)
+        : mesh_(mesh), rays_(rays), light_(light), mirrors_(mirrors) {}
+
+    /// Whether what is behind a point is not simply seen straight on. Others are
+    /// prt::RayScene::layers().
+    [[nodiscard]] bool bends(const Mirror& mirror, const prt::MeshPoint& at) const;
+
+    /// Returns the radiance that goes on through such a point to the eye. `sample` numbers the
+    /// points of a pixel, of `num_samples`; `shift` is that of the pixel, as in MirrorPoint.
+    ///
+    /// Cost:    some three rays for each time that light enters glass and leaves it; of rough
+    ///          glass, an eighth of the reflections' rays so often.
+    [[nodiscard]] glm::vec3 light(const Mirror& mirror, const prt::MeshPoint& at,
+                                  std::uint32_t sample, const glm::vec2& shift) const;
+
+private:
+    struct Ray;
+    [[nodiscard]] glm::vec3 followed(Ray ray, const glm::vec2& u) const;
+    [[nodiscard]] bool meet(Ray& ray, const prt::Hit& hit, const glm::vec2& u) const;
+
+    const mesh::TriangleMesh& mesh_;
+    const prt::RayScene& rays_;
+    const MeshLight& light_;
+    const Mirrors& mirrors_;
+};
+
+} // namespace relumine::relight

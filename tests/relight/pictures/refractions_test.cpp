@@ -1,0 +1,196 @@
+// Rays through glass against Snell's law, and that glass loses no light.
+#include "relight/pictures/refractions.h"
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "prt/glossy/surface_sampling.h"
+#include "relight/pictures/picture_view.h"
+#include "relight/pictures/visible_normals.h"
+#include "tests/prt/scenes.h"
+#include "tests/relight/environments.h"
+
+namespace relumine::relight {
+namespace {
+
+constexpr float Bias = 1e-4f;
+
+mesh::Material glass(float roughness, float thickness, float index = 1.5f) {
+    mesh::Material material{.name = "glass", .model = mesh::MaterialModel::MetallicRoughness};
+    material.metallic = 0.0f;
+    material.roughness = roughness;
+    material.transmission = 1.0f;
+    material.thickness = thickness;
+    material.ior = index;
+    material.is_double_sided = false;
+    return material;
+}
+
+/// A mesh of one glass in an environment.
+struct Scene {
+    mesh::TriangleMesh mesh;
+    cubemap::CubeMap sky;
+    prt::RayScene rays;
+    std::vector<prt::Surface> surfaces;
+    SurfaceColors colors;
+    Reflections reflections;
+    std::vector<glm::vec3> black;
+    MeshLight light;
+
+    Scene(mesh::TriangleMesh shape, const mesh::Material& material, cubemap::CubeMap around,
+          std::uint32_t num_rays = 32)
+        : mesh(of(std::move(shape), material)), sky(std::move(around)), rays(mesh),
+          surfaces(prt::vertex_surfaces(mesh)), colors(mesh, surfaces),
+          reflections(rays, Bias, num_rays, sky, {}), black(mesh.num_vertices(), glm::vec3(0.0f)) {
+        light.radiance = black;
+        light.mirrored = black;
+        light.surfaces = surfaces;
+        light.textures = &colors;
+        light.reflections = &reflections;
+        light.bias = Bias;
+    }
+
+    static mesh::TriangleMesh of(mesh::TriangleMesh mesh, const mesh::Material& material) {
+        mesh.materials = {material};
+        mesh.triangle_materials.assign(mesh.num_triangles(), 0);
+        return mesh;
+    }
+
+    /// What goes on to the eye through the first surface in a direction; none where it does not
+    /// bend.
+    std::optional<glm::vec3> seen(const glm::vec3& eye, const glm::vec3& direction) {
+        light.eye = eye;
+        const prt::TwinTriangles twins(mesh);
+        const FadingFloor floor;
+        const prt::TextureView view;
+        const Mirrors mirrors(mesh, rays, twins, light, floor, nullptr, view);
+        const Refractions refractions(mesh, rays, light, mirrors);
+        const auto hit = rays.closest_hit(eye, direction, prt::RayOf::Eye);
+        const prt::MeshPoint at{.triangle = hit.value().triangle,
+                                .barycentric = hit.value().barycentric};
+        const std::optional<Mirror> mirror = mirrors.at(at);
+        if (!mirror || !refractions.bends(*mirror, at))
+            return std::nullopt;
+        return refractions.light(*mirror, at, 0, {0.3f, 0.6f});
+    }
+};
+
+/// What the first surface does not mirror.
+float passed_part(float cosine, float index) {
+    const float f0 = std::pow((index - 1.0f) / (index + 1.0f), 2.0f);
+    return (1.0f - f0) * (1.0f - std::pow(1.0f - cosine, 5.0f));
+}
+
+TEST(Refractions, BendAsABallOfGlass) {
+    constexpr float Index = 1.5f;
+    Scene scene(scenes::icosphere(5, 1.0f, {}), glass(0.0f, 1.0f, Index),
+                scenes::smooth_environment(128));
+    for (const float height : {0.0f, 0.3f, 0.6f, 0.8f}) {
+        const glm::vec3 found = scene.seen({0.0f, height, 5.0f}, {0.0f, 0.0f, -1.0f}).value();
+        const float enters = std::asin(height), inside = std::asin(height / Index);
+        const float turn = 2.0f * (enters - inside);
+        const glm::vec3 leaves(0.0f, -std::sin(turn), -std::cos(turn));
+        const glm::vec3 expected =
+            passed_part(std::cos(enters), Index) * cubemap::sample(scene.sky, leaves);
+        EXPECT_LT(glm::distance(found, expected), 0.02f * glm::length(expected)) << height;
+        if (height > 0.5f) {
+            const glm::vec3 straight = cubemap::sample(scene.sky, {0.0f, 0.0f, -1.0f});
+            EXPECT_GT(glm::distance(expected, straight), 0.1f) << "it would show no bending";
+        }
+    }
+}
+
+TEST(Refractions, OfASlabAreStraightAndAbsorbed) {
+    mesh::Material material = glass(0.0f, 1.0f);
+    material.attenuation_color = {0.5f, 0.25f, 1.0f};
+    material.attenuation_distance = 2.0f;
+    material.base_color = {1.0f, 0.8f, 1.0f};
+    mesh::TriangleMesh slab = scenes::box({-9, -9, -1}, {9, 9, 0});
+    for (glm::vec3& normal : slab.normals)
+        normal = {0.0f, 0.0f, glm::sign(normal.z)};
+    Scene scene(slab, material, scenes::smooth_environment(128));
+    for (const float slope : {0.0f, 0.5f, 1.0f}) {
+        const glm::vec3 way = glm::normalize(glm::vec3(slope, 0.0f, -1.0f));
+        const glm::vec3 found = scene.seen(-3.0f * way, way).value();
+        const float sine = std::sqrt(1.0f - way.z * way.z) / 1.5f;
+        const float length = 1.0f / std::sqrt(1.0f - sine * sine);
+        const glm::vec3 expected = passed_part(-way.z, 1.5f) * cubemap::sample(scene.sky, way) *
+                                   glm::vec3(1.0f, 0.8f, 1.0f) *
+                                   glm::pow(material.attenuation_color, glm::vec3(length / 2.0f));
+        EXPECT_LT(glm::distance(found, expected), 0.005f * glm::length(expected)) << slope;
+    }
+}
+
+/// All that a white sky sends arrives, whatever way it takes.
+TEST(Refractions, LoseNoLight) {
+    cubemap::CubeMap white(8);
+    white.texels.assign(white.texels.size(), glm::vec3(1.0f));
+    for (const float thickness : {0.0f, 1.0f})
+        for (const float roughness : {0.0f, 0.3f, 0.6f}) {
+            Scene scene(scenes::icosphere(4, 1.0f, {}), glass(roughness, thickness), white);
+            scene.light.eye = glm::vec3(0.0f, 0.0f, 5.0f);
+            const PictureView view(scene.mesh, scene.rays,
+                                   {.eye = *scene.light.eye, .target = {0, 0, 0}},
+                                   {.width = 24, .height = 24, .samples_per_axis = 2});
+            const Picture picture = view.cut_out(scene.light);
+            for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+                if (picture.alpha[i] == 1.0f) {
+                    // A thin smooth one is drawn as what is behind it, which is not here.
+                    if (thickness == 0.0f && roughness == 0.0f)
+                        continue;
+                    EXPECT_NEAR(picture.pixels[i].g, 1.0f, 0.02f)
+                        << roughness << " " << thickness << " " << i;
+                }
+        }
+}
+
+/// A rough sheet spreads what is behind it as a mirror would, flipped to the other side.
+TEST(Refractions, OfARoughSheetAreAFlippedHighlight) {
+    constexpr std::uint32_t Size = 64;
+    cubemap::CubeMap sky(Size), white(Size);
+    white.texels.assign(white.texels.size(), glm::vec3(1.0f));
+    const std::vector<double> solid_angles = cubemap::texel_solid_angles(Size);
+    const glm::vec3 to_eye = glm::normalize(glm::vec3(0.3f, 1.0f, 0.0f));
+    const auto is_bright = [](const glm::dvec3& w) {
+        return w.x > 0.5;
+    };
+    const auto each = [](const auto& visit) {
+        for (const cubemap::Face face : cubemap::AllFaces)
+            for (std::uint32_t y = 0; y < Size; ++y)
+                for (std::uint32_t x = 0; x < Size; ++x)
+                    visit(face, x, y, cubemap::texel_direction(face, x, y, Size));
+    };
+    each([&](cubemap::Face face, std::uint32_t x, std::uint32_t y, const glm::dvec3& w) {
+        if (is_bright(w))
+            sky.at(face, x, y) = glm::vec3(1.0f);
+    });
+    const auto seen = [&](float roughness, const cubemap::CubeMap& around) {
+        Scene scene(scenes::floor_grid(2, 8.0f), glass(roughness, 0.0f), around, 32'768);
+        const glm::vec3 somewhere(0.1f, 0.0f, 0.2f);
+        return scene.seen(somewhere + 3.0f * to_eye, -to_eye);
+    };
+    EXPECT_FALSE(seen(0.0f, sky)) << "straight on";
+    for (const float roughness : {0.3f, 0.5f, 0.7f}) {
+        const float alpha = roughness * roughness;
+        double expected = 0.0;
+        each([&](cubemap::Face, std::uint32_t x, std::uint32_t y, const glm::dvec3& w) {
+            if (!is_bright(w) || w.y >= 0.0)
+                return;
+            const glm::vec3 half = glm::normalize(to_eye + glm::vec3(w.x, -w.y, w.z));
+            const float dense = mirrored_density({half.x, half.z, half.y}, to_eye.y, alpha);
+            expected += static_cast<double>(dense) * solid_angles[std::size_t{y} * Size + x];
+        });
+        const float part = seen(roughness, sky).value().g / seen(roughness, white).value().g;
+        EXPECT_NEAR(part, expected, 0.01) << roughness;
+        EXPECT_TRUE(roughness < 0.4f || expected > 0.03) << "it would show no spread";
+    }
+}
+
+} // namespace
+} // namespace relumine::relight
