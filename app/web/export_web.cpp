@@ -2,8 +2,10 @@
 #include "app/web/export_web.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,7 +38,7 @@ struct ExportWebArguments {
     std::string scene;
     std::vector<std::string> environments;
     std::string output;
-    float tolerance = 0.03f;
+    float tolerance = 0.0275f;
     std::size_t num_samples = 500;
     bool single_file = false;
     bool no_bounces = false;
@@ -67,13 +69,46 @@ std::vector<std::string> left_out_of(const Scene& scene) {
     return left;
 }
 
+/// Lets triangles begin with their lowest vertex and puts them in the order of these, which packs
+/// best (prt/scene/packed_mesh.h).
+void order_triangles(mesh::TriangleMesh& mesh) {
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i) {
+        mesh::Triangle& triangle = mesh.triangles[i];
+        const auto lowest = std::min_element(triangle.begin(), triangle.end()) - triangle.begin();
+        const auto turn = [&](auto& corners) {
+            std::rotate(corners.begin(), corners.begin() + lowest, corners.end());
+        };
+        turn(triangle);
+        if (!mesh.corner_uvs.empty())
+            turn(mesh.corner_uvs[i]);
+        if (!mesh.corner_tangents.empty())
+            turn(mesh.corner_tangents[i]);
+    }
+    std::vector<std::uint32_t> order(mesh.num_triangles());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return mesh.triangles[a] < mesh.triangles[b];
+    });
+    const auto sort = [&](auto& of_triangles) {
+        if (of_triangles.empty())
+            return;
+        auto sorted = of_triangles;
+        for (std::size_t i = 0; i < order.size(); ++i)
+            sorted[i] = of_triangles[order[i]];
+        of_triangles = std::move(sorted);
+    };
+    sort(mesh.triangles);
+    sort(mesh.corner_uvs);
+    sort(mesh.corner_tangents);
+    sort(mesh.triangle_materials);
+    sort(mesh.triangle_groups);
+}
+
 std::vector<std::byte> runtime_scene(Scene scene) {
     prt::RelightingScene lean{.scene = std::move(scene)};
     if (lean.scene.bounces)
         lean.albedo = bounces_of(lean.scene, bounce_albedo(lean.scene)).albedo;
-    return bytes_written("scene.relight", [&](const std::filesystem::path& path) {
-        prt::save_relighting_scene(path, std::move(lean));
-    });
+    return prt::packed_relighting_scene(std::move(lean));
 }
 
 files::Json camera_of_page(const Scene& scene) {
@@ -214,6 +249,7 @@ Scene scene_of_page(const ExportWebArguments& options, PageWords& words, Session
     for (const std::string& what : words.left_out)
         session.warn(fmt::format("{}: left out: {}", options.scene, what));
     scene.transfer.glossy.reset();
+    order_triangles(scene.mesh);
     if (rms_tolerance(scene) < options.tolerance)
         scene = coarsened(std::move(scene), options.tolerance, session.stop(),
                           session.progress("joining clusters"));

@@ -1,3 +1,4 @@
+#include "prt/scene/packed_mesh.h"
 #include "prt/scene/section_group.h"
 
 namespace relumine::prt {
@@ -32,6 +33,11 @@ void add_mesh(NewSections& sections, const Scene& scene) {
 
 void read_mesh(const SectionReader& reader, Scene& scene) {
     mesh::TriangleMesh& mesh = scene.mesh;
+    if (has_packed_mesh(reader)) {
+        read_packed_mesh(reader, mesh);
+        require_indices(reader, mesh, "packed_triangles");
+        return;
+    }
     mesh.positions = reader.elements<glm::vec3>("positions");
     mesh.triangles = reader.elements<mesh::Triangle>("triangles");
     mesh.normals = reader.elements<glm::vec3>("normals", mesh.num_vertices());

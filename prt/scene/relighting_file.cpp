@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "prt/scene/packed_mesh.h"
 #include "prt/scene/section_group.h"
 
 namespace relumine::prt {
@@ -25,9 +26,8 @@ void check_relighting(const std::filesystem::path& path, const RelightingScene& 
               [](const glm::vec3& color) { return is_within(color, 0.0f, 1.0f + RangeSlack); });
 }
 
-} // namespace
-
-std::uint64_t save_relighting_scene(const std::filesystem::path& path, RelightingScene given) {
+/// Returns the scene without what relighting does not need.
+RelightingScene leaned(RelightingScene given) {
     Scene& scene = given.scene;
     if (!given.albedo.empty() && given.albedo.size() != scene.receivers.size())
         throw std::invalid_argument(fmt::format("expected the albedo of {} receivers, got {}",
@@ -42,13 +42,35 @@ std::uint64_t save_relighting_scene(const std::filesystem::path& path, Relightin
     scene.settings.glossy_tolerance.reset();
     scene.settings.view.reset();
     scene.settings.left_out.clear();
-    check_relighting(path, given);
+    return given;
+}
+
+/// The scene must last until the sections are written.
+NewSections sections_of(const RelightingScene& given) {
     NewSections sections;
     for (const SectionGroup* group : RelightingSections)
-        group->add(sections, scene);
+        group->add(sections, given.scene);
     if (!given.albedo.empty())
         sections[Albedo] = SectionContent::view(given.albedo);
-    return write_sections(path, sections);
+    return sections;
+}
+
+} // namespace
+
+std::uint64_t save_relighting_scene(const std::filesystem::path& path, RelightingScene scene) {
+    const RelightingScene lean = leaned(std::move(scene));
+    check_relighting(path, lean);
+    return write_sections(path, sections_of(lean));
+}
+
+std::vector<std::byte> packed_relighting_scene(RelightingScene scene) {
+    const RelightingScene lean = leaned(std::move(scene));
+    check_relighting("scene", lean);
+    NewSections sections = sections_of(lean);
+    for (const char* const name : {"positions", "normals", "triangles", "lifts"})
+        sections.erase(name);
+    add_packed_mesh(sections, lean.scene.mesh);
+    return packed_sections(sections, Packing::Best);
 }
 
 RelightingScene relighting_scene_of(const SectionReader& reader) {

@@ -26,6 +26,10 @@ struct RelightingScene {
 /// Throws:  as save_scene().
 std::uint64_t save_relighting_scene(const std::filesystem::path& path, RelightingScene scene);
 
+/// Returns the bytes of one for a page: as few as can be, with positions to 1/65,535 of the mesh's
+/// longest side and normals to 4e-6 (prt/scene/packed_mesh.h). Of a scene of vertices.
+[[nodiscard]] std::vector<std::byte> packed_relighting_scene(RelightingScene scene);
+
 /// Reads one, or a .prt file, where the albedo is that of the receivers' surfaces. Checks it as
 /// load_scene() does.
 ///

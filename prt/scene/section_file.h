@@ -89,8 +89,12 @@ using NewSections = std::map<std::string, SectionContent>;
 /// Throws:  std::runtime_error that names the path.
 std::uint64_t write_sections(const std::filesystem::path& path, const NewSections& sections);
 
-/// Returns the bytes of a file of sections, to send them to another process.
-[[nodiscard]] std::vector<std::byte> packed_sections(const NewSections& sections);
+/// How well sections of bytes in memory are packed.
+enum class Packing { Fast, Best };
+
+/// Returns the bytes of a file of sections, to send them.
+[[nodiscard]] std::vector<std::byte> packed_sections(const NewSections& sections,
+                                                     Packing packing = Packing::Fast);
 
 /// Where the packed bytes of a section lie.
 struct StoredSection {

@@ -1,7 +1,9 @@
 // Scenes in light.
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include <pybind11/stl.h>
@@ -19,6 +21,7 @@
 #include "relight/light_fit/transfer_lights.h"
 #include "relight/pictures/picture.h"
 #include "relumine/harmonics_file.h"
+#include "relumine/live_eye.h"
 #include "run.h"
 #include "scene.h"
 
@@ -39,12 +42,25 @@ public:
     template<typename Work>
     auto use(const Work& work) {
         const std::lock_guard lock(mutex_);
+        is_eye_lit_ = false;
         return work(lit_);
+    }
+    /// Returns what goes to an eye, highlights included.
+    std::vector<glm::vec3> towards(const glm::vec3& eye, const EyeOptions& options) {
+        const std::lock_guard lock(mutex_);
+        if (!eye_)
+            eye_.emplace(lit_);
+        else if (!is_eye_lit_)
+            eye_->take_light();
+        is_eye_lit_ = true;
+        const std::span<const glm::vec3> radiance = eye_->look(eye, options);
+        return {radiance.begin(), radiance.end()};
     }
     /// The same for work that changes the light.
     template<typename Work>
     auto change(const Work& work) {
         const std::lock_guard lock(mutex_);
+        is_eye_lit_ = false;
         const auto result = work(lit_);
         const std::span<const glm::vec3> radiance = lit_.radiance();
         std::copy(radiance.begin(), radiance.end(), radiance_.begin());
@@ -74,6 +90,10 @@ private:
     LitScene lit_;
     std::vector<glm::vec3> radiance_;
     std::atomic<bool> is_lit_ = false;
+    /// Once it was asked for.
+    std::optional<LiveEye> eye_;
+    /// Whether it has the present light.
+    bool is_eye_lit_ = false;
     /// What this thread waits for, one within the other.
     static inline thread_local std::vector<const Lit*> waiting_;
 };
@@ -462,6 +482,15 @@ void bind_relighters(py::module_& module) {
         .def("bounced",
              [](Lit& own) {
                  return owned(quickly(own, [](LitScene& lit) { return relumine::bounced(lit); }));
+             })
+        .def("towards",
+             [](Lit& own, const std::array<float, 3>& eye, float tolerance) {
+                 own.refuse_reentry();
+                 std::vector<glm::vec3> radiance = [&] {
+                     const Release release;
+                     return own.towards({eye[0], eye[1], eye[2]}, {.tolerance = tolerance});
+                 }();
+                 return owned(std::move(radiance));
              })
         .def("harmonics",
              [](Lit& own) {

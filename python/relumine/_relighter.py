@@ -291,6 +291,28 @@ class Relighter:
         result: Floats = view(self._core.bounced())
         return result
 
+    def towards(self, eye: Sequence[float], *, tolerance: float = 0.01) -> Floats:
+        """(num_receivers, 3) float32: `radiance` with the highlights that an eye sees. A copy.
+
+        For vertices with glossy materials that were precomputed without `view`: nothing is stored
+        for the eye, so it may go anywhere, in milliseconds. Receivers that face away from the eye
+        have no highlight. It shows the present light, bounces of bounce() included.
+
+        eye        x, y, z
+        tolerance  relative L2 error, as a part of what a white matt surface sends
+
+        Raises ValueError for a scene without such highlights.
+        """
+        if not self._core.is_lit:
+            raise RuntimeError("expected a scene that is lit, got one without light")
+        x, y, z = floats("eye", eye, 3).tolist()
+        tolerance = real("tolerance", tolerance)
+        if not 1e-5 <= tolerance <= 1.0:
+            raise ValueError(f"tolerance: expected 1e-5 to 1, got {tolerance}")
+        with errors():
+            result: Floats = view(self._core.towards((x, y, z), tolerance))
+        return result
+
     @property
     def harmonics(self) -> Floats:
         """(num_receivers, 4 or 9, 3) float32: the light that arrives, for any normal. A copy.

@@ -5,12 +5,16 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "prt/glossy/brdf.h"
 #include "prt/glossy/surface_sampling.h"
+#include "prt/receivers/block_size.h"
+#include "relight/kernels/cluster_lights.h"
 #include "relight/moving_eye/moving_eye.h"
 #include "relight/reference/exact.h"
 #include "relumine/relumine.h"
@@ -87,6 +91,77 @@ struct Error {
     [[nodiscard]] double relative_l2() const { return std::sqrt(difference / all); }
 };
 
+/// The plain sum over all clusters of the light, the visible part and the lobes.
+struct PlainSum {
+    std::vector<glm::dvec3> radiance;
+    double seconds = 0.0;
+};
+
+PlainSum plain_sum(const Samples& samples, const relight::Relighter& relighter) {
+    const prt::Transfer& transfer = relighter.transfer();
+    std::vector<std::uint32_t> place_of(transfer.order.size());
+    for (std::uint32_t place = 0; place < place_of.size(); ++place)
+        place_of[transfer.order[place]] = place;
+    std::vector<std::pair<glm::vec3, glm::vec3>> lights; // direction, irradiance
+    for (const prt::Cell& cell : transfer.quadtree.leaves()) {
+        const relight::VectorIrradiance sum =
+            relighter.binning()->sum(relighter.environment(), cell);
+        const glm::dvec3 luminance = sum.luminance();
+        const double length = glm::length(luminance);
+        lights.emplace_back(
+            length > 0.0 ? luminance / length : glm::dvec3(0.0, 1.0, 0.0),
+            glm::dvec3(glm::length(sum.red), glm::length(sum.green), glm::length(sum.blue)));
+    }
+    const prt::Receivers& receivers = samples.receivers;
+    PlainSum result;
+    const auto start = std::chrono::steady_clock::now();
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        const prt::Surface& surface = receivers.surfaces[i];
+        const glm::vec3 &normal = receivers.normals[i], &to_eye = receivers.to_eye[i];
+        prt::Lobes<glm::vec3> sums;
+        for (std::uint32_t cluster = 0; cluster < lights.size(); ++cluster) {
+            const int count = transfer.counts.count(place_of[samples.index[i]], cluster);
+            if (count == 0)
+                continue;
+            const auto& [direction, irradiance] = lights[cluster];
+            prt::add_scaled(
+                sums,
+                prt::converted<glm::vec3>(prt::evaluate_lobes(surface, normal, to_eye, direction)),
+                static_cast<float>(count) / 16.0f * irradiance);
+        }
+        result.radiance.emplace_back(prt::reflect(surface, sums, {surface, normal, to_eye}));
+    }
+    result.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+}
+
+/// Nothing is in the way.
+class OpenSky final : public prt::Blockers {
+public:
+    [[nodiscard]] std::uint32_t occluded(const glm::vec3&, const prt::DirectionPacket&,
+                                         std::uint32_t) const override {
+        return 0;
+    }
+};
+
+/// What a prefiltered environment gives at best: highlights without visibility, here integrated
+/// exactly, over exact diffuse light.
+std::vector<glm::dvec3> prefiltered(const LitScene& lit, const Samples& samples,
+                                    std::span<const std::uint32_t> order,
+                                    std::span<const glm::dvec3> exact,
+                                    const cubemap::CubeMap& map) {
+    prt::Receivers mirrors = samples.receivers;
+    for (prt::Surface& surface : mirrors.surfaces)
+        surface.albedo = glm::vec3(0.0f);
+    const relight::ExactOptions options{.bias = lit.scene().settings.bias};
+    const auto seen = relight::exact_radiance(mirrors, order, lit.rays().blockers(), map, options);
+    std::vector<glm::dvec3> all = relight::exact_radiance(mirrors, order, OpenSky(), map, options);
+    for (std::size_t i = 0; i < all.size(); ++i)
+        all[i] += exact[i] - seen[i];
+    return all;
+}
+
 void print_rows(float roughness, const Settings& settings, LitScene& lit,
                 const std::vector<bench::NamedMap>& maps) {
     const Scene& scene = lit.scene();
@@ -123,7 +198,13 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
         const std::vector<glm::dvec3> exact =
             relight::exact_radiance(samples.receivers, order, lit.rays().blockers(), map.map,
                                     {.bias = scene.settings.bias});
-        Error error, matt;
+        Error error, matt, plain, open;
+        const PlainSum sum = plain_sum(samples, lit.relighter());
+        const std::vector<glm::dvec3> filtered = prefiltered(lit, samples, order, exact, map.map);
+        for (std::size_t i = 0; i < exact.size(); ++i) {
+            plain.add(sum.radiance[i], exact[i]);
+            open.add(filtered[i], exact[i]);
+        }
         const double cpu = bench::cpu_seconds();
         double seconds = 0.0, cells = 0.0, blocks = 0.0;
         for (std::size_t eye = 0; eye < eyes.size(); ++eye) {
@@ -138,12 +219,16 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
                 matt.add(glm::dvec3(lit.radiance()[samples.index[i]]), exact[i]);
             }
         }
-        fmt::print("| {} | {:.0f} cells | {:.1f} cpu ms, {:.1f} ms | {:.4f} | matt {:.3f} | {} "
-                   "sharp, set {:.1f} ms\n",
-                   map.name, cells / blocks,
-                   1e3 * (bench::cpu_seconds() - cpu) / static_cast<double>(eyes.size()),
-                   1e3 * seconds / static_cast<double>(eyes.size()), error.relative_l2(),
-                   matt.relative_l2(), lit.relighter().sharp_lights().size(), 1e3 * set_seconds);
+        const auto num_eyes = static_cast<double>(eyes.size());
+        // The sum's time for all receivers that a look lights
+        const double plain_ms = 1e3 * sum.seconds / static_cast<double>(samples.index.size()) *
+                                blocks / num_eyes * prt::BlockSize;
+        fmt::print("| {} | {:.0f} cells | {:.1f} cpu ms, {:.1f} ms | {:.4f} | plain sum {:.4f}, "
+                   "{:.0f} cpu ms | no visibility {:.3f} | matt {:.3f} | {} sharp, set {:.1f} ms\n",
+                   map.name, cells / blocks, 1e3 * (bench::cpu_seconds() - cpu) / num_eyes,
+                   1e3 * seconds / num_eyes, error.relative_l2(), plain.relative_l2(), plain_ms,
+                   open.relative_l2(), matt.relative_l2(), lit.relighter().sharp_lights().size(),
+                   1e3 * set_seconds);
         std::fflush(stdout);
     }
 }

@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 89> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 94> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -95,6 +95,11 @@ inline constexpr std::array<std::string_view, 89> SectionNames = {"settings",
                                                                   "layout_layers",
                                                                   "r_veils",
                                                                   "brdf_tables",
-                                                                  "r_brdf"};
+                                                                  "r_brdf",
+                                                                  "packed_box",
+                                                                  "packed_counts",
+                                                                  "packed_positions",
+                                                                  "packed_normals",
+                                                                  "packed_triangles"};
 
 } // namespace relumine::fuzz

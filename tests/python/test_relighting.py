@@ -49,6 +49,50 @@ def test_relighting_is_linear(relighter, sky):
     assert relighter.radiance == pytest.approx(2 * once, rel=1e-4, abs=1e-6)
 
 
+def ball(steps=24):
+    """A sphere of radius 1, without poles."""
+    theta = np.linspace(0.1, np.pi - 0.1, steps)
+    phi = np.arange(2 * steps) * np.pi / steps
+    t, p = np.meshgrid(theta, phi, indexing="ij")
+    vertices = np.stack([np.sin(t) * np.cos(p), np.cos(t), np.sin(t) * np.sin(p)], -1)
+    number = np.arange(2 * steps * steps).reshape(steps, 2 * steps)
+    right = np.roll(number, -1, axis=1)
+    quads = [number[:-1], right[:-1], right[1:], number[:-1], right[1:], number[1:]]
+    triangles = np.stack([quad.ravel() for quad in quads], -1).reshape(-1, 3)
+    return vertices.reshape(-1, 3), triangles
+
+
+def test_highlights_follow_the_eye():
+    """A white metal under a white sky sends 1 to each eye, and one mirrors what is across."""
+    vertices, triangles = ball()
+    scene = relumine.precompute(
+        vertices, triangles, material=relumine.Ggx(0.4, albedo=0.0, f0=1.0), refine=False
+    )
+    relighter = relumine.Relighter(scene)
+    with pytest.raises(RuntimeError, match="expected a scene that is lit"):
+        relighter.towards((0, 0, 5))
+    relighter.set_environment(relumine.Environment(np.ones((6, 16, 16, 3))))
+    for eye in ([0, 0, 5], [4, 3, 0]):
+        facing = scene.normals @ np.array(eye) > 2.5
+        light = relighter.towards(eye)
+        assert light[facing] == pytest.approx(1.0, abs=0.03)
+    left = np.zeros((6, 16, 16, 3))
+    left[0] = 1.0  # +X
+    relighter.set_environment(relumine.Environment(left))
+    light = relighter.towards([0, 0, 5])
+    across = scene.nearest_receiver([np.sqrt(0.5), 0, np.sqrt(0.5)])
+    ahead = scene.nearest_receiver([0, 0, 1])
+    assert light[across, 0] > 0.9 > 0.05 > light[ahead, 0]
+    with pytest.raises(ValueError, match="eye: expected"):
+        relighter.towards([0, 0])
+    with pytest.raises(ValueError, match="tolerance: expected 1e-5 to 1, got 2"):
+        relighter.towards([0, 0, 5], tolerance=2)
+    matt = relumine.Relighter(relumine.precompute(vertices, triangles, refine=False))
+    matt.set_environment(relumine.Environment(left))
+    with pytest.raises(ValueError, match="expected vertices with glossy materials"):
+        matt.towards([0, 0, 5])
+
+
 def test_bounces(arrays):
     scene = relumine.precompute(*arrays, tolerance=0.05, bounces=True)
     assert scene.settings["bounces"]

@@ -54,7 +54,7 @@ class Browser:
             "const $ = (selector) => v.shadowRoot.querySelector(selector);"
             "const settled = async () => { await v.ready; do { await new Promise((r) => setTimeout(r, 40)); }"
             " while (!v.isSettled); await new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r))); };"
-            f"(async () => {{ {body} }})().then((value) => done({{value}}), (error) => done({{error: String(error)}}));",
+            f"Promise.race([customElements.whenDefined('relumine-viewer'), new Promise((r) => setTimeout(r, 5000))]).then(async () => {{ {body} }}).then((value) => done({{value}}), (error) => done({{error: String(error)}}));",
             *arguments)
         if "error" in result:
             raise AssertionError(result["error"])

@@ -3,6 +3,7 @@
 Exports the scene with these environments, opens the page in headless Chromium, drags a light and turns the
 environment.
 """
+import math
 import pathlib
 import shutil
 import statistics
@@ -18,7 +19,7 @@ DRAG = """
     v.addLight('disc', [0.5, 0.6, 0.7]);
     await settled();
     const times = [];
-    for (let i = 0; i < 100; ++i) {
+    for (let i = 0; i < 500; ++i) {
         const light = new Promise((resolve) => v.addEventListener('light', resolve, {once: true}));
         const angle = i * 0.05, start = performance.now();
         v.drag({...v.state.lights[0], direction: [Math.sin(angle), 0.7, Math.cos(angle)]});
@@ -40,7 +41,7 @@ TURN = """
 
 
 def percentile(values, part):
-    return sorted(values)[min(int(part * len(values)), len(values) - 1)]
+    return sorted(values)[math.ceil(part * len(values)) - 1]
 
 
 def main():
