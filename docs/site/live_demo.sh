@@ -4,7 +4,7 @@ set -euo pipefail
 relumine=$1 folder=$2
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-"$relumine" generate colonnade -o "$scratch" --vertices 50000 -q
+"$relumine" generate colonnade -o "$scratch" --vertices 30000 -q
 for environment in sun_sky soft_boxes; do
     "$relumine" generate "$environment" -o "$scratch" -q
 done

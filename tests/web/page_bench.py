@@ -19,7 +19,7 @@ DRAG = """
     v.addLight('disc', [0.5, 0.6, 0.7]);
     await settled();
     const times = [];
-    for (let i = 0; i < 500; ++i) {
+    for (let i = 0; i < 200; ++i) {
         const light = new Promise((resolve) => v.addEventListener('light', resolve, {once: true}));
         const angle = i * 0.05, start = performance.now();
         v.drag({...v.state.lights[0], direction: [Math.sin(angle), 0.7, Math.cos(angle)]});
