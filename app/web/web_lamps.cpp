@@ -54,22 +54,39 @@ WebLamps web_lamps(const Scene& scene, Session& session) {
     plain.transfer.glossy.reset();
     LitScene lit(std::move(plain), {.clusters_only = true});
     lit.light(cubemap::CubeMap(1));
-    if (scene.bounces)
-        lit.bounce({.albedo = bounces_of(scene, bounce_albedo(scene)).albedo});
     const std::vector<std::string> names = scene.lamps.names();
-    files::Json::Array list;
-    for (const std::string& name : names) {
+    const auto light_of = [&](const std::string& name) {
         session.poll();
-        const std::vector<EmissionGain> gains = only(names, name);
-        lit.dim(gains);
+        lit.dim(only(names, name));
         std::vector<glm::vec3> light(lit.radiance().begin(), lit.radiance().end());
         light.resize(scene.receivers.num_own());
-        const std::vector<glm::vec3> glow = emission_of(scene, gains);
-        for (std::size_t i = 0; i < glow.size() && i < light.size(); ++i)
-            light[i] += glow[i] / albedo[i];
-        const std::string file = fmt::format("lamps/{}.bin.gz", list.size() + 1);
-        result.files.push_back({file, files::gzipped(halves(light))});
-        list.push_back({{"name", name.empty() ? std::string("Lamps") : name}, {"file", file}});
+        return light;
+    };
+    std::vector<std::vector<glm::vec3>> direct;
+    direct.reserve(names.size());
+    for (const std::string& name : names)
+        direct.push_back(light_of(name));
+    if (scene.bounces)
+        lit.bounce({.albedo = bounces_of(scene, bounce_albedo(scene)).albedo});
+
+    files::Json::Array list;
+    for (std::size_t lamp = 0; lamp < names.size(); ++lamp) {
+        const std::string& name = names[lamp];
+        const std::string stem = fmt::format("lamps/{}", lamp + 1);
+        files::Json entry = {{"name", name.empty() ? std::string("Lamps") : name},
+                             {"file", stem + ".bin.gz"}};
+        if (scene.bounces) {
+            std::vector<glm::vec3> bounced = light_of(name);
+            for (std::size_t i = 0; i < bounced.size(); ++i)
+                bounced[i] = glm::max(bounced[i] - direct[lamp][i], glm::vec3(0.0f));
+            entry.set("bounced", stem + "_bounced.bin.gz");
+            result.files.push_back({stem + "_bounced.bin.gz", files::gzipped(halves(bounced))});
+        }
+        const std::vector<glm::vec3> glow = emission_of(scene, only(names, name));
+        for (std::size_t i = 0; i < glow.size() && i < direct[lamp].size(); ++i)
+            direct[lamp][i] += glow[i] / albedo[i];
+        result.files.push_back({stem + ".bin.gz", files::gzipped(halves(direct[lamp]))});
+        list.push_back(std::move(entry));
     }
     result.list = std::move(list);
     return result;

@@ -214,6 +214,14 @@ class Files(Exported):
         bad.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 64 +X 128\n1234")
         self.drop(bad)
         self.assertEqual(self.browser.run("return $('.message p').textContent;"), "bad.hdr cannot be read: expected whole rows.")
+        square = folder / "square.hdr"
+        square.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 4\n" + bytes([128, 128, 128, 128] * 16))
+        self.drop(square)
+        self.assertEqual(self.browser.run("return $('.message p').textContent;"),
+                         "square.hdr: expected a lat-long, twice as wide as high, got 4 x 4.")
+        self.drop(bad, "bad.exr")
+        self.assertEqual(self.browser.run("return $('.message p').textContent;"),
+                         "bad.exr cannot be read: Provided file doesn't appear to be in OpenEXR format.")
         self.drop(bad, "picture.png")
         self.assertEqual(self.browser.run("return $('.message p').textContent;"), "picture.png: expected a .hdr or .exr file.")
         self.assertEqual(self.radiance(), before)
@@ -290,22 +298,28 @@ class Lamps(unittest.TestCase):
         relumine("precompute", "lamp.obj", "-o", "lamp.prt", "--tolerance", 0.06, "--bounces", "--no-refine", "--floor", 9)
         relumine("export", "web", "lamp.prt", "-o", "lamp", "--force", "--samples", 0, "--tolerance", 0.06)
         light = {}
-        for gain in (0, 1):
-            relumine("relight", "lamp.prt", "lamp/environments/1.hdr", "--clusters-only", "--bounces", "all",
+        for gain, bounces in ((0, "all"), (1, "all"), (0, 0), (1, 0)):
+            relumine("relight", "lamp.prt", "lamp/environments/1.hdr", "--clusters-only", "--bounces", bounces,
                      "--emission", gain, "-o", "lamp.npy")
-            light[gain] = npy(folder / "lamp.npy")
+            light[gain, bounces] = npy(folder / "lamp.npy")
         browser = Browser()
         try:
             browser.open(serve(folder / "lamp"))
-            shown = {gain: floats(browser.run(f"await v.ready; v.state = {{lamps: [{gain}]}}; {RADIANCE}")) for gain in (0, 1, 2)}
+            shown = {(gain, bounces): floats(browser.run(
+                         f"await v.ready; v.state = {{lamps: [{gain}], bounces: {bounces}}}; {RADIANCE}"))
+                     for gain in (0, 1, 2) for bounces in ("true", "false")}
             self.assertEqual(browser.run("return $('.lamps .slider span').textContent;"), "lamp")
             browser.picture(folder / "lamp.png")
         finally:
             browser.close()
         box = range(24)
-        native = [(light[1][i] - light[0][i]) / 0.5 for i in box]
-        self.assertLess(largest_error([shown[1][i] - shown[0][i] for i in box], native), 2e-3, "half floats")
-        self.assertLess(largest_error([shown[2][i] - shown[0][i] for i in box], [2 * value for value in native]), 2e-3)
+        native = {}
+        for bounces, switch in (("all", "true"), (0, "false")):
+            native[bounces] = [(light[1, bounces][i] - light[0, bounces][i]) / 0.5 for i in box]
+            for gain in (1, 2):
+                lamp = [shown[gain, switch][i] - shown[0, switch][i] for i in box]
+                self.assertLess(largest_error(lamp, [gain * value for value in native[bounces]]), 2e-3, "half floats")
+        self.assertGreater(largest_error(native["all"], native[0]), 0.01, "bounces count")
 
 
 class Failing(unittest.TestCase):

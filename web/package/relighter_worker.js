@@ -1,5 +1,6 @@
 // A Relighter in a worker: the page moves on while it works.
 import {RelumineError, bytesOf} from './wasm_module.js';
+import {WorkerCalls} from './worker_calls.js';
 
 const filled = ['positions', 'normals', 'triangles', 'places', 'radiance', 'radianceHalf', 'harmonics', 'environment',
                 'contribution'];
@@ -23,14 +24,15 @@ async function sendable(source) {
     return source;
 }
 
+const errorOf = ({code, message}) => new RelumineError(code, message);
+const afterDispose = 'expected a scene, got one after dispose()';
+
 export class RelighterWorker {
-    #worker;
-    #waiting = new Map();
-    #nextId = 0;
+    #calls;
 
     static async open(source, {worker, wasm, ...options} = {}) {
         const own = new RelighterWorker();
-        own.#listen(worker ?? await newWorker());
+        own.#calls = new WorkerCalls(worker ?? await newWorker(), errorOf);
         try {
             own.info = await own.#call('open', [await sendable(source), {...options, wasm: await sendable(wasm)}]);
         } catch (error) {
@@ -40,46 +42,14 @@ export class RelighterWorker {
         return own;
     }
 
-    #listen(worker) {
-        this.#worker = worker;
-        const onMessage = ({id, result, error}) => {
-            const waiting = this.#waiting.get(id);
-            this.#waiting.delete(id);
-            if (error)
-                waiting?.reject(new RelumineError(error.code, error.message));
-            else
-                waiting?.resolve(result);
-        };
-        const onError = (error) => this.#failAll(new RelumineError('FAILED', `worker.js: ${error.message ?? 'cannot be loaded'}`));
-        if (worker.addEventListener) {
-            worker.addEventListener('message', ({data}) => onMessage(data));
-            worker.addEventListener('error', onError);
-        } else {
-            worker.on('message', onMessage);
-            worker.on('error', onError);
-        }
-    }
-
-    #failAll(error) {
-        for (const {reject} of this.#waiting.values())
-            reject(error);
-        this.#waiting.clear();
-    }
-
-    #call(name, given, transferred = []) {
-        if (!this.#worker)
-            return Promise.reject(new RelumineError('WRONG_ARGUMENT', 'expected a scene, got one after dispose()'));
-        return new Promise((resolve, reject) => {
-            const id = this.#nextId++;
-            this.#worker.postMessage({id, name, given}, transferred);
-            this.#waiting.set(id, {resolve, reject});
-        });
+    #call(name, given, transferred) {
+        return this.#calls?.call(name, given, transferred) ??
+            Promise.reject(new RelumineError('WRONG_ARGUMENT', afterDispose));
     }
 
     dispose() {
-        this.#worker?.terminate();
-        this.#worker = undefined;
-        this.#failAll(new RelumineError('FAILED', 'expected a scene, got one after dispose()'));
+        this.#calls?.end(afterDispose);
+        this.#calls = undefined;
     }
 
     static {

@@ -143,6 +143,8 @@ TEST_F(ExportWeb, RefusesInOneLineAndWritesNothing) {
     fail(fine, {"site: the folder is not empty; --force writes into it"});
     EXPECT_FALSE(std::filesystem::exists(folder() / "site/index.html"));
     fail({"export", "web", "scene.prt", "absent.hdr", "-o", "new"}, {"absent.hdr"});
+    write("broken.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n1234");
+    fail({"export", "web", "scene.prt", "broken.hdr", "-o", "new"}, {"broken.hdr: "});
     fail({"export", "web", "mesh.obj", "white.hdr", "-o", "new"}, {"mesh.obj: expected"});
     fail({"export", "web", "scene.prt", "white.hdr", "-o", "mesh.obj"},
          {"mesh.obj: expected a folder"});

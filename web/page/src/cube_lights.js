@@ -75,9 +75,13 @@ export class CubeLights {
 
     #texels(face, x, y, width, height, shining) {
         const rgb = new Float32Array(3 * width * height);
+        const w = [0, 0, 0], onFace = onFaces[face];
         for (let j = 0, at = 0; j < height; ++j)
             for (let i = 0; i < width; ++i, at += 3) {
-                const w = directionOn(face, (x + i + 0.5) / this.resolution, (y + j + 0.5) / this.resolution);
+                const place = onFace(2 * (x + i + 0.5) / this.resolution - 1, 2 * (y + j + 0.5) / this.resolution - 1);
+                const scale = 1 / Math.sqrt(place[0] * place[0] + place[1] * place[1] + place[2] * place[2]);
+                for (let k = 0; k < 3; ++k)
+                    w[k] = scale * place[k];
                 for (const {coverage, radiance} of shining) {
                     const part = coverage(w);
                     if (part > 0)

@@ -14,7 +14,8 @@ function readExr(name, bytes) {
         loader.setDataType(FloatType);
         read = loader.parse(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength));
     } catch (error) {
-        throw new PageError(`${name} cannot be read: ${error.message ?? error}.`);
+        const reason = String(error.message ?? error).replace(/^THREE\.EXRLoader: /, '').replace(/\.$/, '');
+        throw new PageError(`${name} cannot be read: ${reason}.`);
     }
     const {width, height, data} = read;
     if (!(width > 0 && height > 0) || width * height > mostPixels)

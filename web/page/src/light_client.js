@@ -1,11 +1,10 @@
 // The page's side of the worker.
 import workerText from 'worker-text';
+import {WorkerCalls} from '../../package/worker_calls.js';
 import {PageError} from './assets.js';
 
 export class LightClient {
-    #worker;
-    #waiting = new Map();
-    #next = 0;
+    #calls;
     #isBusy = false;
     #wanted;
     #spare;
@@ -15,29 +14,11 @@ export class LightClient {
         this.onRadiance = onRadiance;
         this.onError = onError;
         const url = URL.createObjectURL(new Blob([workerText], {type: 'text/javascript'}));
-        this.#worker = new Worker(url);
+        this.#calls = new WorkerCalls(new Worker(url), ({message}) => new PageError(message));
         URL.revokeObjectURL(url);
-        this.#worker.onmessage = ({data: {id, answer, error}}) => {
-            const {resolve, reject} = this.#waiting.get(id);
-            this.#waiting.delete(id);
-            if (error === undefined)
-                resolve(answer);
-            else
-                reject(new PageError(error));
-        };
-        this.#worker.onerror = (event) => {
-            event.preventDefault();
-            this.onError(new PageError(`The light cannot be computed: ${event.message ?? 'the worker did not start'}.`));
-        };
     }
 
-    ask(operation, given, transferred = []) {
-        return new Promise((resolve, reject) => {
-            const id = this.#next++;
-            this.#waiting.set(id, {resolve, reject});
-            this.#worker.postMessage({id, operation, given}, transferred);
-        });
-    }
+    ask(operation, given, transferred = []) { return this.#calls.call(operation, given, transferred); }
 
     /** Asks for the light of a state. States that a newer one overtakes are left out. */
     want(state, isStep) {
@@ -68,5 +49,5 @@ export class LightClient {
     /** Whether no light is asked for that is not there. */
     get isSettled() { return !this.#isBusy && this.#wanted === undefined; }
 
-    end() { this.#worker.terminate(); }
+    end() { this.#calls.end('the page was closed'); }
 }

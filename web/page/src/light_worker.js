@@ -4,6 +4,7 @@
 // its texels cost, and a turn costs nothing of the lights. While something is dragged, bounces stay those of before;
 // the last state of a drag gets all of them.
 import {Relighter} from '../../package/relumine.js';
+import {answerCalls} from '../../package/worker_calls.js';
 import {CubeLights} from './cube_lights.js';
 import {TurnedEnvironment} from './turned_environment.js';
 
@@ -14,6 +15,7 @@ let wasm, scene;
 let base, extra;
 let environment, drawing;
 let now = {turn: undefined, lights: [], bounces: false, isStep: false};
+/** Each is {direct, bounced}: radiance of a lamp of gain 1; `bounced` is there if the scene has bounces. */
 let lampLights = [];
 
 async function opened() {
@@ -29,9 +31,29 @@ async function setLights(lights) {
         extra = await opened();
         drawing = new CubeLights(lightsResolution);
         extra.relighter.light({cubeMap: new Float32Array(18 * lightsResolution ** 2)});
+        warmUp(lights[0]);
     }
+    update(lights);
+}
+
+function update(lights) {
     for (const {face, x, y, width, height, rgb} of drawing.draw(lights))
         extra.relighter.update(face, x, y, width, height, rgb);
+}
+
+/**
+ * Drags a light around once, before anybody drags one: the first steps take five times as long as later ones, until the
+ * browser has compiled what they run for speed.
+ */
+function warmUp(light) {
+    const steps = 12, seen = new Float32Array(3 * extra.relighter.info.numReceivers);
+    for (let i = 0; i < steps; ++i) {
+        const angle = 2 * Math.PI * i / steps;
+        update([{...light, direction: [Math.sin(angle), 0.7, Math.cos(angle)]}]);
+        extra.radiance = extra.relighter.radiance(extra.radiance);
+        addTo(seen, extra.radiance);
+    }
+    update([]);
 }
 
 /** What the environment gives. Its runtime forgets bounces with each light, so those of before are kept here. */
@@ -118,7 +140,13 @@ const operations = {
             }
             addTo(target, extra.radiance);
         }
-        state.lamps.forEach((gain, k) => lampLights[k] && gain !== 0 && addTo(target, lampLights[k], gain));
+        state.lamps.forEach((gain, k) => {
+            const {direct, bounced} = lampLights[k] ?? {};
+            if (direct && gain !== 0)
+                addTo(target, direct, gain);
+            if (bounced && bounces && gain !== 0)
+                addTo(target, bounced, gain);
+        });
         now = {
             ...structuredClone(state), bounces, isTurnStep: isStep && (isTurned || now.isTurnStep === true),
             isDragStep: isStep && (isDragged || now.isDragStep === true),
@@ -135,14 +163,4 @@ const operations = {
     },
 };
 
-/** Typed arrays of an answer move to the page; they are not copied. */
-const buffersOf = (answer) => Object.values(answer).filter(ArrayBuffer.isView).map((array) => array.buffer);
-
-self.onmessage = async ({data: {id, operation, given}}) => {
-    try {
-        const answer = await operations[operation](given);
-        self.postMessage({id, answer}, buffersOf(answer));
-    } catch (error) {
-        self.postMessage({id, error: error.message ?? String(error)});
-    }
-};
+answerCalls(self, (operation, given) => operations[operation](given));

@@ -76,16 +76,17 @@ export function reachOf(light, grain) {
 }
 
 /** Solid angle times the cosine to a surface that faces the light, sr: what turns irradiance into radiance. */
-export function projectedAngle(light) {
-    const {forward, right, up} = frameOf(light);
-    const coverage = coverageOf(light), reach = Math.min(reachOf(light, 0), 89) * radians;
+function projectedAngle(light) {
+    const facing = {...light, direction: [0, 0, 1]};
+    const {right, up} = frameOf(facing);
+    const coverage = coverageOf(facing), reach = Math.min(reachOf(light, 0), 89) * radians;
     const steps = 48;
     let sum = 0;
     for (let i = 0; i < steps; ++i) {
         const angle = (i + 0.5) / steps * reach;
         for (let j = 0; j < steps; ++j) {
             const turn = (j + 0.5) / steps * 2 * Math.PI;
-            const w = forward.map((value, k) => value * Math.cos(angle) +
+            const w = [0, 0, Math.cos(angle)].map((value, k) => value +
                 Math.sin(angle) * (right[k] * Math.cos(turn) + up[k] * Math.sin(turn)));
             sum += coverage(w) * Math.cos(angle) * Math.sin(angle);
         }
@@ -93,8 +94,21 @@ export function projectedAngle(light) {
     return sum * (reach / steps) * (2 * Math.PI / steps);
 }
 
+// A light that is dragged keeps its shape, and the sum above takes as long as drawing the light.
+const knownAngles = new Map();
+
+function knownProjectedAngle(light) {
+    const shape = JSON.stringify([light.type, light.size, light.aspect, light.softness]);
+    if (!knownAngles.has(shape)) {
+        if (knownAngles.size === 64)
+            knownAngles.clear();
+        knownAngles.set(shape, projectedAngle(light));
+    }
+    return knownAngles.get(shape);
+}
+
 /** Radiance of the light's middle. Its power is the irradiance of a surface that faces it, whatever its size. */
 export function radianceOf(light) {
-    const scale = light.on ? light.power / projectedAngle(light) : 0;
+    const scale = light.on ? light.power / knownProjectedAngle(light) : 0;
     return kelvinColor(light.kelvin).map((value) => value * scale);
 }

@@ -93,10 +93,9 @@ class RelumineViewer extends HTMLElement {
         const first = manifest.environments[0];
         const picture = this.#environment(first.id);
         picture.catch(() => {});
-        const lamps = Promise.all(manifest.lamps.map(async ({file}) => {
-            const bytes = await this.#assets.bytes(file);
-            return halfNumbers(bytes);
-        }));
+        const numbers = async (file) => file && halfNumbers(await this.#assets.bytes(file));
+        const lamps = Promise.all(manifest.lamps.map(async ({file, bounced}) => (
+            {direct: await numbers(file), bounced: await numbers(bounced)})));
         lamps.catch(() => {});
         const opened = await this.#client.ask('open', {
             wasm: await wasm, scene: await this.#assets.bytes(manifest.scene), lamps: await lamps,
