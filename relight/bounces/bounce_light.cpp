@@ -23,7 +23,7 @@ namespace relumine::relight {
 namespace {
 
 /// Earlier steps that an accelerated one is combined with. Most scenes need fewer.
-constexpr std::size_t AndersonDepth = 5;
+constexpr std::size_t AndersonDepth = 9;
 
 /// More products than any scene needs whose light does not grow for ever.
 constexpr std::uint32_t MaxBounces = 1000;

@@ -66,7 +66,7 @@ class BounceLight {
 public:
     /// Matrix and transfer must outlive this object. Albedo is 0 at first.
     ///
-    /// Memory:  some 100 bytes per receiver, and 32 for each of the last six steps.
+    /// Memory:  some 100 bytes per receiver, and 32 for each of the last ten steps.
     /// Throws:  std::invalid_argument for a matrix of other receivers.
     ///
     /// Where processes share the rows, all call the same functions in the same order, with the same
