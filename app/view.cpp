@@ -16,6 +16,7 @@
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
+#include "relight/harmonics/harmonics.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
 #include "viewer/view.h"
@@ -65,6 +66,11 @@ viewer::Shading shading_of(const Scene& scene, std::span<const EmissionGain> gai
             .bias = scene.settings.bias};
 }
 
+viewer::Shading shading_of(const ProbeBalls& balls, const Scene& scene) {
+    return {
+        .albedo = balls.albedo(scene), .floor = balls.floor(scene), .bias = scene.settings.bias};
+}
+
 void report(const viewer::ViewReport& result, const viewer::ViewState& state, const LitScene& lit,
             const Session& session) {
     const std::vector<double>& seconds = result.drag_seconds;
@@ -110,7 +116,14 @@ void run(const Options& options, Session& session) {
         view.script = viewer::parse_script("wait 2", "--screenshot");
 
     LitScene lit = lit_scene(options.scene);
-    require_vertices(lit.scene(), options.scene.path);
+    const bool shows_points = lit.scene().receivers.num_points() != 0;
+    if (shows_points) {
+        SceneOptions with_harmonics = options.scene;
+        with_harmonics.harmonics = relight::MaxHarmonicOrder;
+        lit = lit_scene(Scene(lit.scene()), with_harmonics);
+    } else {
+        require_vertices(lit.scene(), options.scene.path);
+    }
     lit.dim(options.picture.emission);
     session.poll();
     const auto load = [&](const std::filesystem::path& path) {
@@ -126,12 +139,20 @@ void run(const Options& options, Session& session) {
               .rotation_degrees = options.environment.rotate_degrees});
     options.bounces.bounce(lit, {}, options.scene.path);
     viewer::LightDesk desk(lit);
-    viewer::ViewState state{.mesh = lit.scene().mesh,
-                            .rays = lit.rays().of_mesh(),
+    std::optional<ProbeBalls> balls;
+    std::optional<prt::RayScene> rays_of_balls;
+    if (shows_points) {
+        balls.emplace(lit.scene());
+        rays_of_balls.emplace(balls->mesh());
+    }
+    viewer::ViewState state{.mesh = balls ? balls->mesh() : lit.scene().mesh,
+                            .rays = balls ? *rays_of_balls : lit.rays().of_mesh(),
                             .desk = desk,
-                            .shading = shading_of(lit.scene(), options.picture.emission),
+                            .shading = balls ? shading_of(*balls, lit.scene())
+                                             : shading_of(lit.scene(), options.picture.emission),
                             .picture = options.picture,
                             .load_environment = load};
+    state.balls = balls ? &*balls : nullptr;
     state.eye_options = options.eye;
     if (has_live_highlights(lit.scene())) {
         state.live_eye = std::make_unique<LiveEye>(lit);

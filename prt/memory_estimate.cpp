@@ -66,6 +66,7 @@ Receivers trial_receivers(const Receivers& receivers) {
         for (std::size_t place = begin; place < end; ++place) {
             trial.positions.push_back(receivers.positions[order[place]]);
             trial.normals.push_back(receivers.normals[order[place]]);
+            trial.num_added += receivers.is_beside_points(order[place]) ? 1 : 0;
         }
     }
     return trial;

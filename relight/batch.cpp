@@ -51,7 +51,7 @@ void relight_batch(const Relighter& relighter, std::span<const cubemap::CubeMap>
                                                 radiance.size()));
     if (transfer.glossy)
         throw std::invalid_argument("expected receivers without highlights, got some with");
-    if (transfer.have_no_surface)
+    if (transfer.num_points != 0)
         throw std::invalid_argument("expected receivers on surfaces, got points in space");
     const BlockScene scene = relighter.receiver_light().block_scene();
     EnvironmentBinner binner = binner_of(relighter);

@@ -40,7 +40,7 @@ ReceiverLight::ReceiverLight(const prt::Transfer& transfer, const ShadowRays& ra
         throw std::invalid_argument(fmt::format("expected harmonics of order 1 to {}, got {}",
                                                 MaxHarmonicOrder, harmonics));
     // The light of points is the first coefficient.
-    if (harmonics != 0 || transfer.have_no_surface)
+    if (harmonics != 0 || transfer.num_points != 0)
         harmonics_.emplace(transfer, std::max(harmonics, 1u));
 }
 
@@ -51,8 +51,14 @@ std::size_t ReceiverLight::trace(std::span<const SharpLight> lights) {
     return num_fresh;
 }
 
+void ReceiverLight::write_points() {
+    write_means(true, radiance_);
+    if (!diffuse_.empty())
+        write_means(true, diffuse_);
+}
+
 void ReceiverLight::write_means(bool with_sharp_lights, std::span<glm::vec3> radiance) const {
-    files::parallel_for(std::size_t{0}, radiance.size(), [&](std::size_t place) {
+    files::parallel_for(std::size_t{0}, transfer_.num_points, [&](std::size_t place) {
         radiance[transfer_.order[place]] = harmonics_->mean(place, with_sharp_lights);
     });
 }
@@ -76,8 +82,8 @@ std::vector<glm::vec3> ReceiverLight::harmonics(bool with_sharp_lights) const {
 void ReceiverLight::sum(const ClusterSums& sums) {
     if (harmonics_)
         harmonics_->sum(block_scene(), sums);
-    if (transfer_.have_no_surface)
-        return write_means(true, radiance_);
+    if (!has_surfaces())
+        return write_points();
     files::parallel_for(files::IndexRange<std::size_t>(0, lights_.spread.size()),
                         [&](const auto& words) {
                             const std::size_t end = std::min(words.end() * 64, sums.all.size());
@@ -94,13 +100,14 @@ void ReceiverLight::sum(const ClusterSums& sums) {
             light_[block].brightness.set_summed(write_radiance(block));
         }
     });
+    write_points();
 }
 
 std::size_t ReceiverLight::update(const ClusterSums& sums, std::span<const std::uint32_t> changed,
                                   bool sharp_changed) {
     const std::size_t num_lit = harmonics_ ? harmonics_->update(block_scene(), sums, changed) : 0;
-    if (transfer_.have_no_surface) {
-        write_means(true, radiance_);
+    if (!has_surfaces()) {
+        write_points();
         return std::min((sharp_changed ? light_.size() : num_lit) * prt::BlockSize,
                         radiance_.size());
     }
@@ -143,6 +150,7 @@ std::size_t ReceiverLight::update(const ClusterSums& sums, std::span<const std::
             });
         });
     }
+    write_points();
     return std::min(num_blocks * prt::BlockSize, radiance_.size());
 }
 
@@ -203,12 +211,9 @@ double ReceiverLight::write_radiance(std::size_t block, bool with_sharp_lights,
 
 std::vector<glm::vec3> ReceiverLight::soft_radiance() const {
     std::vector<glm::vec3> radiance(radiance_.size());
-    if (transfer_.have_no_surface) {
-        write_means(false, radiance);
-        return radiance;
-    }
     files::parallel_for(std::size_t{0}, light_.size(),
                         [&](std::size_t block) { write_radiance(block, false, radiance, {}); });
+    write_means(false, radiance);
     return radiance;
 }
 

@@ -86,7 +86,9 @@ public:
 
 private:
     void light_glossy(std::size_t block);
+    [[nodiscard]] bool has_surfaces() const { return transfer_.num_points < radiance_.size(); }
     /// The radiance of points without a surface.
+    void write_points();
     void write_means(bool with_sharp_lights, std::span<glm::vec3> radiance) const;
     /// Returns the block's brightness.
     double write_radiance(std::size_t block);

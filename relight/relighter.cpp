@@ -309,18 +309,17 @@ void require_texels(const TexelRectangle& rectangle, std::span<const glm::vec3> 
 
 void bind_to(const prt::Transfer& transfer, std::span<const glm::vec3> radiance,
              std::span<glm::vec3> harmonics) {
-    if (transfer.have_no_surface)
-        return;
     const std::size_t count = harmonics.size() / radiance.size();
     constexpr std::size_t Grain = 256;
-    files::parallel_for(
-        files::IndexRange<std::size_t>(0, radiance.size(), Grain), [&](const auto& range) {
-            for (std::size_t place = range.begin(); place < range.end(); ++place) {
-                const std::size_t receiver = transfer.order[place];
-                bind_irradiance(harmonics.subspan(receiver * count, count), transfer.normals[place],
-                                glm::dvec3(radiance[receiver]) * std::numbers::pi);
-            }
-        });
+    files::parallel_for(files::IndexRange<std::size_t>(transfer.num_points, radiance.size(), Grain),
+                        [&](const auto& range) {
+                            for (std::size_t place = range.begin(); place < range.end(); ++place) {
+                                const std::size_t receiver = transfer.order[place];
+                                bind_irradiance(harmonics.subspan(receiver * count, count),
+                                                transfer.normals[place],
+                                                glm::dvec3(radiance[receiver]) * std::numbers::pi);
+                            }
+                        });
 }
 
 void put_texels(const TexelRectangle& rectangle, std::span<const glm::vec3> radiance,

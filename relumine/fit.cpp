@@ -36,7 +36,7 @@ void require_diffuse(const LitScene& lit) {
 
 void require_surfaces(const LitScene& lit) {
     require_diffuse(lit);
-    if (lit.scene().transfer.have_no_surface)
+    if (lit.scene().transfer.num_points != 0)
         throw std::invalid_argument("expected a scene of surfaces, got points in space");
 }
 

@@ -70,7 +70,7 @@ DominantLight dominant_light(std::span<const glm::vec3> light, const glm::vec3& 
 void add_directional_layers(const Scene& scene, std::span<const glm::vec3> light, std::size_t count,
                             relight::LayeredPicture& picture) {
     std::vector<glm::vec3> directions, weights;
-    for (std::size_t i = 0; i < scene.receivers.size(); ++i) {
+    for (std::size_t i = 0; i < scene.receivers.num_own(); ++i) {
         const DominantLight dominant =
             dominant_light(light.subspan(i * count, count), scene.receivers.normals[i]);
         directions.push_back(0.5f + 0.5f * dominant.direction);
@@ -126,7 +126,7 @@ files::Json probe_json(const Scene& scene, std::size_t index, std::span<const gl
 void save_three_json(const std::filesystem::path& path, const Scene& scene,
                      std::span<const glm::vec3> light, std::size_t count) {
     files::Json::Array probes;
-    for (std::size_t i = 0; i < scene.receivers.size(); ++i)
+    for (std::size_t i = 0; i < scene.receivers.num_own(); ++i)
         probes.push_back(probe_json(scene, i, light.subspan(i * count, count)));
     files::Json group = files::Json::Object();
     group.set("type", "Group");
@@ -169,11 +169,12 @@ void require_harmonics_path(const std::filesystem::path& path, const Scene& scen
 void save_harmonics(const LitScene& lit, const std::filesystem::path& path) {
     const Scene& scene = lit.scene();
     require_harmonics_path(path, scene);
-    const std::vector<glm::vec3> light = lit.harmonics();
+    std::vector<glm::vec3> light = lit.harmonics();
     const Lighting lighting = lit.lighting(false);
     if (light.empty())
         return; // the first process writes
     const std::size_t count = light.size() / scene.receivers.size();
+    light.resize(scene.receivers.num_own() * count);
     const std::string extension = files::extension_of(path);
     if (extension == ".npy")
         save_npy(path, light, count);

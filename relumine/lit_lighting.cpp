@@ -3,6 +3,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "prt/clusters/dealt_tiles.h"
 #include "relight/harmonics/harmonics.h"
 #include "relight/receiver_light.h"
 #include "relight/sharp/light_packets.h"
@@ -23,7 +24,8 @@ std::vector<glm::vec3> LitScene::harmonics() const {
     if (!bounces_.bounced().empty() || !lamps_.direct().empty()) {
         std::vector<glm::vec3> bounced(transfer.num_receivers(), glm::vec3(0.0f));
         add_surfaces(bounced);
-        for (std::size_t place = 0; place < transfer.num_receivers(); ++place) {
+        add_to_points(result);
+        for (std::size_t place = transfer.num_points; place < transfer.num_receivers(); ++place) {
             const std::uint32_t receiver = transfer.order[place];
             glm::dvec3 arriving(bounced[receiver]);
             // What surfaces send on, before their colours.
@@ -38,6 +40,20 @@ std::vector<glm::vec3> LitScene::harmonics() const {
         }
     }
     return team_->has_others() ? gathered(*team_, scene_->transfer.order, result, width) : result;
+}
+
+/// Adds what surfaces send to the coefficients of this process's points in space.
+void LitScene::add_to_points(std::span<glm::vec3> harmonics) const {
+    const prt::Transfer& transfer = relighter().transfer();
+    if (transfer.num_points == 0 || bounces_.bounced().empty())
+        return;
+    const std::size_t width = relight::num_harmonics(harmonics_);
+    const std::vector<glm::vec3> of_all = bounces_.point_harmonics(harmonics_);
+    const std::vector<std::uint32_t> places =
+        prt::places_of(team_->part(), scene_->transfer.num_receivers());
+    for (std::size_t place = 0; place < transfer.num_points; ++place)
+        for (std::size_t k = 0; k < width; ++k)
+            harmonics[transfer.order[place] * width + k] += of_all[places[place] * width + k];
 }
 
 /// The first process gets what all have.

@@ -175,7 +175,7 @@ public:
     /// Returns the light that arrives at the receivers as spherical harmonics (docs/harmonics.md),
     /// [num_receivers][order^2] in the receivers' order, for any normal. At a surface's own normal
     /// their irradiance is that of all light, bounces included; away from it the bounces count as
-    /// if they came from around the normal. Bounces do not reach points. Of processes that share
+    /// if they came from around the normal. Of processes that share
     /// the light, all call it; the first gets the light of all, the others get none.
     ///
     /// Throws:  std::logic_error before the first light() and without LightOptions::harmonics.
@@ -217,6 +217,7 @@ private:
     BounceReport find_bounces(bool is_step);
     void add_of_all(std::span<const glm::vec3> of_all, std::span<glm::vec3> own) const;
     void add_surfaces(std::span<glm::vec3> own) const;
+    void add_to_points(std::span<glm::vec3> harmonics) const;
     [[nodiscard]] std::vector<glm::vec3> of_all(std::span<const glm::vec3> own) const;
     void add_mirrored();
     void finish();

@@ -313,12 +313,13 @@ private:
     /// its own.
     void set_surfaces() {
         const mesh::TriangleMesh& mesh = scene_.mesh;
-        if (scene_.receivers.have_no_surface) {
-            if (!prt::lamps_of(mesh).empty())
-                note(work_, "points in space get no light from the scene's own lamps");
+        const std::size_t num_points = scene_.receivers.num_points();
+        if (num_points != 0 && !prt::lamps_of(mesh).empty())
+            note(work_, "points in space get no light from the scene's own lamps");
+        if (num_points == scene_.receivers.size())
             return;
-        }
-        scene_.lamps.lights = mesh.lights;
+        if (num_points == 0)
+            scene_.lamps.lights = mesh.lights;
         if (mesh.materials.empty() && !options_.surface && options_.floor_surface == prt::Surface())
             return;
         const std::size_t n = scene_.settings.floor_vertices;
@@ -330,7 +331,8 @@ private:
                     return options_.floor_surface;
                 return options_.surface ? options_.surface(of, triangle, own) : own;
             };
-        scene_.lamps = prt::lamps_of(mesh, surface_of);
+        if (num_points == 0)
+            scene_.lamps = prt::lamps_of(mesh, surface_of);
         if (const std::vector<std::string> names = scene_.lamps.names(); !names.empty())
             note(work_, fmt::format("lamps that --emission dims: {}",
                                     files::joined(std::span(names).first(
@@ -346,8 +348,8 @@ private:
         } else {
             const mesh::MipMaps maps(mesh.textures);
             const std::optional<prt::TextureView> view = texture_view(maps);
-            receivers.surfaces.clear();
-            for (const prt::MeshPoint& point : receivers.points)
+            receivers.surfaces.assign(num_points, prt::Surface());
+            for (const prt::MeshPoint& point : std::span(receivers.points).subspan(num_points))
                 receivers.surfaces.push_back(
                     surface_of(mesh, point.triangle,
                                prt::surface_at(mesh, point.triangle, point.barycentric, form,

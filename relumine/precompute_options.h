@@ -166,10 +166,10 @@ struct PrecomputeOptions {
     /// Relative error of a stored highlight under a small light anywhere
     float glossy_tolerance = prt::GlossyOptions{}.tolerance;
 
-    /// Light bounces from surface to surface; prt::BounceOptions::tolerance. None reaches points
-    /// and grids. 0: direct light alone. Empty: vertices that see other surfaces bounce light,
-    /// within 0.01. Surfaces send what their vertices have, so pixels and texels get the mesh's
-    /// vertices as receivers behind them (prt::Receivers::num_added).
+    /// Light bounces from surface to surface; prt::BounceOptions::tolerance. 0: direct light alone.
+    /// Empty: vertices that see other surfaces bounce light, within 0.01. Surfaces send what their
+    /// vertices have, so other receivers get the mesh's vertices behind them
+    /// (prt::Receivers::num_added).
     std::optional<float> bounce_tolerance = {};
     /// Backs of surfaces send the bounced light that their fronts do; otherwise they are black.
     bool two_sided_bounces = false;

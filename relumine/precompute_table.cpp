@@ -399,8 +399,6 @@ void check_points(const PrecomputeOptions& options) {
         return;
     if (options.view)
         throw OptionError("--view", "expected none with points, which no eye sees");
-    if (options.bounce_tolerance.value_or(0.0f) > 0.0f)
-        throw OptionError("--bounces", "expected none with points, which bounces do not reach");
 }
 
 void set_materials(PrecomputeOptions& options, std::span<const SurfaceMaterial> materials,

@@ -280,8 +280,6 @@ cubemap::CubeMap contribution_map(const LitScene& lit, std::span<const std::uint
 
 cubemap::CubeMap adjoint(const LitScene& lit, std::span<const glm::vec3> weights) {
     require_environment(lit);
-    if (lit.relighter().transfer().have_no_surface)
-        return relight::points_adjoint(lit.relighter(), weights);
     return relight::adjoint(lit.relighter(), weights, surfaces_of(lit));
 }
 

@@ -30,8 +30,8 @@ std::vector<glm::vec3> factors(const Scene& scene, const Albedo& albedo) {
 std::vector<glm::vec3> factors(const Scene& scene, const OutputOptions& options, Purpose purpose) {
     const bool is_shown = purpose == Purpose::Bounce ||
                           (purpose == Purpose::Show && prt::kind_of(scene.layout).are_seen);
-    // A point in space reflects nothing.
-    Albedo albedo = scene.receivers.have_no_surface ? Albedo(glm::vec3(1.0f)) : options.albedo;
+    const std::size_t num_points = scene.receivers.num_points();
+    Albedo albedo = num_points == scene.receivers.size() ? Albedo(glm::vec3(1.0f)) : options.albedo;
     if (std::holds_alternative<AutomaticAlbedo>(albedo)) {
         if (!is_shown || !scene.receivers.surfaces.empty())
             albedo = glm::vec3(1.0f);
@@ -47,6 +47,8 @@ std::vector<glm::vec3> factors(const Scene& scene, const OutputOptions& options,
         if (is_floor[i] &&
             (scene.receivers.surfaces.empty() || scene.receivers.surfaces[i] == prt::Surface()))
             result[i] = floor;
+    // A point in space reflects nothing.
+    std::fill_n(result.begin(), num_points, glm::vec3(1.0f));
     return result;
 }
 

@@ -63,7 +63,7 @@ public:
                 prt::look_from(scene_.receivers, scene_.settings.view->eye);
             }
             if (options_.bounce_tolerance.value_or(0.0f) > 0.0f &&
-                !scene_.receivers.points.empty()) {
+                !std::holds_alternative<Vertices>(options_.receivers)) {
                 prt::add_vertices(scene_.receivers, scene_.mesh);
                 note(work_, fmt::format("and {} vertices, from which light bounces",
                                         scene_.receivers.num_added));

@@ -39,12 +39,13 @@ std::optional<std::size_t> first_floor_vertex(const Scene& scene) {
 std::vector<bool> floor_receivers(const Scene& scene) {
     const std::optional<std::size_t> first = first_floor_vertex(scene);
     std::vector<bool> result;
-    if (!first || scene.receivers.have_no_surface)
+    if (!first)
         return result;
     const std::vector<prt::MeshPoint>& points = scene.receivers.points;
     for (std::size_t i = 0; i < scene.receivers.size(); ++i)
-        result.push_back((points.empty() ? i : scene.mesh.triangles[points[i].triangle][0]) >=
-                         *first);
+        result.push_back(i >= scene.receivers.num_points() &&
+                         (points.empty() ? i : scene.mesh.triangles[points[i].triangle][0]) >=
+                             *first);
     return result;
 }
 

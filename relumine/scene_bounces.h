@@ -52,6 +52,10 @@ public:
 
     /// [num_receivers] in the receivers' order; empty without bounces.
     [[nodiscard]] std::span<const glm::vec3> bounced() const { return bounced_; }
+    /// As relight::BounceLight::point_harmonics(); nothing without bounced().
+    [[nodiscard]] std::vector<glm::vec3> point_harmonics(std::uint32_t order) const {
+        return light_->point_harmonics(order);
+    }
     /// Whether more steps would change nothing that can be seen.
     [[nodiscard]] bool is_settled() const { return !is_set() || is_settled_; }
 

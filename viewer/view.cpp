@@ -46,7 +46,7 @@ Moment moment_of(const ViewState& state, const PixelRectangle& size) {
                   .radiance = {},
                   .lights = {},
                   .backdrop = {}};
-    Lighting lighting = state.desk.lit().lighting();
+    Lighting lighting = state.desk.lit().lighting(state.balls == nullptr);
     const Scene& scene = state.desk.lit().scene();
     const FloorLook look = floor_look(scene, lighting, state.picture);
     moment.open_floor = open_floor(scene, lighting, look, camera.eye());
@@ -59,7 +59,9 @@ Moment moment_of(const ViewState& state, const PixelRectangle& size) {
     }
     moment.lights = std::move(lighting.lights);
     moment.radiance = std::move(lighting.soft);
-    if (moment.lights.empty())
+    if (state.balls != nullptr)
+        moment.radiance = state.balls->radiance(state.desk.lit());
+    else if (moment.lights.empty())
         moment.radiance.assign(lighting.radiance.begin(), lighting.radiance.end());
     if (state.scene_look.background)
         moment.backdrop =
@@ -95,9 +97,14 @@ public:
         }
         if (const glm::vec3 eye = state.camera.eye(); is_relit || (state.live_eye && eye != eye_)) {
             eye_ = eye;
-            const std::span<const glm::vec3> seen =
-                state.live_eye ? state.live_eye->look(eye, state.eye_options) : lit.radiance();
-            std::vector<glm::vec3> colors(seen.begin(), seen.end());
+            std::vector<glm::vec3> colors;
+            if (state.balls != nullptr) {
+                colors = state.balls->radiance(lit);
+            } else {
+                const std::span<const glm::vec3> seen =
+                    state.live_eye ? state.live_eye->look(eye, state.eye_options) : lit.radiance();
+                colors.assign(seen.begin(), seen.end());
+            }
             for (std::size_t i = 0; i < colors.size(); ++i)
                 if (floor_.look == FloorLook::Grey || i < state.shading.floor.first_vertex)
                     colors[i] *= state.shading.albedo[i];

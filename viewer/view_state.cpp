@@ -107,7 +107,10 @@ void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec
     const int corner = weights.x >= weights.y && weights.x >= weights.z ? 0
                        : weights.y >= weights.z                         ? 1
                                                                         : 2;
-    state.receiver = state.mesh.triangles[hit->triangle][static_cast<std::size_t>(corner)];
+    const std::uint32_t vertex =
+        state.mesh.triangles[hit->triangle][static_cast<std::size_t>(corner)];
+    state.receiver = state.balls != nullptr ? state.balls->receiver_of(vertex) : vertex;
+    state.environment_look.heat = state.receiver.has_value();
     state.heat_is_stale = true;
 }
 
@@ -213,6 +216,9 @@ bool save_picture(ViewState& state, const PixelRectangle& viewport,
             throw std::runtime_error(fmt::format("{}: expected .png or .exr for a picture, got "
                                                  "'{}'",
                                                  path.string(), path.extension().string()));
+        if (state.balls != nullptr)
+            throw std::runtime_error("pictures are saved of scenes of vertices; --screenshot keeps "
+                                     "what the window shows of points");
         OutputOptions options = state.picture;
         options.camera = picture_camera(state.camera);
         options.width = static_cast<std::uint32_t>(std::max(viewport.width, 1));

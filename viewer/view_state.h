@@ -17,6 +17,7 @@
 #include "relight/pictures/picture_view.h"
 #include "relumine/live_eye.h"
 #include "relumine/output.h"
+#include "relumine/probe_balls.h"
 #include "relumine/questions.h"
 #include "viewer/gestures.h"
 #include "viewer/lat_long_view.h"
@@ -33,6 +34,7 @@ enum class Tool { Move, Paint, Lasso };
 enum class Click { Ask, Face, Mirror };
 
 struct ViewState {
+    /// What is drawn: the scene's mesh, or balls and the mesh.
     const mesh::TriangleMesh& mesh;
     const prt::RayScene& rays;
     LightDesk& desk;
@@ -76,6 +78,9 @@ struct ViewState {
     std::string message = {};
     bool message_is_error = false;
     double frame_seconds = 0.0;
+
+    /// Shows the points of the scene; null: its receivers are vertices.
+    const ProbeBalls* balls = nullptr;
 
     /// Highlights that follow the eye, and how finely; null: the scene has none.
     std::unique_ptr<LiveEye> live_eye = {};

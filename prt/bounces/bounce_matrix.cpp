@@ -33,11 +33,22 @@ void require_lists(const PlaceLists& lists, std::size_t num_receivers) {
 
 } // namespace
 
+void require_points(const PointRows& rows, std::size_t num_receivers) {
+    if (rows.num_points() * rows.num_directions != rows.emitters.size() ||
+        rows.num_points() > num_receivers)
+        throw std::invalid_argument("expected as many directions of each point");
+    for (const std::uint32_t place : rows.emitters)
+        if (place != NoEmitter && place >= num_receivers)
+            throw std::invalid_argument(fmt::format(
+                "expected bounces between {} receivers, got number {}", num_receivers, place));
+}
+
 void require_bounces(const BounceMatrix& matrix, std::size_t num_receivers) {
     if (matrix.num_rows() != num_receivers)
         throw std::invalid_argument(fmt::format("expected bounces of {} receivers, got {}",
                                                 num_receivers, matrix.num_rows()));
     require_lists(matrix.emitters, num_receivers);
+    require_points(matrix.points, num_receivers);
     std::vector<std::uint32_t> num_emitters;
     for (std::size_t place = 0; place < num_receivers; ++place)
         num_emitters.push_back(static_cast<std::uint32_t>(matrix.emitters[place].size()));

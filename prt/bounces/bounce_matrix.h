@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "prt/bounces/point_rows.h"
 #include "prt/team.h"
 
 namespace relumine::prt {
@@ -46,6 +47,8 @@ struct BounceMatrix {
     /// The largest eigenvalue: how much of the light a further bounce keeps at albedo 1. Light
     /// grows for ever at albedos of 1/spectral_radius and more.
     float spectral_radius = 0.0f;
+    /// Of points in space, whose own rows are empty.
+    PointRows points = {};
 
     [[nodiscard]] std::size_t num_rows() const { return weights.size(); }
     bool operator==(const BounceMatrix&) const = default;
@@ -54,6 +57,9 @@ struct BounceMatrix {
 /// Throws:  std::invalid_argument where the arrays contradict each other, a place is none of the
 ///          receivers, a weight is negative or not finite, or a row's sum is above 1.
 void require_bounces(const BounceMatrix& matrix, std::size_t num_receivers);
+
+/// Checks the rows of points as require_bounces() does.
+void require_points(const PointRows& rows, std::size_t num_receivers);
 
 /// Checks what require_bounces() does of all but the emitters, of which it takes the numbers.
 ///

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -68,6 +69,7 @@ public:
                        factors);
         require_memory(factors);
         look("more_bounces", 0.5, factors);
+        look_around(result);
         collect(result);
         return result;
     }
@@ -113,6 +115,36 @@ private:
         };
         progress_.start_stage(progress_before, progress_before + 0.5);
         do_blocks(work_, blocks, progress_);
+    }
+
+    /// Finds what points see, which come first among the part's places. It takes seconds where
+    /// vertices take minutes, so no checkpoint has it.
+    void look_around(BounceSamples& result) {
+        const auto num_points = static_cast<std::size_t>(
+            std::lower_bound(places_.begin(), places_.end(), transfer_.num_points) -
+            places_.begin());
+        if (num_points == 0)
+            return;
+        const std::vector<glm::dvec3> directions = even_directions(point_directions());
+        result.points.num_directions = point_directions();
+        result.points.emitters.resize(num_points * directions.size());
+        std::vector<std::uint64_t> num_rays(num_points);
+        const std::stop_token stop = work_.stop_in_step();
+        files::parallel_for(std::size_t{0}, num_points, [&](std::size_t i) {
+            if (stop.stop_requested())
+                return;
+            num_rays[i] =
+                sampler_.look_around(receiver(i), directions,
+                                     std::span(result.points.emitters)
+                                         .subspan(i * directions.size(), directions.size()));
+        });
+        if (stop.stop_requested())
+            throw Cancelled();
+        result.num_rays += std::accumulate(num_rays.begin(), num_rays.end(), std::uint64_t{0});
+    }
+
+    [[nodiscard]] std::uint32_t point_directions() const {
+        return num_point_directions(options_.tolerance);
     }
 
     /// Who shares samples with the part's receivers, of all there are.
@@ -168,7 +200,7 @@ private:
     }
 
     void require_memory(const std::vector<std::uint32_t>& factors) const {
-        std::uint64_t num_hits = 0;
+        std::uint64_t num_hits = std::uint64_t{transfer_.num_points} * point_directions();
         for (std::size_t i = 0; i < hits_.size(); ++i)
             num_hits += factors[i] * hits_[i].num_hits();
         if (num_hits * BytesPerHit > options_.max_bytes)

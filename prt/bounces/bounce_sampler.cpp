@@ -10,6 +10,7 @@
 #include "cubemap/face.h"
 #include "cubemap/frame.h"
 #include "cubemap/split_mix64.h"
+#include "prt/clusters/lattice.h"
 #include "prt/receivers/mesh_point.h"
 
 namespace relumine::prt {
@@ -18,6 +19,12 @@ namespace {
 
 /// Sets the choice of vertices apart from the shift of directions.
 constexpr std::uint64_t ChoiceSeed = 0x5851f42d4c957f2du;
+
+/// Returns what chooses a vertex, in [0, 1).
+double choice_of(std::uint32_t receiver, std::uint32_t direction) {
+    return cubemap::unit_interval(
+        cubemap::SplitMix64((std::uint64_t{receiver} << 32u | direction) ^ ChoiceSeed).next());
+}
 
 /// Cosine-distributed directions around a normal: Roberts' R2 sequence, shifted by the receiver, so
 /// that any beginning of it is stratified.
@@ -82,20 +89,38 @@ std::uint64_t BounceSampler::look(const PartReceiver& of_part, std::uint32_t num
     for (std::uint32_t i = begin; i < num_directions; ++i) {
         const glm::dvec3 direction = directions[i];
         const std::uint32_t leaf = transfer_.quadtree.leaf_at(cubemap::face_point(direction));
-        if (transfer_.counts.count(of_part.index, leaf) == 16)
+        if (transfer_.counts.count(of_part.index, leaf) == FullCount)
             continue;
         ++num_rays;
         const auto met = rays_.closest_hit(origin, glm::vec3(direction));
         if (!met)
             continue;
         const Hit hit = twins_.facing(*met, glm::vec3(direction));
-        const double choice = cubemap::unit_interval(
-            cubemap::SplitMix64((std::uint64_t{receiver} << 32u | i) ^ ChoiceSeed).next());
-        hits.halves[i % 2].push_back(emitter_of(hit, glm::vec3(direction), choice));
+        hits.halves[i % 2].push_back(emitter_of(hit, glm::vec3(direction), choice_of(receiver, i)));
         const MeshPoint at{hit.triangle, hit.barycentric};
         const auto distance =
             static_cast<double>(glm::distance(value_at(mesh_, mesh_.positions, at), origin));
         hits.sum_inverse_distances += 1.0 / distance;
+    }
+    return num_rays;
+}
+
+std::uint64_t BounceSampler::look_around(const PartReceiver& point,
+                                         std::span<const glm::dvec3> directions,
+                                         std::span<std::uint32_t> emitters) const {
+    const std::uint32_t receiver = transfer_.order[point.place];
+    const glm::vec3& origin = receivers_.positions[receiver];
+    std::uint64_t num_rays = 0;
+    for (std::uint32_t i = 0; i < directions.size(); ++i) {
+        emitters[i] = NoEmitter;
+        const std::uint32_t leaf = transfer_.quadtree.leaf_at(cubemap::face_point(directions[i]));
+        if (transfer_.counts.count(point.index, leaf) == FullCount)
+            continue;
+        ++num_rays;
+        const glm::vec3 direction(directions[i]);
+        if (const auto met = rays_.closest_hit(origin, direction))
+            emitters[i] =
+                emitter_of(twins_.facing(*met, direction), direction, choice_of(receiver, i));
     }
     return num_rays;
 }

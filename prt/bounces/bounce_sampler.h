@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -19,9 +18,6 @@
 #include "prt/visibility/twin_triangles.h"
 
 namespace relumine::prt {
-
-/// The column of a hit on a surface that radiates nothing.
-inline constexpr std::uint32_t NoEmitter = std::numeric_limits<std::uint32_t>::max();
 
 /// What a receiver's rays met.
 struct RayHits {
@@ -64,6 +60,13 @@ public:
     /// number of rays.
     std::uint64_t look(const PartReceiver& receiver, std::uint32_t num_directions,
                        RayHits& hits) const;
+
+    /// Finds what a point in space sees in each direction: the place of an emitter, or NoEmitter.
+    /// Returns the number of rays.
+    ///
+    /// Shape:   `emitters` as `directions`.
+    std::uint64_t look_around(const PartReceiver& point, std::span<const glm::dvec3> directions,
+                              std::span<std::uint32_t> emitters) const;
 
     /// Returns the squared standard error of one bounce under the worst of the probe lights, from
     /// the difference of the halves.

@@ -58,6 +58,29 @@ PlaceLists joined_averaged(std::span<BounceSamples> parts, const Receivers& rece
     return shared_samples(receivers, transfer, 0, n, distances, all);
 }
 
+/// Parts without points say nothing of directions.
+PointRows joined_points(std::span<BounceSamples> parts, std::size_t num_points) {
+    std::size_t width = 0;
+    for (const BounceSamples& part : parts)
+        width = std::max<std::size_t>(width, part.points.num_directions);
+    std::vector<std::size_t> num_own(parts.size());
+    for (std::size_t place = 0; place < num_points; ++place)
+        ++num_own[own_place(place, parts.size()).part];
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        require_samples(parts[i].points.emitters.size() == num_own[i] * width);
+    if (parts.size() == 1)
+        return std::move(parts[0].points);
+    PointRows joined{.num_directions = static_cast<std::uint32_t>(width)};
+    joined.emitters.reserve(num_points * width);
+    for (std::size_t place = 0; place < num_points; ++place) {
+        const OwnPlace own = own_place(place, parts.size());
+        const auto row =
+            std::span(parts[own.part].points.emitters).subspan(own.index * width, width);
+        joined.emitters.insert(joined.emitters.end(), row.begin(), row.end());
+    }
+    return joined;
+}
+
 } // namespace
 
 double closed_part(const glm::vec3& normal, float open_part) {
@@ -136,6 +159,7 @@ BounceMatrix join_bounces(const Receivers& receivers, const Transfer& transfer,
         found.mean_closure += closure / num_rows;
         found.num_hits += num_hits[place];
     }
+    result.points = joined_points(parts, transfer.num_points);
     result.spectral_radius = spectral_radius(result);
     found.num_emitters = result.emitters.places.size();
     found.mean_averaged = static_cast<double>(result.averaged.places.size()) / num_rows;

@@ -52,6 +52,8 @@ struct BounceSamples {
     /// Who shares samples. Empty for parts that know nothing of each other: join_bounces() finds
     /// it.
     std::optional<PlaceLists> averaged = {};
+    /// Of the points in space among the part's receivers.
+    PointRows points = {};
     std::uint64_t num_rays = 0;
     /// Sum of the squared standard errors over the receivers.
     double squared_errors = 0.0;

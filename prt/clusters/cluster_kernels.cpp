@@ -115,13 +115,13 @@ constexpr std::array<std::array<std::uint8_t, FullCount + 1>, FullCount + 1> vis
 
 } // namespace
 
-NormalArrays::NormalArrays(std::span<const glm::vec3> normals, bool have_no_surface) {
+NormalArrays::NormalArrays(std::span<const glm::vec3> normals, std::size_t num_points) {
     const std::size_t num_padded = (normals.size() + WordSize - 1) / WordSize * WordSize;
     x.resize(num_padded);
     y.resize(num_padded);
     z.resize(num_padded);
     w.resize(num_padded);
-    std::fill_n(w.begin(), normals.size(), have_no_surface ? 1.0f : 0.0f);
+    std::fill_n(w.begin(), num_points, 1.0f);
     for (std::size_t i = 0; i < normals.size(); ++i) {
         x[i] = normals[i].x;
         y[i] = normals[i].y;

@@ -23,7 +23,7 @@ namespace relumine::prt {
 struct NormalArrays {
     std::vector<float> x, y, z, w;
     NormalArrays() = default;
-    explicit NormalArrays(std::span<const glm::vec3> normals, bool have_no_surface = false);
+    explicit NormalArrays(std::span<const glm::vec3> normals, std::size_t num_points = 0);
     [[nodiscard]] std::size_t num_words() const { return x.size() / WordSize; }
 };
 

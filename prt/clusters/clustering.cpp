@@ -67,8 +67,7 @@ std::uint64_t bytes_of(const LeafColumn& column, double scale) {
 Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
                        const PrecomputeOptions& options, const Work& work,
                        const PrecomputeContext& context)
-    : options_(options), context_(context), work_(work),
-      have_no_surface_(receivers.have_no_surface),
+    : options_(options), context_(context), work_(work), num_points_(receivers.num_points()),
       order_(context.given != nullptr ? context.given->order : spatial_order(receivers)),
       progress_(work), steps_(
                            work, CheckpointPart, [this] { return content(); },
@@ -87,7 +86,9 @@ Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
         origins_.push_back(
             ray_origin(receivers.positions[order_[place]], normals.back(), options.bias));
     }
-    normals_ = NormalArrays(normals, receivers.have_no_surface);
+    const auto num_points = static_cast<std::size_t>(
+        std::lower_bound(places.begin(), places.end(), num_points_) - places.begin());
+    normals_ = NormalArrays(normals, num_points);
     const std::size_t num_words = (order_.size() + WordSize - 1) / WordSize;
     max_planes_ =
         static_cast<std::size_t>(options.plane_bytes / (num_words * sizeof(std::uint64_t)));
@@ -353,7 +354,7 @@ Transfer Clustering::result() {
             .order = std::move(order_),
             .normals = std::move(ordered_normals_),
             .counts = columns_->take(order),
-            .have_no_surface = have_no_surface_};
+            .num_points = num_points_};
 }
 
 } // namespace relumine::prt

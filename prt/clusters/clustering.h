@@ -65,7 +65,7 @@ private:
     const PrecomputeOptions& options_;
     const PrecomputeContext context_;
     const Work& work_;
-    bool have_no_surface_;
+    std::size_t num_points_;
     /// Of all receivers, as are the normals
     std::vector<std::uint32_t> order_;
     std::vector<glm::vec3> ordered_normals_;

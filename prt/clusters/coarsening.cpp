@@ -117,7 +117,7 @@ class Coarsening {
 public:
     Coarsening(const Transfer& transfer, const CoarsenOptions& options)
         : transfer_(transfer), counts_(transfer.counts), options_(options),
-          normals_(transfer.normals, transfer.have_no_surface),
+          normals_(transfer.normals, transfer.num_points),
           texel_level_(prt::texel_level(options.face_resolution)) {
         const double distance = static_cast<double>(options.tolerance) * std::numbers::pi;
         allowed_ = distance * distance * static_cast<double>(transfer.num_receivers());
@@ -378,7 +378,7 @@ Transfer Coarsening::run() const {
                     .counts = {},
                     .surfaces = transfer_.surfaces,
                     .glossy = transfer_.glossy,
-                    .have_no_surface = transfer_.have_no_surface};
+                    .num_points = transfer_.num_points};
     progress.start_stage(0.5, 1.0);
     const std::span<const Cell> cells = result.quadtree.leaves();
     ColumnStore store(transfer_.num_receivers());

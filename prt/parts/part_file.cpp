@@ -119,15 +119,18 @@ void add_light(NewSections& sections, const PartLight& light) {
         add_bounce_samples(sections, *light.bounces);
 }
 
-PartLight light_of(const SectionReader& reader, std::size_t num_own, const Transfer& transfer) {
+PartLight light_of(const SectionReader& reader, const Part& part, const Transfer& transfer) {
     PartLight light;
     VisibleCounts& counts = light.counts;
-    counts.num_receivers = num_own;
+    const std::vector<std::uint32_t> own = places_of(part, transfer.num_receivers());
+    const auto num_points = static_cast<std::size_t>(
+        std::lower_bound(own.begin(), own.end(), transfer.num_points) - own.begin());
+    counts.num_receivers = own.size();
     counts.num_leaves = transfer.num_clusters();
     read_counts(reader, counts);
     if (has_glossy(reader))
         light.glossy = read_glossy(reader, counts.num_blocks());
-    light.bounces = read_bounce_samples(reader, num_own, transfer.num_receivers());
+    light.bounces = read_bounce_samples(reader, own.size(), num_points, transfer.num_receivers());
     return light;
 }
 
@@ -196,7 +199,7 @@ std::uint64_t join_parts(std::span<const std::filesystem::path> paths,
     try {
         for (const std::optional<KnownPart>& part : parts) {
             const SectionReader reader(part->path);
-            light.push_back(light_of(reader, part->head.num_receivers, scene.transfer));
+            light.push_back(light_of(reader, part->head.part, scene.transfer));
             counts.add(reader, part->head.part, std::exchange(light.back().counts, {}));
         }
         join_highlights_and_bounces(scene, light);
@@ -224,9 +227,7 @@ std::vector<PartLight> gather_light(Team& team, const Scene& scene, PartLight&& 
         return {};
     for (std::uint32_t i = 1; i < of_all.size(); ++i) {
         const SectionReader reader("part", std::move(of_all[i]));
-        const Part part{i, team.part().count};
-        lights.push_back(light_of(reader, places_of(part, scene.transfer.num_receivers()).size(),
-                                  scene.transfer));
+        lights.push_back(light_of(reader, {i, team.part().count}, scene.transfer));
     }
     return lights;
 }

@@ -61,6 +61,7 @@ Receivers sample_of(const Receivers& receivers, std::span<const std::uint32_t> o
         for (std::size_t place = blocks.begin(block); place < blocks.end(block); ++place) {
             sample.positions.push_back(receivers.positions[order[place]]);
             sample.normals.push_back(receivers.normals[order[place]]);
+            sample.num_added += receivers.is_beside_points(order[place]) ? 1 : 0;
         }
     return sample;
 }
@@ -133,7 +134,7 @@ Transfer plan_clusters(const Receivers& receivers, const Blockers& blockers,
     Transfer sampled =
         precompute(sample_of(receivers, plan.order), blockers, for_sample, work, statistics);
     plan.quadtree = sampled.quadtree;
-    plan.have_no_surface = receivers.have_no_surface;
+    plan.num_points = receivers.num_points();
     for (const std::uint32_t receiver : plan.order)
         plan.normals.push_back(receivers.normals[receiver]);
     if (of_sample != nullptr)

@@ -57,16 +57,16 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     const Scene& whole = result.scene;
     const std::size_t num_receivers = whole.receivers.size();
     if (has_bounces(reader)) {
-        BounceRows rows = read_bounce_rows(reader, num_receivers, part);
+        BounceRows rows = read_bounce_rows(reader, whole.receivers, part);
         check_emitters(SceneCheck(path), whole, rows.matrix);
         result.scene.bounces = std::move(rows.matrix);
         result.bounces = {.first = rows.first, .num_emitters = std::move(rows.num_emitters)};
     }
     Transfer& transfer = result.transfer;
     transfer.quadtree = whole.transfer.quadtree;
-    transfer.have_no_surface = whole.transfer.have_no_surface;
     for (const std::uint32_t place : places_of(part, num_receivers)) {
         const std::uint32_t receiver = whole.transfer.order[place];
+        transfer.num_points += place < whole.transfer.num_points ? 1 : 0;
         result.receivers.push_back(receiver);
         result.positions.push_back(whole.receivers.positions[receiver]);
         transfer.order.push_back(static_cast<std::uint32_t>(transfer.order.size()));

@@ -110,7 +110,8 @@ std::vector<std::uint32_t> spatial_order(const Receivers& receivers) {
         }
     }
     const auto receives = [&](const Place& place) {
-        return receivers.normals[place.receiver] != glm::vec3(0.0f);
+        return place.receiver < receivers.num_points() ||
+               receivers.normals[place.receiver] != glm::vec3(0.0f);
     };
     const auto end_of_receiving = std::stable_partition(places.begin(), places.end(), receives);
     const auto end_of_own =

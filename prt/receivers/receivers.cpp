@@ -67,6 +67,7 @@ Receivers vertex_receivers(const mesh::TriangleMesh& mesh) {
 
 void add_vertices(Receivers& receivers, const mesh::TriangleMesh& mesh) {
     const Receivers vertices = vertex_receivers(mesh);
+    receivers.points.resize(receivers.size()); // points in space are not on the mesh
     std::vector<bool> is_added(mesh.num_vertices());
     for (std::uint32_t triangle = 0; triangle < mesh.num_triangles(); ++triangle)
         for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -76,6 +77,8 @@ void add_vertices(Receivers& receivers, const mesh::TriangleMesh& mesh) {
             is_added[vertex] = true;
             receivers.positions.push_back(vertices.positions[vertex]);
             receivers.normals.push_back(vertices.normals[vertex]);
+            if (!receivers.own_positions.empty())
+                receivers.own_positions.push_back(receivers.positions.back());
             receivers.points.push_back(
                 {.triangle = triangle,
                  .barycentric = {corner == 1 ? 1.0f : 0.0f, corner == 2 ? 1.0f : 0.0f}});

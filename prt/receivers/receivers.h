@@ -28,10 +28,10 @@ struct Receivers {
     std::vector<Surface> surfaces = {};
     /// [num_receivers] points on the mesh; empty: receivers are its vertices.
     std::vector<MeshPoint> points = {};
-    /// So many at the end are vertices of the mesh, which pixels or texels get bounced light from.
+    /// So many at the end are vertices of the mesh, which the others get bounced light from.
     std::size_t num_added = 0;
-    /// Points in space: no surface turns them, so their normals are zero and every direction of the
-    /// sphere counts, by 1 in place of a cosine.
+    /// Points in space, but for the added vertices: no surface turns them, so their normals are
+    /// zero and every direction of the sphere counts, by 1 in place of a cosine.
     bool have_no_surface = false;
     /// [num_own()] of pixels, or empty: nothing is seen through them. A sample has a receiver for
     /// each surface that its ray meets, nearest first.
@@ -43,6 +43,12 @@ struct Receivers {
     [[nodiscard]] std::size_t size() const { return positions.size(); }
     /// Those that were asked for come first: all but the added vertices.
     [[nodiscard]] std::size_t num_own() const { return size() - num_added; }
+    /// So many at the beginning have no surface.
+    [[nodiscard]] std::size_t num_points() const { return have_no_surface ? num_own() : 0; }
+    /// Whether a receiver is a vertex that points in space get bounced light from.
+    [[nodiscard]] bool is_beside_points(std::size_t receiver) const {
+        return have_no_surface && receiver >= num_own();
+    }
     /// Returns the positions that were asked for.
     [[nodiscard]] const std::vector<glm::vec3>& places() const {
         return own_positions.empty() ? positions : own_positions;
@@ -59,8 +65,8 @@ struct Receivers {
 /// the smooth surface.
 [[nodiscard]] Receivers vertex_receivers(const mesh::TriangleMesh& mesh);
 
-/// Adds the mesh's vertices that belong to triangles to receivers that are pixels or texels, so
-/// that these have something to get bounced light from. The vertices are Lambert, whatever the
+/// Adds the mesh's vertices that belong to triangles to receivers that are others, so that these
+/// have something to get bounced light from. The vertices are Lambert, whatever the
 /// surface. Surfaces must be empty.
 void add_vertices(Receivers& receivers, const mesh::TriangleMesh& mesh);
 

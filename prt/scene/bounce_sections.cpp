@@ -21,7 +21,8 @@ const std::string Radius = "bounce_radius", Weights = "bounce_weights",
                   EmitterSizes = "bounce_hits_size", Emitters = "bounce_hits",
                   AveragedSizes = "bounce_near_size", Averaged = "bounce_near",
                   OpenParts = "bounce_open", Distances = "bounce_distance",
-                  HitCounts = "bounce_rays_hit", Rays = "bounce_rays", Errors = "bounce_errors";
+                  HitCounts = "bounce_rays_hit", Rays = "bounce_rays", Errors = "bounce_errors",
+                  PointRays = "point_rays", PointHits = "point_hits";
 
 void add_lists(NewSections& sections, const std::string& size_name, const std::string& name,
                const PlaceLists& lists) {
@@ -106,6 +107,24 @@ void stream_lists(const SectionReader& reader, std::span<const std::uint32_t> si
         reader.fail(Emitters, "an end after the last list");
 }
 
+void add_points(NewSections& sections, const PointRows& points) {
+    if (points.num_directions == 0)
+        return;
+    sections[PointRays] = bytes_of(std::vector{points.num_directions});
+    sections[PointHits] = SectionContent::view(points.emitters);
+}
+
+PointRows read_points(const SectionReader& reader, std::size_t num_points) {
+    PointRows points;
+    if (num_points == 0)
+        return points;
+    points.num_directions = reader.elements<std::uint32_t>(PointRays, 1).front();
+    if (points.num_directions == 0)
+        reader.fail(PointRays, "a number of rays above 0");
+    points.emitters = reader.elements<std::uint32_t>(PointHits, num_points * points.num_directions);
+    return points;
+}
+
 } // namespace
 
 void add_bounce_sections(NewSections& sections, const BounceMatrix& matrix) {
@@ -113,32 +132,38 @@ void add_bounce_sections(NewSections& sections, const BounceMatrix& matrix) {
     sections[Weights] = SectionContent::view(matrix.weights);
     add_lists(sections, EmitterSizes, Emitters, matrix.emitters);
     add_lists(sections, AveragedSizes, Averaged, matrix.averaged);
+    add_points(sections, matrix.points);
 }
 
 bool has_bounces(const SectionReader& reader) {
     return reader.has(Weights);
 }
 
-std::optional<BounceMatrix> read_bounces(const SectionReader& reader, std::size_t num_receivers) {
+std::optional<BounceMatrix> read_bounces(const SectionReader& reader, const Receivers& receivers) {
     if (!has_bounces(reader))
         return std::nullopt;
+    const std::size_t num_receivers = receivers.size();
     BounceMatrix matrix;
     matrix.spectral_radius = reader.elements<float>(Radius, 1).front();
     matrix.weights = reader.elements<float>(Weights, num_receivers);
     matrix.emitters = read_lists(reader, EmitterSizes, Emitters, num_receivers, num_receivers);
     matrix.averaged = read_lists(reader, AveragedSizes, Averaged, num_receivers, num_receivers);
+    matrix.points = read_points(reader, receivers.num_points());
     return matrix;
 }
 
-BounceRows read_bounce_rows(const SectionReader& reader, std::size_t num_receivers,
+BounceRows read_bounce_rows(const SectionReader& reader, const Receivers& receivers,
                             const Part& part) {
+    const std::size_t num_receivers = receivers.size();
     BounceRows rows;
     BounceMatrix& matrix = rows.matrix;
     matrix.spectral_radius = reader.elements<float>(Radius, 1).front();
     matrix.weights = reader.elements<float>(Weights, num_receivers);
     matrix.averaged = read_lists(reader, AveragedSizes, Averaged, num_receivers, num_receivers);
     rows.num_emitters = reader.elements<std::uint32_t>(EmitterSizes, num_receivers);
+    matrix.points = read_points(reader, receivers.num_points());
     try {
+        require_points(matrix.points, num_receivers);
         require_rows(matrix, rows.num_emitters);
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(fmt::format("{}: {}", reader.path().string(), error.what()));
@@ -172,9 +197,11 @@ void add_bounce_samples(NewSections& sections, const BounceSamples& samples) {
     add_lists(sections, EmitterSizes, Emitters, samples.emitters);
     if (samples.averaged)
         add_lists(sections, AveragedSizes, Averaged, *samples.averaged);
+    add_points(sections, samples.points);
 }
 
 std::optional<BounceSamples> read_bounce_samples(const SectionReader& reader, std::size_t num_own,
+                                                 std::size_t num_own_points,
                                                  std::size_t num_receivers) {
     if (!reader.has(OpenParts))
         return std::nullopt;
@@ -187,6 +214,7 @@ std::optional<BounceSamples> read_bounce_samples(const SectionReader& reader, st
     samples.emitters = read_lists(reader, EmitterSizes, Emitters, num_own, num_receivers);
     if (reader.has(Averaged))
         samples.averaged = read_lists(reader, AveragedSizes, Averaged, num_own, num_receivers);
+    samples.points = read_points(reader, num_own_points);
     for (std::size_t i = 0; i < num_own; ++i)
         if (!(samples.distances[i] >= 0.0f && std::isfinite(samples.open_parts[i])) ||
             samples.emitters[i].size() > samples.num_hits[i])
@@ -215,11 +243,13 @@ void check_bounces(const SceneCheck& check, const Scene& scene) {
 void check_emitters(const SceneCheck& check, const Scene& scene, const BounceMatrix& matrix) {
     if (on_vertices(scene.layout))
         return;
-    for (const std::uint32_t place : matrix.emitters.places)
-        if (scene.transfer.order[place] < scene.receivers.num_own())
-            check.fail("light that comes from vertices",
-                       fmt::format("some from {} {}", kind_of(scene.layout).one,
-                                   scene.transfer.order[place]));
+    for (const std::vector<std::uint32_t>* places :
+         {&matrix.emitters.places, &matrix.points.emitters})
+        for (const std::uint32_t place : *places)
+            if (place != NoEmitter && scene.transfer.order[place] < scene.receivers.num_own())
+                check.fail("light that comes from vertices",
+                           fmt::format("some from {} {}", kind_of(scene.layout).one,
+                                       scene.transfer.order[place]));
 }
 
 const SectionGroup BounceSections = {
@@ -229,7 +259,7 @@ const SectionGroup BounceSections = {
                 add_bounce_sections(sections, *scene.bounces);
         },
     .read = [](const SectionReader& reader,
-               Scene& scene) { scene.bounces = read_bounces(reader, scene.receivers.size()); },
+               Scene& scene) { scene.bounces = read_bounces(reader, scene.receivers); },
     .check = check_bounces};
 
 } // namespace relumine::prt

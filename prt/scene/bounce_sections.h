@@ -18,7 +18,7 @@ void add_bounce_sections(NewSections& sections, const BounceMatrix& matrix);
 ///
 /// Throws:  as SectionReader.
 [[nodiscard]] std::optional<BounceMatrix> read_bounces(const SectionReader& reader,
-                                                       std::size_t num_receivers);
+                                                       const Receivers& receivers);
 
 /// Checks that light comes from vertices.
 void check_emitters(const SceneCheck& check, const Scene& scene, const BounceMatrix& matrix);
@@ -36,16 +36,19 @@ struct BounceRows {
 /// Reads the rows of a process from a scene file. The emitters are unpacked piece by piece.
 ///
 /// Throws:  as SectionReader, also where check_scene() would.
-[[nodiscard]] BounceRows read_bounce_rows(const SectionReader& reader, std::size_t num_receivers,
+[[nodiscard]] BounceRows read_bounce_rows(const SectionReader& reader, const Receivers& receivers,
                                           const Part& part);
 
 /// Adds the samples of a part of a plan.
 void add_bounce_samples(NewSections& sections, const BounceSamples& samples);
 
-/// Reads the samples of a part with `num_own` of the receivers. Empty where the file has none.
+/// Reads the samples of a part with `num_own` of the receivers, so many of them points in space.
+/// Empty where the file has none.
 ///
 /// Throws:  as SectionReader.
-[[nodiscard]] std::optional<BounceSamples>
-read_bounce_samples(const SectionReader& reader, std::size_t num_own, std::size_t num_receivers);
+[[nodiscard]] std::optional<BounceSamples> read_bounce_samples(const SectionReader& reader,
+                                                               std::size_t num_own,
+                                                               std::size_t num_own_points,
+                                                               std::size_t num_receivers);
 
 } // namespace relumine::prt

@@ -38,7 +38,7 @@ void read_clusters(const SectionReader& reader, Scene& scene) {
     Transfer& transfer = scene.transfer;
     const std::size_t num_receivers = scene.receivers.size();
     transfer.quadtree = read_tree(reader);
-    transfer.have_no_surface = scene.receivers.have_no_surface;
+    transfer.num_points = scene.receivers.num_points();
     transfer.order = reader.elements<std::uint32_t>(Order, num_receivers);
     std::vector<bool> seen(num_receivers);
     for (const std::uint32_t receiver : transfer.order) {

@@ -34,7 +34,7 @@ void check_fit(const ReceiverLayout& layout, const Receivers& receivers) {
         throw std::invalid_argument(
             fmt::format("expected receivers {} a surface, and no or {} positions of points",
                         kind_of(layout).have_surface ? "on" : "without", receivers.size()));
-    if (receivers.have_no_surface)
+    if (receivers.num_points() == receivers.size())
         return;
     if (receivers.normals.size() != receivers.size() || receivers.points.size() != receivers.size())
         throw std::invalid_argument(
@@ -98,7 +98,7 @@ void add_places(NewSections& sections, ReceiverLayout layout, const Receivers& r
     sections["r_positions"] = SectionContent::view(receivers.positions);
     if (!receivers.own_positions.empty())
         sections["r_own_positions"] = SectionContent::view(receivers.own_positions);
-    if (receivers.have_no_surface)
+    if (receivers.num_points() == receivers.size())
         return;
     sections["r_normals"] = SectionContent::view(receivers.normals);
     std::vector<std::uint32_t> triangles;
@@ -273,7 +273,7 @@ void check_receivers(const SceneCheck& check, const Scene& scene) {
     check.all("finite coordinates", receivers.positions, is_finite);
     check.all("finite coordinates of points", receivers.own_positions, is_finite);
     for (std::size_t i = 0; i < receivers.size(); ++i)
-        if ((receivers.have_no_surface || receivers.normals[i] != glm::vec3(0.0f)) &&
+        if ((i < receivers.num_points() || receivers.normals[i] != glm::vec3(0.0f)) &&
             !can_start_rays(scene, receivers.positions[i]))
             check.fail(expected_place(scene), SceneCheck::text_of(receivers.positions[i]));
     if (const Camera* camera = own_camera(scene.layout))
@@ -302,12 +302,11 @@ void add_receivers(NewSections& sections, const Scene& scene) {
     add_table_numbers(sections, scene);
 }
 
-void read_points_in_space(const SectionReader& reader, std::size_t num_own, Receivers& receivers) {
-    if (receivers.size() != num_own)
-        reader.fail("r_positions", "the layout's receivers");
+void read_points_in_space(const SectionReader& reader, Receivers& receivers) {
     receivers.have_no_surface = true;
-    receivers.normals.resize(num_own, glm::vec3(0.0f));
-    receivers.own_positions = reader.elements<glm::vec3>("r_own_positions", num_own, true);
+    receivers.own_positions = reader.elements<glm::vec3>("r_own_positions", receivers.size(), true);
+    if (receivers.num_added == 0)
+        receivers.normals.resize(receivers.size(), glm::vec3(0.0f));
 }
 
 /// A file without a layout has vertices.
@@ -341,10 +340,6 @@ void read_receivers(const SectionReader& reader, Scene& scene) {
         const std::size_t num_own = places(scene.layout).size();
         receivers.positions = reader.elements<glm::vec3>("r_positions");
         const std::size_t count = receivers.size();
-        if (!kind_of(scene.layout).have_surface) {
-            read_points_in_space(reader, num_own, receivers);
-            return;
-        }
         // A plan has no bounces yet.
         const bool may_bounce = has_bounces(reader) || reader.has("plan");
         const std::size_t most_added = may_bounce ? mesh.num_vertices() : 0;
@@ -352,8 +347,15 @@ void read_receivers(const SectionReader& reader, Scene& scene) {
             reader.fail("r_positions",
                         "the layout's receivers, and no more vertices than there are");
         receivers.num_added = count - num_own;
+        if (!kind_of(scene.layout).have_surface)
+            read_points_in_space(reader, receivers);
+        if (receivers.num_points() == count)
+            return;
         receivers.normals = reader.elements<glm::vec3>("r_normals", count);
         receivers.points = read_points(reader, count, mesh);
+        for (std::size_t i = 0; i < receivers.num_points(); ++i)
+            if (receivers.normals[i] != glm::vec3(0.0f))
+                reader.fail("r_normals", "no normals of points in space");
     }
     receivers.to_eye = reader.elements<glm::vec3>("r_to_eye", receivers.size(), true);
     receivers.surfaces = read_surfaces(reader, receivers.size());

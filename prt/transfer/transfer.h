@@ -34,8 +34,8 @@ struct Transfer {
     std::vector<Surface> surfaces = {};
     /// The view-dependent part; present only with surfaces.
     std::optional<GlossyTransfer> glossy = {};
-    /// As Receivers::have_no_surface: T_C(x) = c(x, C)/16 / pi.
-    bool have_no_surface = false;
+    /// So many places at the beginning are points without a surface: T_C(x) = c(x, C)/16 / pi.
+    std::size_t num_points = 0;
 
     [[nodiscard]] std::size_t num_receivers() const { return order.size(); }
     [[nodiscard]] std::size_t num_clusters() const { return quadtree.num_leaves(); }

@@ -13,6 +13,7 @@
 #include "files/parallel.h"
 #include "prt/clusters/lattice.h"
 #include "relight/adjoint/adjoint_kernel.h"
+#include "relight/adjoint/harmonic_adjoint.h"
 #include "relight/adjoint/word_ranges.h"
 #include "relight/receiver_light.h"
 
@@ -148,16 +149,23 @@ void require_environment(const Relighter& relighter) {
         throw std::invalid_argument("expected an environment, got none");
 }
 
+void add(const LightDerivative& part, LightDerivative& sum) {
+    sum.clusters.resize(part.clusters.size());
+    sum.sharp.resize(part.sharp.size());
+    for (std::size_t i = 0; i < part.clusters.size(); ++i)
+        sum.clusters[i] += part.clusters[i];
+    for (std::size_t i = 0; i < part.sharp.size(); ++i)
+        sum.sharp[i] += part.sharp[i];
+}
+
 LightDerivative light_derivative(const Relighter& relighter, std::span<const glm::vec3> weights) {
     const prt::Transfer& transfer = relighter.transfer();
-    if (transfer.have_no_surface)
-        throw std::invalid_argument("expected receivers on surfaces, got points in space");
     const ReceiverLight& light = relighter.receiver_light();
     const ClusterLights& lights = light.cluster_lights();
     const std::span<const prt::Cell> cells = transfer.quadtree.leaves();
     require_weights(weights, transfer.num_receivers());
-    std::vector<glm::vec3> by_place(weights.size());
-    for (std::size_t place = 0; place < by_place.size(); ++place)
+    std::vector<glm::vec3> by_place(weights.size(), glm::vec3(0.0f));
+    for (std::size_t place = transfer.num_points; place < by_place.size(); ++place)
         by_place[place] = weights[transfer.order[place]];
 
     ClusterWeights sums = summed_weights(light.block_scene(), gates_of(lights, cells),
@@ -215,7 +223,12 @@ cubemap::CubeMap adjoint(const Relighter& relighter, std::span<const glm::vec3> 
         for (std::size_t i = 0; i < direct.size(); ++i)
             direct[i] += bounced[i];
     }
-    return by_texels(relighter, light_derivative(relighter, direct));
+    LightDerivative derivative;
+    if (transfer.num_points < transfer.num_receivers())
+        derivative = light_derivative(relighter, direct);
+    if (transfer.num_points != 0)
+        add(points_derivative(relighter, direct), derivative);
+    return by_texels(relighter, derivative);
 }
 
 cubemap::CubeMap by_texels(const Relighter& relighter, const LightDerivative& derivative) {

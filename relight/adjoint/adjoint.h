@@ -26,14 +26,17 @@ struct LightDerivative {
     std::vector<glm::dvec3> given_by_sharp;
 };
 
-/// Returns the derivative by light, given the derivative by diffuse_radiance(): the walk of a
-/// relight, backwards. docs/operator.md says where light is not linear, and what counts there.
+/// Adds the derivatives by light, not what is given by it. A sum of nothing may be empty.
+void add(const LightDerivative& part, LightDerivative& sum);
+
+/// Returns the derivative by light, given the derivative by diffuse_radiance() of surfaces: the
+/// walk of a relight, backwards. Weights of points in space count nothing here. docs/operator.md
+/// says where light is not linear, and what counts there.
 ///
 /// Shape:   weights is [num_receivers] in the receivers' own order.
 /// Cost:    about a relight without the binning.
 /// Threads: parallel; the same bits for any number of threads.
-/// Throws:  std::invalid_argument for another number of weights, weights that are not finite, and
-///          points in space.
+/// Throws:  std::invalid_argument for another number of weights, and weights that are not finite.
 [[nodiscard]] LightDerivative light_derivative(const Relighter& relighter,
                                                std::span<const glm::vec3> weights);
 

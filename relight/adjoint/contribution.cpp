@@ -110,11 +110,12 @@ struct Given {
     std::vector<glm::dvec3> by_sharp;
 };
 
-/// Returns the places of the receivers that have a weight.
+/// Returns the places of the receivers that have a weight, of `begin` to `end`.
 std::vector<std::size_t> weighted_places(std::span<const std::uint32_t> order,
-                                         std::span<const glm::vec3> weights) {
+                                         std::span<const glm::vec3> weights, std::size_t begin,
+                                         std::size_t end) {
     std::vector<std::size_t> places;
-    for (std::size_t place = 0; place < order.size(); ++place)
+    for (std::size_t place = begin; place < end; ++place)
         if (weights[order[place]] != glm::vec3(0.0f))
             places.push_back(place);
     return places;
@@ -125,7 +126,8 @@ Given given_to_points(const Relighter& relighter, std::span<const glm::vec3> wei
     const ReceiverLight& light = relighter.receiver_light();
     const std::span<const std::uint32_t> order = relighter.transfer().order;
     const std::span<const SharpLight> sharp = relighter.sharp_lights();
-    const std::vector<std::size_t> places = weighted_places(order, weights);
+    const std::vector<std::size_t> places =
+        weighted_places(order, weights, 0, relighter.transfer().num_points);
     Given given{std::vector<glm::dvec3>(relighter.transfer().num_clusters()),
                 std::vector<glm::dvec3>(sharp.size())};
     files::parallel_for(std::size_t{0}, given.by_clusters.size(), [&](std::size_t cluster) {
@@ -205,17 +207,31 @@ Given given_to_few(const Relighter& relighter, std::span<const glm::vec3> weight
     return given;
 }
 
-Given given_to(const Relighter& relighter, std::span<const glm::vec3> weights) {
-    if (relighter.transfer().have_no_surface)
-        return given_to_points(relighter, weights);
+Given given_to_surfaces(const Relighter& relighter, std::span<const glm::vec3> weights) {
+    const prt::Transfer& transfer = relighter.transfer();
     // So many cost less than a walk through the whole transfer.
     constexpr std::size_t Few = 64;
     if (const std::vector<std::size_t> places =
-            weighted_places(relighter.transfer().order, weights);
+            weighted_places(transfer.order, weights, transfer.num_points, transfer.num_receivers());
         places.size() <= Few)
         return given_to_few(relighter, weights, places);
     LightDerivative derivative = light_derivative(relighter, weights);
     return {std::move(derivative.given_by_clusters), std::move(derivative.given_by_sharp)};
+}
+
+Given given_to(const Relighter& relighter, std::span<const glm::vec3> weights) {
+    const prt::Transfer& transfer = relighter.transfer();
+    if (transfer.num_points == transfer.num_receivers())
+        return given_to_points(relighter, weights);
+    Given given = given_to_surfaces(relighter, weights);
+    if (transfer.num_points == 0)
+        return given;
+    const Given more = given_to_points(relighter, weights);
+    for (std::size_t i = 0; i < more.by_clusters.size(); ++i)
+        given.by_clusters[i] += more.by_clusters[i];
+    for (std::size_t i = 0; i < more.by_sharp.size(); ++i)
+        given.by_sharp[i] += more.by_sharp[i];
+    return given;
 }
 
 } // namespace

@@ -68,12 +68,11 @@ VectorIrradiance by_light(const double* weights, std::size_t count, const glm::d
 
 /// Sums the weights of all receivers into clusters. A thread has words of clusters.
 HarmonicSums summed_weights(const ReceiverLight& light, const HarmonicWeights& weights) {
-    const float above = light.harmonic_light()->part_above();
     const BlockScene scene = light.block_scene();
     const ClusterHarmonics& lights = light.harmonic_light()->lights();
     HarmonicSums sums(lights);
     for_word_ranges(scene.counts, [&](std::size_t first, std::size_t last) {
-        add_receivers(scene, first, last, lights, above, weights, sums);
+        add_receivers(scene, first, last, lights, weights, sums);
     });
     for (std::size_t i = lights.stride(); i < sums.whole_steps.size(); ++i)
         sums.whole_steps[i] += sums.whole_steps[i - lights.stride()];
@@ -151,9 +150,23 @@ std::vector<glm::vec3> take_bound(const prt::Transfer& transfer, std::span<glm::
     return bound;
 }
 
-/// Adds what the bound values have of direct light and of bounces.
-void add_bound(const Relighter& relighter, std::vector<glm::vec3> bound,
-               const SurfaceBounces* bounces, LightDerivative& sum) {
+/// Returns the weights of points in space by place, [num_points][order^2].
+std::vector<glm::vec3> weights_of_points(const prt::Transfer& transfer,
+                                         std::span<const glm::vec3> weights) {
+    const std::size_t count = weights.size() / transfer.num_receivers();
+    std::vector<glm::vec3> result;
+    result.reserve(transfer.num_points * count);
+    for (std::size_t place = 0; place < transfer.num_points; ++place) {
+        const auto own = weights.subspan(transfer.order[place] * count, count);
+        result.insert(result.end(), own.begin(), own.end());
+    }
+    return result;
+}
+
+/// Adds what surfaces give to the bound values and to points: of direct light and of bounces.
+void add_surfaces(const Relighter& relighter, std::vector<glm::vec3> bound,
+                  std::span<const glm::vec3> of_points, const SurfaceBounces* bounces,
+                  LightDerivative& sum) {
     const prt::Transfer& transfer = relighter.transfer();
     if (bounces != nullptr) {
         // A black surface shows no bounces, so its coefficients have none.
@@ -162,15 +175,13 @@ void add_bound(const Relighter& relighter, std::vector<glm::vec3> bound,
             for (int channel = 0; channel < 3; ++channel)
                 if (!(transfer.surfaces[place].albedo[channel] > 0.0f))
                     of_bounces[transfer.order[place]][channel] = 0.0f;
-        const std::vector<glm::vec3> more = bounce_adjoint(*bounces, transfer, of_bounces);
+        const std::vector<glm::vec3> more =
+            bounce_adjoint(*bounces, transfer, of_bounces, of_points);
         for (std::size_t i = 0; i < bound.size(); ++i)
             bound[i] += more[i];
     }
-    const LightDerivative own = light_derivative(relighter, bound);
-    for (std::size_t i = 0; i < own.clusters.size(); ++i)
-        sum.clusters[i] += own.clusters[i];
-    for (std::size_t i = 0; i < own.sharp.size(); ++i)
-        sum.sharp[i] += own.sharp[i];
+    if (transfer.num_points < transfer.num_receivers())
+        add(light_derivative(relighter, bound), sum);
 }
 
 } // namespace
@@ -209,25 +220,23 @@ cubemap::CubeMap harmonics_adjoint(const Relighter& relighter, std::span<const g
                                    const SurfaceBounces* bounces) {
     require_environment(relighter);
     require_coefficients(relighter, weights);
-    if (relighter.transfer().have_no_surface)
-        return by_texels(relighter, unbound_derivative(relighter, weights));
+    const prt::Transfer& transfer = relighter.transfer();
     std::vector<glm::vec3> unbound(weights.begin(), weights.end());
-    std::vector<glm::vec3> bound = take_bound(relighter.transfer(), unbound);
+    std::vector<glm::vec3> bound = take_bound(transfer, unbound);
     LightDerivative derivative = unbound_derivative(relighter, unbound);
-    add_bound(relighter, std::move(bound), bounces, derivative);
+    add_surfaces(relighter, std::move(bound), weights_of_points(transfer, unbound), bounces,
+                 derivative);
     return by_texels(relighter, derivative);
 }
 
-cubemap::CubeMap points_adjoint(const Relighter& relighter, std::span<const glm::vec3> weights) {
-    require_environment(relighter);
-    if (!relighter.transfer().have_no_surface)
-        throw std::invalid_argument("expected points in space, got receivers on surfaces");
-    require_weights(weights, relighter.transfer().num_receivers());
+LightDerivative points_derivative(const Relighter& relighter, std::span<const glm::vec3> weights) {
+    const prt::Transfer& transfer = relighter.transfer();
+    require_weights(weights, transfer.num_receivers());
     const std::size_t count = num_harmonics(relighter.receiver_light().harmonic_order());
     std::vector<glm::vec3> first(weights.size() * count, glm::vec3(0.0f));
-    for (std::size_t i = 0; i < weights.size(); ++i)
-        first[i * count] = mean_radiance(weights[i]);
-    return by_texels(relighter, unbound_derivative(relighter, first));
+    for (std::size_t place = 0; place < transfer.num_points; ++place)
+        first[transfer.order[place] * count] = mean_radiance(weights[transfer.order[place]]);
+    return unbound_derivative(relighter, first);
 }
 
 } // namespace relumine::relight

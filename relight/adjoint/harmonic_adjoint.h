@@ -30,11 +30,11 @@ namespace relumine::relight {
                                                  std::span<const glm::vec3> weights,
                                                  const SurfaceBounces* bounces = nullptr);
 
-/// adjoint() of points in space, whose radiance() is a mean over the sphere. No light bounces to
-/// them.
+/// Returns the derivative by light, given the derivative by diffuse_radiance() of points in space,
+/// which is a mean over the sphere. Weights of surfaces count nothing here.
 ///
-/// Throws:  std::invalid_argument as adjoint(), and for receivers on surfaces.
-[[nodiscard]] cubemap::CubeMap points_adjoint(const Relighter& relighter,
-                                              std::span<const glm::vec3> weights);
+/// Shape:   weights is [num_receivers] in the receivers' own order.
+[[nodiscard]] LightDerivative points_derivative(const Relighter& relighter,
+                                                std::span<const glm::vec3> weights);
 
 } // namespace relumine::relight

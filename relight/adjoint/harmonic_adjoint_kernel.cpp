@@ -85,13 +85,17 @@ struct GroupSums {
 
 /// Returns the part of a group that is above the receivers' horizons, as light_harmonics() has it.
 HWY_INLINE Floats part_above(const HarmonicGroup& group, const BlockNormals& normals,
-                             std::size_t lane, float middle_above) {
+                             std::size_t lane) {
     const Lane d;
-    auto above = hn::Set(d, middle_above);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        above = hn::MulAdd(hn::LoadU(d, normals.axes[axis].data() + lane),
-                           hn::Set(d, group.slope[axis]), above);
-    return hn::Min(hn::Max(above, hn::Zero(d)), hn::Set(d, 1.0f));
+    auto above = hn::Set(d, 0.5f);
+    auto squares = hn::Zero(d);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto normal = hn::LoadU(d, normals.axes[axis].data() + lane);
+        squares = hn::MulAdd(normal, normal, squares);
+        above = hn::MulAdd(normal, hn::Set(d, group.slope[axis]), above);
+    }
+    above = hn::Min(hn::Max(above, hn::Zero(d)), hn::Set(d, 1.0f));
+    return hn::IfThenElse(hn::Eq(squares, hn::Zero(d)), hn::Set(d, 1.0f), above);
 }
 
 /// Adds a block to the clusters of a group. `basis` is the group's, `flux` the word's first
@@ -138,7 +142,7 @@ HWY_INLINE void add_block(const BlockPairs& pairs, std::uint64_t of_group, Float
 /// Adds the pairs of a tile and a word, group by group.
 template<std::size_t Count>
 void add_pairs(const BlockScene& scene, std::size_t begin, std::size_t w, const TilePairs& tile,
-               const ClusterHarmonics& lights, float middle_above, const HarmonicWeights& weights,
+               const ClusterHarmonics& lights, const HarmonicWeights& weights,
                GroupSums<Count>& scratch, HarmonicSums& sums) {
     const std::size_t cluster = w * WordClusters;
     for (std::uint64_t rest = tile.clusters; rest != 0;) {
@@ -156,8 +160,7 @@ void add_pairs(const BlockScene& scene, std::size_t begin, std::size_t w, const 
                 return;
             for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Lane()))
                 add_block<Count>(
-                    pairs, of_group,
-                    part_above(group, scene.normals[begin + block], lane, middle_above), lane,
+                    pairs, of_group, part_above(group, scene.normals[begin + block], lane), lane,
                     weights.lanes.data() + (begin + block) * 3 * Count * prt::BlockSize,
                     lights.bases().data() + index * 3 * Count, lights.fluxes().data() + cluster * 3,
                     scratch);
@@ -187,8 +190,8 @@ void add_runs(std::uint64_t edges, std::uint64_t visible, const double* whole, s
 /// Adds a tile to the clusters of words [first_word, last_word).
 template<std::size_t Count>
 void add_tile(const BlockScene& scene, std::size_t tile_index, std::size_t first_word,
-              std::size_t last_word, const ClusterHarmonics& lights, float above,
-              const HarmonicWeights& weights, GroupSums<Count>& scratch, HarmonicSums& sums) {
+              std::size_t last_word, const ClusterHarmonics& lights, const HarmonicWeights& weights,
+              GroupSums<Count>& scratch, HarmonicSums& sums) {
     const prt::VisibleCounts& counts = scene.counts;
     const std::size_t begin = counts.tile_begin(tile_index);
     const TileWord* words = scene.words.words.data() + tile_index * counts.words_per_block();
@@ -221,30 +224,29 @@ void add_tile(const BlockScene& scene, std::size_t tile_index, std::size_t first
             pairs.has_pairs |= std::uint64_t{1} << block;
             pairs.clusters |= of_block.mixed | of_block.across;
         });
-        add_pairs<Count>(scene, begin, w, pairs, lights, above, weights, scratch, sums);
+        add_pairs<Count>(scene, begin, w, pairs, lights, weights, scratch, sums);
     }
 }
 
 template<std::size_t Count>
 void add_tiles(const BlockScene& scene, std::size_t first_word, std::size_t last_word,
-               const ClusterHarmonics& lights, float above, const HarmonicWeights& weights,
-               HarmonicSums& sums) {
+               const ClusterHarmonics& lights, const HarmonicWeights& weights, HarmonicSums& sums) {
     GroupSums<Count> scratch;
     for (std::size_t tile = 0; tile < scene.counts.num_tiles(); ++tile)
-        add_tile<Count>(scene, tile, first_word, last_word, lights, above, weights, scratch, sums);
+        add_tile<Count>(scene, tile, first_word, last_word, lights, weights, scratch, sums);
 }
 
 } // namespace
 
 void add_by_order(const BlockScene& scene, std::size_t first_word, std::size_t last_word,
-                  const ClusterHarmonics& lights, float above, const HarmonicWeights& weights,
+                  const ClusterHarmonics& lights, const HarmonicWeights& weights,
                   HarmonicSums& sums) {
     if (lights.order() == 1)
-        add_tiles<1>(scene, first_word, last_word, lights, above, weights, sums);
+        add_tiles<1>(scene, first_word, last_word, lights, weights, sums);
     else if (lights.order() == 2)
-        add_tiles<4>(scene, first_word, last_word, lights, above, weights, sums);
+        add_tiles<4>(scene, first_word, last_word, lights, weights, sums);
     else
-        add_tiles<9>(scene, first_word, last_word, lights, above, weights, sums);
+        add_tiles<9>(scene, first_word, last_word, lights, weights, sums);
 }
 
 } // namespace relumine::relight::HWY_NAMESPACE
@@ -258,10 +260,10 @@ HWY_EXPORT(add_by_order);
 } // namespace
 
 void add_receivers(const BlockScene& scene, std::size_t first_word, std::size_t last_word,
-                   const ClusterHarmonics& lights, float above, const HarmonicWeights& weights,
+                   const ClusterHarmonics& lights, const HarmonicWeights& weights,
                    HarmonicSums& sums) {
     HWY_DYNAMIC_DISPATCH(add_by_order)
-    (scene, first_word, last_word, lights, above, weights, sums);
+    (scene, first_word, last_word, lights, weights, sums);
 }
 
 HarmonicWeights::HarmonicWeights(std::span<const glm::vec3> weights,

@@ -46,9 +46,9 @@ struct HarmonicSums {
 };
 
 /// Adds all receivers to the clusters of words [first_word, last_word). The bits do not depend on
-/// how words are divided among calls. `above` as HarmonicBlocks.
+/// how words are divided among calls.
 void add_receivers(const BlockScene& scene, std::size_t first_word, std::size_t last_word,
-                   const ClusterHarmonics& lights, float above, const HarmonicWeights& weights,
+                   const ClusterHarmonics& lights, const HarmonicWeights& weights,
                    HarmonicSums& sums);
 
 } // namespace relumine::relight

@@ -110,7 +110,7 @@ public:
         std::vector<glm::dvec3> result;
         result.reserve(clusters_.size() + sharp_.size());
         for (std::size_t cluster = 0; cluster < clusters_.size(); ++cluster)
-            result.push_back(transfer_.have_no_surface
+            result.push_back(transfer_.num_points != 0
                                  ? light_.mean_from_cluster(cluster) *
                                        (4.0 * std::numbers::pi * prt::FullCount)
                                  : clusters_[cluster].light);
@@ -138,12 +138,19 @@ public:
             if ((light_.traced().reached(i, place / prt::BlockSize) >> (place % prt::BlockSize) &
                  1u) != 0)
                 give(clusters_.size() + i,
-                     transfer_.have_no_surface
+                     place < transfer_.num_points
                          ? glm::dvec3(0.25)
                          : glm::max(cosines(normal, sharp_directions_[i]), 0.0));
     }
 
 private:
+    /// What a surface has of a cluster's vector, per what light() says: beside points it has the
+    /// cluster's flux, of which the vector is a part.
+    [[nodiscard]] double per_flux(std::size_t cluster) const {
+        return transfer_.num_points == 0 ? 1.0
+                                         : light_.harmonic_light()->lights().coherence(cluster);
+    }
+
     template<typename Give>
     void visit_word(std::size_t place, std::size_t w, const glm::dvec3& normal,
                     const Give& give) const {
@@ -165,9 +172,10 @@ private:
             if (count == 0.0)
                 continue;
             const bool is_whole = !is_mixed && (across >> bit & 1u) == 0;
-            give(cluster,
-                 count * (transfer_.have_no_surface ? glm::dvec3(0.25)
-                                                    : clusters_[cluster].on(normal, is_whole)));
+            if (place < transfer_.num_points)
+                give(cluster, glm::dvec3(0.25 * count));
+            else
+                give(cluster, count * per_flux(cluster) * clusters_[cluster].on(normal, is_whole));
         }
     }
 

@@ -5,6 +5,7 @@
 
 #include "relight/bounces/bounce_light.h"
 #include "relight/bounces/bounce_product.h"
+#include "relight/bounces/point_gather.h"
 
 namespace relumine::relight {
 
@@ -67,10 +68,16 @@ double size_of(const Values& values) {
 } // namespace
 
 std::vector<glm::vec3> bounce_adjoint(const SurfaceBounces& bounces, const prt::Transfer& transfer,
-                                      std::span<const glm::vec3> weights) {
+                                      std::span<const glm::vec3> weights,
+                                      std::span<const glm::vec3> of_points) {
     const prt::BounceMatrix& matrix = *bounces.matrix;
     const std::size_t n = matrix.num_rows();
-    if (transfer.num_receivers() != n || bounces.albedo.size() != n || weights.size() != n)
+    const std::size_t num_points = matrix.points.num_points();
+    std::uint32_t order = 1;
+    while (order < MaxHarmonicOrder && num_points * num_harmonics(order) < of_points.size())
+        ++order;
+    if (transfer.num_receivers() != n || bounces.albedo.size() != n || weights.size() != n ||
+        (!of_points.empty() && num_points * num_harmonics(order) != of_points.size()))
         throw std::invalid_argument("expected bounces and weights of one scene");
     // By place: what a receiver's light counts after so many bounces, backwards; and all together.
     Values counts(n), sum(n), albedo(n);
@@ -79,12 +86,25 @@ std::vector<glm::vec3> bounce_adjoint(const SurfaceBounces& bounces, const prt::
         counts[place] = weights[transfer.order[place]];
         albedo[place] = glm::min(bounces.albedo[transfer.order[place]], safe);
     }
+    // What the light of points counts, by what surfaces send: the first bounce on the way back.
+    Values by_sent(n);
+    if (num_points != 0) {
+        Values own(of_points.begin(), of_points.end());
+        for (std::size_t place = 0; place < num_points; ++place) {
+            if (of_points.empty())
+                own.push_back(mean_radiance(glm::vec3(counts[place])));
+            counts[place] = glm::dvec3(0.0);
+        }
+        PointBasis(matrix.points, order).scatter(own, by_sent);
+    }
     TransposedProduct product(matrix);
     const std::uint32_t last = bounces.limits.num_bounces.value_or(MaxTransposedBounces);
     double size_before = size_of(counts);
     for (std::uint32_t bounce = 0; bounce < last; ++bounce) {
         counts = product.of(counts);
         for (std::size_t place = 0; place < n; ++place) {
+            if (bounce == 0)
+                counts[place] += by_sent[place];
             counts[place] *= albedo[place];
             sum[place] += counts[place];
         }

@@ -17,6 +17,7 @@
 
 #include "relight/bounces/bounce_product.h"
 #include "relight/bounces/coarse_bounces.h"
+#include "relight/bounces/point_gather.h"
 
 namespace relumine::relight {
 
@@ -118,7 +119,9 @@ public:
             } while (report.error > limits.tolerance && report.num_bounces < MaxBounces);
             take_result();
         }
-        publish();
+        if (has_points() && !(sends_ && limits.num_bounces))
+            send();
+        publish(limits.num_bounces != 0u);
         report.seconds = seconds_since(start);
         return report;
     }
@@ -138,12 +141,21 @@ public:
         } else {
             std::fill(indirect_.begin(), indirect_.end(), PaddedRgb{});
         }
-        publish();
+        if (has_points())
+            send();
+        publish(true);
         report.seconds = seconds_since(start);
         return report;
     }
 
     [[nodiscard]] std::span<const glm::vec3> indirect() const { return published_; }
+
+    [[nodiscard]] std::vector<glm::vec3> point_harmonics(std::uint32_t order) const {
+        const PointBasis basis(matrix_.points, order);
+        if (!reaches_points_)
+            return std::vector<glm::vec3>(matrix_.points.num_points() * basis.width());
+        return basis.gathered(sent_);
+    }
 
 private:
     struct Step {
@@ -173,13 +185,15 @@ private:
         });
     }
 
-    /// sent_ = rho (B + indirect_).
+    /// sent_ = rho (B + indirect_), of all that send to others, points included.
     void send() {
-        for_rows(first_, size_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                for (std::size_t c = 0; c < 4; ++c)
-                    sent_[i].rgb[c] = albedo_[i].rgb[c] * (direct_[i].rgb[c] + indirect_[i].rgb[c]);
-        });
+        for_rows(std::min(first_, has_points() ? transfer_.num_points : size_), size_,
+                 [&](std::size_t begin, std::size_t end) {
+                     for (std::size_t i = begin; i < end; ++i)
+                         for (std::size_t c = 0; c < 4; ++c)
+                             sent_[i].rgb[c] =
+                                 albedo_[i].rgb[c] * (direct_[i].rgb[c] + indirect_[i].rgb[c]);
+                 });
     }
 
     /// next_ = A sent_ for some rows.
@@ -311,7 +325,10 @@ private:
         std::copy_n(next_.begin(), first_, indirect_.begin());
     }
 
-    void publish() {
+    [[nodiscard]] bool has_points() const { return matrix_.points.num_directions != 0; }
+
+    /// Whether any light `reaches_points`, they get what was sent last.
+    void publish(bool reaches_points) {
         for_rows(0, size_, [&](std::size_t begin, std::size_t end) {
             for (std::size_t place = begin; place < end; ++place) {
                 const PaddedRgb& value = indirect_[place];
@@ -321,6 +338,12 @@ private:
                                                       std::max(value.rgb[2], 0.0f)};
             }
         });
+        reaches_points_ = reaches_points;
+        if (!has_points())
+            return;
+        const std::vector<glm::vec3> first = point_harmonics(1);
+        for (std::size_t place = 0; place < first.size(); ++place)
+            published_[transfer_.order[place]] = mean_radiance(first[place]);
     }
 
     /// Keeps the estimate of the error finite.
@@ -359,6 +382,8 @@ private:
     double last_ratio_ = 0.0;
     /// [num_receivers] in the receivers' order.
     std::vector<glm::vec3> published_;
+    /// Whether what was sent last, if there are points, reaches them.
+    bool reaches_points_ = false;
 };
 
 BounceLight::BounceLight(const prt::BounceMatrix& matrix, const prt::Transfer& transfer,
@@ -379,6 +404,9 @@ BounceReport BounceLight::step(std::span<const glm::vec3> direct) {
 }
 std::span<const glm::vec3> BounceLight::indirect() const {
     return impl_->indirect();
+}
+std::vector<glm::vec3> BounceLight::point_harmonics(std::uint32_t order) const {
+    return impl_->point_harmonics(order);
 }
 
 } // namespace relumine::relight

@@ -99,10 +99,17 @@ public:
     /// changes while it is looked at. The report's error is the size of the step.
     BounceReport step(std::span<const glm::vec3> direct);
 
-    /// What other surfaces add to a receiver's direct light, for albedo 1.
+    /// What other surfaces add to a receiver's direct light, for albedo 1. Of points in space, it
+    /// is the mean radiance over the sphere.
     ///
     /// Shape:   [num_receivers] in the receivers' order.
     [[nodiscard]] std::span<const glm::vec3> indirect() const;
+
+    /// Returns the light that points in space get from surfaces, as spherical harmonics
+    /// (docs/harmonics.md).
+    ///
+    /// Shape:   [num_points][order^2] by place.
+    [[nodiscard]] std::vector<glm::vec3> point_harmonics(std::uint32_t order) const;
 
 private:
     class Impl;
@@ -111,14 +118,17 @@ private:
 
 /// Returns the derivative of a number by each receiver's direct light, as far as this light reaches
 /// receivers from other surfaces, given the derivative by their indirect(): the transpose of
-/// BounceLight. All bounces are found to the limits' tolerance.
+/// BounceLight. All bounces are found to the limits' tolerance. Of points in space it takes the
+/// derivative by their point_harmonics(); their indirect() is a multiple of the first.
 ///
-/// Shape:   weights and result are [num_receivers] in the receivers' order.
+/// Shape:   weights and result are [num_receivers] in the receivers' order; `of_points` is
+///          [num_points][order^2] by place, or empty: then `weights` counts for points as well.
 /// Cost:    as many products with the matrix as light has bounces.
 /// Threads: parallel; the same bits for any number of threads.
 /// Throws:  std::invalid_argument for bounces or weights of other receivers.
 [[nodiscard]] std::vector<glm::vec3> bounce_adjoint(const SurfaceBounces& bounces,
                                                     const prt::Transfer& transfer,
-                                                    std::span<const glm::vec3> weights);
+                                                    std::span<const glm::vec3> weights,
+                                                    std::span<const glm::vec3> of_points = {});
 
 } // namespace relumine::relight

@@ -79,15 +79,20 @@ public:
 
     [[nodiscard]] std::size_t size() const { return size_; }
 
-    /// Sets the receivers from `lane` on of an entry. Takes what is below their horizons off.
+    /// Sets the receivers from `lane` on of an entry. Takes what is below their horizons off. Those
+    /// without a normal have no horizon.
     HWY_INLINE void set(std::size_t entry, std::size_t lane, const HarmonicGroup& group,
-                        const BlockNormals& normals, float middle_above, const Sum& sum) {
+                        const BlockNormals& normals, const Sum& sum) {
         const Tag<T> d;
-        auto above = hn::Set(d, static_cast<T>(middle_above));
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            above = hn::MulAdd(load_normals(normals.axes[axis].data() + lane),
-                               hn::Set(d, static_cast<T>(group.slope[axis])), above);
+        auto above = hn::Set(d, T{0.5});
+        auto squares = hn::Zero(d);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto normal = load_normals(normals.axes[axis].data() + lane);
+            squares = hn::MulAdd(normal, normal, squares);
+            above = hn::MulAdd(normal, hn::Set(d, static_cast<T>(group.slope[axis])), above);
+        }
         above = hn::Min(hn::Max(above, hn::Zero(d)), hn::Set(d, T{1}));
+        above = hn::IfThenElse(hn::Eq(squares, hn::Zero(d)), hn::Set(d, T{1}), above);
         hn::Store(hn::Mul(above, sum.red), d, fluxes_[entry][0].data() + lane);
         hn::Store(hn::Mul(above, sum.green), d, fluxes_[entry][1].data() + lane);
         hn::Store(hn::Mul(above, sum.blue), d, fluxes_[entry][2].data() + lane);
@@ -167,8 +172,7 @@ struct Pairs {
 /// word's first.
 template<std::size_t Count>
 HWY_INLINE void add_pairs(const Pairs& pairs, const ClusterHarmonics& lights, std::size_t cluster,
-                          const BlockNormals& normals, float middle_above,
-                          GroupFluxes<float, Count>& fluxes) {
+                          const BlockNormals& normals, GroupFluxes<float, Count>& fluxes) {
     const Tag<float> d;
     const HarmonicGroup* groups = lights.groups().data();
     const std::uint32_t* group_of = lights.group_of().data() + cluster;
@@ -190,7 +194,7 @@ HWY_INLINE void add_pairs(const Pairs& pairs, const ClusterHarmonics& lights, st
             for_bits(of_group & pairs.across, [&](std::size_t i) {
                 sum.add(hn::Set(d, static_cast<float>(prt::FullCount)), flux + i * 3);
             });
-            fluxes.set(fluxes.size(), lane, group, normals, middle_above, sum);
+            fluxes.set(fluxes.size(), lane, group, normals, sum);
         }
         counts += static_cast<std::size_t>(std::popcount(of_group & pairs.mixed)) * prt::BlockSize;
         fluxes.push(bases + index * lights.stride());
@@ -276,7 +280,7 @@ void light_harmonics(const BlockScene& scene, std::size_t tile, const ClusterHar
                 if (fluxes.size() + 64 > fluxes.Most)
                     fluxes.multiply(mixed_sum);
                 add_pairs({.mixed = mixed, .across = across, .counts = counts_of(counts, word)},
-                          lights, cluster, scene.normals[begin + block], of_blocks.above, fluxes);
+                          lights, cluster, scene.normals[begin + block], fluxes);
             });
             fluxes.multiply(mixed_sum);
         });
@@ -294,7 +298,7 @@ void light_harmonics(const BlockScene& scene, std::size_t tile, const ClusterHar
 template<std::size_t Count>
 void add_member(const HarmonicChanges& changes, const HarmonicChanges::Member& member,
                 const std::uint8_t* counts, const HarmonicGroup& group, const BlockNormals& normals,
-                float middle_above, GroupFluxes<double, Count>& fluxes) {
+                GroupFluxes<double, Count>& fluxes) {
     const Tag<double> d;
     const auto add = [&](const std::array<double, 3>& flux, const std::vector<float>& bases) {
         for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
@@ -302,7 +306,7 @@ void add_member(const HarmonicChanges& changes, const HarmonicChanges::Member& m
             sum.add(counts != nullptr ? load_counts<double>(counts + lane)
                                       : hn::Set(d, static_cast<double>(prt::FullCount)),
                     flux.data());
-            fluxes.set(fluxes.size(), lane, group, normals, middle_above, sum);
+            fluxes.set(fluxes.size(), lane, group, normals, sum);
         }
         fluxes.push(bases.data() + std::size_t{member.group} * 3 * Count);
     };
@@ -356,7 +360,7 @@ std::uint64_t update_harmonics(const BlockScene& scene, std::size_t tile,
                                ? counts_of(counts, word) + index_of(all_mixed, i) * prt::BlockSize
                                : nullptr,
                            lights.groups()[changes.groups[member.group]],
-                           scene.normals[begin + block], of_blocks.above, fluxes);
+                           scene.normals[begin + block], fluxes);
             });
         }
         fluxes.multiply(mixed_sum);

@@ -18,8 +18,6 @@ struct HarmonicBlocks {
     double* visible;
     /// [num_blocks * stride * 16] [block][channel][coefficient][receiver].
     double* mixed;
-    /// The part of a cell's middle that is above a horizon: 0.5 for surfaces, 1 for points.
-    float above = 0.5f;
 };
 
 /// Sums all clusters for blocks of a tile: c/16 times the part of the cluster that is above the

@@ -17,7 +17,7 @@ HarmonicLight::HarmonicLight(const prt::Transfer& transfer, std::uint32_t order)
       mixed_(visible_.size() * prt::BlockSize), brightness_(transfer.counts.num_blocks()) {}
 
 HarmonicBlocks HarmonicLight::blocks() {
-    return {.visible = visible_.data(), .mixed = mixed_.data(), .above = part_above()};
+    return {.visible = visible_.data(), .mixed = mixed_.data()};
 }
 
 void HarmonicLight::take_traced(std::span<const SharpLight> lights, const TracedLight& traced) {

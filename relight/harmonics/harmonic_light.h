@@ -31,8 +31,6 @@ public:
 
     [[nodiscard]] std::uint32_t order() const { return lights_.order(); }
     [[nodiscard]] const ClusterHarmonics& lights() const { return lights_; }
-    /// As HarmonicBlocks::above.
-    [[nodiscard]] float part_above() const { return transfer_.have_no_surface ? 1.0f : 0.5f; }
 
     /// Takes the sharp lights that TracedLight traced last.
     void take_traced(std::span<const SharpLight> lights, const TracedLight& traced);

@@ -229,7 +229,7 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
                                                   const TransferLightOptions& options) {
     if (relighter.environment().resolution == 0 || relighter.shadow_rays().blockers == nullptr)
         throw std::invalid_argument("expected a relighter with an environment and shadow rays");
-    if (relighter.transfer().have_no_surface)
+    if (relighter.transfer().num_points != 0)
         throw std::invalid_argument("expected receivers on surfaces, got points in space");
     if (count == 0)
         throw std::invalid_argument("expected at least one light");
@@ -246,7 +246,7 @@ std::vector<lights::DistantLight> fit_lights(const Relighter& relighter, const L
     const std::size_t num_receivers = relighter.transfer().num_receivers();
     if (relighter.shadow_rays().blockers == nullptr)
         throw std::invalid_argument("expected a relighter with shadow rays");
-    if (relighter.transfer().have_no_surface)
+    if (relighter.transfer().num_points != 0)
         throw std::invalid_argument("expected receivers on surfaces, got points in space");
     if (goal.radiance.size() != num_receivers ||
         (!goal.weights.empty() && goal.weights.size() != num_receivers))

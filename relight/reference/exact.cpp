@@ -61,7 +61,7 @@ Tile tile_at(const cubemap::CubeMap& environment, std::span<const double> solid_
 class ExactReceiver {
 public:
     ExactReceiver(const prt::Receivers& receivers, std::uint32_t index, float bias)
-        : has_surface_(!receivers.have_no_surface), normal_(receivers.normals[index]),
+        : has_surface_(index >= receivers.num_points()), normal_(receivers.normals[index]),
           origin_(prt::ray_origin(receivers.positions[index], normal_, bias)) {
         if (!receivers.surfaces.empty())
             surface_ = receivers.surfaces[index];

@@ -33,7 +33,7 @@ void for_arriving(const prt::Receivers& receivers, std::span<const std::uint32_t
                         packet.set(lane, cubemap::texel_direction(face, x, y, r));
                         const bool is_lit = x0 + lane < r &&
                                             environment.at(face, x, y) != glm::vec3(0.0f) &&
-                                            (receivers.have_no_surface ||
+                                            (indices[i] < receivers.num_points() ||
                                              prt::is_above(normal, packet.direction(lane)));
                         active |= std::uint32_t{is_lit} << lane;
                     }

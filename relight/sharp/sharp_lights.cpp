@@ -197,8 +197,8 @@ std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
                                           const prt::Transfer& transfer,
                                           std::span<const double> powers, float tolerance) {
     return find_sharp_lights(environment, binning, transfer.quadtree.leaves(), powers,
-                             transfer.have_no_surface ? PointSensitivity * tolerance : tolerance,
-                             transfer.glossy || transfer.have_no_surface);
+                             transfer.num_points != 0 ? PointSensitivity * tolerance : tolerance,
+                             transfer.glossy || transfer.num_points != 0);
 }
 
 } // namespace relumine::relight

@@ -123,7 +123,7 @@ void TracedLight::find_reached(const FreshPatch& patch, std::size_t first,
         const glm::vec3 direction = patch.directions.direction(j);
         for (std::size_t i = 0; i < of_group.size(); ++i)
             of_group[i] |=
-                static_cast<std::uint64_t>(transfer_.have_no_surface ||
+                static_cast<std::uint64_t>(first + i < transfer_.num_points ||
                                            prt::is_above(transfer_.normals[first + i], direction))
                 << j;
     }

@@ -30,13 +30,16 @@ protected:
                                  .bounce_tolerance = 0.02f,
                                  .output = output,
                                  .checkpoint_seconds = 0.0};
+        if (std::holds_alternative<Grid>(receivers))
+            result.tolerance = ToleranceOfPoints;
         if (std::holds_alternative<Pixels>(receivers))
             result.view = View{
                 Camera{.eye = {0.5f, 1.2f, 2.5f}, .target = {0.5f, 0.3f, 0.3f}, .fov_degrees = 30}};
         return result;
     }
     [[nodiscard]] static std::vector<ReceiverChoice> all_receivers() {
-        return {Vertices{}, Pixels{.width = 60, .height = 40}, Texels{.width = 48, .height = 48}};
+        return {Vertices{}, Pixels{.width = 60, .height = 40}, Texels{.width = 48, .height = 48},
+                Grid{.nx = 5, .ny = 4, .nz = 6}};
     }
     [[nodiscard]] static Mesh mesh() { return scenes::corner(Side); }
     void make_scene() const {
@@ -139,6 +142,30 @@ TEST_F(SharedWork, ProcessesFindTheLightOfOne) {
             EXPECT_EQ(own.radiance.empty(), !is_first);
             if (is_first)
                 expect_same_light(light, own);
+        });
+}
+
+TEST_F(SharedWork, ProcessesFindTheLightOfPoints) {
+    (void)precompute(mesh(), options(Grid{.nx = 5, .ny = 4, .nz = 60}, file("scene.prt")));
+    LitScene whole(load_scene(file("scene.prt")), {.harmonics = 2});
+    const std::vector<glm::vec3> albedo = bounce_albedo(whole.scene());
+    whole.light(sun_and_sky(60.0f));
+    whole.bounce({.albedo = albedo});
+    const std::vector<glm::vec3> harmonics = whole.harmonics();
+    const std::vector<glm::vec3> radiance(whole.radiance().begin(), whole.radiance().end());
+    for (const std::uint32_t count : {2u, 5u})
+        prt::ThreadTeam::run(count, [&](prt::Team& team, std::uint32_t index) {
+            LitScene shared(prt::load_scene_part(file("scene.prt"), team.part()),
+                            {.harmonics = 2, .team = &team, .path = file("scene.prt")});
+            shared.light(sun_and_sky(60.0f));
+            shared.bounce({.albedo = albedo});
+            const std::vector<glm::vec3> own = shared.harmonics();
+            const Lighting light = shared.lighting();
+            if (index != 0)
+                return;
+            EXPECT_EQ(own, harmonics);
+            EXPECT_TRUE(std::equal(radiance.begin(), radiance.end(), light.radiance.begin(),
+                                   light.radiance.end()));
         });
 }
 

@@ -19,6 +19,7 @@
 #include "prt/receivers/receivers.h"
 #include "prt/scene/scene_file.h"
 #include "prt/visibility/ray_scene.h"
+#include "relumine/precompute.h"
 #include "viewer/view_state.h"
 
 namespace relumine::viewer {
@@ -217,6 +218,33 @@ TEST_F(WindowTest, ThePointerDragsLayersTurnsTheSceneAndAsksWhoLights) {
                                .height = viewport_.height / 8};
     EXPECT_TRUE(equal(moved, heat, upper));
     EXPECT_FALSE(equal(heat, picture("turned.exr"), viewport_));
+}
+
+TEST_F(WindowTest, PointsInSpaceAreLitBalls) {
+    const glm::vec3 to_eye = glm::normalize(camera_.eye() - data_gen::SphereCenter);
+    const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0, 1, 0), to_eye));
+    PrecomputeOptions options;
+    options.receivers = Points{.positions = {data_gen::SphereCenter + 1.2f * to_eye,
+                                             data_gen::SphereCenter + 1.7f * right}};
+    options.output = folder_ / "scene.prt";
+    static_cast<void>(precompute(data_gen::sphere(1000), options));
+    const std::array in_front = pixel_of(data_gen::SphereCenter + 1.2f * to_eye);
+    ASSERT_EQ(play(fmt::format("wait 1\n"
+                               "screenshot dark.exr\n"
+                               "add_disc Key {},{},{} 20\n"
+                               "set_gain Key 3\n"
+                               "wait 1\n"
+                               "screenshot lit.exr\n"
+                               "click_mesh {} {}\n"
+                               "wait 1\n"
+                               "screenshot heat.exr\n",
+                               to_eye.x, to_eye.y, to_eye.z, in_front[0], in_front[1])),
+              0)
+        << words("err.txt");
+    const cubemap::Picture dark = picture("dark.exr"), lit = picture("lit.exr");
+    EXPECT_GT(brightness(lit, in_front), 1.5f * brightness(dark, in_front));
+    // The ball asks as a vertex does.
+    EXPECT_FALSE(equal(lit, picture("heat.exr"), panel_layout(Width, Height).environment));
 }
 
 TEST_F(WindowTest, ALightGoesWhereTheMeshIsClicked) {

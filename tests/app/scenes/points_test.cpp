@@ -136,6 +136,35 @@ TEST_F(PointsCommand, AnEnvironmentIsFittedToPoints) {
     fail({"fit", "scene.prt", "lit.npy", "--lights", "1", "-o", "lamp.json"}, {"points in space"});
 }
 
+TEST_F(PointsCommand, GetTheLightThatSurfacesSend) {
+    precompute("points:points.ply", {"--bounces", "0.02", "--no-refine"});
+    const auto info = succeed({"info", "scene.prt", "--json"}).json();
+    EXPECT_EQ(info.at("receivers"), 3) << info;
+    const auto lit = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> arguments = {"relight", "scene.prt", "white.hdr",   "-o",
+                                              "lit.npy", "--json",    "--harmonics", "sh.npy"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        return succeed(arguments).json();
+    };
+    EXPECT_EQ(lit({"--bounces", "0"}).at("receivers"), 3);
+    const auto direct = npy_values(read("lit.npy")), dark = npy_values(read("sh.npy"));
+    // One octahedron alone is convex: its faces send the sky's light once, times their albedo.
+    lit({"--albedo", "0.5"});
+    const auto all = npy_values(read("lit.npy")), light = npy_values(read("sh.npy"));
+    ASSERT_EQ(all.size(), 3u);
+    ASSERT_EQ(light.size(), 3u * 9u);
+    EXPECT_NEAR(all[0][1], 1.0f, 1e-3f);
+    EXPECT_NEAR(all[1][1], 0.5f * (1.0f + direct[1][1]), 0.02f);
+    EXPECT_LT(light[10][1], 0.7f * dark[10][1]); // from below
+    EXPECT_NEAR(0.282095f * light[9][1], all[1][1], 1e-5f);
+    EXPECT_EQ(all[2], all[1]);
+    // Backwards, too.
+    const auto fitted = succeed({"fit", "scene.prt", "lit.npy", "-o", "env.exr",
+                                 "--face-resolution", "4", "--smooth", "0.01", "--json"})
+                            .json();
+    EXPECT_LT(fitted["relative_l2"], 0.01);
+}
+
 TEST_F(PointsCommand, VerticesHaveHarmonicsToo) {
     succeed({"precompute", "mesh.obj", "-o", "scene.prt", "-q", "--no-refine"});
     succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.npy", "--harmonics", "sh.npy",
@@ -165,7 +194,7 @@ TEST_F(PointsCommand, BadInput) {
     refuse("points:points.txt", ".npy or .ply");
     refuse("grid:2x2x2", "--box", {"--box", "1,0,0,0,1,1"});
     refuse("grid:2x2x2", "--view", {"--view", "auto"});
-    refuse("grid:2x2x2", "--bounces", {"--bounces", "0.01"});
+    refuse("grid:2x2x2", "--bounces", {"--bounces", "-1"});
     refuse("vertices", "--box", {"--box", "0,0,0,1,1,1"});
     write("nan.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                      "property float z\nend_header\n0 nan 0\n");

@@ -59,7 +59,7 @@ TEST_F(CoarseningTest, GivesTheFreshTreeOfPointsInTheOpen) {
         points.emplace_back(0.01f * static_cast<float>(i), 0.2f, 0.0f);
     receivers_ = point_receivers(points, mesh_, rays_);
     const scenes::AnalyticBlockers nothing = scenes::no_blockers();
-    EXPECT_TRUE(coarsened(fresh(0.02f, nothing), to(0.1f)).have_no_surface);
+    EXPECT_TRUE(coarsened(fresh(0.02f, nothing), to(0.1f)).num_points);
     EXPECT_EQ(coarsened(fresh(0.02f, nothing), to(0.1f)).num_clusters(), 6u * 64u);
     const Transfer fine = fresh(0.05f, rays_);
     const Transfer coarse = coarsened(fine, to(0.2f));

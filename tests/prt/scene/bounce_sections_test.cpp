@@ -13,6 +13,18 @@ namespace {
 
 constexpr std::size_t NumReceivers = 100'000;
 
+Receivers receivers() {
+    return {.positions = std::vector(NumReceivers, glm::vec3(0.0f)), .normals = {}};
+}
+
+/// Two points in space before the others.
+Receivers with_points() {
+    Receivers result = receivers();
+    result.have_no_surface = true;
+    result.num_added = NumReceivers - 2;
+    return result;
+}
+
 /// Lists of every kind: empty, with places far apart, with the same place twice.
 BounceMatrix matrix_of_all_kinds() {
     BounceMatrix matrix{.weights = std::vector(NumReceivers, 0.0f),
@@ -36,22 +48,33 @@ TEST(BounceSections, KeepEveryRow) {
     NewSections sections;
     add_bounce_sections(sections, matrix);
     const SectionReader reader("scene.prt", packed_sections(sections));
-    EXPECT_EQ(read_bounces(reader, NumReceivers), matrix);
+    EXPECT_EQ(read_bounces(reader, receivers()), matrix);
 }
 
 TEST(BounceSections, MayBeAbsent) {
-    EXPECT_FALSE(read_bounces(scenes::reader_of("scene.prt", {}), NumReceivers));
+    EXPECT_FALSE(read_bounces(scenes::reader_of("scene.prt", {}), receivers()));
+}
+
+TEST(BounceSections, KeepWhatPointsSee) {
+    BounceMatrix matrix = matrix_of_all_kinds();
+    matrix.points = {.num_directions = 3,
+                     .emitters = {NoEmitter, 2, 99'999, 4, NoEmitter, NoEmitter}};
+    NewSections sections;
+    add_bounce_sections(sections, matrix);
+    const SectionReader reader("scene.prt", packed_sections(sections));
+    EXPECT_EQ(read_bounces(reader, with_points()), matrix);
 }
 
 TEST(BounceSections, DamageIsRefused) {
     const auto refuses = [](const std::function<void(Sections&)>& damage) {
-        const BounceMatrix matrix = matrix_of_all_kinds();
+        BounceMatrix matrix = matrix_of_all_kinds();
+        matrix.points = {.num_directions = 2, .emitters = {2, NoEmitter, 4, 3}};
         NewSections added;
         add_bounce_sections(added, matrix);
         Sections sections = scenes::made(added);
         damage(sections);
         const SectionReader reader = scenes::reader_of("scene.prt", std::move(sections));
-        EXPECT_THROW(static_cast<void>(read_bounces(reader, NumReceivers)), std::runtime_error);
+        EXPECT_THROW(static_cast<void>(read_bounces(reader, with_points())), std::runtime_error);
     };
     refuses([](Sections& s) { s["bounce_weights"].pop_back(); });
     for (const std::string name : {"bounce_hits", "bounce_near"}) {
@@ -66,6 +89,10 @@ TEST(BounceSections, DamageIsRefused) {
         refuses([&](Sections& s) { s[size][15] = std::byte{0xff}; });
     }
     refuses([](Sections& s) { s["bounce_radius"].clear(); });
+    refuses([](Sections& s) { s.erase("point_rays"); });
+    refuses([](Sections& s) { s["point_rays"][0] = std::byte{0}; });
+    refuses([](Sections& s) { s["point_rays"][3] = std::byte{0xff}; });
+    refuses([](Sections& s) { s["point_hits"].pop_back(); });
 }
 
 } // namespace

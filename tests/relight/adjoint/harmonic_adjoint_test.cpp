@@ -130,7 +130,7 @@ TEST(HarmonicsAdjoint, OfPointsKnowsTheirRadiance) {
     const std::vector<glm::vec3> weights = random_weights(points.num_receivers(), 3);
     const double forward = inner(relighter.radiance(), weights);
     const double backward =
-        inner(relighter.environment().texels, points_adjoint(relighter, weights).texels);
+        inner(relighter.environment().texels, adjoint(relighter, weights).texels);
     EXPECT_NEAR(backward, forward, 1e-5 * std::abs(forward));
 
     // In the open, a texel counts by its solid angle, but for the flux of a cluster, which is told
@@ -145,7 +145,7 @@ TEST(HarmonicsAdjoint, OfPointsKnowsTheirRadiance) {
     Relighter above(open);
     above.set_environment(scenes::smooth_environment(16));
     const std::vector<glm::vec3> one(1, glm::vec3(1.0f));
-    const cubemap::CubeMap derivative = points_adjoint(above, one);
+    const cubemap::CubeMap derivative = adjoint(above, one);
     const std::vector<double> solid_angles = cubemap::texel_solid_angles(16);
     const std::size_t face = derivative.index(cubemap::Face::PositiveY, 0, 0);
     for (std::size_t i = 0; i < solid_angles.size(); i += 5) {
@@ -178,7 +178,7 @@ TEST(HarmonicsAdjoint, RefusesWhatItCannotDo) {
     EXPECT_THROW(found(relighter, count, std::numeric_limits<float>::infinity()),
                  std::invalid_argument);
     EXPECT_THROW(found(without, count, 1.0f), std::invalid_argument);
-    EXPECT_THROW(static_cast<void>(points_adjoint(relighter, std::vector(count, glm::vec3(1.0f)))),
+    EXPECT_THROW(static_cast<void>(adjoint(relighter, std::vector(count, glm::vec3(1.0f)))),
                  std::invalid_argument);
     EXPECT_NO_THROW(found(relighter, count, 1.0f));
 }
