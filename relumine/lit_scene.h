@@ -118,6 +118,7 @@ public:
     [[nodiscard]] LightHistory& history() { return history_; }
     [[nodiscard]] const SceneBounces& bounces() const { return bounces_; }
     [[nodiscard]] const SceneLamps& lamps() const { return lamps_; }
+    [[nodiscard]] const SceneMirrors& mirrors() const { return mirrors_; }
 
     /// Lights the scene [JN, Eq. 8]. Layers and the turn of set_rotation() stay: a new environment
     /// is turned as well. A list without one takes the layers away, with the history. Bounces go

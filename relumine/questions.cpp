@@ -6,7 +6,9 @@
 #include <cstring>
 #include <stdexcept>
 #include <utility>
+#include <variant>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "cubemap/layers/layer_composite.h"
@@ -18,9 +20,11 @@
 #include "relight/adjoint/harmonic_adjoint.h"
 #include "relight/batch.h"
 #include "relight/pictures/framing.h"
+#include "relight/pictures/receiver_picture.h"
 #include "relight/receiver_light.h"
 #include "relight/reference/path_tracer.h"
 #include "relight/sharp/light_packets.h"
+#include "relumine/receiver_colors.h"
 
 namespace relumine {
 
@@ -280,7 +284,26 @@ cubemap::CubeMap contribution_map(const LitScene& lit, std::span<const std::uint
 
 cubemap::CubeMap adjoint(const LitScene& lit, std::span<const glm::vec3> weights) {
     require_environment(lit);
+    if (lit.mirrors().is_needed())
+        throw std::invalid_argument(
+            "expected receivers without highlights, got some with; highlight_rays of 0 leave them "
+            "out");
     return relight::adjoint(lit.relighter(), weights, surfaces_of(lit));
+}
+
+cubemap::CubeMap picture_adjoint(const LitScene& lit, std::span<const glm::vec3> weights,
+                                 const OutputOptions& options) {
+    const Scene& scene = lit.scene();
+    const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout);
+    if (pixels == nullptr)
+        throw std::invalid_argument(
+            fmt::format("expected a scene of pixels, got {}", prt::description(scene.layout)));
+    if (first_floor_vertex(scene))
+        throw std::invalid_argument("expected a scene without an added floor, got one with");
+    std::vector<glm::vec3> of_receivers =
+        relight::cut_out_transpose(*pixels, weights, scene.receivers.veils);
+    of_receivers.resize(scene.receivers.size(), glm::vec3(0.0f));
+    return adjoint(lit, product(of_receivers, picture_albedo(scene, options)));
 }
 
 cubemap::CubeMap harmonics_adjoint(const LitScene& lit, std::span<const glm::vec3> weights) {

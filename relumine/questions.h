@@ -23,6 +23,7 @@
 #include "relumine/lighting.h"
 #include "relumine/lit_scene.h"
 #include "relumine/live_eye.h"
+#include "relumine/output_options.h"
 
 namespace relumine {
 
@@ -127,6 +128,16 @@ struct Share {
 /// Throws:  std::invalid_argument for another number of weights, weights that are not finite, and
 ///          receivers with highlights; std::logic_error unless an environment lights the scene.
 [[nodiscard]] cubemap::CubeMap adjoint(const LitScene& lit, std::span<const glm::vec3> weights);
+
+/// The same, given the derivative by the pixels of a scene of pixels: of draw() before nothing, as
+/// linear radiance. Light is that of the receivers, with the albedo of the options.
+///
+/// Shape:   weights is [height * width] of the picture.
+/// Throws:  as adjoint(), and std::invalid_argument for receivers that are no pixels and for a
+///          scene with an added floor, which pictures may show in other ways.
+[[nodiscard]] cubemap::CubeMap picture_adjoint(const LitScene& lit,
+                                               std::span<const glm::vec3> weights,
+                                               const OutputOptions& options = {});
 
 /// The same, given the derivative by harmonics().
 ///

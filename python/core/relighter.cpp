@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -363,6 +364,21 @@ void bind_questions(py::class_<Lit, LitPointer>& type) {
         .def("transfer_lights", &transfer_lights);
 }
 
+/// `weights` is [height * width, 3].
+Array picture_adjoint(const LitPointer& own, const py::buffer& weights, std::uint32_t height,
+                      std::uint32_t width, const py::dict& given) {
+    const std::vector<glm::vec3> values = vec3s(weights);
+    const auto* pixels = std::get_if<prt::PixelLayout>(&own->scene().layout);
+    if (pixels != nullptr && (pixels->height != height || pixels->width != width))
+        throw py::value_error(fmt::format("weights: expected shape ({}, {}, 3), got ({}, {}, 3)",
+                                          pixels->height, pixels->width, height, width));
+    const OutputOptions options = options_from<OutputOptions>(given);
+    cubemap::CubeMap map = quickly(
+        *own, [&](LitScene& lit) { return relumine::picture_adjoint(lit, values, options); });
+    const auto r = static_cast<py::ssize_t>(map.resolution);
+    return owned(std::move(map.texels), {6, r, r});
+}
+
 /// Returns [height, width, 3 or 4] and the exposure that suits it.
 py::tuple draw(const LitPointer& own, const py::dict& given) {
     const OutputOptions options = options_from<OutputOptions>(given);
@@ -414,7 +430,7 @@ relight::Development development(double exposure, const std::string& tone) {
 }
 
 void bind_pictures(py::module_& module, py::class_<Lit, LitPointer>& type) {
-    type.def("draw", &draw).def("save", &save_lit);
+    type.def("draw", &draw).def("save", &save_lit).def("picture_adjoint", &picture_adjoint);
     module.def("picture_png",
                [](const py::buffer& pixels, std::uint32_t width, std::uint32_t height,
                   const py::object& alpha, double exposure, const std::string& tone) {
@@ -449,11 +465,14 @@ py::tuple bounce(Lit& own, const std::optional<std::uint32_t>& bounces, const py
 } // namespace
 
 void bind_relighters(py::module_& module) {
+    module.attr("HIGHLIGHT_RAYS") = DefaultHighlightRays;
     py::class_<Lit, LitPointer> type(module, "Relighter");
     type.def(py::init([](const std::shared_ptr<Scene>& scene, bool clusters_only,
-                         std::uint32_t harmonics, const py::object& blocked) {
+                         std::uint32_t harmonics, std::uint32_t highlight_rays,
+                         const py::object& blocked) {
             const LightOptions options{.clusters_only = clusters_only,
                                        .harmonics = harmonics,
+                                       .highlight_rays = highlight_rays,
                                        .blockers = blockers_of(blocked)};
             return in_background(
                 py::none(), [=](const Reins&) { return std::make_shared<Lit>(scene, options); });

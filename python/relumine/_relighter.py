@@ -140,6 +140,8 @@ class Relighter:
 
     clusters_only  lights the sun through its cluster too, without shadow rays: faster, softer
     harmonics      2 or 3: keeps the arriving light as `harmonics` of this order; 0: none
+    highlight_rays  of a pixel whose highlights are not stored: rays that find them; 0: none, as the
+                   adjoint asks
     blockers_function  what keeps sharp lights away, as in precompute(); None: the scene's own
     surface_albedo, surface_specular  as Scene.recolored()
 
@@ -159,6 +161,7 @@ class Relighter:
         *,
         clusters_only: bool = False,
         harmonics: int = 0,
+        highlight_rays: int = _core.HIGHLIGHT_RAYS,
         blockers_function: Optional[BlockersFunction] = None,
         surface_albedo: Optional[Color] = None,
         surface_specular: Optional[Color] = None,
@@ -176,7 +179,11 @@ class Relighter:
         if blockers_function is not None:
             self._blockers = blockers_function
         self._lit: Optional[_core.Relighter] = _core.Relighter(
-            scene._core, clusters_only, harmonics, asked(self._blockers)
+            scene._core,
+            clusters_only,
+            harmonics,
+            whole("highlight_rays", highlight_rays),
+            asked(self._blockers),
         )
 
     @property
@@ -482,6 +489,26 @@ class Relighter:
             raise RuntimeError("expected a scene that is lit, got one without light")
         with errors():
             result: Floats = view(self._core.adjoint(values))
+        return result
+
+    @with_picture_options
+    def picture_adjoint(self, weights: ArrayLike, **options: Any) -> Floats:
+        """The same for picture(background="none") of a scene of pixels: (6, R, R, 3).
+
+        weights  (height, width, 3): the derivative of the loss by the picture's linear pixels
+
+        Receivers light the picture, with the albedo of the options.
+        """
+        values = floats("weights", weights, None, None, 3)
+        height, width, _ = values.shape
+        if not self._core.is_lit:
+            raise RuntimeError("expected a scene that is lit, got one without light")
+        with errors():
+            result: Floats = view(
+                self._core.picture_adjoint(
+                    values.reshape(-1, 3), height, width, _output(options)
+                )
+            )
         return result
 
     def harmonics_adjoint(self, weights: ArrayLike) -> Floats:

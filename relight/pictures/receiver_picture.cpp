@@ -19,6 +19,26 @@ void require_one_per_receiver(std::size_t num_receivers, std::span<const glm::ve
                                                 num_receivers, radiance.size()));
 }
 
+/// The surfaces that a sample shows one behind the other.
+class SampleLayers {
+public:
+    /// Returns what the radiance of the next surface counts in the sample.
+    glm::vec3 next(const glm::vec3& opacity, const mesh::Veil& veil) {
+        const glm::vec3 part = veil.weight * through_ * opacity;
+        taken_ += through_ * opacity * (1.0f - veil.through);
+        through_ = 1.0f - taken_;
+        return part;
+    }
+    /// The light from behind that comes through so far.
+    [[nodiscard]] const glm::vec3& through() const { return through_; }
+    [[nodiscard]] float alpha() const {
+        return std::clamp((taken_.r + taken_.g + taken_.b) / 3.0f, 0.0f, 1.0f);
+    }
+
+private:
+    glm::vec3 taken_{0.0f}, through_{1.0f};
+};
+
 /// Averages the samples of each pixel. `behind(x, y, passed)` is what a pixel shows behind samples
 /// that let so much through. The mean opacity goes to the picture's alpha if asked for.
 template<typename Behind>
@@ -46,18 +66,16 @@ Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radi
             glm::vec3 sum(0.0f);
             float alpha = 0.0f;
             for (std::uint32_t i = 0; i < per_pixel; ++i) {
-                glm::vec3 taken(0.0f), through(1.0f);
+                SampleLayers layers;
                 for (; receiver < layout.samples.size() &&
                        layout.samples[receiver] == pixel * per_pixel + i;
                      ++receiver) {
                     const glm::vec3 own = opacity.empty() ? glm::vec3(1.0f) : opacity[receiver];
                     const mesh::Veil veil = veils.empty() ? mesh::Veil() : veils[receiver];
-                    sum += veil.weight * through * own * radiance[receiver];
-                    taken += through * own * (1.0f - veil.through);
-                    through = 1.0f - taken;
+                    sum += layers.next(own, veil) * radiance[receiver];
                 }
-                passed[i] = through;
-                alpha += std::clamp((taken.r + taken.g + taken.b) / 3.0f, 0.0f, 1.0f);
+                passed[i] = layers.through();
+                alpha += layers.alpha();
             }
             picture.pixels[pixel] = sum / static_cast<float>(per_pixel) + behind(x, y, passed);
             if (with_alpha)
@@ -131,6 +149,25 @@ Picture compose_cut_out(const prt::PixelLayout& layout, std::span<const glm::vec
     return averaged(
         layout, radiance, opacity, veils, [](auto, auto, const auto&) { return glm::vec3(0.0f); },
         true);
+}
+
+std::vector<glm::vec3> cut_out_transpose(const prt::PixelLayout& layout,
+                                         std::span<const glm::vec3> weights,
+                                         std::span<const mesh::Veil> veils) {
+    const std::size_t num_pixels = std::size_t{layout.width} * layout.height;
+    if (weights.size() != num_pixels)
+        throw std::invalid_argument(
+            fmt::format("expected weights of {} pixels, got {}", num_pixels, weights.size()));
+    std::vector<glm::vec3> result(layout.samples.size());
+    const std::size_t per_pixel = layout.samples_per_pixel();
+    SampleLayers layers;
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        if (i == 0 || layout.samples[i] != layout.samples[i - 1])
+            layers = {};
+        result[i] = layers.next(glm::vec3(1.0f), veils.empty() ? mesh::Veil() : veils[i]) *
+                    weights[layout.samples[i] / per_pixel] / static_cast<float>(per_pixel);
+    }
+    return result;
 }
 
 Picture compose(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -26,6 +27,15 @@ using cubemap::Picture;
                                       std::span<const glm::vec3> radiance,
                                       std::span<const glm::vec3> opacity = {},
                                       std::span<const mesh::Veil> veils = {});
+
+/// Returns the derivative of a number by the radiance of pixel receivers, given that by the pixels
+/// of compose_cut_out(): its transpose.
+///
+/// Shape:   weights is [height * width], the result [num_receivers].
+/// Throws:  std::invalid_argument for another number of weights.
+[[nodiscard]] std::vector<glm::vec3> cut_out_transpose(const prt::PixelLayout& layout,
+                                                       std::span<const glm::vec3> weights,
+                                                       std::span<const mesh::Veil> veils = {});
 
 /// Composes the picture of pixel receivers before a backdrop: each pixel is the mean of its
 /// samples. The picture is opaque.

@@ -67,6 +67,31 @@ def test_the_adjoint_of_points_is_the_transpose(arrays):
     assert backward == pytest.approx(inner(relighter.radiance, weights), rel=1e-5)
 
 
+def test_the_adjoint_of_a_picture_is_the_transpose(arrays):
+    random = np.random.default_rng(9)
+    pixels = relumine.precompute(
+        *arrays, receivers="pixels:24x18:2", view="auto", bounces=0.05, tolerance=0.05
+    )
+    relighter = relumine.Relighter(pixels, clusters_only=True)
+    weights = random.uniform(-0.5, 1, (18, 24, 3))
+    with pytest.raises(RuntimeError, match="expected a scene that is lit"):
+        relighter.picture_adjoint(weights)
+    relighter.set_environment(relumine.Environment(random.random((6, 16, 16, 3))))
+    relighter.bounce(bounces=3)
+    for albedo in (1, (0.2, 0.5, 0.9)):
+        picture = np.asarray(relighter.picture(albedo=albedo, background="none"))[..., :3]
+        backward = inner(
+            relighter.environment, relighter.picture_adjoint(weights, albedo=albedo)
+        )
+        assert backward == pytest.approx(inner(picture, weights), rel=1e-4)
+    with pytest.raises(ValueError, match=r"weights: expected shape \(18, 24, 3\)"):
+        relighter.picture_adjoint(weights.transpose(1, 0, 2))
+    vertices = relumine.Relighter(relumine.precompute(*arrays))
+    vertices.set_environment(relumine.Environment(np.ones((6, 4, 4, 3))))
+    with pytest.raises(ValueError, match="expected a scene of pixels, got vertices"):
+        vertices.picture_adjoint(weights)
+
+
 def test_a_batch_is_what_single_environments_give(scene):
     random = np.random.default_rng(4)
     cubes = random.random((5, 6, 8, 8, 3)).astype(np.float32)
