@@ -241,7 +241,7 @@ private:
         return prt::on_vertices(scene_.layout) &&
                        prt::estimated_closure(scene_.receivers, rays, scene_.settings.bias) >
                            LeastClosure
-                   ? prt::BounceOptions{}.tolerance
+                   ? prt::automatic_tolerance(scene_.receivers.size())
                    : 0.0f;
     }
 

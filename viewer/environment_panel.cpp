@@ -21,18 +21,25 @@ ImVec2 im(const glm::dvec2& pixel) {
 }
 
 void picture_tools(ViewState& state) {
-    // The slider takes the room that the words leave.
+    // The sliders take the room that the words leave. In a narrow window their own text says
+    // enough.
+    const float width = ImGui::GetContentRegionAvail().x;
+    const bool is_narrow = width < 512.0f;
     const float slider_width =
-        std::clamp(0.5f * (ImGui::GetContentRegionAvail().x - 400.0f), 56.0f, 140.0f);
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted("Exposure");
-    ImGui::SameLine();
+        std::clamp(0.5f * (width - (is_narrow ? 260.0f : 400.0f)), 40.0f, 140.0f);
+    const auto label = [is_narrow](const char* text) {
+        if (is_narrow)
+            return;
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextUnformatted(text);
+        ImGui::SameLine();
+    };
+    label("Exposure");
     ImGui::SetNextItemWidth(slider_width);
     ImGui::SliderFloat("##env exposure", &state.environment_look.exposure_ev, -15.0f, 15.0f,
                        "%+.2f EV");
     ImGui::SameLine();
-    ImGui::TextUnformatted("Rotate");
-    ImGui::SameLine();
+    label("Rotate");
     ImGui::SetNextItemWidth(slider_width);
     auto degrees = static_cast<float>(state.desk.state().rotation_degrees);
     if (ImGui::SliderFloat("##rotate", &degrees, -180.0f, 180.0f, "%.0f\xc2\xb0"))

@@ -259,6 +259,12 @@ void require_options(const mesh::TriangleMesh& mesh, const Receivers& receivers,
 
 } // namespace
 
+float automatic_tolerance(std::size_t num_vertices) {
+    constexpr float Fine = 100'000.0f;
+    return BounceOptions{}.tolerance *
+           std::max(1.0f, std::sqrt(static_cast<float>(num_vertices) / Fine));
+}
+
 BounceSamples sample_bounces(const mesh::TriangleMesh& mesh, const Receivers& receivers,
                              const Transfer& transfer, const BounceProbes& probes,
                              const RayScene& rays, const BounceOptions& options, const Work& work) {

@@ -49,6 +49,11 @@ struct BounceOptions {
     std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
 };
 
+/// Returns BounceOptions::tolerance where nothing is asked for. The noise of vertices that share a
+/// pixel evens out. So it grows as the root of their number, and the bounces of a fine mesh take no
+/// more rays than those of one with 100,000 vertices.
+[[nodiscard]] float automatic_tolerance(std::size_t num_vertices);
+
 /// Memory for each hit of a ray: in its receiver's samples, in the matrix, and in the file that is
 /// written.
 inline constexpr std::uint64_t BytesPerHit = 12;

@@ -3,6 +3,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "prt/bounces/bounce_precompute.h"
 #include "prt/receivers/mesh_point.h"
 #include "tests/relumine/small_scenes.h"
 
@@ -74,6 +75,12 @@ TEST(Bounces, OfPixelsAndTexelsComeFromTheVertices) {
         const Picture picture = draw(lit);
         EXPECT_EQ(picture.pixels.size(), std::holds_alternative<Pixels>(receivers) ? 1200u : 2048u);
     }
+}
+
+TEST(Bounces, OfFineMeshesAskForAsManyRays) {
+    EXPECT_EQ(prt::automatic_tolerance(1000), 0.01f);
+    EXPECT_EQ(prt::automatic_tolerance(100'000), 0.01f);
+    EXPECT_FLOAT_EQ(prt::automatic_tolerance(400'000), 0.02f);
 }
 
 TEST_F(BouncesFile, KeepTheVerticesBehindPixels) {
