@@ -8,7 +8,7 @@
 
 enum { Width = 64, Height = 32 };
 
-/* A sky that is brighter towards the top, and a window at +X. */
+/* A sky that is brighter towards the top, and a window at -X: +Z is in the middle, +X left of it. */
 static void paint_sky(float* rgb) {
     for (int y = 0; y < Height; ++y)
         for (int x = 0; x < Width; ++x, rgb += 3) {

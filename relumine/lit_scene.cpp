@@ -318,6 +318,8 @@ UpdateReport LitScene::update_region(const cubemap::TexelRectangle& rectangle,
 
 BounceReport LitScene::bounce(const Bouncing& how) {
     std::optional<relight::SurfaceBounces> surfaces;
+    if (!scene_->bounces)
+        throw std::invalid_argument("expected a scene with bounces, got one without");
     if (!how.albedo.empty())
         surfaces = bounces_of(*scene_, how.albedo, how.limits);
     if (!is_lit_)

@@ -162,6 +162,9 @@ private:
         check_points(options_);
         if (options_.blockers != nullptr)
             check_own_blockers();
+        if (!(scene_.settings.tolerance >= 0.0f && std::isfinite(scene_.settings.tolerance)))
+            throw std::invalid_argument(
+                fmt::format("expected a tolerance >= 0, got {}", scene_.settings.tolerance));
         if (options_.bounce_tolerance && !(*options_.bounce_tolerance >= 0.0f))
             throw std::invalid_argument(fmt::format("expected a tolerance of bounces >= 0, got {}",
                                                     *options_.bounce_tolerance));

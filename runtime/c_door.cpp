@@ -86,7 +86,10 @@ Struct taken(const Struct* given, const char* name) {
     Struct own{};
     if (given == nullptr)
         return own;
-    if (given->size < sizeof given->size || given->size > sizeof own)
+    if (given->size < sizeof given->size)
+        throw std::invalid_argument(fmt::format("{}: expected its size, which is {} here, got {}",
+                                                name, sizeof own, given->size));
+    if (given->size > sizeof own)
         throw std::invalid_argument(
             fmt::format("{}: expected a size of at most {}, got {}: the program was compiled for "
                         "another version",

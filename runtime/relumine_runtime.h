@@ -7,9 +7,11 @@
  *
  * Vectors:  x, y, z of a right-handed world, +Y up. Colours: linear red, green, blue.
  * Structs:  `size` comes first and is sizeof the struct; a later version may know longer ones.
- * Errors:   functions return RELUMINE_OK or a code; relumine_last_error() says in one sentence why.
- * Nothing has changed then. Threads:  a scene is used by one thread at a time, several scenes by
- * several. */
+ *
+ * Errors:   functions return RELUMINE_OK or a code, and nothing has changed unless it is
+ * RELUMINE_OK; relumine_last_error() says in one sentence why.
+ *
+ * Threads:  a scene is used by one thread at a time, several scenes by several. */
 #ifndef RELUMINE_RUNTIME_H
 #define RELUMINE_RUNTIME_H
 
@@ -118,8 +120,9 @@ RELUMINE_API void relumine_close(RelumineScene* scene);
 RELUMINE_API RelumineResult relumine_info(const RelumineScene* scene, RelumineInfo* info);
 
 /* Geometry into the caller's arrays. `count` is their number of elements, and must be 3 x
- * num_receivers, or 3 x num_triangles. Receivers of RELUMINE_VERTICES are the mesh's vertices, in
- * the file's order. */
+ * num_receivers, or 3 x num_triangles. Receivers of RELUMINE_VERTICES are the scene's vertices:
+ * those of the mesh file in its order, and behind them those that `precompute` added where the mesh
+ * was coarse (not with --no-refine) and a floor's. */
 RELUMINE_API RelumineResult relumine_positions(const RelumineScene* scene, float* xyz,
                                                size_t count);
 RELUMINE_API RelumineResult relumine_normals(const RelumineScene* scene, float* xyz, size_t count);
@@ -130,10 +133,21 @@ RELUMINE_API RelumineResult relumine_triangles(const RelumineScene* scene, uint3
 RELUMINE_API RelumineResult relumine_places(const RelumineScene* scene, uint32_t* places,
                                             size_t count);
 
-/* Lights the scene. Radiance is finite and not negative.
- * Cube map:  [6][resolution][resolution][3], faces +X -X +Y -Y +Z -Z, rows from the top, as
- * OpenGL's but seen from inside. Lat-long: [height][width][3], the top row is +Y; it becomes a cube
- * map of `resolution`, 0: as fine as the picture. Cost:      milliseconds. */
+/* Lights the scene. Radiance is finite and not negative. Cost: milliseconds.
+ *
+ * Cube map: [6][resolution][resolution][3], each face as it is seen from the middle of the cube:
+ *
+ *     face   to the right   downwards
+ *      +X        +Z            -Y
+ *      -X        -Z            -Y
+ *      +Y        +X            -Z
+ *      -Y        +X            +Z
+ *      +Z        -X            -Y
+ *      -Z        +X            -Y
+ *
+ * Lat-long: [height][width][3], the top row is +Y. Column x lies at a = 2 pi (0.5 - (x + 0.5) /
+ * width) from +Z towards +X: +Z in the middle, +X at a quarter, -X at three quarters. It becomes a
+ * cube map of `resolution`, 0: as fine as the picture. */
 RELUMINE_API RelumineResult relumine_light_cube_map(RelumineScene* scene, uint32_t resolution,
                                                     const float* rgb);
 RELUMINE_API RelumineResult relumine_light_lat_long(RelumineScene* scene, uint32_t width,
@@ -151,7 +165,7 @@ RELUMINE_API RelumineResult relumine_turn(RelumineScene* scene, double degrees);
 RELUMINE_API RelumineResult relumine_turn_coarse(RelumineScene* scene, double degrees,
                                                  uint32_t resolution);
 /* New radiance for the texels [x, x + width) x [y, y + height) of a face of the lit (and turned)
- * cube map. Cost:      in proportion to what these texels light. */
+ * cube map. Cost: in proportion to what these texels light. */
 RELUMINE_API RelumineResult relumine_update(RelumineScene* scene, uint32_t face, uint32_t x,
                                             uint32_t y, uint32_t width, uint32_t height,
                                             const float* rgb);

@@ -91,8 +91,11 @@ void RuntimeScene::set_albedo(std::span<const glm::vec3> albedo) {
 
 void RuntimeScene::bounce(const relight::BounceLimits& limits, bool is_step) {
     require_light();
+    if (!scene_.bounces)
+        throw NotThere{"a scene made with bounces"};
     if (!bounces_)
-        throw NotThere{"a scene made with bounces, and an albedo"};
+        throw NotThere{"an albedo: relumine_set_albedo() gives it, and a file of `relumine export "
+                       "runtime` has it"};
     const std::span<const glm::vec3> direct = relighter_.diffuse_radiance();
     if (is_step)
         bounces_->step(direct);

@@ -94,8 +94,8 @@ HWY_INLINE Floats part_above(const HarmonicGroup& group, const BlockNormals& nor
         squares = hn::MulAdd(normal, normal, squares);
         above = hn::MulAdd(normal, hn::Set(d, group.slope[axis]), above);
     }
-    above = hn::Min(hn::Max(above, hn::Zero(d)), hn::Set(d, 1.0f));
-    return hn::IfThenElse(hn::Eq(squares, hn::Zero(d)), hn::Set(d, 1.0f), above);
+    const auto all = hn::Max(hn::MulAdd(squares, hn::Set(d, -2.0f), hn::Set(d, 1.0f)), hn::Zero(d));
+    return hn::Min(hn::Max(hn::Add(above, all), hn::Zero(d)), hn::Set(d, 1.0f));
 }
 
 /// Adds a block to the clusters of a group. `basis` is the group's, `flux` the word's first

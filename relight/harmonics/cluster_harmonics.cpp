@@ -124,16 +124,32 @@ void ClusterHarmonics::set(std::size_t cluster, const VectorIrradiance& light) {
     fluxes_[cluster * 3 + 2] = static_cast<float>(glm::length(light.blue) * flux);
 }
 
-void ClusterHarmonics::sum_prefix() {
-    std::vector<double> sums(stride());
-    EightDoubles* line = prefix_.data();
-    for (std::size_t cluster = 0; cluster < coherences_.size(); ++cluster, line += eights()) {
-        const double* value = values_.data() + cluster * stride();
-        for (std::size_t i = 0; i < sums.size(); ++i) {
-            sums[i] += value[i];
-            line[eights() + i / 8].numbers[i % 8] = sums[i];
+namespace {
+
+/// Writes running sums of `width` values into lines that are so many numbers apart.
+template<std::size_t Width>
+void sum_lines(std::span<const double> values, std::size_t between, double* line) {
+    std::array<double, Width> sums{};
+    for (std::size_t first = 0; first < values.size(); first += Width) {
+        line += between;
+        for (std::size_t i = 0; i < Width; ++i) {
+            sums[i] += values[first + i];
+            line[i] = sums[i];
         }
     }
+}
+
+} // namespace
+
+void ClusterHarmonics::sum_prefix() {
+    double* first = prefix_.front().numbers.data(); // the others follow it
+    const std::size_t between = 8 * eights();
+    if (order_ == 1)
+        sum_lines<3>(values_, between, first);
+    else if (order_ == 2)
+        sum_lines<12>(values_, between, first);
+    else
+        sum_lines<27>(values_, between, first);
 }
 
 void ClusterHarmonics::sum_group(std::size_t index) {

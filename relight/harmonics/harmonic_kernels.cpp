@@ -91,8 +91,10 @@ public:
             squares = hn::MulAdd(normal, normal, squares);
             above = hn::MulAdd(normal, hn::Set(d, static_cast<T>(group.slope[axis])), above);
         }
-        above = hn::Min(hn::Max(above, hn::Zero(d)), hn::Set(d, T{1}));
-        above = hn::IfThenElse(hn::Eq(squares, hn::Zero(d)), hn::Set(d, T{1}), above);
+        // 1 without a normal, 0 with one; comparisons of doubles are missing in WebAssembly.
+        const auto all =
+            hn::Max(hn::MulAdd(squares, hn::Set(d, T{-2}), hn::Set(d, T{1})), hn::Zero(d));
+        above = hn::Min(hn::Max(hn::Add(above, all), hn::Zero(d)), hn::Set(d, T{1}));
         hn::Store(hn::Mul(above, sum.red), d, fluxes_[entry][0].data() + lane);
         hn::Store(hn::Mul(above, sum.green), d, fluxes_[entry][1].data() + lane);
         hn::Store(hn::Mul(above, sum.blue), d, fluxes_[entry][2].data() + lane);
