@@ -28,8 +28,13 @@ Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
 }
 
 void fail(const std::filesystem::path& path, const char* action, int error) {
+    const std::filesystem::path folder = path.parent_path();
+    std::error_code ignored;
+    const bool is_missing =
+        error == ENOENT && !folder.empty() && !std::filesystem::exists(folder, ignored);
     throw std::runtime_error(
-        fmt::format("{}: cannot {}: {}", path.string(), action, std::strerror(error)));
+        fmt::format("{}: cannot {}: {}{}", path.string(), action, std::strerror(error),
+                    is_missing ? fmt::format(": there is no folder {}", folder.string()) : ""));
 }
 
 void fail_to_write(const std::filesystem::path& path, int error, std::uint64_t bytes_needed,

@@ -23,6 +23,7 @@
 #include "prt/scene/checkpoint_file.h"
 #include "prt/scene/fingerprint.h"
 #include "prt/visibility/ray_scene.h"
+#include "relight/pictures/framing.h"
 #include "relumine/precompute_table.h"
 #include "relumine/receiver_placement.h"
 #include "relumine/scene_materials.h"
@@ -241,11 +242,11 @@ private:
             return 0.0f;
         if (options_.bounce_tolerance)
             return *options_.bounce_tolerance;
-        return prt::on_vertices(scene_.layout) &&
-                       prt::estimated_closure(scene_.receivers, rays, scene_.settings.bias) >
-                           LeastClosure
-                   ? prt::automatic_tolerance(scene_.receivers.size())
-                   : 0.0f;
+        if (!prt::on_vertices(scene_.layout) ||
+            prt::estimated_closure(scene_.receivers, rays, scene_.settings.bias) <= LeastClosure)
+            return 0.0f;
+        return prt::automatic_tolerance(scene_.receivers.size(),
+                                        relight::inside_room(scene_.mesh).has_value());
     }
 
     /// The rays and all they are made of go before the scene is written, which needs memory of its

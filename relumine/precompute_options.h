@@ -167,10 +167,9 @@ struct PrecomputeOptions {
     float glossy_tolerance = prt::GlossyOptions{}.tolerance;
 
     /// Light bounces from surface to surface; prt::BounceOptions::tolerance. 0: direct light alone.
-    /// Empty: vertices that see other surfaces bounce light, within 0.01, or more
-    /// where there are over 100,000. Surfaces send what their
-    /// vertices have, so other receivers get the mesh's vertices behind them
-    /// (prt::Receivers::num_added).
+    /// Empty: vertices that see other surfaces bounce light, within prt::automatic_tolerance().
+    /// Surfaces send what their vertices have, so other receivers get the mesh's vertices behind
+    /// them (prt::Receivers::num_added).
     std::optional<float> bounce_tolerance = {};
     /// Backs of surfaces send the bounced light that their fronts do; otherwise they are black.
     bool two_sided_bounces = false;

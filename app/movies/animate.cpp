@@ -69,7 +69,7 @@ public:
             seen.picture.camera = camera_of_frame(std::min<std::size_t>(1, sequence.size() - 1));
         }
         if (session.is_first())
-            seen.warn_of_eye(scene(), session);
+            seen.warn_of_picture(scene(), session);
     }
 
     void run() {

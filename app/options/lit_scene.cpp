@@ -31,6 +31,10 @@ Scene load(const SceneOptions& options) {
             throw UsageError("--pose", fmt::format("expected a mesh (.glb, .gltf), got {}, which "
                                                    "has the pose of its precompute",
                                                    options.path));
+        if (mesh::has_mesh_extension(options.path))
+            throw std::runtime_error(fmt::format("{}: expected a scene, got a mesh: `relumine "
+                                                 "precompute` makes a scene of it",
+                                                 options.path));
         return load_scene(options.path);
     }
     if (options.clusters_only)

@@ -74,9 +74,13 @@ const relumine::OutputOptions& OutputOptions::for_scene(const Scene& scene) cons
     return picture;
 }
 
-void OutputOptions::warn_of_eye(const Scene& scene, const Session& session) const {
-    if (const std::string extension = extension_of(path);
-        (extension == ".png" || extension == ".exr") && is_other_eye(scene, picture))
+void OutputOptions::warn_of_picture(const Scene& scene, const Session& session) const {
+    const std::string extension = extension_of(path);
+    if (extension != ".png" && extension != ".exr")
+        return;
+    if (picture.floor != FloorLook::Automatic && !first_floor_vertex(scene))
+        session.warn("--floor: no floor was added to this scene; the mesh's own is drawn as it is");
+    if (is_other_eye(scene, picture))
         session.warn("highlights are those that the eye of the precompute's --view sees; this "
                      "camera stands elsewhere");
 }

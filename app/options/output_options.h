@@ -32,8 +32,9 @@ struct OutputOptions {
     /// have.
     [[nodiscard]] const relumine::OutputOptions& for_scene(const Scene& scene) const;
 
-    /// Warns where a picture looks from elsewhere than the eye that the highlights are for.
-    void warn_of_eye(const Scene& scene, const Session& session) const;
+    /// Warns of a floor that the scene does not have, and where a picture looks from elsewhere than
+    /// the eye that the highlights are for.
+    void warn_of_picture(const Scene& scene, const Session& session) const;
 
     /// What to tell the user of the exposure of a picture or of colours: "; exposure -1.37 (auto)";
     /// nothing for numbers.

@@ -144,7 +144,7 @@ private:
         if (options_.who) // a map, whatever the receivers are
             return;
         painter_.emplace(lit_, options_.output.for_scene(lit_.scene()));
-        options_.output.warn_of_eye(lit_.scene(), session_);
+        options_.output.warn_of_picture(lit_.scene(), session_);
         OutputOptions output = options_.output;
         if (options_.lit_by.empty() && !layers_.frames.empty())
             output.path = frame_names(output.path).name(0);

@@ -431,7 +431,11 @@ Scene first_scene(const std::string& path, const std::optional<mesh::Pose>& pose
     Mesh mesh = made_mesh(options, session);
     stand_on_floor(mesh);
     const std::optional<SceneCache> cache = is_cached ? user_cache() : std::nullopt;
-    const PrecomputeWork work = precompute_work(session);
+    PrecomputeWork work = precompute_work(session);
+    work.on_warning = [warn = work.on_warning](Warning kind, const std::string& message) {
+        if (kind != Warning::HighlightsWithoutView) // the picture traces them
+            warn(kind, message);
+    };
     PrecomputeReport facts;
     try {
         Scene scene = cache ? cached_precompute(*cache, std::move(mesh), {}, work, &facts)

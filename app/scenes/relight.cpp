@@ -193,7 +193,7 @@ void light_scene(const RelightArguments& options, Session& session) {
     const UpdateReport times = lit.light(std::move(given.light));
     session.poll();
     if (session.is_first()) {
-        options.output.warn_of_eye(scene, session);
+        options.output.warn_of_picture(scene, session);
         for (const std::string& line : scene.settings.left_out)
             session.warn(fmt::format("{}: {}", scene.settings.source, line));
     }

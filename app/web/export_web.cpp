@@ -26,6 +26,7 @@
 #include "relight/pictures/framing.h"
 #include "relight/pictures/tone_curve.h"
 #include "relumine/coarsen.h"
+#include "relumine/live_eye.h"
 #include "relumine/receiver_colors.h"
 #include "relumine/scene_bounces.h"
 #include "relumine/version.h"
@@ -55,10 +56,7 @@ std::vector<std::string> left_out_of(const Scene& scene) {
     std::vector<std::string> left;
     if (scene.transfer.glossy)
         left.push_back("highlights, which are for one eye");
-    else if (std::any_of(scene.receivers.surfaces.begin(), scene.receivers.surfaces.end(),
-                         [](const prt::Surface& surface) {
-                             return surface.highlight != prt::Highlight::None;
-                         }))
+    else if (has_live_highlights(scene))
         left.push_back("highlights: surfaces are matte");
     if (std::any_of(scene.mesh.materials.begin(), scene.mesh.materials.end(),
                     [](const mesh::Material& material) {
@@ -293,6 +291,13 @@ void export_web(const ExportWebArguments& options, Session& session) {
                             options.num_samples == 0 ? ""
                                                      : fmt::format("; the light is within {:.2g} %",
                                                                    100.0 * page.worst)));
+    constexpr double Visible = 0.05;
+    if (page.worst > Visible)
+        session.warn(
+            fmt::format("the light of one of the environments is off by {:.2g} % in the mean: "
+                        "suns and lamps go through the clusters in a page; a smaller "
+                        "--tolerance, of the precompute and here, comes closer",
+                        100.0 * page.worst));
     session.report({{"clusters", page.num_clusters},
                     {"tolerance", page.tolerance},
                     {"bounces", page.has_bounces},

@@ -198,8 +198,10 @@ std::vector<glm::vec3> web_albedo(const Scene& scene) {
     constexpr float Least = 0.01f;
     std::vector<glm::vec3> albedo = picture_albedo(scene);
     for (std::size_t i = 0; i < albedo.size(); ++i) {
-        if (i < scene.receivers.surfaces.size())
-            albedo[i] += scene.receivers.surfaces[i].specular;
+        if (i < scene.receivers.surfaces.size()) {
+            const prt::Surface& surface = scene.receivers.surfaces[i];
+            albedo[i] = albedo[i] * surface.albedo + surface.specular;
+        }
         albedo[i] = glm::clamp(albedo[i], Least, 1.0f);
     }
     return albedo;

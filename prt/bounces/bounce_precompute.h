@@ -49,10 +49,12 @@ struct BounceOptions {
     std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// Returns BounceOptions::tolerance where nothing is asked for. The noise of vertices that share a
-/// pixel evens out. So it grows as the root of their number, and the bounces of a fine mesh take no
-/// more rays than those of one with 100,000 vertices.
-[[nodiscard]] float automatic_tolerance(std::size_t num_vertices);
+/// Returns BounceOptions::tolerance where nothing is asked for. A room has little light but that of
+/// bounces, in which their noise would be seen, so it asks for a quarter. The noise of vertices
+/// that share a pixel evens out: the tolerance grows as the root of their number, and the bounces
+/// of a fine mesh take no more rays than those of one with 100,000 vertices, or of a room with
+/// 25,000.
+[[nodiscard]] float automatic_tolerance(std::size_t num_vertices, bool is_room);
 
 /// Memory for each hit of a ray: in its receiver's samples, in the matrix, and in the file that is
 /// written.

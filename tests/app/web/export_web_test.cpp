@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 
+#include "app/web/web_look.h"
 #include "prt/scene/relighting_file.h"
 #include "prt/scene/section_reader.h"
 #include "tests/app/command.h"
@@ -112,6 +113,19 @@ TEST_F(ExportWeb, GivesUpBouncesAndClustersForALimit) {
     const std::string before = read("site/scene.json");
     fail(with_limit(1000), {"--max-bytes: expected at least "});
     EXPECT_EQ(read("site/scene.json"), before);
+}
+
+TEST_F(ExportWeb, KeepsTheColoursOfMaterials) {
+    precompute({"--tolerance", "0.1", "--material", "lambert:albedo=0.8,0.4,0.2"});
+    const prt::Scene scene = prt::load_scene(folder() / "scene.prt");
+    const std::vector<glm::vec3> albedo = web_albedo(scene);
+    for (std::size_t vertex = 0; vertex < 6; ++vertex)
+        EXPECT_EQ(albedo[vertex], glm::vec3(0.8f, 0.4f, 0.2f));
+    precompute({"--tolerance", "0.1", "--material", "ggx:albedo=0.2,specular=0.5,roughness=0.5"});
+    EXPECT_EQ(web_albedo(prt::load_scene(folder() / "scene.prt"))[0], glm::vec3(0.2f))
+        << "without a view, highlights are left out";
+    EXPECT_THAT(succeed({"export", "web", "scene.prt", "-o", "site", "--samples", "0"}).err,
+                HasSubstr("left out: highlights"));
 }
 
 TEST_F(ExportWeb, SaysWhatItLeavesOut) {
