@@ -200,7 +200,10 @@ std::vector<glm::vec3> web_albedo(const Scene& scene) {
     for (std::size_t i = 0; i < albedo.size(); ++i) {
         if (i < scene.receivers.surfaces.size()) {
             const prt::Surface& surface = scene.receivers.surfaces[i];
-            albedo[i] = albedo[i] * surface.albedo + surface.specular;
+            // Without a view, what they mirror is in the albedo already.
+            const bool is_apart = surface.highlight != prt::Highlight::None;
+            albedo[i] =
+                albedo[i] * surface.albedo + (is_apart ? surface.specular : glm::vec3(0.0f));
         }
         albedo[i] = glm::clamp(albedo[i], Least, 1.0f);
     }
