@@ -116,18 +116,23 @@ public:
     /// edit without a mark; otherwise the mark before, which becomes the present one. Null where
     /// there is none.
     const LightState* undo(const LightState& now) {
-        if (!marks_.empty() && marks_[at_] != now)
+        if (is_unmarked(now))
             return &marks_[at_];
-        return can_undo() ? &marks_[--at_] : nullptr;
+        return at_ > 0 ? &marks_[--at_] : nullptr;
     }
     /// Makes the mark after the present one that, and returns it; null where there is none.
     const LightState* redo() { return can_redo() ? &marks_[++at_] : nullptr; }
-    [[nodiscard]] bool can_undo() const { return at_ > 0; }
+    /// Whether undo() would return a mark.
+    [[nodiscard]] bool can_undo(const LightState& now) const { return at_ > 0 || is_unmarked(now); }
     [[nodiscard]] bool can_redo() const { return at_ + 1 < marks_.size(); }
     /// Sets the limit in bytes; 1 GiB by default. It takes effect at the next mark.
     void limit(std::size_t bytes) { max_bytes_ = bytes; }
 
 private:
+    [[nodiscard]] bool is_unmarked(const LightState& now) const {
+        return !marks_.empty() && marks_[at_] != now;
+    }
+
     std::vector<LightState> marks_;
     /// Index of the present mark.
     std::size_t at_ = 0;

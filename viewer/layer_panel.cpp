@@ -93,7 +93,7 @@ void add_buttons(ViewState& state) {
         add_image(state, state.path);
     hint("the picture named below, .exr or .hdr, as a layer; or drop one on the window");
     next_button("Undo Redo ");
-    ImGui::BeginDisabled(!state.desk.history().can_undo());
+    ImGui::BeginDisabled(!state.desk.history().can_undo(state.desk.state()));
     if (ImGui::Button("Undo"))
         later = [&state] {
             state.desk.undo();

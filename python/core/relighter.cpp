@@ -234,7 +234,7 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
         .def("redo", [](Lit& own) { return update_of(change(own, &relumine::redo)); })
         .def("history", [](Lit& own) {
             return quickly(own, [](LitScene& lit) {
-                return std::pair(lit.history().can_undo(), lit.history().can_redo());
+                return std::pair(lit.history().can_undo(lit.state()), lit.history().can_redo());
             });
         });
 }

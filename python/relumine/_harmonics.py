@@ -38,7 +38,7 @@ def irradiance(harmonics: ArrayLike, normals: ArrayLike) -> Doubles:
     """(N, 3): the irradiance of surfaces in arriving light.
 
     harmonics  (N, 4 or 9, 3), as Relighter.harmonics has them
-    normals    (N, 3) unit vectors, one for each
+    normals    (N, 3) unit vectors, one for each, or one for all (3,)
 
     It may be a little below zero, because nine coefficients ring.
 
@@ -50,6 +50,11 @@ def irradiance(harmonics: ArrayLike, normals: ArrayLike) -> Doubles:
     light = doubles("harmonics", harmonics, None, None, 3)
     if light.shape[1] not in (4, 9):
         raise ValueError(f"harmonics: expected shape (N, 4 or 9, 3), got {light.shape}")
+    if np.shape(normals) == (3,):
+        normals = np.broadcast_to(np.asarray(normals), (light.shape[0], 3))
     directions = doubles("normals", normals, light.shape[0], 3)
+    lengths = np.linalg.norm(directions, axis=1)
+    if np.any((np.abs(lengths - 1) > 1e-3) & (lengths > 0)):
+        raise ValueError("normals: expected unit vectors (zero: no surface), got others")
     result: Doubles = np.einsum("nk,nkc->nc", _basis(directions, light.shape[1]), light)
     return result

@@ -197,6 +197,12 @@ class Relighter:
             raise RuntimeError("expected a relighter that is open, got one that was closed")
         return self._lit
 
+    def _require_light(self) -> None:
+        if not self._core.is_lit:
+            raise RuntimeError(
+                "expected a scene that is lit, got one without light: set_environment() comes first"
+            )
+
     def _require_triangles(self) -> None:
         if self._blockers is not None:
             raise RuntimeError("expected a scene without a blockers_function: triangles are asked")
@@ -218,7 +224,7 @@ class Relighter:
         return RelightTimes(*self._core.set_environment(_environment(environment)))
 
     def update_environment(self, environment: Environment) -> Update:
-        """Replaces the environment by one of the same resolution, and updates what differs."""
+        """Replaces the environment and updates what differs; all where the resolution does."""
         return Update(*self._core.update_environment(_environment(environment)))
 
     def set_lights(self, lights: LightList) -> RelightTimes:
@@ -238,6 +244,7 @@ class Relighter:
         >>> relighter.update_region("+x", 4, 4, np.full((2, 3, 3), 5.0)).clusters > 0
         True
         """
+        self._require_light()
         if isinstance(face, str):
             if face not in FACES:
                 raise ValueError(f"face: expected {', '.join(FACES)}, got {face!r}")
@@ -332,6 +339,11 @@ class Relighter:
         ...     lit.harmonics.shape
         (6912, 9, 3)
         """
+        if self._order == 0:
+            raise RuntimeError(
+                "expected a relighter with harmonics, got one without: Relighter(scene, harmonics=3)"
+            )
+        self._require_light()
         result: Floats = view(self._core.harmonics())
         return result
 
@@ -371,10 +383,12 @@ class Relighter:
         map of at most 256 texels along a face's edge: some ten times as quick for fine maps, within
         1 %. Any other edit, mark() included, brings the whole map back.
         """
+        self._require_light()
         return Update(*self._core.set_rotation(real("degrees", degrees), bool(moving)))
 
     def mark(self) -> None:
         """Marks the present layers and environment as a state that undo() comes back to."""
+        self._require_light()
         self._core.mark()
 
     def undo(self) -> Update:
@@ -387,7 +401,7 @@ class Relighter:
 
     @property
     def can_undo(self) -> bool:
-        """Whether there is a mark before the present one."""
+        """Whether undo() goes back: there is an edit without a mark, or a mark before."""
         return self._core.history()[0]
 
     @property

@@ -75,6 +75,17 @@ def _receivers(receivers: Union[str, ArrayLike]) -> Any:
     return floats("receivers", receivers, None, 3)
 
 
+def _bounces(bounces: Union[bool, float, None]) -> Union[bool, float, None]:
+    if bounces is False:
+        return 0.0
+    if isinstance(bounces, (int, float)) and not isinstance(bounces, bool) and bounces >= 1:
+        raise ValueError(
+            f"bounces: expected True, False or a standard error below 1, got {bounces!r}; how "
+            "often light goes on is asked for by Relighter.bounce()"
+        )
+    return bounces
+
+
 def precompute(
     mesh: Union[Mesh, ArrayLike],
     triangles: Optional[ArrayLike] = None,
@@ -141,7 +152,7 @@ def precompute(
     if not isinstance(mesh, Mesh):
         if triangles is None:
             if np.ndim(mesh) < 2:
-                expect("mesh", mesh, Mesh, ": or an array of vertices, with triangles")
+                expect("mesh", mesh, Mesh, "; Mesh.load() reads a file, an array of vertices needs triangles")
             raise ValueError("triangles: expected an array beside an array of vertices, got None")
         mesh = Mesh(mesh, triangles)
     elif triangles is not None:
@@ -161,7 +172,7 @@ def precompute(
         "ggx": ggx,
         "highlights": highlights,
         "glossy_tolerance": glossy_tolerance,
-        "bounces": 0.0 if bounces is False else bounces,
+        "bounces": _bounces(bounces),
         "two_sided": two_sided,
         "max_memory": f"{max_memory}B" if isinstance(max_memory, int) else max_memory,
         "output": None if output is None else os.fspath(output),

@@ -338,6 +338,12 @@ def test_lightmaps():
     # v runs upwards: the roof shades the corner of +X and +Y.
     assert np.allclose(pixels[5:20, 5:20, :3], [0.25, 0.25, 1.0], atol=0.02)
     assert pixels[54, 54, 2] < 0.5
+    assert states() == {}
+    for factor, expected in ((0.5, {"floor": "stale: mesh, UV map or modifiers changed"}), (2.0, {})):
+        for corner in floor.data.uv_layers.active.data:
+            corner.uv *= factor
+        floor.data.update()
+        assert states() == expected
     roof.hide_render = True  # it would hide the floor from the camera
     picture = drawn(size=64, samples=4)
     light = 0.8 * pixels[:, :, :3]  # of new materials

@@ -136,3 +136,24 @@ def test_animate(relighter, sky, folder):
     with pytest.raises(OSError) as error:
         list(frames)
     assert "sky.0001.exr" in error.value.filename or "sky.0001.exr" in str(error.value)
+
+
+def test_undo_says_what_it_does(scene):
+    relighter = relumine.Relighter(scene)
+    for asked in (
+        lambda: relighter.set_rotation(90),
+        relighter.mark,
+        lambda: relighter.set_layers([]),
+        lambda: relighter.update_region(0, 0, 0, np.ones((1, 1, 3))),
+    ):
+        with pytest.raises(RuntimeError, match="set_environment"):
+            asked()
+    relighter.set_environment(relumine.Environment(np.ones((6, 8, 8, 3))))
+    relighter.set_layers([])
+    assert not relighter.can_undo
+    lamp = relumine.Layer("key", relumine.Disc((1, 1, 1), 20), relumine.Emit((9, 9, 9)))
+    relighter.set_layers([lamp])
+    assert relighter.can_undo, "an edit without a mark"
+    relighter.undo()
+    assert not relighter.can_undo
+    assert relighter.layers == []

@@ -172,3 +172,19 @@ def test_scipy_takes_the_matrix(relighter):
     for c in range(3):
         rows = sparse.csr_matrix((matrix.data[c], matrix.indices, matrix.indptr), matrix.shape)
         assert np.allclose(rows @ matrix.light[:, c], relighter.radiance[:, c], rtol=1e-5)
+
+
+def test_one_normal_serves_all(scene):
+    relighter = relumine.Relighter(scene, harmonics=2)
+    relighter.set_environment(relumine.Environment(np.ones((6, 4, 4, 3))))
+    light = relighter.harmonics
+    one = relumine.irradiance(light, (0, 1, 0))
+    assert np.array_equal(one, relumine.irradiance(light, np.tile((0, 1, 0), (len(light), 1))))
+    with pytest.raises(ValueError, match="unit vectors"):
+        relumine.irradiance(light, (0, 2, 0))
+    without = relumine.Relighter(scene)
+    without.set_environment(relumine.Environment(np.ones((6, 4, 4, 3))))
+    with pytest.raises(RuntimeError, match="harmonics=3"):
+        without.harmonics  # noqa: B018
+    with pytest.raises(ValueError, match="Relighter.bounce"):
+        relumine.precompute(np.zeros((3, 3)), np.zeros((1, 3), np.uint32), bounces=3)

@@ -134,7 +134,7 @@ TEST(LightEdits, UndoAndRedoReturnBitwise) {
     LitScene editor = scenes::relit_clusters();
     editor.light(scenes::random_environment(32, 1));
     mark(editor);
-    EXPECT_FALSE(editor.history().can_undo());
+    EXPECT_FALSE(editor.history().can_undo(editor.state()));
     std::mt19937 random(11);
     std::vector<std::vector<glm::vec3>> states = {copy(editor.radiance())};
     std::vector<std::vector<glm::vec3>> environments = {environment_of(editor).texels};
@@ -151,12 +151,12 @@ TEST(LightEdits, UndoAndRedoReturnBitwise) {
         environments.push_back(environment_of(editor).texels);
     }
     for (std::size_t i = states.size() - 1; i-- > 0;) {
-        ASSERT_TRUE(editor.history().can_undo());
+        ASSERT_TRUE(editor.history().can_undo(editor.state()));
         undo(editor);
         EXPECT_EQ(copy(editor.radiance()), states[i]) << "undo to " << i;
         EXPECT_EQ(environment_of(editor).texels, environments[i]);
     }
-    EXPECT_FALSE(editor.history().can_undo());
+    EXPECT_FALSE(editor.history().can_undo(editor.state()));
     EXPECT_EQ(undo(editor).num_clusters, 0u);
     for (std::size_t i = 1; i < states.size(); ++i) {
         ASSERT_TRUE(editor.history().can_redo());
@@ -209,12 +209,12 @@ TEST(LightEdits, UndoBringsBackRotationAndBaseBitwise) {
     ASSERT_EQ(states.size(), 7u);
     for (int round = 0; round < 2; ++round) {
         for (std::size_t i = states.size() - 1; i-- > 0;) {
-            ASSERT_TRUE(editor.history().can_undo());
+            ASSERT_TRUE(editor.history().can_undo(editor.state()));
             undo(editor);
             EXPECT_EQ(copy(editor.radiance()), states[i]) << "undo to " << i;
             EXPECT_EQ(environment_of(editor).texels, environments[i]);
         }
-        EXPECT_FALSE(editor.history().can_undo());
+        EXPECT_FALSE(editor.history().can_undo(editor.state()));
         EXPECT_EQ(editor.state().rotation_degrees, 0.0);
         for (std::size_t i = 1; i < states.size(); ++i) {
             ASSERT_TRUE(editor.history().can_redo());
@@ -241,7 +241,7 @@ TEST(LightEdits, TheHistoryKeepsNoMoreBasesThanItMay) {
     for (std::size_t i = 0; i < bases.size(); ++i)
         EXPECT_EQ(bases[i].expired(), i + 3 < bases.size()) << "two and the present one: " << i;
     int num_steps = 0;
-    for (; editor.history().can_undo(); ++num_steps)
+    for (; editor.history().can_undo(editor.state()); ++num_steps)
         undo(editor);
     EXPECT_EQ(num_steps, 5) << "three bases with two marks each";
     EXPECT_EQ(editor.state().base->map(), bases[3].lock());
@@ -250,7 +250,7 @@ TEST(LightEdits, TheHistoryKeepsNoMoreBasesThanItMay) {
     editor.history().limit(0);
     editor.light(scenes::random_environment(Resolution, 7));
     mark(editor);
-    EXPECT_TRUE(editor.history().can_undo());
+    EXPECT_TRUE(editor.history().can_undo(editor.state()));
     undo(editor);
     EXPECT_EQ(editor.state().base->map(), bases[3].lock());
 }

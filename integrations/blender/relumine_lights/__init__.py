@@ -18,6 +18,14 @@ operators.py, panel.py
 import bpy
 from bpy.app.handlers import persistent
 
+try:
+    import relumine  # noqa: F401
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(
+        "Relumine's Python package is not found: install python3-relumine, or name its folder in "
+        "PYTHONPATH, and start Blender with --python-use-system-env (docs/blender.md)"
+    ) from error
+
 from . import assets, operators, panel
 from .bake import baker
 from .geometry import shape_changed

@@ -278,9 +278,13 @@ def look_for_changes(scene, depsgraph=None):
         if path not in around:
             names = frozenset(each.name for each in partners(scene, thing))
             around[path] = geometry.surroundings_key(depsgraph, names, rendered)
-        shape, place = geometry.key_of(thing.evaluated_get(depsgraph), thing.matrix_world)
+        has_lightmap = bool(thing[TEXELS])
+        shape, place = geometry.key_of(
+            thing.evaluated_get(depsgraph), thing.matrix_world, has_lightmap
+        )
         changed = [word for word, old, new in (
-            ("mesh or modifiers", thing[SHAPE], shape), ("place", thing[PLACE], place),
+            ("mesh, UV map or modifiers" if has_lightmap else "mesh or modifiers", thing[SHAPE],
+             shape), ("place", thing[PLACE], place),
             ("what is around", thing[AROUND], around[path])) if old != new]  # fmt: skip
         if geometry.is_shared(thing):
             states[thing.name] = "shares its mesh with another object"
@@ -366,7 +370,8 @@ class Precompute:
             if path_of(thing) == self.absolute and thing.name not in self.names:
                 if copied_from(self.scene, thing) is None:
                     raise ValueError(f"{self.path}: expected a file of its own, got that of "
-                                     f"{thing.name}: choose another in the panel")  # fmt: skip
+                                     f"{thing.name}: choose another in the panel, or select "
+                                     f"{thing.name}, too")  # fmt: skip
 
     def _add(self, thing, evaluated, own, extra):
         with geometry.Evaluated(evaluated) as mesh:
@@ -382,7 +387,7 @@ class Precompute:
                 extra["normals"] = geometry.placed_normals(normals, thing.matrix_world)
                 colors = colors[old] if colors is not None else None
         vertices, triangles = geometry.placed(vertices, triangles, thing.matrix_world)
-        keys = geometry.key_of(evaluated, thing.matrix_world)
+        keys = geometry.key_of(evaluated, thing.matrix_world, bool(self.texels))
         self.places.append((thing.name, own.count, len(vertices), geometry.digest(vertices), keys))
         own.add(vertices, triangles, colors)
 

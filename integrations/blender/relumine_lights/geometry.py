@@ -79,11 +79,9 @@ def coarse_notes(shapes, vertices):
 def with_uvs(mesh, vertices, triangles):
     """Vertices are split where the active UV map is and at sharp edges: (vertices, triangles, uvs,
     normals, old vertex)."""
-    layer = mesh.uv_layers.active
-    if layer is None:
+    uvs = uvs_of(mesh)
+    if not len(uvs):
         return None
-    uvs = np.empty(2 * len(mesh.loops), dtype=np.float32)
-    layer.data.foreach_get("uv", uvs)
     corners = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
     mesh.loop_triangles.foreach_get("loops", corners)
     uv = uvs.reshape(-1, 2)[corners]
@@ -213,14 +211,25 @@ def shape_changed(name=None):
         _shapes.pop(name, None)
 
 
-def key_of(thing, matrix):
-    """Tells an evaluated object's mesh and place from any other."""
+def uvs_of(mesh):
+    """The active UV map, corner by corner; nothing without one."""
+    layer = mesh.uv_layers.active
+    uvs = np.empty(0 if layer is None else 2 * len(mesh.loops), dtype=np.float32)
+    if layer is not None:
+        layer.data.foreach_get("uv", uvs)
+    return uvs
+
+
+def key_of(thing, matrix, has_lightmap=False):
+    """Tells an evaluated object's mesh and place from any other; a lightmap's UV map, too."""
     name = thing.original.name_full
     if name not in _shapes or thing.original.mode == "EDIT":
         with Evaluated(thing) as mesh:
-            _shapes[name] = digest(*arrays_of(mesh)) if mesh is not None else ""
+            _shapes[name] = ("", "") if mesh is None else (
+                digest(*arrays_of(mesh)), digest(uvs_of(mesh)))  # fmt: skip
     place = np.round(np.array(matrix, dtype=np.float64), 5) + 0.0
-    return _shapes[name], digest(place)
+    shape, uvs = _shapes[name]
+    return f"{shape} {uvs}" if has_lightmap else shape, digest(place)
 
 
 def surroundings_key(depsgraph, names, rendered):
