@@ -366,6 +366,7 @@ class Relighter:
         >>> relighter.set_layers([key]).clusters > 0
         True
         """
+        self._require_light()
         with naming_layers():
             return Update(*self._core.set_layers(text_of(layers)))
 

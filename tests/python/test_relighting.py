@@ -272,7 +272,7 @@ def test_order_of_calls(scene):
     for call in (lambda: relighter.radiance, relighter.verify, relighter.picture):
         with pytest.raises(RuntimeError, match="lit"):
             call()
-    with pytest.raises(ValueError, match="environment"):
+    with pytest.raises(RuntimeError, match="set_environment"):
         relighter.set_layers([])
     with pytest.raises(ValueError, match="precomputed"):
         mesh = relumine.Mesh(scene.vertices, scene.triangles)
