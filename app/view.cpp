@@ -27,7 +27,7 @@ namespace relumine::app {
 namespace {
 
 struct Options {
-    SceneOptions scene;
+    SceneOptions scene{.harmonics_of_points = relight::MaxHarmonicOrder};
     EnvironmentOptions environment;
     BounceOption bounces;
     std::string layers;
@@ -117,13 +117,8 @@ void run(const Options& options, Session& session) {
 
     LitScene lit = lit_scene(options.scene);
     const bool shows_points = lit.scene().receivers.num_points() != 0;
-    if (shows_points) {
-        SceneOptions with_harmonics = options.scene;
-        with_harmonics.harmonics = relight::MaxHarmonicOrder;
-        lit = lit_scene(Scene(lit.scene()), with_harmonics);
-    } else {
+    if (!shows_points)
         require_vertices(lit.scene(), options.scene.path);
-    }
     lit.dim(options.picture.emission);
     session.poll();
     const auto load = [&](const std::filesystem::path& path) {

@@ -58,18 +58,14 @@ Receivers trial_receivers(const Receivers& receivers) {
     const std::size_t num_blocks = (order.size() + BlockSize - 1) / BlockSize;
     // At most an eighth of the work.
     const std::size_t num_wanted = std::clamp<std::size_t>(num_blocks / 8, 1, MaxTrialBlocks);
-    Receivers trial;
-    trial.have_no_surface = receivers.have_no_surface;
+    std::vector<std::uint32_t> chosen;
     for (std::size_t i = 0; i < num_wanted; ++i) {
         const std::size_t begin = (2 * i + 1) * num_blocks / (2 * num_wanted) * BlockSize;
         const std::size_t end = std::min(begin + BlockSize, order.size());
-        for (std::size_t place = begin; place < end; ++place) {
-            trial.positions.push_back(receivers.positions[order[place]]);
-            trial.normals.push_back(receivers.normals[order[place]]);
-            trial.num_added += receivers.is_beside_points(order[place]) ? 1 : 0;
-        }
+        chosen.insert(chosen.end(), order.begin() + static_cast<std::ptrdiff_t>(begin),
+                      order.begin() + static_cast<std::ptrdiff_t>(end));
     }
-    return trial;
+    return sampled(receivers, chosen);
 }
 
 /// What later stages may take, once the beams are gone and the columns are joined.

@@ -51,8 +51,7 @@ struct LightOptions {
 /// How an edit ends.
 enum class Ending {
     /// As Quick, but a turn is that of a map of at most MovingResolution, which is some ten times
-    /// as
-    /// quick to turn as 6 x 1024 x 1024: for a slider while it moves. Any other edit brings the
+    /// as quick to turn as 6 x 1024 x 1024: for a slider while it moves. Any other edit brings the
     /// whole map back.
     Moving,
     /// With what changed. The last bits may depend on the way to the state.
@@ -176,8 +175,8 @@ public:
     /// Returns the light that arrives at the receivers as spherical harmonics (docs/harmonics.md),
     /// [num_receivers][order^2] in the receivers' order, for any normal. At a surface's own normal
     /// their irradiance is that of all light, bounces included; away from it the bounces count as
-    /// if they came from around the normal. Of processes that share
-    /// the light, all call it; the first gets the light of all, the others get none.
+    /// if they came from around the normal. Of processes that share the light, all call it; the
+    /// first gets the light of all, the others get none.
     ///
     /// Throws:  std::logic_error before the first light() and without LightOptions::harmonics.
     [[nodiscard]] std::vector<glm::vec3> harmonics() const;

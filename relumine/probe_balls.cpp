@@ -1,12 +1,10 @@
 #include "relumine/probe_balls.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 

@@ -1,4 +1,4 @@
-// Points in space as small lit balls: what a window shows of them.
+// Points in space as small lit balls, for windows.
 #pragma once
 
 #include <cstddef>

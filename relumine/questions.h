@@ -130,7 +130,7 @@ struct Share {
 [[nodiscard]] cubemap::CubeMap adjoint(const LitScene& lit, std::span<const glm::vec3> weights);
 
 /// The same, given the derivative by the pixels of a scene of pixels: of draw() before nothing, as
-/// linear radiance. Light is that of the receivers, with the albedo of the options.
+/// linear radiance. The radiance of the receivers and the albedo of the options make the picture.
 ///
 /// Shape:   weights is [height * width] of the picture.
 /// Throws:  as adjoint(), and std::invalid_argument for receivers that are no pixels and for a

@@ -97,7 +97,7 @@ void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec
     const std::optional<prt::Hit> hit =
         state.rays.closest_hit(ray.origin, ray.direction, prt::RayOf::Eye);
     state.receiver.reset();
-    state.environment_look.heat = hit.has_value();
+    state.environment_look.heat = false;
     if (!hit)
         return;
     const glm::vec3 weights(1.0f - hit->barycentric.x - hit->barycentric.y, hit->barycentric.x,

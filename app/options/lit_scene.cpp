@@ -54,6 +54,15 @@ void recolour(Scene& scene, const SceneOptions& options) {
     set_colors(scene, colors);
 }
 
+LightOptions light_options(const SceneOptions& options, const Scene& scene) {
+    return {.clusters_only = options.clusters_only,
+            .harmonics = scene.receivers.num_points() != 0 && options.harmonics_of_points != 0
+                             ? options.harmonics_of_points
+                             : options.harmonics,
+            .highlight_rays = options.highlight_rays,
+            .path = options.path};
+}
+
 /// Errors about the mesh do not know its name.
 template<typename Make>
 auto naming_scene(const std::string& path, const Make& make) {
@@ -74,14 +83,11 @@ LitScene lit_scene(const SceneOptions& options, prt::Team* team) {
         throw UsageError("SCENE", fmt::format("expected a scene, got the environment {}: the scene "
                                               "stands first, the environment behind it",
                                               options.path));
-    const LightOptions light{.clusters_only = options.clusters_only,
-                             .harmonics = options.harmonics,
-                             .highlight_rays = options.highlight_rays,
-                             .team = team,
-                             .path = options.path};
     if (team != nullptr && team->has_others()) {
         prt::ScenePart part = prt::load_scene_part(options.path, team->part());
         recolour(part.scene, options);
+        LightOptions light = light_options(options, part.scene);
+        light.team = team;
         return LitScene(std::move(part), light);
     }
     return lit_scene(load(options), options);
@@ -89,10 +95,7 @@ LitScene lit_scene(const SceneOptions& options, prt::Team* team) {
 
 LitScene lit_scene(Scene scene, const SceneOptions& options) {
     recolour(scene, options);
-    const LightOptions light{.clusters_only = options.clusters_only,
-                             .harmonics = options.harmonics,
-                             .highlight_rays = options.highlight_rays,
-                             .path = options.path};
+    const LightOptions light = light_options(options, scene);
     return naming_scene(options.path, [&] { return LitScene(std::move(scene), light); });
 }
 

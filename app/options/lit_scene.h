@@ -17,6 +17,8 @@ struct SceneOptions {
     bool clusters_only = false;
     /// As LightOptions::harmonics
     std::uint32_t harmonics = 0;
+    /// The same, if the receivers are points in space
+    std::uint32_t harmonics_of_points = 0;
     /// As LightOptions::highlight_rays
     std::uint32_t highlight_rays = DefaultHighlightRays;
     /// The argument may also be a mesh, which is lit without clusters.

@@ -120,9 +120,7 @@ private:
     /// Finds what points see, which come first among the part's places. It takes seconds where
     /// vertices take minutes, so no checkpoint has it.
     void look_around(BounceSamples& result) {
-        const auto num_points = static_cast<std::size_t>(
-            std::lower_bound(places_.begin(), places_.end(), transfer_.num_points) -
-            places_.begin());
+        const std::size_t num_points = places_of(work_.team.part(), transfer_.num_points).size();
         if (num_points == 0)
             return;
         const std::vector<glm::dvec3> directions = even_directions(point_directions());

@@ -63,11 +63,10 @@ PointRows joined_points(std::span<BounceSamples> parts, std::size_t num_points) 
     std::size_t width = 0;
     for (const BounceSamples& part : parts)
         width = std::max<std::size_t>(width, part.points.num_directions);
-    std::vector<std::size_t> num_own(parts.size());
-    for (std::size_t place = 0; place < num_points; ++place)
-        ++num_own[own_place(place, parts.size()).part];
-    for (std::size_t i = 0; i < parts.size(); ++i)
-        require_samples(parts[i].points.emitters.size() == num_own[i] * width);
+    const auto num_parts = static_cast<std::uint32_t>(parts.size());
+    for (std::uint32_t i = 0; i < num_parts; ++i)
+        require_samples(parts[i].points.emitters.size() ==
+                        places_of({i, num_parts}, num_points).size() * width);
     if (parts.size() == 1)
         return std::move(parts[0].points);
     PointRows joined{.num_directions = static_cast<std::uint32_t>(width)};

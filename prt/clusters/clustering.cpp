@@ -86,9 +86,7 @@ Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
         origins_.push_back(
             ray_origin(receivers.positions[order_[place]], normals.back(), options.bias));
     }
-    const auto num_points = static_cast<std::size_t>(
-        std::lower_bound(places.begin(), places.end(), num_points_) - places.begin());
-    normals_ = NormalArrays(normals, num_points);
+    normals_ = NormalArrays(normals, places_of(work.team.part(), num_points_).size());
     const std::size_t num_words = (order_.size() + WordSize - 1) / WordSize;
     max_planes_ =
         static_cast<std::size_t>(options.plane_bytes / (num_words * sizeof(std::uint64_t)));

@@ -122,15 +122,14 @@ void add_light(NewSections& sections, const PartLight& light) {
 PartLight light_of(const SectionReader& reader, const Part& part, const Transfer& transfer) {
     PartLight light;
     VisibleCounts& counts = light.counts;
-    const std::vector<std::uint32_t> own = places_of(part, transfer.num_receivers());
-    const auto num_points = static_cast<std::size_t>(
-        std::lower_bound(own.begin(), own.end(), transfer.num_points) - own.begin());
-    counts.num_receivers = own.size();
+    counts.num_receivers = places_of(part, transfer.num_receivers()).size();
     counts.num_leaves = transfer.num_clusters();
     read_counts(reader, counts);
     if (has_glossy(reader))
         light.glossy = read_glossy(reader, counts.num_blocks());
-    light.bounces = read_bounce_samples(reader, own.size(), num_points, transfer.num_receivers());
+    light.bounces =
+        read_bounce_samples(reader, counts.num_receivers,
+                            places_of(part, transfer.num_points).size(), transfer.num_receivers());
     return light;
 }
 

@@ -55,15 +55,12 @@ private:
 
 Receivers sample_of(const Receivers& receivers, std::span<const std::uint32_t> order) {
     const Sample blocks(order.size());
-    Receivers sample;
-    sample.have_no_surface = receivers.have_no_surface;
+    std::vector<std::uint32_t> chosen;
     for (std::size_t block = 0; block < blocks.num_blocks(); ++block)
-        for (std::size_t place = blocks.begin(block); place < blocks.end(block); ++place) {
-            sample.positions.push_back(receivers.positions[order[place]]);
-            sample.normals.push_back(receivers.normals[order[place]]);
-            sample.num_added += receivers.is_beside_points(order[place]) ? 1 : 0;
-        }
-    return sample;
+        chosen.insert(chosen.end(),
+                      order.begin() + static_cast<std::ptrdiff_t>(blocks.begin(block)),
+                      order.begin() + static_cast<std::ptrdiff_t>(blocks.end(block)));
+    return sampled(receivers, chosen);
 }
 
 /// Puts the counts of all parts together, tile by tile.

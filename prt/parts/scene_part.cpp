@@ -64,9 +64,9 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     }
     Transfer& transfer = result.transfer;
     transfer.quadtree = whole.transfer.quadtree;
+    transfer.num_points = places_of(part, whole.transfer.num_points).size();
     for (const std::uint32_t place : places_of(part, num_receivers)) {
         const std::uint32_t receiver = whole.transfer.order[place];
-        transfer.num_points += place < whole.transfer.num_points ? 1 : 0;
         result.receivers.push_back(receiver);
         result.positions.push_back(whole.receivers.positions[receiver]);
         transfer.order.push_back(static_cast<std::uint32_t>(transfer.order.size()));

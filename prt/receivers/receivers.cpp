@@ -89,6 +89,19 @@ void add_vertices(Receivers& receivers, const mesh::TriangleMesh& mesh) {
         }
 }
 
+Receivers sampled(const Receivers& receivers, std::span<const std::uint32_t> chosen) {
+    Receivers sample;
+    sample.have_no_surface = receivers.have_no_surface;
+    for (const std::uint32_t receiver : chosen) {
+        sample.positions.push_back(receivers.positions[receiver]);
+        sample.normals.push_back(receivers.normals[receiver]);
+        // To a plan, only vertices behind points differ from the receivers before them.
+        if (receivers.have_no_surface && receiver >= receivers.num_own())
+            ++sample.num_added;
+    }
+    return sample;
+}
+
 std::uint32_t vertex_at(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
     const mesh::Triangle& corners = mesh.triangles[point.triangle];
     return corners[point.barycentric.x > 0.5f ? 1 : point.barycentric.y > 0.5f ? 2 : 0];

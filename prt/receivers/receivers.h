@@ -45,10 +45,6 @@ struct Receivers {
     [[nodiscard]] std::size_t num_own() const { return size() - num_added; }
     /// So many at the beginning have no surface.
     [[nodiscard]] std::size_t num_points() const { return have_no_surface ? num_own() : 0; }
-    /// Whether a receiver is a vertex that points in space get bounced light from.
-    [[nodiscard]] bool is_beside_points(std::size_t receiver) const {
-        return have_no_surface && receiver >= num_own();
-    }
     /// Returns the positions that were asked for.
     [[nodiscard]] const std::vector<glm::vec3>& places() const {
         return own_positions.empty() ? positions : own_positions;
@@ -69,6 +65,11 @@ struct Receivers {
 /// have something to get bounced light from. The vertices are Lambert, whatever the
 /// surface. Surfaces must be empty.
 void add_vertices(Receivers& receivers, const mesh::TriangleMesh& mesh);
+
+/// Returns some of the receivers, in the order of `chosen`, without what only their light needs:
+/// direct light by clusters is found for positions and normals. Vertices behind points stay behind
+/// them.
+[[nodiscard]] Receivers sampled(const Receivers& receivers, std::span<const std::uint32_t> chosen);
 
 /// Returns the vertex that an added receiver is.
 [[nodiscard]] std::uint32_t vertex_at(const mesh::TriangleMesh& mesh, const MeshPoint& point);

@@ -42,8 +42,8 @@ struct BounceRows {
 /// Adds the samples of a part of a plan.
 void add_bounce_samples(NewSections& sections, const BounceSamples& samples);
 
-/// Reads the samples of a part with `num_own` of the receivers, so many of them points in space.
-/// Empty where the file has none.
+/// Reads the samples of a part that has `num_own` of all receivers, `num_own_points` of them points
+/// in space. Empty where the file has none.
 ///
 /// Throws:  as SectionReader.
 [[nodiscard]] std::optional<BounceSamples> read_bounce_samples(const SectionReader& reader,

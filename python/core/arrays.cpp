@@ -106,6 +106,11 @@ Array owned(std::vector<std::uint8_t> values, Shape shape) {
     return kept(std::move(values), "B", sizeof(std::uint8_t), std::move(shape));
 }
 
+Array owned(cubemap::CubeMap map) {
+    const auto resolution = static_cast<py::ssize_t>(map.resolution);
+    return owned(std::move(map.texels), {6, resolution, resolution});
+}
+
 std::vector<glm::vec3> vec3s(const py::buffer& array) {
     return copied<glm::vec3>(array, "f", sizeof(float));
 }

@@ -15,6 +15,7 @@
 #include <glm/vec3.hpp>
 #include <pybind11/pybind11.h>
 
+#include "cubemap/cube_map.h"
 #include "mesh/triangle_mesh.h"
 
 namespace relumine::python {
@@ -45,6 +46,8 @@ struct Array {
 [[nodiscard]] Array owned(std::vector<std::uint32_t> values);
 [[nodiscard]] Array owned(std::vector<float> values, Shape shape);
 [[nodiscard]] Array owned(std::vector<std::uint8_t> values, Shape shape);
+/// [6, R, R, 3]
+[[nodiscard]] Array owned(cubemap::CubeMap map);
 
 /// Copies of what Python gives: contiguous arrays of float32, float64 and uint32.
 ///

@@ -270,9 +270,8 @@ py::tuple lit_by(const LitPointer& own, const std::string& json) {
         slowly(own, py::none(), [region = layers.at(0).region](LitScene& lit, const Reins&) {
             return relumine::lit_by(lit, region);
         });
-    const auto r = static_cast<py::ssize_t>(share.environment.resolution);
-    return py::make_tuple(owned(std::move(share.radiance)),
-                          owned(std::move(share.environment.texels), {6, r, r}), share.share);
+    return py::make_tuple(owned(std::move(share.radiance)), owned(std::move(share.environment)),
+                          share.share);
 }
 
 Array contribution_map(const LitPointer& own, const py::buffer& receivers) {
@@ -280,16 +279,14 @@ Array contribution_map(const LitPointer& own, const py::buffer& receivers) {
         slowly(own, py::none(), [chosen = uint32s(receivers)](LitScene& lit, const Reins&) {
             return relumine::contribution_map(lit, chosen);
         });
-    const auto r = static_cast<py::ssize_t>(map.resolution);
-    return owned(std::move(map.texels), {6, r, r});
+    return owned(std::move(map));
 }
 
 Array adjoint(const LitPointer& own, const py::buffer& weights) {
     const std::vector<glm::vec3> values = vec3s(weights);
     cubemap::CubeMap map =
         quickly(*own, [&](LitScene& lit) { return relumine::adjoint(lit, values); });
-    const auto r = static_cast<py::ssize_t>(map.resolution);
-    return owned(std::move(map.texels), {6, r, r});
+    return owned(std::move(map));
 }
 
 /// `weights` is [num_receivers * order^2, 3].
@@ -297,8 +294,7 @@ Array harmonics_adjoint(const LitPointer& own, const py::buffer& weights) {
     const std::vector<glm::vec3> values = vec3s(weights);
     cubemap::CubeMap map =
         quickly(*own, [&](LitScene& lit) { return relumine::harmonics_adjoint(lit, values); });
-    const auto r = static_cast<py::ssize_t>(map.resolution);
-    return owned(std::move(map.texels), {6, r, r});
+    return owned(std::move(map));
 }
 
 /// Row beginnings, columns, values of each channel, and the light.
@@ -375,8 +371,7 @@ Array picture_adjoint(const LitPointer& own, const py::buffer& weights, std::uin
     const OutputOptions options = options_from<OutputOptions>(given);
     cubemap::CubeMap map = quickly(
         *own, [&](LitScene& lit) { return relumine::picture_adjoint(lit, values, options); });
-    const auto r = static_cast<py::ssize_t>(map.resolution);
-    return owned(std::move(map.texels), {6, r, r});
+    return owned(std::move(map));
 }
 
 /// Returns [height, width, 3 or 4] and the exposure that suits it.
@@ -528,8 +523,7 @@ void bind_relighters(py::module_& module) {
              })
         .def("environment", [](Lit& own) {
             cubemap::CubeMap map = quickly(own, [](LitScene& lit) { return environment_of(lit); });
-            const auto r = static_cast<py::ssize_t>(map.resolution);
-            return owned(std::move(map.texels), {6, r, r});
+            return owned(std::move(map));
         });
     bind_editing(type);
     bind_questions(type);

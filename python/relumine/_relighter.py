@@ -261,8 +261,7 @@ class Relighter:
         A read-only view without a copy: it shows the light of the present, after the next change
         too. radiance.copy() keeps it.
         """
-        if not self._core.is_lit:
-            raise RuntimeError("expected a scene that is lit, got one without light")
+        self._require_light()
         result: Floats = view(self._core.radiance)
         return result
 
@@ -317,8 +316,7 @@ class Relighter:
 
         Raises ValueError for a scene without such highlights.
         """
-        if not self._core.is_lit:
-            raise RuntimeError("expected a scene that is lit, got one without light")
+        self._require_light()
         x, y, z = floats("eye", eye, 3).tolist()
         tolerance = real("tolerance", tolerance)
         if not 1e-5 <= tolerance <= 1.0:
@@ -500,8 +498,7 @@ class Relighter:
         if np.ndim(weights) == 1:
             weights = np.repeat(np.asarray(weights)[:, None], 3, axis=1)
         values = floats("weights", weights, count, 3)
-        if not self._core.is_lit:
-            raise RuntimeError("expected a scene that is lit, got one without light")
+        self._require_light()
         with errors():
             result: Floats = view(self._core.adjoint(values))
         return result
@@ -516,8 +513,7 @@ class Relighter:
         """
         values = floats("weights", weights, None, None, 3)
         height, width, _ = values.shape
-        if not self._core.is_lit:
-            raise RuntimeError("expected a scene that is lit, got one without light")
+        self._require_light()
         with errors():
             result: Floats = view(
                 self._core.picture_adjoint(
@@ -542,8 +538,7 @@ class Relighter:
             raise RuntimeError("expected a relighter with harmonics, got one without")
         count = self._scene.num_receivers
         values = floats("weights", weights, count, self._order**2, 3)
-        if not self._core.is_lit:
-            raise RuntimeError("expected a scene that is lit, got one without light")
+        self._require_light()
         with errors():
             result: Floats = view(self._core.harmonics_adjoint(values))
         return result

@@ -152,7 +152,12 @@ def precompute(
     if not isinstance(mesh, Mesh):
         if triangles is None:
             if np.ndim(mesh) < 2:
-                expect("mesh", mesh, Mesh, "; Mesh.load() reads a file, an array of vertices needs triangles")
+                expect(
+                    "mesh",
+                    mesh,
+                    Mesh,
+                    "; Mesh.load() reads a file, an array of vertices needs triangles",
+                )
             raise ValueError("triangles: expected an array beside an array of vertices, got None")
         mesh = Mesh(mesh, triangles)
     elif triangles is not None:

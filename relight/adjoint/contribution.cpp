@@ -220,11 +220,8 @@ Given given_to_surfaces(const Relighter& relighter, std::span<const glm::vec3> w
 }
 
 Given given_to(const Relighter& relighter, std::span<const glm::vec3> weights) {
-    const prt::Transfer& transfer = relighter.transfer();
-    if (transfer.num_points == transfer.num_receivers())
-        return given_to_points(relighter, weights);
     Given given = given_to_surfaces(relighter, weights);
-    if (transfer.num_points == 0)
+    if (relighter.transfer().num_points == 0)
         return given;
     const Given more = given_to_points(relighter, weights);
     for (std::size_t i = 0; i < more.by_clusters.size(); ++i)

@@ -95,7 +95,7 @@ std::vector<glm::vec3> bounce_adjoint(const SurfaceBounces& bounces, const prt::
                 own.push_back(mean_radiance(glm::vec3(counts[place])));
             counts[place] = glm::dvec3(0.0);
         }
-        PointBasis(matrix.points, order).scatter(own, by_sent);
+        PointBasis(matrix.points).scatter(own, order, by_sent);
     }
     TransposedProduct product(matrix);
     const std::uint32_t last = bounces.limits.num_bounces.value_or(MaxTransposedBounces);

@@ -63,8 +63,9 @@ class BounceLight::Impl {
 public:
     Impl(const prt::BounceMatrix& matrix, const prt::Transfer& transfer, const SharedRows& shared)
         : matrix_(matrix), transfer_(transfer), size_(transfer.num_receivers()),
-          product_(matrix, size_, shared), first_(product_.first()), albedo_(size_), direct_(size_),
-          sent_(size_), indirect_(size_), next_(size_), published_(size_, glm::vec3(0.0f)) {}
+          product_(matrix, size_, shared), first_(product_.first()),
+          basis_of_points_(matrix.points), albedo_(size_), direct_(size_), sent_(size_),
+          indirect_(size_), next_(size_), published_(size_, glm::vec3(0.0f)) {}
 
     void set_albedo(std::span<const glm::vec3> albedo) {
         if (albedo.size() != size_)
@@ -151,10 +152,9 @@ public:
     [[nodiscard]] std::span<const glm::vec3> indirect() const { return published_; }
 
     [[nodiscard]] std::vector<glm::vec3> point_harmonics(std::uint32_t order) const {
-        const PointBasis basis(matrix_.points, order);
         if (!reaches_points_)
-            return std::vector<glm::vec3>(matrix_.points.num_points() * basis.width());
-        return basis.gathered(sent_);
+            return std::vector<glm::vec3>(matrix_.points.num_points() * num_harmonics(order));
+        return basis_of_points_.gathered(sent_, order);
     }
 
 private:
@@ -355,6 +355,7 @@ private:
     BounceProduct product_;
     /// Receivers before this place send nothing to others.
     std::size_t first_;
+    PointBasis basis_of_points_;
     /// Whether any receiver sends light to another.
     bool sends_ = false;
     /// Upper bound of the factor from one bounce to the next, after many.

@@ -1,25 +1,26 @@
 #include "relight/bounces/point_gather.h"
 
-#include <array>
+#include <algorithm>
 #include <numbers>
 
 #include "files/parallel.h"
 
 namespace relumine::relight {
 
-PointBasis::PointBasis(const prt::PointRows& rows, std::uint32_t order)
-    : rows_(rows), order_(order) {
-    values_.reserve(rows.num_directions * width());
+PointBasis::PointBasis(const prt::PointRows& rows) : rows_(rows) {
+    values_.reserve(rows.num_directions);
     for (const glm::dvec3& direction : prt::even_directions(rows.num_directions)) {
         const std::array<double, MaxHarmonics> basis = harmonics(direction);
-        for (std::size_t k = 0; k < width(); ++k)
-            values_.push_back(
-                static_cast<float>(basis[k] * 4.0 * std::numbers::pi / rows.num_directions));
+        std::array<float, MaxHarmonics>& values = values_.emplace_back();
+        for (std::size_t k = 0; k < MaxHarmonics; ++k)
+            values[k] = static_cast<float>(basis[k] * 4.0 * std::numbers::pi / rows.num_directions);
     }
 }
 
-std::vector<glm::vec3> PointBasis::gathered(std::span<const PaddedRgb> sent) const {
-    std::vector<glm::vec3> result(rows_.num_points() * width());
+std::vector<glm::vec3> PointBasis::gathered(std::span<const PaddedRgb> sent,
+                                            std::uint32_t order) const {
+    const std::size_t width = num_harmonics(order);
+    std::vector<glm::vec3> result(rows_.num_points() * width);
     files::parallel_for(std::size_t{0}, rows_.num_points(), [&](std::size_t point) {
         std::array<glm::vec3, MaxHarmonics> sums{};
         const std::uint32_t* emitters = rows_.emitters.data() + point * rows_.num_directions;
@@ -28,26 +29,26 @@ std::vector<glm::vec3> PointBasis::gathered(std::span<const PaddedRgb> sent) con
                 continue;
             const PaddedRgb& light = sent[emitters[i]];
             const glm::vec3 rgb(light.rgb[0], light.rgb[1], light.rgb[2]);
-            const std::span<const float> basis = at(i);
-            for (std::size_t k = 0; k < width(); ++k)
-                sums[k] += basis[k] * rgb;
+            for (std::size_t k = 0; k < width; ++k)
+                sums[k] += values_[i][k] * rgb;
         }
-        for (std::size_t k = 0; k < width(); ++k)
-            result[point * width() + k] = sums[k];
+        std::copy_n(sums.begin(), width,
+                    result.begin() + static_cast<std::ptrdiff_t>(point * width));
     });
     return result;
 }
 
-void PointBasis::scatter(std::span<const glm::dvec3> weights, std::span<glm::dvec3> by_sent) const {
+void PointBasis::scatter(std::span<const glm::dvec3> weights, std::uint32_t order,
+                         std::span<glm::dvec3> by_sent) const {
+    const std::size_t width = num_harmonics(order);
     for (std::size_t point = 0; point < rows_.num_points(); ++point) {
-        const std::span<const glm::dvec3> own = weights.subspan(point * width(), width());
+        const std::span<const glm::dvec3> own = weights.subspan(point * width, width);
         const std::uint32_t* emitters = rows_.emitters.data() + point * rows_.num_directions;
         for (std::size_t i = 0; i < rows_.num_directions; ++i) {
             if (emitters[i] == prt::NoEmitter)
                 continue;
-            const std::span<const float> basis = at(i);
-            for (std::size_t k = 0; k < width(); ++k)
-                by_sent[emitters[i]] += static_cast<double>(basis[k]) * own[k];
+            for (std::size_t k = 0; k < width; ++k)
+                by_sent[emitters[i]] += static_cast<double>(values_[i][k]) * own[k];
         }
     }
 }

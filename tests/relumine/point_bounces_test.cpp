@@ -9,6 +9,7 @@
 #include "prt/receivers/receivers.h"
 #include "relight/harmonics/harmonics.h"
 #include "relumine/probe_balls.h"
+#include "tests/relight/adjoint/inner_products.h"
 #include "tests/relight/arrays.h"
 #include "tests/relumine/relit_lit_scene.h"
 #include "tests/relumine/small_scenes.h"
@@ -21,6 +22,8 @@ class PointBouncesFile : public scenes::InFolder {};
 using Colors = std::vector<glm::vec3>;
 using relight::copy;
 using relight::num_harmonics;
+using scenes::inner;
+using scenes::random_weights;
 using scenes::relative_difference;
 
 const LightOptions NineCoefficients{.harmonics = 3};
@@ -55,22 +58,6 @@ LitScene lit_corner(const BounceLimits& limits = {}) {
     lit.light(sun_and_sky());
     lit.bounce({.albedo = bounce_albedo(lit.scene()), .limits = limits});
     return lit;
-}
-
-double inner(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        sum += glm::dot(glm::dvec3(a[i]), glm::dvec3(b[i]));
-    return sum;
-}
-
-Colors random_weights(std::size_t count, std::uint32_t seed) {
-    Colors weights;
-    for (std::size_t i = 0; i < count; ++i)
-        weights.emplace_back(std::sin(1.7f * static_cast<float>(i + seed)),
-                             std::cos(2.3f * static_cast<float>(i + seed)),
-                             std::sin(0.9f * static_cast<float>(i * seed + 1)));
-    return weights;
 }
 
 TEST(EvenDirections, SumUpToNothing) {
@@ -248,21 +235,13 @@ TEST_F(PointBouncesFile, AreKeptAndChecked) {
     lit.light(sun_and_sky());
     lit.bounce({.albedo = bounce_albedo(lit.scene())});
     EXPECT_EQ(lit.harmonics(), lit_corner().harmonics());
-    const auto refuses = [&](const auto& damage, const char* what) {
-        Scene scene = read;
-        damage(scene);
-        try {
-            save_scene(file("damaged.prt"), scene);
-            ADD_FAILURE() << what;
-        } catch (const std::exception& error) {
-            EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
-        }
-    };
-    refuses([](Scene& scene) { scene.bounces->points.emitters[5] = 1u << 30; }, "number");
-    refuses([](Scene& scene) { scene.bounces->points.emitters[5] = 7; },
-            "light that comes from vertices");
-    refuses([](Scene& scene) { scene.bounces->points.emitters.pop_back(); }, "directions");
-    EXPECT_FALSE(std::filesystem::exists(file("damaged.prt")));
+    refuses_damage(
+        read, [](Scene& scene) { scene.bounces->points.emitters[5] = 1u << 30; }, "number");
+    refuses_damage(
+        read, [](Scene& scene) { scene.bounces->points.emitters[5] = 7; },
+        "light that comes from vertices");
+    refuses_damage(
+        read, [](Scene& scene) { scene.bounces->points.emitters.pop_back(); }, "directions");
 }
 
 } // namespace

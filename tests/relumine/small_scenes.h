@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -80,6 +81,20 @@ protected:
     [[nodiscard]] std::string read(const std::string& name) const {
         std::ifstream stream(file(name), std::ios::binary);
         return {std::istreambuf_iterator<char>(stream), {}};
+    }
+
+    /// Expects that a scene is not saved once `damage` is done to it, for a reason that says
+    /// `what`, and that no file is left.
+    template<typename Damage>
+    void refuses_damage(Scene scene, const Damage& damage, const char* what) const {
+        damage(scene);
+        try {
+            save_scene(file("damaged.prt"), scene);
+            ADD_FAILURE() << what;
+        } catch (const std::runtime_error& error) {
+            EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+        }
+        EXPECT_FALSE(std::filesystem::exists(file("damaged.prt")));
     }
 
 private:
