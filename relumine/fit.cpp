@@ -81,17 +81,32 @@ private:
     std::vector<glm::dvec3> sums_, weights_;
 };
 
-/// Gathers a picture of the scene's own pixels or texels. `places` are those of the receivers, so
-/// many to a pixel.
-FitTarget target_of_places(const Picture& picture, const Picture& size,
-                           std::span<const std::uint32_t> places, std::size_t per_pixel,
+void require_size(const Picture& picture, std::uint32_t width, std::uint32_t height) {
+    if (picture.width != width || picture.height != height)
+        throw std::invalid_argument(fmt::format("expected {} x {} pixels, got {} x {}", width,
+                                                height, picture.width, picture.height));
+}
+
+/// Gathers a picture of the scene's own pixels. Of a pixel with an edge it tells nothing of the
+/// surfaces on either side.
+FitTarget target_of_pixels(const Picture& picture, const prt::PixelLayout& pixels,
                            std::span<const glm::vec3> albedo) {
-    if (picture.width != size.width || picture.height != size.height)
-        throw std::invalid_argument(fmt::format("expected {} x {} pixels, got {} x {}", size.width,
-                                                size.height, picture.width, picture.height));
-    Gathered gathered(places.size());
-    for (std::size_t i = 0; i < places.size(); ++i)
-        gathered.add(i, picture.pixels[places[i] / per_pixel], albedo[i], 1.0);
+    require_size(picture, pixels.width, pixels.height);
+    const std::size_t per_pixel = pixels.samples_per_pixel();
+    Gathered gathered(pixels.samples.size());
+    for (std::size_t i = 0; i < pixels.samples.size(); ++i)
+        if (pixels.shares.empty() || pixels.num_shown(i) == per_pixel)
+            gathered.add(i, picture.pixels[pixels.samples[i] / per_pixel], albedo[i], 1.0);
+    return gathered.target();
+}
+
+/// Gathers a lightmap of the scene's own texels.
+FitTarget target_of_texels(const Picture& picture, const prt::TexelLayout& texels,
+                           std::span<const glm::vec3> albedo) {
+    require_size(picture, texels.width, texels.height);
+    Gathered gathered(texels.texels.size());
+    for (std::size_t i = 0; i < texels.texels.size(); ++i)
+        gathered.add(i, picture.pixels[texels.texels[i]], albedo[i], 1.0);
     return gathered.target();
 }
 
@@ -266,11 +281,9 @@ FitTarget target_of_picture(const LitScene& lit, const Picture& picture,
     const Scene& scene = lit.scene();
     const std::vector<glm::vec3> albedo = picture_albedo(scene, options);
     if (const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout))
-        return target_of_places(picture, {.width = pixels->width, .height = pixels->height},
-                                pixels->samples, pixels->samples_per_pixel(), albedo);
+        return target_of_pixels(picture, *pixels, albedo);
     if (const auto* texels = std::get_if<prt::TexelLayout>(&scene.layout))
-        return target_of_places(picture, {.width = texels->width, .height = texels->height},
-                                texels->texels, 1, albedo);
+        return target_of_texels(picture, *texels, albedo);
     if (!prt::on_vertices(scene.layout))
         throw std::invalid_argument("expected a scene of which there are pictures");
     Gathered gathered(scene.receivers.size());

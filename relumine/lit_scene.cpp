@@ -424,6 +424,8 @@ void LitScene::add_mirrored() {
     if (mirrors_.shows_surfaces()) {
         whole = of_all(total_);
         surfaces.radiance = whole;
+        if (bounces_.is_set())
+            surfaces.albedo = bounces_.surfaces().albedo;
     }
     std::vector<std::uint32_t> receivers;
     if (!part_) {

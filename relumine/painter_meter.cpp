@@ -33,13 +33,16 @@ double Painter::Impl::meter_receivers(const Lighting& lighting) {
     const std::vector<glm::vec3> colors = own_colors(lighting);
     const std::vector<bool> is_floor = floor_receivers(scene);
     const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout);
-    const std::size_t before = metered.colors.size();
+    double covered = 0.0; // samples
     std::optional<relight::Backdrop> behind;
     const std::optional<glm::vec3> open = open_floor(scene, lighting, look(lighting), eye());
     for (std::size_t i = 0; i < colors.size(); ++i)
         if (is_floor.empty() || !is_floor[i]) {
+            const double weight =
+                pixels == nullptr ? 1.0 : static_cast<double>(pixels->num_shown(i));
             metered.colors.push_back(colors[i]);
-            metered.weights.push_back(1.0f);
+            metered.weights.push_back(static_cast<float>(weight));
+            covered += weight;
         } else if (pixels != nullptr && !scene.lamps.empty() &&
                    floor.opacity(scene.receivers.positions[i]) == 1.0f) {
             if (open && !behind)
@@ -52,7 +55,7 @@ double Painter::Impl::meter_receivers(const Lighting& lighting) {
         return 0.0;
     const auto num_samples = static_cast<double>(pixels->num_samples());
     metered.num_pixels += num_samples;
-    return static_cast<double>(metered.colors.size() - before) / num_samples;
+    return covered / num_samples;
 }
 
 double Painter::Impl::meter_picture(const Lighting& lighting) {

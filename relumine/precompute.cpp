@@ -89,6 +89,10 @@ bool are_in_space(const PrecomputeOptions& options) {
            std::holds_alternative<Grid>(options.receivers);
 }
 
+bool are_pixels(const PrecomputeOptions& options) {
+    return std::holds_alternative<Pixels>(options.receivers);
+}
+
 /// One precompute, step by step.
 class Precompute {
 public:
@@ -101,10 +105,10 @@ public:
         scene_.blockers = std::move(mesh.blockers);
         scene_.mesh = std::move(mesh.geometry);
         scene_.settings = {
-            .tolerance =
-                options.tolerance.value_or(are_in_space(options) ? ToleranceOfPoints
-                                           : report_.refined     ? ToleranceOfRefined
-                                                             : prt::PrecomputeOptions{}.tolerance),
+            .tolerance = options.tolerance.value_or(are_in_space(options) ? ToleranceOfPoints
+                                                    : report_.refined || are_pixels(options)
+                                                        ? ToleranceOfRefined
+                                                        : prt::PrecomputeOptions{}.tolerance),
             .epsilon = options.epsilon,
             .min_level = are_in_space(options) ? std::max(options.min_level, prt::MinLevelOfPoints)
                                                : options.min_level,
@@ -343,22 +347,27 @@ private:
                                                       std::min<std::size_t>(names.size(), 8)),
                                                   ", ") +
                                         (names.size() > 8 ? ", ..." : "")));
+        const bool are_replaced = options_.surface || options_.floor_surface != prt::Surface();
         prt::Receivers& receivers = scene_.receivers;
         const prt::GgxForm form = receivers.to_eye.empty() ? prt::GgxForm::Published : options_.ggx;
         if (receivers.points.empty()) {
             receivers.surfaces = prt::vertex_surfaces(mesh, surface_of, form);
-            keep_materials(scene_.mesh, receivers, surface_of,
-                           options_.surface || options_.floor_surface != prt::Surface());
+            keep_materials(scene_.mesh, receivers, surface_of, are_replaced);
         } else {
             const mesh::MipMaps maps(mesh.textures);
             const std::optional<prt::TextureView> view = texture_view(maps);
             receivers.surfaces.assign(num_points, prt::Surface());
-            for (const prt::MeshPoint& point : std::span(receivers.points).subspan(num_points))
+            for (std::size_t i = num_points; i < receivers.size(); ++i) {
+                const prt::MeshPoint& point = receivers.points[i];
+                const bool is_own = i < receivers.num_own();
                 receivers.surfaces.push_back(
                     surface_of(mesh, point.triangle,
                                prt::surface_at(mesh, point.triangle, point.barycentric, form,
-                                               view ? &*view : nullptr)));
+                                               is_own && view ? &*view : nullptr)));
+            }
         }
+        for (std::size_t i = 0; i < receivers.normal_spread.size(); ++i)
+            prt::widen(receivers.surfaces[i], receivers.normal_spread[i]);
         set_coat_normals();
         if (receivers.to_eye.empty())
             leave_highlights_out();
@@ -366,9 +375,11 @@ private:
             for (prt::Surface& surface : receivers.surfaces)
                 if (surface.highlight == prt::Highlight::GgxWhole) // of the options
                     surface.highlight = prt::Highlight::Ggx;
-        // Vertices that only send light on are seen by nobody.
+        // Vertices that only send light on are seen in mirrors alone.
         for (std::size_t i = receivers.num_own(); i < receivers.size(); ++i)
-            receivers.surfaces[i].highlight = prt::Highlight::None;
+            receivers.surfaces[i] = prt::without_highlight(receivers.surfaces[i]);
+        if (!receivers.points.empty() && prt::has_highlights(receivers) && are_traced())
+            keep_materials(scene_.mesh, receivers, surface_of, are_replaced);
     }
 
     /// How pixels see the textures.
@@ -378,7 +389,7 @@ private:
             return std::nullopt;
         return prt::TextureView(
             maps, pixels->camera.eye,
-            {pixels->camera, pixels->width, pixels->height, pixels->samples_per_axis});
+            {pixels->camera, pixels->width, pixels->height, pixels->receivers_per_axis()});
     }
 
     /// Coats are as smooth as the mesh, or have normal maps of their own.

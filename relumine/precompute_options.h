@@ -38,8 +38,9 @@ struct Vertices {};
 struct Pixels {
     std::uint32_t width = 1024;
     std::uint32_t height = 768;
-    /// n x n samples a pixel
-    std::uint32_t samples_per_axis = 1;
+    /// n x n samples a pixel; none: one, and 4 x 4 where a pixel holds an edge, which share
+    /// receivers where they see the same surface.
+    std::optional<std::uint32_t> samples_per_axis = {};
 };
 
 /// The texels of a lightmap on the mesh's uvs are lit.
@@ -108,7 +109,8 @@ enum class Warning {
 /// PrecomputeOptions::tolerance where refined_by_itself() added vertices. New vertices stand where
 /// shadows are, so the same root mean square asks for far more clusters. Measured: with this
 /// tolerance the light of the vertices is right to half a percent, and what they interpolate to 1 %
-/// to 2 %.
+/// to 2 %. Pixels have it, too: the light of the Duck is as exact as with a finer one, from a sixth
+/// of the clusters.
 inline constexpr float ToleranceOfRefined = 0.025f;
 
 /// The same of points: with cells of prt::MinLevelOfPoints, nothing more is split as a rule.

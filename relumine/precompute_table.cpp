@@ -173,26 +173,30 @@ ReceiversText::Value ReceiversText::read(const std::string& text) {
     const std::vector<std::string> parts = split(text, ':');
     const bool are_pixels = parts[0] == "pixels";
     const auto size = parts.size() > 1 ? parse_sides(parts[1]) : std::nullopt;
-    const auto samples = parts.size() > 2 ? parse_count(parts[2]) : std::optional(1u);
-    if ((!are_pixels && parts[0] != "texels") || !size || !samples ||
+    const auto samples = parts.size() > 2 ? parse_count(parts[2]) : std::nullopt;
+    if ((!are_pixels && parts[0] != "texels") || !size || (parts.size() > 2 && !samples) ||
         parts.size() > (are_pixels ? 3 : 2))
         refuse_text(ReceiversForms, text);
     const auto [width, height] = *size;
     if (!is_size(width) || !is_size(height))
         refuse_text(fmt::format("a size of 1 to {} a side", prt::MaxPictureSize), text);
-    if (*samples < 1 || *samples > prt::MaxSamplesPerAxis)
+    if (samples && (*samples < 1 || *samples > prt::MaxSamplesPerAxis))
         refuse_text(fmt::format("1 to {} samples a side", prt::MaxSamplesPerAxis), text);
-    if (std::size_t{width} * height * *samples * *samples > prt::MaxLayoutPlaces)
-        refuse_text(fmt::format("at most {} samples in all", prt::MaxLayoutPlaces), text);
+    const std::size_t per_axis =
+        samples.value_or(are_pixels ? prt::PixelLayout::EdgeSamplesPerAxis : 1);
+    if (std::size_t{width} * height * per_axis * per_axis > prt::MaxLayoutPlaces)
+        refuse_text(fmt::format("at most {} samples in all, {} x {} a pixel", prt::MaxLayoutPlaces,
+                                per_axis, per_axis),
+                    text);
     if (!are_pixels)
         return Texels{.width = width, .height = height};
-    return Pixels{.width = width, .height = height, .samples_per_axis = *samples};
+    return Pixels{.width = width, .height = height, .samples_per_axis = samples};
 }
 
 std::string ReceiversText::show(const Value& receivers) {
     if (const auto* pixels = std::get_if<Pixels>(&receivers))
-        return fmt::format("pixels:{}x{}:{}", pixels->width, pixels->height,
-                           pixels->samples_per_axis);
+        return fmt::format("pixels:{}x{}", pixels->width, pixels->height) +
+               (pixels->samples_per_axis ? fmt::format(":{}", *pixels->samples_per_axis) : "");
     if (const auto* texels = std::get_if<Texels>(&receivers))
         return fmt::format("texels:{}x{}", texels->width, texels->height);
     if (const auto* points = std::get_if<Points>(&receivers))
@@ -300,9 +304,10 @@ OptionRow material_row(std::vector<SurfaceMaterial>& materials) {
 OptionTable options_of(PrecomputeOptions& o) {
     return {
         row("--tolerance", o.tolerance,
-            fmt::format("RMS error of the transfer allowed within a cluster, 1/sr ({}; {} where "
-                        "the mesh or its floor is refined by itself; {} for points)",
-                        prt::PrecomputeOptions{}.tolerance, ToleranceOfRefined, ToleranceOfPoints),
+            fmt::format(
+                "RMS error of the transfer allowed within a cluster, 1/sr ({}; {} where "
+                "the mesh or its floor is refined by itself, and for pixels; {} for points)",
+                prt::PrecomputeOptions{}.tolerance, ToleranceOfRefined, ToleranceOfPoints),
             {.min = 0, .max = 1e6}),
         row("--epsilon", o.epsilon,
             "the paper's form of the tolerance: grows lax with the mesh's size",

@@ -45,19 +45,20 @@ void replace_materials(mesh::TriangleMesh& mesh, const prt::SurfaceOverride& sur
 
 void keep_materials(mesh::TriangleMesh& mesh, prt::Receivers& receivers,
                     const prt::SurfaceOverride& surface_of, bool are_replaced) {
-    const bool has_eye = !receivers.to_eye.empty();
+    const bool has_eye = !receivers.to_eye.empty(), are_points = !receivers.points.empty();
     const bool has_textures = !mesh.textures.empty() && !mesh.triangle_materials.empty();
     const bool mirrors =
         !has_eye &&
         std::any_of(receivers.surfaces.begin(), receivers.surfaces.end(),
                     [](const prt::Surface& own) { return own.highlight != prt::Highlight::None; });
-    if (!has_textures && !mirrors)
+    if (!has_textures && !mirrors && !are_points)
         return;
     if (are_replaced)
         replace_materials(mesh, surface_of, has_eye);
     constexpr float LeastAlbedo = 1.0f / 255.0f / 12.92f;
-    for (prt::Surface& surface : receivers.surfaces)
-        if (surface.highlight != prt::Highlight::None || surface.emission == glm::vec3(0.0f))
+    for (std::size_t i = are_points ? receivers.num_own() : 0; i < receivers.size(); ++i)
+        if (prt::Surface& surface = receivers.surfaces[i];
+            surface.highlight != prt::Highlight::None || surface.emission == glm::vec3(0.0f))
             surface.albedo = glm::max(surface.albedo, LeastAlbedo); // not of unlit ones
 }
 

@@ -1,4 +1,4 @@
-// The materials that a scene of vertices keeps for its pictures.
+// The materials that a scene keeps for its pictures.
 #pragma once
 
 #include "mesh/triangle_mesh.h"
@@ -11,8 +11,9 @@ namespace relumine {
 /// materials. So surfaces that replace those of the file become materials, and black vertices keep
 /// a trace by which their light is known: the lowest value that an image of 8 bits has.
 ///
-/// `receivers` are the vertices, with their surfaces; `are_replaced` says whether `surface_of`
-/// gives other surfaces than the materials. Nothing changes where no picture asks for materials.
+/// `receivers` are the vertices, or points with the vertices behind them, which mirrors show, with
+/// their surfaces; `are_replaced` says whether `surface_of` gives other surfaces than the
+/// materials. Nothing changes where no picture asks for materials.
 void keep_materials(mesh::TriangleMesh& mesh, prt::Receivers& receivers,
                     const prt::SurfaceOverride& surface_of, bool are_replaced);
 

@@ -24,15 +24,24 @@ public:
         : mesh_(scene.mesh), twins_(scene.mesh),
           gains_(scene.lamps.empty() ? std::vector<glm::vec3>()
                                      : triangle_gains(scene, surfaces.emission)) {
+        for (const mesh::Material& material : mesh_.materials)
+            has_own_color_.push_back(material.base_color_texture || material.emission_texture ||
+                                     prt::has_highlight(material));
         const prt::Receivers& receivers = scene.receivers;
         if (surfaces.radiance.empty() || receivers.num_added == 0)
             return;
         light_.resize(mesh_.num_vertices(), glm::vec3(0.0f));
+        sent_.resize(mesh_.num_vertices(), glm::vec3(0.0f));
+        emission_.resize(mesh_.num_vertices(), glm::vec3(0.0f));
         for (std::size_t i = receivers.num_own(); i < receivers.size(); ++i) {
-            const glm::vec3 albedo =
-                receivers.surfaces.empty() ? glm::vec3(1.0f) : receivers.surfaces[i].albedo;
-            light_[prt::vertex_at(mesh_, receivers.points[i])] =
-                surfaces.radiance[i] / glm::max(albedo, 1e-4f);
+            const prt::Surface surface =
+                receivers.surfaces.empty() ? prt::Surface() : receivers.surfaces[i];
+            const glm::vec3 albedo = glm::max(surface.albedo, 1e-4f);
+            const std::uint32_t vertex = prt::vertex_at(mesh_, receivers.points[i]);
+            light_[vertex] = surfaces.radiance[i] / albedo;
+            sent_[vertex] = surfaces.albedo.empty() ? surfaces.radiance[i]
+                                                    : light_[vertex] * surfaces.albedo[i];
+            emission_[vertex] = surface.emission;
         }
     }
 
@@ -40,9 +49,14 @@ public:
     [[nodiscard]] glm::vec3 radiance(const prt::Hit& hit, const glm::vec3& direction) const {
         const prt::Hit facing = twins_.facing(hit, direction);
         const prt::MeshPoint at{.triangle = facing.triangle, .barycentric = facing.barycentric};
+        const glm::vec3 gain = gains_.empty() ? glm::vec3(1.0f) : gains_[at.triangle];
+        if (mesh_.triangle_materials.empty() ||
+            !has_own_color_[mesh_.triangle_materials[at.triangle]])
+            return light_.empty() ? glm::vec3(0.0f)
+                                  : prt::value_at(mesh_, sent_, at) +
+                                        gain * prt::value_at(mesh_, emission_, at);
         const prt::Surface surface = prt::without_highlight(
             prt::surface_at(mesh_, at.triangle, at.barycentric, prt::GgxForm::Published));
-        const glm::vec3 gain = gains_.empty() ? glm::vec3(1.0f) : gains_[at.triangle];
         const glm::vec3 reflected =
             light_.empty() ? glm::vec3(0.0f) : surface.albedo * prt::value_at(mesh_, light_, at);
         return reflected + gain * surface.emission;
@@ -52,8 +66,11 @@ private:
     const mesh::TriangleMesh& mesh_;
     prt::TwinTriangles twins_;
     std::vector<glm::vec3> gains_;
-    /// [num_vertices] what arrives, as radiance of albedo 1; empty: unknown.
-    std::vector<glm::vec3> light_;
+    /// Whether the materials know their colours; others have those of the vertices.
+    std::vector<bool> has_own_color_;
+    /// [num_vertices] what arrives, as radiance of albedo 1, what is sent of it, and what glows;
+    /// empty: unknown.
+    std::vector<glm::vec3> light_, sent_, emission_;
 };
 
 } // namespace
@@ -66,20 +83,25 @@ SceneMirrors::SceneMirrors(const Scene& scene, const SceneRays& rays, std::uint3
     : scene_(&scene), rays_(&rays) {
     if (!has_traced_highlights(scene))
         return;
+    rays_per_pixel_ = num_rays;
+}
+
+std::uint32_t SceneMirrors::rays_of(std::size_t receiver) const {
     constexpr std::uint32_t Least = 4;
-    const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout);
-    const std::uint32_t samples =
-        pixels != nullptr ? pixels->samples_per_axis * pixels->samples_per_axis : 1;
-    rays_per_receiver_ = num_rays == 0 ? 0 : std::max((num_rays + samples - 1) / samples, Least);
+    const auto* pixels = std::get_if<prt::PixelLayout>(&scene_->layout);
+    if (pixels == nullptr || rays_per_pixel_ == 0)
+        return rays_per_pixel_;
+    const auto samples = static_cast<std::uint32_t>(pixels->samples_per_pixel());
+    const auto shown = static_cast<std::uint32_t>(pixels->num_shown(receiver));
+    return std::max((rays_per_pixel_ * shown + samples - 1) / samples, Least);
 }
 
 void SceneMirrors::add(const relight::Relighter& light, const Surfaces& surfaces,
                        std::span<const std::uint32_t> receivers,
                        std::span<glm::vec3> radiance) const {
     const prt::Receivers& all = scene_->receivers;
-    const relight::Reflections reflections(rays_->of_mesh(), scene_->settings.bias,
-                                           rays_per_receiver_, light.environment(),
-                                           light.sharp_lights());
+    const relight::Reflections reflections(rays_->of_mesh(), scene_->settings.bias, rays_per_pixel_,
+                                           light.environment(), light.sharp_lights());
     const MirroredSurfaces mirrored(*scene_, surfaces);
     const auto seen = [&](const prt::Hit& hit, const glm::vec3& direction, const glm::vec3&) {
         return mirrored.radiance(hit, direction);
@@ -100,7 +122,7 @@ void SceneMirrors::add(const relight::Relighter& light, const Surfaces& surfaces
             .shift = glm::vec2(
                 glm::fract(number * glm::dvec2(0.75487766624669276, 0.56984029099805327)))};
         const prt::Lobes<glm::vec3> lobes =
-            relight::lobes_of(surface, reflections.light(surface, point, rays_per_receiver_, seen),
+            relight::lobes_of(surface, reflections.light(surface, point, rays_of(receiver), seen),
                               glm::dot(normal, to_eye));
         radiance[i] += prt::reflect(surface, lobes, {surface, normal, to_eye});
     });

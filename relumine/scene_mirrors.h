@@ -28,7 +28,7 @@ public:
     /// this object.
     SceneMirrors(const Scene& scene, const SceneRays& rays, std::uint32_t num_rays);
 
-    [[nodiscard]] bool is_needed() const { return rays_per_receiver_ != 0; }
+    [[nodiscard]] bool is_needed() const { return rays_per_pixel_ != 0; }
     /// Whether surfaces() counts.
     [[nodiscard]] bool shows_surfaces() const { return scene_->receivers.num_added != 0; }
 
@@ -36,6 +36,8 @@ public:
     struct Surfaces {
         /// [num_receivers] radiance, the vertices behind pixels included. Empty: they are black.
         std::span<const glm::vec3> radiance = {};
+        /// [num_receivers] what vertices send on of what they receive; empty: their surfaces say.
+        std::span<const glm::vec3> albedo = {};
         std::span<const EmissionGain> emission = {};
     };
 
@@ -47,9 +49,11 @@ public:
              std::span<const std::uint32_t> receivers, std::span<glm::vec3> radiance) const;
 
 private:
+    [[nodiscard]] std::uint32_t rays_of(std::size_t receiver) const;
+
     const Scene* scene_;
     const SceneRays* rays_;
-    std::uint32_t rays_per_receiver_ = 0;
+    std::uint32_t rays_per_pixel_ = 0;
 };
 
 } // namespace relumine

@@ -26,7 +26,7 @@ Report layout_json(const prt::Scene& scene) {
 }
 
 double coverage_of(const prt::Scene& scene) {
-    return static_cast<double>(scene.receivers.num_own()) /
+    return static_cast<double>(prt::num_places_taken(scene.layout)) /
            static_cast<double>(prt::num_places(scene.layout));
 }
 

@@ -209,6 +209,24 @@ Surface without_highlight(Surface surface) {
     return surface;
 }
 
+void widen(Surface& surface, float normal_spread) {
+    if (!(normal_spread > 0.0f) || surface.highlight == Highlight::None ||
+        surface.highlight == Highlight::Measured)
+        return;
+    const auto widened = [&](float roughness) {
+        const float alpha = ggx_alpha(roughness);
+        return std::min(std::sqrt(std::sqrt(alpha * alpha + normal_spread)), 1.0f);
+    };
+    if (facts_of(surface.highlight).is_roughness) {
+        surface.roughness_or_exponent = widened(surface.roughness_or_exponent);
+    } else { // a lobe as wide as GGX of alpha^2 = 2 / (exponent + 2)
+        const float square = 2.0f / (surface.roughness_or_exponent + 2.0f) + normal_spread;
+        surface.roughness_or_exponent = std::max(2.0f / square - 2.0f, 0.0f);
+    }
+    if (surface.coat > 0.0f)
+        surface.coat_roughness = widened(surface.coat_roughness);
+}
+
 std::vector<Surface> vertex_surfaces(const mesh::TriangleMesh& mesh,
                                      const SurfaceOverride& override_surface, GgxForm form) {
     constexpr std::array<glm::vec2, 3> Corners = {glm::vec2(0.0f, 0.0f), glm::vec2(1.0f, 0.0f),

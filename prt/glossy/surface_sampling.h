@@ -52,6 +52,13 @@ enum class GgxForm { Whole, Published };
 /// otherwise metals were black. So does what sheen reflects towards 60 degrees.
 [[nodiscard]] Surface without_highlight(Surface surface);
 
+/// Widens the highlights of a surface whose unit normals differ from their mean by this mean square
+/// over what it stands for: a narrower lobe would sparkle there. Tables stay as they are.
+///
+/// Based on: Y. Tokuyoshi, A. Kaplanyan, "Improved Geometric Specular Antialiasing", I3D 2019 (the
+///           variance of slopes adds to alpha^2).
+void widen(Surface& surface, float normal_spread);
+
 /// Replaces the surface of a triangle's points, given its own: materials from the command line.
 using SurfaceOverride = std::function<Surface(const mesh::TriangleMesh& mesh,
                                               std::uint32_t triangle, const Surface& surface)>;

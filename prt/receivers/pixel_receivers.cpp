@@ -4,29 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "files/parallel.h"
+#include "prt/receivers/pixel_samples.h"
 
 namespace relumine::prt {
 
 namespace {
-
-struct Seen {
-    std::uint32_t sample;
-    MeshPoint point;
-    mesh::Veil veil = {};
-};
-
-/// Moves a hit into its triangle: a ray through a shared edge may end a rounding error outside.
-glm::vec2 inside(const glm::vec2& barycentric) {
-    const glm::vec2 positive(std::max(barycentric.x, 0.0f), std::max(barycentric.y, 0.0f));
-    return positive / std::max(positive.x + positive.y, 1.0f);
-}
 
 /// Turns a mapped normal as little as it takes for a mirror to reflect the eye's ray to the outside
 /// of the surface, whose normal is given: a steeper facet would hide behind others.
@@ -78,45 +66,8 @@ glm::vec3 normal_towards(const mesh::TriangleMesh& mesh, const MeshPoint& point,
     return glm::dot(face, to_eye) < 0.0f ? -normal : normal;
 }
 
-/// Returns what the samples of each row of pixels see: the first surface, or all that a thin one
-/// lets through.
-std::vector<std::vector<Seen>> seen_rows(const RayScene& rays, const PixelView& view,
-                                         const Work& work) {
-    const PictureRays picture(view.camera, view.width, view.height, view.samples_per_axis);
-    std::vector<std::vector<Seen>> rows(view.height);
-    const auto trace_row = [&](std::uint32_t y) {
-        std::vector<RayScene::Layer> layers;
-        auto sample =
-            static_cast<std::uint32_t>(std::size_t{y} * view.width * picture.samples_per_pixel());
-        for (std::uint32_t x = 0; x < view.width; ++x)
-            for (std::uint32_t i = 0; i < picture.samples_per_pixel(); ++i, ++sample) {
-                const glm::vec3 direction = picture.direction(x, y, i);
-                const auto hit = rays.closest_hit(view.camera.eye, direction, RayOf::Eye);
-                if (!hit)
-                    continue;
-                if (!rays.is_thin(hit->triangle)) {
-                    rows[y].push_back({sample, {hit->triangle, inside(hit->barycentric)}});
-                    continue;
-                }
-                rays.layers(view.camera.eye, direction, layers);
-                for (const RayScene::Layer& layer : layers)
-                    rows[y].push_back(
-                        {sample, {layer.hit.triangle, inside(layer.hit.barycentric)}, layer.veil});
-            }
-    };
-    constexpr std::uint32_t Band = 128; // rows between two looks at the work
-    for (std::uint32_t y = 0; y < view.height; y += Band) {
-        if (work.stop.stop_requested())
-            throw Cancelled();
-        files::parallel_for(y, std::min(y + Band, view.height), trace_row);
-        if (work.on_progress)
-            work.on_progress(std::min(1.0, static_cast<double>(y + Band) / view.height));
-    }
-    return rows;
-}
-
 /// Writes the receiver of what a sample sees to its place.
-void place_receiver(const mesh::TriangleMesh& mesh, const glm::vec3& eye, const Seen& seen,
+void place_receiver(const mesh::TriangleMesh& mesh, const glm::vec3& eye, const SeenSurface& seen,
                     std::size_t place, Receivers& receivers) {
     const glm::vec3 position = value_at(mesh, mesh.positions, seen.point);
     // A hit at the eye itself has no direction to the eye. It takes its normal.
@@ -141,12 +92,13 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
                           .layout = {.camera = view.camera,
                                      .width = view.width,
                                      .height = view.height,
-                                     .samples_per_axis = view.samples_per_axis}};
+                                     .samples_per_axis = view.samples_per_axis.value_or(
+                                         PixelLayout::EdgeSamplesPerAxis)}};
     if (result.layout.num_samples() > MaxLayoutPlaces)
         throw std::invalid_argument(fmt::format("expected at most {} samples in all, got {}",
                                                 MaxLayoutPlaces, result.layout.num_samples()));
 
-    const std::vector<std::vector<Seen>> rows = seen_rows(rays, view, work);
+    const std::vector<std::vector<SeenSurface>> rows = seen_rows(mesh, rays, view, work);
     std::vector<std::size_t> first(rows.size() + 1, 0);
     for (std::size_t y = 0; y < rows.size(); ++y)
         first[y + 1] = first[y] + rows[y].size();
@@ -160,10 +112,18 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
     receivers.points.resize(first.back());
     receivers.veils.resize(first.back());
     result.layout.samples.resize(first.back());
+    if (!view.samples_per_axis) {
+        result.layout.shares.resize(first.back());
+        receivers.normal_spread.resize(first.back());
+    }
     files::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
         std::size_t receiver = first[y];
-        for (const Seen& seen : rows[y]) {
+        for (const SeenSurface& seen : rows[y]) {
             place_receiver(mesh, view.camera.eye, seen, receiver, receivers);
+            if (!view.samples_per_axis) {
+                result.layout.shares[receiver] = seen.share;
+                receivers.normal_spread[receiver] = seen.normal_spread;
+            }
             result.layout.samples[receiver++] = seen.sample;
         }
     });

@@ -31,7 +31,11 @@ std::string description(const ReceiverLayout& layout) {
     std::string text(kind_of(layout).name);
     if (width != 0 || height != 0)
         text += fmt::format(" {} x {}", width, height);
-    return n == 1 ? text : fmt::format("{}, {} x {} samples each", text, n, n);
+    const auto* pixels = std::get_if<PixelLayout>(&layout);
+    const bool at_edges = pixels != nullptr && !pixels->shares.empty();
+    return n == 1
+               ? text
+               : fmt::format("{}, {} x {} samples {}", text, n, n, at_edges ? "at edges" : "each");
 }
 
 std::size_t num_places(const ReceiverLayout& layout) {
@@ -44,6 +48,42 @@ std::span<const std::uint32_t> places(const ReceiverLayout& layout) {
     const std::vector<std::uint32_t>* found =
         std::visit([](auto& own) { return own.places(); }, const_cast<ReceiverLayout&>(layout));
     return found == nullptr ? std::span<const std::uint32_t>() : *found;
+}
+
+std::size_t num_places_taken(const ReceiverLayout& layout) {
+    const auto* pixels = std::get_if<PixelLayout>(&layout);
+    if (pixels == nullptr)
+        return places(layout).size();
+    std::size_t sum = 0;
+    for (std::size_t i = 0; i < pixels->samples.size(); ++i)
+        if (i == 0 || pixels->samples[i] != pixels->samples[i - 1]) // the first layer
+            sum += pixels->num_shown(i);
+    return sum;
+}
+
+bool PixelLayout::have_shares_that_fit() const {
+    if (shares.empty())
+        return true;
+    if (samples_per_axis != EdgeSamplesPerAxis || shares.size() != samples.size())
+        return false;
+    unsigned taken = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const unsigned own = shares[i];
+        if (own == 0 ||
+            static_cast<std::uint32_t>(std::countr_zero(own)) != samples[i] % EdgeSamples)
+            return false;
+        const bool same_pixel = i > 0 && samples[i] / EdgeSamples == samples[i - 1] / EdgeSamples;
+        if (i > 0 && samples[i] == samples[i - 1]) {
+            if (own != shares[i - 1])
+                return false;
+            continue;
+        }
+        taken = same_pixel ? taken : 0;
+        if ((taken & own) != 0)
+            return false;
+        taken |= own;
+    }
+    return true;
 }
 
 const Camera* own_camera(const ReceiverLayout& layout) {

@@ -2,6 +2,7 @@
 // lightmap, or points in space. Each kind answers for itself.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -57,6 +58,9 @@ struct VertexLayout {
 struct PixelLayout {
     static constexpr ReceiverKind Kind{
         .name = "pixels", .one = "pixel sample", .whole = "its samples"};
+    /// Samples of a pixel that may share receivers, in all and on a side.
+    static constexpr std::uint32_t EdgeSamplesPerAxis = 4;
+    static constexpr std::uint32_t EdgeSamples = EdgeSamplesPerAxis * EdgeSamplesPerAxis;
     Camera camera = {};
     std::uint32_t width = 0;
     std::uint32_t height = 0;
@@ -66,10 +70,23 @@ struct PixelLayout {
     /// through, nearest first. Samples count pixel by pixel, row by
     /// row from the top, n^2 to a pixel.
     std::vector<std::uint32_t> samples = {};
+    /// [num_receivers], or empty where each receiver stands for its sample alone: which samples of
+    /// its pixel a receiver stands for, a bit each. The lowest is its own in `samples`.
+    std::vector<std::uint16_t> shares = {};
 
     [[nodiscard]] std::size_t samples_per_pixel() const {
         return std::size_t{samples_per_axis} * samples_per_axis;
     }
+    /// Returns how many samples a receiver stands for.
+    [[nodiscard]] std::size_t num_shown(std::size_t receiver) const {
+        return shares.empty() ? 1 : static_cast<std::size_t>(std::popcount(shares[receiver]));
+    }
+    /// Returns how many receivers an even pixel has on a side.
+    [[nodiscard]] std::uint32_t receivers_per_axis() const {
+        return shares.empty() ? samples_per_axis : 1;
+    }
+    /// Whether `shares` are empty, or sets of samples that do not meet but for layers.
+    [[nodiscard]] bool have_shares_that_fit() const;
     [[nodiscard]] std::size_t num_samples() const {
         return std::size_t{width} * height * samples_per_pixel();
     }
@@ -173,8 +190,8 @@ inline constexpr std::size_t MaxLayoutPlaces = std::size_t{1} << 28;
 /// Whether the receivers are the mesh's vertices.
 [[nodiscard]] bool on_vertices(const ReceiverLayout& layout);
 
-/// Returns "vertices", "pixels 1024 x 768, 3 x 3 samples each", "texels 512 x 512", "points 2000"
-/// or "grid 16 x 8 x 16".
+/// Returns "vertices", "pixels 1024 x 768, 3 x 3 samples each", "pixels 1024 x 768, 4 x 4 samples
+/// at edges", "texels 512 x 512", "points 2000" or "grid 16 x 8 x 16".
 [[nodiscard]] std::string description(const ReceiverLayout& layout);
 
 /// Returns how many places for receivers there are: samples or texels. None for vertices.
@@ -182,6 +199,9 @@ inline constexpr std::size_t MaxLayoutPlaces = std::size_t{1} << 28;
 
 /// Returns the place of each receiver, ascending. None for vertices.
 [[nodiscard]] std::span<const std::uint32_t> places(const ReceiverLayout& layout);
+
+/// Returns how many places have a receiver.
+[[nodiscard]] std::size_t num_places_taken(const ReceiverLayout& layout);
 
 /// Returns the camera that the receivers belong to. Null: none.
 [[nodiscard]] const Camera* own_camera(const ReceiverLayout& layout);

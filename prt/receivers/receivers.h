@@ -36,6 +36,10 @@ struct Receivers {
     /// [num_own()] of pixels, or empty: nothing is seen through them. A sample has a receiver for
     /// each surface that its ray meets, nearest first.
     std::vector<mesh::Veil> veils = {};
+    /// [num_own()] of pixels that share samples, or empty: the mean square by which unit normals
+    /// differ from their mean in what a receiver stands for. Highlights are widened by it
+    /// (prt::widen()); files do not keep it.
+    std::vector<float> normal_spread = {};
     /// [num_receivers] where points were asked for; empty: at `positions`. A point inside of an
     /// object is blind, so it looks from the position of the nearest point that is not.
     std::vector<glm::vec3> own_positions = {};

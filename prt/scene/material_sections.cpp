@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "mesh/opacity.h"
+#include "prt/glossy/glossy_precompute.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/scene/brdf_tables.h"
 #include "prt/scene/json_members.h"
@@ -238,14 +239,26 @@ mesh::Texture texture_of(const Json& json, const std::vector<std::byte>& images,
     return texture;
 }
 
-/// Whether pictures find a material's highlight by rays: without an eye.
-bool mirrors(const Scene& scene, const Material& material) {
-    return scene.receivers.to_eye.empty() && has_highlight(material);
+/// Whether rays that look for what highlights mirror see the colours of the mesh: those of points
+/// with an eye and traced highlights, where vertices know their light or something glows.
+bool are_seen_in_mirrors(const Scene& scene) {
+    const Receivers& receivers = scene.receivers;
+    return !receivers.to_eye.empty() && !receivers.points.empty() &&
+           !scene.settings.glossy_tolerance && has_highlights(receivers) &&
+           (receivers.num_added != 0 || !scene.lamps.empty());
 }
 
-/// Whether pictures of the scene's vertices take colours from textures, or highlights.
+/// Whether rays find a material's highlight, or see its colour in one.
+bool mirrors(const Scene& scene, const Material& material) {
+    return (scene.receivers.to_eye.empty() || are_seen_in_mirrors(scene)) &&
+           has_highlight(material);
+}
+
+/// Whether pictures take colours from textures, or highlights.
 bool shows_textures(const Scene& scene) {
     const mesh::TriangleMesh& mesh = scene.mesh;
+    if (are_seen_in_mirrors(scene))
+        return true;
     return on_vertices(scene.layout) && !scene.receivers.surfaces.empty() &&
            std::any_of(mesh.materials.begin(), mesh.materials.end(), [&](const Material& material) {
                return ((material.base_color_texture || material.emission_texture ||

@@ -16,7 +16,7 @@ namespace relumine::prt {
 
 namespace {
 
-const std::string Layout = "layout", Mask = "layout_mask";
+const std::string Layout = "layout", Mask = "layout_mask", Shares = "layout_shares";
 
 void check_fit(const ReceiverLayout& layout, const Receivers& receivers) {
     const std::span<const std::uint32_t> own = places(layout);
@@ -29,6 +29,9 @@ void check_fit(const ReceiverLayout& layout, const Receivers& receivers) {
         throw std::invalid_argument(
             fmt::format("expected one place in the layout for each of {} receivers, got {} in {}",
                         receivers.num_own(), own.size(), num_places(layout)));
+    const auto* pixels = std::get_if<PixelLayout>(&layout);
+    if (pixels != nullptr && !pixels->have_shares_that_fit())
+        throw std::invalid_argument("expected samples of a pixel that belong to one receiver each");
     if (receivers.have_no_surface == kind_of(layout).have_surface ||
         (!receivers.own_positions.empty() && receivers.own_positions.size() != receivers.size()))
         throw std::invalid_argument(
@@ -95,6 +98,8 @@ void add_places(NewSections& sections, ReceiverLayout layout, const Receivers& r
     sections[Mask] = packed(bits);
     if (!receivers.veils.empty())
         add_veils(sections, places(layout), receivers.veils);
+    if (const auto* pixels = std::get_if<PixelLayout>(&layout); pixels && !pixels->shares.empty())
+        sections[Shares] = bytes_of(pixels->shares);
     sections["r_positions"] = SectionContent::view(receivers.positions);
     if (!receivers.own_positions.empty())
         sections["r_own_positions"] = SectionContent::view(receivers.own_positions);
@@ -338,6 +343,11 @@ void read_receivers(const SectionReader& reader, Scene& scene) {
         if (auto* pixels = std::get_if<PixelLayout>(&scene.layout); pixels && reader.has("r_veils"))
             receivers.veils = read_veils(reader, pixels->samples);
         const std::size_t num_own = places(scene.layout).size();
+        if (auto* pixels = std::get_if<PixelLayout>(&scene.layout); pixels && reader.has(Shares)) {
+            pixels->shares = reader.elements<std::uint16_t>(Shares, num_own);
+            if (!pixels->have_shares_that_fit())
+                reader.fail(Shares, "samples of a pixel that belong to one receiver each");
+        }
         receivers.positions = reader.elements<glm::vec3>("r_positions");
         const std::size_t count = receivers.size();
         // A plan has no bounces yet.

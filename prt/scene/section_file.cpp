@@ -29,7 +29,7 @@ static_assert(std::endian::native == std::endian::little, ".prt files are little
 
 constexpr std::array<char, 8> Magic = {'R', 'E', 'L', 'U', 'M', 'I', 'N', 'E'};
 constexpr std::uint32_t ByteOrderMark = 0x01020304;
-constexpr std::uint32_t MaxSections = 64;
+constexpr std::uint32_t MaxSections = 128;
 
 // Level 8 packs the counts of the Stanford bunny 4 % smaller than level 6, in half a second on two
 // cores. Level 10 saves 1 % more and takes half as long again.

@@ -39,6 +39,39 @@ private:
     glm::vec3 taken_{0.0f}, through_{1.0f};
 };
 
+/// The receivers of a layout's samples, sample by sample.
+class SampleReceivers {
+public:
+    /// Begins with the first sample of a pixel.
+    SampleReceivers(const prt::PixelLayout& layout, std::size_t pixel)
+        : layout_(layout), next_(static_cast<std::size_t>(
+                               std::lower_bound(layout.samples.begin(), layout.samples.end(),
+                                                pixel * layout.samples_per_pixel()) -
+                               layout.samples.begin())) {}
+
+    /// Calls visit(receiver) for all that a sample sees, nearest first. Samples ascend from call to
+    /// call.
+    template<typename Visit>
+    void visit(std::size_t sample, const Visit& visit) {
+        const std::vector<std::uint32_t>& samples = layout_.samples;
+        if (layout_.shares.empty()) {
+            for (; next_ < samples.size() && samples[next_] == sample; ++next_)
+                visit(next_);
+            return;
+        }
+        const std::size_t per_pixel = prt::PixelLayout::EdgeSamples, pixel = sample / per_pixel;
+        while (next_ < samples.size() && samples[next_] / per_pixel < pixel)
+            ++next_;
+        for (std::size_t i = next_; i < samples.size() && samples[i] / per_pixel == pixel; ++i)
+            if (((layout_.shares[i] >> sample % per_pixel) & 1u) != 0)
+                visit(i);
+    }
+
+private:
+    const prt::PixelLayout& layout_;
+    std::size_t next_;
+};
+
 /// Averages the samples of each pixel. `behind(x, y, passed)` is what a pixel shows behind samples
 /// that let so much through. The mean opacity goes to the picture's alpha if asked for.
 template<typename Behind>
@@ -58,22 +91,18 @@ Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radi
     const auto per_pixel = static_cast<std::uint32_t>(layout.samples_per_pixel());
     files::parallel_for(std::uint32_t{0}, layout.height, [&](std::uint32_t y) {
         std::size_t pixel = std::size_t{y} * layout.width;
-        const auto first =
-            std::lower_bound(layout.samples.begin(), layout.samples.end(), pixel * per_pixel);
-        auto receiver = static_cast<std::size_t>(first - layout.samples.begin());
+        SampleReceivers receivers(layout, pixel);
         std::vector<glm::vec3> passed(per_pixel);
         for (std::uint32_t x = 0; x < layout.width; ++x, ++pixel) {
             glm::vec3 sum(0.0f);
             float alpha = 0.0f;
             for (std::uint32_t i = 0; i < per_pixel; ++i) {
                 SampleLayers layers;
-                for (; receiver < layout.samples.size() &&
-                       layout.samples[receiver] == pixel * per_pixel + i;
-                     ++receiver) {
+                receivers.visit(pixel * per_pixel + i, [&](std::size_t receiver) {
                     const glm::vec3 own = opacity.empty() ? glm::vec3(1.0f) : opacity[receiver];
                     const mesh::Veil veil = veils.empty() ? mesh::Veil() : veils[receiver];
                     sum += layers.next(own, veil) * radiance[receiver];
-                }
+                });
                 passed[i] = layers.through();
                 alpha += layers.alpha();
             }
@@ -158,14 +187,15 @@ std::vector<glm::vec3> cut_out_transpose(const prt::PixelLayout& layout,
     if (weights.size() != num_pixels)
         throw std::invalid_argument(
             fmt::format("expected weights of {} pixels, got {}", num_pixels, weights.size()));
-    std::vector<glm::vec3> result(layout.samples.size());
+    std::vector<glm::vec3> result(layout.samples.size(), glm::vec3(0.0f));
     const std::size_t per_pixel = layout.samples_per_pixel();
-    SampleLayers layers;
-    for (std::size_t i = 0; i < result.size(); ++i) {
-        if (i == 0 || layout.samples[i] != layout.samples[i - 1])
-            layers = {};
-        result[i] = layers.next(glm::vec3(1.0f), veils.empty() ? mesh::Veil() : veils[i]) *
-                    weights[layout.samples[i] / per_pixel] / static_cast<float>(per_pixel);
+    SampleReceivers receivers(layout, 0);
+    for (std::size_t sample = 0; sample < layout.num_samples(); ++sample) {
+        SampleLayers layers;
+        receivers.visit(sample, [&](std::size_t i) {
+            result[i] += layers.next(glm::vec3(1.0f), veils.empty() ? mesh::Veil() : veils[i]) *
+                         weights[sample / per_pixel] / static_cast<float>(per_pixel);
+        });
     }
     return result;
 }

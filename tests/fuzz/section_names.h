@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 96> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 97> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -95,6 +95,7 @@ inline constexpr std::array<std::string_view, 96> SectionNames = {"settings",
                                                                   "block_second_uvs",
                                                                   "block_corner_uvs",
                                                                   "layout_layers",
+                                                                  "layout_shares",
                                                                   "r_veils",
                                                                   "brdf_tables",
                                                                   "r_brdf",

@@ -152,7 +152,8 @@ TEST(Highlights, TracedPixelsShowTheFloorWithItsBounces) {
     const Camera above{.eye = {0, 1, 4}, .target = {0, 0, 0}, .fov_degrees = 20};
     const auto lowest = [&](float bounces) {
         PrecomputeOptions options{.tolerance = 0.06f,
-                                  .receivers = Pixels{.width = 24, .height = 24},
+                                  .receivers =
+                                      Pixels{.width = 24, .height = 24, .samples_per_axis = 1},
                                   .bounce_tolerance = bounces};
         options.view = View{.camera = above};
         LitScene lit(precompute(mesh, options));

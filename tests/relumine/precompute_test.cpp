@@ -159,7 +159,8 @@ TEST(Precompute, LightsPixelsOfAView) {
                                           .receivers = Pixels{.width = 12, .height = 8},
                                           .view = View{.camera = camera}});
     const prt::PixelReceivers expected = prt::pixel_receivers(
-        mesh, prt::RayScene(mesh), {.camera = camera, .width = 12, .height = 8});
+        mesh, prt::RayScene(mesh),
+        {.camera = camera, .width = 12, .height = 8, .samples_per_axis = std::nullopt});
     EXPECT_EQ(std::get<prt::PixelLayout>(scene.layout), expected.layout);
     EXPECT_EQ(scene.receivers.positions, expected.receivers.positions);
 

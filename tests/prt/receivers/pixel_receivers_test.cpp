@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include <glm/geometric.hpp>
@@ -79,6 +80,39 @@ TEST(PixelReceivers, CoverASpheresSilhouette) {
         EXPECT_NEAR(glm::distance(receivers.positions[i], flat), 0.0f, 2e-3f);
         EXPECT_GE(glm::length(outward) + 1e-6f, glm::length(flat - camera.target));
     }
+}
+
+/// A silhouette has no stairs: each pixel of a sphere's outline knows its covered part to a
+/// sixteenth, and what is inside costs one receiver.
+TEST(PixelReceivers, PixelsOfAnOutlineKnowWhatIsCovered) {
+    const mesh::TriangleMesh sphere = scenes::icosphere(5, 1.0f, glm::vec3(0.0f));
+    const Camera camera{.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = 40.0f};
+    const PixelReceivers pixels = seen(
+        sphere, {.camera = camera, .width = 100, .height = 100, .samples_per_axis = std::nullopt});
+    const double radius =
+        std::tan(std::asin(0.25)) / std::tan(20.0 * std::numbers::pi / 180.0) * 50.0;
+    std::vector<double> covered(100 * 100);
+    std::size_t num_whole = 0;
+    for (std::size_t i = 0; i < pixels.receivers.size(); ++i) {
+        covered[pixels.layout.samples[i] / 16] +=
+            static_cast<double>(pixels.layout.num_shown(i)) / 16.0;
+        num_whole += pixels.layout.num_shown(i) == 16 ? 1 : 0;
+    }
+    double sum = 0.0;
+    for (std::size_t i = 0; i < covered.size(); ++i) {
+        const double x = static_cast<double>(i % 100) - 49.5,
+                     y = static_cast<double>(i / 100) - 49.5;
+        const double inside = radius - std::hypot(x, y); // pixels from the outline
+        if (std::abs(inside) > 0.8) {
+            EXPECT_EQ(covered[i], inside > 0.0 ? 1.0 : 0.0) << i;
+        } else { // an edge whose normal is (x, y) cuts the pixel
+            EXPECT_NEAR(covered[i], std::clamp(0.5 + inside, 0.0, 1.0), 0.2) << i;
+        }
+        sum += covered[i];
+    }
+    EXPECT_NEAR(sum, std::numbers::pi * radius * radius, 0.005 * sum);
+    EXPECT_GT(num_whole, static_cast<std::size_t>(0.85 * sum));
+    EXPECT_LT(pixels.receivers.size(), static_cast<std::size_t>(1.25 * sum));
 }
 
 TEST(PixelReceivers, TellTheirProgressAndStop) {

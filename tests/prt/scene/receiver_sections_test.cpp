@@ -1,9 +1,11 @@
 #include "prt/scene/section_group.h"
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -34,7 +36,8 @@ void precompute(Scene& scene) {
                         {.tolerance = 0.1f, .min_level = 1, .face_resolution = 8, .bias = 1e-3f});
 }
 
-Scene pixel_scene(const mesh::Material& material = {}) {
+Scene pixel_scene(const mesh::Material& material = {},
+                  std::optional<std::uint32_t> samples_per_axis = 3) {
     Scene scene;
     scene.mesh = scenes::box(glm::vec3(-1.0f), glm::vec3(1.0f));
     scene.mesh.materials = {material};
@@ -44,7 +47,7 @@ Scene pixel_scene(const mesh::Material& material = {}) {
                         {.camera = {.eye = {3.1f, 2.2f, 4.3f}, .fov_degrees = 33.3f},
                          .width = 11,
                          .height = 7,
-                         .samples_per_axis = 3});
+                         .samples_per_axis = samples_per_axis});
     scene.receivers = std::move(pixels.receivers);
     scene.layout = std::move(pixels.layout);
     precompute(scene);
@@ -159,6 +162,30 @@ TEST_F(ReceiverSectionsTest, PixelsThatSeeThroughSurfacesComeBack) {
     refused(good, "layout_layers", 0, std::uint8_t{200});
     refused(good, "r_veils", 2, 1.5f);
     refused(good, "r_veils", 0, std::numeric_limits<float>::quiet_NaN());
+}
+
+TEST_F(ReceiverSectionsTest, PixelsThatShareSamplesComeBack) {
+    for (const mesh::AlphaMode mode : {mesh::AlphaMode::Opaque, mesh::AlphaMode::Blend}) {
+        const Scene scene = pixel_scene({.alpha_mode = mode, .alpha = 0.25f}, std::nullopt);
+        const std::vector<std::uint16_t>& shares = std::get<PixelLayout>(scene.layout).shares;
+        ASSERT_EQ(shares.size(), scene.receivers.size());
+        expect_round_trip(scene);
+        const Sections good = read_sections(file_);
+        const auto partial = static_cast<std::size_t>(
+            std::find_if(shares.begin(), shares.end(), [](auto share) { return share != 0xffff; }) -
+            shares.begin());
+        ASSERT_LT(partial, shares.size());
+        refused(good, "layout_shares", partial, std::uint16_t{0});
+        refused(good, "layout_shares", partial, static_cast<std::uint16_t>(shares[partial] << 1));
+        refused(good, "'layout_shares'",
+                [](Sections& sections) { sections.at("layout_shares").pop_back(); });
+    }
+    Scene scene = pixel_scene({}, std::nullopt);
+    std::vector<std::uint16_t>& shares = std::get<PixelLayout>(scene.layout).shares;
+    for (std::size_t i = 0; i + 1 < shares.size(); ++i)
+        if (shares[i] != 0xffff) // samples of the pixel's other receivers
+            shares[i] = static_cast<std::uint16_t>(0xffffu & ~((shares[i] & -shares[i]) - 1u));
+    EXPECT_THROW(save_scene(file_, scene), std::invalid_argument);
 }
 
 TEST_F(ReceiverSectionsTest, TablesOfBrdfsComeBack) {

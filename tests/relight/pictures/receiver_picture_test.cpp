@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <stdexcept>
 
@@ -102,6 +103,68 @@ TEST(ReceiverPicture, APixelIsTheMeanOfItsSamples) {
     EXPECT_THROW(static_cast<void>(compose(layout, radiance, grey, std::span(opacity).first(3))),
                  std::invalid_argument);
     EXPECT_THROW(static_cast<void>(compose_cut_out(layout, {})), std::invalid_argument);
+}
+
+/// A box whose faces differ, seen from a corner, with and without its far side showing through.
+mesh::TriangleMesh box_of_six_materials(bool is_thin) {
+    mesh::TriangleMesh box = scenes::box(glm::vec3(-1.0f), glm::vec3(1.0f));
+    const mesh::Material material =
+        is_thin ? mesh::Material{.alpha_mode = mesh::AlphaMode::Blend, .alpha = 0.25f}
+                : mesh::Material{};
+    box.materials.assign(6, material);
+    for (std::uint32_t i = 0; i < box.num_triangles(); ++i) {
+        const glm::vec3 normal = prt::face_normal(box, i);
+        const glm::vec3 side = glm::abs(normal);
+        const std::uint32_t axis = side.x > 0.5f ? 0u : side.y > 0.5f ? 1u : 2u;
+        box.triangle_materials.push_back(2 * axis + (normal[static_cast<int>(axis)] > 0 ? 1u : 0u));
+    }
+    return box;
+}
+
+TEST(ReceiverPicture, ReceiversOfEdgesShowWhatEachSampleWouldShow) {
+    const Backdrop grey = plain_backdrop(glm::vec3(0.5f));
+    const Camera camera{.eye = {3.1f, 2.2f, 4.3f}, .fov_degrees = 50.0f};
+    for (const bool is_thin : {false, true}) {
+        const mesh::TriangleMesh mesh = box_of_six_materials(is_thin);
+        const prt::RayScene rays(mesh);
+        const auto seen = [&](std::optional<std::uint32_t> n) {
+            return prt::pixel_receivers(
+                mesh, rays, {.camera = camera, .width = 40, .height = 30, .samples_per_axis = n});
+        };
+        const auto radiance = [&](const prt::PixelReceivers& pixels) {
+            std::vector<glm::vec3> result;
+            for (const prt::MeshPoint& point : pixels.receivers.points) {
+                const auto face = static_cast<float>(mesh.triangle_materials[point.triangle]);
+                result.emplace_back(1.0f + face, 7.0f - face, 0.5f * face);
+            }
+            return result;
+        };
+        const prt::PixelReceivers all = seen(4), few = seen({});
+        EXPECT_TRUE(all.layout.shares.empty());
+        ASSERT_EQ(few.layout.shares.size(), few.receivers.size());
+        EXPECT_TRUE(few.layout.have_shares_that_fit());
+        EXPECT_LT(few.receivers.size(), all.receivers.size() / 6);
+        EXPECT_EQ(prt::num_places_taken(few.layout), prt::num_places_taken(all.layout));
+        const Picture expected = compose(all.layout, radiance(all), grey, {}, all.receivers.veils);
+        const Picture picture = compose(few.layout, radiance(few), grey, {}, few.receivers.veils);
+        for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+            EXPECT_LT(difference(picture.pixels[i], expected.pixels[i]), 1e-5f) << i;
+
+        // The transpose: <weights, picture> = <transpose, radiance>.
+        std::mt19937 random(5);
+        std::vector<glm::vec3> weights;
+        for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+            weights.push_back(scenes::random_direction(random));
+        const Picture cut_out = compose_cut_out(few.layout, radiance(few), {}, few.receivers.veils);
+        const std::vector<glm::vec3> back =
+            cut_out_transpose(few.layout, weights, few.receivers.veils);
+        double left = 0.0, right = 0.0;
+        for (std::size_t i = 0; i < weights.size(); ++i)
+            left += static_cast<double>(glm::dot(weights[i], cut_out.pixels[i]));
+        for (std::size_t i = 0; i < back.size(); ++i)
+            right += static_cast<double>(glm::dot(back[i], radiance(few)[i]));
+        EXPECT_NEAR(left, right, 1e-3);
+    }
 }
 
 /// A floor of 9 x 9 vertices a unit apart, with a wall beside it. No texel's centre lies behind the
