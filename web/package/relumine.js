@@ -188,6 +188,13 @@ export class Relighter {
         return this.#filled('contribution', Float32Array, 18 * this.resolution ** 2, into, receiver);
     }
 
+    visibleParts(directions, radius, into) {
+        const count = Math.floor((directions?.length ?? 0) / 3);
+        requireNumbers(directions, 3 * count, 'directions');
+        return this.#runtime.withNumbers(Float32Array, directions, (at) =>
+            this.#filled('visible_parts', Uint8Array, count * this.info.numReceivers, into, at, count, Number(radius)));
+    }
+
     dispose() {
         this.#loaded?.functions.relumine_close(this.#scene);
         this.#loaded = undefined;
