@@ -56,8 +56,8 @@ std::vector<std::string> left_out_of(const Scene& scene) {
     std::vector<std::string> left;
     if (scene.transfer.glossy)
         left.push_back("highlights, which are for one eye");
-    else if (has_live_highlights(scene))
-        left.push_back("highlights: surfaces are matte");
+    else
+        left = left_out_of_highlights(scene);
     if (std::any_of(scene.mesh.materials.begin(), scene.mesh.materials.end(),
                     [](const mesh::Material& material) {
                         return material.alpha_mode != mesh::AlphaMode::Opaque ||

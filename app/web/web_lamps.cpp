@@ -12,6 +12,7 @@
 #include "files/gzip.h"
 #include "relumine/emission.h"
 #include "relumine/lit_scene.h"
+#include "relumine/live_eye.h"
 #include "relumine/receiver_colors.h"
 #include "relumine/scene_bounces.h"
 
@@ -82,7 +83,17 @@ WebLamps web_lamps(const Scene& scene, Session& session) {
             entry.set("bounced", stem + "_bounced.bin.gz");
             result.files.push_back({stem + "_bounced.bin.gz", files::gzipped(halves(bounced))});
         }
-        const std::vector<glm::vec3> glow = emission_of(scene, only(names, name));
+        std::vector<glm::vec3> glow = emission_of(scene, only(names, name));
+        // What shines has a colour that is not what its light is multiplied with.
+        if (has_live_highlights(scene)) {
+            glow.resize(glow.empty() ? 0 : scene.receivers.num_own());
+            if (std::any_of(glow.begin(), glow.end(),
+                            [](const glm::vec3& own) { return own != glm::vec3(0.0f); })) {
+                entry.set("glow", stem + "_glow.bin.gz");
+                result.files.push_back({stem + "_glow.bin.gz", files::gzipped(halves(glow))});
+            }
+            glow.clear();
+        }
         for (std::size_t i = 0; i < glow.size() && i < direct[lamp].size(); ++i)
             direct[lamp][i] += glow[i] / albedo[i];
         result.files.push_back({stem + ".bin.gz", files::gzipped(halves(direct[lamp]))});

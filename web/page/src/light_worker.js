@@ -154,6 +154,11 @@ const operations = {
         return {radiance: target, milliseconds: performance.now() - start, isTurned, isDragged, isStep: isStep === true};
     },
 
+    /** What receivers see of the sky around directions. */
+    async visibleParts({directions, radius}) {
+        return base.relighter.visibleParts(directions, radius);
+    },
+
     /** Cube maps of what lights a receiver: by the environment, and by the lights. */
     contributions({receiver}) {
         const answer = {base: base.relighter.contribution(receiver)};

@@ -34,16 +34,26 @@ export async function lookOf(assets, manifest, {positions, normals, triangles}) 
         return result;
     };
     const textures = new Map();
-    const materials = [];
-    for (const material of manifest.look.materials) {
-        const {map} = material;
-        const key = JSON.stringify(map);
-        if (map && !textures.has(key))
-            textures.set(key, await textureOf(assets, map));
-        materials.push({...material, map: map && textures.get(key), mapFromUv: map && new THREE.Matrix3().fromArray(map.uv)});
-    }
+    const textured = async (map) => {
+        const {channel, ...own} = map, key = JSON.stringify(own);
+        if (!textures.has(key))
+            textures.set(key, textureOf(assets, own));
+        return {texture: await textures.get(key), fromUv: new THREE.Matrix3().fromArray(map.uv), fromTop: map.fromTop, channel};
+    };
+    const highlightOf = async (highlight) => {
+        const result = {...highlight};
+        for (const name of ['roughnessMap', 'metallicMap', 'f0Map', 'normalMap'])
+            if (highlight[name])
+                result[name] = await textured(highlight[name]);
+        return result;
+    };
+    const materials = await Promise.all(manifest.look.materials.map(async ({map, highlight, ...material}) => {
+        const own = map && await textured(map);
+        return {...material, map: own?.texture, mapFromUv: own?.fromUv, highlight: highlight && await highlightOf(highlight)};
+    }));
     return {
-        receivers, materials, groups: manifest.look.groups, floor: manifest.floor,
+        receivers, materials, groups: manifest.look.groups, floor: manifest.floor, gathered,
+        hasHighlights: materials.some(({highlight}) => highlight !== undefined),
         positions: gathered(positions), normals: gathered(normals), triangles: array('triangles', Uint32Array) ?? triangles,
         uvs: array('uvs', Float32Array), albedo: array('albedo', Float32Array),
     };

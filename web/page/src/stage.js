@@ -1,6 +1,7 @@
 // What is seen: the lit mesh, its floor, the environment behind, and the camera.
 import * as THREE from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+import {FilteredEnvironment, highlightFragment, highlightVertex, noLights, seenTexture, setLights} from './highlights.js';
 
 const vertexShader = `
 in vec3 radiance;
@@ -15,7 +16,22 @@ void main() {
     place = uv;
     world = position;
     gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+#ifdef HIGHLIGHT
+    findVisible();
+#elif defined(GLOW)
+    glowing = glow;
+#endif
 }`;
+
+// Where glow is apart from light, matte surfaces have it, too.
+const glowVertex = `
+#if defined(GLOW) && !defined(HIGHLIGHT)
+in vec3 glow;
+out vec3 glowing;
+#endif`, glowFragment = `
+#if defined(GLOW) && !defined(HIGHLIGHT)
+in vec3 glowing;
+#endif`;
 
 const screen = `
 uniform float exposure;
@@ -28,7 +44,7 @@ vec3 dithered(vec3 shown) {
     return shown + (fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5453) - 0.5) / 255.0;
 }`;
 
-const surfaceShader = `
+const surfaceInputs = `
 in vec3 lit;
 in vec3 tint;
 in vec2 place;
@@ -38,10 +54,18 @@ uniform sampler2D map;
 uniform mat3 mapFromUv;
 uniform vec3 emission;
 uniform vec3 floorPlace; // x, z, radius; 0: no floor
-uniform float alpha;
+uniform float alpha;`;
+
+const surfaceShader = `
 void main() {
     vec4 texel = texture(map, (mapFromUv * vec3(place, 1.0)).xy);
+#ifdef HIGHLIGHT
+    vec3 seen = shining(tint * texel.rgb, lit) + emission;
+#elif defined(GLOW)
+    vec3 seen = lit * tint * texel.rgb + glowing + emission;
+#else
     vec3 seen = lit * tint * texel.rgb + emission;
+#endif
     float shown = alpha;
     if (floorPlace.z > 0.0)
         shown = 1.0 - smoothstep(0.4, 1.0, distance(world.xz, floorPlace.xy) / floorPlace.z);
@@ -90,6 +114,9 @@ function white() {
 
 export class Stage {
     #shared;
+    #shining;
+    #lights;
+    #filter;
     free = {right: 0, bottom: 0};
     #white = white();
 
@@ -104,6 +131,12 @@ export class Stage {
         this.controls.dampingFactor = 0.12;
         this.controls.addEventListener('change', () => this.ask());
         this.#shared = {exposure: {value: 1}, curve: {value: 0}};
+        this.#shining = {
+            seen: {value: null}, seenSize: {value: new THREE.Vector2()}, filtered: {value: null}, lastLevel: {value: 0},
+            turn: {value: 0}, numLights: {value: 0}, lightForward: {value: null}, lightRight: {value: null},
+            lightUp: {value: null}, lightRadiance: {value: null},
+        };
+        this.#makeRoomForLights(8);
         this.#addSky();
         this.onFrame = () => {};
     }
@@ -127,7 +160,7 @@ export class Stage {
     }
 
     /** Shows a mesh: arrays, groups [{start, count, material}] and their materials. */
-    setMesh({positions, normals, triangles, uvs, albedo, groups, materials, floor}) {
+    setMesh({positions, normals, triangles, uvs, albedo, groups, materials, floor, receivers, hasHighlights}) {
         const count = positions.length / 3;
         const geometry = new THREE.BufferGeometry();
         geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
@@ -137,6 +170,12 @@ export class Stage {
         this.radiance = new THREE.BufferAttribute(new Float32Array(3 * count), 3);
         this.radiance.setUsage(THREE.DynamicDrawUsage);
         geometry.setAttribute('radiance', this.radiance);
+        if (hasHighlights) {
+            const numbers = receivers ? Float32Array.from(receivers) : Float32Array.from({length: count}, (_, i) => i);
+            geometry.setAttribute('receiver', new THREE.BufferAttribute(numbers, 1));
+            this.glow = new THREE.BufferAttribute(new Float32Array(3 * count), 3);
+            geometry.setAttribute('glow', this.glow);
+        }
         geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
         for (const {start, count: size, material} of groups)
             geometry.addGroup(start, size, material);
@@ -145,17 +184,87 @@ export class Stage {
         this.scene.add(this.mesh);
     }
 
-    #material({map, mapFromUv, emission, isFloor, alpha = 1}, floor) {
+    #material({map, mapFromUv, emission, isFloor, alpha = 1, highlight}, floor) {
+        const defines = {};
+        if (this.glow)
+            defines.GLOW = '';
+        if (highlight) {
+            defines.HIGHLIGHT = '';
+            defines.MOST_LIGHTS = this.#lights.forward.length;
+            if (highlight.normalMap)
+                defines.NORMAL_MAP = '';
+        }
         return new THREE.ShaderMaterial({
-            glslVersion: THREE.GLSL3, vertexShader,
-            fragmentShader: `${screen}\n${this.toneSource}\n${surfaceShader}`,
+            glslVersion: THREE.GLSL3, defines, vertexShader: `${highlight ? highlightVertex : glowVertex}\n${vertexShader}`,
+            fragmentShader: [screen, this.toneSource, surfaceInputs, highlight ? highlightFragment : glowFragment, surfaceShader].join('\n'),
             side: THREE.DoubleSide, transparent: isFloor === true || alpha < 1, depthWrite: alpha === 1 && isFloor !== true,
             uniforms: {
-                ...this.#shared, map: {value: map ?? this.#white}, mapFromUv: {value: mapFromUv ?? new THREE.Matrix3()},
+                ...this.#shared, ...(highlight ? {...this.#shining, ...this.#highlightUniforms(highlight)} : {}), map: {value: map ?? this.#white}, mapFromUv: {value: mapFromUv ?? new THREE.Matrix3()},
                 emission: {value: new THREE.Vector3(...(emission ?? [0, 0, 0]))}, alpha: {value: alpha},
                 floorPlace: {value: isFloor ? new THREE.Vector3(floor.center[0], floor.center[2], floor.radius) : new THREE.Vector3()},
             },
         });
+    }
+
+    #highlightUniforms({roughness, metallic, f0, f90, roughnessMap, metallicMap, f0Map, normalMap, normalScale = 1}) {
+        const texture = (map) => ({value: map?.texture ?? this.#white});
+        const place = (map) => ({value: map?.fromUv ?? new THREE.Matrix3()});
+        const channel = (map) => ({value: new THREE.Vector4(...[0, 1, 2, 3].map((i) => (i === (map?.channel ?? 0) ? 1 : 0)))});
+        // Where v goes down, so does the bitangent that derivatives give.
+        const scaleOfY = normalMap?.fromTop ? -normalScale : normalScale;
+        return {
+            roughness: {value: roughness}, metallic: {value: metallic}, f0: {value: new THREE.Vector3(...f0)}, f90: {value: f90},
+            roughnessMap: texture(roughnessMap), roughnessFromUv: place(roughnessMap), roughnessChannel: channel(roughnessMap),
+            metallicMap: texture(metallicMap), metallicFromUv: place(metallicMap), metallicChannel: channel(metallicMap),
+            f0Map: texture(f0Map), f0FromUv: place(f0Map), normalMap: texture(normalMap), normalFromUv: place(normalMap),
+            normalScale: {value: new THREE.Vector2(normalScale, scaleOfY)},
+        };
+    }
+
+    /** What vertices see of the sky: `parts` answer skyQuestion(). */
+    setSeen(parts, cells) {
+        const {texture, inLayer} = seenTexture(parts, cells, this.renderer.capabilities.maxTextureSize);
+        this.#shining.seen.value = texture;
+        this.#shining.seenSize.value.set(cells, inLayer);
+    }
+
+    /** What highlights mirror, before any turn. */
+    setMirrored(picture) {
+        this.#filter ??= new FilteredEnvironment(this.renderer);
+        const {texture, lastLevel} = this.#filter.filter(picture);
+        this.#shining.filtered.value = texture;
+        this.#shining.lastLevel.value = lastLevel;
+        this.ask();
+    }
+
+    #makeRoomForLights(capacity) {
+        this.#lights = noLights(capacity);
+        for (const name of ['forward', 'right', 'up', 'radiance'])
+            this.#shining[`light${name[0].toUpperCase()}${name.slice(1)}`].value = this.#lights[name];
+        for (const material of this.mesh?.material ?? [])
+            if (material.defines.MOST_LIGHTS !== undefined) {
+                material.defines.MOST_LIGHTS = capacity;
+                material.needsUpdate = true;
+            }
+    }
+
+    /** Lights that highlights mirror, with their power. */
+    setLights(lights) {
+        let capacity = this.#lights.forward.length;
+        while (capacity < lights.length)
+            capacity *= 2;
+        if (capacity > this.#lights.forward.length)
+            this.#makeRoomForLights(capacity);
+        setLights(this.#lights, lights);
+        this.#shining.numLights.value = this.#lights.count;
+        this.ask();
+    }
+
+    /** Radiance of what glows, of the drawn vertices. */
+    setGlow(glow) {
+        this.glow.array.set(glow);
+        this.glow.needsUpdate = true;
+        this.ask();
     }
 
     /** Returns the array that was shown before, to be filled again. */
@@ -183,6 +292,7 @@ export class Stage {
         this.#shared.exposure.value = 2 ** exposure;
         this.#shared.curve.value = curve;
         this.sky.uniforms.turn.value = turn * Math.PI / 180;
+        this.#shining.turn.value = turn * Math.PI / 180;
         this.sky.uniforms.isPlain.value = isPlain ? 1 : 0;
         if (plain) {
             this.sky.uniforms.plainLow.value.setRGB(...plain[0]);
@@ -288,6 +398,7 @@ export class Stage {
 
     end() {
         this.controls.dispose();
+        this.#filter?.dispose();
         this.renderer.dispose();
     }
 }

@@ -4,6 +4,7 @@ import {Desk} from './desk.js';
 import {brightness, composed, halfNumbers, readEnvironment, shrunk, thumbnail} from './environments.js';
 import {Handles} from './handles.js';
 import {hdrFile} from './hdr_file.js';
+import {skyQuestion} from './highlights.js';
 import {LightClient} from './light_client.js';
 import {lookOf} from './look.js';
 import {Panel, markup} from './panel.js';
@@ -28,6 +29,8 @@ class RelumineViewer extends HTMLElement {
     #look;
     #reads = 0;
     #shownEnvironment;
+    #glows = [];
+    #shownGlow;
     #pin;
     #watch = new AbortController();
 
@@ -97,12 +100,19 @@ class RelumineViewer extends HTMLElement {
         const lamps = Promise.all(manifest.lamps.map(async ({file, bounced}) => (
             {direct: await numbers(file), bounced: await numbers(bounced)})));
         lamps.catch(() => {});
+        const glows = Promise.all(manifest.lamps.map(({glow}) => numbers(glow)));
+        glows.catch(() => {});
         const opened = await this.#client.ask('open', {
             wasm: await wasm, scene: await this.#assets.bytes(manifest.scene), lamps: await lamps,
         }).catch((error) => { throw new PageError(`The scene cannot be opened: ${error.message}`); });
         this.info = opened.info;
         this.#look = await lookOf(this.#assets, manifest, opened);
         this.#makeStage();
+        if (this.#look.hasHighlights) {
+            const {cells, ...question} = skyQuestion(opened.info.numReceivers);
+            this.#stage.setSeen(await this.#client.ask('visibleParts', question), cells);
+            this.#glows = (await glows).map((glow) => glow && this.#look.gathered(glow));
+        }
         await picture;
         this.#makeDesk(first.id, opened.info.hasBounces);
         this.#panel.setTones(manifest.tone.names);
@@ -189,6 +199,8 @@ class RelumineViewer extends HTMLElement {
         this.isExposed = environment.exposure !== undefined;
         await this.#client.ask('environment', {latLong: picture.rgb, width: picture.width, height: picture.height, resolution: lightResolution});
         this.#stage.setSky(environment.sky ??= skyTexture(picture));
+        if (this.#look.hasHighlights)
+            this.#stage.setMirrored(picture);
         this.find('.error-line').textContent = this.#errorLine(environment);
         // At once, then exactly.
         this.#relight(true);
@@ -243,6 +255,20 @@ class RelumineViewer extends HTMLElement {
                 this.settleTimer = undefined;
                 this.#relight(false);
             }, 150);
+    }
+
+    /** Highlights of the state; its other light is the worker's. */
+    #showHighlights() {
+        if (!this.#look.hasHighlights || !this.current)
+            return;
+        this.#stage.setLights(this.#lights());
+        const {lamps} = this.#desk.state;
+        if (this.#glows.every((glow) => glow === undefined) || JSON.stringify(lamps) === this.#shownGlow)
+            return;
+        this.#shownGlow = JSON.stringify(lamps);
+        const sum = new Float32Array(this.#look.albedo.length);
+        this.#glows.forEach((glow, k) => glow?.forEach((value, i) => { sum[i] += lamps[k] * value; }));
+        this.#stage.setGlow(sum);
     }
 
     #takeRadiance({radiance, ...times}) {
@@ -303,6 +329,7 @@ class RelumineViewer extends HTMLElement {
             exposure: (this.current?.exposure ?? 0) + state.exposure, curve: state.tone, turn: state.turn,
             isPlain: state.background === 'plain', plain: plains[this.getAttribute('theme') ?? 'dark'],
         });
+        this.#showHighlights();
         this.#handles.set(state.lights);
         this.#panel.show(state, {selected: this.#desk.selected, canUndo: this.#desk.history.canUndo, canRedo: this.#desk.history.canRedo});
         this.#hidePin(state);
