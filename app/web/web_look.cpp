@@ -39,7 +39,8 @@ struct PageTextures {
     static constexpr std::array OfHighlight = {
         &mesh::Material::base_color_texture, &mesh::Material::metallic_roughness_texture,
         &mesh::Material::roughness_texture,  &mesh::Material::metallic_texture,
-        &mesh::Material::specular_texture,   &mesh::Material::normal_texture};
+        &mesh::Material::specular_texture,   &mesh::Material::normal_texture,
+        &mesh::Material::emission_texture};
 
     PageTextures(const mesh::TriangleMesh& of, std::uint32_t index, bool with_highlight)
         : mesh(of), material(of.materials[index]),
@@ -266,6 +267,7 @@ private:
         } else {
             add("f0Map", &mesh::Material::specular_texture, 0);
         }
+        add("glowMap", &mesh::Material::emission_texture, 0);
         if (textures.drawn(&mesh::Material::normal_texture) != nullptr) {
             add("normalMap", &mesh::Material::normal_texture, 0);
             result.set("normalScale", material.normal_scale);
@@ -339,6 +341,19 @@ WebLook web_look(const Scene& scene) {
     return LookMaker(scene).make();
 }
 
+Scene with_page_glow(Scene scene) {
+    for (std::uint32_t i = 0; i < scene.mesh.materials.size(); ++i) {
+        mesh::Material& material = scene.mesh.materials[i];
+        const PageTextures textures(scene.mesh, i, shines(material));
+        if (shines(material) && textures.drawn(&mesh::Material::emission_texture) != nullptr)
+            material.emission_texture.reset();
+    }
+    const std::vector<prt::Surface> surfaces = prt::vertex_surfaces(scene.mesh);
+    for (std::size_t i = 0; i < std::min(surfaces.size(), scene.receivers.surfaces.size()); ++i)
+        scene.receivers.surfaces[i].emission = surfaces[i].emission;
+    return scene;
+}
+
 std::vector<std::string> left_out_of_highlights(const Scene& scene) {
     std::vector<std::string> left;
     if (!has_live_highlights(scene))
@@ -358,6 +373,8 @@ std::vector<std::string> left_out_of_highlights(const Scene& scene) {
     add_if("textures of what glass mirrors", [](const mesh::Material& material) {
         return material.specular_strength_texture || material.specular_tint_texture;
     });
+    if (!scene.lamps.empty())
+        left.emplace_back("what surfaces mirror of the scene's lamps");
     bool has_other_uvs = false;
     for (std::uint32_t i = 0; i < materials.size(); ++i) {
         const PageTextures textures(scene.mesh, i, shines(materials[i]));

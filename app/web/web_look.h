@@ -28,6 +28,10 @@ struct WebLook {
 /// are matte: what they mirror counts as colour.
 [[nodiscard]] WebLook web_look(const Scene& scene);
 
+/// Returns a scene with live highlights whose vertices glow as the page's do, which multiplies with
+/// the textures itself.
+[[nodiscard]] Scene with_page_glow(Scene scene);
+
 /// What the page does not show of the highlights that it has, in words.
 [[nodiscard]] std::vector<std::string> left_out_of_highlights(const Scene& scene);
 

@@ -9,6 +9,8 @@ import {shrunk} from './environments.js';
 import {frameOf, radianceOf} from './lights.js';
 
 const filteredWidth = 1024, largestHalf = 65504;
+/** What surfaces that hide the sky send back of their light: the mean of usual ones. */
+export const hidingAlbedo = 0.4;
 
 // --- what vertices see of the sky ---
 
@@ -138,10 +140,12 @@ uniform sampler2D roughnessMap;
 uniform mat3 roughnessFromUv;
 uniform vec4 roughnessChannel;
 in float receiver;
+in float open;
 in vec3 glow;
 out vec3 glowing;
 out vec3 facing;
 out float visible;
+out float hiding;
 
 float seenTowards(vec3 w) {
     w /= abs(w.x) + abs(w.y) + abs(w.z);
@@ -177,12 +181,16 @@ void findVisible() {
     vec4 texel = textureLod(roughnessMap, (roughnessFromUv * vec3(uv, 1.0)).xy, 3.0);
     float own = roughness * dot(texel, roughnessChannel);
     visible = seenOfLobe(n, reflect(-v, n), own * own);
+    // What hides the sky is lit by the same light, of which it sends back a part. So a point that gets light from the sky
+    // by \`open\`, and from what hides it by the rest, has the light that it has.
+    hiding = HIDING_ALBEDO / mix(HIDING_ALBEDO, 1.0, clamp(open, 0.0, 1.0));
 }`;
 
 export const highlightFragment = `
 in vec3 glowing;
 in vec3 facing;
 in float visible;
+in float hiding; // radiance of what hides the sky, over what arrives here
 uniform samplerCube filtered;
 uniform float lastLevel;
 uniform float turn;
@@ -206,6 +214,8 @@ uniform mat3 f0FromUv;
 uniform sampler2D normalMap;
 uniform mat3 normalFromUv;
 uniform vec2 normalScale;
+uniform sampler2D glowMap;
+uniform mat3 glowFromUv;
 
 vec3 shadingNormal() {
     vec3 n = normalize(facing) * (gl_FrontFacing ? 1.0 : -1.0);
@@ -312,5 +322,6 @@ vec3 shining(vec3 base, vec3 arriving) {
     vec3 mirrored = mirroredEnvironment(normalize(mix(m, n, rough * rough * rough * rough)), rough) +
         mirroredLights(m, rough * rough);
     vec3 diffuse = base * (1.0 - metal) * (1.0 - onceGlass - severalGlass);
-    return (diffuse + several) * arriving + once * mirrored * visible + glowing;
+    vec3 glowed = glowing * texture(glowMap, (glowFromUv * vec3(place, 1.0)).xy).rgb;
+    return (diffuse + several) * arriving + once * mix(hiding * arriving, mirrored, visible) + glowed;
 }`;

@@ -154,9 +154,12 @@ const operations = {
         return {radiance: target, milliseconds: performance.now() - start, isTurned, isDragged, isStep: isStep === true};
     },
 
-    /** What receivers see of the sky around directions. */
-    async visibleParts({directions, radius}) {
-        return base.relighter.visibleParts(directions, radius);
+    /** What receivers see of the sky around directions; and of all of it, as its light counts. */
+    async seen({directions, radius}) {
+        const parts = base.relighter.visibleParts(directions, radius);
+        base.relighter.light({cubeMap: new Float32Array(18).fill(1)});
+        now.turn = undefined;
+        return {parts, open: base.relighter.radiance().filter((_, i) => i % 3 === 0)};
     },
 
     /** Cube maps of what lights a receiver: by the environment, and by the lights. */

@@ -1,7 +1,7 @@
 // What is seen: the lit mesh, its floor, the environment behind, and the camera.
 import * as THREE from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
-import {FilteredEnvironment, highlightFragment, highlightVertex, noLights, seenTexture, setLights} from './highlights.js';
+import {FilteredEnvironment, hidingAlbedo, highlightFragment, highlightVertex, noLights, seenTexture, setLights} from './highlights.js';
 
 const vertexShader = `
 in vec3 radiance;
@@ -173,6 +173,8 @@ export class Stage {
         if (hasHighlights) {
             const numbers = receivers ? Float32Array.from(receivers) : Float32Array.from({length: count}, (_, i) => i);
             geometry.setAttribute('receiver', new THREE.BufferAttribute(numbers, 1));
+            this.open = new THREE.BufferAttribute(new Float32Array(count), 1);
+            geometry.setAttribute('open', this.open);
             this.glow = new THREE.BufferAttribute(new Float32Array(3 * count), 3);
             geometry.setAttribute('glow', this.glow);
         }
@@ -190,6 +192,7 @@ export class Stage {
             defines.GLOW = '';
         if (highlight) {
             defines.HIGHLIGHT = '';
+            defines.HIDING_ALBEDO = hidingAlbedo;
             defines.MOST_LIGHTS = this.#lights.forward.length;
             if (highlight.normalMap)
                 defines.NORMAL_MAP = '';
@@ -206,7 +209,7 @@ export class Stage {
         });
     }
 
-    #highlightUniforms({roughness, metallic, f0, f90, roughnessMap, metallicMap, f0Map, normalMap, normalScale = 1}) {
+    #highlightUniforms({roughness, metallic, f0, f90, roughnessMap, metallicMap, f0Map, normalMap, normalScale = 1, glowMap}) {
         const texture = (map) => ({value: map?.texture ?? this.#white});
         const place = (map) => ({value: map?.fromUv ?? new THREE.Matrix3()});
         const channel = (map) => ({value: new THREE.Vector4(...[0, 1, 2, 3].map((i) => (i === (map?.channel ?? 0) ? 1 : 0)))});
@@ -217,12 +220,14 @@ export class Stage {
             roughnessMap: texture(roughnessMap), roughnessFromUv: place(roughnessMap), roughnessChannel: channel(roughnessMap),
             metallicMap: texture(metallicMap), metallicFromUv: place(metallicMap), metallicChannel: channel(metallicMap),
             f0Map: texture(f0Map), f0FromUv: place(f0Map), normalMap: texture(normalMap), normalFromUv: place(normalMap),
-            normalScale: {value: new THREE.Vector2(normalScale, scaleOfY)},
+            normalScale: {value: new THREE.Vector2(normalScale, scaleOfY)}, glowMap: texture(glowMap), glowFromUv: place(glowMap),
         };
     }
 
-    /** What vertices see of the sky: `parts` answer skyQuestion(). */
-    setSeen(parts, cells) {
+    /** What vertices see of the sky: `parts` answer skyQuestion(), `open` is how much drawn ones see of all of it. */
+    setSeen({parts, cells, open}) {
+        this.open.array.set(open);
+        this.open.needsUpdate = true;
         const {texture, inLayer} = seenTexture(parts, cells, this.renderer.capabilities.maxTextureSize);
         this.#shining.seen.value = texture;
         this.#shining.seenSize.value.set(cells, inLayer);

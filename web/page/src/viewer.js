@@ -110,7 +110,8 @@ class RelumineViewer extends HTMLElement {
         this.#makeStage();
         if (this.#look.hasHighlights) {
             const {cells, ...question} = skyQuestion(opened.info.numReceivers);
-            this.#stage.setSeen(await this.#client.ask('visibleParts', question), cells);
+            const {parts, open} = await this.#client.ask('seen', question);
+            this.#stage.setSeen({parts, cells, open: this.#look.gathered(open, 1)});
             this.#glows = (await glows).map((glow) => glow && this.#look.gathered(glow));
         }
         await picture;
@@ -298,7 +299,7 @@ class RelumineViewer extends HTMLElement {
 
     /** What is bright on the mesh comes out a little below white. */
     #expose(radiance, isStep) {
-        const {albedo, receivers} = this.#look;
+        const {shownAlbedo: albedo, receivers} = this.#look;
         const values = [];
         const count = albedo.length / 3, step = Math.max(1, Math.floor(count / 20000));
         for (let i = 0; i < count; i += step) {
