@@ -28,8 +28,8 @@ public:
 
     [[nodiscard]] std::size_t num_directions() const { return cones_.size(); }
 
-    /// Fills parts of 255, [num_receivers][num_directions] in the receivers' own order. Receivers
-    /// from `parts.size() / num_directions()` on are left out.
+    /// Fills parts of 255, [num_receivers][num_directions] in the receivers' own order, for as many
+    /// of the first receivers as there is room.
     ///
     /// Cost:    0.1 s for 73,000 receivers, 256 directions and 3,000 clusters; parallel.
     /// Throws:  std::invalid_argument for a size that is no multiple of the directions.
@@ -41,10 +41,20 @@ private:
         std::uint32_t leaf = 0;
         float weight = 0.0f;
     };
+    /// The clusters of a cone among 64 of the counts' words.
+    struct Word {
+        std::uint32_t index = 0;
+        std::uint64_t leaves = 0;
+    };
+    struct Cone {
+        /// Ascending
+        std::vector<Share> shares = {};
+        std::vector<Word> words = {};
+    };
     class Block;
 
     const prt::Transfer& transfer_;
-    std::vector<std::vector<Share>> cones_;
+    std::vector<Cone> cones_;
     /// [num_directions] unit length
     std::vector<glm::vec3> directions_;
     /// [num_clusters] directions of the clusters' middles

@@ -414,7 +414,10 @@ RelumineResult relumine_visible_parts(const RelumineScene* scene, const float* x
         if (num_directions == 0 || num_directions > MostDirections)
             throw std::invalid_argument(
                 fmt::format("expected 1 to {} directions, got {}", MostDirections, num_directions));
-        require_count(count, num_directions * own.num_receivers());
+        if (count % num_directions != 0 || count / num_directions > own.num_receivers())
+            throw std::invalid_argument(
+                fmt::format("count: expected {} times at most {} receivers, got {}", num_directions,
+                            own.num_receivers(), count));
         own.visible_parts(vectors(xyz, num_directions), radius, {parts, count});
     });
 }

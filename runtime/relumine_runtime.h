@@ -197,8 +197,8 @@ RELUMINE_API RelumineResult relumine_contribution(const RelumineScene* scene, ui
  * [receiver][direction]. A part is the mean of a cone of `radius` radians (0 to pi / 2), weighted
  * by the cosine to the receiver's normal. It darkens highlights that the caller finds without
  * shadows, such as those of a prefiltered environment: ask for directions all around once, and look
- * the mirrored eye up. xyz: 3 x num_directions; count: num_receivers x num_directions. No light is
- * needed. */
+ * the mirrored eye up. xyz: 3 x num_directions; count: num_directions times how many receivers are
+ * asked for, the first ones, such as a scene's without its floor. No light is needed. */
 RELUMINE_API RelumineResult relumine_visible_parts(const RelumineScene* scene, const float* xyz,
                                                    size_t num_directions, float radius,
                                                    uint8_t* parts, size_t count);

@@ -379,8 +379,13 @@ TEST(Runtime, VisiblePartsAreThoseOfTheLibrary) {
     EXPECT_EQ(relumine_visible_parts(opened.scene, xyz, 2, 0.2f, parts.data(), size), RELUMINE_OK);
     EXPECT_EQ(parts, expected);
     EXPECT_NE(std::count(parts.begin(), parts.end(), 255), std::ptrdiff_t(size));
+    std::vector<std::uint8_t> first(20);
+    EXPECT_EQ(relumine_visible_parts(opened.scene, xyz, 2, 0.2f, first.data(), 20), RELUMINE_OK);
+    expected.resize(20);
+    EXPECT_EQ(first, expected);
     for (const RelumineResult result :
-         {relumine_visible_parts(opened.scene, nullptr, 2, 0.2f, parts.data(), size),
+         {relumine_visible_parts(opened.scene, xyz, 2, 0.2f, parts.data(), size + 2),
+          relumine_visible_parts(opened.scene, nullptr, 2, 0.2f, parts.data(), size),
           relumine_visible_parts(opened.scene, xyz, 2, 0.2f, nullptr, size),
           relumine_visible_parts(opened.scene, xyz, 0, 0.2f, parts.data(), 0),
           relumine_visible_parts(opened.scene, xyz, 2, 0.2f, parts.data(), size - 1),

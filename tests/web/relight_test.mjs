@@ -140,6 +140,7 @@ test('points see the sky above, and none of it below a floor', async () => {
     const parts = relighter.visibleParts(directions, 0.2);
     assert.equal(parts.length, 3 * relighter.info.numReceivers);
     assert.deepEqual(await worker.visibleParts(directions, 0.2), parts);
+    assert.deepEqual(relighter.visibleParts(directions, 0.2, {numReceivers: 9}), parts.slice(0, 27));
     const of = (direction) => parts.filter((_, i) => i % 3 === direction);
     assert.ok(of(0).some((part) => part === 255) && of(0).some((part) => part === 0));
     assert.ok(of(1).some((part) => part > 0 && part < 255), 'the horizon of some goes through a cone');

@@ -188,11 +188,12 @@ export class Relighter {
         return this.#filled('contribution', Float32Array, 18 * this.resolution ** 2, into, receiver);
     }
 
-    visibleParts(directions, radius, into) {
+    visibleParts(directions, radius, {numReceivers = this.info.numReceivers} = {}) {
         const count = Math.floor((directions?.length ?? 0) / 3);
         requireNumbers(directions, 3 * count, 'directions');
+        requireSize(numReceivers, 'numReceivers');
         return this.#runtime.withNumbers(Float32Array, directions, (at) =>
-            this.#filled('visible_parts', Uint8Array, count * this.info.numReceivers, into, at, count, Number(radius)));
+            this.#filled('visible_parts', Uint8Array, count * numReceivers, undefined, at, count, Number(radius)));
     }
 
     dispose() {

@@ -8,7 +8,7 @@ import * as THREE from 'three';
 import {shrunk} from './environments.js';
 import {frameOf, radianceOf} from './lights.js';
 
-const filteredWidth = 1024, largestHalf = 65504;
+const largestHalf = 65504;
 /** What surfaces that hide the sky send back of their light: the mean of usual ones. */
 export const hidingAlbedo = 0.4;
 
@@ -35,7 +35,7 @@ export function skyQuestion(numReceivers) {
     for (let y = -1; y <= cells; ++y)
         for (let x = -1; x <= cells; ++x)
             directions.push(...octahedral((2 * x + 1) / cells - 1, (2 * y + 1) / cells - 1));
-    return {directions, radius: radiusOf(cells), cells};
+    return {directions, radius: radiusOf(cells), cells, numReceivers};
 }
 
 /** The answer as a texture: the squares of vertices one below the other, in as many layers as it takes. */
@@ -60,48 +60,158 @@ export function seenTexture(parts, cells, maxSize) {
 
 // --- the environment ---
 
-/** A lat-long as three.js has them: rows from the bottom, a quarter of a turn on. */
-function latLongTexture(picture) {
-    const {width, height, rgb} = shrunk(picture, filteredWidth);
-    const data = new Uint16Array(4 * width * height), one = THREE.DataUtils.toHalfFloat(1);
-    const quarter = Math.round(width / 4);
-    for (let y = 0, to = 0; y < height; ++y)
-        for (let x = 0; x < width; ++x, to += 4) {
-            const from = 3 * ((height - 1 - y) * width + (x + width - quarter) % width);
-            for (let k = 0; k < 3; ++k)
-                data[to + k] = THREE.DataUtils.toHalfFloat(Math.min(rgb[from + k], largestHalf));
-            data[to + 3] = one;
+const filteredSize = 256, lastLevel = 5;
+/** Each of a level's texels is a mean of so many samples, which are means themselves: of the environment's mips. */
+const samplesOf = (level) => (level < 3 ? 32 : 64);
+/** three.js's: levels get closer to each other where highlights are sharp. */
+const roughnessOf = (level) => 1 - Math.sqrt(1 - level / lastLevel);
+
+// Directions of a cube map's texels, as OpenGL has them: right, down, middle.
+const faces = [[[0, 0, -1], [0, -1, 0], [1, 0, 0]], [[0, 0, 1], [0, -1, 0], [-1, 0, 0]], [[1, 0, 0], [0, 0, 1], [0, 1, 0]],
+               [[1, 0, 0], [0, 0, -1], [0, -1, 0]], [[1, 0, 0], [0, -1, 0], [0, 0, 1]], [[-1, 0, 0], [0, -1, 0], [0, 0, -1]]]
+    .map(([right, down, middle]) => new THREE.Matrix3().set(right[0], down[0], middle[0], right[1], down[1], middle[1],
+                                                            right[2], down[2], middle[2]));
+
+const faceVertex = `
+out vec3 towards;
+uniform mat3 face;
+void main() {
+    towards = face * vec3(position.xy, 1.0);
+    gl_Position = vec4(position.xy, 0.0, 1.0);
+}`;
+
+const latLongShader = `
+in vec3 towards;
+out vec4 color;
+uniform sampler2D latLong;
+void main() {
+    vec3 w = normalize(towards);
+    // +Z in the middle, +X to its left, +Y at the top.
+    color = vec4(textureLod(latLong, vec2(0.5 - atan(w.x, w.z) / 6.28318530718, acos(w.y) / 3.14159265359), 0.0).rgb, 1.0);
+}`;
+
+// A GGX lobe seen along its normal, sampled where it is: Heitz, "Sampling the GGX Distribution of Visible Normals", 2018.
+const lobeShader = `
+in vec3 towards;
+out vec4 color;
+uniform samplerCube source;
+uniform float alpha;
+uniform float size;
+uniform int samples;
+void main() {
+    vec3 n = normalize(towards);
+    vec3 side = normalize(cross(abs(n.z) < 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0), n)), up = cross(n, side);
+    float a = alpha * alpha;
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < samples; ++i) {
+        float part = (float(i) + 0.5) / float(samples), turn = 2.39996323 * float(i);
+        float scale = 1.0 / (1.0 - part + a * part);
+        float cosine = (1.0 - part - a * part) * scale;
+        if (cosine <= 0.0)
+            continue;
+        float sine = 2.0 * alpha * sqrt(part * (1.0 - part)) * scale;
+        vec3 w = cosine * n + sine * (cos(turn) * side + sin(turn) * up);
+        // The sample stands for its share of the lobe: the level whose texels are as large, and a half to be smooth.
+        float density = 1.0 / (4.0 * 3.14159265 * a * scale * scale);
+        float texels = 6.0 * size * size / (12.5663706 * density * float(samples));
+        sum += vec4(textureLod(source, w, max(0.5 * log2(texels) + 1.0, 0.0)).rgb, 1.0) * cosine;
+    }
+    color = vec4(sum.rgb / sum.a, 1.0);
+}`;
+
+/**
+ * Filters environments for all roughnesses, as three.js's PMREMGenerator does with 256 samples for each texel: that
+ * takes seconds where there is no GPU.
+ */
+export class FilteredEnvironment {
+    #renderer;
+    #scene = new THREE.Scene();
+    #camera = new THREE.Camera();
+    #mesh;
+    #latLong;
+    #lobe;
+    #source = cubeTarget(true);
+    #target = cubeTarget(false);
+
+    constructor(renderer) {
+        this.#renderer = renderer;
+        const triangle = new THREE.BufferGeometry();
+        triangle.setAttribute('position', new THREE.BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
+        this.#mesh = new THREE.Mesh(triangle);
+        this.#mesh.frustumCulled = false;
+        this.#scene.add(this.#mesh);
+        const shader = (fragmentShader, uniforms) => new THREE.ShaderMaterial({
+            glslVersion: THREE.GLSL3, vertexShader: faceVertex, fragmentShader, side: THREE.DoubleSide,
+            depthTest: false, depthWrite: false, blending: THREE.NoBlending, uniforms: {face: {value: null}, ...uniforms},
+        });
+        this.#latLong = shader(latLongShader, {latLong: {value: null}});
+        this.#lobe = shader(lobeShader, {source: {value: this.#source.texture}, alpha: {value: 0}, size: {value: filteredSize},
+                                         samples: {value: 0}});
+    }
+
+    get texture() { return this.#target.texture; }
+    get lastLevel() { return lastLevel; }
+
+    filter(picture) {
+        const latLong = latLongTexture(picture);
+        this.#latLong.uniforms.latLong.value = latLong;
+        this.#draw(this.#source, 0, this.#latLong);
+        this.#draw(this.#target, 0, this.#latLong);
+        for (let level = 1; level <= lastLevel; ++level) {
+            this.#lobe.uniforms.alpha.value = roughnessOf(level) ** 2;
+            this.#lobe.uniforms.samples.value = samplesOf(level);
+            this.#draw(this.#target, level, this.#lobe);
         }
+        this.#renderer.setRenderTarget(null);
+        latLong.dispose();
+    }
+
+    #draw(target, level, material) {
+        this.#mesh.material = material;
+        target.viewport.set(0, 0, filteredSize >> level, filteredSize >> level);
+        // Mips are made when the last face is there.
+        const makesMips = target.texture.generateMipmaps;
+        for (let face = 0; face < 6; ++face) {
+            target.texture.generateMipmaps = makesMips && face === 5;
+            material.uniforms.face.value = faces[face];
+            material.uniformsNeedUpdate = true;
+            this.#renderer.setRenderTarget(target, face, level);
+            this.#renderer.render(this.#scene, this.#camera);
+        }
+        target.texture.generateMipmaps = makesMips;
+    }
+
+    dispose() {
+        for (const own of [this.#source, this.#target, this.#latLong, this.#lobe, this.#mesh.geometry])
+            own.dispose();
+    }
+}
+
+function cubeTarget(makesMips) {
+    const target = new THREE.WebGLCubeRenderTarget(filteredSize, {
+        minFilter: THREE.LinearMipmapLinearFilter, generateMipmaps: makesMips, type: THREE.HalfFloatType,
+        colorSpace: THREE.LinearSRGBColorSpace, depthBuffer: false,
+    });
+    for (let level = 0; !makesMips && level <= lastLevel; ++level)
+        target.texture.mipmaps.push({width: filteredSize >> level, height: filteredSize >> level});
+    return target;
+}
+
+/** Rows from the top. */
+function latLongTexture(picture) {
+    const {width, height, rgb} = shrunk(picture, 4 * filteredSize);
+    const data = new Uint16Array(4 * width * height), one = THREE.DataUtils.toHalfFloat(1);
+    for (let i = 0; i < width * height; ++i) {
+        for (let k = 0; k < 3; ++k)
+            data[4 * i + k] = THREE.DataUtils.toHalfFloat(Math.min(rgb[3 * i + k], largestHalf));
+        data[4 * i + 3] = one;
+    }
     const texture = new THREE.DataTexture(data, width, height, THREE.RGBAFormat, THREE.HalfFloatType);
-    texture.mapping = THREE.EquirectangularReflectionMapping;
     texture.minFilter = THREE.LinearFilter;
     texture.magFilter = THREE.LinearFilter;
     texture.wrapS = THREE.RepeatWrapping;
     texture.needsUpdate = true;
     return texture;
-}
-
-/** Filters environments for all roughnesses. */
-export class FilteredEnvironment {
-    #generator;
-    #target;
-
-    constructor(renderer) { this.#generator = new THREE.PMREMGenerator(renderer); }
-
-    /** Returns {texture, lastLevel}. */
-    filter(picture) {
-        const latLong = latLongTexture(picture);
-        const target = this.#generator.fromEquirectangular(latLong);
-        latLong.dispose();
-        this.#target?.dispose();
-        this.#target = target;
-        return {texture: target.texture, lastLevel: target.texture.mipmaps.length - 1};
-    }
-
-    dispose() {
-        this.#target?.dispose();
-        this.#generator.dispose();
-    }
 }
 
 // --- the lights ---

@@ -155,8 +155,8 @@ const operations = {
     },
 
     /** What receivers see of the sky around directions; and of all of it, as its light counts. */
-    async seen({directions, radius}) {
-        const parts = base.relighter.visibleParts(directions, radius);
+    async seen({directions, radius, numReceivers}) {
+        const parts = base.relighter.visibleParts(directions, radius, {numReceivers});
         base.relighter.light({cubeMap: new Float32Array(18).fill(1)});
         now.turn = undefined;
         return {parts, open: base.relighter.radiance().filter((_, i) => i % 3 === 0)};

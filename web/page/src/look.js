@@ -51,6 +51,15 @@ function shownAlbedo(albedo, triangles, groups, materials) {
     return result;
 }
 
+/** The number of the scene's first vertices that have all of those with highlights among them. */
+function numShining(receivers, triangles, groups, materials) {
+    let most = -1;
+    for (const {start, count, material} of groups)
+        for (let i = start; materials[material].highlight && i < start + count; ++i)
+            most = Math.max(most, receivers ? receivers[triangles[i]] : triangles[i]);
+    return most + 1;
+}
+
 /**
  * Returns what Stage.setMesh() takes, and `receivers`: the scene's vertex of each drawn one, or undefined.
  * `gathered(values, size)` are those of the drawn ones.
@@ -91,6 +100,7 @@ export async function lookOf(assets, manifest, {positions, normals, triangles}) 
     return {
         receivers, materials, groups: manifest.look.groups, floor: manifest.floor, gathered,
         hasHighlights: materials.some(({highlight}) => highlight !== undefined),
+        numShining: numShining(receivers, drawn, manifest.look.groups, materials),
         positions: gathered(positions), normals: gathered(normals), triangles: drawn,
         uvs: array('uvs', Float32Array), albedo, shownAlbedo: shownAlbedo(albedo, drawn, manifest.look.groups, materials),
     };

@@ -1,6 +1,7 @@
 // What is seen: the lit mesh, its floor, the environment behind, and the camera.
 import * as THREE from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+import {Pace} from './pace.js';
 import {FilteredEnvironment, hidingAlbedo, highlightFragment, highlightVertex, noLights, seenTexture, setLights} from './highlights.js';
 
 const vertexShader = `
@@ -139,6 +140,7 @@ export class Stage {
         this.#makeRoomForLights(8);
         this.#addSky();
         this.onFrame = () => {};
+        this.pace = new Pace({draw: () => this.draw(), drawn: () => this.#drawn(), rescaled: () => this.#setPixels()});
     }
 
     #addSky() {
@@ -236,9 +238,9 @@ export class Stage {
     /** What highlights mirror, before any turn. */
     setMirrored(picture) {
         this.#filter ??= new FilteredEnvironment(this.renderer);
-        const {texture, lastLevel} = this.#filter.filter(picture);
-        this.#shining.filtered.value = texture;
-        this.#shining.lastLevel.value = lastLevel;
+        this.#filter.filter(picture);
+        this.#shining.filtered.value = this.#filter.texture;
+        this.#shining.lastLevel.value = this.#filter.lastLevel;
         this.ask();
     }
 
@@ -275,6 +277,7 @@ export class Stage {
     /** Returns the array that was shown before, to be filled again. */
     setRadiance(radiance) {
         const before = this.radiance.array;
+        this.isLit = true;
         this.radiance.array = radiance;
         this.radiance.needsUpdate = true;
         this.ask();
@@ -338,21 +341,27 @@ export class Stage {
     resize(width, height) {
         if (width === 0 || height === 0)
             return;
-        this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-        this.renderer.setSize(width, height, false);
+        this.size = {width, height};
+        this.#setPixels();
         this.camera.aspect = width / height;
         this.camera.updateProjectionMatrix();
-        this.size = {width, height};
         this.#centre();
     }
 
-    /** Draws at the next frame of the screen. */
-    ask() {
-        this.frame ??= requestAnimationFrame(() => {
-            this.frame = undefined;
-            this.draw();
-        });
+    /** As many pixels as the screen has, or fewer: the pace's scale of each edge. */
+    #setPixels() {
+        this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * this.pace.scale);
+        this.renderer.setSize(this.size.width, this.size.height, false);
     }
+
+    /** Draws at the next frame of the screen; not before there is light: nobody sees it, and without a GPU it takes long. */
+    ask() {
+        if (this.isLit)
+            this.pace.ask();
+    }
+
+    /** Whether all is drawn that was asked for, in full. */
+    get isAtRest() { return this.pace.isAtRest; }
 
     draw() {
         if (this.controls.update())
@@ -362,6 +371,16 @@ export class Stage {
             .copy(this.camera.projectionMatrix).multiply(this.camera.matrixWorldInverse).invert();
         this.renderer.render(this.scene, this.camera);
         this.onFrame();
+    }
+
+    /** Resolves when all that was asked of the GPU is drawn. */
+    async #drawn() {
+        const gl = this.renderer.getContext();
+        const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+        gl.flush();
+        while (gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED && !gl.isContextLost())
+            await new Promise((resolve) => setTimeout(resolve, 4));
+        gl.deleteSync(fence);
     }
 
     /** Of the camera about the target, from +Z to +X. */
@@ -402,6 +421,7 @@ export class Stage {
     }
 
     end() {
+        this.pace.end();
         this.controls.dispose();
         this.#filter?.dispose();
         this.renderer.dispose();

@@ -65,7 +65,7 @@ class RelumineViewer extends HTMLElement {
     get state() { return structuredClone(this.#desk.state); }
     /** Members that are left out stay as they are. */
     set state(next) { this.#desk.set(next); }
-    get isSettled() { return this.#client.isSettled && this.settleTimer === undefined; }
+    get isSettled() { return this.#client.isSettled && this.settleTimer === undefined && this.#stage?.isAtRest === true; }
     /** Radiance of the scene's vertices for albedo 1, 3 numbers each. */
     get radiance() { return this.lastRadiance.slice(); }
     /** A step of a drag of a light, or of a turn; setting `state` ends it. */
@@ -109,7 +109,7 @@ class RelumineViewer extends HTMLElement {
         this.#look = await lookOf(this.#assets, manifest, opened);
         this.#makeStage();
         if (this.#look.hasHighlights) {
-            const {cells, ...question} = skyQuestion(opened.info.numReceivers);
+            const {cells, ...question} = skyQuestion(this.#look.numShining);
             const {parts, open} = await this.#client.ask('seen', question);
             this.#stage.setSeen({parts, cells, open: this.#look.gathered(open, 1)});
             this.#glows = (await glows).map((glow) => glow && this.#look.gathered(glow));
@@ -289,8 +289,7 @@ class RelumineViewer extends HTMLElement {
             this.#expose(radiance, times.isStep);
         if (this.find('.loading').className === 'loading') {
             this.find('.loading').className = 'loading done';
-            this.#stage.draw();
-            this.firstMilliseconds = performance.now();
+            this.#stage.pace.first.then(() => { this.firstMilliseconds = performance.now(); });
             this.readied.resolve(this);
             this.dispatchEvent(new Event('ready'));
         }
