@@ -1,13 +1,15 @@
 // When pictures are drawn and how finely: a machine that is slow, such as one without a GPU, gets fewer pixels while
 // something moves, and all of them when it rests.
 //
-// A picture is not begun before the last one is there. Otherwise drawing would take all of the machine, and the worker
-// that finds the light would wait for it.
+// A picture is not begun before the last one is there. On a slow machine the worker that finds the light takes turns with
+// the drawing: both at the same time would slow each other down, for light that no picture shows.
 
 /** Of the edges of the picture. */
 const scales = [1, 0.7, 0.5, 0.35];
 /** Milliseconds of a picture: above, the next one has fewer pixels; below, more. A step is a factor of two. */
 const slow = 28, fast = 9;
+/** Milliseconds that the worker waits at most: pages that are not seen draw nothing. */
+const longestTurn = 1000;
 /** Milliseconds without a new picture after which all pixels are drawn. */
 const rest = 200;
 
@@ -22,6 +24,8 @@ export class Pace {
     #isWanted = false;
     #frame;
     #timer;
+    /** Calls for when a picture is there. */
+    #waiting = [];
 
     /** Resolves when the first picture is there. */
     first = new Promise((resolve) => { this.isFirstThere = resolve; });
@@ -31,9 +35,22 @@ export class Pace {
 
     get scale() { return this.#isFull ? 1 : scales[this.#level]; }
 
+    /** Whether a picture of something new is not there yet. */
+    get isBusy() { return this.#isWanted || (this.#isDrawing && !this.#isFull); }
+
     /** Whether the picture is there in full. */
     get isAtRest() {
         return !this.#isDrawing && !this.#isWanted && this.#frame === undefined && this.#timer === undefined;
+    }
+
+    /** Resolves when the worker may find new light: at once, or on a slow machine when the last light is seen. */
+    async turn() {
+        const until = performance.now() + longestTurn;
+        while (this.#level >= 2 && (this.#isDrawing || this.#isWanted) && performance.now() < until)
+            await new Promise((resolve) => {
+                this.#waiting.push(resolve);
+                setTimeout(resolve, longestTurn);
+            });
     }
 
     /** Something has changed. */
@@ -67,6 +84,7 @@ export class Pace {
         this.#isDrawing = false;
         this.isFirstThere();
         this.#learn(performance.now() - start);
+        this.#waiting.splice(0).forEach((resolve) => resolve());
         if (this.#isWanted)
             this.#schedule();
         else if (this.#shown < 1)

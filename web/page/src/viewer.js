@@ -86,6 +86,7 @@ class RelumineViewer extends HTMLElement {
             throw new PageError('This browser cannot run the scene\'s light: it needs WebAssembly.');
         this.#client = new LightClient({
             onRadiance: (answer) => this.#takeRadiance(answer), onError: (error) => this.#panel.message(error.message),
+            turn: () => this.#stage.pace.turn(),
         });
         const wasm = this.#assets.bytes('relumine.wasm.gz');
         wasm.catch(() => {});
@@ -252,10 +253,18 @@ class RelumineViewer extends HTMLElement {
         clearTimeout(this.settleTimer);
         this.settleTimer = undefined;
         if (isStep)
-            this.settleTimer = setTimeout(() => {
-                this.settleTimer = undefined;
+            this.#settle();
+    }
+
+    /** What steps leave out is found when they end: when the last one has been seen for a while. */
+    #settle() {
+        this.settleTimer = setTimeout(() => {
+            this.settleTimer = undefined;
+            if (this.#client.isSettled && !this.#stage.pace.isBusy)
                 this.#relight(false);
-            }, 150);
+            else
+                this.#settle();
+        }, 150);
     }
 
     /** Highlights of the state; its other light is the worker's. */
