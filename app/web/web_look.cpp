@@ -18,6 +18,8 @@
 
 #include "files/gzip.h"
 #include "prt/glossy/surface_sampling.h"
+#include "prt/receivers/mesh_point.h"
+#include "prt/visibility/twin_triangles.h"
 #include "relumine/live_eye.h"
 #include "relumine/receiver_colors.h"
 
@@ -29,7 +31,16 @@ constexpr std::uint32_t NoMaterial = ~0u;
 
 /// Triangles that are drawn together: a material with a texture or a highlight, all others, the
 /// floor.
-using GroupKey = std::pair<bool, std::uint32_t>;
+struct GroupKey {
+    bool is_floor = false;
+    std::uint32_t material = NoMaterial;
+    /// The other side of each has a triangle of its own, so only fronts are drawn.
+    bool is_one_side = false;
+
+    [[nodiscard]] auto operator<=>(const GroupKey&) const = default;
+    /// Returns what a vertex looks like: no matter from which side.
+    [[nodiscard]] std::pair<bool, std::uint32_t> look() const { return {is_floor, material}; }
+};
 
 /// The textures that the page draws a material with, its highlight's where it has one. They have
 /// the UV map of the first.
@@ -89,11 +100,23 @@ glm::vec3 dielectric_f0(const mesh::Material& material) {
     return material.specular_strength * glm::min(root * root * material.specular_tint, 1.0f);
 }
 
+std::vector<bool> twins_of(const mesh::TriangleMesh& mesh) {
+    const prt::TwinTriangles twins(mesh);
+    std::vector<bool> result(mesh.num_triangles());
+    for (std::uint32_t i = 0; i < result.size(); ++i) {
+        const glm::vec3 normal = prt::face_normal(mesh, i);
+        result[i] =
+            normal != glm::vec3(0.0f) && twins.facing({.triangle = i}, normal).triangle != i;
+    }
+    return result;
+}
+
 class LookMaker {
 public:
     explicit LookMaker(const Scene& scene)
         : scene_(scene), mesh_(scene.mesh), first_floor_(first_floor_vertex(scene)),
-          has_highlights_(has_live_highlights(scene)), albedo_(web_albedo(scene)) {}
+          has_highlights_(has_live_highlights(scene)), has_twin_(twins_of(scene.mesh)),
+          albedo_(web_albedo(scene)) {}
 
     [[nodiscard]] WebLook make() {
         add_triangles();
@@ -129,11 +152,14 @@ private:
 
     [[nodiscard]] GroupKey key_of(std::size_t triangle) const {
         if (first_floor_ && mesh_.triangles[triangle][0] >= *first_floor_)
-            return {true, NoMaterial};
+            return {.is_floor = true};
+        GroupKey key{.is_one_side = has_twin_[triangle]};
         if (mesh_.triangle_materials.empty())
-            return {false, NoMaterial};
+            return key;
         const std::uint32_t material = mesh_.triangle_materials[triangle];
-        return {false, is_drawn_by_itself(material) ? material : NoMaterial};
+        if (is_drawn_by_itself(material))
+            key.material = material;
+        return key;
     }
 
     [[nodiscard]] bool has_highlight(std::uint32_t material) const {
@@ -150,27 +176,28 @@ private:
     /// Whether a vertex is drawn in several ways: with the places of textures, or by materials that
     /// meet there.
     [[nodiscard]] bool must_split() const {
-        std::vector<std::optional<GroupKey>> of_vertices(mesh_.num_vertices());
+        std::vector<std::optional<std::pair<bool, std::uint32_t>>> of_vertices(
+            mesh_.num_vertices());
         for (std::size_t triangle = 0; triangle < mesh_.num_triangles(); ++triangle) {
             const GroupKey key = key_of(triangle);
-            if (key.second != NoMaterial && textures_of(key.second).uv_set())
+            if (key.material != NoMaterial && textures_of(key.material).uv_set())
                 return true;
             for (const std::uint32_t vertex : mesh_.triangles[triangle])
-                if (of_vertices[vertex].value_or(key) != key)
+                if (of_vertices[vertex].value_or(key.look()) != key.look())
                     return true;
                 else
-                    of_vertices[vertex] = key;
+                    of_vertices[vertex] = key.look();
         }
         return false;
     }
 
     /// Returns what a vertex's light is multiplied with, but for textures.
     [[nodiscard]] glm::vec3 tint(const GroupKey& key, std::uint32_t vertex) const {
-        if (key.second == NoMaterial)
+        if (key.material == NoMaterial)
             return albedo_[vertex];
-        const mesh::Material& material = mesh_.materials[key.second];
+        const mesh::Material& material = mesh_.materials[key.material];
         const glm::vec3 own =
-            has_highlight(key.second) ? material.base_color : whole_albedo(material);
+            has_highlight(key.material) ? material.base_color : whole_albedo(material);
         return material.times_vertex_color && !mesh_.colors.empty() ? own * mesh_.colors[vertex]
                                                                     : own;
     }
@@ -211,11 +238,11 @@ private:
     std::uint32_t drawn_vertex(const GroupKey& key, std::uint32_t triangle, std::size_t corner) {
         const std::uint32_t vertex = mesh_.triangles[triangle][corner];
         glm::vec2 uv(0.0f);
-        if (key.second != NoMaterial)
-            if (const auto set = textures_of(key.second).uv_set())
+        if (key.material != NoMaterial)
+            if (const auto set = textures_of(key.material).uv_set())
                 uv = uv_of(triangle, corner, *set);
         const auto [entry, is_new] =
-            drawn_.try_emplace(std::tuple(key, vertex, std::bit_cast<std::uint32_t>(uv.x),
+            drawn_.try_emplace(std::tuple(key.look(), vertex, std::bit_cast<std::uint32_t>(uv.x),
                                           std::bit_cast<std::uint32_t>(uv.y)),
                                static_cast<std::uint32_t>(receivers_.size()));
         if (is_new) {
@@ -232,13 +259,15 @@ private:
     }
 
     [[nodiscard]] files::Json material(const GroupKey& key) {
-        files::Json result = {{"isFloor", key.first}};
-        if (key.second == NoMaterial)
+        files::Json result = {{"isFloor", key.is_floor}};
+        if (key.is_one_side)
+            result.set("isOneSide", true);
+        if (key.material == NoMaterial)
             return result;
-        const PageTextures textures = textures_of(key.second);
+        const PageTextures textures = textures_of(key.material);
         if (const auto* slot = textures.drawn(&mesh::Material::base_color_texture))
             result.set("map", map(*slot));
-        if (has_highlight(key.second))
+        if (has_highlight(key.material))
             result.set("highlight", highlight(textures));
         return result;
     }
@@ -306,11 +335,15 @@ private:
     const mesh::TriangleMesh& mesh_;
     std::optional<std::size_t> first_floor_;
     bool has_highlights_;
+    /// [num_triangles] whether there is one for the other side, too
+    std::vector<bool> has_twin_;
     std::vector<glm::vec3> albedo_;
     bool is_split_ = false, is_reordered_ = false;
     /// First index and number of indices
     std::map<GroupKey, std::pair<std::size_t, std::size_t>> groups_;
-    std::map<std::tuple<GroupKey, std::uint32_t, std::uint32_t, std::uint32_t>, std::uint32_t>
+    std::map<
+        std::tuple<std::pair<bool, std::uint32_t>, std::uint32_t, std::uint32_t, std::uint32_t>,
+        std::uint32_t>
         drawn_;
     std::vector<std::uint32_t> receivers_, triangles_;
     std::vector<glm::vec2> uvs_;

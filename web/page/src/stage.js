@@ -188,7 +188,7 @@ export class Stage {
         this.scene.add(this.mesh);
     }
 
-    #material({map, mapFromUv, emission, isFloor, alpha = 1, highlight}, floor) {
+    #material({map, mapFromUv, emission, isFloor, isOneSide, alpha = 1, highlight}, floor) {
         const defines = {};
         if (this.glow)
             defines.GLOW = '';
@@ -202,7 +202,7 @@ export class Stage {
         return new THREE.ShaderMaterial({
             glslVersion: THREE.GLSL3, defines, vertexShader: `${highlight ? highlightVertex : glowVertex}\n${vertexShader}`,
             fragmentShader: [screen, this.toneSource, surfaceInputs, highlight ? highlightFragment : glowFragment, surfaceShader].join('\n'),
-            side: THREE.DoubleSide, transparent: isFloor === true || alpha < 1, depthWrite: alpha === 1 && isFloor !== true,
+            side: isOneSide ? THREE.FrontSide : THREE.DoubleSide, transparent: isFloor === true || alpha < 1, depthWrite: alpha === 1 && isFloor !== true,
             uniforms: {
                 ...this.#shared, ...(highlight ? {...this.#shining, ...this.#highlightUniforms(highlight)} : {}), map: {value: map ?? this.#white}, mapFromUv: {value: mapFromUv ?? new THREE.Matrix3()},
                 emission: {value: new THREE.Vector3(...(emission ?? [0, 0, 0]))}, alpha: {value: alpha},

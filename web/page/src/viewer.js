@@ -139,6 +139,7 @@ class RelumineViewer extends HTMLElement {
             this.#leaveFree();
         };
         new ResizeObserver(fit).observe(this);
+        new ResizeObserver(() => this.#leaveFree()).observe(this.find('footer'));
         fit();
         this.#stage.setCamera({...this.#manifest.camera, radius: this.#manifest.subject.radius});
         this.#handles = new Handles(this.find('.handles'), this.#stage, {
