@@ -31,7 +31,9 @@ public:
     /// Fills parts of 255, [num_receivers][num_directions] in the receivers' own order, for as many
     /// of the first receivers as there is room.
     ///
-    /// Cost:    0.1 s for 73,000 receivers, 256 directions and 3,000 clusters; parallel.
+    /// Cost:    0.4 s for 73,196 receivers, 324 directions and 1,158 clusters in WebAssembly, on
+    /// one
+    ///          thread; parallel elsewhere.
     /// Throws:  std::invalid_argument for a size that is no multiple of the directions.
     void find(std::span<std::uint8_t> parts) const;
 
