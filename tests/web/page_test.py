@@ -86,6 +86,8 @@ class Exported(unittest.TestCase):
 
 
 class Light(Exported):
+    options = ["--bounce-samples", 0]
+
     def test_of_bounces_is_the_native_one(self):
         expected = self.native(self.site / "environments/1.hdr", "--bounces", "all")
         albedo = self.native(self.site / "environments/1.hdr", "--bounces", 0)
