@@ -47,7 +47,7 @@ struct ExportWebArguments {
     std::string output;
     float tolerance = 0.0275f;
     std::size_t num_samples = 500;
-    std::size_t bounce_samples = 256;
+    std::size_t bounce_samples = 64;
     bool single_file = false;
     bool no_bounces = false;
     bool force = false;
