@@ -403,6 +403,25 @@ RelumineResult relumine_harmonics(const RelumineScene* scene, float* rgb, size_t
     });
 }
 
+RelumineResult relumine_visible_parts(const RelumineScene* scene, const float* xyz,
+                                      size_t num_directions, float radius, uint8_t* parts,
+                                      size_t count) {
+    return with(scene, [&](const RuntimeScene& own) {
+        // Directions beyond any use must not overflow the size of the array.
+        constexpr std::size_t MostDirections = 65536;
+        require(xyz, "xyz");
+        require(parts, "parts");
+        if (num_directions == 0 || num_directions > MostDirections)
+            throw std::invalid_argument(
+                fmt::format("expected 1 to {} directions, got {}", MostDirections, num_directions));
+        if (count % num_directions != 0 || count / num_directions > own.num_receivers())
+            throw std::invalid_argument(
+                fmt::format("count: expected {} times at most {} receivers, got {}", num_directions,
+                            own.num_receivers(), count));
+        own.visible_parts(vectors(xyz, num_directions), radius, {parts, count});
+    });
+}
+
 RelumineResult relumine_environment(const RelumineScene* scene, float* rgb, size_t count) {
     return with(scene, [&](const RuntimeScene& own) {
         own.require_environment();

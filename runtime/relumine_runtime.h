@@ -29,7 +29,7 @@ extern "C" {
 #endif
 
 /* Programs that were compiled with another number before the point do not fit the library. */
-#define RELUMINE_RUNTIME_VERSION 100 /* 10,000 major + 100 minor + patch */
+#define RELUMINE_RUNTIME_VERSION 101 /* 10,000 major + 100 minor + patch */
 
 typedef enum RelumineResult {
     RELUMINE_OK = 0,
@@ -193,6 +193,15 @@ RELUMINE_API RelumineResult relumine_environment(const RelumineScene* scene, flo
  * angles is the receiver's radiance. count: 18 x resolution^2. */
 RELUMINE_API RelumineResult relumine_contribution(const RelumineScene* scene, uint32_t receiver,
                                                   float* rgb, size_t count);
+/* How much of the sky each receiver sees around directions: parts of 255 into the caller's array,
+ * [receiver][direction]. A part is the mean of a cone of `radius` radians (0 to pi / 2), weighted
+ * by the cosine to the receiver's normal. It darkens highlights that the caller finds without
+ * shadows, such as those of a prefiltered environment: ask for directions all around once, and look
+ * the mirrored eye up. xyz: 3 x num_directions; count: num_directions times how many receivers are
+ * asked for, the first ones, such as a scene's without its floor. No light is needed. */
+RELUMINE_API RelumineResult relumine_visible_parts(const RelumineScene* scene, const float* xyz,
+                                                   size_t num_directions, float radius,
+                                                   uint8_t* parts, size_t count);
 /* The arriving light, bounces left out; count: 3 x num_harmonics x num_receivers,
  * [receiver][coefficient][channel]. docs/harmonics.md says basis, order, sign and scale. */
 RELUMINE_API RelumineResult relumine_harmonics(const RelumineScene* scene, float* rgb,

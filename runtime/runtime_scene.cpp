@@ -9,6 +9,7 @@
 #include "relight/binned_environment.h"
 #include "relight/harmonics/harmonics.h"
 #include "relight/receiver_light.h"
+#include "relight/visible_parts.h"
 
 namespace relumine::runtime {
 
@@ -117,6 +118,11 @@ std::vector<glm::vec3> RuntimeScene::harmonics() const {
     std::vector<glm::vec3> all = relighter_.harmonics();
     all.resize(num_receivers() * num_harmonics());
     return all;
+}
+
+void RuntimeScene::visible_parts(std::span<const glm::vec3> directions, float radius,
+                                 std::span<std::uint8_t> parts) const {
+    relight::VisibleParts(scene_.transfer, directions, radius).find(parts);
 }
 
 cubemap::CubeMap RuntimeScene::contribution(std::uint32_t receiver) const {

@@ -57,6 +57,8 @@ public:
 
     /// Without texels where no cube map lights the scene.
     [[nodiscard]] const cubemap::CubeMap& environment() const { return relighter_.environment(); }
+    void visible_parts(std::span<const glm::vec3> directions, float radius,
+                       std::span<std::uint8_t> parts) const;
     [[nodiscard]] cubemap::CubeMap contribution(std::uint32_t receiver) const;
 
 private:

@@ -2,17 +2,20 @@
 #include "app/web/export_web.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "app/options/output_options.h"
 #include "app/web/page_parts.h"
@@ -22,9 +25,12 @@
 #include "app/web/web_look.h"
 #include "files/counted.h"
 #include "files/output_file.h"
+#include "prt/bounces/thinned_bounces.h"
 #include "prt/scene/relighting_file.h"
+#include "relight/bounces/bounce_light.h"
 #include "relight/pictures/framing.h"
 #include "relight/pictures/tone_curve.h"
+#include "relight/relighter.h"
 #include "relumine/coarsen.h"
 #include "relumine/live_eye.h"
 #include "relumine/receiver_colors.h"
@@ -41,6 +47,7 @@ struct ExportWebArguments {
     std::string output;
     float tolerance = 0.0275f;
     std::size_t num_samples = 500;
+    std::size_t bounce_samples = 64;
     bool single_file = false;
     bool no_bounces = false;
     bool force = false;
@@ -56,8 +63,8 @@ std::vector<std::string> left_out_of(const Scene& scene) {
     std::vector<std::string> left;
     if (scene.transfer.glossy)
         left.push_back("highlights, which are for one eye");
-    else if (has_live_highlights(scene))
-        left.push_back("highlights: surfaces are matte");
+    else
+        left = left_out_of_highlights(scene);
     if (std::any_of(scene.mesh.materials.begin(), scene.mesh.materials.end(),
                     [](const mesh::Material& material) {
                         return material.alpha_mode != mesh::AlphaMode::Opaque ||
@@ -233,6 +240,56 @@ Scene fitted(Scene scene, ExportWebArguments options, const WebFiles& parts, con
     return scene;
 }
 
+/// Returns the light of a scene under an environment, all bounces included.
+std::vector<glm::vec3> bounced_light(const Scene& scene, const prt::BounceMatrix& matrix,
+                                     const cubemap::CubeMap& environment) {
+    relight::Relighter relighter(scene.transfer);
+    relighter.set_environment(environment);
+    const std::span<const glm::vec3> direct = relighter.diffuse_radiance();
+    relight::BounceLight bounces(matrix, scene.transfer);
+    bounces.set_albedo(bounces_of(scene, bounce_albedo(scene)).albedo);
+    bounces.solve(direct, {});
+    std::vector<glm::vec3> light(direct.begin(), direct.end());
+    for (std::size_t i = 0; i < light.size(); ++i)
+        light[i] += bounces.indirect()[i];
+    return light;
+}
+
+/// Returns the largest relative L2 error of the light with other bounces, under the light of each
+/// single face of the environment.
+double error_of_bounces(const Scene& scene, const prt::BounceMatrix& other) {
+    double worst = 0.0;
+    for (const cubemap::Face face : cubemap::AllFaces) {
+        cubemap::CubeMap environment(1);
+        environment.at(face, 0, 0) = glm::vec3(1.0f);
+        const std::vector<glm::vec3> expected = bounced_light(scene, *scene.bounces, environment);
+        const std::vector<glm::vec3> got = bounced_light(scene, other, environment);
+        double error = 0.0, whole = 0.0;
+        for (std::size_t i = 0; i < got.size(); ++i) {
+            error += glm::dot(got[i] - expected[i], got[i] - expected[i]);
+            whole += glm::dot(expected[i], expected[i]);
+        }
+        if (whole > 0.0)
+            worst = std::max(worst, std::sqrt(error / whole));
+    }
+    return worst;
+}
+
+void thin_bounces(Scene& scene, const ExportWebArguments& options, Session& session) {
+    if (!scene.bounces || options.bounce_samples == 0)
+        return;
+    prt::BounceMatrix few = prt::thinned(*scene.bounces, options.bounce_samples);
+    if (few.emitters.places.size() == scene.bounces->emitters.places.size())
+        return;
+    const double error = error_of_bounces(scene, few);
+    session.say(fmt::format("{}: bounces keep {:.0f} % of their samples, the light within {:.2g} %",
+                            options.scene,
+                            100.0 * static_cast<double>(few.emitters.places.size()) /
+                                static_cast<double>(scene.bounces->emitters.places.size()),
+                            100.0 * error));
+    scene.bounces = std::move(few);
+}
+
 Scene scene_of_page(const ExportWebArguments& options, PageWords& words, Session& session) {
     Scene scene = load_scene(options.scene);
     if (!prt::on_vertices(scene.layout))
@@ -252,6 +309,7 @@ Scene scene_of_page(const ExportWebArguments& options, PageWords& words, Session
         scene = coarsened(std::move(scene), options.tolerance, session.stop(),
                           session.progress("joining clusters"));
     session.end_progress();
+    thin_bounces(scene, options, session);
     return scene;
 }
 
@@ -326,6 +384,8 @@ void add_export_web(Command& group, Session& session) {
     command.add(row("--samples", options->num_samples,
                     "receivers whose light is compared with exact integration, 0 for none"));
     command.add(row("--title", options->title, "of the page (the scene's name)"));
+    command.add(row("--bounce-samples", options->bounce_samples,
+                    "samples that a receiver's light from surfaces has in the mean; 0: all"));
     command.add(row("--no-bounces", options->no_bounces, "leaves out the light between surfaces"));
     command.add(row("--single-file", options->single_file,
                     "one .html with all within, which opens by a double click"));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "files/gzip.h"
 #include "relumine/emission.h"
 #include "relumine/lit_scene.h"
+#include "relumine/live_eye.h"
 #include "relumine/receiver_colors.h"
 #include "relumine/scene_bounces.h"
 
@@ -69,6 +71,11 @@ WebLamps web_lamps(const Scene& scene, Session& session) {
     if (scene.bounces)
         lit.bounce({.albedo = bounces_of(scene, bounce_albedo(scene)).albedo});
 
+    // What shines has a colour that is not what its light is multiplied with, so glow is apart.
+    const bool is_apart = has_live_highlights(scene);
+    std::optional<Scene> glowing;
+    if (is_apart)
+        glowing = with_page_glow(scene);
     files::Json::Array list;
     for (std::size_t lamp = 0; lamp < names.size(); ++lamp) {
         const std::string& name = names[lamp];
@@ -82,7 +89,15 @@ WebLamps web_lamps(const Scene& scene, Session& session) {
             entry.set("bounced", stem + "_bounced.bin.gz");
             result.files.push_back({stem + "_bounced.bin.gz", files::gzipped(halves(bounced))});
         }
-        const std::vector<glm::vec3> glow = emission_of(scene, only(names, name));
+        std::vector<glm::vec3> glow = emission_of(is_apart ? *glowing : scene, only(names, name));
+        if (is_apart && std::any_of(glow.begin(), glow.end(),
+                                    [](const glm::vec3& own) { return own != glm::vec3(0.0f); })) {
+            glow.resize(scene.receivers.num_own());
+            entry.set("glow", stem + "_glow.bin.gz");
+            result.files.push_back({stem + "_glow.bin.gz", files::gzipped(halves(glow))});
+        }
+        if (is_apart)
+            glow.clear();
         for (std::size_t i = 0; i < glow.size() && i < direct[lamp].size(); ++i)
             direct[lamp][i] += glow[i] / albedo[i];
         result.files.push_back({stem + ".bin.gz", files::gzipped(halves(direct[lamp]))});

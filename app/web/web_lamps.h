@@ -10,9 +10,10 @@ namespace relumine::app {
 
 struct WebLamps {
     WebFiles files;
-    /// Member `lamps` of scene.json: {name, file}. A file is half floats [num_vertices][3]:
-    /// radiance for albedo 1, all bounces included, and what glows divided by the albedo that the
-    /// page shows.
+    /// Member `lamps` of scene.json: {name, file, bounced, glow}. Files are half floats
+    /// [num_vertices][3]: radiance for albedo 1, what bounces add to it, and what the lamp itself
+    /// glows. Without live highlights the glow is in `file`, divided by the albedo that the page
+    /// shows.
     files::Json list = files::Json::Array{};
 };
 

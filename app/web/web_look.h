@@ -2,6 +2,7 @@
 // floor.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -23,7 +24,15 @@ struct WebLook {
 /// that what glows can be divided by it.
 [[nodiscard]] std::vector<glm::vec3> web_albedo(const Scene& scene);
 
-/// Surfaces are matte: what they mirror counts as colour.
+/// Surfaces with live highlights (relumine/live_eye.h) have what the page draws these with. Others
+/// are matte: what they mirror counts as colour.
 [[nodiscard]] WebLook web_look(const Scene& scene);
+
+/// Returns a scene with live highlights whose vertices glow as the page's do, which multiplies with
+/// the textures itself.
+[[nodiscard]] Scene with_page_glow(Scene scene);
+
+/// What the page does not show of the highlights that it has, in words.
+[[nodiscard]] std::vector<std::string> left_out_of_highlights(const Scene& scene);
 
 } // namespace relumine::app

@@ -20,6 +20,7 @@
 #include "prt/scene/scene_file.h"
 #include "relight/bounces/bounce_light.h"
 #include "relight/relighter.h"
+#include "relight/visible_parts.h"
 #include "relumine_runtime.h"
 #include "tests/prt/scenes.h"
 #include "tests/relight/bounces/bouncing_scene.h"
@@ -366,6 +367,30 @@ TEST(Runtime, WhatLightsAReceiverAddsUpToItsRadiance) {
         RELUMINE_WRONG_ARGUMENT);
     EXPECT_EQ(relumine_contribution(opened.scene, 0, &texels[0].x, 3 * size - 3),
               RELUMINE_WRONG_ARGUMENT);
+}
+
+TEST(Runtime, VisiblePartsAreThoseOfTheLibrary) {
+    const Opened opened;
+    const std::vector<glm::vec3> directions = {{0.0f, 1.0f, 0.0f}, {1.0f, 0.4f, 0.0f}};
+    const std::size_t size = 2 * opened.info.num_receivers;
+    std::vector<std::uint8_t> parts(size), expected(size);
+    relight::VisibleParts(stored().scene.transfer, directions, 0.2f).find(expected);
+    const float* const xyz = &directions[0].x;
+    EXPECT_EQ(relumine_visible_parts(opened.scene, xyz, 2, 0.2f, parts.data(), size), RELUMINE_OK);
+    EXPECT_EQ(parts, expected);
+    EXPECT_NE(std::count(parts.begin(), parts.end(), 255), std::ptrdiff_t(size));
+    std::vector<std::uint8_t> first(20);
+    EXPECT_EQ(relumine_visible_parts(opened.scene, xyz, 2, 0.2f, first.data(), 20), RELUMINE_OK);
+    expected.resize(20);
+    EXPECT_EQ(first, expected);
+    for (const RelumineResult result :
+         {relumine_visible_parts(opened.scene, xyz, 2, 0.2f, parts.data(), size + 2),
+          relumine_visible_parts(opened.scene, nullptr, 2, 0.2f, parts.data(), size),
+          relumine_visible_parts(opened.scene, xyz, 2, 0.2f, nullptr, size),
+          relumine_visible_parts(opened.scene, xyz, 0, 0.2f, parts.data(), 0),
+          relumine_visible_parts(opened.scene, xyz, 2, 0.2f, parts.data(), size - 1),
+          relumine_visible_parts(opened.scene, xyz, 2, 9.0f, parts.data(), size)})
+        EXPECT_EQ(result, RELUMINE_WRONG_ARGUMENT);
 }
 
 TEST(Runtime, InfoOfAnOlderProgramEndsEarlier) {

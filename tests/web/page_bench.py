@@ -30,12 +30,13 @@ DRAG = """
     return times;"""
 TURN = """
     await settled();
-    const times = [], start = performance.now();
+    const times = [];
     for (let i = 0; i < 60; ++i) {
         const light = new Promise((resolve) => v.addEventListener('light', resolve, {once: true}));
+        const asked = performance.now();
         v.turn(4 * i + 1);
         await light;
-        times.push([v.times.milliseconds, 0]);
+        times.push([v.times.milliseconds, performance.now() - asked]);
     }
     return times;"""
 
@@ -61,10 +62,13 @@ def main():
             loads.append(browser.run("await settled(); return v.firstMilliseconds;"))
         print(f"  first picture {min(loads):.0f} ms at best, median {statistics.median(loads):.0f} ms of 5")
         for what, body in (("drag", DRAG), ("turn", TURN)):
-            times = [worker for worker, _ in browser.run(body)]
+            answers = browser.run(body)
+            times = [worker for worker, _ in answers]
+            # On a slow machine a step waits until the last picture is there.
+            between = statistics.median(whole for _, whole in answers)
             median = statistics.median(times)
             print(f"  {what}: worker {median:.1f} ms median, {percentile(times, 0.99):.1f} ms 99th percentile, "
-                  f"{min(times):.1f} ms at best: {1000 / median:.0f} a second")
+                  f"{min(times):.1f} ms at best: {1000 / median:.0f} a second; with the picture {between:.0f} ms")
         print(f"  {browser.run('return $(`.error-line`).textContent;')}")
         browser.close()
     print("load average", *os.getloadavg())

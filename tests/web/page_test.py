@@ -4,15 +4,18 @@ FOLDER gets the exported pages and screenshots.
 """
 import array
 import base64
+import json
 import math
 import pathlib
 import shutil
+import statistics
 import struct
 import subprocess
 import sys
 import unittest
 
 from browser import Browser, QuietHandler, serve
+from png import Picture
 
 program, scene, folder = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
 names = sys.argv[4:]
@@ -83,6 +86,8 @@ class Exported(unittest.TestCase):
 
 
 class Light(Exported):
+    options = ["--bounce-samples", 0]
+
     def test_of_bounces_is_the_native_one(self):
         expected = self.native(self.site / "environments/1.hdr", "--bounces", "all")
         albedo = self.native(self.site / "environments/1.hdr", "--bounces", 0)
@@ -320,6 +325,116 @@ class Lamps(unittest.TestCase):
                 lamp = [shown[gain, switch][i] - shown[0, switch][i] for i in box]
                 self.assertLess(largest_error(lamp, [gain * value for value in native[bounces]]), 2e-3, "half floats")
         self.assertGreater(largest_error(native["all"], native[0]), 0.01, "bounces count")
+
+
+SIZE = (640, 480)
+
+
+def camera_options(site):
+    camera = json.loads((site / "scene.json").read_text())["camera"]
+    return ["--eye", ",".join(map(str, camera["eye"])), "--target", ",".join(map(str, camera["target"])),
+            "--fov", camera["fov"], "--size", f"{SIZE[0]}x{SIZE[1]}"]
+
+
+class Shown:
+    """A page's picture in the program's pixels: controls move the page's middle."""
+
+    def __init__(self, site, path, body=""):
+        browser = Browser(*SIZE)
+        try:
+            browser.open(serve(site))
+            browser.run(f"await settled(); {body}; v.state = {{background: 'plain'}};"
+                        "if (!$('aside').classList.contains('closed')) $('[data-do=panel]').click(); await settled();")
+            self.down = round(browser.run("return ($('footer').offsetHeight - 30) / 2;"))
+            browser.picture(path)
+            self.errors = browser.errors()
+        finally:
+            browser.close()
+        self.picture = Picture(path)
+
+    def luminance(self, x, y, reach=0):
+        return self.picture.luminance(x, y - self.down, reach)
+
+
+def correlation(a, b):
+    mean_a, mean_b = statistics.fmean(a), statistics.fmean(b)
+    spread = lambda values, mean: math.sqrt(sum((value - mean) ** 2 for value in values))
+    return sum((x - mean_a) * (y - mean_b) for x, y in zip(a, b)) / (spread(a, mean_a) * spread(b, mean_b))
+
+
+class Highlights(unittest.TestCase):
+    def test_are_where_the_program_has_them(self):
+        relumine("precompute", scene.with_suffix(".ply"), "-o", "shiny.prt", "--floor", 20, "--tolerance", 0.03, "--bounces", 0,
+                 "--material", "ggx:roughness=0.3,albedo=0.15,f0=0.6")
+        site = folder / "shiny"
+        text = relumine("export", "web", "shiny.prt", "-o", site, "--force", "--samples", 0).stderr
+        self.assertNotIn("left out", text)
+        relumine("relight", "shiny.prt", site / "environments/1.hdr", *camera_options(site), "--bounces", 0,
+                 "--background", "none", "--floor", "grey", "-o", "shiny_native.png")
+        native = Picture(folder / "shiny_native.png")
+        # The same page, whose materials have lost their highlights.
+        matte = folder / "matte"
+        shutil.rmtree(matte, ignore_errors=True)
+        shutil.copytree(site, matte)
+        manifest = json.loads((site / "scene.json").read_text())
+        for material in manifest["look"]["materials"]:
+            material.pop("highlight", None)
+        (matte / "scene.json").write_text(json.dumps(manifest))
+        relumine("relight", "shiny.prt", site / "environments/1.hdr", *camera_options(site), "--bounces", 0,
+                 "--background", "none", "--floor", "grey", "--highlight-rays", 0, "-o", "matte_native.png")
+        matte_native = Picture(folder / "matte_native.png")
+        # The upper part of the blob, where highlights make a difference; edges aside.
+        places = [(x, y) for y in range(100, 250, 2) for x in range(235, 450, 2)
+                  if all(abs(native.luminance(x + dx, y + dy) - matte_native.luminance(x + dx, y + dy)) > 0.004
+                         for dx, dy in ((0, 0), (4, 0), (-4, 0), (0, 4), (0, -4)))]
+        self.assertGreater(len(places), 1000)
+        expected = [native.luminance(x, y, 1) for x, y in places]
+        likeness = {}
+        for name in (site, matte):
+            shown = Shown(name, folder / f"{name.name}_page.png")
+            self.assertEqual(shown.errors, [])
+            likeness[name] = correlation([shown.luminance(x, y, 1) for x, y in places], expected)
+        # What they mirror of the floor and of the blob itself is only about as bright.
+        self.assertGreater(likeness[site], 0.7, likeness)
+        self.assertGreater(likeness[site], likeness[matte] + 0.3, likeness)
+
+    def test_are_dark_where_something_is_in_the_way(self):
+        # A metal table before a black wall, under an even sky.
+        (folder / "wall.mtl").write_text("newmtl metal\nKd 0.8 0.8 0.8\nPr 0.2\nPm 1\nnewmtl black\nKd 0 0 0\nPr 1\nPm 0\n")
+        count = 40
+        lines = ["mtllib wall.mtl"]
+        lines += [f"v {4 * i / count - 2} 0 {3 * j / count - 1}" for j in range(count + 1) for i in range(count + 1)]
+        lines += ["usemtl metal"]
+        lines += [f"f {k} {k + count + 1} {k + count + 2} {k + 1}" for j in range(count) for i in range(count)
+                  for k in [j * (count + 1) + i + 1]]
+        n = (count + 1) ** 2
+        lines += ["v -3 0 -1", "v 3 0 -1", "v 3 0.6 -1", "v -3 0.6 -1", "usemtl black", f"f {n + 1} {n + 2} {n + 3} {n + 4}"]
+        (folder / "wall.obj").write_text("\n".join(lines) + "\n")
+        (folder / "even.hdr").write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32 +X 64\n" + bytes([128, 128, 128, 129] * 2048))
+        relumine("precompute", "wall.obj", "-o", "wall.prt", "--tolerance", 0.015, "--bounces", 0)
+        site = folder / "wall"
+        relumine("export", "web", "wall.prt", "even.hdr", "-o", site, "--force", "--samples", 0, "--tolerance", 0.015)
+        relumine("relight", "wall.prt", "even.hdr", *camera_options(site), "--bounces", 0, "-o", "wall_native.png")
+        native, shown = Picture(folder / "wall_native.png"), Shown(site, folder / "wall_page.png")
+        camera = json.loads((site / "scene.json").read_text())["camera"]
+        near, far = [pixel_of(camera, point) for point in ((0, 0, -0.8), (0.3, 0, 1.6))]
+        # What hides the sky is taken to be as light as usual surfaces, so the page's is not black.
+        for picture, most in ((native, 0.2), (shown, 0.8)):
+            self.assertLess(picture.luminance(*near, 2), most * picture.luminance(*far, 2))
+            self.assertGreater(picture.luminance(*far, 2), 0.6)
+
+
+def pixel_of(camera, point):
+    """Where a picture shows a point."""
+    minus = lambda a, b: [x - y for x, y in zip(a, b)]
+    dot = lambda a, b: sum(x * y for x, y in zip(a, b))
+    unit = lambda a: [x / math.sqrt(dot(a, a)) for x in a]
+    cross = lambda a, b: [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    forward = unit(minus(camera["target"], camera["eye"]))
+    right = unit(cross(forward, [0, 1, 0]))
+    to = minus(point, camera["eye"])
+    scale = SIZE[1] / 2 / math.tan(math.radians(camera["fov"]) / 2) / dot(to, forward)
+    return (round(SIZE[0] / 2 + scale * dot(to, right)), round(SIZE[1] / 2 - scale * dot(to, cross(right, forward))))
 
 
 class Failing(unittest.TestCase):

@@ -133,6 +133,25 @@ test('what lights a point adds up to its radiance', async () => {
     relighter.dispose();
 });
 
+test('points see the sky above, and none of it below a floor', async () => {
+    const relighter = await Relighter.open(fs.readFileSync(scene));
+    const worker = await RelighterWorker.open(pathToFileURL(path.resolve(scene)));
+    const directions = [0, 1, 0, 1, 0.3, 0, 0, -1, 0];
+    const parts = relighter.visibleParts(directions, 0.2);
+    assert.equal(parts.length, 3 * relighter.info.numReceivers);
+    assert.deepEqual(await worker.visibleParts(directions, 0.2), parts);
+    assert.deepEqual(relighter.visibleParts(directions, 0.2, {numReceivers: 9}), parts.slice(0, 27));
+    const of = (direction) => parts.filter((_, i) => i % 3 === direction);
+    assert.ok(of(0).some((part) => part === 255) && of(0).some((part) => part === 0));
+    assert.ok(of(1).some((part) => part > 0 && part < 255), 'the horizon of some goes through a cone');
+    const last = relighter.info.numReceivers - 1;
+    assert.deepEqual([...parts.subarray(3 * last)].map((part) => part > 0), [true, true, false], 'a corner of the floor');
+    assert.throws(() => relighter.visibleParts([1, 0, 0, 1], 0.2), {message: /directions: expected 3 numbers, got 4/});
+    assert.throws(() => relighter.visibleParts([1, 0, 0], 7), {message: /radius/});
+    relighter.dispose();
+    await worker.dispose();
+});
+
 test('a worker gives the same, in the order of calls', async () => {
     const map = environment();
     const relighter = await Relighter.open(fs.readFileSync(scene));

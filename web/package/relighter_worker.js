@@ -4,7 +4,7 @@ import {WorkerCalls} from './worker_calls.js';
 
 const filled = ['positions', 'normals', 'triangles', 'places', 'radiance', 'radianceHalf', 'harmonics', 'environment',
                 'contribution'];
-const others = ['light', 'update', 'turn', 'setAlbedo', 'bounce', 'resolution'];
+const others = ['light', 'update', 'turn', 'setAlbedo', 'bounce', 'resolution', 'visibleParts'];
 
 async function newWorker() {
     const url = new URL('worker.js', import.meta.url);

@@ -111,6 +111,12 @@ export class Relighter {
      *  texels times their solid angles is the receiver's radiance. */
     contribution(receiver: number, into?: Float32Array): Float32Array;
 
+    /** How much of the sky each receiver sees around directions [n][3]: parts of 255, [receiver][direction]. A part is
+     *  the mean of a cone of `radius` radians, weighted by the cosine to the normal. It darkens highlights that are
+     *  found without shadows, such as those of a prefiltered environment. Needs no light.
+     *  numReceivers: only the first ones, such as a scene's without its floor. */
+    visibleParts(directions: Numbers, radius: number, options?: { numReceivers?: number }): Uint8Array;
+
     /** Gives the memory back. Nothing else works afterwards. */
     dispose(): void;
 }

@@ -188,6 +188,14 @@ export class Relighter {
         return this.#filled('contribution', Float32Array, 18 * this.resolution ** 2, into, receiver);
     }
 
+    visibleParts(directions, radius, {numReceivers = this.info.numReceivers} = {}) {
+        const count = Math.floor((directions?.length ?? 0) / 3);
+        requireNumbers(directions, 3 * count, 'directions');
+        requireSize(numReceivers, 'numReceivers');
+        return this.#runtime.withNumbers(Float32Array, directions, (at) =>
+            this.#filled('visible_parts', Uint8Array, count * numReceivers, undefined, at, count, Number(radius)));
+    }
+
     dispose() {
         this.#loaded?.functions.relumine_close(this.#scene);
         this.#loaded = undefined;

@@ -9,8 +9,12 @@ export class LightClient {
     #wanted;
     #spare;
 
-    /** onRadiance({radiance, milliseconds, ...}) hears of each new light; onError of what went wrong. */
-    constructor({onRadiance, onError}) {
+    /**
+     * onRadiance({radiance, milliseconds, ...}) hears of each new light; onError of what went wrong. A step waits for
+     * what turn() returns: light that nobody would see is not asked for.
+     */
+    constructor({onRadiance, onError, turn}) {
+        this.turn = turn;
         this.onRadiance = onRadiance;
         this.onError = onError;
         const url = URL.createObjectURL(new Blob([workerText], {type: 'text/javascript'}));
@@ -30,6 +34,8 @@ export class LightClient {
         if (this.#isBusy || this.#wanted === undefined)
             return;
         this.#isBusy = true;
+        if (this.#wanted.isStep)
+            await this.turn();
         const {state, isStep} = this.#wanted;
         this.#wanted = undefined;
         try {

@@ -154,6 +154,14 @@ const operations = {
         return {radiance: target, milliseconds: performance.now() - start, isTurned, isDragged, isStep: isStep === true};
     },
 
+    /** What receivers see of the sky around directions; and of all of it, as its light counts. */
+    async seen({directions, radius, numReceivers}) {
+        const parts = base.relighter.visibleParts(directions, radius, {numReceivers});
+        base.relighter.light({cubeMap: new Float32Array(18).fill(1)});
+        now.turn = undefined;
+        return {parts, open: base.relighter.radiance().filter((_, i) => i % 3 === 0)};
+    },
+
     /** Cube maps of what lights a receiver: by the environment, and by the lights. */
     contributions({receiver}) {
         const answer = {base: base.relighter.contribution(receiver)};

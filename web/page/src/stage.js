@@ -1,6 +1,8 @@
 // What is seen: the lit mesh, its floor, the environment behind, and the camera.
 import * as THREE from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+import {Pace} from './pace.js';
+import {FilteredEnvironment, hidingAlbedo, highlightFragment, highlightVertex, noLights, seenTexture, setLights} from './highlights.js';
 
 const vertexShader = `
 in vec3 radiance;
@@ -15,7 +17,22 @@ void main() {
     place = uv;
     world = position;
     gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+#ifdef HIGHLIGHT
+    findVisible();
+#elif defined(GLOW)
+    glowing = glow;
+#endif
 }`;
+
+// Where glow is apart from light, matte surfaces have it, too.
+const glowVertex = `
+#if defined(GLOW) && !defined(HIGHLIGHT)
+in vec3 glow;
+out vec3 glowing;
+#endif`, glowFragment = `
+#if defined(GLOW) && !defined(HIGHLIGHT)
+in vec3 glowing;
+#endif`;
 
 const screen = `
 uniform float exposure;
@@ -28,7 +45,7 @@ vec3 dithered(vec3 shown) {
     return shown + (fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5453) - 0.5) / 255.0;
 }`;
 
-const surfaceShader = `
+const surfaceInputs = `
 in vec3 lit;
 in vec3 tint;
 in vec2 place;
@@ -38,10 +55,18 @@ uniform sampler2D map;
 uniform mat3 mapFromUv;
 uniform vec3 emission;
 uniform vec3 floorPlace; // x, z, radius; 0: no floor
-uniform float alpha;
+uniform float alpha;`;
+
+const surfaceShader = `
 void main() {
     vec4 texel = texture(map, (mapFromUv * vec3(place, 1.0)).xy);
+#ifdef HIGHLIGHT
+    vec3 seen = shining(tint * texel.rgb, lit) + emission;
+#elif defined(GLOW)
+    vec3 seen = lit * tint * texel.rgb + glowing + emission;
+#else
     vec3 seen = lit * tint * texel.rgb + emission;
+#endif
     float shown = alpha;
     if (floorPlace.z > 0.0)
         shown = 1.0 - smoothstep(0.4, 1.0, distance(world.xz, floorPlace.xy) / floorPlace.z);
@@ -90,6 +115,9 @@ function white() {
 
 export class Stage {
     #shared;
+    #shining;
+    #lights;
+    #filter;
     free = {right: 0, bottom: 0};
     #white = white();
 
@@ -104,8 +132,15 @@ export class Stage {
         this.controls.dampingFactor = 0.12;
         this.controls.addEventListener('change', () => this.ask());
         this.#shared = {exposure: {value: 1}, curve: {value: 0}};
+        this.#shining = {
+            seen: {value: null}, seenSize: {value: new THREE.Vector2()}, filtered: {value: null}, lastLevel: {value: 0},
+            turn: {value: 0}, numLights: {value: 0}, lightForward: {value: null}, lightRight: {value: null},
+            lightUp: {value: null}, lightRadiance: {value: null},
+        };
+        this.#makeRoomForLights(8);
         this.#addSky();
         this.onFrame = () => {};
+        this.pace = new Pace({draw: () => this.draw(), drawn: () => this.#drawn(), rescaled: () => this.#setPixels()});
     }
 
     #addSky() {
@@ -127,7 +162,7 @@ export class Stage {
     }
 
     /** Shows a mesh: arrays, groups [{start, count, material}] and their materials. */
-    setMesh({positions, normals, triangles, uvs, albedo, groups, materials, floor}) {
+    setMesh({positions, normals, triangles, uvs, albedo, groups, materials, floor, receivers, hasHighlights}) {
         const count = positions.length / 3;
         const geometry = new THREE.BufferGeometry();
         geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
@@ -137,6 +172,14 @@ export class Stage {
         this.radiance = new THREE.BufferAttribute(new Float32Array(3 * count), 3);
         this.radiance.setUsage(THREE.DynamicDrawUsage);
         geometry.setAttribute('radiance', this.radiance);
+        if (hasHighlights) {
+            const numbers = receivers ? Float32Array.from(receivers) : Float32Array.from({length: count}, (_, i) => i);
+            geometry.setAttribute('receiver', new THREE.BufferAttribute(numbers, 1));
+            this.open = new THREE.BufferAttribute(new Float32Array(count), 1);
+            geometry.setAttribute('open', this.open);
+            this.glow = new THREE.BufferAttribute(new Float32Array(3 * count), 3);
+            geometry.setAttribute('glow', this.glow);
+        }
         geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
         for (const {start, count: size, material} of groups)
             geometry.addGroup(start, size, material);
@@ -145,22 +188,96 @@ export class Stage {
         this.scene.add(this.mesh);
     }
 
-    #material({map, mapFromUv, emission, isFloor, alpha = 1}, floor) {
+    #material({map, mapFromUv, emission, isFloor, isOneSide, alpha = 1, highlight}, floor) {
+        const defines = {};
+        if (this.glow)
+            defines.GLOW = '';
+        if (highlight) {
+            defines.HIGHLIGHT = '';
+            defines.HIDING_ALBEDO = hidingAlbedo;
+            defines.MOST_LIGHTS = this.#lights.forward.length;
+            if (highlight.normalMap)
+                defines.NORMAL_MAP = '';
+        }
         return new THREE.ShaderMaterial({
-            glslVersion: THREE.GLSL3, vertexShader,
-            fragmentShader: `${screen}\n${this.toneSource}\n${surfaceShader}`,
-            side: THREE.DoubleSide, transparent: isFloor === true || alpha < 1, depthWrite: alpha === 1 && isFloor !== true,
+            glslVersion: THREE.GLSL3, defines, vertexShader: `${highlight ? highlightVertex : glowVertex}\n${vertexShader}`,
+            fragmentShader: [screen, this.toneSource, surfaceInputs, highlight ? highlightFragment : glowFragment, surfaceShader].join('\n'),
+            side: isOneSide ? THREE.FrontSide : THREE.DoubleSide, transparent: isFloor === true || alpha < 1, depthWrite: alpha === 1 && isFloor !== true,
             uniforms: {
-                ...this.#shared, map: {value: map ?? this.#white}, mapFromUv: {value: mapFromUv ?? new THREE.Matrix3()},
+                ...this.#shared, ...(highlight ? {...this.#shining, ...this.#highlightUniforms(highlight)} : {}), map: {value: map ?? this.#white}, mapFromUv: {value: mapFromUv ?? new THREE.Matrix3()},
                 emission: {value: new THREE.Vector3(...(emission ?? [0, 0, 0]))}, alpha: {value: alpha},
                 floorPlace: {value: isFloor ? new THREE.Vector3(floor.center[0], floor.center[2], floor.radius) : new THREE.Vector3()},
             },
         });
     }
 
+    #highlightUniforms({roughness, metallic, f0, f90, roughnessMap, metallicMap, f0Map, normalMap, normalScale = 1, glowMap}) {
+        const texture = (map) => ({value: map?.texture ?? this.#white});
+        const place = (map) => ({value: map?.fromUv ?? new THREE.Matrix3()});
+        const channel = (map) => ({value: new THREE.Vector4(...[0, 1, 2, 3].map((i) => (i === (map?.channel ?? 0) ? 1 : 0)))});
+        // Where v goes down, so does the bitangent that derivatives give.
+        const scaleOfY = normalMap?.fromTop ? -normalScale : normalScale;
+        return {
+            roughness: {value: roughness}, metallic: {value: metallic}, f0: {value: new THREE.Vector3(...f0)}, f90: {value: f90},
+            roughnessMap: texture(roughnessMap), roughnessFromUv: place(roughnessMap), roughnessChannel: channel(roughnessMap),
+            metallicMap: texture(metallicMap), metallicFromUv: place(metallicMap), metallicChannel: channel(metallicMap),
+            f0Map: texture(f0Map), f0FromUv: place(f0Map), normalMap: texture(normalMap), normalFromUv: place(normalMap),
+            normalScale: {value: new THREE.Vector2(normalScale, scaleOfY)}, glowMap: texture(glowMap), glowFromUv: place(glowMap),
+        };
+    }
+
+    /** What vertices see of the sky: `parts` answer skyQuestion(), `open` is how much drawn ones see of all of it. */
+    setSeen({parts, cells, open}) {
+        this.open.array.set(open);
+        this.open.needsUpdate = true;
+        const {texture, inLayer} = seenTexture(parts, cells, this.renderer.capabilities.maxTextureSize);
+        this.#shining.seen.value = texture;
+        this.#shining.seenSize.value.set(cells, inLayer);
+    }
+
+    /** What highlights mirror, before any turn. */
+    setMirrored(picture) {
+        this.#filter ??= new FilteredEnvironment(this.renderer);
+        this.#filter.filter(picture);
+        this.#shining.filtered.value = this.#filter.texture;
+        this.#shining.lastLevel.value = this.#filter.lastLevel;
+        this.ask();
+    }
+
+    #makeRoomForLights(capacity) {
+        this.#lights = noLights(capacity);
+        for (const name of ['forward', 'right', 'up', 'radiance'])
+            this.#shining[`light${name[0].toUpperCase()}${name.slice(1)}`].value = this.#lights[name];
+        for (const material of this.mesh?.material ?? [])
+            if (material.defines.MOST_LIGHTS !== undefined) {
+                material.defines.MOST_LIGHTS = capacity;
+                material.needsUpdate = true;
+            }
+    }
+
+    /** Lights that highlights mirror, with their power. */
+    setLights(lights) {
+        let capacity = this.#lights.forward.length;
+        while (capacity < lights.length)
+            capacity *= 2;
+        if (capacity > this.#lights.forward.length)
+            this.#makeRoomForLights(capacity);
+        setLights(this.#lights, lights);
+        this.#shining.numLights.value = this.#lights.count;
+        this.ask();
+    }
+
+    /** Radiance of what glows, of the drawn vertices. */
+    setGlow(glow) {
+        this.glow.array.set(glow);
+        this.glow.needsUpdate = true;
+        this.ask();
+    }
+
     /** Returns the array that was shown before, to be filled again. */
     setRadiance(radiance) {
         const before = this.radiance.array;
+        this.isLit = true;
         this.radiance.array = radiance;
         this.radiance.needsUpdate = true;
         this.ask();
@@ -183,6 +300,7 @@ export class Stage {
         this.#shared.exposure.value = 2 ** exposure;
         this.#shared.curve.value = curve;
         this.sky.uniforms.turn.value = turn * Math.PI / 180;
+        this.#shining.turn.value = turn * Math.PI / 180;
         this.sky.uniforms.isPlain.value = isPlain ? 1 : 0;
         if (plain) {
             this.sky.uniforms.plainLow.value.setRGB(...plain[0]);
@@ -223,21 +341,27 @@ export class Stage {
     resize(width, height) {
         if (width === 0 || height === 0)
             return;
-        this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-        this.renderer.setSize(width, height, false);
+        this.size = {width, height};
+        this.#setPixels();
         this.camera.aspect = width / height;
         this.camera.updateProjectionMatrix();
-        this.size = {width, height};
         this.#centre();
     }
 
-    /** Draws at the next frame of the screen. */
-    ask() {
-        this.frame ??= requestAnimationFrame(() => {
-            this.frame = undefined;
-            this.draw();
-        });
+    /** As many pixels as the screen has, or fewer: the pace's scale of each edge. */
+    #setPixels() {
+        this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * this.pace.scale);
+        this.renderer.setSize(this.size.width, this.size.height, false);
     }
+
+    /** Draws at the next frame of the screen; not before there is light: nobody sees it, and without a GPU it takes long. */
+    ask() {
+        if (this.isLit)
+            this.pace.ask();
+    }
+
+    /** Whether all is drawn that was asked for, in full. */
+    get isAtRest() { return this.pace.isAtRest; }
 
     draw() {
         if (this.controls.update())
@@ -247,6 +371,16 @@ export class Stage {
             .copy(this.camera.projectionMatrix).multiply(this.camera.matrixWorldInverse).invert();
         this.renderer.render(this.scene, this.camera);
         this.onFrame();
+    }
+
+    /** Resolves when all that was asked of the GPU is drawn. */
+    async #drawn() {
+        const gl = this.renderer.getContext();
+        const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+        gl.flush();
+        while (gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED && !gl.isContextLost())
+            await new Promise((resolve) => setTimeout(resolve, 4));
+        gl.deleteSync(fence);
     }
 
     /** Of the camera about the target, from +Z to +X. */
@@ -287,7 +421,9 @@ export class Stage {
     }
 
     end() {
+        this.pace.end();
         this.controls.dispose();
+        this.#filter?.dispose();
         this.renderer.dispose();
     }
 }

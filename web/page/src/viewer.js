@@ -4,6 +4,7 @@ import {Desk} from './desk.js';
 import {brightness, composed, halfNumbers, readEnvironment, shrunk, thumbnail} from './environments.js';
 import {Handles} from './handles.js';
 import {hdrFile} from './hdr_file.js';
+import {skyQuestion} from './highlights.js';
 import {LightClient} from './light_client.js';
 import {lookOf} from './look.js';
 import {Panel, markup} from './panel.js';
@@ -28,6 +29,8 @@ class RelumineViewer extends HTMLElement {
     #look;
     #reads = 0;
     #shownEnvironment;
+    #glows = [];
+    #shownGlow;
     #pin;
     #watch = new AbortController();
 
@@ -62,7 +65,7 @@ class RelumineViewer extends HTMLElement {
     get state() { return structuredClone(this.#desk.state); }
     /** Members that are left out stay as they are. */
     set state(next) { this.#desk.set(next); }
-    get isSettled() { return this.#client.isSettled && this.settleTimer === undefined; }
+    get isSettled() { return this.#client.isSettled && this.settleTimer === undefined && this.#stage?.isAtRest === true; }
     /** Radiance of the scene's vertices for albedo 1, 3 numbers each. */
     get radiance() { return this.lastRadiance.slice(); }
     /** A step of a drag of a light, or of a turn; setting `state` ends it. */
@@ -83,6 +86,7 @@ class RelumineViewer extends HTMLElement {
             throw new PageError('This browser cannot run the scene\'s light: it needs WebAssembly.');
         this.#client = new LightClient({
             onRadiance: (answer) => this.#takeRadiance(answer), onError: (error) => this.#panel.message(error.message),
+            turn: () => this.#stage.pace.turn(),
         });
         const wasm = this.#assets.bytes('relumine.wasm.gz');
         wasm.catch(() => {});
@@ -97,12 +101,20 @@ class RelumineViewer extends HTMLElement {
         const lamps = Promise.all(manifest.lamps.map(async ({file, bounced}) => (
             {direct: await numbers(file), bounced: await numbers(bounced)})));
         lamps.catch(() => {});
+        const glows = Promise.all(manifest.lamps.map(({glow}) => numbers(glow)));
+        glows.catch(() => {});
         const opened = await this.#client.ask('open', {
             wasm: await wasm, scene: await this.#assets.bytes(manifest.scene), lamps: await lamps,
         }).catch((error) => { throw new PageError(`The scene cannot be opened: ${error.message}`); });
         this.info = opened.info;
         this.#look = await lookOf(this.#assets, manifest, opened);
         this.#makeStage();
+        if (this.#look.hasHighlights) {
+            const {cells, ...question} = skyQuestion(this.#look.numShining);
+            const {parts, open} = await this.#client.ask('seen', question);
+            this.#stage.setSeen({parts, cells, open: this.#look.gathered(open, 1)});
+            this.#glows = (await glows).map((glow) => glow && this.#look.gathered(glow));
+        }
         await picture;
         this.#makeDesk(first.id, opened.info.hasBounces);
         this.#panel.setTones(manifest.tone.names);
@@ -127,6 +139,7 @@ class RelumineViewer extends HTMLElement {
             this.#leaveFree();
         };
         new ResizeObserver(fit).observe(this);
+        new ResizeObserver(() => this.#leaveFree()).observe(this.find('footer'));
         fit();
         this.#stage.setCamera({...this.#manifest.camera, radius: this.#manifest.subject.radius});
         this.#handles = new Handles(this.find('.handles'), this.#stage, {
@@ -189,6 +202,8 @@ class RelumineViewer extends HTMLElement {
         this.isExposed = environment.exposure !== undefined;
         await this.#client.ask('environment', {latLong: picture.rgb, width: picture.width, height: picture.height, resolution: lightResolution});
         this.#stage.setSky(environment.sky ??= skyTexture(picture));
+        if (this.#look.hasHighlights)
+            this.#stage.setMirrored(picture);
         this.find('.error-line').textContent = this.#errorLine(environment);
         // At once, then exactly.
         this.#relight(true);
@@ -239,10 +254,32 @@ class RelumineViewer extends HTMLElement {
         clearTimeout(this.settleTimer);
         this.settleTimer = undefined;
         if (isStep)
-            this.settleTimer = setTimeout(() => {
-                this.settleTimer = undefined;
+            this.#settle();
+    }
+
+    /** What steps leave out is found when they end: when the last one has been seen for a while. */
+    #settle() {
+        this.settleTimer = setTimeout(() => {
+            this.settleTimer = undefined;
+            if (this.#client.isSettled && !this.#stage.pace.isBusy)
                 this.#relight(false);
-            }, 150);
+            else
+                this.#settle();
+        }, 150);
+    }
+
+    /** Highlights of the state; its other light is the worker's. */
+    #showHighlights() {
+        if (!this.#look.hasHighlights || !this.current)
+            return;
+        this.#stage.setLights(this.#lights());
+        const {lamps} = this.#desk.state;
+        if (this.#glows.every((glow) => glow === undefined) || JSON.stringify(lamps) === this.#shownGlow)
+            return;
+        this.#shownGlow = JSON.stringify(lamps);
+        const sum = new Float32Array(this.#look.albedo.length);
+        this.#glows.forEach((glow, k) => glow?.forEach((value, i) => { sum[i] += lamps[k] * value; }));
+        this.#stage.setGlow(sum);
     }
 
     #takeRadiance({radiance, ...times}) {
@@ -262,8 +299,7 @@ class RelumineViewer extends HTMLElement {
             this.#expose(radiance, times.isStep);
         if (this.find('.loading').className === 'loading') {
             this.find('.loading').className = 'loading done';
-            this.#stage.draw();
-            this.firstMilliseconds = performance.now();
+            this.#stage.pace.first.then(() => { this.firstMilliseconds = performance.now(); });
             this.readied.resolve(this);
             this.dispatchEvent(new Event('ready'));
         }
@@ -272,7 +308,7 @@ class RelumineViewer extends HTMLElement {
 
     /** What is bright on the mesh comes out a little below white. */
     #expose(radiance, isStep) {
-        const {albedo, receivers} = this.#look;
+        const {shownAlbedo: albedo, receivers} = this.#look;
         const values = [];
         const count = albedo.length / 3, step = Math.max(1, Math.floor(count / 20000));
         for (let i = 0; i < count; i += step) {
@@ -303,6 +339,7 @@ class RelumineViewer extends HTMLElement {
             exposure: (this.current?.exposure ?? 0) + state.exposure, curve: state.tone, turn: state.turn,
             isPlain: state.background === 'plain', plain: plains[this.getAttribute('theme') ?? 'dark'],
         });
+        this.#showHighlights();
         this.#handles.set(state.lights);
         this.#panel.show(state, {selected: this.#desk.selected, canUndo: this.#desk.history.canUndo, canRedo: this.#desk.history.canRedo});
         this.#hidePin(state);
