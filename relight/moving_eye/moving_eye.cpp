@@ -241,6 +241,10 @@ const EyeReport& MovingEye::report() const {
     return impl_->report;
 }
 
+std::size_t MovingEye::num_traced() const {
+    return impl_->lights.size();
+}
+
 std::size_t MovingEye::num_bytes() const {
     return impl_->visibility.num_bytes();
 }

@@ -71,6 +71,8 @@ public:
     /// Of the last look.
     [[nodiscard]] const EyeReport& report() const;
 
+    /// Small lights that have a shadow ray for each receiver.
+    [[nodiscard]] std::size_t num_traced() const;
     /// Memory of the visibility above the clusters.
     [[nodiscard]] std::size_t num_bytes() const;
 

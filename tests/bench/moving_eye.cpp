@@ -38,6 +38,8 @@ struct Settings {
     std::size_t num_eyes = 20;
     /// Of each eye.
     std::size_t num_samples = 25;
+    /// Whether other ways are measured, too.
+    int beside = 1;
 };
 
 /// Eyes all around and above, as far as the automatic camera.
@@ -195,13 +197,18 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
         live.set_light(lit.relighter());
         const double set_seconds =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - before_set).count();
-        const std::vector<glm::dvec3> exact =
-            relight::exact_radiance(samples.receivers, order, lit.rays().blockers(), map.map,
-                                    {.bias = scene.settings.bias});
         Error error, matt, plain, open;
-        const PlainSum sum = plain_sum(samples, lit.relighter());
-        const std::vector<glm::dvec3> filtered = prefiltered(lit, samples, order, exact, map.map);
-        for (std::size_t i = 0; i < exact.size(); ++i) {
+        std::vector<glm::dvec3> exact, filtered;
+        PlainSum sum;
+        if (settings.num_samples != 0) {
+            exact = relight::exact_radiance(samples.receivers, order, lit.rays().blockers(),
+                                            map.map, {.bias = scene.settings.bias});
+        }
+        if (settings.num_samples != 0 && settings.beside != 0) {
+            sum = plain_sum(samples, lit.relighter());
+            filtered = prefiltered(lit, samples, order, exact, map.map);
+        }
+        for (std::size_t i = 0; i < filtered.size(); ++i) {
             plain.add(sum.radiance[i], exact[i]);
             open.add(filtered[i], exact[i]);
         }
@@ -223,12 +230,17 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
         // The sum's time for all receivers that a look lights
         const double plain_ms = 1e3 * sum.seconds / static_cast<double>(samples.index.size()) *
                                 blocks / num_eyes * prt::BlockSize;
-        fmt::print("| {} | {:.0f} cells | {:.1f} cpu ms, {:.1f} ms | {:.4f} | plain sum {:.4f}, "
-                   "{:.0f} cpu ms | no visibility {:.3f} | matt {:.3f} | {} sharp, set {:.1f} ms\n",
-                   map.name, cells / blocks, 1e3 * (bench::cpu_seconds() - cpu) / num_eyes,
-                   1e3 * seconds / num_eyes, error.relative_l2(), plain.relative_l2(), plain_ms,
-                   open.relative_l2(), matt.relative_l2(), lit.relighter().sharp_lights().size(),
-                   1e3 * set_seconds);
+        fmt::print("| {} | {:.0f} blocks, {:.0f} cells | {:.1f} cpu ms, {:.1f} ms | {} sharp, set "
+                   "{:.1f} ms",
+                   map.name, blocks / num_eyes, cells / blocks,
+                   1e3 * (bench::cpu_seconds() - cpu) / num_eyes, 1e3 * seconds / num_eyes,
+                   live.num_traced(), 1e3 * set_seconds);
+        if (!exact.empty())
+            fmt::print(" | {:.4f} | matt {:.3f}", error.relative_l2(), matt.relative_l2());
+        if (!filtered.empty())
+            fmt::print(" | plain sum {:.4f}, {:.0f} cpu ms | no visibility {:.3f}",
+                       plain.relative_l2(), plain_ms, open.relative_l2());
+        fmt::print("\n");
         std::fflush(stdout);
     }
 }
@@ -247,7 +259,8 @@ int main(int argc, char** argv) {
     program.add("--glossy-tolerance", settings.tolerance, "of the highlights");
     program.add("--resolution", settings.resolution, "R of the environments");
     program.add("--eyes", settings.num_eyes, "eyes around the mesh");
-    program.add("--samples", settings.num_samples, "receivers of each eye");
+    program.add("--beside", settings.beside, "the plain sum and no visibility, too: 1 or 0");
+    program.add("--samples", settings.num_samples, "receivers of each eye; 0: only times are measured");
     return program.run(argc, argv, [&] {
         if (inputs.is_tiny()) {
             settings.roughness = {0.3f};
