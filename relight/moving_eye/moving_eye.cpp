@@ -94,7 +94,7 @@ struct MovingEye::Impl {
                  relighter.binning()->sums(map, transfer.quadtree.leaves()))
                 powers.push_back(sum.power());
             lights = find_sharp_lights(map, *relighter.binning(), transfer.quadtree.leaves(),
-                                       powers, rays.tolerance * (getenv("XL") ? std::stof(getenv("XL")) : 1.0f), true);
+                                       powers, rays.tolerance, true);
         } else {
             const std::span<const SharpLight> of_list = relighter.sharp_lights();
             lights.assign(of_list.begin(), of_list.end());
@@ -108,7 +108,6 @@ struct MovingEye::Impl {
             sisters.set_light(i % SisterCells::Stride,
                               {glm::length(light.red), glm::length(light.green),
                                glm::length(light.blue)});
-            if (getenv("VAR")) sisters.at(SisterCells::Variance, i % SisterCells::Stride) = static_cast<float>(lights[i].cell.size()*lights[i].cell.size()*4.0/12.0);
         }
     }
 

@@ -37,7 +37,7 @@ struct Settings {
     std::uint32_t resolution = 128;
     std::size_t num_eyes = 20;
     /// Of each eye.
-    std::size_t num_samples = 25;
+    std::size_t num_samples = 200;
     /// Whether other ways are measured, too.
     int beside = 1;
 };
@@ -223,7 +223,6 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
             for (std::size_t i = eye * settings.num_samples; i < (eye + 1) * settings.num_samples;
                  ++i) {
                 error.add(glm::dvec3(radiance[samples.index[i]]), exact[i]);
-                if (getenv("DUMP")) { auto v = glm::dvec3(radiance[samples.index[i]]); fmt::print(stderr, "D {} {} {:.4f} {:.4f} {:.4f} matt {:.4f} nv {:.3f} plain {:.4f}\n", map.name, samples.index[i], glm::dot(v-exact[i], v-exact[i]), v.y, exact[i].y, lit.radiance()[samples.index[i]].y, glm::dot(samples.receivers.normals[i], samples.receivers.to_eye[i]), sum.radiance.empty() ? 0.0 : sum.radiance[i].y); }
                 matt.add(glm::dvec3(lit.radiance()[samples.index[i]]), exact[i]);
             }
         }
