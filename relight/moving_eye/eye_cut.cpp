@@ -112,17 +112,21 @@ private:
         const auto spread = all(lobe_.spread), alpha2 = all(lobe_.alpha2);
         const auto lit = hn::And(hn::Gt(power, zero),
                                  hn::Ge(hn::Add(n_w, hn::Add(spread, size)), zero));
-        // The half vector of w turns half as far as w.
         const auto sum = hn::Add(all(lobe_.n_v), n_w);
-        const auto h_h = hn::Max(hn::MulAdd(all(2.0f), v_w, all(2.0f)), all(1e-6f));
-        const auto sine =
-            hn::Sqrt(hn::Max(hn::Sub(one, hn::Div(hn::Mul(sum, sum), h_h)), zero));
-        const auto nearest =
-            hn::Max(hn::Sub(sine, hn::MulAdd(all(0.25f), size, spread)), zero);
-        const auto nearest2 = hn::Mul(nearest, nearest), size2 = hn::Mul(size, size);
+        const auto over_h_h = hn::Div(
+            one, hn::Max(hn::MulAdd(all(2.0f), v_w, all(2.0f)), all(1e-6f)));
+        const auto sine = hn::Sqrt(
+            hn::Max(hn::NegMulAdd(hn::Mul(sum, sum), over_h_h, one), zero));
+        // The half vector of v and w turns half as far as w towards v, and 1 / |v + w| as far to
+        // the side: much further near the horizon. The square of what it turns in the mean:
+        const auto turn2 = hn::MulAdd(all(0.5f), over_h_h, all(0.125f));
+        const auto size2 = hn::Mul(hn::Mul(size, size), turn2);
+        const auto nearest = hn::Max(
+            hn::Sub(sine, hn::MulAdd(all(0.5f), hn::Sqrt(size2), spread)), zero);
+        const auto nearest2 = hn::Mul(nearest, nearest);
         const auto width2 = hn::Min(hn::Add(nearest2, alpha2), all(LargestWidth2));
         // S as if at the nearest point, of the lobe that is as wide as the cell: above / below.
-        const auto wide2 = hn::MulAdd(size2, all(1.0f / 24.0f), alpha2);
+        const auto wide2 = hn::MulAdd(size2, all(1.0f / 6.0f), alpha2);
         const auto t = hn::Add(nearest2, wide2);
         const auto risen = hn::Min(
             hn::Max(hn::MulAdd(all(0.5f), size, hn::Add(n_w, spread)), zero), one);
@@ -132,9 +136,9 @@ private:
                                                        hn::Max(risen, all(lobe_.n_v))));
         // How far off the cell is as one light, times width2.
         const auto off = hn::Min(
-            hn::Mul(all(0.25f * ErrorOfSpread), cells.row(SisterCells::Variance)), width2);
+            hn::Mul(hn::Mul(all(ErrorOfSpread), turn2), cells.row(SisterCells::Variance)), width2);
         const auto edge = hn::Min(
-            hn::Sqrt(hn::Mul(hn::Mul(size2, all(1.0f / 3.0f)), width2)), width2);
+            hn::Sqrt(hn::Mul(hn::Mul(size2, all(4.0f / 3.0f)), width2)), width2);
         const auto differs = hn::MulAdd(
             all(0.5f), edge,
             hn::Mul(hn::Mul(all(0.5f * ShareOfContrast), contrast), width2));

@@ -19,7 +19,7 @@ inline constexpr float NarrowestLiveRoughness = 0.11f;
 
 struct EyeOptions {
     /// Relative L2 error of the radiance that cuts are made for.
-    float tolerance = 0.01f;
+    float tolerance = 0.015f;
     /// Milliseconds that a look may take; the tolerance follows. 0: the tolerance counts.
     double budget_ms = 0.0;
 };
