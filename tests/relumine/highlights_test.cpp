@@ -1,4 +1,8 @@
 // Highlights of pictures whose scene has no view: by rays.
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
@@ -169,6 +173,48 @@ TEST(Highlights, TracedPixelsShowTheFloorWithItsBounces) {
     };
     EXPECT_LT(lowest(0.0f), 0.05f) << "surfaces in the mirror are black";
     EXPECT_GT(lowest(0.05f), 0.2f);
+}
+
+/// The file keeps the materials that mirrors show.
+TEST(Highlights, PixelsOfAFileMirrorTheColoursOfOtherSurfaces) {
+    const mesh::TriangleMesh sphere = sphere_of(metal(0.1f));
+    mesh::TriangleMesh mesh = scenes::joined(sphere, scenes::floor_grid(17, 8.0f, -0.6f));
+    mesh.materials = {metal(0.1f),
+                      {.name = "red",
+                       .model = mesh::MaterialModel::MetallicRoughness,
+                       .base_color = {0.8f, 0.1f, 0.05f},
+                       .metallic = 0.0f,
+                       .roughness = 1.0f}};
+    mesh.triangle_materials.assign(mesh.num_triangles(), 1);
+    std::fill_n(mesh.triangle_materials.begin(), sphere.num_triangles(), 0u);
+    PrecomputeOptions options{.tolerance = 0.06f,
+                              .receivers = Pixels{.width = 32, .height = 32},
+                              .no_refine = true,
+                              .bounce_tolerance = 0.05f};
+    options.view = View{.camera = Camera{.eye = {0, 1, 4}, .target = {0, 0, 0}, .fov_degrees = 20}};
+    const Scene made = precompute(mesh, options);
+    const std::filesystem::path file =
+        std::filesystem::path(testing::TempDir()) / "mirrored_colors.prt";
+    save_scene(file, made);
+    const auto lit = [&](Scene scene) {
+        LitScene result(std::move(scene));
+        result.light(data_gen::constant(16, glm::vec3(1.0f)));
+        result.bounce({.albedo = bounce_albedo(result.scene(), {})});
+        return result;
+    };
+    const LitScene before = lit(made), after = lit(load_scene(file));
+    std::filesystem::remove(file);
+    const prt::Receivers& receivers = made.receivers;
+    std::size_t num_below = 0;
+    for (std::size_t i = 0; i < receivers.num_own(); ++i) {
+        const glm::vec3& own = before.radiance()[i];
+        EXPECT_LT(glm::distance(own, after.radiance()[i]), 1e-4f) << i;
+        if (receivers.surfaces[i].metallic < 1.0f || receivers.normals[i].y > -0.4f)
+            continue;
+        ++num_below;
+        EXPECT_GT(own.r, 3.0f * own.g) << i << ": mirrors the red floor";
+    }
+    EXPECT_GT(num_below, 20u);
 }
 
 TEST(Highlights, AreThoseOfPixelsWithAView) {

@@ -2,6 +2,8 @@
 // vertex listens to.
 #include "prt/glossy/surface_sampling.h"
 
+#include <cmath>
+
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
@@ -233,6 +235,30 @@ TEST(SurfaceSampling, MetalsAreNotBlackWithoutTheirHighlights) {
         {.albedo = base, .specular = glm::vec3(0.5f), .highlight = Highlight::BlinnPhong});
     EXPECT_EQ(phong.albedo, base);
     EXPECT_EQ(without_highlight({.albedo = base, .specular = glm::vec3(0.5f)}).albedo, base);
+}
+
+TEST(Widen, AddsTheVarianceOfNormalsToTheLobes) {
+    const auto alpha_of = [](float roughness) {
+        return roughness * roughness;
+    };
+    Surface metal{.highlight = Highlight::GgxWhole,
+                  .roughness_or_exponent = 0.3f,
+                  .coat = 0.5f,
+                  .coat_roughness = 0.1f};
+    const Surface before = metal;
+    widen(metal, 0.0f);
+    EXPECT_EQ(metal, before);
+    widen(metal, 0.01f);
+    EXPECT_NEAR(std::pow(alpha_of(metal.roughness_or_exponent), 2.0f), 0.0081f + 0.01f, 1e-5f);
+    EXPECT_NEAR(std::pow(alpha_of(metal.coat_roughness), 2.0f), 0.0001f + 0.01f, 1e-5f);
+    widen(metal, 1.0f);
+    EXPECT_LE(metal.roughness_or_exponent, 1.0f);
+    Surface phong{.highlight = Highlight::BlinnPhong, .roughness_or_exponent = 198.0f};
+    widen(phong, 0.01f); // as wide as GGX of alpha^2 = 2 / (exponent + 2)
+    EXPECT_NEAR(phong.roughness_or_exponent, 98.0f, 0.01f);
+    Surface matte;
+    widen(matte, 0.5f);
+    EXPECT_EQ(matte, Surface());
 }
 
 } // namespace
