@@ -139,6 +139,8 @@ struct PageWords {
     std::string title = {};
     /// What the page leaves out of the scene
     std::vector<std::string> left_out = {};
+    /// What is said of bounces with fewer samples
+    std::string thinned = {};
 };
 
 /// The page's files but the parts that all pages have.
@@ -275,18 +277,18 @@ double error_of_bounces(const Scene& scene, const prt::BounceMatrix& other) {
     return worst;
 }
 
-void thin_bounces(Scene& scene, const ExportWebArguments& options, Session& session) {
+void thin_bounces(Scene& scene, const ExportWebArguments& options, PageWords& words) {
     if (!scene.bounces || options.bounce_samples == 0)
         return;
     prt::BounceMatrix few = prt::thinned(*scene.bounces, options.bounce_samples);
     if (few.emitters.places.size() == scene.bounces->emitters.places.size())
         return;
     const double error = error_of_bounces(scene, few);
-    session.say(fmt::format("{}: bounces keep {:.0f} % of their samples, the light within {:.2g} %",
-                            options.scene,
-                            100.0 * static_cast<double>(few.emitters.places.size()) /
-                                static_cast<double>(scene.bounces->emitters.places.size()),
-                            100.0 * error));
+    words.thinned = fmt::format(
+        "{}: bounces keep {:.0f} % of their samples, the light within {:.2g} %", options.scene,
+        100.0 * static_cast<double>(few.emitters.places.size()) /
+            static_cast<double>(scene.bounces->emitters.places.size()),
+        100.0 * error);
     scene.bounces = std::move(few);
 }
 
@@ -309,7 +311,7 @@ Scene scene_of_page(const ExportWebArguments& options, PageWords& words, Session
         scene = coarsened(std::move(scene), options.tolerance, session.stop(),
                           session.progress("joining clusters"));
     session.end_progress();
-    thin_bounces(scene, options, session);
+    thin_bounces(scene, options, words);
     return scene;
 }
 
@@ -343,6 +345,8 @@ void export_web(const ExportWebArguments& options, Session& session) {
     } else {
         write_folder(output, files);
     }
+    if (page.has_bounces && !words.thinned.empty())
+        session.say(words.thinned);
     session.say(fmt::format("{}: {} clusters, {:.1f} MB, of which environments {:.1f} MB{}",
                             options.output, page.num_clusters, 1e-6 * static_cast<double>(size),
                             1e-6 * static_cast<double>(of_environments),

@@ -159,8 +159,8 @@ TEST_F(SectionFileTest, RefusesBadNames) {
 
 TEST_F(SectionFileTest, RefusesMoreSectionsThanItReads) {
     Sections many;
-    for (char a = 'a'; a < 'a' + 9; ++a)
-        for (char b = 'a'; b < 'a' + 8; ++b)
+    for (char a = 'a'; a < 'a' + 13; ++a)
+        for (char b = 'a'; b < 'a' + 10; ++b)
             many[{a, b}] = {};
     EXPECT_THROW(write_sections(file_, to_write(many)), std::invalid_argument);
     EXPECT_TRUE(fs::is_empty(folder_));
