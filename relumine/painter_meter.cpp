@@ -33,13 +33,16 @@ double Painter::Impl::meter_receivers(const Lighting& lighting) {
     const std::vector<glm::vec3> colors = own_colors(lighting);
     const std::vector<bool> is_floor = floor_receivers(scene);
     const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout);
-    double covered = 0.0; // samples
+    // Samples of a receiver that stands for all of a pixel: it counts as one.
+    const double per_receiver =
+        pixels != nullptr && !pixels->shares.empty() ? prt::PixelLayout::EdgeSamples : 1.0;
+    double covered = 0.0;
     std::optional<relight::Backdrop> behind;
     const std::optional<glm::vec3> open = open_floor(scene, lighting, look(lighting), eye());
     for (std::size_t i = 0; i < colors.size(); ++i)
         if (is_floor.empty() || !is_floor[i]) {
             const double weight =
-                pixels == nullptr ? 1.0 : static_cast<double>(pixels->num_shown(i));
+                pixels == nullptr ? 1.0 : static_cast<double>(pixels->num_shown(i)) / per_receiver;
             metered.colors.push_back(colors[i]);
             metered.weights.push_back(static_cast<float>(weight));
             covered += weight;
@@ -53,7 +56,7 @@ double Painter::Impl::meter_receivers(const Lighting& lighting) {
         }
     if (pixels == nullptr)
         return 0.0;
-    const auto num_samples = static_cast<double>(pixels->num_samples());
+    const double num_samples = static_cast<double>(pixels->num_samples()) / per_receiver;
     metered.num_pixels += num_samples;
     return covered / num_samples;
 }

@@ -154,7 +154,7 @@ TEST(Highlights, TracedPixelsShowTheFloorWithItsBounces) {
     add_floor(mesh, {.floor_vertices = 33});
     const cubemap::CubeMap sky = data_gen::constant(16, glm::vec3(1.0f));
     const Camera above{.eye = {0, 1, 4}, .target = {0, 0, 0}, .fov_degrees = 20};
-    const auto lowest = [&](float bounces) {
+    const auto lowest = [&](float bounces, float floor_albedo) {
         PrecomputeOptions options{.tolerance = 0.06f,
                                   .receivers =
                                       Pixels{.width = 24, .height = 24, .samples_per_axis = 1},
@@ -163,7 +163,8 @@ TEST(Highlights, TracedPixelsShowTheFloorWithItsBounces) {
         LitScene lit(precompute(mesh, options));
         lit.light(sky);
         if (lit.scene().bounces)
-            lit.bounce({.albedo = bounce_albedo(lit.scene(), {})});
+            lit.bounce(
+                {.albedo = bounce_albedo(lit.scene(), {.floor_albedo = glm::vec3(floor_albedo)})});
         float least = 1e9f;
         const prt::Receivers& receivers = lit.scene().receivers;
         for (std::size_t i = 0; i < receivers.num_own(); ++i)
@@ -171,8 +172,10 @@ TEST(Highlights, TracedPixelsShowTheFloorWithItsBounces) {
                 least = std::min(least, lit.radiance()[i].g);
         return least;
     };
-    EXPECT_LT(lowest(0.0f), 0.05f) << "surfaces in the mirror are black";
-    EXPECT_GT(lowest(0.05f), 0.2f);
+    EXPECT_LT(lowest(0.0f, 1.0f), 0.05f) << "surfaces in the mirror are black";
+    const float white = lowest(0.05f, 1.0f);
+    EXPECT_GT(white, 0.2f);
+    EXPECT_LT(lowest(0.05f, 0.5f), 0.6f * white) << "a darker floor is mirrored darker";
 }
 
 /// The file keeps the materials that mirrors show.
