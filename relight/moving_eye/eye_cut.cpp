@@ -14,8 +14,8 @@
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "relight/moving_eye/eye_cut.cpp"
-#include <hwy/foreach_target.h>
 #include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -47,9 +47,9 @@ struct SisterBits {
 class Judge {
 public:
     Judge(const BlockLobe& lobe, float error)
-        : lobe_(lobe), error_(error), factor_(0.25f * lobe.weight /
-                                              (std::numbers::pi_v<float> *
-                                               std::max(lobe.n_v, std::sqrt(lobe.alpha2)))) {}
+        : lobe_(lobe), error_(error),
+          factor_(0.25f * lobe.weight /
+                  (std::numbers::pi_v<float> * std::max(lobe.n_v, std::sqrt(lobe.alpha2)))) {}
 
     [[nodiscard]] SisterBits operator()(const SisterCells& a, const SisterCells& b) const {
         SisterBits bits;
@@ -87,7 +87,9 @@ private:
         }
     };
 
-    static Vector all(float value) { return hn::Set(Sisters(), value); }
+    static Vector all(float value) {
+        return hn::Set(Sisters(), value);
+    }
     static Vector dot(const glm::vec3& a, Vector x, Vector y, Vector z) {
         return hn::MulAdd(all(a.x), x, hn::MulAdd(all(a.y), y, hn::Mul(all(a.z), z)));
     }
@@ -110,38 +112,35 @@ private:
         const auto contrast = hn::BitCast(d, hn::ShiftLeft<16>(packed));
         const auto n_w = dot(lobe_.normal, x, y, z), v_w = dot(lobe_.to_eye, x, y, z);
         const auto spread = all(lobe_.spread), alpha2 = all(lobe_.alpha2);
-        const auto lit = hn::And(hn::Gt(power, zero),
-                                 hn::Ge(hn::Add(n_w, hn::Add(spread, size)), zero));
+        const auto lit =
+            hn::And(hn::Gt(power, zero), hn::Ge(hn::Add(n_w, hn::Add(spread, size)), zero));
         const auto sum = hn::Add(all(lobe_.n_v), n_w);
-        const auto over_h_h = hn::Div(
-            one, hn::Max(hn::MulAdd(all(2.0f), v_w, all(2.0f)), all(1e-6f)));
-        const auto sine = hn::Sqrt(
-            hn::Max(hn::NegMulAdd(hn::Mul(sum, sum), over_h_h, one), zero));
+        const auto over_h_h =
+            hn::Div(one, hn::Max(hn::MulAdd(all(2.0f), v_w, all(2.0f)), all(1e-6f)));
+        const auto sine = hn::Sqrt(hn::Max(hn::NegMulAdd(hn::Mul(sum, sum), over_h_h, one), zero));
         // The half vector of v and w turns half as far as w towards v, and 1 / |v + w| as far to
         // the side: much further near the horizon. The square of what it turns in the mean:
         const auto turn2 = hn::MulAdd(all(0.5f), over_h_h, all(0.125f));
         const auto size2 = hn::Mul(hn::Mul(size, size), turn2);
-        const auto nearest = hn::Max(
-            hn::Sub(sine, hn::MulAdd(all(0.5f), hn::Sqrt(size2), spread)), zero);
+        const auto nearest =
+            hn::Max(hn::Sub(sine, hn::MulAdd(all(0.5f), hn::Sqrt(size2), spread)), zero);
         const auto nearest2 = hn::Mul(nearest, nearest);
         const auto width2 = hn::Min(hn::Add(nearest2, alpha2), all(LargestWidth2));
         // S as if at the nearest point, of the lobe that is as wide as the cell: above / below.
         const auto wide2 = hn::MulAdd(size2, all(1.0f / 6.0f), alpha2);
         const auto t = hn::Add(nearest2, wide2);
-        const auto risen = hn::Min(
-            hn::Max(hn::MulAdd(all(0.5f), size, hn::Add(n_w, spread)), zero), one);
-        const auto above =
-            hn::Mul(hn::Mul(all(factor_), power), hn::Mul(wide2, risen));
-        const auto below = hn::Mul(all(error_), hn::Mul(hn::Mul(t, t),
-                                                       hn::Max(risen, all(lobe_.n_v))));
+        const auto risen =
+            hn::Min(hn::Max(hn::MulAdd(all(0.5f), size, hn::Add(n_w, spread)), zero), one);
+        const auto above = hn::Mul(hn::Mul(all(factor_), power), hn::Mul(wide2, risen));
+        const auto below =
+            hn::Mul(all(error_), hn::Mul(hn::Mul(t, t), hn::Max(risen, all(lobe_.n_v))));
         // How far off the cell is as one light, times width2.
         const auto off = hn::Min(
             hn::Mul(hn::Mul(all(ErrorOfSpread), turn2), cells.row(SisterCells::Variance)), width2);
-        const auto edge = hn::Min(
-            hn::Sqrt(hn::Mul(hn::Mul(size2, all(4.0f / 3.0f)), width2)), width2);
+        const auto edge =
+            hn::Min(hn::Sqrt(hn::Mul(hn::Mul(size2, all(4.0f / 3.0f)), width2)), width2);
         const auto differs = hn::MulAdd(
-            all(0.5f), edge,
-            hn::Mul(hn::Mul(all(0.5f * ShareOfContrast), contrast), width2));
+            all(0.5f), edge, hn::Mul(hn::Mul(all(0.5f * ShareOfContrast), contrast), width2));
         const auto allowed = hn::Mul(below, width2);
         const auto weak = hn::Le(above, below);
         const auto bits_of = [&](auto mask) {
@@ -151,8 +150,7 @@ private:
         };
         bits.lit |= bits_of(lit);
         bits.fine_alike |= bits_of(hn::Or(weak, hn::Le(hn::Mul(above, off), allowed)));
-        bits.fine |=
-            bits_of(hn::Or(weak, hn::Le(hn::Mul(above, hn::Add(off, differs)), allowed)));
+        bits.fine |= bits_of(hn::Or(weak, hn::Le(hn::Mul(above, hn::Add(off, differs)), allowed)));
     }
 
     const BlockLobe& lobe_;
@@ -218,8 +216,7 @@ private:
                 continue;
             }
             hwy::Prefetch(visibility_.first_part(place));
-            search_.partly[search_.num_partly++] = {.light = below.rows.data() + i,
-                                                    .place = place};
+            search_.partly[search_.num_partly++] = {.light = below.rows.data() + i, .place = place};
         }
     }
 

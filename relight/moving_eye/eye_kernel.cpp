@@ -56,8 +56,7 @@ Vector lobe(const Lanes& at, CellLight cell, Vector& fresnel) {
         hn::Max(hn::MulAdd(hn::Set(d, 2.0f), dot_v, hn::Set(d, 2.0f)), hn::Set(d, 1e-6f));
     const auto n_h = hn::Add(at.n_v, dot_n);
     // As much wider as the light is spread.
-    const auto a2 =
-        hn::MulAdd(hn::Set(d, 0.5f), value_of<SisterCells::Variance>(cell), at.a2);
+    const auto a2 = hn::MulAdd(hn::Set(d, 0.5f), value_of<SisterCells::Variance>(cell), at.a2);
     // Rounding must not take q below what the lobe's peak has.
     const auto q =
         hn::Max(hn::NegMulAdd(hn::Mul(n_h, n_h), hn::Sub(one, a2), h_h), hn::Mul(h_h, a2));

@@ -61,6 +61,10 @@ struct MovingEye::Impl {
             positions.push_back(at[receiver]);
             surfaces.push_back(is_ggx(shiny[receiver]) ? shiny[receiver] : prt::Surface());
         }
+        for (std::size_t block = 0; block < of.counts.num_blocks(); ++block) {
+            const auto own = std::span(surfaces).subspan(block * prt::BlockSize, size_of(block));
+            is_matt.push_back(std::none_of(own.begin(), own.end(), is_ggx));
+        }
     }
 
     /// The lobes of a block's receivers for an eye.
@@ -105,9 +109,9 @@ struct MovingEye::Impl {
             const VectorIrradiance& light = lights[i].irradiance;
             SisterCells& sisters = traced_lights[i / SisterCells::Stride];
             sisters.set_direction(i % SisterCells::Stride, lights[i].direction);
-            sisters.set_light(i % SisterCells::Stride,
-                              {glm::length(light.red), glm::length(light.green),
-                               glm::length(light.blue)});
+            sisters.set_light(
+                i % SisterCells::Stride,
+                {glm::length(light.red), glm::length(light.green), glm::length(light.blue)});
         }
     }
 
@@ -118,7 +122,8 @@ struct MovingEye::Impl {
             if (reached == 0)
                 continue;
             PartlyCell& cell = cells.partly.emplace_back();
-            cell.light = traced_lights[i / SisterCells::Stride].rows.data() + i % SisterCells::Stride;
+            cell.light =
+                traced_lights[i / SisterCells::Stride].rows.data() + i % SisterCells::Stride;
             cell.unit = 1.0f;
             for (std::size_t lane = 0; lane < prt::BlockSize; ++lane)
                 cell.parts[lane] = static_cast<std::uint8_t>(reached >> lane & 1u);
@@ -128,9 +133,14 @@ struct MovingEye::Impl {
     void light_block(std::size_t block, const glm::vec3& eye, std::span<const glm::vec3> radiance,
                      EyeCut& cut, LitCells& cells) {
         const std::size_t first = block * prt::BlockSize, size = size_of(block);
+        cells.clear();
+        if (is_matt[block]) {
+            for (std::size_t i = first; i < first + size; ++i)
+                result[transfer.order[i]] = radiance[transfer.order[i]];
+            return;
+        }
         const prt::BlockSurfaces lanes = surfaces_of(block, eye);
         const std::span<const prt::Surface> own = std::span(surfaces).subspan(first, size);
-        cells.clear();
         const std::optional<BlockLobe> lobe = lobe_of(lanes, own);
         EyeLight light;
         if (lobe) {
@@ -162,6 +172,8 @@ struct MovingEye::Impl {
     /// [num_receivers] by place.
     std::vector<glm::vec3> positions;
     std::vector<prt::Surface> surfaces;
+    /// [num_blocks] where no receiver has a highlight.
+    std::vector<bool> is_matt;
     VisibilityPyramid visibility;
     SkyCells sky;
     std::optional<TracedLight> traced;

@@ -54,13 +54,13 @@ SkyCells::SkyCells(std::uint32_t deepest_level)
         [&](const auto& some) {
             for (std::size_t parent = some.begin(); parent < some.end(); ++parent)
                 for (std::uint32_t i = 0; i < 4; ++i) {
-                    const std::uint32_t index =
-                        first_child(static_cast<std::uint32_t>(parent)) + i;
+                    const std::uint32_t index = first_child(static_cast<std::uint32_t>(parent)) + i;
                     const prt::Cell cell = prt::cell_of_index(index);
                     const double size = cell.size(), s = cell.x * size, t = cell.y * size;
                     const glm::vec3 middle = middle_of(cell);
                     sisters_[parent].set_direction(i, middle);
-                    solid_angles_[index] = static_cast<float>(cubemap::solid_angle(s, t, s + size, t + size));
+                    solid_angles_[index] =
+                        static_cast<float>(cubemap::solid_angle(s, t, s + size, t + size));
                     sisters_[parent].set_size(i, std::sqrt(solid_angles_[index]));
                 }
         });

@@ -138,8 +138,8 @@ private:
         for (std::size_t i = 0; i < sums.size(); ++i)
             sums[i] += below[i];
         for (std::size_t i = 0; i < sums.size(); ++i)
-            means_[index][i] = static_cast<std::uint8_t>(
-                std::lround(std::min(below[i] / weights, 1.0f) * 255.0f));
+            means_[index][i] =
+                static_cast<std::uint8_t>(std::lround(std::min(below[i] / weights, 1.0f) * 255.0f));
         return weights;
     }
 
@@ -208,9 +208,8 @@ public:
 private:
     void add(std::uint32_t node, const prt::Cell& cell) {
         const double size = cell.size(), s = cell.x * size, t = cell.y * size;
-        nodes_[node].cell =
-            glm::vec4(cubemap::direction(cell.face, s + 0.5 * size, t + 0.5 * size),
-                      cubemap::solid_angle(s, t, s + size, t + size));
+        nodes_[node].cell = glm::vec4(cubemap::direction(cell.face, s + 0.5 * size, t + 0.5 * size),
+                                      cubemap::solid_angle(s, t, s + size, t + size));
         nodes_[node].first_leaf = num_leaves_;
         if (flags_[next_flag_++]) {
             const auto first_child = static_cast<std::uint32_t>(nodes_.size());
@@ -262,10 +261,9 @@ VisibilityPyramid::VisibilityPyramid(const prt::Transfer& transfer) : counts_(tr
         files::IndexRange<std::size_t>(0, num_blocks, Grain), [&](const auto& some) {
             Builder builder(*this, nodes);
             for (std::size_t block = some.begin(); block < some.end(); ++block)
-                builder.run(
-                    block, mean_normal(transfer, block),
-                    std::span(faces_).subspan(block * cubemap::NumFaces, cubemap::NumFaces),
-                    of_block[block]);
+                builder.run(block, mean_normal(transfer, block),
+                            std::span(faces_).subspan(block * cubemap::NumFaces, cubemap::NumFaces),
+                            of_block[block]);
         });
     append(of_block);
 }
@@ -338,10 +336,9 @@ std::uint32_t VisibilityPyramid::entry_of(std::size_t block, std::uint32_t leaf)
 }
 
 std::size_t VisibilityPyramid::num_bytes() const {
-    return families_.size() * (sizeof(Family) + sizeof leaves_[0]) +
-           faces_.size() * sizeof(Place) + branch_sights_.size() +
-           links_.size() * sizeof(Links) + parts_.size() + quad_sights_.size() +
-           quads_.size() * sizeof quads_[0];
+    return families_.size() * (sizeof(Family) + sizeof leaves_[0]) + faces_.size() * sizeof(Place) +
+           branch_sights_.size() + links_.size() * sizeof(Links) + parts_.size() +
+           quad_sights_.size() + quads_.size() * sizeof quads_[0];
 }
 
 VisibilityPyramid::Parts VisibilityPyramid::parts(const Place& place) const {

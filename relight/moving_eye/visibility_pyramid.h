@@ -109,10 +109,8 @@ public:
 
     /// Returns where the parts of a mixed cell begin, or the counts of a quad's mixed clusters.
     [[nodiscard]] const std::uint8_t* first_part(const Place& mixed) const {
-        const std::vector<std::uint8_t>& all =
-            mixed.kind == Kind::Branch ? parts_ : counts_.counts;
-        const std::uint32_t entry =
-            mixed.kind == Kind::Quad ? quads_[mixed.entry] : mixed.entry;
+        const std::vector<std::uint8_t>& all = mixed.kind == Kind::Branch ? parts_ : counts_.counts;
+        const std::uint32_t entry = mixed.kind == Kind::Quad ? quads_[mixed.entry] : mixed.entry;
         return all.data() + std::size_t{entry} * prt::BlockSize;
     }
 

@@ -17,6 +17,7 @@
 #include "relight/kernels/cluster_lights.h"
 #include "relight/moving_eye/moving_eye.h"
 #include "relight/reference/exact.h"
+#include "relight/reference/flicker.h"
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
 #include "tests/bench/process_usage.h"
@@ -38,6 +39,8 @@ struct Settings {
     std::size_t num_eyes = 20;
     /// Of each eye.
     std::size_t num_samples = 200;
+    /// Of a turntable, whose flicker is measured; 0: of none.
+    std::size_t num_frames = 0;
     /// Whether other ways are measured, too.
     int beside = 1;
 };
@@ -164,6 +167,44 @@ std::vector<glm::dvec3> prefiltered(const LitScene& lit, const Samples& samples,
     return all;
 }
 
+/// A turntable: how far frames change, against exact integration of some receivers.
+void print_turntable(const Settings& settings, const LitScene& lit, relight::MovingEye& live,
+                     std::span<const prt::Surface> surfaces, const bench::NamedMap& map) {
+    const Scene& scene = lit.scene();
+    const Camera camera = camera_of(scene);
+    prt::Receivers all = scene.receivers;
+    all.surfaces.assign(surfaces.begin(), surfaces.end());
+    std::vector<std::uint32_t> chosen;
+    for (std::size_t i = 0; i < settings.num_samples; ++i)
+        chosen.push_back(static_cast<std::uint32_t>(i * all.size() / settings.num_samples));
+    // A picture that stands still has no change of its own.
+    const std::vector<glm::dvec3> still(chosen.size(), glm::dvec3(0.0));
+    relight::FlickerMeter of_looks, of_exact, between;
+    for (std::size_t frame = 0; frame < settings.num_frames; ++frame) {
+        const double turn = 2.0 * std::numbers::pi * static_cast<double>(frame) /
+                            static_cast<double>(settings.num_frames);
+        const glm::dvec3 arm(camera.eye - camera.target);
+        const glm::vec3 eye =
+            camera.target + glm::vec3(std::cos(turn) * arm.x + std::sin(turn) * arm.z, arm.y,
+                                      std::cos(turn) * arm.z - std::sin(turn) * arm.x);
+        prt::look_from(all, eye);
+        const std::vector<glm::dvec3> exact = relight::exact_radiance(
+            all, chosen, lit.rays().blockers(), map.map, {.bias = scene.settings.bias});
+        const auto radiance = live.look(eye, lit.radiance(), {.tolerance = settings.tolerance});
+        std::vector<glm::dvec3> seen;
+        for (const std::uint32_t receiver : chosen)
+            seen.emplace_back(radiance[receiver]);
+        of_looks.add_frame(seen, still);
+        of_exact.add_frame(exact, still);
+        between.add_frame(seen, exact);
+    }
+    const double change = of_exact.report().mean_inconsistency;
+    fmt::print("| {} | turntable of {} frames: change {:.5f}, exact {:.5f}, ratio {:.3f}; "
+               "inconsistency {:.5f}\n",
+               map.name, settings.num_frames, of_looks.report().mean_inconsistency, change,
+               of_looks.report().mean_inconsistency / change, between.report().mean_inconsistency);
+}
+
 void print_rows(float roughness, const Settings& settings, LitScene& lit,
                 const std::vector<bench::NamedMap>& maps) {
     const Scene& scene = lit.scene();
@@ -241,6 +282,8 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
             fmt::print(" | plain sum {:.4f}, {:.0f} cpu ms | no visibility {:.3f}",
                        plain.relative_l2(), plain_ms, open.relative_l2());
         fmt::print("\n");
+        if (settings.num_frames != 0 && settings.num_samples != 0)
+            print_turntable(settings, lit, live, surfaces, map);
         std::fflush(stdout);
     }
 }
@@ -259,8 +302,10 @@ int main(int argc, char** argv) {
     program.add("--glossy-tolerance", settings.tolerance, "of the highlights");
     program.add("--resolution", settings.resolution, "R of the environments");
     program.add("--eyes", settings.num_eyes, "eyes around the mesh");
+    program.add("--turntable", settings.num_frames, "frames of a turntable, 0 for none");
     program.add("--beside", settings.beside, "the plain sum and no visibility, too: 1 or 0");
-    program.add("--samples", settings.num_samples, "receivers of each eye; 0: only times are measured");
+    program.add("--samples", settings.num_samples,
+                "receivers of each eye; 0: only times are measured");
     return program.run(argc, argv, [&] {
         if (inputs.is_tiny()) {
             settings.roughness = {0.3f};

@@ -11,9 +11,11 @@
 #include "files/parallel.h"
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/ggx_energy.h"
+#include "prt/glossy/glossy_precompute.h"
 #include "relight/kernels/cluster_lights.h"
 #include "relight/moving_eye/visibility_pyramid.h"
 #include "relight/reference/exact.h"
+#include "relight/reference/flicker.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"
@@ -157,6 +159,52 @@ TEST(MovingEye, TracedLightsHaveTheirHighlightInClosedForm) {
     Lit lit(shiny(0.3f), sky);
     ASSERT_FALSE(lit.relighter.sharp_lights().empty());
     EXPECT_LT(relative_l2(receivers, lit.look(), exact(receivers, sky)), 0.01);
+}
+
+TEST(MovingEye, AgreesWithHighlightsThatAreStoredForItsEye) {
+    const scenes::RelitScene& scene = scenes::relit_scene();
+    const prt::Receivers receivers = seen_from(Eye, shiny(0.3f));
+    prt::Transfer stored = scene.transfer;
+    stored.glossy = prt::precompute_glossy(
+        receivers, scene.rays, stored,
+        {.tolerance = 0.03f, .face_resolution = 64, .bias = scene.options.bias});
+    prt::set_surfaces(stored, receivers);
+    for (const cubemap::CubeMap& sky :
+         {scenes::smooth_environment(64), scenes::random_environment(64, 5)}) {
+        Lit lit(shiny(0.3f), sky);
+        Relighter fixed(stored, scene.shadow_rays());
+        fixed.set_environment(sky);
+        EXPECT_LT(relative_l2(receivers, lit.look(), fixed.radiance()), 0.02);
+    }
+}
+
+// A turn of three degrees a frame, as of a turntable of 120 frames. The change from frame to frame
+// is measured as the inconsistency with a picture that stands still.
+TEST(MovingEye, ATurntableFlickersNoMoreThanExactIntegration) {
+    const cubemap::CubeMap sky = scenes::smooth_environment(32);
+    Lit lit(shiny(0.3f), sky);
+    FlickerMeter of_looks, of_exact, between;
+    std::vector<glm::vec3> still;
+    for (int frame = 0; frame < 6; ++frame) {
+        const double angle = frame * std::numbers::pi / 60.0;
+        const glm::vec3 eye(3.0 * std::cos(angle), 2.5, 3.0 * std::sin(angle));
+        prt::Receivers receivers = seen_from(eye, shiny(0.3f));
+        const auto look = lit.eye.look(eye, lit.relighter.radiance());
+        std::vector<glm::vec3> reference = exact(receivers, sky);
+        // Those that come into view or leave it change at once.
+        for (std::size_t i = 0; i < receivers.size(); ++i)
+            if (glm::dot(receivers.normals[i], receivers.to_eye[i]) <= 0.0f)
+                reference[i] = look[i];
+        if (still.empty())
+            still.assign(reference.size(), glm::vec3(0.0f));
+        of_looks.add_frame(look, still);
+        of_exact.add_frame(reference, still);
+        between.add_frame(look, reference);
+    }
+    const double exact_change = of_exact.report().mean_inconsistency;
+    EXPECT_GT(exact_change, 0.0);
+    EXPECT_LT(of_looks.report().mean_inconsistency, 1.2 * exact_change);
+    EXPECT_LT(between.report().mean_inconsistency, exact_change);
 }
 
 TEST(MovingEye, AWhiteMetalIsWhiteUnderAWhiteSky) {
