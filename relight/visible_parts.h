@@ -32,8 +32,7 @@ public:
     /// of the first receivers as there is room.
     ///
     /// Cost:    0.4 s for 73,196 receivers, 324 directions and 1,158 clusters in WebAssembly, on
-    /// one
-    ///          thread; parallel elsewhere.
+    ///          one thread; parallel elsewhere.
     /// Throws:  std::invalid_argument for a size that is no multiple of the directions.
     void find(std::span<std::uint8_t> parts) const;
 

@@ -7,7 +7,6 @@
 
 #include "files/parallel.h"
 #include "prt/glossy/brdf.h"
-#include "prt/glossy/glossy_precompute.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/visibility/twin_triangles.h"
@@ -34,8 +33,7 @@ public:
         sent_.resize(mesh_.num_vertices(), glm::vec3(0.0f));
         emission_.resize(mesh_.num_vertices(), glm::vec3(0.0f));
         for (std::size_t i = receivers.num_own(); i < receivers.size(); ++i) {
-            const prt::Surface surface =
-                receivers.surfaces.empty() ? prt::Surface() : receivers.surfaces[i];
+            const prt::Surface& surface = receivers.surfaces[i];
             const glm::vec3 albedo = glm::max(surface.albedo, 1e-4f);
             const std::uint32_t vertex = prt::vertex_at(mesh_, receivers.points[i]);
             light_[vertex] = surfaces.radiance[i] / albedo;
@@ -74,10 +72,6 @@ private:
 };
 
 } // namespace
-
-bool has_traced_highlights(const Scene& scene) {
-    return !scene.settings.glossy_tolerance && prt::has_highlights(scene.receivers);
-}
 
 SceneMirrors::SceneMirrors(const Scene& scene, const SceneRays& rays, std::uint32_t num_rays)
     : scene_(&scene), rays_(&rays) {

@@ -17,9 +17,6 @@ namespace relumine {
 /// Rays of a pixel that find what its highlight mirrors.
 inline constexpr std::uint32_t DefaultHighlightRays = 32;
 
-/// Whether receivers have an eye and highlights, and nothing of them is stored.
-[[nodiscard]] bool has_traced_highlights(const Scene& scene);
-
 /// What highlights of receivers mirror: the environment without its sharp lights, whose highlights
 /// are exact, and other surfaces where vertices know their light.
 class SceneMirrors {

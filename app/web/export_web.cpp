@@ -242,34 +242,28 @@ Scene fitted(Scene scene, ExportWebArguments options, const WebFiles& parts, con
     return scene;
 }
 
-/// Returns the light of a scene under an environment, all bounces included.
-std::vector<glm::vec3> bounced_light(const Scene& scene, const prt::BounceMatrix& matrix,
-                                     const cubemap::CubeMap& environment) {
-    relight::Relighter relighter(scene.transfer);
-    relighter.set_environment(environment);
-    const std::span<const glm::vec3> direct = relighter.diffuse_radiance();
-    relight::BounceLight bounces(matrix, scene.transfer);
-    bounces.set_albedo(bounces_of(scene, bounce_albedo(scene)).albedo);
-    bounces.solve(direct, {});
-    std::vector<glm::vec3> light(direct.begin(), direct.end());
-    for (std::size_t i = 0; i < light.size(); ++i)
-        light[i] += bounces.indirect()[i];
-    return light;
-}
-
 /// Returns the largest relative L2 error of the light with other bounces, under the light of each
 /// single face of the environment.
 double error_of_bounces(const Scene& scene, const prt::BounceMatrix& other) {
+    relight::Relighter relighter(scene.transfer);
+    const std::vector<glm::vec3> albedo = bounces_of(scene, bounce_albedo(scene)).albedo;
+    relight::BounceLight exact(*scene.bounces, scene.transfer), few(other, scene.transfer);
+    exact.set_albedo(albedo);
+    few.set_albedo(albedo);
     double worst = 0.0;
     for (const cubemap::Face face : cubemap::AllFaces) {
         cubemap::CubeMap environment(1);
         environment.at(face, 0, 0) = glm::vec3(1.0f);
-        const std::vector<glm::vec3> expected = bounced_light(scene, *scene.bounces, environment);
-        const std::vector<glm::vec3> got = bounced_light(scene, other, environment);
+        relighter.set_environment(environment);
+        const std::span<const glm::vec3> direct = relighter.diffuse_radiance();
+        exact.solve(direct, {});
+        few.solve(direct, {});
         double error = 0.0, whole = 0.0;
-        for (std::size_t i = 0; i < got.size(); ++i) {
-            error += glm::dot(got[i] - expected[i], got[i] - expected[i]);
-            whole += glm::dot(expected[i], expected[i]);
+        for (std::size_t i = 0; i < direct.size(); ++i) {
+            const glm::vec3 expected = direct[i] + exact.indirect()[i];
+            const glm::vec3 difference = direct[i] + few.indirect()[i] - expected;
+            error += glm::dot(difference, difference);
+            whole += glm::dot(expected, expected);
         }
         if (whole > 0.0)
             worst = std::max(worst, std::sqrt(error / whole));

@@ -96,8 +96,7 @@ glm::vec3 whole_albedo(const mesh::Material& material) {
 glm::vec3 dielectric_f0(const mesh::Material& material) {
     if (material.model == mesh::MaterialModel::SpecularGlossiness)
         return material.specular;
-    const float root = material.ior > 0.0f ? (material.ior - 1.0f) / (material.ior + 1.0f) : 1.0f;
-    return material.specular_strength * glm::min(root * root * material.specular_tint, 1.0f);
+    return prt::dielectric_f0(material.ior, material.specular_strength, material.specular_tint);
 }
 
 std::vector<bool> twins_of(const mesh::TriangleMesh& mesh) {

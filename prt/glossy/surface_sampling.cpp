@@ -110,9 +110,8 @@ Surface reflecting(const MaterialPoint& point, GgxForm form) {
     const float strength =
         point.textured(material.specular_strength, material.specular_strength_texture).r;
     const glm::vec3 dielectric =
-        strength * glm::min(f0_of(material.ior) * point.textured(material.specular_tint,
-                                                                 material.specular_tint_texture),
-                            1.0f);
+        dielectric_f0(material.ior, strength,
+                      point.textured(material.specular_tint, material.specular_tint_texture));
     Surface result{.albedo = base * (1.0f - metallic) * (1.0f - transmission),
                    .specular = glm::mix(dielectric, base, metallic),
                    .highlight = highlight,
@@ -125,6 +124,10 @@ Surface reflecting(const MaterialPoint& point, GgxForm form) {
 }
 
 } // namespace
+
+glm::vec3 dielectric_f0(float ior, float strength, const glm::vec3& tint) {
+    return strength * glm::min(f0_of(ior) * tint, 1.0f);
+}
 
 Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
                    const glm::vec2& barycentric, GgxForm form, const TextureView* view) {

@@ -32,6 +32,10 @@ enum class GgxForm { Whole, Published };
                                  const glm::vec2& barycentric, GgxForm form = GgxForm::Whole,
                                  const TextureView* view = nullptr);
 
+/// Returns F0 of a surface that is no metal: of KHR_materials_ior and _specular. An ior of 0 stands
+/// for an infinite one.
+[[nodiscard]] glm::vec3 dielectric_f0(float ior, float strength, const glm::vec3& tint);
+
 /// Returns what surface_at() gives as emission, at less cost; none for unlit materials, which give
 /// no light.
 [[nodiscard]] glm::vec3 emission_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,

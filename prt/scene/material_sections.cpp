@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "mesh/opacity.h"
-#include "prt/glossy/glossy_precompute.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/scene/brdf_tables.h"
 #include "prt/scene/json_members.h"
@@ -243,8 +242,7 @@ mesh::Texture texture_of(const Json& json, const std::vector<std::byte>& images,
 /// with an eye and traced highlights, where vertices know their light or something glows.
 bool are_seen_in_mirrors(const Scene& scene) {
     const Receivers& receivers = scene.receivers;
-    return !receivers.to_eye.empty() && !receivers.points.empty() &&
-           !scene.settings.glossy_tolerance && has_highlights(receivers) &&
+    return !receivers.points.empty() && has_traced_highlights(scene) &&
            (receivers.num_added != 0 || !scene.lamps.empty());
 }
 

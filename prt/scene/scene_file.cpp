@@ -1,4 +1,5 @@
 #include "prt/scene/scene_file.h"
+#include "prt/glossy/glossy_precompute.h"
 
 #include <stdexcept>
 #include <utility>
@@ -64,6 +65,10 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
     NewSections sections = sections_without_light(path, scene);
     add_sections(sections, scene, true);
     return write_sections(path, sections);
+}
+
+bool has_traced_highlights(const Scene& scene) {
+    return !scene.settings.glossy_tolerance && has_highlights(scene.receivers);
 }
 
 std::uint64_t hash_without_light(const Scene& scene) {

@@ -74,6 +74,10 @@ struct Scene {
     }
 };
 
+/// Whether receivers have an eye and highlights, and nothing of them is stored: rays find them when
+/// the scene is lit.
+[[nodiscard]] bool has_traced_highlights(const Scene& scene);
+
 /// Returns a hash of mesh, materials, receivers and settings: of all that a file has but the light.
 [[nodiscard]] std::uint64_t hash_without_light(const Scene& scene);
 

@@ -7,8 +7,8 @@
 import * as THREE from 'three';
 import {shrunk} from './environments.js';
 import {frameOf, radianceOf} from './lights.js';
+import {halfPixels, latLongLookup, latLongTexture} from './sky.js';
 
-const largestHalf = 65504;
 /** What surfaces that hide the sky send back of their light: the mean of usual ones. */
 export const hidingAlbedo = 0.4;
 
@@ -83,11 +83,10 @@ void main() {
 const latLongShader = `
 in vec3 towards;
 out vec4 color;
-uniform sampler2D latLong;
+uniform sampler2D environment;
+${latLongLookup}
 void main() {
-    vec3 w = normalize(towards);
-    // +Z in the middle, +X to its left, +Y at the top.
-    color = vec4(textureLod(latLong, vec2(0.5 - atan(w.x, w.z) / 6.28318530718, acos(w.y) / 3.14159265359), 0.0).rgb, 1.0);
+    color = vec4(latLong(environment, normalize(towards), 0.0), 1.0);
 }`;
 
 // A GGX lobe seen along its normal, sampled where it is: Heitz, "Sampling the GGX Distribution of Visible Normals", 2018.
@@ -144,7 +143,7 @@ export class FilteredEnvironment {
             glslVersion: THREE.GLSL3, vertexShader: faceVertex, fragmentShader, side: THREE.DoubleSide,
             depthTest: false, depthWrite: false, blending: THREE.NoBlending, uniforms: {face: {value: null}, ...uniforms},
         });
-        this.#latLong = shader(latLongShader, {latLong: {value: null}});
+        this.#latLong = shader(latLongShader, {environment: {value: null}});
         this.#lobe = shader(lobeShader, {source: {value: this.#source.texture}, alpha: {value: 0}, size: {value: filteredSize},
                                          samples: {value: 0}});
     }
@@ -153,8 +152,8 @@ export class FilteredEnvironment {
     get lastLevel() { return lastLevel; }
 
     filter(picture) {
-        const latLong = latLongTexture(picture);
-        this.#latLong.uniforms.latLong.value = latLong;
+        const latLong = latLongTexture(halfPixels(shrunk(picture, 4 * filteredSize)));
+        this.#latLong.uniforms.environment.value = latLong;
         this.#draw(this.#source, 0, this.#latLong);
         this.#draw(this.#target, 0, this.#latLong);
         for (let level = 1; level <= lastLevel; ++level) {
@@ -195,23 +194,6 @@ function cubeTarget(makesMips) {
     for (let level = 0; !makesMips && level <= lastLevel; ++level)
         target.texture.mipmaps.push({width: filteredSize >> level, height: filteredSize >> level});
     return target;
-}
-
-/** Rows from the top. */
-function latLongTexture(picture) {
-    const {width, height, rgb} = shrunk(picture, 4 * filteredSize);
-    const data = new Uint16Array(4 * width * height), one = THREE.DataUtils.toHalfFloat(1);
-    for (let i = 0; i < width * height; ++i) {
-        for (let k = 0; k < 3; ++k)
-            data[4 * i + k] = THREE.DataUtils.toHalfFloat(Math.min(rgb[3 * i + k], largestHalf));
-        data[4 * i + 3] = one;
-    }
-    const texture = new THREE.DataTexture(data, width, height, THREE.RGBAFormat, THREE.HalfFloatType);
-    texture.minFilter = THREE.LinearFilter;
-    texture.magFilter = THREE.LinearFilter;
-    texture.wrapS = THREE.RepeatWrapping;
-    texture.needsUpdate = true;
-    return texture;
 }
 
 // --- the lights ---

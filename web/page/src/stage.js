@@ -3,6 +3,7 @@ import * as THREE from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {Pace} from './pace.js';
 import {FilteredEnvironment, hidingAlbedo, highlightFragment, highlightVertex, noLights, seenTexture, setLights} from './highlights.js';
+import {latLongLookup, latLongTexture} from './sky.js';
 
 const vertexShader = `
 in vec3 radiance;
@@ -89,12 +90,7 @@ uniform float turn;
 uniform vec3 plainLow;
 uniform vec3 plainHigh;
 uniform float isPlain;
-vec3 look(vec3 w) {
-    // +Z in the middle, +X to its left, +Y at the top.
-    float longitude = atan(w.x, w.z) - turn;
-    float v = acos(clamp(w.y, -1.0, 1.0)) / 3.14159265359;
-    return textureLod(sky, vec2(0.5 - longitude / 6.28318530718, v), 0.0).rgb;
-}
+${latLongLookup}
 void main() {
     vec4 far = worldFromClip * vec4(at, 1.0, 1.0);
     vec4 near = worldFromClip * vec4(at, -1.0, 1.0);
@@ -104,7 +100,7 @@ void main() {
         color = vec4(dithered(plain), 1.0);
         return;
     }
-    color = vec4(dithered(encoded(on_screen(curve, look(w) * exposure))), 1.0);
+    color = vec4(dithered(encoded(on_screen(curve, latLong(sky, w, turn) * exposure))), 1.0);
 }`;
 
 function white() {
@@ -284,15 +280,10 @@ export class Stage {
         return before;
     }
 
-    /** Shows what skyTexture() made behind the scene. */
-    setSky({data, width, height}) {
+    /** Shows what skyPixels() made behind the scene. */
+    setSky(pixels) {
         this.sky.uniforms.sky.value.dispose?.();
-        const texture = new THREE.DataTexture(data, width, height, THREE.RGBAFormat, THREE.HalfFloatType);
-        texture.wrapS = THREE.RepeatWrapping;
-        texture.minFilter = THREE.LinearFilter;
-        texture.magFilter = THREE.LinearFilter;
-        texture.needsUpdate = true;
-        this.sky.uniforms.sky.value = texture;
+        this.sky.uniforms.sky.value = latLongTexture(pixels);
         this.ask();
     }
 

@@ -9,7 +9,7 @@ import {LightClient} from './light_client.js';
 import {lookOf} from './look.js';
 import {Panel, markup} from './panel.js';
 import {Stage} from './stage.js';
-import {skyTexture} from './sky.js';
+import {skyPixels} from './sky.js';
 import style from './style.css';
 import {contributions, drawContributions} from './who.js';
 
@@ -201,7 +201,7 @@ class RelumineViewer extends HTMLElement {
         this.#shownEnvironment = id;
         this.isExposed = environment.exposure !== undefined;
         await this.#client.ask('environment', {latLong: picture.rgb, width: picture.width, height: picture.height, resolution: lightResolution});
-        this.#stage.setSky(environment.sky ??= skyTexture(picture));
+        this.#stage.setSky(environment.sky ??= skyPixels(picture));
         if (this.#look.hasHighlights)
             this.#stage.setMirrored(picture);
         this.find('.error-line').textContent = this.#errorLine(environment);
