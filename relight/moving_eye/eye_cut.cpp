@@ -1,16 +1,31 @@
 #include "relight/moving_eye/eye_cut.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
 #include <glm/geometric.hpp>
 
+#include "cubemap/luminance.h"
 #include "prt/glossy/lobe_list.h"
 
-namespace relumine::relight {
+// Highway compiles the block below once per instruction set and picks one at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "relight/moving_eye/eye_cut.cpp"
+#include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
 
-namespace {
+HWY_BEFORE_NAMESPACE();
+namespace relumine::relight::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The children of two cells are looked at together, or as many as a vector holds.
+constexpr std::size_t NumSisters = 8;
+using Sisters = hn::CappedTag<float, NumSisters>;
 
 /// A light spread by the lobe's own width is off by so much of itself where the lobe is widened in
 /// place of being summed finely.
@@ -19,6 +34,223 @@ constexpr float ErrorOfSpread = 0.5f;
 constexpr float LargestWidth2 = 0.25f;
 /// How much the visible part of a cell may go with its light.
 constexpr float ShareOfContrast = 0.3f;
+
+/// Of the children of two cells, a bit each.
+struct SisterBits {
+    /// Those with light above the horizons.
+    std::uint32_t lit = 0;
+    /// Those that may stay whole, if receivers see all of the cell alike and if they do not.
+    std::uint32_t fine_alike = 0, fine = 0;
+};
+
+/// What a lobe and an error ask of cells.
+class Judge {
+public:
+    Judge(const BlockLobe& lobe, float error)
+        : lobe_(lobe), error_(error),
+          factor_(0.25f * lobe.weight /
+                  (std::numbers::pi_v<float> * std::max(lobe.n_v, std::sqrt(lobe.alpha2)))) {}
+
+    [[nodiscard]] SisterBits operator()(const SisterCells& a, const SisterCells& b) const {
+        SisterBits bits;
+        for (std::size_t i = 0; i < NumSisters; i += hn::Lanes(Sisters()))
+            add({a, b, i}, i, bits);
+        return bits;
+    }
+
+private:
+    using Vector = hn::Vec<Sisters>;
+
+    /// Some of the children of two cells.
+    struct Some {
+        const SisterCells &a, &b;
+        std::size_t first;
+
+        template<typename T, std::size_t N, typename D>
+        [[nodiscard]] auto load(D d, const std::array<T, N> SisterCells::*member,
+                                std::size_t row) const {
+            constexpr std::size_t Half = SisterCells::Stride;
+#if HWY_TARGET != HWY_SCALAR
+            if constexpr (hn::MaxLanes(D()) == NumSisters) {
+                const hn::Half<D> half;
+                return hn::Combine(d, hn::Load(half, (b.*member).data() + row * Half),
+                                   hn::Load(half, (a.*member).data() + row * Half));
+            } else
+#endif
+            {
+                const SisterCells& of = first < Half ? a : b;
+                return hn::Load(d, (of.*member).data() + row * Half + first % Half);
+            }
+        }
+        [[nodiscard]] Vector row(SisterCells::Row row) const {
+            return load(Sisters(), &SisterCells::rows, row);
+        }
+    };
+
+    static Vector all(float value) {
+        return hn::Set(Sisters(), value);
+    }
+    static Vector dot(const glm::vec3& a, Vector x, Vector y, Vector z) {
+        return hn::MulAdd(all(a.x), x, hn::MulAdd(all(a.y), y, hn::Mul(all(a.z), z)));
+    }
+
+    static Vector luminance(const Some& cells) {
+        constexpr cubemap::LuminanceWeights of = cubemap::Rec709Weights;
+        const glm::vec3 weights(of.red, of.green, of.blue);
+        return dot(weights, cells.row(SisterCells::Red), cells.row(SisterCells::Green),
+                   cells.row(SisterCells::Blue));
+    }
+
+    void add(const Some& cells, std::size_t first, SisterBits& bits) const {
+        const Sisters d;
+        const hn::RebindToUnsigned<Sisters> bits_d;
+        const auto zero = hn::Zero(d), one = all(1.0f);
+        const auto x = cells.row(SisterCells::X), y = cells.row(SisterCells::Y),
+                   z = cells.row(SisterCells::Z), power = luminance(cells);
+        const auto packed = cells.load(bits_d, &SisterCells::size_and_contrast, 0);
+        const auto size = hn::BitCast(d, hn::And(packed, hn::Set(bits_d, 0xffff0000u)));
+        const auto contrast = hn::BitCast(d, hn::ShiftLeft<16>(packed));
+        const auto n_w = dot(lobe_.normal, x, y, z), v_w = dot(lobe_.to_eye, x, y, z);
+        const auto spread = all(lobe_.spread), alpha2 = all(lobe_.alpha2);
+        const auto lit =
+            hn::And(hn::Gt(power, zero), hn::Ge(hn::Add(n_w, hn::Add(spread, size)), zero));
+        const auto sum = hn::Add(all(lobe_.n_v), n_w);
+        const auto over_h_h =
+            hn::Div(one, hn::Max(hn::MulAdd(all(2.0f), v_w, all(2.0f)), all(1e-6f)));
+        const auto sine = hn::Sqrt(hn::Max(hn::NegMulAdd(hn::Mul(sum, sum), over_h_h, one), zero));
+        // The half vector of v and w turns half as far as w towards v, and 1 / |v + w| as far to
+        // the side: much further near the horizon. The square of what it turns in the mean:
+        const auto turn2 = hn::MulAdd(all(0.5f), over_h_h, all(0.125f));
+        const auto size2 = hn::Mul(hn::Mul(size, size), turn2);
+        const auto nearest =
+            hn::Max(hn::Sub(sine, hn::MulAdd(all(0.5f), hn::Sqrt(size2), spread)), zero);
+        const auto nearest2 = hn::Mul(nearest, nearest);
+        const auto width2 = hn::Min(hn::Add(nearest2, alpha2), all(LargestWidth2));
+        // S as if at the nearest point, of the lobe that is as wide as the cell: above / below.
+        const auto wide2 = hn::MulAdd(size2, all(1.0f / 6.0f), alpha2);
+        const auto t = hn::Add(nearest2, wide2);
+        const auto risen =
+            hn::Min(hn::Max(hn::MulAdd(all(0.5f), size, hn::Add(n_w, spread)), zero), one);
+        const auto above = hn::Mul(hn::Mul(all(factor_), power), hn::Mul(wide2, risen));
+        const auto below =
+            hn::Mul(all(error_), hn::Mul(hn::Mul(t, t), hn::Max(risen, all(lobe_.n_v))));
+        // How far off the cell is as one light, times width2.
+        const auto off = hn::Min(
+            hn::Mul(hn::Mul(all(ErrorOfSpread), turn2), cells.row(SisterCells::Variance)), width2);
+        const auto edge =
+            hn::Min(hn::Sqrt(hn::Mul(hn::Mul(size2, all(4.0f / 3.0f)), width2)), width2);
+        const auto differs = hn::MulAdd(
+            all(0.5f), edge, hn::Mul(hn::Mul(all(0.5f * ShareOfContrast), contrast), width2));
+        const auto allowed = hn::Mul(below, width2);
+        const auto weak = hn::Le(above, below);
+        const auto bits_of = [&](auto mask) {
+            std::array<std::uint8_t, 8> stored{};
+            hn::StoreMaskBits(d, mask, stored.data());
+            return std::uint32_t{stored[0]} << first;
+        };
+        bits.lit |= bits_of(lit);
+        bits.fine_alike |= bits_of(hn::Or(weak, hn::Le(hn::Mul(above, off), allowed)));
+        bits.fine |= bits_of(hn::Or(weak, hn::Le(hn::Mul(above, hn::Add(off, differs)), allowed)));
+    }
+
+    const BlockLobe& lobe_;
+    float error_, factor_;
+};
+
+/// Finds the cells of a cut. `search` has the faces.
+class CellSearch {
+public:
+    CellSearch(const VisibilityPyramid& visibility, const SkyCells& sky, std::size_t block,
+               EyeCut::Search& search)
+        : visibility_(visibility), sky_(sky), block_(block), search_(search) {}
+
+    void run(const Judge& judge) {
+        // Level by level, so that what is fetched ahead has time to come.
+        for (std::size_t next = 0; next < search_.num_divided; next += 2) {
+            make_room();
+            const EyeCut::Item a = search_.divided[next];
+            const bool has_two = next + 1 < search_.num_divided;
+            const EyeCut::Item b = has_two ? search_.divided[next + 1] : a;
+            const SisterCells &below_a = sky_.children(a.cell), &below_b = sky_.children(b.cell);
+            const SisterBits bits = judge(below_a, below_b);
+            divide(a, below_a, bits);
+            if (has_two)
+                divide(b, below_b,
+                       {.lit = bits.lit >> 4u,
+                        .fine_alike = bits.fine_alike >> 4u,
+                        .fine = bits.fine >> 4u});
+        }
+    }
+
+private:
+    template<typename T>
+    static void make_room(std::vector<T>& list, std::size_t used) {
+        if (used + NumSisters > list.size())
+            list.resize(2 * (used + NumSisters));
+    }
+    void make_room() {
+        make_room(search_.divided, search_.num_divided);
+        make_room(search_.open, search_.num_open);
+        make_room(search_.partly, search_.num_partly);
+    }
+
+    void divide(const EyeCut::Item& at, const SisterCells& below, const SisterBits& bits) {
+        const VisibilityPyramid::Sights seen = visibility_.sights(at.place);
+        const std::uint32_t first = SkyCells::first_child(at.cell);
+        const std::uint32_t fine =
+            sky_.is_split(first) ? (bits.fine & seen.divided) | (bits.fine_alike & ~seen.divided)
+                                 : 0xf;
+        const std::uint32_t open = bits.lit & seen.visible, mixed = bits.lit & seen.mixed;
+        for (std::uint32_t i = 0; i < 4; ++i) {
+            search_.open[search_.num_open] = below.rows.data() + i;
+            search_.num_open += (open & fine) >> i & 1u;
+        }
+        for (std::uint32_t left = open & ~fine & 0xfu; left != 0; left &= left - 1)
+            divide_later({.cell = first + lowest_bit(left),
+                          .place = {.kind = VisibilityPyramid::Kind::Visible}});
+        for (std::uint32_t left = mixed; left != 0; left &= left - 1) {
+            const std::uint32_t i = lowest_bit(left);
+            const VisibilityPyramid::Place place = visibility_.child(block_, at.place, seen, i);
+            if ((fine >> i & 1u) == 0) {
+                divide_later({.cell = first + i, .place = place});
+                continue;
+            }
+            hwy::Prefetch(visibility_.first_part(place));
+            search_.partly[search_.num_partly++] = {.light = below.rows.data() + i, .place = place};
+        }
+    }
+
+    static std::uint32_t lowest_bit(std::uint32_t bits) {
+        return static_cast<std::uint32_t>(std::countr_zero(bits));
+    }
+
+    void divide_later(const EyeCut::Item& item) {
+        const SisterCells& below = sky_.children(item.cell);
+        hwy::Prefetch(below.rows.data());
+        hwy::Prefetch(below.rows.data() + SisterCells::Red * SisterCells::Stride);
+        search_.divided[search_.num_divided++] = item;
+    }
+
+    const VisibilityPyramid& visibility_;
+    const SkyCells& sky_;
+    std::size_t block_;
+    EyeCut::Search& search_;
+};
+
+void find_cells(const VisibilityPyramid& visibility, const SkyCells& sky, std::size_t block,
+                const BlockLobe& lobe, float error, EyeCut::Search& search) {
+    CellSearch(visibility, sky, block, search).run(Judge(lobe, error));
+}
+
+} // namespace relumine::relight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace relumine::relight {
+
+HWY_EXPORT(find_cells);
+
+namespace {
 
 glm::vec3 lane_of(const std::array<prt::BlockSurfaces::Floats, 3>& axes, std::size_t lane) {
     return {axes[0][lane], axes[1][lane], axes[2][lane]};
@@ -58,77 +290,22 @@ std::optional<BlockLobe> lobe_of(const prt::BlockSurfaces& block,
     return lobe;
 }
 
-void EyeCut::find(std::size_t block, const BlockLobe& lobe, std::vector<LitCell>& cells) {
-    pending_.clear();
+void EyeCut::find(std::size_t block, const BlockLobe& lobe, LitCells& cells) {
+    search_.num_divided = search_.num_open = search_.num_partly = 0;
+    search_.divided.resize(std::max(search_.divided.size(), std::size_t{cubemap::NumFaces}));
     for (std::uint32_t face = 0; face < cubemap::NumFaces; ++face)
-        pending_.push_back({.node = face, .place = face, .level = 0});
-    while (!pending_.empty()) {
-        const Pending at = pending_.back();
-        pending_.pop_back();
-        const SkyCell& cell = sky_.cells()[prt::num_cells_above(at.level) + at.place];
-        if (cell.power == 0.0f)
-            continue;
-        // All of the cell lies below the horizons.
-        if (glm::dot(cell.direction, lobe.normal) + lobe.spread + cell.size < 0.0f)
-            continue;
-        const VisibilityPyramid::Node& node = visibility_.nodes()[at.node];
-        const Sight sight = visibility_.sight(block, node);
-        if (sight == Sight::Hidden)
-            continue;
-        if (at.level == sky_.deepest_level() ||
-            is_fine(cell, lobe, sight == Sight::Mixed && node.first_child != 0)) {
-            add(at, sight, block, cells);
-            continue;
-        }
-        for (std::uint32_t i = 0; i < 4; ++i)
-            pending_.push_back({.node = node.first_child != 0 ? node.first_child + i : at.node,
-                                .place = 4 * at.place + i,
-                                .level = at.level + 1});
+        if (const VisibilityPyramid::Place place = visibility_.face(block, face);
+            place.kind != VisibilityPyramid::Kind::Hidden)
+            search_.divided[search_.num_divided++] = {.cell = face, .place = place};
+    HWY_DYNAMIC_DISPATCH(find_cells)(visibility_, sky_, block, lobe, error_, search_);
+    cells.open.insert(cells.open.end(), search_.open.begin(),
+                      search_.open.begin() + static_cast<std::ptrdiff_t>(search_.num_open));
+    for (std::size_t i = 0; i < search_.num_partly; ++i) {
+        const VisibilityPyramid::Parts seen = visibility_.parts(search_.partly[i].place);
+        cells.partly.push_back(
+            {.light = search_.partly[i].light, .unit = seen.unit, .parts = seen.parts});
     }
-}
-
-/// Whether a cell may stay whole; `may_differ` where its parts are not seen alike.
-bool EyeCut::is_fine(const SkyCell& cell, const BlockLobe& lobe, bool may_differ) const {
-    // The half vector of w turns half as far as w.
-    const float v_w = glm::dot(lobe.to_eye, cell.direction);
-    const float n_w = glm::dot(lobe.normal, cell.direction);
-    const float cosine = (lobe.n_v + n_w) / std::sqrt(std::max(2.0f + 2.0f * v_w, 1e-6f));
-    const float sine = std::sqrt(std::max(1.0f - cosine * cosine, 0.0f));
-    const float nearest = std::max(sine - lobe.spread - 0.25f * cell.size, 0.0f);
-    const float width2 = std::min(nearest * nearest + lobe.alpha2, LargestWidth2);
-    // S as if at the nearest point, of the lobe that is as wide as the cell.
-    const float alpha2 = lobe.alpha2 + cell.size * cell.size / 24.0f;
-    const float t = nearest * nearest + alpha2;
-    const float above = std::clamp(n_w + lobe.spread + 0.5f * cell.size, 0.0f, 1.0f);
-    const float mask_v = std::max(lobe.n_v, std::sqrt(lobe.alpha2));
-    const float value = alpha2 / (std::numbers::pi_v<float> * t * t) * 0.25f * above /
-                        (std::max(above, lobe.n_v) * mask_v);
-    const float share = value * cell.power * lobe.weight;
-    if (share <= error_)
-        return true;
-    float off = std::min(ErrorOfSpread * 0.25f * cell.variance / width2, 1.0f);
-    if (may_differ)
-        off += 0.5f * (std::min(4.0f * std::sqrt(cell.size * cell.size / 48.0f / width2), 1.0f) +
-                       ShareOfContrast * std::min(cell.contrast, 1.0f));
-    return share * off <= error_;
-}
-
-void EyeCut::add(const Pending& at, Sight sight, std::size_t block,
-                 std::vector<LitCell>& cells) const {
-    const std::uint32_t index = prt::num_cells_above(at.level) + at.place;
-    const SkyCell& cell = sky_.cells()[index];
-    const float* rgb = sky_.light().data() + std::size_t{3} * index;
-    LitCell& lit = cells.emplace_back();
-    lit.direction = cell.direction;
-    lit.widening = 0.5f * cell.variance;
-    lit.light = {rgb[0], rgb[1], rgb[2]};
-    if (sight == Sight::Visible) {
-        lit.parts.fill(1);
-        return;
-    }
-    const VisibilityPyramid::Parts parts = visibility_.parts(block, visibility_.nodes()[at.node]);
-    lit.parts = parts.parts;
-    lit.light *= parts.unit;
 }
 
 } // namespace relumine::relight
+#endif

@@ -47,23 +47,33 @@ public:
     EyeCut(const VisibilityPyramid& visibility, const SkyCells& sky, float error)
         : visibility_(visibility), sky_(sky), error_(error) {}
 
-    /// Appends the cells that light a block through a lobe.
-    void find(std::size_t block, const BlockLobe& lobe, std::vector<LitCell>& cells);
+    /// Appends the cells that light a block through a lobe. Faces are always divided.
+    void find(std::size_t block, const BlockLobe& lobe, LitCells& cells);
 
-private:
-    using Sight = VisibilityPyramid::Sight;
-    /// A cell that is yet to be looked at. Below the clusters it has the cluster's node.
-    struct Pending {
-        std::uint32_t node, place, level;
+    /// A cell of the sky and how the block sees it.
+    struct Item {
+        std::uint32_t cell = 0;
+        VisibilityPyramid::Place place = {};
+    };
+    /// A cell that receivers see in part.
+    struct Partly {
+        CellLight light = nullptr;
+        VisibilityPyramid::Place place = {};
+    };
+    /// What a search has found; its room stays for the next one.
+    struct Search {
+        /// Cells that are divided, coarse ones first.
+        std::vector<Item> divided;
+        std::vector<CellLight> open;
+        std::vector<Partly> partly;
+        std::size_t num_divided = 0, num_open = 0, num_partly = 0;
     };
 
-    [[nodiscard]] bool is_fine(const SkyCell& cell, const BlockLobe& lobe, bool may_differ) const;
-    void add(const Pending& at, Sight sight, std::size_t block, std::vector<LitCell>& cells) const;
-
+private:
     const VisibilityPyramid& visibility_;
     const SkyCells& sky_;
     float error_;
-    std::vector<Pending> pending_;
+    Search search_;
 };
 
 } // namespace relumine::relight

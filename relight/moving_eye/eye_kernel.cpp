@@ -35,14 +35,19 @@ struct Lanes {
     Vector n_x, n_y, n_z, v_x, v_y, v_z, n_v, a2, rest, mask_v;
 };
 
+template<SisterCells::Row Row>
+Vector value_of(CellLight light) {
+    return hn::Set(Tag(), light[Row * SisterCells::Stride]);
+}
+
 /// Returns S of GgxLobe for one direction, its distribution widened, and Schlick's (1 - v.h)^5.
 /// With q = |v + w|^2 (1 - cos^2 (1 - a^2)) there is one quotient:
 ///     S = a^2 |v + w|^4 n.w / (2 pi q^2 (n.w m_v + n.v m_w))
-Vector lobe(const Lanes& at, const LitCell& cell, Vector& fresnel) {
+Vector lobe(const Lanes& at, CellLight cell, Vector& fresnel) {
     const Tag d;
     const auto one = hn::Set(d, 1.0f);
-    const auto x = hn::Set(d, cell.direction.x), y = hn::Set(d, cell.direction.y),
-               z = hn::Set(d, cell.direction.z);
+    const auto x = value_of<SisterCells::X>(cell), y = value_of<SisterCells::Y>(cell),
+               z = value_of<SisterCells::Z>(cell);
     const auto dot_n = hn::MulAdd(at.n_x, x, hn::MulAdd(at.n_y, y, hn::Mul(at.n_z, z)));
     const auto dot_v = hn::MulAdd(at.v_x, x, hn::MulAdd(at.v_y, y, hn::Mul(at.v_z, z)));
     const auto n_w = hn::Max(dot_n, hn::Zero(d));
@@ -50,7 +55,8 @@ Vector lobe(const Lanes& at, const LitCell& cell, Vector& fresnel) {
     const auto h_h =
         hn::Max(hn::MulAdd(hn::Set(d, 2.0f), dot_v, hn::Set(d, 2.0f)), hn::Set(d, 1e-6f));
     const auto n_h = hn::Add(at.n_v, dot_n);
-    const auto a2 = hn::Add(at.a2, hn::Set(d, cell.widening));
+    // As much wider as the light is spread.
+    const auto a2 = hn::MulAdd(hn::Set(d, 0.5f), value_of<SisterCells::Variance>(cell), at.a2);
     // Rounding must not take q below what the lobe's peak has.
     const auto q =
         hn::Max(hn::NegMulAdd(hn::Mul(n_h, n_h), hn::Sub(one, a2), h_h), hn::Mul(h_h, a2));
@@ -63,41 +69,57 @@ Vector lobe(const Lanes& at, const LitCell& cell, Vector& fresnel) {
     return hn::Div(hn::Mul(hn::Mul(a2, hn::Mul(h_h, h_h)), n_w), over);
 }
 
-void sum_cells(const prt::BlockSurfaces& surfaces, std::span<const LitCell> cells,
-               EyeLight& light) {
+/// The light of some receivers.
+struct Sums {
+    Sums()
+        : red(hn::Zero(Tag())), green(red), blue(red), red_grazing(red), green_grazing(red),
+          blue_grazing(red) {}
+
+    void add(CellLight light, Vector value, Vector fresnel) {
+        const auto grazing = hn::Mul(value, fresnel);
+        const auto r = value_of<SisterCells::Red>(light), g = value_of<SisterCells::Green>(light),
+                   b = value_of<SisterCells::Blue>(light);
+        red = hn::MulAdd(value, r, red);
+        green = hn::MulAdd(value, g, green);
+        blue = hn::MulAdd(value, b, blue);
+        red_grazing = hn::MulAdd(grazing, r, red_grazing);
+        green_grazing = hn::MulAdd(grazing, g, green_grazing);
+        blue_grazing = hn::MulAdd(grazing, b, blue_grazing);
+    }
+
+    Vector red, green, blue, red_grazing, green_grazing, blue_grazing;
+};
+
+void sum_cells(const prt::BlockSurfaces& surfaces, const LitCells& cells, EyeLight& light) {
     const Tag d;
     const hn::Rebind<std::uint8_t, Tag> bytes;
     const hn::Rebind<std::int32_t, Tag> integers;
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
         const Lanes at(surfaces, lane);
-        auto red = hn::Zero(d), green = hn::Zero(d), blue = hn::Zero(d);
-        auto red_grazing = hn::Zero(d), green_grazing = hn::Zero(d), blue_grazing = hn::Zero(d);
-        for (const LitCell& cell : cells) {
+        Sums sums;
+        auto fresnel = hn::Zero(d);
+        for (const CellLight cell : cells.open) {
+            const auto value = lobe(at, cell, fresnel);
+            sums.add(cell, value, fresnel);
+        }
+        for (const PartlyCell& cell : cells.partly) {
             const auto seen = hn::ConvertTo(
                 d, hn::PromoteTo(integers, hn::LoadU(bytes, cell.parts.data() + lane)));
-            auto fresnel = hn::Zero(d);
-            const auto value = hn::Mul(lobe(at, cell, fresnel), seen);
-            const auto grazing = hn::Mul(value, fresnel);
-            const auto r = hn::Set(d, cell.light.r), g = hn::Set(d, cell.light.g),
-                       b = hn::Set(d, cell.light.b);
-            red = hn::MulAdd(value, r, red);
-            green = hn::MulAdd(value, g, green);
-            blue = hn::MulAdd(value, b, blue);
-            red_grazing = hn::MulAdd(grazing, r, red_grazing);
-            green_grazing = hn::MulAdd(grazing, g, green_grazing);
-            blue_grazing = hn::MulAdd(grazing, b, blue_grazing);
+            const auto part = hn::Mul(seen, hn::Set(d, cell.unit));
+            const auto value = hn::Mul(lobe(at, cell.light, fresnel), part);
+            sums.add(cell.light, value, fresnel);
         }
         // Receivers that do not face the eye have no lobe.
         const auto faces = hn::Gt(at.n_v, hn::Zero(d));
         const auto store = [&](Vector value, std::array<float, prt::BlockSize>& to) {
             hn::StoreU(hn::IfThenElseZero(faces, value), d, to.data() + lane);
         };
-        store(red, light.all.channels[0]);
-        store(green, light.all.channels[1]);
-        store(blue, light.all.channels[2]);
-        store(red_grazing, light.grazing.channels[0]);
-        store(green_grazing, light.grazing.channels[1]);
-        store(blue_grazing, light.grazing.channels[2]);
+        store(sums.red, light.all.channels[0]);
+        store(sums.green, light.all.channels[1]);
+        store(sums.blue, light.all.channels[2]);
+        store(sums.red_grazing, light.grazing.channels[0]);
+        store(sums.green_grazing, light.grazing.channels[1]);
+        store(sums.blue_grazing, light.grazing.channels[2]);
     }
 }
 
@@ -109,8 +131,7 @@ namespace relumine::relight {
 
 HWY_EXPORT(sum_cells);
 
-void sum_cells(const prt::BlockSurfaces& surfaces, std::span<const LitCell> cells,
-               EyeLight& light) {
+void sum_cells(const prt::BlockSurfaces& surfaces, const LitCells& cells, EyeLight& light) {
     HWY_DYNAMIC_DISPATCH(sum_cells)(surfaces, cells, light);
 }
 

@@ -4,25 +4,39 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "prt/glossy/lobe_kernel.h"
 #include "relight/kernels/block_kernels.h"
+#include "relight/moving_eye/sky_cells.h"
 
 namespace relumine::relight {
 
-/// A cell of a block's cut, or a light that is traced.
-struct LitCell {
-    /// Unit length.
-    glm::vec3 direction;
-    /// Is added to the lobe's alpha^2: as much as the light is spread.
-    float widening = 0.0f;
-    /// Radiance times sr of visible part 1.
-    glm::vec3 light;
+/// One of four lights, by its first row (SisterCells). It outlives a look.
+using CellLight = const float*;
+
+/// A light that receivers see in part.
+struct PartlyCell {
+    CellLight light = nullptr;
+    /// Of `parts`.
+    float unit = 0.0f;
     /// What each receiver sees.
-    std::array<std::uint8_t, prt::BlockSize> parts;
+    std::array<std::uint8_t, prt::BlockSize> parts{};
+};
+
+/// The cells of a block's cut, and lights that are traced.
+struct LitCells {
+    /// Those that all receivers see, for all that the cut knows.
+    std::vector<CellLight> open;
+    std::vector<PartlyCell> partly;
+
+    void clear() {
+        open.clear();
+        partly.clear();
+    }
+    [[nodiscard]] std::size_t size() const { return open.size() + partly.size(); }
 };
 
 /// Light through the lobes S and Sc (prt/glossy/brdf.h) of a block of receivers.
@@ -33,6 +47,6 @@ struct EyeLight {
 /// Sums cells through the GGX lobes of a block, whose receivers have no other highlights.
 ///
 /// Accuracy: 1e-3 of the peak for the narrowest lobe, 1e-5 from roughness 0.3 on.
-void sum_cells(const prt::BlockSurfaces& surfaces, std::span<const LitCell> cells, EyeLight& light);
+void sum_cells(const prt::BlockSurfaces& surfaces, const LitCells& cells, EyeLight& light);
 
 } // namespace relumine::relight

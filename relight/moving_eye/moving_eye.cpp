@@ -61,6 +61,10 @@ struct MovingEye::Impl {
             positions.push_back(at[receiver]);
             surfaces.push_back(is_ggx(shiny[receiver]) ? shiny[receiver] : prt::Surface());
         }
+        for (std::size_t block = 0; block < of.counts.num_blocks(); ++block) {
+            const auto own = std::span(surfaces).subspan(block * prt::BlockSize, size_of(block));
+            is_matt.push_back(std::none_of(own.begin(), own.end(), is_ggx));
+        }
     }
 
     /// The lobes of a block's receivers for an eye.
@@ -100,30 +104,43 @@ struct MovingEye::Impl {
             lights.assign(of_list.begin(), of_list.end());
         }
         static_cast<void>(traced->trace(lights));
+        traced_lights.assign(lights.size() / SisterCells::Stride + 1, {});
+        for (std::size_t i = 0; i < lights.size(); ++i) {
+            const VectorIrradiance& light = lights[i].irradiance;
+            SisterCells& sisters = traced_lights[i / SisterCells::Stride];
+            sisters.set_direction(i % SisterCells::Stride, lights[i].direction);
+            sisters.set_light(
+                i % SisterCells::Stride,
+                {glm::length(light.red), glm::length(light.green), glm::length(light.blue)});
+        }
     }
 
     /// Appends the traced lights that reach a block.
-    void add_traced(std::size_t block, std::vector<LitCell>& cells) const {
+    void add_traced(std::size_t block, LitCells& cells) const {
         for (std::size_t i = 0; i < lights.size(); ++i) {
             const std::uint16_t reached = traced->reached(i, block);
             if (reached == 0)
                 continue;
-            const VectorIrradiance& light = lights[i].irradiance;
-            LitCell& cell = cells.emplace_back();
-            cell.direction = glm::vec3(lights[i].direction);
-            cell.light = glm::vec3(glm::length(light.red), glm::length(light.green),
-                                   glm::length(light.blue));
+            PartlyCell& cell = cells.partly.emplace_back();
+            cell.light =
+                traced_lights[i / SisterCells::Stride].rows.data() + i % SisterCells::Stride;
+            cell.unit = 1.0f;
             for (std::size_t lane = 0; lane < prt::BlockSize; ++lane)
                 cell.parts[lane] = static_cast<std::uint8_t>(reached >> lane & 1u);
         }
     }
 
     void light_block(std::size_t block, const glm::vec3& eye, std::span<const glm::vec3> radiance,
-                     EyeCut& cut, std::vector<LitCell>& cells) {
+                     EyeCut& cut, LitCells& cells) {
         const std::size_t first = block * prt::BlockSize, size = size_of(block);
+        cells.clear();
+        if (is_matt[block]) {
+            for (std::size_t i = first; i < first + size; ++i)
+                result[transfer.order[i]] = radiance[transfer.order[i]];
+            return;
+        }
         const prt::BlockSurfaces lanes = surfaces_of(block, eye);
         const std::span<const prt::Surface> own = std::span(surfaces).subspan(first, size);
-        cells.clear();
         const std::optional<BlockLobe> lobe = lobe_of(lanes, own);
         EyeLight light;
         if (lobe) {
@@ -155,10 +172,14 @@ struct MovingEye::Impl {
     /// [num_receivers] by place.
     std::vector<glm::vec3> positions;
     std::vector<prt::Surface> surfaces;
+    /// [num_blocks] where no receiver has a highlight.
+    std::vector<bool> is_matt;
     VisibilityPyramid visibility;
     SkyCells sky;
     std::optional<TracedLight> traced;
     std::vector<SharpLight> lights;
+    /// The same, as the kernel takes them.
+    std::vector<SisterCells> traced_lights;
     bool is_lit = false;
     /// What a white matt surface sends: root of the mean square.
     double white = 0.0;
@@ -214,11 +235,11 @@ std::span<const glm::vec3> MovingEye::look(const glm::vec3& eye,
         files::IndexRange<std::size_t>(0, impl_->transfer.counts.num_blocks(), Grain),
         [&](const auto& some) {
             EyeCut cut(impl_->visibility, impl_->sky, error);
-            std::vector<LitCell> cells;
+            LitCells cells;
             for (std::size_t block = some.begin(); block < some.end(); ++block) {
                 impl_->light_block(block, eye, radiance, cut, cells);
                 num_cells += cells.size();
-                num_blocks += cells.empty() ? 0 : 1;
+                num_blocks += cells.size() == 0 ? 0 : 1;
             }
         });
     report.num_cells = num_cells;
@@ -230,6 +251,10 @@ std::span<const glm::vec3> MovingEye::look(const glm::vec3& eye,
 
 const EyeReport& MovingEye::report() const {
     return impl_->report;
+}
+
+std::size_t MovingEye::num_traced() const {
+    return impl_->lights.size();
 }
 
 std::size_t MovingEye::num_bytes() const {

@@ -19,7 +19,7 @@ inline constexpr float NarrowestLiveRoughness = 0.11f;
 
 struct EyeOptions {
     /// Relative L2 error of the radiance that cuts are made for.
-    float tolerance = 0.01f;
+    float tolerance = 0.015f;
     /// Milliseconds that a look may take; the tolerance follows. 0: the tolerance counts.
     double budget_ms = 0.0;
 };
@@ -71,6 +71,8 @@ public:
     /// Of the last look.
     [[nodiscard]] const EyeReport& report() const;
 
+    /// Small lights that have a shadow ray for each receiver.
+    [[nodiscard]] std::size_t num_traced() const;
     /// Memory of the visibility above the clusters.
     [[nodiscard]] std::size_t num_bytes() const;
 

@@ -1,6 +1,7 @@
 #include "relight/moving_eye/sky_cells.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -20,20 +21,48 @@ glm::dvec3 middle_of(const prt::Cell& cell) {
     return cubemap::direction(cell.face, (cell.x + 0.5) * size, (cell.y + 0.5) * size);
 }
 
+/// Rounded up: what cells are judged by is no smaller than it is.
+std::uint32_t upper_half(float value) {
+    return (std::bit_cast<std::uint32_t>(value) + 0xffffu) >> 16u;
+}
+
 } // namespace
+
+void SisterCells::set_direction(std::size_t i, const glm::vec3& direction) {
+    at(X, i) = direction.x;
+    at(Y, i) = direction.y;
+    at(Z, i) = direction.z;
+}
+void SisterCells::set_light(std::size_t i, const glm::vec3& light) {
+    at(Red, i) = light.r;
+    at(Green, i) = light.g;
+    at(Blue, i) = light.b;
+}
+void SisterCells::set_size(std::size_t i, float size) {
+    size_and_contrast[i] = upper_half(size) << 16u | (size_and_contrast[i] & 0xffffu);
+}
+void SisterCells::set_contrast(std::size_t i, float contrast) {
+    size_and_contrast[i] = (size_and_contrast[i] & 0xffff0000u) | upper_half(contrast);
+}
 
 SkyCells::SkyCells(std::uint32_t deepest_level)
     : deepest_level_(deepest_level), light_(deepest_level),
-      cells_(prt::num_cells_above(deepest_level + 1)) {
+      sisters_(prt::num_cells_above(deepest_level)),
+      solid_angles_(prt::num_cells_above(deepest_level + 1)) {
     files::parallel_for(
-        files::IndexRange<std::size_t>(0, cells_.size(), CellsPerTask), [&](const auto& some) {
-            for (std::size_t i = some.begin(); i < some.end(); ++i) {
-                const prt::Cell cell = prt::cell_of_index(static_cast<std::uint32_t>(i));
-                const double size = cell.size(), s = cell.x * size, t = cell.y * size;
-                cells_[i].direction = middle_of(cell);
-                cells_[i].size =
-                    static_cast<float>(std::sqrt(cubemap::solid_angle(s, t, s + size, t + size)));
-            }
+        files::IndexRange<std::size_t>(0, sisters_.size(), CellsPerTask / 4),
+        [&](const auto& some) {
+            for (std::size_t parent = some.begin(); parent < some.end(); ++parent)
+                for (std::uint32_t i = 0; i < 4; ++i) {
+                    const std::uint32_t index = first_child(static_cast<std::uint32_t>(parent)) + i;
+                    const prt::Cell cell = prt::cell_of_index(index);
+                    const double size = cell.size(), s = cell.x * size, t = cell.y * size;
+                    const glm::vec3 middle = middle_of(cell);
+                    sisters_[parent].set_direction(i, middle);
+                    solid_angles_[index] =
+                        static_cast<float>(cubemap::solid_angle(s, t, s + size, t + size));
+                    sisters_[parent].set_size(i, std::sqrt(solid_angles_[index]));
+                }
         });
 }
 
@@ -42,7 +71,8 @@ void SkyCells::set(const Relighter& relighter, std::span<const SharpLight> witho
         light_.set(relighter.environment(), *relighter.binning(), without);
     else
         light_.set_lights({});
-    for (std::uint32_t level = deepest_level_ + 1; level-- > 0;)
+    // Faces are always split, so nothing is kept of them.
+    for (std::uint32_t level = deepest_level_; level > 0; --level)
         set_level(level);
 }
 
@@ -54,33 +84,38 @@ void SkyCells::set_level(std::uint32_t level) {
     above_.resize(count);
     squares_above_.resize(count);
     const auto set = [&](std::size_t place) {
-        SkyCell& cell = cells_[first + place];
-        const float* rgb = light().data() + 3 * (first + place);
+        SisterCells& sisters = sisters_[(first + place - cubemap::NumFaces) / 4];
+        const std::size_t i = place % 4;
+        const float* rgb = light_.light().data() + 3 * (first + place);
+        sisters.set_light(i, {rgb[0], rgb[1], rgb[2]});
         const double power = cubemap::luminance(glm::dvec3(rgb[0], rgb[1], rgb[2]));
-        const double solid_angle = double{cell.size} * double{cell.size};
+        const double solid_angle{solid_angles_[first + place]};
         glm::dvec3 vector(0.0);
         double squares = 0.0;
         if (is_deepest) {
             // A square of evenly spread light has this variance, and so short a vector.
-            vector = power * (1.0 - solid_angle / 12.0) * glm::dvec3(cell.direction);
+            vector = power * (1.0 - solid_angle / 12.0) *
+                     glm::dvec3(sisters.at(SisterCells::X, i), sisters.at(SisterCells::Y, i),
+                                sisters.at(SisterCells::Z, i));
             squares = power * power / solid_angle;
         } else {
-            for (std::size_t i = 4 * place; i < 4 * place + 4; ++i) {
-                vector += vectors_[i];
-                squares += squares_[i];
+            for (std::size_t child = 4 * place; child < 4 * place + 4; ++child) {
+                vector += vectors_[child];
+                squares += squares_[child];
             }
         }
         above_[place] = vector;
         squares_above_[place] = squares;
-        cell.power = static_cast<float>(power);
         const double length = glm::length(vector);
         if (!(power > 0.0 && length > 0.0))
             return;
         if (!is_deepest)
-            cell.direction = vector / length;
-        cell.variance = static_cast<float>(std::max(1.0 - length / power, 0.0));
-        cell.contrast = static_cast<float>(
-            std::sqrt(std::max(squares * solid_angle / (power * power) - 1.0, 0.0)));
+            sisters.set_direction(i, vector / length);
+        sisters.at(SisterCells::Variance, i) =
+            static_cast<float>(std::max(1.0 - length / power, 0.0));
+        sisters.set_contrast(
+            i, static_cast<float>(std::min(
+                   std::sqrt(std::max(squares * solid_angle / (power * power) - 1.0, 0.0)), 1.0)));
     };
     files::parallel_for(files::IndexRange<std::size_t>(0, count, CellsPerTask),
                         [&](const auto& some) {

@@ -2,6 +2,7 @@
 // spread.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,24 +14,42 @@
 
 namespace relumine::relight {
 
-/// A cell of any level, as one light.
-struct SkyCell {
-    /// Where its light is, unit length; its middle where it is black.
-    glm::vec3 direction{0.0f, 0.0f, 1.0f};
-    /// Square root of its solid angle.
-    float size = 0.0f;
-    /// Luminance of its light, radiance times sr.
-    float power = 0.0f;
-    /// Variance of the light around its direction, of each of two axes, sr.
-    float variance = 0.0f;
-    /// Standard deviation of the radiance in the cell over its mean.
-    float contrast = 0.0f;
+/// Four lights side by side, such as the children of a cell: what a cut reads of them is in two
+/// lines of a cache.
+struct alignas(64) SisterCells {
+    /// What is known of a light.
+    enum Row : std::size_t {
+        /// Where it is, unit length; the cell's middle where it is black.
+        X,
+        Y,
+        Z,
+        /// Variance of the light around its direction, of each of two axes, sr.
+        Variance,
+        /// Radiance times sr.
+        Red,
+        Green,
+        Blue,
+        NumRows
+    };
+
+    /// A row after the other. A light's own are `Stride` apart.
+    static constexpr std::size_t Stride = 4;
+    std::array<float, NumRows * Stride> rows{};
+    /// High half: the square root of a cell's solid angle. Low half: the standard deviation of the
+    /// radiance in the cell over its mean, 1 at most. Each is the high half of a float.
+    std::array<std::uint32_t, Stride> size_and_contrast{};
+
+    [[nodiscard]] float& at(Row row, std::size_t i) { return rows[row * Stride + i]; }
+    void set_direction(std::size_t i, const glm::vec3& direction);
+    void set_light(std::size_t i, const glm::vec3& light);
+    void set_size(std::size_t i, float size);
+    void set_contrast(std::size_t i, float contrast);
 };
 
 /// The light of an environment at all levels.
 class SkyCells {
 public:
-    /// Memory:  40 bytes for each of about 8 * 4^level cells.
+    /// Memory:  44 bytes for each of about 8 * 4^level cells.
     explicit SkyCells(std::uint32_t deepest_level);
 
     /// Takes the environment of a Relighter, without the lights in `without`. It may have none,
@@ -40,18 +59,24 @@ public:
     /// Threads: parallel; the same bits for any number of threads.
     void set(const Relighter& relighter, std::span<const SharpLight> without);
 
-    [[nodiscard]] std::uint32_t deepest_level() const { return deepest_level_; }
-    /// [num_cells] by prt::cell_index().
-    [[nodiscard]] std::span<const SkyCell> cells() const { return cells_; }
-    /// [num_cells * 3] red, green, blue, radiance times sr.
-    [[nodiscard]] std::span<const float> light() const { return light_.light(); }
+    /// Returns the children of a cell by prt::cell_index().
+    [[nodiscard]] const SisterCells& children(std::uint32_t cell) const { return sisters_[cell]; }
+    /// Returns the number of a cell's first child; the others follow.
+    [[nodiscard]] static std::uint32_t first_child(std::uint32_t cell) {
+        return cubemap::NumFaces + 4 * cell;
+    }
+    /// Whether a cell has children.
+    [[nodiscard]] bool is_split(std::uint32_t cell) const { return cell < sisters_.size(); }
 
 private:
     void set_level(std::uint32_t level);
 
     std::uint32_t deepest_level_;
     LightPyramid light_;
-    std::vector<SkyCell> cells_;
+    /// [cells above the deepest level]
+    std::vector<SisterCells> sisters_;
+    /// [cells]
+    std::vector<float> solid_angles_;
     /// [cells of a level] of the level that was set last, and of the one above.
     std::vector<glm::dvec3> vectors_, above_;
     /// Sums of squared radiance times solid angle.

@@ -4,13 +4,38 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
 
-#include "cubemap/face.h"
 #include "files/parallel.h"
 
 namespace relumine::relight {
+
+/// A cell of the quadtree. The faces come first.
+struct VisibilityPyramid::Node {
+    /// The first of four consecutive nodes; 0 for a cluster.
+    std::uint32_t first_child = 0;
+    /// Its clusters are [first_leaf, end_leaf).
+    std::uint32_t first_leaf = 0, end_leaf = 0;
+    /// Direction and solid angle.
+    glm::vec4 cell{0.0f};
+
+    [[nodiscard]] bool is_cluster() const { return first_child == 0; }
+    /// Counts follow each other within a word of 64 clusters.
+    [[nodiscard]] bool is_quad() const {
+        return end_leaf - first_leaf == 4 && first_leaf / 64 == (end_leaf - 1) / 64;
+    }
+    [[nodiscard]] bool is_branch() const { return !is_cluster() && !is_quad(); }
+};
+
+/// What is kept of one block; links count from its own first entries.
+struct VisibilityPyramid::BlockEntries {
+    std::vector<std::uint8_t> branch_sights, parts, quad_sights;
+    std::vector<Links> links;
+    std::vector<std::uint32_t> quads;
+};
 
 namespace {
 
@@ -20,7 +45,7 @@ using Sums = std::array<float, prt::BlockSize>;
 /// there.
 constexpr float LeastCosine = 0.02f;
 
-/// Returns whether all bits of [first, end) are set, and whether none is.
+/// Whether all bits of [first, end) are set, and whether none is.
 struct RangeBits {
     bool all = true, none = true;
 };
@@ -39,206 +64,307 @@ RangeBits bits_of(std::uint32_t first, std::uint32_t end, const Word& word) {
     return result;
 }
 
+template<typename T>
+void append_all(std::vector<T>& to, const std::vector<T>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
+
 } // namespace
 
-/// Finds the means of one block.
+/// Finds the entries of one block after another.
 class VisibilityPyramid::Builder {
 public:
-    Builder(const VisibilityPyramid& pyramid, std::span<const glm::vec4> cells)
-        : pyramid_(pyramid), cells_(cells),
-          parts_(std::size_t{pyramid.num_stored_} * prt::BlockSize) {}
+    Builder(const VisibilityPyramid& pyramid, std::span<const Node> nodes)
+        : pyramid_(pyramid), nodes_(nodes), means_(nodes.size()), kinds_(nodes.size()) {}
 
-    /// Writes the bits of a block, and appends the parts of its mixed cells.
-    void run(std::size_t block, const glm::vec3& normal, std::span<std::uint64_t> visible,
-             std::span<std::uint64_t> mixed, std::vector<std::uint8_t>& parts) {
+    void run(std::size_t block, const glm::vec3& normal, std::span<Place> faces,
+             BlockEntries& entries) {
         block_ = block;
         normal_ = normal;
-        visible_ = visible;
-        mixed_ = mixed;
-        for (std::uint32_t face = 0; face < cubemap::NumFaces; ++face) {
+        for (std::uint32_t face = 0; face < faces.size(); ++face) {
             Sums sums{};
             static_cast<void>(add(face, sums));
+            faces[face] = {.kind = kinds_[face], .branch = face};
+            // A branch's number counts branches alone; faces before this one may be none.
+            for (std::uint32_t i = 0; i < face; ++i)
+                faces[face].branch -= nodes_[i].is_branch() ? 0 : 1;
+            if (kinds_[face] == Kind::Cluster)
+                faces[face].entry = pyramid_.entry_of(block, nodes_[face].first_leaf);
+            else if (is_inner(kinds_[face]))
+                faces[face].entry = open(face, entries);
         }
-        for (std::size_t w = 0; w < mixed.size(); ++w)
-            for (std::uint64_t bits = mixed[w]; bits != 0; bits &= bits - 1) {
-                const auto* from =
-                    parts_.data() +
-                    (w * 64 + static_cast<std::size_t>(std::countr_zero(bits))) * prt::BlockSize;
-                parts.insert(parts.end(), from, from + prt::BlockSize);
-            }
+        for (std::uint32_t face = 0; face < faces.size(); ++face)
+            if (kinds_[face] == Kind::Branch)
+                descend(face, faces[face].entry, entries);
     }
 
 private:
-    [[nodiscard]] float weight(std::uint32_t node) const {
-        const glm::vec4& cell = cells_[node];
-        return cell.w * std::max(glm::dot(normal_, glm::vec3(cell)), LeastCosine);
-    }
+    static bool is_inner(Kind kind) { return kind == Kind::Branch || kind == Kind::Quad; }
 
-    /// Adds the visible parts of a node times its weight, which it returns.
+    /// Adds the visible parts of a node times its weight, which it returns; finds the kinds of the
+    /// node and of what is mixed below it.
     float add(std::uint32_t index, Sums& sums) {
-        const Node& node = pyramid_.nodes_[index];
+        const Node& node = nodes_[index];
         const prt::VisibleCounts& counts = pyramid_.counts_;
         const auto in_word = [&](const std::vector<std::uint64_t>& bits) {
             return bits_of(node.first_leaf, node.end_leaf,
                            [&](std::uint32_t w) { return bits[counts.word(block_, w)]; });
         };
         const RangeBits visible = in_word(counts.visible);
-        const float own = weight(index);
+        const float own =
+            node.cell.w * std::max(glm::dot(normal_, glm::vec3(node.cell)), LeastCosine);
+        kinds_[index] = Kind::Hidden;
         if (visible.all) {
+            kinds_[index] = Kind::Visible;
             for (float& sum : sums)
                 sum += own;
-            set_visible(node);
             return own;
         }
         if (visible.none && in_word(counts.mixed).none)
             return own;
-        if (node.first_child == 0) {
+        if (node.is_cluster()) {
+            kinds_[index] = Kind::Cluster;
             const std::uint8_t* seen = counts.mixed_counts(
                 counts.word(block_, node.first_leaf / 64), node.first_leaf % 64);
             for (std::size_t i = 0; i < sums.size(); ++i)
                 sums[i] += own / 16.0f * seen[i];
             return own;
         }
+        kinds_[index] = node.is_quad() ? Kind::Quad : Kind::Branch;
         Sums below{};
         float weights = 0.0f;
         for (std::uint32_t i = 0; i < 4; ++i)
             weights += add(node.first_child + i, below);
         for (std::size_t i = 0; i < sums.size(); ++i)
             sums[i] += below[i];
-        if (node.stored != NotStored) {
-            set_bit(node, mixed_);
-            for (std::size_t i = 0; i < sums.size(); ++i)
-                parts_[node.stored * prt::BlockSize + i] = static_cast<std::uint8_t>(
-                    std::lround(std::min(below[i] / weights, 1.0f) * 255.0f));
-        }
+        for (std::size_t i = 0; i < sums.size(); ++i)
+            means_[index][i] =
+                static_cast<std::uint8_t>(std::lround(std::min(below[i] / weights, 1.0f) * 255.0f));
         return weights;
     }
 
-    static void set_bit(const Node& node, std::span<std::uint64_t> bits) {
-        bits[node.stored / 64] |= std::uint64_t{1} << node.stored % 64;
+    /// Appends the entry of a mixed inner node. Returns its number.
+    std::uint32_t open(std::uint32_t index, BlockEntries& entries) const {
+        const Node& node = nodes_[index];
+        unsigned sights = 0;
+        std::uint32_t first_mixed = node.end_leaf;
+        for (std::uint32_t i = 4; i-- > 0;) {
+            const Kind kind = kinds_[node.first_child + i];
+            if (kind == Kind::Visible)
+                sights |= 1u << i;
+            else if (kind != Kind::Hidden)
+                sights |= 16u << i, first_mixed = node.first_leaf + i;
+        }
+        if (node.is_quad()) {
+            entries.quad_sights.push_back(static_cast<std::uint8_t>(sights));
+            entries.quads.push_back(
+                first_mixed < node.end_leaf ? pyramid_.entry_of(block_, first_mixed) : 0);
+            return static_cast<std::uint32_t>(entries.quads.size() - 1);
+        }
+        entries.branch_sights.push_back(static_cast<std::uint8_t>(sights));
+        entries.parts.insert(entries.parts.end(), means_[index].begin(), means_[index].end());
+        entries.links.emplace_back();
+        return static_cast<std::uint32_t>(entries.links.size() - 1);
     }
 
-    /// Cells below a visible one are visible, too.
-    void set_visible(const Node& node) {
-        if (node.stored == NotStored)
-            return;
-        set_bit(node, visible_);
+    /// Appends what is mixed below a branch. Sisters come before what is below them, so their
+    /// entries follow each other.
+    void descend(std::uint32_t index, std::uint32_t entry, BlockEntries& entries) const {
+        const std::uint32_t first = nodes_[index].first_child;
+        entries.links[entry] = {.first_branch = static_cast<std::uint32_t>(entries.links.size()),
+                                .first_quad = static_cast<std::uint32_t>(entries.quads.size())};
+        std::array<std::uint32_t, 4> opened{};
         for (std::uint32_t i = 0; i < 4; ++i)
-            set_visible(pyramid_.nodes_[node.first_child + i]);
+            if (is_inner(kinds_[first + i]))
+                opened[i] = open(first + i, entries);
+        for (std::uint32_t i = 0; i < 4; ++i)
+            if (kinds_[first + i] == Kind::Branch)
+                descend(first + i, opened[i], entries);
     }
 
     const VisibilityPyramid& pyramid_;
-    /// [nodes] direction and solid angle.
-    std::span<const glm::vec4> cells_;
-    /// [num_stored * 16], of mixed ones.
-    std::vector<std::uint8_t> parts_;
+    std::span<const Node> nodes_;
+    /// [nodes] of mixed ones, in parts of 255.
+    std::vector<std::array<std::uint8_t, prt::BlockSize>> means_;
+    /// [nodes] those below a hidden or visible one are of another block.
+    std::vector<Kind> kinds_;
     std::size_t block_ = 0;
     glm::vec3 normal_{0.0f};
-    std::span<std::uint64_t> visible_, mixed_;
 };
 
-VisibilityPyramid::VisibilityPyramid(const prt::Transfer& transfer)
-    : counts_(transfer.counts), nodes_(cubemap::NumFaces) {
-    const std::vector<bool> flags = transfer.quadtree.split_flags();
-    std::size_t next_flag = 0;
-    for (std::uint32_t face = 0; face < cubemap::NumFaces; ++face)
-        add_nodes(face, flags, next_flag);
-    std::vector<glm::vec4> cells(nodes_.size());
-    const auto place = [&](const auto& self, std::uint32_t node, const prt::Cell& cell) -> void {
+namespace {
+
+/// Adds the nodes below one, in the order of prt::Quadtree::split_flags().
+template<typename Node>
+class NodeList {
+public:
+    explicit NodeList(const prt::Quadtree& quadtree)
+        : flags_(quadtree.split_flags()), nodes_(cubemap::NumFaces) {
+        for (const cubemap::Face face : cubemap::AllFaces)
+            add(static_cast<std::uint32_t>(face), prt::Cell{.face = face});
+    }
+    [[nodiscard]] std::vector<Node> take() { return std::move(nodes_); }
+
+private:
+    void add(std::uint32_t node, const prt::Cell& cell) {
         const double size = cell.size(), s = cell.x * size, t = cell.y * size;
-        cells[node] = glm::vec4(cubemap::direction(cell.face, s + 0.5 * size, t + 0.5 * size),
-                                cubemap::solid_angle(s, t, s + size, t + size));
-        for (std::uint32_t i = 0; nodes_[node].first_child != 0 && i < 4; ++i)
-            self(self, nodes_[node].first_child + i, cell.child(i));
-    };
-    for (const cubemap::Face face : cubemap::AllFaces)
-        place(place, static_cast<std::uint32_t>(face), prt::Cell{.face = face});
+        nodes_[node].cell = glm::vec4(cubemap::direction(cell.face, s + 0.5 * size, t + 0.5 * size),
+                                      cubemap::solid_angle(s, t, s + size, t + size));
+        nodes_[node].first_leaf = num_leaves_;
+        if (flags_[next_flag_++]) {
+            const auto first_child = static_cast<std::uint32_t>(nodes_.size());
+            nodes_[node].first_child = first_child;
+            nodes_.resize(nodes_.size() + 4);
+            for (std::uint32_t i = 0; i < 4; ++i)
+                add(first_child + i, cell.child(i));
+        } else {
+            ++num_leaves_;
+        }
+        nodes_[node].end_leaf = num_leaves_;
+    }
+
+    std::vector<bool> flags_;
+    std::size_t next_flag_ = 0;
+    std::uint32_t num_leaves_ = 0;
+    std::vector<Node> nodes_;
+};
+
+glm::vec3 mean_normal(const prt::Transfer& transfer, std::size_t block) {
+    glm::vec3 normal(0.0f);
+    const std::size_t first = block * prt::BlockSize;
+    for (std::size_t i = first; i < std::min(first + prt::BlockSize, transfer.num_receivers()); ++i)
+        normal += transfer.normals[i];
+    const float length = glm::length(normal);
+    return length > 0.0f ? normal / length : normal;
+}
+
+} // namespace
+
+VisibilityPyramid::VisibilityPyramid(const prt::Transfer& transfer) : counts_(transfer.counts) {
+    if (counts_.num_mixed() > std::numeric_limits<std::uint32_t>::max())
+        throw std::length_error("expected a scene with fewer partly visible cells");
+    const std::vector<Node> nodes = NodeList<Node>(transfer.quadtree).take();
+    std::uint32_t num_face_branches = 0;
+    for (std::uint32_t face = 0; face < cubemap::NumFaces; ++face)
+        num_face_branches += nodes[face].is_branch() ? 1 : 0;
+    families_.resize(num_face_branches);
+    leaves_.resize(num_face_branches);
+    for (std::uint32_t face = 0, branch = 0; face < cubemap::NumFaces; ++face)
+        if (nodes[face].is_branch())
+            add_families(nodes, face, branch++);
 
     const std::size_t num_blocks = counts_.num_blocks();
-    words_per_block_ = (num_stored_ + 63) / 64;
-    visible_.resize(num_blocks * words_per_block_);
-    mixed_.resize(visible_.size());
-    std::vector<std::vector<std::uint8_t>> of_block(num_blocks);
+    faces_.resize(num_blocks * cubemap::NumFaces);
+    std::vector<BlockEntries> of_block(num_blocks);
     constexpr std::size_t Grain = 16;
     files::parallel_for(
         files::IndexRange<std::size_t>(0, num_blocks, Grain), [&](const auto& some) {
-            Builder builder(*this, cells);
-            for (std::size_t block = some.begin(); block < some.end(); ++block) {
-                glm::vec3 normal(0.0f);
-                const std::size_t first = block * prt::BlockSize;
-                for (std::size_t i = first;
-                     i < std::min(first + prt::BlockSize, transfer.num_receivers()); ++i)
-                    normal += transfer.normals[i];
-                const float length = glm::length(normal);
-                const auto words = [&](std::vector<std::uint64_t>& bits) {
-                    return std::span(bits).subspan(block * words_per_block_, words_per_block_);
-                };
-                builder.run(block, length > 0.0f ? normal / length : normal, words(visible_),
-                            words(mixed_), of_block[block]);
-            }
+            Builder builder(*this, nodes);
+            for (std::size_t block = some.begin(); block < some.end(); ++block)
+                builder.run(block, mean_normal(transfer, block),
+                            std::span(faces_).subspan(block * cubemap::NumFaces, cubemap::NumFaces),
+                            of_block[block]);
         });
+    append(of_block);
+}
 
-    mixed_before_.resize(mixed_.size());
-    std::uint64_t before = 0;
-    for (std::size_t w = 0; w < mixed_.size(); ++w) {
-        mixed_before_[w] = static_cast<std::uint32_t>(before);
-        before += static_cast<std::uint64_t>(std::popcount(mixed_[w]));
+/// Finds the families of a branch, whose own is there already, and of those below it.
+void VisibilityPyramid::add_families(std::span<const Node> nodes, std::uint32_t node,
+                                     std::uint32_t branch) {
+    Family family{.first_branch = static_cast<std::uint32_t>(families_.size())};
+    std::uint32_t num_branches = 0;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+        const Node& child = nodes[nodes[node].first_child + i];
+        const auto bit = static_cast<std::uint8_t>(1u << i);
+        if (child.is_branch()) {
+            family.branches = static_cast<std::uint8_t>(family.branches | bit);
+            ++num_branches;
+        } else if (child.is_quad()) {
+            family.quads = static_cast<std::uint8_t>(family.quads | bit);
+        } else {
+            leaves_[branch][i] = child.first_leaf;
+        }
     }
-    if (before > std::numeric_limits<std::uint32_t>::max())
-        throw std::length_error("expected a scene with fewer partly visible cells");
-    parts_.reserve(before * prt::BlockSize);
-    for (std::vector<std::uint8_t>& parts : of_block) {
-        parts_.insert(parts_.end(), parts.begin(), parts.end());
-        parts = {};
+    families_[branch] = family;
+    families_.resize(families_.size() + num_branches);
+    leaves_.resize(families_.size());
+    for (std::uint32_t i = 0, next = family.first_branch; i < 4; ++i)
+        if ((family.branches >> i & 1u) != 0)
+            add_families(nodes, nodes[node].first_child + i, next++);
+}
+
+/// Appends the entries of all blocks, which it clears, and makes links count from the very first.
+void VisibilityPyramid::append(std::vector<BlockEntries>& blocks) {
+    std::size_t num_branches = 0, num_quads = 0;
+    for (const BlockEntries& block : blocks) {
+        num_branches += block.links.size();
+        num_quads += block.quads.size();
+    }
+    branch_sights_.reserve(num_branches);
+    links_.reserve(num_branches);
+    parts_.reserve(num_branches * prt::BlockSize);
+    quad_sights_.reserve(num_quads);
+    quads_.reserve(num_quads);
+    for (std::size_t block = 0; block < blocks.size(); ++block) {
+        BlockEntries& entries = blocks[block];
+        const auto first_branch = static_cast<std::uint32_t>(links_.size());
+        const auto first_quad = static_cast<std::uint32_t>(quads_.size());
+        for (Links& links : entries.links) {
+            links.first_branch += first_branch;
+            links.first_quad += first_quad;
+        }
+        for (std::uint32_t face = 0; face < cubemap::NumFaces; ++face) {
+            Place& place = faces_[block * cubemap::NumFaces + face];
+            place.entry += place.kind == Kind::Branch ? first_branch
+                           : place.kind == Kind::Quad ? first_quad
+                                                      : 0;
+        }
+        append_all(branch_sights_, entries.branch_sights);
+        append_all(links_, entries.links);
+        append_all(parts_, entries.parts);
+        append_all(quad_sights_, entries.quad_sights);
+        append_all(quads_, entries.quads);
+        entries = {};
     }
 }
 
-/// Adds the nodes below one, in the order of prt::Quadtree::split_flags().
-void VisibilityPyramid::add_nodes(std::uint32_t node, const std::vector<bool>& flags,
-                                  std::size_t& next_flag) {
-    nodes_[node].first_leaf = num_leaves_;
-    if (flags[next_flag++]) {
-        const auto first_child = static_cast<std::uint32_t>(nodes_.size());
-        nodes_[node].first_child = first_child;
-        nodes_.resize(nodes_.size() + 4);
-        for (std::uint32_t i = 0; i < 4; ++i)
-            add_nodes(first_child + i, flags, next_flag);
-    } else {
-        ++num_leaves_;
-    }
-    nodes_[node].end_leaf = num_leaves_;
-    if (nodes_[node].end_leaf - nodes_[node].first_leaf > 4)
-        nodes_[node].stored = num_stored_++;
+/// Returns the number of a mixed cluster's counts.
+std::uint32_t VisibilityPyramid::entry_of(std::size_t block, std::uint32_t leaf) const {
+    const std::uint8_t* own = counts_.mixed_counts(counts_.word(block, leaf / 64), leaf % 64);
+    return static_cast<std::uint32_t>(static_cast<std::size_t>(own - counts_.counts.data()) /
+                                      prt::BlockSize);
 }
 
 std::size_t VisibilityPyramid::num_bytes() const {
-    return nodes_.size() * sizeof(Node) + (visible_.size() + mixed_.size()) * 8 +
-           mixed_before_.size() * 4 + parts_.size();
+    return families_.size() * (sizeof(Family) + sizeof leaves_[0]) + faces_.size() * sizeof(Place) +
+           branch_sights_.size() + links_.size() * sizeof(Links) + parts_.size() +
+           quad_sights_.size() + quads_.size() * sizeof quads_[0];
 }
 
-VisibilityPyramid::Parts VisibilityPyramid::parts(std::size_t block, const Node& node) const {
+VisibilityPyramid::Parts VisibilityPyramid::parts(const Place& place) const {
     Parts result;
-    if (node.stored != NotStored) {
-        const std::size_t word = block * words_per_block_ + node.stored / 64;
-        const std::uint64_t below = mixed_[word] & ((std::uint64_t{1} << node.stored % 64) - 1);
-        const std::size_t place =
-            mixed_before_[word] + static_cast<std::size_t>(std::popcount(below));
-        std::copy_n(parts_.data() + place * prt::BlockSize, prt::BlockSize, result.parts.data());
-        result.unit = 1.0f / 255.0f;
-        return result;
+    switch (place.kind) {
+    case Kind::Hidden:
+        break;
+    case Kind::Visible:
+        result.parts.fill(1);
+        break;
+    case Kind::Branch:
+    case Kind::Cluster:
+        std::copy_n(first_part(place), prt::BlockSize, result.parts.data());
+        result.unit = place.kind == Kind::Branch ? 1.0f / 255.0f : 1.0f / 16.0f;
+        break;
+    case Kind::Quad: {
+        const Sights seen = sights(place);
+        const std::uint8_t* counts = first_part(place);
+        result.parts.fill(static_cast<std::uint8_t>(16 * num_bits(seen.visible)));
+        for (std::uint32_t child = num_bits(seen.mixed); child > 0; --child)
+            for (std::size_t i = 0; i < prt::BlockSize; ++i)
+                result.parts[i] = static_cast<std::uint8_t>(result.parts[i] + *counts++);
+        result.unit = 1.0f / 64.0f;
+        break;
     }
-    for (std::uint32_t leaf = node.first_leaf; leaf < node.end_leaf; ++leaf) {
-        const Sight seen = sight_of_leaf(block, leaf);
-        const std::uint8_t* own =
-            seen == Sight::Mixed ? counts_.mixed_counts(counts_.word(block, leaf / 64), leaf % 64)
-                                 : nullptr;
-        for (std::size_t i = 0; i < prt::BlockSize; ++i)
-            result.parts[i] = static_cast<std::uint8_t>(result.parts[i] + (own != nullptr ? own[i]
-                                                                           : seen == Sight::Visible
-                                                                               ? std::uint8_t{16}
-                                                                               : 0));
     }
-    result.unit = 1.0f / (16.0f * static_cast<float>(node.end_leaf - node.first_leaf));
     return result;
 }
 

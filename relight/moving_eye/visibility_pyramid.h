@@ -3,12 +3,12 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "cubemap/face.h"
 #include "prt/transfer/transfer.h"
 
 namespace relumine::relight {
@@ -16,27 +16,34 @@ namespace relumine::relight {
 /// The mean visible part of every inner cell of a transfer's quadtree, per block of 16 receivers.
 ///
 /// Means are weighted by solid angle and by the cosine to the block's mean normal: below the
-/// horizon nothing counts. A cell whose four children are clusters has its mean from their counts
-/// when it is asked for, so only the cells above are stored.
+/// horizon nothing counts. Only what a block sees in part is kept, as a tree: each entry knows the
+/// entries of its children, so a cut that descends looks nothing up. Four clusters below one cell
+/// have the mean of their counts when it is asked for.
 ///
 /// Cost:    O(mixed pairs of blocks and inner cells), once per scene; parallel.
-/// Memory:  16 bytes for each mixed pair of a block and a stored cell, and 2.5 bits for each pair;
-///          below that of the counts.
+/// Memory:  25 bytes for each mixed pair of a block and a cell that is not above clusters alone,
+///          5 bytes where it is; below that of the counts.
 class VisibilityPyramid {
 public:
-    /// Of a cell, by all receivers of a block.
-    enum class Sight : std::uint8_t { Hidden, Mixed, Visible };
+    /// What a block sees of a cell: nothing or all of it, or a part. A quad has four clusters
+    /// below it, a branch has other cells, and a cluster's cells are all seen alike.
+    enum class Kind : std::uint8_t { Hidden, Visible, Branch, Quad, Cluster };
 
-    /// A cell of the quadtree. The faces come first.
-    struct Node {
-        /// The first of four consecutive nodes; 0 for a cluster.
-        std::uint32_t first_child = 0;
-        /// Its clusters are [first_leaf, end_leaf).
-        std::uint32_t first_leaf = 0, end_leaf = 0;
-        /// Its number among the stored cells; NotStored for others.
-        std::uint32_t stored = NotStored;
+    /// A cell as a block sees it.
+    struct Place {
+        Kind kind = Kind::Hidden;
+        /// The entry of a branch or a quad; the counts' of a cluster.
+        std::uint32_t entry = 0;
+        /// A branch's own number, for all blocks.
+        std::uint32_t branch = 0;
     };
-    static constexpr std::uint32_t NotStored = ~std::uint32_t{0};
+
+    /// Of the four children of a cell, a bit each.
+    struct Sights {
+        std::uint32_t visible = 0, mixed = 0;
+        /// Mixed ones with clusters below.
+        std::uint32_t divided = 0;
+    };
 
     /// Visible parts of 16 receivers, in units of `unit`.
     struct Parts {
@@ -45,52 +52,113 @@ public:
     };
 
     /// The transfer must outlive this object.
+    ///
+    /// Throws:  std::length_error for more than 2^32 mixed pairs.
     explicit VisibilityPyramid(const prt::Transfer& transfer);
 
-    [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
     [[nodiscard]] std::size_t num_bytes() const;
 
-    [[nodiscard]] Sight sight(std::size_t block, const Node& node) const {
-        if (node.stored != NotStored) {
-            const std::size_t word = block * words_per_block_ + node.stored / 64;
-            return sight_of(visible_[word] >> node.stored % 64, mixed_[word] >> node.stored % 64);
-        }
-        if (node.first_child == 0)
-            return sight_of_leaf(block, node.first_leaf);
-        const Sight first = sight_of_leaf(block, node.first_leaf);
-        for (std::uint32_t i = 1; i < 4; ++i)
-            if (first == Sight::Mixed || sight_of_leaf(block, node.first_leaf + i) != first)
-                return Sight::Mixed;
-        return first;
+    [[nodiscard]] Place face(std::size_t block, std::uint32_t face) const {
+        return faces_[block * cubemap::NumFaces + face];
     }
 
-    /// Returns what each receiver sees of a mixed node.
-    [[nodiscard]] Parts parts(std::size_t block, const Node& node) const;
+    /// Returns how the children are seen of a cell that is not hidden. A cluster's children are
+    /// seen as the cluster is.
+    [[nodiscard]] Sights sights(const Place& place) const {
+        constexpr std::uint32_t All = 0xf;
+        switch (place.kind) {
+        case Kind::Branch: {
+            const std::uint32_t bits = branch_sights_[place.entry], mixed = bits >> 4u;
+            const Family& family = families_[place.branch];
+            return {.visible = bits & All,
+                    .mixed = mixed,
+                    .divided = mixed & (family.branches | family.quads)};
+        }
+        case Kind::Quad: {
+            const std::uint32_t bits = quad_sights_[place.entry];
+            return {.visible = bits & All, .mixed = bits >> 4u};
+        }
+        case Kind::Visible:
+            return {.visible = All};
+        default:
+            return {.mixed = All};
+        }
+    }
+
+    /// Returns child i of a cell, which its sights say is seen.
+    [[nodiscard]] Place child(std::size_t block, const Place& place, const Sights& sights,
+                              std::uint32_t i) const {
+        const std::uint32_t bit = 1u << i, before = sights.mixed & (bit - 1);
+        if ((sights.visible & bit) != 0)
+            return {.kind = Kind::Visible};
+        if (place.kind == Kind::Quad)
+            return {.kind = Kind::Cluster, .entry = quads_[place.entry] + num_bits(before)};
+        if (place.kind != Kind::Branch)
+            return place;
+        const Family& family = families_[place.branch];
+        const Links& links = links_[place.entry];
+        if ((family.branches & bit) != 0)
+            return {.kind = Kind::Branch,
+                    .entry = links.first_branch + num_bits(before & family.branches),
+                    .branch = family.first_branch + num_bits(family.branches & (bit - 1))};
+        if ((family.quads & bit) != 0)
+            return {.kind = Kind::Quad,
+                    .entry = links.first_quad + num_bits(before & family.quads)};
+        return {.kind = Kind::Cluster, .entry = entry_of(block, leaves_[place.branch][i])};
+    }
+
+    /// Returns where the parts of a mixed cell begin, or the counts of a quad's mixed clusters.
+    [[nodiscard]] const std::uint8_t* first_part(const Place& mixed) const {
+        const std::vector<std::uint8_t>& all = mixed.kind == Kind::Branch ? parts_ : counts_.counts;
+        const std::uint32_t entry = mixed.kind == Kind::Quad ? quads_[mixed.entry] : mixed.entry;
+        return all.data() + std::size_t{entry} * prt::BlockSize;
+    }
+
+    /// Returns what each receiver sees of a cell.
+    [[nodiscard]] Parts parts(const Place& place) const;
 
 private:
     class Builder;
+    struct Node;
+    struct BlockEntries;
 
-    static Sight sight_of(std::uint64_t visible, std::uint64_t mixed) {
-        return (visible & 1u) != 0 ? Sight::Visible
-               : (mixed & 1u) != 0 ? Sight::Mixed
-                                   : Sight::Hidden;
+    /// The children of a branch, for all blocks.
+    struct Family {
+        /// Those of its children that are branches follow each other.
+        std::uint32_t first_branch = 0;
+        /// Bits of its children that are branches, and that are quads; others are clusters.
+        std::uint8_t branches = 0, quads = 0;
+    };
+    /// The first entries of a branch's mixed children, in one block.
+    struct Links {
+        std::uint32_t first_branch = 0, first_quad = 0;
+    };
+
+    /// Of four bits. Most processors' own instruction is not known at compile time.
+    static constexpr std::uint32_t num_bits(std::uint32_t bits) {
+        return static_cast<std::uint32_t>(0x4332322132212110u >> 4u * bits & 7u);
     }
-    [[nodiscard]] Sight sight_of_leaf(std::size_t block, std::uint32_t leaf) const {
-        const std::size_t word = counts_.word(block, leaf / 64);
-        return sight_of(counts_.visible[word] >> leaf % 64, counts_.mixed[word] >> leaf % 64);
-    }
-    void add_nodes(std::uint32_t node, const std::vector<bool>& flags, std::size_t& next_flag);
+    [[nodiscard]] std::uint32_t entry_of(std::size_t block, std::uint32_t leaf) const;
+    void add_families(std::span<const Node> nodes, std::uint32_t node, std::uint32_t branch);
+    void append(std::vector<BlockEntries>& blocks);
 
     const prt::VisibleCounts& counts_;
-    std::vector<Node> nodes_;
-    std::uint32_t num_leaves_ = 0, num_stored_ = 0;
-    std::size_t words_per_block_ = 0;
-    /// [num_blocks * words_per_block], a bit for each stored cell, as prt::VisibleCounts.
-    std::vector<std::uint64_t> visible_, mixed_;
-    /// [num_blocks * words_per_block]: mixed pairs before the word.
-    std::vector<std::uint32_t> mixed_before_;
-    /// [num_mixed * 16] in parts of 255.
+    /// [num_branches]
+    std::vector<Family> families_;
+    /// [num_branches] the numbers of children that are clusters.
+    std::vector<std::array<std::uint32_t, 4>> leaves_;
+
+    /// [num_blocks * 6]
+    std::vector<Place> faces_;
+    /// [num_mixed_branches] depth first in each block: the children's bits, visible ones in the
+    /// low half and mixed ones in the high half, and their entries.
+    std::vector<std::uint8_t> branch_sights_;
+    std::vector<Links> links_;
+    /// [num_mixed_branches * 16] in parts of 255.
     std::vector<std::uint8_t> parts_;
+    /// [num_mixed_quads] bits as of branches; the counts of the first mixed cluster.
+    std::vector<std::uint8_t> quad_sights_;
+    std::vector<std::uint32_t> quads_;
 };
 
 } // namespace relumine::relight

@@ -17,6 +17,7 @@
 #include "relight/kernels/cluster_lights.h"
 #include "relight/moving_eye/moving_eye.h"
 #include "relight/reference/exact.h"
+#include "relight/reference/flicker.h"
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
 #include "tests/bench/process_usage.h"
@@ -37,7 +38,11 @@ struct Settings {
     std::uint32_t resolution = 128;
     std::size_t num_eyes = 20;
     /// Of each eye.
-    std::size_t num_samples = 25;
+    std::size_t num_samples = 200;
+    /// Of a turntable, whose flicker is measured; 0: of none.
+    std::size_t num_frames = 0;
+    /// Whether other ways are measured, too.
+    int beside = 1;
 };
 
 /// Eyes all around and above, as far as the automatic camera.
@@ -162,6 +167,44 @@ std::vector<glm::dvec3> prefiltered(const LitScene& lit, const Samples& samples,
     return all;
 }
 
+/// A turntable: how far frames change, against exact integration of some receivers.
+void print_turntable(const Settings& settings, const LitScene& lit, relight::MovingEye& live,
+                     std::span<const prt::Surface> surfaces, const bench::NamedMap& map) {
+    const Scene& scene = lit.scene();
+    const Camera camera = camera_of(scene);
+    prt::Receivers all = scene.receivers;
+    all.surfaces.assign(surfaces.begin(), surfaces.end());
+    std::vector<std::uint32_t> chosen;
+    for (std::size_t i = 0; i < settings.num_samples; ++i)
+        chosen.push_back(static_cast<std::uint32_t>(i * all.size() / settings.num_samples));
+    // A picture that stands still has no change of its own.
+    const std::vector<glm::dvec3> still(chosen.size(), glm::dvec3(0.0));
+    relight::FlickerMeter of_looks, of_exact, between;
+    for (std::size_t frame = 0; frame < settings.num_frames; ++frame) {
+        const double turn = 2.0 * std::numbers::pi * static_cast<double>(frame) /
+                            static_cast<double>(settings.num_frames);
+        const glm::dvec3 arm(camera.eye - camera.target);
+        const glm::vec3 eye =
+            camera.target + glm::vec3(std::cos(turn) * arm.x + std::sin(turn) * arm.z, arm.y,
+                                      std::cos(turn) * arm.z - std::sin(turn) * arm.x);
+        prt::look_from(all, eye);
+        const std::vector<glm::dvec3> exact = relight::exact_radiance(
+            all, chosen, lit.rays().blockers(), map.map, {.bias = scene.settings.bias});
+        const auto radiance = live.look(eye, lit.radiance(), {.tolerance = settings.tolerance});
+        std::vector<glm::dvec3> seen;
+        for (const std::uint32_t receiver : chosen)
+            seen.emplace_back(radiance[receiver]);
+        of_looks.add_frame(seen, still);
+        of_exact.add_frame(exact, still);
+        between.add_frame(seen, exact);
+    }
+    const double change = of_exact.report().mean_inconsistency;
+    fmt::print("| {} | turntable of {} frames: change {:.5f}, exact {:.5f}, ratio {:.3f}; "
+               "inconsistency {:.5f}\n",
+               map.name, settings.num_frames, of_looks.report().mean_inconsistency, change,
+               of_looks.report().mean_inconsistency / change, between.report().mean_inconsistency);
+}
+
 void print_rows(float roughness, const Settings& settings, LitScene& lit,
                 const std::vector<bench::NamedMap>& maps) {
     const Scene& scene = lit.scene();
@@ -195,13 +238,18 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
         live.set_light(lit.relighter());
         const double set_seconds =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - before_set).count();
-        const std::vector<glm::dvec3> exact =
-            relight::exact_radiance(samples.receivers, order, lit.rays().blockers(), map.map,
-                                    {.bias = scene.settings.bias});
         Error error, matt, plain, open;
-        const PlainSum sum = plain_sum(samples, lit.relighter());
-        const std::vector<glm::dvec3> filtered = prefiltered(lit, samples, order, exact, map.map);
-        for (std::size_t i = 0; i < exact.size(); ++i) {
+        std::vector<glm::dvec3> exact, filtered;
+        PlainSum sum;
+        if (settings.num_samples != 0) {
+            exact = relight::exact_radiance(samples.receivers, order, lit.rays().blockers(),
+                                            map.map, {.bias = scene.settings.bias});
+        }
+        if (settings.num_samples != 0 && settings.beside != 0) {
+            sum = plain_sum(samples, lit.relighter());
+            filtered = prefiltered(lit, samples, order, exact, map.map);
+        }
+        for (std::size_t i = 0; i < filtered.size(); ++i) {
             plain.add(sum.radiance[i], exact[i]);
             open.add(filtered[i], exact[i]);
         }
@@ -223,12 +271,19 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
         // The sum's time for all receivers that a look lights
         const double plain_ms = 1e3 * sum.seconds / static_cast<double>(samples.index.size()) *
                                 blocks / num_eyes * prt::BlockSize;
-        fmt::print("| {} | {:.0f} cells | {:.1f} cpu ms, {:.1f} ms | {:.4f} | plain sum {:.4f}, "
-                   "{:.0f} cpu ms | no visibility {:.3f} | matt {:.3f} | {} sharp, set {:.1f} ms\n",
-                   map.name, cells / blocks, 1e3 * (bench::cpu_seconds() - cpu) / num_eyes,
-                   1e3 * seconds / num_eyes, error.relative_l2(), plain.relative_l2(), plain_ms,
-                   open.relative_l2(), matt.relative_l2(), lit.relighter().sharp_lights().size(),
-                   1e3 * set_seconds);
+        fmt::print("| {} | {:.0f} blocks, {:.0f} cells | {:.1f} cpu ms, {:.1f} ms | {} sharp, set "
+                   "{:.1f} ms",
+                   map.name, blocks / num_eyes, cells / blocks,
+                   1e3 * (bench::cpu_seconds() - cpu) / num_eyes, 1e3 * seconds / num_eyes,
+                   live.num_traced(), 1e3 * set_seconds);
+        if (!exact.empty())
+            fmt::print(" | {:.4f} | matt {:.3f}", error.relative_l2(), matt.relative_l2());
+        if (!filtered.empty())
+            fmt::print(" | plain sum {:.4f}, {:.0f} cpu ms | no visibility {:.3f}",
+                       plain.relative_l2(), plain_ms, open.relative_l2());
+        fmt::print("\n");
+        if (settings.num_frames != 0 && settings.num_samples != 0)
+            print_turntable(settings, lit, live, surfaces, map);
         std::fflush(stdout);
     }
 }
@@ -247,7 +302,10 @@ int main(int argc, char** argv) {
     program.add("--glossy-tolerance", settings.tolerance, "of the highlights");
     program.add("--resolution", settings.resolution, "R of the environments");
     program.add("--eyes", settings.num_eyes, "eyes around the mesh");
-    program.add("--samples", settings.num_samples, "receivers of each eye");
+    program.add("--turntable", settings.num_frames, "frames of a turntable, 0 for none");
+    program.add("--beside", settings.beside, "the plain sum and no visibility, too: 1 or 0");
+    program.add("--samples", settings.num_samples,
+                "receivers of each eye; 0: only times are measured");
     return program.run(argc, argv, [&] {
         if (inputs.is_tiny()) {
             settings.roughness = {0.3f};
