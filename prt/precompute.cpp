@@ -9,6 +9,9 @@
 
 #include "prt/clusters/clustering.h"
 #include "prt/precompute_context.h"
+#include "prt/receivers/receiver_order.h"
+#include "prt/receivers/receiver_sample.h"
+#include "prt/tolerance.h"
 #include "prt/visibility/ray_scene.h"
 
 namespace relumine::prt {
@@ -54,22 +57,49 @@ namespace {
 /// the right part of the light, within 0.01.
 constexpr std::uint32_t MinLevelOfChance = 3;
 
+/// Chooses clusters from a sample of the receivers: with the tolerance, or the least larger one
+/// that makes no more than are wanted. Returns order and quadtree.
+Transfer chosen(const Receivers& receivers, const Blockers& blockers, PrecomputeOptions options,
+                const Work& work, const PrecomputeContext& context,
+                PrecomputeStatistics& statistics) {
+    constexpr float Growth = 1.25f;
+    Transfer result;
+    result.order = context.given != nullptr ? context.given->order : spatial_order(receivers);
+    const Receivers sample = sample_of(receivers, result.order);
+    // The same RMS for fewer receivers.
+    options.tolerance = rms_tolerance(options.tolerance, options.epsilon, receivers.size());
+    options.epsilon = {};
+    while (true)
+        try {
+            result.quadtree =
+                Clustering(sample, blockers, options, work, {}).run(statistics).quadtree;
+            return result;
+        } catch (const TooManyClusters&) {
+            options.tolerance = std::max(options.tolerance, 1e-6f) * Growth;
+            statistics.grown_tolerance = options.tolerance;
+        }
+}
+
 /// Where light passes surfaces by chance, clusters are chosen as if it did not, and then counted:
 /// no cell could ever have nine transfers that agree.
 Transfer found(const Receivers& receivers, const Blockers& blockers,
                const PrecomputeOptions& options, const Work& work, const PrecomputeContext& context,
                PrecomputeStatistics& statistics) {
-    const Blockers* settled = context.has_clusters ? nullptr : blockers.settled();
-    if (settled == nullptr)
+    const Blockers* settled = blockers.settled();
+    if (context.has_clusters || (settled == nullptr && !options.most_clusters))
         return Clustering(receivers, blockers, options, work, context).run(statistics);
-    const Work choice{.team = work.team, .stop = work.stop};
-    PrecomputeOptions finer = options;
-    finer.min_level = std::max(options.min_level, MinLevelOfChance);
-    Transfer chosen = Clustering(receivers, *settled, finer, choice, context).run(statistics);
-    chosen.counts = {};
-    return Clustering(
-               receivers, blockers, options, work,
-               {.column_scale = context.column_scale, .given = &chosen, .has_clusters = true})
+    PrecomputeOptions of_choice = options;
+    if (settled != nullptr)
+        of_choice.min_level = std::max(options.min_level, MinLevelOfChance);
+    if (of_choice.most_clusters) // no tolerance makes fewer
+        of_choice.most_clusters =
+            std::max(*of_choice.most_clusters, std::uint32_t{6} << (2 * of_choice.min_level));
+    const Transfer plan = chosen(receivers, settled != nullptr ? *settled : blockers, of_choice,
+                                 {.team = work.team, .stop = work.stop}, context, statistics);
+    PrecomputeOptions of_counts = options;
+    of_counts.most_clusters = {};
+    return Clustering(receivers, blockers, of_counts, work,
+                      {.column_scale = context.column_scale, .given = &plan, .has_clusters = true})
         .run(statistics);
 }
 

@@ -17,6 +17,9 @@ struct PrecomputeOptions {
     float tolerance = 0.0135f;
     /// The paper's form [JN, Eq. 11]: ||T_C - T_l|| / N < epsilon. Overrides tolerance.
     std::optional<float> epsilon = {};
+    /// Where given, the tolerance grows until no more clusters are needed, and the clusters are
+    /// chosen from a ReceiverSample: the RMS of a cell is that of the sample.
+    std::optional<std::uint32_t> most_clusters = {};
     /// Every cell is split at least this often: nine samples can miss a thin blocker.
     std::uint32_t min_level = 3;
     /// R, 1..16384: cells stop at single texels of a 6 x R x R environment.
@@ -48,6 +51,8 @@ struct PrecomputeStatistics {
     /// Of the planes of visibility, at most at once
     std::uint64_t plane_bytes = 0;
     std::uint32_t deepest_level = 0;
+    /// That the clusters were chosen with, where it grew; else 0
+    float grown_tolerance = 0.0f;
     double seconds = 0.0;
     /// The part of `seconds` for checkpoints.
     double seconds_checkpoints = 0.0;

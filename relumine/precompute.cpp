@@ -210,6 +210,8 @@ private:
         place_receivers(scene_, options_, work_, rays, prefix_, report_);
         require_few_clusters();
         report_.num_receivers = scene_.receivers.size();
+        if (!options_.tolerance && !options_.epsilon)
+            limit_clusters(rays);
         set_surfaces();
         poll();
         if (prt::has_highlights(scene_.receivers) && !are_traced()) {
@@ -225,6 +227,15 @@ private:
                              .is_automatic = !options_.bounce_tolerance.has_value()};
         }
         return rays;
+    }
+
+    void limit_clusters(const prt::RayScene& rays) {
+        const bool is_thin = options_.blockers == nullptr && rays.settled() != nullptr;
+        if (are_pixels(options_))
+            scene_.settings.most_clusters =
+                is_thin ? MostClustersOfThinPixels : MostClustersOfPixels;
+        else if (is_thin)
+            scene_.settings.most_clusters = MostClustersOfThin;
     }
 
     /// Whether rays find the highlights when the scene is lit.

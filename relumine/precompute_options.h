@@ -113,6 +113,13 @@ enum class Warning {
 /// of the clusters.
 inline constexpr float ToleranceOfRefined = 0.025f;
 
+/// Where no tolerance is given, it grows until pixels have at most so many clusters: what a still
+/// is worth.
+inline constexpr std::uint32_t MostClustersOfPixels = 2048;
+/// The same where light passes surfaces by chance (blended, glass), each ray of which costs ten
+/// times as much: of other receivers, and of pixels.
+inline constexpr std::uint32_t MostClustersOfThin = 4096, MostClustersOfThinPixels = 512;
+
 /// The same of points: with cells of prt::MinLevelOfPoints, nothing more is split as a rule.
 inline constexpr float ToleranceOfPoints = 0.1f;
 

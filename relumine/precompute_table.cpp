@@ -306,7 +306,8 @@ OptionTable options_of(PrecomputeOptions& o) {
         row("--tolerance", o.tolerance,
             fmt::format(
                 "RMS error of the transfer allowed within a cluster, 1/sr ({}; {} where "
-                "the mesh or its floor is refined by itself, and for pixels; {} for points)",
+                "the mesh or its floor is refined by itself, and for pixels; {} for points; "
+                "unless given, more where there would be many clusters of pixels, or glass)",
                 prt::PrecomputeOptions{}.tolerance, ToleranceOfRefined, ToleranceOfPoints),
             {.min = 0, .max = 1e6}),
         row("--epsilon", o.epsilon,

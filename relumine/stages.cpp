@@ -119,6 +119,7 @@ prt::PrecomputeOptions Stages::cluster_options() const {
     const prt::SceneSettings& settings = scene_.settings;
     return {.tolerance = settings.tolerance,
             .epsilon = settings.epsilon,
+            .most_clusters = settings.most_clusters,
             .min_level = settings.min_level,
             .face_resolution = settings.face_resolution,
             .bias = settings.bias};
@@ -145,6 +146,8 @@ void Stages::find_clusters(const prt::RayScene& rays, const Find& find) {
         prt::PrecomputeOptions clusters = cluster_options();
         limit_clusters(blockers, clusters);
         find(blockers, clusters, work_for(Stage::Clusters, more_follows));
+        if (report_.clusters.grown_tolerance > 0.0f)
+            scene_.settings.tolerance = report_.clusters.grown_tolerance;
     } catch (const std::invalid_argument& error) {
         throw std::invalid_argument(options_.prefix + error.what());
     } catch (const prt::TooLarge& error) {

@@ -269,6 +269,9 @@ void Clustering::decide_batch() {
         // Every waiting cell becomes one cluster at least.
         const std::size_t num_waiting =
             batch_.size() - slice.size() + pending_.size() + 4 * (slice.size() - num_found);
+        if (options_.most_clusters &&
+            clusters_.size() + num_found + num_waiting > *options_.most_clusters)
+            throw TooManyClusters();
         num_bytes += num_waiting * min_bytes;
         num_bytes =
             largest_of_all(work_.team, num_bytes > options_.max_column_bytes ? num_bytes : 0);

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,6 +23,9 @@
 #include "prt/steps.h"
 
 namespace relumine::prt {
+
+/// Thrown as soon as there will be more than PrecomputeOptions::most_clusters.
+struct TooManyClusters : std::exception {};
 
 /// Tests cells in batches: the samples of a batch are traced together, then each cell is decided on
 /// its own.

@@ -12,56 +12,16 @@
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/precompute_context.h"
 #include "prt/receivers/receiver_order.h"
+#include "prt/receivers/receiver_sample.h"
 #include "prt/tolerance.h"
 
 namespace relumine::prt {
 
 namespace {
 
-constexpr std::size_t MostBlocksForOne = 16;
-constexpr std::size_t LeastSampledBlocks = 1024;
-
 /// Room for planes in all parts together: with less, many directions on borders between batches are
 /// traced again. The limit must not depend on the number of parts.
 constexpr std::uint64_t LeastPlanes = 2048;
-
-/// Every n-th block of neighbours.
-class Sample {
-public:
-    explicit Sample(std::size_t num_receivers)
-        : num_receivers_(num_receivers), num_all_((num_receivers + BlockSize - 1) / BlockSize),
-          step_(std::clamp<std::size_t>(num_all_ / LeastSampledBlocks, 1, MostBlocksForOne)) {}
-
-    [[nodiscard]] std::size_t num_blocks() const {
-        return (num_all_ - step_ / 2 + step_ - 1) / step_;
-    }
-    /// The place of the first receiver of a block of the sample.
-    [[nodiscard]] std::size_t begin(std::size_t block) const {
-        return (step_ / 2 + block * step_) * BlockSize;
-    }
-    [[nodiscard]] std::size_t end(std::size_t block) const {
-        return std::min(begin(block) + BlockSize, num_receivers_);
-    }
-    /// The block of the sample for a place among all receivers.
-    [[nodiscard]] std::size_t block_for(std::size_t place) const {
-        return std::min(place / BlockSize / step_, num_blocks() - 1);
-    }
-
-private:
-    std::size_t num_receivers_;
-    std::size_t num_all_;
-    std::size_t step_;
-};
-
-Receivers sample_of(const Receivers& receivers, std::span<const std::uint32_t> order) {
-    const Sample blocks(order.size());
-    std::vector<std::uint32_t> chosen;
-    for (std::size_t block = 0; block < blocks.num_blocks(); ++block)
-        chosen.insert(chosen.end(),
-                      order.begin() + static_cast<std::ptrdiff_t>(blocks.begin(block)),
-                      order.begin() + static_cast<std::ptrdiff_t>(blocks.end(block)));
-    return sampled(receivers, chosen);
-}
 
 /// Puts the counts of all parts together, tile by tile.
 VisibleCounts joined_counts(const Transfer& plan, std::span<PartLight> parts) {
@@ -140,13 +100,13 @@ Transfer plan_clusters(const Receivers& receivers, const Blockers& blockers,
 }
 
 std::size_t num_sampled_receivers(std::size_t num_receivers) {
-    const Sample blocks(num_receivers);
+    const ReceiverSample blocks(num_receivers);
     const std::size_t last = blocks.num_blocks() - 1;
     return last * BlockSize + blocks.end(last) - blocks.begin(last);
 }
 
 std::vector<std::uint32_t> sampled_receivers(const Transfer& plan) {
-    const Sample blocks(plan.num_receivers());
+    const ReceiverSample blocks(plan.num_receivers());
     std::vector<std::uint32_t> result(plan.num_receivers());
     files::parallel_for(std::size_t{0}, result.size(), [&](std::size_t place) {
         const std::size_t block = blocks.block_for(place);

@@ -19,8 +19,7 @@
 
 namespace relumine::prt {
 
-/// Chooses the clusters as precompute() does, from every n-th block of 16 neighbours: n is 16 for
-/// many receivers, less where fewer than 1,024 blocks would remain. Returns a transfer with
+/// Chooses the clusters as precompute() does, from a ReceiverSample. Returns a transfer with
 /// quadtree, order and normals, whose counts are missing. `of_sample` receives the transfer of the
 /// sample, whose receivers are numbered as they come in spatial order.
 ///

@@ -90,6 +90,8 @@ Fingerprint fingerprint(const Scene& scene, std::optional<float> bounce_toleranc
         {"face resolution", text(settings.face_resolution)},
         {"bias", text(settings.bias)},
         {"processor", arithmetic()}};
+    if (settings.most_clusters)
+        result.emplace_back("most clusters", text(*settings.most_clusters));
     if (mesh::lets_light_pass(blockers))
         result.emplace_back("alpha", text_of_alpha(blockers));
     if (bounce_tolerance) {

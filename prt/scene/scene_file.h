@@ -23,6 +23,8 @@ struct SceneSettings {
     float tolerance = 0.0f;
     /// Set where the paper's form was used instead.
     std::optional<float> epsilon = {};
+    /// PrecomputeOptions::most_clusters. `tolerance` is what it grew to.
+    std::optional<std::uint32_t> most_clusters = {};
     std::uint32_t min_level = 0;
     std::uint32_t face_resolution = 0;
     /// In the mesh's unit.

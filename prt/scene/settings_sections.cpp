@@ -40,6 +40,7 @@ void settings_members(JsonMembers& member, SceneSettings& settings) {
     settings.source_hash = std::stoull(hash, nullptr, 16);
     member.unusual("floor_added", settings.floor_added, 0u);
     member.unusual("epsilon", settings.epsilon, {});
+    member.unusual("most_clusters", settings.most_clusters, {});
     member.unusual("glossy_tolerance", settings.glossy_tolerance, {});
     member.unusual("two_sided_bounces", settings.two_sided_bounces, false);
     member.unusual("left_out", settings.left_out, {});

@@ -164,7 +164,7 @@ SeeThrough::SeeThrough(const mesh::TriangleMesh& mesh) {
             kinds_[triangle] &= static_cast<std::uint8_t>(~(PassesLight | Thin));
     });
     find_masks();
-    find_glass();
+    find_veils();
 }
 
 void SeeThrough::find_masks() {
@@ -185,19 +185,19 @@ void SeeThrough::find_masks() {
         find_mapped_triangles(mask_of_material, false);
 }
 
-void SeeThrough::find_glass() {
+void SeeThrough::find_veils() {
     std::vector<std::uint32_t> of_material(mesh_.materials.size(), NotMapped);
     for (std::size_t i = 0; i < of_material.size(); ++i)
-        if (GlassCells::are_for(mesh_.materials[i])) {
-            of_material[i] = static_cast<std::uint32_t>(glass_.size());
-            glass_.emplace_back(mesh_.materials[i], mesh_.textures);
+        if (VeilCells::are_for(mesh_.materials[i])) {
+            of_material[i] = static_cast<std::uint32_t>(veils_.size());
+            veils_.emplace_back(mesh_.materials[i], mesh_.textures);
         }
-    if (!glass_.empty())
+    if (!veils_.empty())
         find_mapped_triangles(of_material, true);
 }
 
 void SeeThrough::find_mapped_triangles(const std::vector<std::uint32_t>& of_material,
-                                       bool are_glass) {
+                                       bool are_veils) {
     mapped_of_.resize(kinds_.size(), NotMapped);
     for (std::uint32_t triangle = 0; triangle < mapped_of_.size(); ++triangle) {
         const std::uint32_t material = mesh_.triangle_materials[triangle];
@@ -205,16 +205,17 @@ void SeeThrough::find_mapped_triangles(const std::vector<std::uint32_t>& of_mate
         if (cells == NotMapped || even_[triangle] >= 0.0f)
             continue;
         mapped_of_[triangle] = static_cast<std::uint32_t>(mapped_.size());
-        Mapped& mapped = mapped_.emplace_back(Mapped{.cells = cells, .is_glass = are_glass});
+        Mapped& mapped =
+            mapped_.emplace_back(Mapped{.cells = cells, .is_veil = are_veils, .mean = {}});
         const mesh::TextureSlot& slot =
-            are_glass ? glass_[cells].slot() : *mesh_.materials[material].alpha_texture;
+            are_veils ? veils_[cells].slot() : *mesh_.materials[material].alpha_texture;
         for (std::size_t k = 0; k < 3; ++k)
             mapped.uvs[k] =
                 slot.uv_from_mesh_uv * mesh::corner_uv(mesh_, triangle, k, slot.uv_set) +
                 slot.uv_offset;
-        if (are_glass)
+        if (are_veils && mesh_.materials[material].alpha_mode == mesh::AlphaMode::Opaque)
             mapped.mean = mean_over_triangle(
-                [&](const glm::vec2& at) { return glass_[cells].at(mapped.place(at)); });
+                [&](const glm::vec2& at) { return veils_[cells].at(mapped.place(at)); });
     }
 }
 
@@ -223,21 +224,22 @@ MaskCells::Cell SeeThrough::cell_at(std::uint32_t triangle, const glm::vec2& bar
         return MaskCells::Cell::Mixed;
     // Up to a rounding, as veil() finds it: at the border of two cells, either is right.
     const Mapped& mapped = mapped_[mapped_of_[triangle]];
-    return mapped.is_glass ? MaskCells::Cell::Mixed
-                           : masks_[mapped.cells].at(mapped.place(barycentric));
+    return mapped.is_veil ? MaskCells::Cell::Mixed
+                          : masks_[mapped.cells].at(mapped.place(barycentric));
 }
 
-const SeeThrough::Mapped* SeeThrough::glass_of(std::uint32_t triangle) const {
-    if (glass_.empty() || mapped_of_[triangle] == NotMapped)
+const SeeThrough::Mapped* SeeThrough::veil_of(std::uint32_t triangle) const {
+    if (veils_.empty() || mapped_of_[triangle] == NotMapped)
         return nullptr;
     const Mapped& mapped = mapped_[mapped_of_[triangle]];
-    return mapped.is_glass ? &mapped : nullptr;
+    return mapped.is_veil ? &mapped : nullptr;
 }
 
 float SeeThrough::part_at(std::uint32_t triangle, const glm::vec2& barycentric, RayOf of) const {
-    if (const Mapped* glass = glass_of(triangle))
-        return of == RayOf::SettledLight ? glass->mean
-                                         : glass_[glass->cells].at(glass->place(barycentric));
+    if (const Mapped* mapped = veil_of(triangle))
+        return of == RayOf::SettledLight && mapped->mean
+                   ? *mapped->mean
+                   : veils_[mapped->cells].at(mapped->place(barycentric));
     return part_of(veil(triangle, barycentric));
 }
 
@@ -249,8 +251,8 @@ mesh::Veil SeeThrough::veil(std::uint32_t triangle, const glm::vec2& barycentric
 SeeThrough::All SeeThrough::all_at(std::uint32_t triangle, RayOf of) const {
     if (!may_pass(triangle, of))
         return All::Stop;
-    const Mapped* glass = of == RayOf::SettledLight ? glass_of(triangle) : nullptr;
-    const float even = glass != nullptr ? glass->mean : even_[triangle];
+    const Mapped* mapped = of == RayOf::SettledLight ? veil_of(triangle) : nullptr;
+    const float even = mapped != nullptr ? mapped->mean.value_or(-1.0f) : even_[triangle];
     if (even < 0.0f || (of == RayOf::Light && even < 1.0f))
         return All::Differ;
     return even >= 0.5f ? All::Pass : All::Stop;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -10,8 +11,8 @@
 
 #include "mesh/opacity.h"
 #include "mesh/triangle_mesh.h"
-#include "prt/visibility/glass_cells.h"
 #include "prt/visibility/mask_cells.h"
+#include "prt/visibility/veil_cells.h"
 
 namespace relumine::prt {
 
@@ -85,13 +86,14 @@ public:
     [[nodiscard]] mesh::Veil veil(std::uint32_t triangle, const glm::vec2& barycentric) const;
 
 private:
-    /// A triangle that has cells: those of a mask that cuts it in part, or those of glass, and the
+    /// A triangle that has cells: those of a mask that cuts it in part, or those of a veil, and the
     /// corners' places in the texture.
     struct Mapped {
         std::uint32_t cells = 0;
-        bool is_glass = false;
-        /// Of glass: the mean part that passes the triangle.
-        float mean = 0.0f;
+        bool is_veil = false;
+        /// Of glass without alpha: the mean part that passes the triangle. Settled light takes it
+        /// for all of the triangle; alpha has outlines, which clusters must follow.
+        std::optional<float> mean;
         std::array<glm::vec2, 3> uvs = {};
 
         [[nodiscard]] glm::vec2 place(const glm::vec2& barycentric) const {
@@ -102,14 +104,14 @@ private:
     };
 
     void find_masks();
-    void find_glass();
+    void find_veils();
     /// Gives cells to the triangles of materials that have a number.
-    void find_mapped_triangles(const std::vector<std::uint32_t>& of_material, bool are_glass);
+    void find_mapped_triangles(const std::vector<std::uint32_t>& of_material, bool are_veils);
     /// Looks it up in the mask's cells.
     [[nodiscard]] MaskCells::Cell cell_at(std::uint32_t triangle,
                                           const glm::vec2& barycentric) const;
-    /// Returns a triangle's cells of glass; null where it has none.
-    [[nodiscard]] const Mapped* glass_of(std::uint32_t triangle) const;
+    /// Returns a triangle's cells of a veil; null where it has none.
+    [[nodiscard]] const Mapped* veil_of(std::uint32_t triangle) const;
     /// Returns the part of light that passes a point.
     [[nodiscard]] float part_at(std::uint32_t triangle, const glm::vec2& barycentric,
                                 RayOf of) const;
@@ -123,9 +125,9 @@ private:
     std::vector<float> even_;
     /// mesh::blockers_of() without its positions; empty where no light passes.
     mesh::TriangleMesh mesh_;
-    /// Of masks that are no glass, and of glass.
+    /// Of masks that are no glass, and of all that is thin.
     std::vector<MaskCells> masks_;
-    std::vector<GlassCells> glass_;
+    std::vector<VeilCells> veils_;
     std::vector<Mapped> mapped_;
     static constexpr std::uint32_t NotMapped = 0xffffffff;
     /// [num_triangles] index into mapped_ or NotMapped; empty where there are no cells.

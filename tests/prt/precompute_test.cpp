@@ -334,6 +334,50 @@ TEST(Precompute, EpsilonIsToleranceOverTheRootOfTheNumberOfReceivers) {
     expect_same(scene.transfer(), by_tolerance);
 }
 
+TEST(Precompute, ToleranceGrowsUntilThereAreFewClusters) {
+    SmallScene scene;
+    const Transfer all = scene.transfer();
+    const auto few = static_cast<std::uint32_t>(all.num_clusters() / 3);
+    PrecomputeStatistics statistics;
+    const auto limited = [&](std::uint32_t most) {
+        scene.options.most_clusters = most;
+        Transfer transfer = precompute(scene.receivers, scene.rays, scene.options, {}, &statistics);
+        scene.options.most_clusters.reset();
+        return transfer;
+    };
+    expect_same(limited(static_cast<std::uint32_t>(all.num_clusters())), all);
+    EXPECT_EQ(statistics.grown_tolerance, 0.0f);
+
+    const Transfer transfer = limited(few);
+    EXPECT_LE(transfer.num_clusters(), few);
+    EXPECT_GT(statistics.grown_tolerance, scene.options.tolerance);
+    scene.options.tolerance = statistics.grown_tolerance / 1.25f;
+    EXPECT_GT(scene.transfer().num_clusters(), few) << "no smaller tolerance makes so few";
+    scene.options.tolerance = statistics.grown_tolerance;
+    expect_same(scene.transfer(), transfer);
+
+    EXPECT_EQ(limited(1).num_clusters(), 6u << (2 * scene.options.min_level));
+}
+
+// Half of the receivers choose for all of them.
+TEST(Precompute, ASampleChoosesFewClusters) {
+    const mesh::TriangleMesh mesh = scenes::joined(scenes::floor_grid(190, 4.0f),
+                                                   scenes::icosphere(3, 0.5f, {0.2f, 0.7f, 0.0f}));
+    const Receivers receivers = vertex_receivers(mesh);
+    const RayScene rays(mesh);
+    PrecomputeOptions options{
+        .tolerance = 0.06f, .face_resolution = 64, .bias = automatic_bias(mesh)};
+    const std::vector<double> expected = radiance_under_white(precompute(receivers, rays, options));
+    options.most_clusters = 4096;
+    const std::vector<double> radiance = radiance_under_white(precompute(receivers, rays, options));
+    double error = 0.0, power = 0.0;
+    for (std::size_t i = 0; i < radiance.size(); ++i) {
+        error += (radiance[i] - expected[i]) * (radiance[i] - expected[i]);
+        power += expected[i] * expected[i];
+    }
+    EXPECT_LT(std::sqrt(error / power), 0.005);
+}
+
 TEST(Precompute, MinLevelIsHonoured) {
     SmallScene scene;
     scene.options.tolerance = 10.0f; // anything is similar

@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "mesh/opacity.h"
-#include "prt/visibility/glass_cells.h"
 #include "prt/visibility/ray_scene.h"
+#include "prt/visibility/veil_cells.h"
 #include "tests/prt/leaf_card.h"
 #include "tests/prt/scenes.h"
 
@@ -101,19 +101,22 @@ TEST(SeeThrough, SmallTrianglesPassAsTheirPointsDo) {
         const SeeThrough see_through(card);
         std::mt19937 random(3);
         std::uniform_real_distribution<float> weight(0.0f, 0.5f);
-        std::size_t num_known = 0;
+        std::size_t num_known = 0, num_other = 0;
         for (std::uint32_t triangle = 0; triangle < card.num_triangles(); ++triangle) {
             const bool may_pass = see_through.may_pass(triangle, RayOf::Light);
             num_known += may_pass ? 0 : 1;
             for (int i = 0; i < 20; ++i) {
                 const glm::vec2 at(weight(random), weight(random));
                 const mesh::Veil veil = mesh::veil(card, triangle, at);
-                EXPECT_EQ(may_pass && see_through.passes({.triangle = triangle, .barycentric = at},
-                                                         RayOf::SettledLight),
-                          veil.through.r >= 0.5f);
+                const bool passes =
+                    may_pass && see_through.passes({.triangle = triangle, .barycentric = at},
+                                                   RayOf::SettledLight);
+                num_other += passes != (veil.through.r >= 0.5f) ? 1 : 0;
                 EXPECT_EQ(see_through.veil(triangle, at), veil);
             }
         }
+        // The cells of what is blended are as wide as a texel.
+        EXPECT_LE(num_other, mode == mesh::AlphaMode::Mask ? 0 : card.num_triangles() / 2);
         EXPECT_GT(num_known, card.num_triangles() / 4);
     }
 }
@@ -193,10 +196,10 @@ mesh::TriangleMesh textured_glass() {
     return mesh;
 }
 
-TEST(GlassCells, HoldThePartsOfTexels) {
+TEST(VeilCells, HoldThePartsOfTexels) {
     const mesh::TriangleMesh mesh = textured_glass();
-    ASSERT_TRUE(GlassCells::are_for(mesh.materials[0]));
-    const GlassCells cells(mesh.materials[0], mesh.textures);
+    ASSERT_TRUE(VeilCells::are_for(mesh.materials[0]));
+    const VeilCells cells(mesh.materials[0], mesh.textures);
     for (int y = 0; y < 30; ++y)
         for (int x = 0; x < 40; ++x) {
             const glm::vec2 uv((static_cast<float>(x) + 0.5f) / 40.0f,
@@ -206,14 +209,25 @@ TEST(GlassCells, HoldThePartsOfTexels) {
             // The texture repeats.
             EXPECT_NEAR(cells.at(uv + glm::vec2(3.0f, -2.0f)), cells.at(uv), 1e-5f);
         }
+    // What is blended has cells of its alpha. A mask has others.
+    for (const mesh::AlphaMode mode : {mesh::AlphaMode::Blend, mesh::AlphaMode::Mask}) {
+        const mesh::Material card{
+            .alpha_mode = mode, .alpha = 0.8f, .alpha_texture = mesh::TextureSlot{.texture = 0}};
+        ASSERT_EQ(VeilCells::are_for(card), mode == mesh::AlphaMode::Blend);
+        if (mode == mesh::AlphaMode::Blend) {
+            const glm::vec2 middle(20.5f / 40.0f, 10.5f / 30.0f);
+            EXPECT_NEAR(VeilCells(card, mesh.textures).at(middle),
+                        mesh::veil(card, mesh.textures, middle).through.r, 1e-5f);
+        }
+    }
     // Textures that lie in other ways have no place in common, and clear glass needs no cells.
     mesh::Material other = mesh.materials[0];
     other.base_color_texture->uv_offset = {0.5f, 0.0f};
-    EXPECT_FALSE(GlassCells::are_for(other));
-    EXPECT_FALSE(GlassCells::are_for({.name = "clear", .transmission = 1.0f}));
+    EXPECT_FALSE(VeilCells::are_for(other));
+    EXPECT_FALSE(VeilCells::are_for({.name = "clear", .transmission = 1.0f}));
 }
 
-TEST(GlassCells, LetTheMeanPartOfRaysPass) {
+TEST(VeilCells, LetTheMeanPartOfRaysPass) {
     mesh::TriangleMesh mesh = textured_glass();
     // The mean of a product of two noises depends on how they are filtered.
     mesh.materials[0].base_color_texture.reset();
@@ -234,7 +248,7 @@ TEST(GlassCells, LetTheMeanPartOfRaysPass) {
 }
 
 // The grain of a texture must not split clusters: all rays that choose them stop or pass.
-TEST(GlassCells, StopOrPassAsAWholeWhereClustersAreChosen) {
+TEST(VeilCells, StopOrPassAsAWholeWhereClustersAreChosen) {
     for (const float transmission : {0.05f, 1.0f}) {
         mesh::TriangleMesh mesh = textured_glass();
         for (auto& texel : mesh.textures[0].texels)

@@ -1,4 +1,4 @@
-#include "prt/visibility/glass_cells.h"
+#include "prt/visibility/veil_cells.h"
 
 #include <algorithm>
 #include <optional>
@@ -10,21 +10,27 @@ namespace relumine::prt {
 
 namespace {
 
-/// The textures that glass is looked up in.
+/// The textures that a veil is looked up in.
 std::vector<mesh::TextureSlot> slots_of(const mesh::Material& material) {
     std::vector<mesh::TextureSlot> slots;
-    for (const std::optional<mesh::TextureSlot>& slot :
-         {material.transmission_texture, material.base_color_texture,
-          material.metallic_roughness_texture})
+    const auto add = [&](const std::optional<mesh::TextureSlot>& slot) {
         if (slot)
             slots.push_back(*slot);
+    };
+    if (material.alpha_mode != mesh::AlphaMode::Opaque)
+        add(material.alpha_texture);
+    if (material.transmission > 0.0f) {
+        add(material.transmission_texture);
+        add(material.base_color_texture);
+        add(material.metallic_roughness_texture);
+    }
     return slots;
 }
 
 } // namespace
 
-bool GlassCells::are_for(const mesh::Material& material) {
-    if (!(material.transmission > 0.0f) || material.alpha_mode != mesh::AlphaMode::Opaque)
+bool VeilCells::are_for(const mesh::Material& material) {
+    if (!mesh::is_thin(material))
         return false;
     const std::vector<mesh::TextureSlot> slots = slots_of(material);
     return !slots.empty() && std::all_of(slots.begin(), slots.end(), [&](const auto& slot) {
@@ -34,7 +40,7 @@ bool GlassCells::are_for(const mesh::Material& material) {
     });
 }
 
-GlassCells::GlassCells(const mesh::Material& material, std::span<const mesh::Texture> textures)
+VeilCells::VeilCells(const mesh::Material& material, std::span<const mesh::Texture> textures)
     : slot_(slots_of(material).front()) {
     constexpr std::uint32_t MostCells = 512;
     for (const mesh::TextureSlot& slot : slots_of(material)) {

@@ -1,4 +1,4 @@
-// How much light a glass with textures lets pass, place by place: one lookup in place of three.
+// How much light a surface with textures lets pass, place by place: one lookup for all of them.
 #pragma once
 
 #include <array>
@@ -15,15 +15,17 @@
 
 namespace relumine::prt {
 
-/// The part of light that passes a glass, the mean over the colours, in cells of up to 512 to a
-/// side of its textures. Rays of light pass by chance, so what counts are means over many of them.
-class GlassCells {
+/// The part of light that passes glass or what is blended, the mean over the colours, in cells of
+/// up to 512 to a side of its textures. Rays of light pass by chance, so what counts are means over
+/// many of them. A mask alone has MaskCells, which are exact.
+class VeilCells {
 public:
-    /// Whether a material is glass whose textures all lie alike, so that a place is one for all.
+    /// Whether a material is such a surface and its textures all lie alike, so that a place is one
+    /// for all.
     [[nodiscard]] static bool are_for(const mesh::Material& material);
 
     /// `material` as are_for() says.
-    GlassCells(const mesh::Material& material, std::span<const mesh::Texture> textures);
+    VeilCells(const mesh::Material& material, std::span<const mesh::Texture> textures);
 
     /// How the textures lie on a surface.
     [[nodiscard]] const mesh::TextureSlot& slot() const { return slot_; }
