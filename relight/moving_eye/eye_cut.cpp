@@ -206,17 +206,19 @@ private:
             search_.num_open += (open & fine) >> i & 1u;
         }
         for (std::uint32_t left = open & ~fine & 0xfu; left != 0; left &= left - 1)
-            divide_later({.cell = first + lowest_bit(left),
-                          .place = {.kind = VisibilityPyramid::Kind::Visible}});
+            divide_later(first + lowest_bit(left),
+                         VisibilityPyramid::Place(VisibilityPyramid::Kind::Visible));
         for (std::uint32_t left = mixed; left != 0; left &= left - 1) {
             const std::uint32_t i = lowest_bit(left);
             const VisibilityPyramid::Place place = visibility_.child(block_, at.place, seen, i);
             if ((fine >> i & 1u) == 0) {
-                divide_later({.cell = first + i, .place = place});
+                divide_later(first + i, place);
                 continue;
             }
             hwy::Prefetch(visibility_.first_part(place));
-            search_.partly[search_.num_partly++] = {.light = below.rows.data() + i, .place = place};
+            EyeCut::Partly& partly = search_.partly[search_.num_partly++];
+            partly.light = below.rows.data() + i;
+            partly.place = place;
         }
     }
 
@@ -224,11 +226,13 @@ private:
         return static_cast<std::uint32_t>(std::countr_zero(bits));
     }
 
-    void divide_later(const EyeCut::Item& item) {
-        const SisterCells& below = sky_.children(item.cell);
+    void divide_later(std::uint32_t cell, const VisibilityPyramid::Place& place) {
+        const SisterCells& below = sky_.children(cell);
         hwy::Prefetch(below.rows.data());
         hwy::Prefetch(below.rows.data() + SisterCells::Red * SisterCells::Stride);
-        search_.divided[search_.num_divided++] = item;
+        EyeCut::Item& item = search_.divided[search_.num_divided++];
+        item.cell = cell;
+        item.place = place;
     }
 
     const VisibilityPyramid& visibility_;
@@ -295,15 +299,17 @@ void EyeCut::find(std::size_t block, const BlockLobe& lobe, LitCells& cells) {
     search_.divided.resize(std::max(search_.divided.size(), std::size_t{cubemap::NumFaces}));
     for (std::uint32_t face = 0; face < cubemap::NumFaces; ++face)
         if (const VisibilityPyramid::Place place = visibility_.face(block, face);
-            place.kind != VisibilityPyramid::Kind::Hidden)
+            place.kind() != VisibilityPyramid::Kind::Hidden)
             search_.divided[search_.num_divided++] = {.cell = face, .place = place};
     HWY_DYNAMIC_DISPATCH(find_cells)(visibility_, sky_, block, lobe, error_, search_);
     cells.open.insert(cells.open.end(), search_.open.begin(),
                       search_.open.begin() + static_cast<std::ptrdiff_t>(search_.num_open));
+    const std::size_t first = cells.partly.size();
+    cells.partly.resize(first + search_.num_partly);
     for (std::size_t i = 0; i < search_.num_partly; ++i) {
-        const VisibilityPyramid::Parts seen = visibility_.parts(search_.partly[i].place);
-        cells.partly.push_back(
-            {.light = search_.partly[i].light, .unit = seen.unit, .parts = seen.parts});
+        PartlyCell& cell = cells.partly[first + i];
+        cell.light = search_.partly[i].light;
+        cell.unit = visibility_.copy_parts(search_.partly[i].place, cell.parts);
     }
 }
 

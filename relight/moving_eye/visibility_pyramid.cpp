@@ -84,18 +84,19 @@ public:
         for (std::uint32_t face = 0; face < faces.size(); ++face) {
             Sums sums{};
             static_cast<void>(add(face, sums));
-            faces[face] = {.kind = kinds_[face], .branch = face};
             // A branch's number counts branches alone; faces before this one may be none.
+            std::uint32_t branch = 0, entry = 0;
             for (std::uint32_t i = 0; i < face; ++i)
-                faces[face].branch -= nodes_[i].is_branch() ? 0 : 1;
+                branch += nodes_[i].is_branch() ? 1 : 0;
             if (kinds_[face] == Kind::Cluster)
-                faces[face].entry = pyramid_.entry_of(block, nodes_[face].first_leaf);
+                entry = pyramid_.entry_of(block, nodes_[face].first_leaf);
             else if (is_inner(kinds_[face]))
-                faces[face].entry = open(face, entries);
+                entry = open(face, entries);
+            faces[face] = Place(kinds_[face], entry, branch);
         }
         for (std::uint32_t face = 0; face < faces.size(); ++face)
             if (kinds_[face] == Kind::Branch)
-                descend(face, faces[face].entry, entries);
+                descend(face, faces[face].entry(), entries);
     }
 
 private:
@@ -315,9 +316,10 @@ void VisibilityPyramid::append(std::vector<BlockEntries>& blocks) {
         }
         for (std::uint32_t face = 0; face < cubemap::NumFaces; ++face) {
             Place& place = faces_[block * cubemap::NumFaces + face];
-            place.entry += place.kind == Kind::Branch ? first_branch
-                           : place.kind == Kind::Quad ? first_quad
-                                                      : 0;
+            const std::uint32_t first = place.kind() == Kind::Branch ? first_branch
+                                        : place.kind() == Kind::Quad ? first_quad
+                                                                     : 0;
+            place = Place(place.kind(), place.entry() + first, place.branch());
         }
         append_all(branch_sights_, entries.branch_sights);
         append_all(links_, entries.links);
@@ -341,31 +343,16 @@ std::size_t VisibilityPyramid::num_bytes() const {
            quad_sights_.size() + quads_.size() * sizeof quads_[0];
 }
 
-VisibilityPyramid::Parts VisibilityPyramid::parts(const Place& place) const {
-    Parts result;
-    switch (place.kind) {
-    case Kind::Hidden:
-        break;
-    case Kind::Visible:
-        result.parts.fill(1);
-        break;
-    case Kind::Branch:
-    case Kind::Cluster:
-        std::copy_n(first_part(place), prt::BlockSize, result.parts.data());
-        result.unit = place.kind == Kind::Branch ? 1.0f / 255.0f : 1.0f / 16.0f;
-        break;
-    case Kind::Quad: {
-        const Sights seen = sights(place);
-        const std::uint8_t* counts = first_part(place);
-        result.parts.fill(static_cast<std::uint8_t>(16 * num_bits(seen.visible)));
-        for (std::uint32_t child = num_bits(seen.mixed); child > 0; --child)
-            for (std::size_t i = 0; i < prt::BlockSize; ++i)
-                result.parts[i] = static_cast<std::uint8_t>(result.parts[i] + *counts++);
-        result.unit = 1.0f / 64.0f;
-        break;
-    }
-    }
-    return result;
+void VisibilityPyramid::add_quad(const Place& place,
+                                 std::array<std::uint8_t, prt::BlockSize>& parts) const {
+    const Sights seen = sights(place);
+    const std::uint8_t* counts = first_part(place);
+    std::array<std::uint8_t, prt::BlockSize> sums;
+    sums.fill(static_cast<std::uint8_t>(16 * num_bits(seen.visible)));
+    for (std::uint32_t child = num_bits(seen.mixed); child > 0; --child, counts += prt::BlockSize)
+        for (std::size_t i = 0; i < prt::BlockSize; ++i)
+            sums[i] = static_cast<std::uint8_t>(sums[i] + counts[i]);
+    parts = sums;
 }
 
 } // namespace relumine::relight

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -29,13 +30,30 @@ public:
     /// below it, a branch has other cells, and a cluster's cells are all seen alike.
     enum class Kind : std::uint8_t { Hidden, Visible, Branch, Quad, Cluster };
 
-    /// A cell as a block sees it.
-    struct Place {
-        Kind kind = Kind::Hidden;
+    /// A cell as a block sees it. In one word: a cut that puts several together and copies them at
+    /// once waits for the stores, which took up to a fifth of a look.
+    class Place {
+    public:
+        Place() = default;
+        explicit Place(Kind kind, std::uint32_t entry = 0, std::uint32_t branch = 0)
+            : word_(std::uint64_t{entry} << 32u | std::uint64_t{branch} << KindBits |
+                    static_cast<std::uint64_t>(kind)) {}
+
+        [[nodiscard]] Kind kind() const {
+            return static_cast<Kind>(word_ & ((1u << KindBits) - 1));
+        }
         /// The entry of a branch or a quad; the counts' of a cluster.
-        std::uint32_t entry = 0;
-        /// A branch's own number, for all blocks.
-        std::uint32_t branch = 0;
+        [[nodiscard]] std::uint32_t entry() const {
+            return static_cast<std::uint32_t>(word_ >> 32u);
+        }
+        /// A branch's own number, for all blocks; below 2^29.
+        [[nodiscard]] std::uint32_t branch() const {
+            return static_cast<std::uint32_t>(word_) >> KindBits;
+        }
+
+    private:
+        static constexpr std::uint32_t KindBits = 3;
+        std::uint64_t word_ = 0;
     };
 
     /// Of the four children of a cell, a bit each.
@@ -66,16 +84,16 @@ public:
     /// seen as the cluster is.
     [[nodiscard]] Sights sights(const Place& place) const {
         constexpr std::uint32_t All = 0xf;
-        switch (place.kind) {
+        switch (place.kind()) {
         case Kind::Branch: {
-            const std::uint32_t bits = branch_sights_[place.entry], mixed = bits >> 4u;
-            const Family& family = families_[place.branch];
+            const std::uint32_t bits = branch_sights_[place.entry()], mixed = bits >> 4u;
+            const Family& family = families_[place.branch()];
             return {.visible = bits & All,
                     .mixed = mixed,
                     .divided = mixed & (family.branches | family.quads)};
         }
         case Kind::Quad: {
-            const std::uint32_t bits = quad_sights_[place.entry];
+            const std::uint32_t bits = quad_sights_[place.entry()];
             return {.visible = bits & All, .mixed = bits >> 4u};
         }
         case Kind::Visible:
@@ -90,32 +108,53 @@ public:
                               std::uint32_t i) const {
         const std::uint32_t bit = 1u << i, before = sights.mixed & (bit - 1);
         if ((sights.visible & bit) != 0)
-            return {.kind = Kind::Visible};
-        if (place.kind == Kind::Quad)
-            return {.kind = Kind::Cluster, .entry = quads_[place.entry] + num_bits(before)};
-        if (place.kind != Kind::Branch)
+            return Place(Kind::Visible);
+        if (place.kind() == Kind::Quad)
+            return Place(Kind::Cluster, quads_[place.entry()] + num_bits(before));
+        if (place.kind() != Kind::Branch)
             return place;
-        const Family& family = families_[place.branch];
-        const Links& links = links_[place.entry];
+        const Family& family = families_[place.branch()];
+        const Links& links = links_[place.entry()];
         if ((family.branches & bit) != 0)
-            return {.kind = Kind::Branch,
-                    .entry = links.first_branch + num_bits(before & family.branches),
-                    .branch = family.first_branch + num_bits(family.branches & (bit - 1))};
+            return Place(Kind::Branch, links.first_branch + num_bits(before & family.branches),
+                         family.first_branch + num_bits(family.branches & (bit - 1)));
         if ((family.quads & bit) != 0)
-            return {.kind = Kind::Quad,
-                    .entry = links.first_quad + num_bits(before & family.quads)};
-        return {.kind = Kind::Cluster, .entry = entry_of(block, leaves_[place.branch][i])};
+            return Place(Kind::Quad, links.first_quad + num_bits(before & family.quads));
+        return Place(Kind::Cluster, entry_of(block, leaves_[place.branch()][i]));
     }
 
     /// Returns where the parts of a mixed cell begin, or the counts of a quad's mixed clusters.
     [[nodiscard]] const std::uint8_t* first_part(const Place& mixed) const {
-        const std::vector<std::uint8_t>& all = mixed.kind == Kind::Branch ? parts_ : counts_.counts;
-        const std::uint32_t entry = mixed.kind == Kind::Quad ? quads_[mixed.entry] : mixed.entry;
+        const std::vector<std::uint8_t>& all =
+            mixed.kind() == Kind::Branch ? parts_ : counts_.counts;
+        const std::uint32_t entry =
+            mixed.kind() == Kind::Quad ? quads_[mixed.entry()] : mixed.entry();
         return all.data() + std::size_t{entry} * prt::BlockSize;
     }
 
     /// Returns what each receiver sees of a cell.
-    [[nodiscard]] Parts parts(const Place& place) const;
+    [[nodiscard]] Parts parts(const Place& place) const {
+        Parts result;
+        result.unit = copy_parts(place, result.parts);
+        return result;
+    }
+    /// Sets what each receiver sees of a cell, in units of the result.
+    float copy_parts(const Place& place, std::array<std::uint8_t, prt::BlockSize>& parts) const {
+        switch (place.kind()) {
+        case Kind::Branch:
+        case Kind::Cluster:
+            std::memcpy(parts.data(), first_part(place), prt::BlockSize);
+            return place.kind() == Kind::Branch ? 1.0f / 255.0f : 1.0f / 16.0f;
+        case Kind::Quad:
+            add_quad(place, parts);
+            return 1.0f / 64.0f;
+        case Kind::Hidden:
+        case Kind::Visible:
+            break;
+        }
+        parts.fill(place.kind() == Kind::Visible ? 1 : 0);
+        return 1.0f;
+    }
 
 private:
     class Builder;
@@ -138,6 +177,7 @@ private:
     static constexpr std::uint32_t num_bits(std::uint32_t bits) {
         return static_cast<std::uint32_t>(0x4332322132212110u >> 4u * bits & 7u);
     }
+    void add_quad(const Place& place, std::array<std::uint8_t, prt::BlockSize>& parts) const;
     [[nodiscard]] std::uint32_t entry_of(std::size_t block, std::uint32_t leaf) const;
     void add_families(std::span<const Node> nodes, std::uint32_t node, std::uint32_t branch);
     void append(std::vector<BlockEntries>& blocks);

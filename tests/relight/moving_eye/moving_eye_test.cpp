@@ -310,7 +310,7 @@ private:
         const std::uint32_t first_leaf = next_leaf_;
         if (flags_[next_flag_++]) {
             const VisibilityPyramid::Sights seen =
-                place.kind == Kind::Hidden ? VisibilityPyramid::Sights() : pyramid_.sights(place);
+                place.kind() == Kind::Hidden ? VisibilityPyramid::Sights() : pyramid_.sights(place);
             EXPECT_EQ(seen.visible & seen.mixed, 0u);
             for (std::uint32_t i = 0; i < 4; ++i)
                 visit(((seen.visible | seen.mixed) >> i & 1u) != 0
@@ -320,7 +320,7 @@ private:
             ++next_leaf_;
         }
         const VisibilityPyramid::Parts parts = pyramid_.parts(place);
-        num_mixed_ += place.kind != Kind::Hidden && place.kind != Kind::Visible ? 1 : 0;
+        num_mixed_ += place.kind() != Kind::Hidden && place.kind() != Kind::Visible ? 1 : 0;
         for (std::size_t i = 0; i < prt::BlockSize; ++i) {
             int least = 16, most = 0, sum = 0;
             for (std::uint32_t leaf = first_leaf; leaf < next_leaf_; ++leaf) {
@@ -333,9 +333,9 @@ private:
             EXPECT_GE(part, static_cast<float>(least) - 0.04f);
             EXPECT_LE(part, static_cast<float>(most) + 0.04f);
             // What is seen alike has no entry; a quad has the plain mean.
-            EXPECT_TRUE(place.kind != Kind::Hidden || most == 0);
-            EXPECT_TRUE(place.kind != Kind::Visible || least == 16);
-            if (place.kind == Kind::Quad) {
+            EXPECT_TRUE(place.kind() != Kind::Hidden || most == 0);
+            EXPECT_TRUE(place.kind() != Kind::Visible || least == 16);
+            if (place.kind() == Kind::Quad) {
                 EXPECT_EQ(next_leaf_ - first_leaf, 4u);
                 EXPECT_NEAR(part, static_cast<float>(sum) / 4.0f, 1e-5f);
             }
