@@ -35,7 +35,7 @@ struct Options {
     std::string screenshot;
     /// The window's size, the exposure, the tone curve and the floor of pictures count.
     relumine::OutputOptions picture = {.width = 1440, .height = 860};
-    EyeOptions eye = {.budget_ms = 25.0};
+    EyeOptions eye = {.budget_ms = 25.0, .seen_only = true};
 };
 
 #ifdef RELUMINE_VIEWER_MISSING

@@ -49,7 +49,8 @@ bool has_live_highlights(const Scene& scene) {
 
 LiveEye::LiveEye(const LitScene& lit)
     : lit_(lit), surfaces_(shiny_surfaces(lit)),
-      eye_(lit.scene().transfer, lit.scene().receivers.positions, surfaces_) {
+      eye_(lit.scene().transfer, lit.scene().receivers.positions, surfaces_,
+           lit.scene().mesh.triangles) {
     take_light();
 }
 

@@ -34,9 +34,11 @@ public:
     void take_light();
 
     /// Returns outgoing radiance towards an eye, as LitScene::radiance(); good until the next call.
+    /// `sides` of a picture are as for relight::MovingEye::look().
     [[nodiscard]] std::span<const glm::vec3> look(const glm::vec3& eye,
-                                                  const EyeOptions& options = {}) {
-        return eye_.look(eye, lit_.radiance(), options);
+                                                  const EyeOptions& options = {},
+                                                  std::span<const glm::vec4> sides = {}) {
+        return eye_.look(eye, lit_.radiance(), options, sides);
     }
 
     [[nodiscard]] const EyeReport& report() const { return eye_.report(); }

@@ -1,6 +1,7 @@
 #include "viewer/view.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <optional>
 #include <utility>
@@ -78,7 +79,7 @@ public:
           refiner_(state.mesh, state.rays, state.shading) {}
 
     /// Sends changes by edits to the graphics card.
-    void update(ViewState& state) {
+    void update(ViewState& state, const PixelRectangle& viewport) {
         const LitScene& lit = state.desk.lit();
         const auto version = state.desk.version();
         const bool is_relit = version != version_;
@@ -95,14 +96,17 @@ public:
             if (state.live_eye)
                 state.live_eye->take_light();
         }
-        if (const glm::vec3 eye = state.camera.eye(); is_relit || (state.live_eye && eye != eye_)) {
-            eye_ = eye;
+        const std::array<glm::vec4, 4> sides = picture_sides(state.camera, viewport);
+        if (is_relit || (state.live_eye && sides != sides_)) {
+            sides_ = sides;
             std::vector<glm::vec3> colors;
             if (state.balls != nullptr) {
                 colors = state.balls->radiance(lit);
             } else {
                 const std::span<const glm::vec3> seen =
-                    state.live_eye ? state.live_eye->look(eye, state.eye_options) : lit.radiance();
+                    state.live_eye
+                        ? state.live_eye->look(state.camera.eye(), state.eye_options, sides)
+                        : lit.radiance();
                 colors.assign(seen.begin(), seen.end());
             }
             for (std::size_t i = 0; i < colors.size(); ++i)
@@ -204,8 +208,8 @@ private:
     std::uint64_t version_ = 0;
     /// Those of the shading.
     std::vector<EmissionGain> gains_;
-    /// That the colours are for.
-    glm::vec3 eye_{0.0f};
+    /// Of the picture that the colours are for.
+    std::array<glm::vec4, 4> sides_{};
     Scenery seen_;
     Clock::time_point since_ = Clock::now();
     bool is_refining_ = false, is_refined_ = false;
@@ -303,7 +307,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
             state.desk.bounce(true);
         else
             state.desk.bounce();
-        pictures.update(state);
+        pictures.update(state, layout.scene);
         if (!options.script || is_kept)
             pictures.refine(state, window.in_framebuffer(layout.scene), is_kept);
         else

@@ -16,6 +16,7 @@
 #include "prt/glossy/brdf.h"
 #include "relight/moving_eye/eye_cut.h"
 #include "relight/moving_eye/eye_kernel.h"
+#include "relight/moving_eye/seen_blocks.h"
 #include "relight/moving_eye/sky_cells.h"
 #include "relight/moving_eye/visibility_pyramid.h"
 #include "relight/sharp/traced_light.h"
@@ -54,7 +55,7 @@ float smallest_alpha(std::span<const prt::Surface> surfaces) {
 
 struct MovingEye::Impl {
     Impl(const prt::Transfer& of, std::span<const glm::vec3> at,
-         std::span<const prt::Surface> shiny)
+         std::span<const prt::Surface> shiny, std::span<const SeenBlocks::Triangle> triangles)
         : transfer(of), visibility(of), sky(level_for(smallest_alpha(shiny))),
           result(of.num_receivers()) {
         for (const std::uint32_t receiver : of.order) {
@@ -65,6 +66,8 @@ struct MovingEye::Impl {
             const auto own = std::span(surfaces).subspan(block * prt::BlockSize, size_of(block));
             is_matt.push_back(std::none_of(own.begin(), own.end(), is_ggx));
         }
+        if (!triangles.empty())
+            seen.emplace(transfer, visibility, positions, triangles);
     }
 
     /// The lobes of a block's receivers for an eye.
@@ -131,10 +134,10 @@ struct MovingEye::Impl {
     }
 
     void light_block(std::size_t block, const glm::vec3& eye, std::span<const glm::vec3> radiance,
-                     EyeCut& cut, LitCells& cells) {
+                     bool is_needed, EyeCut& cut, LitCells& cells) {
         const std::size_t first = block * prt::BlockSize, size = size_of(block);
         cells.clear();
-        if (is_matt[block]) {
+        if (is_matt[block] || !is_needed) {
             for (std::size_t i = first; i < first + size; ++i)
                 result[transfer.order[i]] = radiance[transfer.order[i]];
             return;
@@ -176,6 +179,8 @@ struct MovingEye::Impl {
     std::vector<bool> is_matt;
     VisibilityPyramid visibility;
     SkyCells sky;
+    /// Where pictures are known.
+    std::optional<SeenBlocks> seen;
     std::optional<TracedLight> traced;
     std::vector<SharpLight> lights;
     /// The same, as the kernel takes them.
@@ -188,12 +193,13 @@ struct MovingEye::Impl {
 };
 
 MovingEye::MovingEye(const prt::Transfer& transfer, std::span<const glm::vec3> positions,
-                     std::span<const prt::Surface> surfaces) {
+                     std::span<const prt::Surface> surfaces,
+                     std::span<const SeenBlocks::Triangle> triangles) {
     if (positions.size() != transfer.num_receivers() || surfaces.size() != positions.size())
         throw std::invalid_argument("expected one position and one surface per receiver");
     if (std::none_of(surfaces.begin(), surfaces.end(), is_ggx))
         throw std::invalid_argument("expected surfaces with highlights, got none");
-    impl_ = std::make_unique<Impl>(transfer, positions, surfaces);
+    impl_ = std::make_unique<Impl>(transfer, positions, surfaces, triangles);
 }
 MovingEye::~MovingEye() = default;
 MovingEye::MovingEye(MovingEye&&) noexcept = default;
@@ -212,7 +218,8 @@ void MovingEye::set_light(const Relighter& relighter) {
 
 std::span<const glm::vec3> MovingEye::look(const glm::vec3& eye,
                                            std::span<const glm::vec3> radiance,
-                                           const EyeOptions& options) {
+                                           const EyeOptions& options,
+                                           std::span<const glm::vec4> sides) {
     if (!impl_->is_lit)
         throw std::logic_error("expected light before a look");
     if (radiance.size() != impl_->result.size())
@@ -230,6 +237,9 @@ std::span<const glm::vec3> MovingEye::look(const glm::vec3& eye,
                        0.002f, 0.5f);
     const float error = report.tolerance * static_cast<float>(impl_->white) * ShareOfCell;
     std::atomic<std::size_t> num_cells = 0, num_blocks = 0;
+    std::span<const std::uint8_t> needed;
+    if (options.seen_only && impl_->seen)
+        needed = impl_->seen->find(eye, sides);
     constexpr std::size_t Grain = 16;
     files::parallel_for(
         files::IndexRange<std::size_t>(0, impl_->transfer.counts.num_blocks(), Grain),
@@ -237,7 +247,8 @@ std::span<const glm::vec3> MovingEye::look(const glm::vec3& eye,
             EyeCut cut(impl_->visibility, impl_->sky, error);
             LitCells cells;
             for (std::size_t block = some.begin(); block < some.end(); ++block) {
-                impl_->light_block(block, eye, radiance, cut, cells);
+                impl_->light_block(block, eye, radiance, needed.empty() || needed[block] != 0, cut,
+                                   cells);
                 num_cells += cells.size();
                 num_blocks += cells.size() == 0 ? 0 : 1;
             }

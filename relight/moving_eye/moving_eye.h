@@ -2,12 +2,15 @@
 // multiplied when the eye is known (docs/glossy.md).
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include "prt/transfer/transfer.h"
 #include "relight/relighter.h"
@@ -22,10 +25,13 @@ struct EyeOptions {
     float tolerance = 0.015f;
     /// Milliseconds that a look may take; the tolerance follows. 0: the tolerance counts.
     double budget_ms = 0.0;
+    /// Only what a picture from the eye shows has highlights: other receivers may have none.
+    bool seen_only = false;
 };
 
 struct EyeReport {
-    /// Blocks of 16 receivers that face the eye and have a highlight.
+    /// Blocks of 16 receivers that face the eye and have a highlight; of a picture, those that it
+    /// needs.
     std::size_t num_blocks = 0;
     /// Cells of their cuts, and lights that were traced.
     std::size_t num_cells = 0;
@@ -43,12 +49,14 @@ public:
     /// The transfer must outlive this object. Its own surfaces are those of light without
     /// highlights; `surfaces` have them. Other highlights than GGX, coats and sheen are left out.
     ///
-    /// Shape:   positions and surfaces are [num_receivers] in the receivers' own order.
+    /// Shape:   positions and surfaces are [num_receivers] in the receivers' own order. Pictures
+    ///          show `triangles` of receivers, by their numbers, and nothing else is in the way.
     /// Throws:  std::invalid_argument for other sizes, or where no surface has a GGX highlight.
     /// Cost:    a second for half a million receivers.
     /// Memory:  see num_bytes().
     MovingEye(const prt::Transfer& transfer, std::span<const glm::vec3> positions,
-              std::span<const prt::Surface> surfaces);
+              std::span<const prt::Surface> surfaces,
+              std::span<const std::array<std::uint32_t, 3>> triangles = {});
     ~MovingEye();
     MovingEye(MovingEye&&) noexcept;
 
@@ -60,13 +68,16 @@ public:
     void set_light(const Relighter& relighter);
 
     /// Returns the radiance that receivers send to an eye. `radiance` is what they send without
-    /// highlights, with bounces or without.
+    /// highlights, with bounces or without. `sides` are planes through the eye and the sides of a
+    /// picture, which count for what is seen: dot(xyz, p) + w >= 0 inside.
     ///
     /// Shape:   [num_receivers] in the receivers' own order, both. The result is good until the
     ///          next call.
     /// Throws:  std::invalid_argument for another size; std::logic_error before set_light().
-    [[nodiscard]] std::span<const glm::vec3>
-    look(const glm::vec3& eye, std::span<const glm::vec3> radiance, const EyeOptions& options = {});
+    [[nodiscard]] std::span<const glm::vec3> look(const glm::vec3& eye,
+                                                  std::span<const glm::vec3> radiance,
+                                                  const EyeOptions& options = {},
+                                                  std::span<const glm::vec4> sides = {});
 
     /// Of the last look.
     [[nodiscard]] const EyeReport& report() const;

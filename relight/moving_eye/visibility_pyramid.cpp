@@ -32,7 +32,7 @@ struct VisibilityPyramid::Node {
 
 /// What is kept of one block; links count from its own first entries.
 struct VisibilityPyramid::BlockEntries {
-    std::vector<std::uint8_t> branch_sights, parts, quad_sights;
+    std::vector<std::uint8_t> parts, quad_sights;
     std::vector<Links> links;
     std::vector<std::uint32_t> quads;
 };
@@ -162,9 +162,8 @@ private:
                 first_mixed < node.end_leaf ? pyramid_.entry_of(block_, first_mixed) : 0);
             return static_cast<std::uint32_t>(entries.quads.size() - 1);
         }
-        entries.branch_sights.push_back(static_cast<std::uint8_t>(sights));
         entries.parts.insert(entries.parts.end(), means_[index].begin(), means_[index].end());
-        entries.links.emplace_back();
+        entries.links.emplace_back().sights = sights & 0xffu;
         return static_cast<std::uint32_t>(entries.links.size() - 1);
     }
 
@@ -172,8 +171,9 @@ private:
     /// entries follow each other.
     void descend(std::uint32_t index, std::uint32_t entry, BlockEntries& entries) const {
         const std::uint32_t first = nodes_[index].first_child;
-        entries.links[entry] = {.first_branch = static_cast<std::uint32_t>(entries.links.size()),
-                                .first_quad = static_cast<std::uint32_t>(entries.quads.size())};
+        entries.links[entry].to_branch =
+            static_cast<std::uint32_t>(entries.links.size() - entry) & 0xffffffu;
+        entries.links[entry].first_quad = static_cast<std::uint32_t>(entries.quads.size());
         std::array<std::uint32_t, 4> opened{};
         for (std::uint32_t i = 0; i < 4; ++i)
             if (is_inner(kinds_[first + i]))
@@ -253,6 +253,9 @@ VisibilityPyramid::VisibilityPyramid(const prt::Transfer& transfer) : counts_(tr
     for (std::uint32_t face = 0, branch = 0; face < cubemap::NumFaces; ++face)
         if (nodes[face].is_branch())
             add_families(nodes, face, branch++);
+    // What Links and Place can count.
+    if (families_.size() >= std::size_t{1} << 24u)
+        throw std::length_error("expected a scene with fewer clusters");
 
     const std::size_t num_blocks = counts_.num_blocks();
     faces_.resize(num_blocks * cubemap::NumFaces);
@@ -301,7 +304,6 @@ void VisibilityPyramid::append(std::vector<BlockEntries>& blocks) {
         num_branches += block.links.size();
         num_quads += block.quads.size();
     }
-    branch_sights_.reserve(num_branches);
     links_.reserve(num_branches);
     parts_.reserve(num_branches * prt::BlockSize);
     quad_sights_.reserve(num_quads);
@@ -310,10 +312,8 @@ void VisibilityPyramid::append(std::vector<BlockEntries>& blocks) {
         BlockEntries& entries = blocks[block];
         const auto first_branch = static_cast<std::uint32_t>(links_.size());
         const auto first_quad = static_cast<std::uint32_t>(quads_.size());
-        for (Links& links : entries.links) {
-            links.first_branch += first_branch;
+        for (Links& links : entries.links)
             links.first_quad += first_quad;
-        }
         for (std::uint32_t face = 0; face < cubemap::NumFaces; ++face) {
             Place& place = faces_[block * cubemap::NumFaces + face];
             const std::uint32_t first = place.kind() == Kind::Branch ? first_branch
@@ -321,7 +321,6 @@ void VisibilityPyramid::append(std::vector<BlockEntries>& blocks) {
                                                                      : 0;
             place = Place(place.kind(), place.entry() + first, place.branch());
         }
-        append_all(branch_sights_, entries.branch_sights);
         append_all(links_, entries.links);
         append_all(parts_, entries.parts);
         append_all(quad_sights_, entries.quad_sights);
@@ -339,8 +338,8 @@ std::uint32_t VisibilityPyramid::entry_of(std::size_t block, std::uint32_t leaf)
 
 std::size_t VisibilityPyramid::num_bytes() const {
     return families_.size() * (sizeof(Family) + sizeof leaves_[0]) + faces_.size() * sizeof(Place) +
-           branch_sights_.size() + links_.size() * sizeof(Links) + parts_.size() +
-           quad_sights_.size() + quads_.size() * sizeof quads_[0];
+           links_.size() * sizeof(Links) + parts_.size() + quad_sights_.size() +
+           quads_.size() * sizeof quads_[0];
 }
 
 void VisibilityPyramid::add_quad(const Place& place,

@@ -22,7 +22,7 @@ namespace relumine::relight {
 /// have the mean of their counts when it is asked for.
 ///
 /// Cost:    O(mixed pairs of blocks and inner cells), once per scene; parallel.
-/// Memory:  25 bytes for each mixed pair of a block and a cell that is not above clusters alone,
+/// Memory:  24 bytes for each mixed pair of a block and a cell that is not above clusters alone,
 ///          5 bytes where it is; below that of the counts.
 class VisibilityPyramid {
 public:
@@ -46,7 +46,7 @@ public:
         [[nodiscard]] std::uint32_t entry() const {
             return static_cast<std::uint32_t>(word_ >> 32u);
         }
-        /// A branch's own number, for all blocks; below 2^29.
+        /// A branch's own number, for all blocks; below 2^24.
         [[nodiscard]] std::uint32_t branch() const {
             return static_cast<std::uint32_t>(word_) >> KindBits;
         }
@@ -71,7 +71,7 @@ public:
 
     /// The transfer must outlive this object.
     ///
-    /// Throws:  std::length_error for more than 2^32 mixed pairs.
+    /// Throws:  std::length_error for more than 2^32 mixed pairs or 2^26 clusters.
     explicit VisibilityPyramid(const prt::Transfer& transfer);
 
     [[nodiscard]] std::size_t num_bytes() const;
@@ -86,7 +86,7 @@ public:
         constexpr std::uint32_t All = 0xf;
         switch (place.kind()) {
         case Kind::Branch: {
-            const std::uint32_t bits = branch_sights_[place.entry()], mixed = bits >> 4u;
+            const std::uint32_t bits = links_[place.entry()].sights, mixed = bits >> 4u;
             const Family& family = families_[place.branch()];
             return {.visible = bits & All,
                     .mixed = mixed,
@@ -116,7 +116,8 @@ public:
         const Family& family = families_[place.branch()];
         const Links& links = links_[place.entry()];
         if ((family.branches & bit) != 0)
-            return Place(Kind::Branch, links.first_branch + num_bits(before & family.branches),
+            return Place(Kind::Branch,
+                         place.entry() + links.to_branch + num_bits(before & family.branches),
                          family.first_branch + num_bits(family.branches & (bit - 1)));
         if ((family.quads & bit) != 0)
             return Place(Kind::Quad, links.first_quad + num_bits(before & family.quads));
@@ -168,9 +169,12 @@ private:
         /// Bits of its children that are branches, and that are quads; others are clusters.
         std::uint8_t branches = 0, quads = 0;
     };
-    /// The first entries of a branch's mixed children, in one block.
+    /// What a block sees of a branch: the children's bits, visible ones in the low half and mixed
+    /// ones in the high half, and the first entries of mixed children. Those of branches are so
+    /// many behind the branch's own.
     struct Links {
-        std::uint32_t first_branch = 0, first_quad = 0;
+        std::uint32_t sights : 8 = 0, to_branch : 24 = 0;
+        std::uint32_t first_quad = 0;
     };
 
     /// Of four bits. Most processors' own instruction is not known at compile time.
@@ -190,9 +194,7 @@ private:
 
     /// [num_blocks * 6]
     std::vector<Place> faces_;
-    /// [num_mixed_branches] depth first in each block: the children's bits, visible ones in the
-    /// low half and mixed ones in the high half, and their entries.
-    std::vector<std::uint8_t> branch_sights_;
+    /// [num_mixed_branches] depth first in each block.
     std::vector<Links> links_;
     /// [num_mixed_branches * 16] in parts of 255.
     std::vector<std::uint8_t> parts_;

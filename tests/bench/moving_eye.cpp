@@ -43,6 +43,8 @@ struct Settings {
     std::size_t num_frames = 0;
     /// Whether other ways are measured, too.
     int beside = 1;
+    /// Whether only what pictures show is lit: 1 or 0.
+    int seen = 0;
 };
 
 /// Eyes all around and above, as far as the automatic camera.
@@ -60,10 +62,10 @@ std::vector<glm::vec3> random_eyes(const Scene& scene, std::size_t count) {
     return eyes;
 }
 
-/// Receivers that face each eye, and exact radiance of them.
+/// Receivers that face each eye, and that it sees where there are rays to say so.
 struct Samples {
     Samples(const Scene& scene, std::span<const prt::Surface> surfaces,
-            std::span<const glm::vec3> eyes, std::size_t per_eye) {
+            std::span<const glm::vec3> eyes, std::size_t per_eye, const prt::RayScene* rays) {
         std::mt19937 random(11);
         const prt::Receivers& all = scene.receivers;
         std::uniform_int_distribution<std::uint32_t> any(
@@ -73,7 +75,10 @@ struct Samples {
                 const std::uint32_t i = any(random);
                 const glm::vec3 to_eye = glm::normalize(eye - all.positions[i]);
                 if (glm::dot(to_eye, all.normals[i]) < 0.05f ||
-                    surfaces[i].highlight == prt::Highlight::None)
+                    surfaces[i].highlight == prt::Highlight::None ||
+                    (rays != nullptr &&
+                     rays->occluded(all.positions[i] + scene.settings.bias * all.normals[i],
+                                    eye - all.positions[i], 1.0f)))
                     continue;
                 ++found;
                 index.push_back(i);
@@ -219,7 +224,8 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
             surfaces[i] = {};
     double seconds_made = 0.0;
     const auto start = std::chrono::steady_clock::now();
-    relight::MovingEye live(scene.transfer, scene.receivers.positions, surfaces);
+    relight::MovingEye live(scene.transfer, scene.receivers.positions, surfaces,
+                            scene.mesh.triangles);
     seconds_made = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const prt::VisibleCounts& counts = scene.transfer.counts;
     fmt::print("roughness {}: {} receivers, {} clusters; pyramid {:.1f} MB in {:.2f} s, counts "
@@ -228,7 +234,8 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
                1e-6 * static_cast<double>(live.num_bytes()), seconds_made,
                1e-6 * static_cast<double>(counts.counts.size() + 24 * counts.mixed.size()));
     const std::vector<glm::vec3> eyes = random_eyes(scene, settings.num_eyes);
-    const Samples samples(scene, surfaces, eyes, settings.num_samples);
+    const Samples samples(scene, surfaces, eyes, settings.num_samples,
+                          settings.seen != 0 ? &lit.rays().of_mesh() : nullptr);
     std::vector<std::uint32_t> order(samples.index.size());
     for (std::uint32_t i = 0; i < order.size(); ++i)
         order[i] = i;
@@ -257,7 +264,8 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
         double seconds = 0.0, cells = 0.0, blocks = 0.0;
         for (std::size_t eye = 0; eye < eyes.size(); ++eye) {
             const auto radiance =
-                live.look(eyes[eye], lit.radiance(), {.tolerance = settings.tolerance});
+                live.look(eyes[eye], lit.radiance(),
+                          {.tolerance = settings.tolerance, .seen_only = settings.seen != 0});
             seconds += live.report().seconds;
             cells += static_cast<double>(live.report().num_cells);
             blocks += static_cast<double>(live.report().num_blocks);
@@ -304,6 +312,7 @@ int main(int argc, char** argv) {
     program.add("--eyes", settings.num_eyes, "eyes around the mesh");
     program.add("--turntable", settings.num_frames, "frames of a turntable, 0 for none");
     program.add("--beside", settings.beside, "the plain sum and no visibility, too: 1 or 0");
+    program.add("--seen", settings.seen, "only what pictures show: 1 or 0");
     program.add("--samples", settings.num_samples,
                 "receivers of each eye; 0: only times are measured");
     return program.run(argc, argv, [&] {

@@ -1,6 +1,8 @@
 // Highlights for an eye that moves, against the plain sum over clusters and exact integration.
 #include "relight/moving_eye/moving_eye.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -46,7 +48,8 @@ struct Lit {
         const ShadowRays& rays = scenes::relit_scene().shadow_rays())
         : relighter(scenes::relit_scene().transfer, rays),
           eye(scenes::relit_scene().transfer, scenes::relit_scene().receivers.positions,
-              std::vector(scenes::relit_scene().receivers.size(), surface)) {
+              std::vector(scenes::relit_scene().receivers.size(), surface),
+              scenes::relit_scene().mesh.triangles) {
         relighter.set_environment(std::move(environment));
         eye.set_light(relighter);
     }
@@ -286,6 +289,98 @@ TEST(MovingEye, RefusesWhatItCannotLight) {
     MovingEye eye(scene.transfer, scene.receivers.positions,
                   std::vector(scene.receivers.size(), shiny(0.3f)));
     EXPECT_THROW(static_cast<void>(eye.look(Eye, {})), std::logic_error);
+}
+
+/// Two fine spheres, one of which hides a part of the other from most eyes.
+struct TwoSpheres {
+    mesh::TriangleMesh mesh = scenes::joined(scenes::icosphere(5, 1.0f, glm::vec3(0.0f)),
+                                             scenes::icosphere(4, 0.8f, {2.2f, 0.3f, 0.0f}));
+    prt::Receivers receivers = prt::vertex_receivers(mesh);
+    prt::RayScene rays{mesh};
+    float bias = prt::automatic_bias(mesh);
+    prt::Transfer transfer =
+        prt::precompute(receivers, rays, {.tolerance = 0.03f, .face_resolution = 64, .bias = bias});
+    Relighter relighter{transfer};
+    MovingEye eye{transfer, receivers.positions, std::vector(receivers.size(), shiny(0.3f)),
+                  mesh.triangles};
+
+    TwoSpheres() {
+        relighter.set_environment(scenes::random_environment(32, 7));
+        eye.set_light(relighter);
+    }
+    std::vector<glm::vec3> look(const glm::vec3& from, const EyeOptions& options = {},
+                                std::span<const glm::vec4> sides = {}) {
+        const auto radiance = eye.look(from, relighter.radiance(), options, sides);
+        return {radiance.begin(), radiance.end()};
+    }
+    /// Whether a triangle of a receiver has a corner that an eye sees, by rays.
+    [[nodiscard]] std::vector<bool> shown_by_rays(const glm::vec3& from) const {
+        const auto sees = [&](std::uint32_t i) {
+            const glm::vec3 ray = from - receivers.positions[i];
+            return glm::dot(ray, receivers.normals[i]) > 0.0f &&
+                   !rays.occluded(receivers.positions[i] + bias * receivers.normals[i], ray, 1.0f);
+        };
+        std::vector<bool> shown(receivers.size());
+        for (const mesh::Triangle& triangle : mesh.triangles)
+            if (std::any_of(triangle.begin(), triangle.end(), sees))
+                for (const std::uint32_t corner : triangle)
+                    shown[corner] = true;
+        return shown;
+    }
+};
+
+TEST(MovingEye, APictureHasAllThatItShows) {
+    TwoSpheres scene;
+    for (const glm::vec3& from : {glm::vec3(-4.0f, 0.6f, 1.0f), glm::vec3(6.0f, 1.0f, 0.1f),
+                                  glm::vec3(5.0f, 0.4f, -3.0f)}) {
+        const std::vector<glm::vec3> all = scene.look(from);
+        const std::size_t num_blocks = scene.eye.report().num_blocks;
+        const std::vector<glm::vec3> seen = scene.look(from, {.seen_only = true});
+        EXPECT_LT(scene.eye.report().num_blocks, num_blocks);
+        const std::vector<bool> shown = scene.shown_by_rays(from);
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (shown[i]) {
+                EXPECT_EQ(seen[i], all[i]) << i;
+            } else {
+                EXPECT_TRUE(seen[i] == all[i] || seen[i] == scene.relighter.radiance()[i]) << i;
+            }
+    }
+}
+
+TEST(MovingEye, APictureHasAllBetweenItsSides) {
+    TwoSpheres scene;
+    const glm::vec3 from(0.5f, 1.0f, 5.0f), across(1.0f, 0.0f, 0.0f);
+    const std::vector<glm::vec3> all = scene.look(from);
+    const std::array sides = {glm::vec4(across, -glm::dot(across, from))};
+    static_cast<void>(scene.look(from, {.seen_only = true}));
+    const std::size_t num_blocks = scene.eye.report().num_blocks;
+    const std::vector<glm::vec3> part = scene.look(from, {.seen_only = true}, sides);
+    EXPECT_LT(scene.eye.report().num_blocks, num_blocks);
+    const std::vector<bool> shown = scene.shown_by_rays(from);
+    std::size_t num_inside = 0;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (shown[i] && glm::dot(across, scene.receivers.positions[i] - from) > 0.0f) {
+            ++num_inside;
+            EXPECT_EQ(part[i], all[i]) << i;
+        }
+    EXPECT_GT(num_inside, all.size() / 10);
+}
+
+// Blockers may stand behind an eye that is among them, so all that faces it is lit.
+TEST(MovingEye, AnEyeWithinTheSceneSeesAllThatFacesIt) {
+    Lit lit(shiny(0.3f), scenes::random_environment(32, 7));
+    const prt::Receivers& receivers = scenes::relit_scene().receivers;
+    glm::vec3 low = receivers.positions[0], high = low;
+    for (const glm::vec3& position : receivers.positions) {
+        low = glm::min(low, position);
+        high = glm::max(high, position);
+    }
+    const glm::vec3 eye(0.5f * (low.x + high.x), low.y + 0.3f * (high.y - low.y),
+                        0.5f * (low.z + high.z));
+    const std::span<const glm::vec3> look = lit.eye.look(eye, lit.relighter.radiance());
+    const std::vector<glm::vec3> all(look.begin(), look.end());
+    const auto seen = lit.eye.look(eye, lit.relighter.radiance(), {.seen_only = true});
+    EXPECT_TRUE(std::equal(all.begin(), all.end(), seen.begin()));
 }
 
 /// Compares what a block sees of a cell, and of the cells below it, with the counts. Returns how
