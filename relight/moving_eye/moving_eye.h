@@ -33,6 +33,8 @@ struct EyeReport {
     /// Blocks of 16 receivers that face the eye and have a highlight; of a picture, those that it
     /// needs.
     std::size_t num_blocks = 0;
+    /// Those of them that took the change of the light, in place of being lit anew.
+    std::size_t num_updated = 0;
     /// Cells of their cuts, and lights that were traced.
     std::size_t num_cells = 0;
     /// What the cuts were made for.
@@ -53,7 +55,8 @@ public:
     ///          show `triangles` of receivers, by their numbers, and nothing else is in the way.
     /// Throws:  std::invalid_argument for other sizes, or where no surface has a GGX highlight.
     /// Cost:    a second for half a million receivers.
-    /// Memory:  see num_bytes().
+    /// Memory:  see num_bytes(); some 6 KB for each block that faces an eye that stands still while
+    ///          the light changes.
     MovingEye(const prt::Transfer& transfer, std::span<const glm::vec3> positions,
               std::span<const prt::Surface> surfaces,
               std::span<const std::array<std::uint32_t, 3>> triangles = {});
@@ -68,8 +71,10 @@ public:
     void set_light(const Relighter& relighter);
 
     /// Returns the radiance that receivers send to an eye. `radiance` is what they send without
-    /// highlights, with bounces or without. `sides` are planes through the eye and the sides of a
-    /// picture, which count for what is seen: dot(xyz, p) + w >= 0 inside.
+    /// highlights, with bounces or without. Where the eye stands still and the light changes, from
+    /// the third look on, only cells that changed are summed: the result is that of an eye that
+    /// comes new, within rounding of the largest light. `sides` are planes through the eye and the
+    /// sides of a picture, which count for what is seen: dot(xyz, p) + w >= 0 inside.
     ///
     /// Shape:   [num_receivers] in the receivers' own order, both. The result is good until the
     ///          next call.

@@ -366,6 +366,43 @@ TEST(MovingEye, APictureHasAllBetweenItsSides) {
     EXPECT_GT(num_inside, all.size() / 10);
 }
 
+// A light is dragged over the map while the eye stands still; each look is compared with that of an
+// eye that comes new.
+TEST(MovingEye, AStandingEyeTakesTheChangesOfTheLight) {
+    TwoSpheres scene;
+    const glm::vec3 from(0.5f, 1.0f, 5.0f);
+    MovingEye fresh(scene.transfer, scene.receivers.positions,
+                    std::vector(scene.receivers.size(), shiny(0.3f)));
+    std::size_t num_updated = 0, num_blocks = 0;
+    for (std::uint32_t step = 0; step < 12; ++step) {
+        cubemap::CubeMap map = scenes::smooth_environment(32);
+        for (std::uint32_t y = 10; y < 14; ++y)
+            for (std::uint32_t x = 2 * step; x < 2 * step + 4; ++x)
+                map.at(cubemap::Face::PositiveZ, x, y) += glm::vec3(8.0f, 6.0f, 4.0f);
+        scene.relighter.set_environment(map);
+        scene.eye.set_light(scene.relighter);
+        const std::vector<glm::vec3> kept = scene.look(from);
+        if (step > 2) {
+            num_updated += scene.eye.report().num_updated;
+            num_blocks += scene.eye.report().num_blocks;
+        }
+        fresh.set_light(scene.relighter);
+        // Another eye in between, so that nothing is kept.
+        static_cast<void>(fresh.look(-from, scene.relighter.radiance()));
+        const auto expected = fresh.look(from, scene.relighter.radiance());
+        EXPECT_EQ(fresh.report().num_updated, 0u);
+        for (std::size_t i = 0; i < kept.size(); ++i)
+            for (int channel = 0; channel < 3; ++channel)
+                EXPECT_NEAR(kept[i][channel], expected[i][channel], 1e-5f) << step << " " << i;
+    }
+    EXPECT_GT(num_updated, num_blocks / 2);
+    // The same light again changes nothing, not a bit.
+    const std::vector<glm::vec3> before = scene.look(from);
+    scene.eye.set_light(scene.relighter);
+    EXPECT_EQ(scene.look(from), before);
+    EXPECT_EQ(scene.eye.report().num_updated, scene.eye.report().num_blocks);
+}
+
 // Blockers may stand behind an eye that is among them, so all that faces it is lit.
 TEST(MovingEye, AnEyeWithinTheSceneSeesAllThatFacesIt) {
     Lit lit(shiny(0.3f), scenes::random_environment(32, 7));
