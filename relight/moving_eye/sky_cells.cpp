@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #include <glm/geometric.hpp>
 
@@ -134,11 +135,12 @@ void SkyCells::set_level(std::uint32_t level) {
         files::IndexRange<std::size_t>(0, count / 4, CellsPerTask / 4), [&](const auto& some) {
             for (std::size_t group = some.begin(); group < some.end(); ++group) {
                 const std::size_t parent = (first - cubemap::NumFaces) / 4 + group;
-                unsigned changed = 0;
-                for (unsigned i = 0; i < 4; ++i) {
+                for (std::size_t i = 0; i < 4; ++i)
                     set(4 * group + i);
-                    changed |= sisters_[parent].is_alike(i, before_[parent]) ? 0 : 1u << i;
-                }
+                unsigned changed = 0;
+                if (std::memcmp(&sisters_[parent], &before_[parent], sizeof(SisterCells)) != 0)
+                    for (unsigned i = 0; i < 4; ++i)
+                        changed |= sisters_[parent].is_alike(i, before_[parent]) ? 0 : 1u << i;
                 changed_[parent] = static_cast<std::uint8_t>(changed);
             }
         });

@@ -41,6 +41,9 @@ struct Settings {
     std::size_t num_samples = 200;
     /// Of a turntable, whose flicker is measured; 0: of none.
     std::size_t num_frames = 0;
+    /// Steps of a light that is dragged while the eye stands still; 0: none.
+    std::size_t num_drags = 0;
+    double disc_degrees = 10.0;
     /// Whether other ways are measured, too.
     int beside = 1;
     /// Whether only what pictures show is lit: 1 or 0.
@@ -210,6 +213,67 @@ void print_turntable(const Settings& settings, const LitScene& lit, relight::Mov
                of_looks.report().mean_inconsistency / change, between.report().mean_inconsistency);
 }
 
+/// A disc of light that is dragged across the sky while the eye stands still: what an update costs,
+/// and how far it is from a look of an eye that comes new.
+void print_drag(const Settings& settings, LitScene& lit, relight::MovingEye& live,
+                const bench::NamedMap& map) {
+    const glm::vec3 eye = camera_of(lit.scene()).eye;
+    const relight::EyeOptions options{.tolerance = settings.tolerance,
+                                      .seen_only = settings.seen != 0};
+    std::vector<double> of_edit, of_light, of_look, of_all, processor;
+    std::size_t num_updated = 0, num_blocks = 0;
+    constexpr std::size_t NumFirst = 3;
+    for (std::size_t step = 0; step < settings.num_drags + NumFirst; ++step) {
+        const double phi = 0.03 * static_cast<double>(step);
+        const cubemap::Disc disc{
+            .direction = {0.8 * std::cos(phi), 0.6, 0.8 * std::sin(phi)},
+            .radius_degrees = settings.disc_degrees,
+        };
+        const double cpu = bench::cpu_seconds();
+        const auto start = std::chrono::steady_clock::now();
+        set_layers(lit, {{.name = "light",
+                          .region = disc,
+                          .effect = cubemap::Emit{.radiance = glm::vec3(5.0f)}}});
+        const auto edited = std::chrono::steady_clock::now();
+        live.set_light(lit.relighter());
+        const auto lit_at = std::chrono::steady_clock::now();
+        static_cast<void>(live.look(eye, lit.radiance(), options));
+        const auto end = std::chrono::steady_clock::now();
+        if (step < NumFirst)
+            continue;
+        const auto ms = [](auto from, auto to) {
+            return std::chrono::duration<double, std::milli>(to - from).count();
+        };
+        of_edit.push_back(ms(start, edited));
+        of_light.push_back(ms(edited, lit_at));
+        of_look.push_back(ms(lit_at, end));
+        of_all.push_back(ms(start, end));
+        processor.push_back(1e3 * (bench::cpu_seconds() - cpu));
+        num_updated += live.report().num_updated;
+        num_blocks += live.report().num_blocks;
+    }
+    const auto last = live.look(eye, lit.radiance(), options);
+    const std::vector<glm::vec3> kept(last.begin(), last.end());
+    static_cast<void>(live.look(-eye, lit.radiance(), options));
+    const auto fresh = live.look(eye, lit.radiance(), options);
+    const double fresh_ms = 1e3 * live.report().seconds;
+    double difference = 0.0, largest = 0.0;
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        difference = std::max(difference, double{glm::distance(kept[i], fresh[i])});
+        largest = std::max(largest, double{glm::length(fresh[i])});
+    }
+    fmt::print("| {} | drag of {} degrees, {} steps: {:.1f} ms = edit {:.1f} + light {:.1f} + look "
+               "{:.1f}, of a new eye {:.1f}; {:.1f} cpu ms; medians; {:.3f} of the blocks updated, "
+               "difference "
+               "{:.1e} of the largest\n",
+               map.name, settings.disc_degrees, settings.num_drags, bench::median(of_all),
+               bench::median(of_edit), bench::median(of_light), bench::median(of_look), fresh_ms,
+               bench::median(processor),
+               static_cast<double>(num_updated) / static_cast<double>(num_blocks),
+               difference / largest);
+    set_layers(lit, {});
+}
+
 void print_rows(float roughness, const Settings& settings, LitScene& lit,
                 const std::vector<bench::NamedMap>& maps) {
     const Scene& scene = lit.scene();
@@ -292,6 +356,8 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
         fmt::print("\n");
         if (settings.num_frames != 0 && settings.num_samples != 0)
             print_turntable(settings, lit, live, surfaces, map);
+        if (settings.num_drags != 0)
+            print_drag(settings, lit, live, map);
         std::fflush(stdout);
     }
 }
@@ -311,6 +377,8 @@ int main(int argc, char** argv) {
     program.add("--resolution", settings.resolution, "R of the environments");
     program.add("--eyes", settings.num_eyes, "eyes around the mesh");
     program.add("--turntable", settings.num_frames, "frames of a turntable, 0 for none");
+    program.add("--drags", settings.num_drags, "steps of a light that is dragged, 0 for none");
+    program.add("--disc", settings.disc_degrees, "radius of that light, degrees");
     program.add("--beside", settings.beside, "the plain sum and no visibility, too: 1 or 0");
     program.add("--seen", settings.seen, "only what pictures show: 1 or 0");
     program.add("--samples", settings.num_samples,
@@ -321,6 +389,7 @@ int main(int argc, char** argv) {
             settings.transfer_tolerance = 0.06f;
             settings.resolution = 32;
             settings.num_eyes = 3;
+            settings.num_drags = 2;
         }
         LitScene lit(settings.scene.empty() ? precompute(inputs.mesh(settings.mesh, settings.floor),
                                                          {.tolerance = settings.transfer_tolerance})
