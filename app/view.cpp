@@ -151,7 +151,8 @@ void run(const Options& options, Session& session) {
     state.eye_options = options.eye;
     if (has_live_highlights(lit.scene())) {
         state.live_eye = std::make_unique<LiveEye>(lit);
-        warn_of_smooth_surfaces(*state.live_eye, session);
+        warn_of_smooth_surfaces(state.live_eye->num_too_smooth(), session);
+        state.roughness = state.live_eye->mean_roughness();
     }
     if (!options.layers.empty() && !viewer::open(state, options.layers))
         throw std::runtime_error(state.message);

@@ -76,11 +76,17 @@ public:
     explicit Pictures(const ViewState& state)
         : scene_(state.mesh, state.shading.floor),
           environment_(state.desk.lit().relighter().transfer().quadtree),
-          refiner_(state.mesh, state.rays, state.shading) {}
+          roughness_(state.roughness), refiner_(state.mesh, state.rays, state.shading) {}
 
     /// Sends changes by edits to the graphics card.
     void update(ViewState& state, const PixelRectangle& viewport) {
         const LitScene& lit = state.desk.lit();
+        if (state.live_eye && state.roughness != roughness_) {
+            refiner_.stop();
+            roughness_ = state.roughness;
+            state.desk.set_roughness(roughness_);
+            state.live_eye->take_surfaces();
+        }
         const auto version = state.desk.version();
         const bool is_relit = version != version_;
         version_ = version;
@@ -206,6 +212,8 @@ private:
     CubeTexture behind_;
     bool hides_layers_ = false;
     std::uint64_t version_ = 0;
+    /// That of the scene's materials.
+    float roughness_ = 0.0f;
     /// Those of the shading.
     std::vector<EmissionGain> gains_;
     /// Of the picture that the colours are for.

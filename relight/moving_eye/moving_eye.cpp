@@ -51,6 +51,13 @@ float smallest_alpha(std::span<const prt::Surface> surfaces) {
     return alpha;
 }
 
+void check(const prt::Transfer& transfer, std::span<const prt::Surface> surfaces) {
+    if (surfaces.size() != transfer.num_receivers())
+        throw std::invalid_argument("expected one surface per receiver");
+    if (std::none_of(surfaces.begin(), surfaces.end(), is_ggx))
+        throw std::invalid_argument("expected surfaces with highlights, got none");
+}
+
 /// Sums of a block take so many changes before they are summed anew: rounding adds up.
 constexpr std::uint32_t MostUpdates = 64;
 
@@ -86,16 +93,23 @@ struct MovingEye::Impl {
          std::span<const prt::Surface> shiny, std::span<const SeenBlocks::Triangle> triangles)
         : transfer(of), visibility(of), sky(level_for(smallest_alpha(shiny))),
           result(of.num_receivers()) {
-        for (const std::uint32_t receiver : of.order) {
+        for (const std::uint32_t receiver : of.order)
             positions.push_back(at[receiver]);
+        set_surfaces(shiny);
+        if (!triangles.empty())
+            seen.emplace(transfer, visibility, positions, triangles);
+    }
+
+    void set_surfaces(std::span<const prt::Surface> shiny) {
+        surfaces.clear();
+        is_matt.clear();
+        for (const std::uint32_t receiver : transfer.order)
             surfaces.push_back(is_ggx(shiny[receiver]) ? shiny[receiver] : prt::Surface());
-        }
-        for (std::size_t block = 0; block < of.counts.num_blocks(); ++block) {
+        for (std::size_t block = 0; block < transfer.counts.num_blocks(); ++block) {
             const auto own = std::span(surfaces).subspan(block * prt::BlockSize, size_of(block));
             is_matt.push_back(std::none_of(own.begin(), own.end(), is_ggx));
         }
-        if (!triangles.empty())
-            seen.emplace(transfer, visibility, positions, triangles);
+        last_error = -1.0f;
     }
 
     /// The lobes of a block's receivers for an eye.
@@ -285,14 +299,25 @@ struct MovingEye::Impl {
 MovingEye::MovingEye(const prt::Transfer& transfer, std::span<const glm::vec3> positions,
                      std::span<const prt::Surface> surfaces,
                      std::span<const SeenBlocks::Triangle> triangles) {
-    if (positions.size() != transfer.num_receivers() || surfaces.size() != positions.size())
-        throw std::invalid_argument("expected one position and one surface per receiver");
-    if (std::none_of(surfaces.begin(), surfaces.end(), is_ggx))
-        throw std::invalid_argument("expected surfaces with highlights, got none");
+    if (positions.size() != transfer.num_receivers())
+        throw std::invalid_argument("expected one position per receiver");
+    check(transfer, surfaces);
     impl_ = std::make_unique<Impl>(transfer, positions, surfaces, triangles);
 }
 MovingEye::~MovingEye() = default;
 MovingEye::MovingEye(MovingEye&&) noexcept = default;
+
+bool MovingEye::set_surfaces(std::span<const prt::Surface> surfaces) {
+    check(impl_->transfer, surfaces);
+    impl_->set_surfaces(surfaces);
+    const std::uint32_t level = level_for(smallest_alpha(surfaces));
+    if (level == impl_->sky.deepest_level())
+        return false;
+    impl_->sky = SkyCells(level);
+    impl_->kept.clear();
+    impl_->is_lit = false;
+    return true;
+}
 
 void MovingEye::set_light(const Relighter& relighter) {
     impl_->trace(relighter);

@@ -63,6 +63,12 @@ public:
     ~MovingEye();
     MovingEye(MovingEye&&) noexcept;
 
+    /// Takes other surfaces, as of another roughness. Returns whether the cells of the sky are of
+    /// another size now: then set_light() must be called again before the next look.
+    ///
+    /// Throws:  as the constructor; nothing has changed then.
+    [[nodiscard]] bool set_surfaces(std::span<const prt::Surface> surfaces);
+
     /// Takes the light of a Relighter of the same transfer. Where it has shadow rays, small bright
     /// lights are traced as for highlights of a fixed view: also those that fill their cluster.
     ///

@@ -61,6 +61,7 @@ public:
     /// Threads: parallel; the same bits for any number of threads.
     void set(const Relighter& relighter, std::span<const SharpLight> without);
 
+    [[nodiscard]] std::uint32_t deepest_level() const { return deepest_level_; }
     /// Returns the children of a cell by prt::cell_index().
     [[nodiscard]] const SisterCells& children(std::uint32_t cell) const { return sisters_[cell]; }
     /// The same before the last set().
