@@ -324,12 +324,14 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
             plain.add(sum.radiance[i], exact[i]);
             open.add(filtered[i], exact[i]);
         }
-        const double cpu = bench::cpu_seconds();
-        double seconds = 0.0, cells = 0.0, blocks = 0.0;
+        double seconds = 0.0, processor = 0.0, cells = 0.0, blocks = 0.0;
+        std::size_t num_left_out = 0;
         for (std::size_t eye = 0; eye < eyes.size(); ++eye) {
+            const double cpu = bench::cpu_seconds();
             const auto radiance =
                 live.look(eyes[eye], lit.radiance(),
                           {.tolerance = settings.tolerance, .seen_only = settings.seen != 0});
+            processor += bench::cpu_seconds() - cpu;
             seconds += live.report().seconds;
             cells += static_cast<double>(live.report().num_cells);
             blocks += static_cast<double>(live.report().num_blocks);
@@ -338,6 +340,15 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
                 error.add(glm::dvec3(radiance[samples.index[i]]), exact[i]);
                 matt.add(glm::dvec3(lit.radiance()[samples.index[i]]), exact[i]);
             }
+            if (settings.seen == 0 || exact.empty())
+                continue;
+            // What a picture leaves out although the eye sees it.
+            const std::vector<glm::vec3> kept(radiance.begin(), radiance.end());
+            const auto all =
+                live.look(eyes[eye], lit.radiance(), {.tolerance = settings.tolerance});
+            for (std::size_t i = eye * settings.num_samples; i < (eye + 1) * settings.num_samples;
+                 ++i)
+                num_left_out += kept[samples.index[i]] != all[samples.index[i]] ? 1 : 0;
         }
         const auto num_eyes = static_cast<double>(eyes.size());
         // The sum's time for all receivers that a look lights
@@ -345,11 +356,12 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
                                 blocks / num_eyes * prt::BlockSize;
         fmt::print("| {} | {:.0f} blocks, {:.0f} cells | {:.1f} cpu ms, {:.1f} ms | {} sharp, set "
                    "{:.1f} ms",
-                   map.name, blocks / num_eyes, cells / blocks,
-                   1e3 * (bench::cpu_seconds() - cpu) / num_eyes, 1e3 * seconds / num_eyes,
-                   live.num_traced(), 1e3 * set_seconds);
+                   map.name, blocks / num_eyes, cells / blocks, 1e3 * processor / num_eyes,
+                   1e3 * seconds / num_eyes, live.num_traced(), 1e3 * set_seconds);
         if (!exact.empty())
             fmt::print(" | {:.4f} | matt {:.3f}", error.relative_l2(), matt.relative_l2());
+        if (num_left_out != 0)
+            fmt::print(" | {} of {} seen receivers left out", num_left_out, exact.size());
         if (!filtered.empty())
             fmt::print(" | plain sum {:.4f}, {:.0f} cpu ms | no visibility {:.3f}",
                        plain.relative_l2(), plain_ms, open.relative_l2());
