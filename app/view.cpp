@@ -35,7 +35,7 @@ struct Options {
     std::string screenshot;
     /// The window's size, the exposure, the tone curve and the floor of pictures count.
     relumine::OutputOptions picture = {.width = 1440, .height = 860};
-    EyeOptions eye = {.budget_ms = 25.0};
+    EyeOptions eye = {.budget_ms = 25.0, .seen_only = true};
 };
 
 #ifdef RELUMINE_VIEWER_MISSING
@@ -151,7 +151,8 @@ void run(const Options& options, Session& session) {
     state.eye_options = options.eye;
     if (has_live_highlights(lit.scene())) {
         state.live_eye = std::make_unique<LiveEye>(lit);
-        warn_of_smooth_surfaces(*state.live_eye, session);
+        warn_of_smooth_surfaces(state.live_eye->num_too_smooth(), session);
+        state.roughness = state.live_eye->mean_roughness();
     }
     if (!options.layers.empty() && !viewer::open(state, options.layers))
         throw std::runtime_error(state.message);

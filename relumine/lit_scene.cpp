@@ -43,7 +43,18 @@ void require_same_hash(prt::Team& team, const std::filesystem::path& path, std::
 } // namespace
 
 LitScene::LitScene(Scene scene, const LightOptions& options)
-    : LitScene(std::make_shared<const Scene>(std::move(scene)), options) {}
+    : LitScene(std::make_shared<Scene>(std::move(scene)), options) {}
+
+LitScene::LitScene(std::shared_ptr<Scene> own, const LightOptions& options)
+    : LitScene(std::shared_ptr<const Scene>(own), nullptr, options) {
+    own_scene_ = own.get();
+}
+
+void LitScene::set_roughness(float roughness) {
+    if (own_scene_ == nullptr)
+        throw std::logic_error("expected a scene that is not shared, to set its roughness");
+    relumine::set_roughness(*own_scene_, roughness);
+}
 
 LitScene::LitScene(std::shared_ptr<const Scene> scene, const LightOptions& options)
     : LitScene(std::move(scene), nullptr, options) {}

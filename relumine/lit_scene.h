@@ -168,6 +168,12 @@ public:
     ///          costs some 20 rays a receiver, and a solution of bounces.
     void dim(std::vector<EmissionGain> gains);
 
+    /// Sets the roughness of highlights that follow the eye (relumine/scene.h). The light stays as
+    /// it is; a LiveEye must take the surfaces.
+    ///
+    /// Throws:  as relumine::set_roughness(); std::logic_error where the scene is shared.
+    void set_roughness(float roughness);
+
     /// Outgoing radiance of this process's receivers, in their order and the unit of the
     /// environment's; without materials for albedo 1. Empty before the first light().
     [[nodiscard]] std::span<const glm::vec3> radiance() const;
@@ -191,6 +197,7 @@ public:
     [[nodiscard]] Lighting lighting(bool is_drawn = true) const;
 
 private:
+    LitScene(std::shared_ptr<Scene> own, const LightOptions& options);
     /// Light of a list that comes on top, [receivers of this process] each.
     struct Added {
         std::vector<glm::vec3> radiance = {};
@@ -223,6 +230,8 @@ private:
     void finish();
 
     std::shared_ptr<const Scene> scene_;
+    /// The same, where nobody else has it.
+    Scene* own_scene_ = nullptr;
     std::unique_ptr<const SceneRays> rays_;
     /// LightOptions::blockers
     std::shared_ptr<const prt::Blockers> own_blockers_;

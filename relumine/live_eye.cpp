@@ -39,22 +39,34 @@ bool has_live_highlights(const Scene& scene) {
     return prt::on_vertices(scene.layout) && scene.receivers.to_eye.empty() &&
            !scene.receivers.surfaces.empty() && has_clusters(scene) &&
            std::any_of(mesh.triangle_materials.begin(), mesh.triangle_materials.end(),
-                       [&](std::uint32_t material) {
-                           const mesh::Material& own = mesh.materials[material];
-                           return prt::has_highlight(own) &&
-                                  own.model != mesh::MaterialModel::Phong &&
-                                  own.model != mesh::MaterialModel::Measured;
-                       });
+                       [&](std::uint32_t material) { return has_ggx(mesh.materials[material]); });
 }
 
 LiveEye::LiveEye(const LitScene& lit)
     : lit_(lit), surfaces_(shiny_surfaces(lit)),
-      eye_(lit.scene().transfer, lit.scene().receivers.positions, surfaces_) {
+      eye_(lit.scene().transfer, lit.scene().receivers.positions, surfaces_,
+           lit.scene().mesh.triangles) {
     take_light();
 }
 
 void LiveEye::take_light() {
     eye_.set_light(lit_.relighter());
+}
+
+void LiveEye::take_surfaces() {
+    surfaces_ = shiny_surfaces(lit_);
+    if (eye_.set_surfaces(surfaces_))
+        take_light();
+}
+
+float LiveEye::mean_roughness() const {
+    double sum = 0.0, count = 0.0;
+    for (const prt::Surface& surface : surfaces_)
+        if (is_shiny(surface)) {
+            sum += static_cast<double>(surface.roughness_or_exponent);
+            count += 1.0;
+        }
+    return static_cast<float>(sum / count);
 }
 
 std::size_t LiveEye::num_too_smooth() const {

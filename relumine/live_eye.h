@@ -33,15 +33,24 @@ public:
     /// Must be called when the light of the scene has changed.
     void take_light();
 
+    /// Must be called when the scene's roughness has changed.
+    ///
+    /// Cost:    O(receivers), and that of take_light() where cells become finer or coarser.
+    void take_surfaces();
+
     /// Returns outgoing radiance towards an eye, as LitScene::radiance(); good until the next call.
+    /// `sides` of a picture are as for relight::MovingEye::look().
     [[nodiscard]] std::span<const glm::vec3> look(const glm::vec3& eye,
-                                                  const EyeOptions& options = {}) {
-        return eye_.look(eye, lit_.radiance(), options);
+                                                  const EyeOptions& options = {},
+                                                  std::span<const glm::vec4> sides = {}) {
+        return eye_.look(eye, lit_.radiance(), options, sides);
     }
 
     [[nodiscard]] const EyeReport& report() const { return eye_.report(); }
     /// [num_receivers] the receivers' surfaces with their highlights.
     [[nodiscard]] std::span<const prt::Surface> surfaces() const { return surfaces_; }
+    /// Of receivers with highlights.
+    [[nodiscard]] float mean_roughness() const;
     /// How many receivers are smoother than relight::NarrowestLiveRoughness: their highlights come
     /// out wider.
     [[nodiscard]] std::size_t num_too_smooth() const;

@@ -215,6 +215,7 @@ Verification verify_eye(const LitScene& lit, const glm::vec3& eye, const VerifyO
     Verification result;
     result.receivers = relight::random_receivers(scene.transfer, options.num_samples, options.seed);
     result.of_file = file_of(lit) != nullptr;
+    result.num_too_smooth = live.num_too_smooth();
     const std::vector<glm::dvec3> exact = exact_radiance(
         lit, seen, result.receivers, options,
         {.bias = scene.settings.bias, .stop = options.stop, .on_progress = options.on_progress});
@@ -350,6 +351,29 @@ Share lit_by(const LitScene& lit, const cubemap::Region& region) {
     const double all = sum_of(lit.radiance());
     result.share = all > 0.0 ? sum_of(result.radiance) / all : 0.0;
     return result;
+}
+
+bool is_inside(const LitScene& lit, const glm::vec3& point) {
+    const mesh::TriangleMesh& mesh = lit.scene().mesh;
+    int num_backs = 0, num_directions = 0;
+    for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+            for (int z = -1; z <= 1; ++z) {
+                if (x == 0 && y == 0 && z == 0)
+                    continue;
+                ++num_directions;
+                const glm::vec3 direction(static_cast<float>(x), static_cast<float>(y),
+                                          static_cast<float>(z));
+                const auto hit = lit.rays().of_mesh().closest_hit(point, direction);
+                if (!hit)
+                    continue;
+                const mesh::Triangle& triangle = mesh.triangles[hit->triangle];
+                const glm::vec3& corner = mesh.positions[triangle[0]];
+                const glm::vec3 normal = glm::cross(mesh.positions[triangle[1]] - corner,
+                                                    mesh.positions[triangle[2]] - corner);
+                num_backs += glm::dot(normal, direction) > 0.0f ? 1 : 0;
+            }
+    return 4 * num_backs > 3 * num_directions;
 }
 
 std::vector<std::uint8_t> sees(const LitScene& lit, std::span<const glm::vec3> points) {

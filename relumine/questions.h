@@ -71,6 +71,8 @@ struct Verification {
     double noise = 0.0;
     /// Whether the pixels of the environment's file were integrated, not the texels of the map
     bool of_file = false;
+    /// LiveEye::num_too_smooth(), of light towards an eye
+    std::size_t num_too_smooth = 0;
 };
 
 /// The parts of a verification, as people say them.
@@ -174,6 +176,12 @@ void relight_batch(const LitScene& lit, std::span<const cubemap::CubeMap> enviro
 /// Cost:    num_receivers * points.size() rays; points that lie close together are cheap.
 [[nodiscard]] std::vector<std::uint8_t> sees(const LitScene& lit,
                                              std::span<const glm::vec3> points);
+
+/// Whether a point is inside of the mesh: in most directions it sees backs of surfaces. A small
+/// hole, as of scans, does not matter; a room is open to its inside.
+///
+/// Cost:    26 rays.
+[[nodiscard]] bool is_inside(const LitScene& lit, const glm::vec3& point);
 
 /// Where a light stands for a point that is seen.
 enum class Aim {

@@ -58,14 +58,26 @@ struct SurfaceColors {
     std::optional<glm::vec3> albedo = {};
     /// F0, or Ks of Blinn-Phong
     std::optional<glm::vec3> specular = {};
+    /// Of GGX highlights that follow the eye; a texture of roughness multiplies it.
+    std::optional<float> roughness = {};
 };
 
 [[nodiscard]] OptionTable options_of(SurfaceColors& colors);
 
 /// Colours are no part of the transfer, so they may change without a new precompute.
 ///
-/// Throws:  std::invalid_argument for a scene without materials.
+/// Throws:  std::invalid_argument for a scene without materials, and as set_roughness().
 void set_colors(Scene& scene, const SurfaceColors& colors);
+
+/// Whether a material has a GGX highlight.
+[[nodiscard]] bool has_ggx(const mesh::Material& material);
+
+/// Sets the roughness of the GGX materials of a scene's mesh, but of the added floor's: its
+/// highlights follow the eye, so nothing of them is stored.
+///
+/// Throws:  std::invalid_argument for a roughness outside of [0, 1], highlights that are stored for
+///          an eye, and where no material has a GGX highlight; nothing has changed then.
+void set_roughness(Scene& scene, float roughness);
 
 /// The camera that a scene brings along: the eye that its highlights are for, the camera of the
 /// mesh's file, or one inside of a room (relight::inside_room()). None for other scenes.

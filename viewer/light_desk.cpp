@@ -69,6 +69,11 @@ void LightDesk::dim(std::vector<EmissionGain> gains) {
     });
 }
 
+void LightDesk::set_roughness(float roughness) {
+    lit_.set_roughness(roughness);
+    ++version_;
+}
+
 void LightDesk::bounce(bool all) {
     if (lit_.bounces().is_settled())
         return;

@@ -50,6 +50,12 @@ public:
     /// Throws:  as LitScene::dim().
     void dim(std::vector<EmissionGain> gains);
 
+    /// Sets the roughness of highlights that follow the eye. That is no step of undo. Nothing may
+    /// draw the scene meanwhile.
+    ///
+    /// Throws:  as LitScene::set_roughness().
+    void set_roughness(float roughness);
+
     /// Brings the next bounce of light where the light changed, or all bounces: to be called once
     /// per frame.
     void bounce(bool all = false);

@@ -105,6 +105,16 @@ glm::mat4 clip_from_world(const OrbitCamera& camera, const PixelRectangle& viewp
            glm::lookAt(camera.eye(), camera.target, glm::vec3(0.0f, 1.0f, 0.0f));
 }
 
+std::array<glm::vec4, 4> picture_sides(const OrbitCamera& camera, const PixelRectangle& viewport) {
+    const CameraFrame axes = frame(camera, viewport);
+    const auto side = [&](const glm::vec3& axis) {
+        const float reach = glm::length(axis);
+        const glm::vec3 inwards = glm::normalize(axes.forward * reach - axis / reach);
+        return glm::vec4(inwards, -glm::dot(inwards, camera.eye()));
+    };
+    return {side(axes.right), side(-axes.right), side(axes.up), side(-axes.up)};
+}
+
 Ray ray_through(const OrbitCamera& camera, const PixelRectangle& viewport, const glm::vec2& pixel) {
     const CameraFrame axes = frame(camera, viewport);
     const float across = 2.0f * (pixel.x - static_cast<float>(viewport.x)) /

@@ -1,11 +1,13 @@
 // The camera of the scene's view, which turns about a point. Works without a window.
 #pragma once
 
+#include <array>
 #include <string>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include "relight/pictures/framing.h"
 #include "viewer/panel_layout.h"
@@ -60,6 +62,10 @@ struct CameraFrame {
 /// the target.
 [[nodiscard]] glm::mat4 clip_from_world(const OrbitCamera& camera, const PixelRectangle& viewport,
                                         float reach);
+/// Returns the planes through the eye and the sides of the picture: a point p is in the picture
+/// where dot(xyz, p) + w >= 0 for each.
+[[nodiscard]] std::array<glm::vec4, 4> picture_sides(const OrbitCamera& camera,
+                                                     const PixelRectangle& viewport);
 /// Returns the ray through a pixel's position, in the window's coordinates.
 [[nodiscard]] Ray ray_through(const OrbitCamera& camera, const PixelRectangle& viewport,
                               const glm::vec2& pixel);

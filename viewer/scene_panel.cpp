@@ -54,6 +54,19 @@ void dimmers(ViewState& state) {
     ImGui::EndPopup();
 }
 
+/// The roughness of highlights that follow the eye.
+void polish(ViewState& state) {
+    if (!state.live_eye)
+        return;
+    constexpr float Width = 110.0f;
+    next_item(Width);
+    ImGui::SetNextItemWidth(Width);
+    ImGui::SliderFloat("##roughness", &state.roughness, relight::NarrowestLiveRoughness, 1.0f,
+                       "rough %.2f", ImGuiSliderFlags_AlwaysClamp);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("The roughness of all glossy surfaces, as --surface-roughness does");
+}
+
 void tools(ViewState& state, const PixelRectangle& place, const PixelRectangle& picture) {
     begin_panel("scene tools", place);
     ImGui::AlignTextToFramePadding();
@@ -87,6 +100,7 @@ void tools(ViewState& state, const PixelRectangle& place, const PixelRectangle& 
         ImGui::SetTooltip("A click on the model: shows what lights the point, moves the chosen "
                           "layer so that it lights it (Ctrl), or so that the point mirrors it "
                           "(Ctrl-Shift)");
+    polish(state);
     dimmers(state);
     ImGui::End();
 }

@@ -195,6 +195,15 @@ void dim(Step& s) {
     }
 }
 
+void set_roughness(Step& s) {
+    if (!s.state.live_eye)
+        fail(s.command, "expected a scene whose highlights follow the eye");
+    const double roughness = s.number(0);
+    if (!(roughness >= 0.0 && roughness <= 1.0))
+        fail(s.command, "expected a roughness from 0 to 1");
+    s.state.roughness = static_cast<float>(roughness);
+}
+
 void rotate(Step& s) {
     set_rotation(s.state.desk, s.number(0));
     s.state.desk.finish();
@@ -240,6 +249,7 @@ constexpr std::array Verbs = {
     Verb{"mirror_layer NAME X Y", aim<Aim::Mirrored>},
     Verb{"set_gain NAME EV", set_gain},
     Verb{"dim NAME GAIN", dim},
+    Verb{"roughness R", set_roughness},
     Verb{"drag_env X0 Y0 X1 Y1", drag_to_move, DragFrames},
     Verb{"paint_env X0 Y0 X1 Y1", paint, DragFrames},
     Verb{"lasso_env X0 Y0 X1 Y1", draw_lasso, DragFrames},

@@ -1,6 +1,7 @@
 #include "viewer/view.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <optional>
 #include <utility>
@@ -75,11 +76,17 @@ public:
     explicit Pictures(const ViewState& state)
         : scene_(state.mesh, state.shading.floor),
           environment_(state.desk.lit().relighter().transfer().quadtree),
-          refiner_(state.mesh, state.rays, state.shading) {}
+          roughness_(state.roughness), refiner_(state.mesh, state.rays, state.shading) {}
 
     /// Sends changes by edits to the graphics card.
-    void update(ViewState& state) {
+    void update(ViewState& state, const PixelRectangle& viewport) {
         const LitScene& lit = state.desk.lit();
+        if (state.live_eye && state.roughness != roughness_) {
+            refiner_.stop();
+            roughness_ = state.roughness;
+            state.desk.set_roughness(roughness_);
+            state.live_eye->take_surfaces();
+        }
         const auto version = state.desk.version();
         const bool is_relit = version != version_;
         version_ = version;
@@ -95,14 +102,17 @@ public:
             if (state.live_eye)
                 state.live_eye->take_light();
         }
-        if (const glm::vec3 eye = state.camera.eye(); is_relit || (state.live_eye && eye != eye_)) {
-            eye_ = eye;
+        const std::array<glm::vec4, 4> sides = picture_sides(state.camera, viewport);
+        if (is_relit || (state.live_eye && sides != sides_)) {
+            sides_ = sides;
             std::vector<glm::vec3> colors;
             if (state.balls != nullptr) {
                 colors = state.balls->radiance(lit);
             } else {
                 const std::span<const glm::vec3> seen =
-                    state.live_eye ? state.live_eye->look(eye, state.eye_options) : lit.radiance();
+                    state.live_eye
+                        ? state.live_eye->look(state.camera.eye(), state.eye_options, sides)
+                        : lit.radiance();
                 colors.assign(seen.begin(), seen.end());
             }
             for (std::size_t i = 0; i < colors.size(); ++i)
@@ -202,10 +212,12 @@ private:
     CubeTexture behind_;
     bool hides_layers_ = false;
     std::uint64_t version_ = 0;
+    /// That of the scene's materials.
+    float roughness_ = 0.0f;
     /// Those of the shading.
     std::vector<EmissionGain> gains_;
-    /// That the colours are for.
-    glm::vec3 eye_{0.0f};
+    /// Of the picture that the colours are for.
+    std::array<glm::vec4, 4> sides_{};
     Scenery seen_;
     Clock::time_point since_ = Clock::now();
     bool is_refining_ = false, is_refined_ = false;
@@ -303,7 +315,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
             state.desk.bounce(true);
         else
             state.desk.bounce();
-        pictures.update(state);
+        pictures.update(state, layout.scene);
         if (!options.script || is_kept)
             pictures.refine(state, window.in_framebuffer(layout.scene), is_kept);
         else

@@ -85,6 +85,8 @@ struct ViewState {
     /// Highlights that follow the eye, and how finely; null: the scene has none.
     std::unique_ptr<LiveEye> live_eye = {};
     EyeOptions eye_options = {};
+    /// Of all surfaces that highlights follow the eye on, as it shall be.
+    float roughness = 0.0f;
 };
 
 /// Returns what is seen behind the mesh now, for a Refiner. It does not change any more.

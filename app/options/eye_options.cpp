@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "relumine/questions.h"
+
 namespace relumine::app {
 
 OptionRow glossy_tolerance_row(EyeOptions& options) {
@@ -27,11 +29,19 @@ void require_live_highlights(const Scene& scene, const std::filesystem::path& pa
             path.string()));
 }
 
-void warn_of_smooth_surfaces(const LiveEye& eye, const Session& session) {
-    if (const std::size_t count = eye.num_too_smooth(); count != 0)
+void warn_of_eye_inside(const LitScene& lit, const std::optional<glm::vec3>& eye,
+                        const Session& session) {
+    if (eye && is_inside(lit, *eye))
+        session.warn(fmt::format("the eye {:.4g},{:.4g},{:.4g} is inside of the mesh: it sees the "
+                                 "backs of surfaces",
+                                 eye->x, eye->y, eye->z));
+}
+
+void warn_of_smooth_surfaces(std::size_t num_receivers, const Session& session) {
+    if (num_receivers != 0)
         session.warn(fmt::format("{} receivers are smoother than roughness {:.2f}: highlights that "
                                  "follow the eye are wider there",
-                                 count, relight::NarrowestLiveRoughness));
+                                 num_receivers, relight::NarrowestLiveRoughness));
 }
 
 } // namespace relumine::app

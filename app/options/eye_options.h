@@ -1,7 +1,11 @@
 // Options of highlights that follow the eye, for the commands that have them.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
+
+#include <glm/vec3.hpp>
 
 #include "app/session.h"
 #include "relumine/live_eye.h"
@@ -17,7 +21,11 @@ namespace relumine::app {
 /// Throws std::runtime_error "path: expected X, got Y" for a scene without live highlights.
 void require_live_highlights(const Scene& scene, const std::filesystem::path& path);
 
+/// Warns where an eye, if there is one, is inside of the mesh.
+void warn_of_eye_inside(const LitScene& lit, const std::optional<glm::vec3>& eye,
+                        const Session& session);
+
 /// Warns of highlights that come out wider than they are.
-void warn_of_smooth_surfaces(const LiveEye& eye, const Session& session);
+void warn_of_smooth_surfaces(std::size_t num_receivers, const Session& session);
 
 } // namespace relumine::app

@@ -45,13 +45,19 @@ Scene load(const SceneOptions& options) {
 
 void recolour(Scene& scene, const SceneOptions& options) {
     const SurfaceColors& colors = options.colors;
-    if (!colors.albedo && !colors.specular)
+    if (!colors.albedo && !colors.specular && !colors.roughness)
         return;
     if (scene.receivers.surfaces.empty())
         throw UsageError(
-            colors.albedo ? "--surface-albedo" : "--surface-specular",
+            colors.albedo     ? "--surface-albedo"
+            : colors.specular ? "--surface-specular"
+                              : "--surface-roughness",
             fmt::format("expected a scene with materials, got {} without", options.path));
-    set_colors(scene, colors);
+    try {
+        set_colors(scene, colors);
+    } catch (const std::invalid_argument& error) {
+        throw UsageError("--surface-roughness", fmt::format("{}: {}", options.path, error.what()));
+    }
 }
 
 LightOptions light_options(const SceneOptions& options, const Scene& scene) {

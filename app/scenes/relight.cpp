@@ -15,6 +15,7 @@
 #include "app/commands.h"
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
+#include "app/options/eye_options.h"
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/plan_option.h"
@@ -194,6 +195,7 @@ void light_scene(const RelightArguments& options, Session& session) {
     session.poll();
     if (session.is_first()) {
         options.output.warn_of_picture(scene, session);
+        warn_of_eye_inside(lit, options.output.picture.eye, session);
         for (const std::string& line : scene.settings.left_out)
             session.warn(fmt::format("{}: {}", scene.settings.source, line));
     }

@@ -79,6 +79,7 @@ void run(const VerifyArguments& options, Session& session) {
     LitScene lit = lit_scene(options.scene);
     if (options.eye)
         require_live_highlights(lit.scene(), options.scene.path);
+    warn_of_eye_inside(lit, options.eye, session);
     lit.light(load_environment(options.environment, session));
     if (session.team != nullptr) {
         require_same(*session.team, options.scene.path);
@@ -98,6 +99,7 @@ void run(const VerifyArguments& options, Session& session) {
                                             .stop = session.stop(),
                                             .on_progress = session.progress("exact integration")});
     session.end_progress();
+    warn_of_smooth_surfaces(check.num_too_smooth, session);
     const relight::ErrorReport& error = check.error;
     const double seconds = watch.lap();
 

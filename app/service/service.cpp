@@ -17,6 +17,7 @@
 #include "app/movies/frame_record.h"
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
+#include "app/options/eye_options.h"
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/report.h"
@@ -99,7 +100,8 @@ struct Service::Impl {
 
     void set_environment(const EnvironmentOptions& options);
     void set_layers(const std::string& path);
-    void write_radiance(const std::string& output, const std::string& shared_memory);
+    void write_radiance(std::span<const glm::vec3> radiance, const std::string& output,
+                        const std::string& shared_memory);
     /// Adds the bounces of the present light and reports them.
     void bounce();
 
@@ -116,9 +118,17 @@ struct Service::Impl {
 
     void perform(const JsonReader& json, const Report& root);
 
+    /// The radiance of all receivers; with an eye, with the highlights that it sees.
+    std::span<const glm::vec3> radiance(const std::optional<glm::vec3>& eye,
+                                        const EyeOptions& options);
+
     Session& session;
     std::string scene_path;
     std::optional<LitScene> scene;
+    /// Highlights of the scene, once an eye was asked for.
+    std::optional<LiveEye> live;
+    /// Whether they have the present light.
+    bool is_live_lit = false;
     BounceOption bounces;
 
     /// Environments that came before, as they light the scene, the last first.
@@ -160,6 +170,7 @@ void Service::Impl::declare_scene(Command& command) {
         static_cast<void>(bounce_option->applies_to(loaded.scene(), options->path));
         bounces = *bounce_option;
         binned.clear();
+        live.reset();
         scene.emplace(std::move(loaded));
         scene_path = options->path;
         report = {{"receivers", scene->scene().receivers.num_own()},
@@ -225,6 +236,7 @@ void Service::Impl::set_layers(const std::string& path) {
 }
 
 void Service::Impl::bounce() {
+    is_live_lit = false;
     if (const auto done = bounces.bounce(lit(), {}, scene_path))
         files::update(report, {{"bounces", done->num_bounces}, {"seconds_bounces", done->seconds}});
 }
@@ -239,6 +251,7 @@ void Service::Impl::declare_picture(Command& command) {
         options->check_fits(source.scene());
         Stopwatch watch;
         source.dim(options->for_scene(source.scene()).emission);
+        is_live_lit = false;
         const double seconds_dim = watch.total();
         Painter painter(source, options->picture);
         painter.save(options->path, source.lighting());
@@ -252,19 +265,46 @@ void Service::Impl::declare_radiance(Command& command) {
     struct Options {
         std::string output;
         std::string shared_memory;
+        std::optional<glm::vec3> eye;
+        EyeOptions eye_options;
     };
     auto options = std::make_shared<Options>();
     command.add(
         row("-o,--output", options->output, "an .npy file [receivers x 3]", {.file = true}));
     command.add(row("--shared-memory", options->shared_memory,
                     "POSIX shared memory that the client has made: float32 [receivers x 3]"));
-    command.on_run([this, options] { write_radiance(options->output, options->shared_memory); });
+    command.add(row<PointText>("--eye", options->eye,
+                               "X,Y,Z: the radiance towards this eye, of a scene of glossy "
+                               "vertices without --view",
+                               {.example = "1,2,3"}));
+    command.add(glossy_tolerance_row(options->eye_options));
+    command.on_run([this, options] {
+        if (options->output.empty() == options->shared_memory.empty())
+            throw UsageError("output", "expected either output or shared-memory");
+        write_radiance(radiance(options->eye, options->eye_options), options->output,
+                       options->shared_memory);
+    });
 }
 
-void Service::Impl::write_radiance(const std::string& output, const std::string& shared_memory) {
-    if (output.empty() == shared_memory.empty())
-        throw UsageError("output", "expected either output or shared-memory");
-    const std::span<const glm::vec3> radiance = lit_by_environment().radiance();
+std::span<const glm::vec3> Service::Impl::radiance(const std::optional<glm::vec3>& eye,
+                                                   const EyeOptions& options) {
+    const LitScene& source = lit_by_environment();
+    if (!eye)
+        return source.radiance();
+    require_live_highlights(source.scene(), scene_path);
+    warn_of_eye_inside(source, eye, session);
+    if (!live) {
+        live.emplace(source);
+        warn_of_smooth_surfaces(live->num_too_smooth(), session);
+    } else if (!is_live_lit) {
+        live->take_light();
+    }
+    is_live_lit = true;
+    return live->look(*eye, options);
+}
+
+void Service::Impl::write_radiance(std::span<const glm::vec3> radiance, const std::string& output,
+                                   const std::string& shared_memory) {
     if (output.empty()) {
         files::write_shared_memory(shared_memory, std::as_bytes(radiance));
     } else {

@@ -143,7 +143,7 @@ class Relighter:
     highlight_rays  of a pixel whose highlights are not stored: rays that find them; 0: none, as the
                    adjoint asks
     blockers_function  what keeps sharp lights away, as in precompute(); None: the scene's own
-    surface_albedo, surface_specular  as Scene.recolored()
+    surface_albedo, surface_specular, surface_roughness  as Scene.recolored()
 
     Calls release Python's lock, so that threads relight at the same time; two threads on one
     Relighter take turns.
@@ -165,11 +165,14 @@ class Relighter:
         blockers_function: Optional[BlockersFunction] = None,
         surface_albedo: Optional[Color] = None,
         surface_specular: Optional[Color] = None,
+        surface_roughness: Optional[float] = None,
     ) -> None:
         expect("scene", scene, Scene)
-        if surface_albedo is not None or surface_specular is not None:
+        if (surface_albedo, surface_specular, surface_roughness) != (None, None, None):
             scene = scene.recolored(
-                surface_albedo=surface_albedo, surface_specular=surface_specular
+                surface_albedo=surface_albedo,
+                surface_specular=surface_specular,
+                surface_roughness=surface_roughness,
             )
         self._scene = scene
         if harmonics not in (0, 2, 3):

@@ -396,12 +396,18 @@ class Scene:
         *,
         surface_albedo: Optional[Color] = None,
         surface_specular: Optional[Color] = None,
+        surface_roughness: Optional[float] = None,
     ) -> "Scene":
         """A copy with other colours of all surfaces but the floor's: no precompute is needed.
 
-        Raises ValueError for a scene without materials.
+        The roughness of GGX highlights may change where they follow the eye.
+        Raises ValueError for a scene without materials, and a roughness of stored highlights.
         """
-        colors = {"surface_albedo": surface_albedo, "surface_specular": surface_specular}
+        colors = {
+            "surface_albedo": surface_albedo,
+            "surface_specular": surface_specular,
+            "surface_roughness": surface_roughness,
+        }
         with errors():
             scene = Scene._of(_core.recoloured(self._core, colors))
         scene.blockers_function = self.blockers_function

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -157,6 +158,11 @@ private:
     float error_, factor_;
 };
 
+/// Which children of a divided cell are part of a cut, and which are divided: a bit each.
+struct Choice {
+    std::uint32_t whole = 0, divided = 0;
+};
+
 /// Finds the cells of a cut. `search` has the faces.
 class CellSearch {
 public:
@@ -173,16 +179,59 @@ public:
             const EyeCut::Item b = has_two ? search_.divided[next + 1] : a;
             const SisterCells &below_a = sky_.children(a.cell), &below_b = sky_.children(b.cell);
             const SisterBits bits = judge(below_a, below_b);
-            divide(a, below_a, bits);
+            divide(next, below_a, bits);
             if (has_two)
-                divide(b, below_b,
+                divide(next + 1, below_b,
                        {.lit = bits.lit >> 4u,
                         .fine_alike = bits.fine_alike >> 4u,
                         .fine = bits.fine >> 4u});
         }
     }
 
+    /// As EyeCut::update().
+    bool update(const Judge& judge, std::span<EyeCut::Item> items, LitCells& cells) const {
+        for (EyeCut::Item& at : items) {
+            const std::uint32_t changed = sky_.changed_children(at.cell);
+            if (changed == 0)
+                continue;
+            const SisterCells& below = sky_.children(at.cell);
+            const VisibilityPyramid::Sights seen = visibility_.sights(at.place);
+            const Choice choice = chosen(SkyCells::first_child(at.cell), seen, judge(below, below));
+            if (choice.divided != at.divided)
+                return false;
+            const std::uint32_t before =
+                std::exchange(at.whole, static_cast<std::uint16_t>(choice.whole));
+            for (std::uint32_t left = changed & (before | choice.whole); left != 0;
+                 left &= left - 1) {
+                const std::uint32_t i = lowest_bit(left);
+                PartlyCell cell;
+                cell.unit = visibility_.copy_parts(visibility_.child(block_, at.place, seen, i),
+                                                   cell.parts);
+                if ((choice.whole >> i & 1u) != 0) {
+                    cell.light = below.rows.data() + i;
+                    cells.partly.push_back(cell);
+                }
+                if ((before >> i & 1u) != 0) {
+                    cell.light = sky_.children_before(at.cell).rows.data() + i;
+                    cell.unit = -cell.unit;
+                    cells.partly.push_back(cell);
+                }
+            }
+        }
+        return true;
+    }
+
 private:
+    /// Chooses among children, the first of which has this number.
+    [[nodiscard]] Choice chosen(std::uint32_t first, const VisibilityPyramid::Sights& seen,
+                                const SisterBits& bits) const {
+        const std::uint32_t fine =
+            sky_.is_split(first) ? (bits.fine & seen.divided) | (bits.fine_alike & ~seen.divided)
+                                 : 0xf;
+        const std::uint32_t lit = bits.lit & (seen.visible | seen.mixed);
+        return {.whole = lit & fine & 0xfu, .divided = lit & ~fine & 0xfu};
+    }
+
     template<typename T>
     static void make_room(std::vector<T>& list, std::size_t used) {
         if (used + NumSisters > list.size())
@@ -194,29 +243,33 @@ private:
         make_room(search_.partly, search_.num_partly);
     }
 
-    void divide(const EyeCut::Item& at, const SisterCells& below, const SisterBits& bits) {
+    void divide(std::size_t index, const SisterCells& below, const SisterBits& bits) {
+        EyeCut::Item& at = search_.divided[index];
         const VisibilityPyramid::Sights seen = visibility_.sights(at.place);
         const std::uint32_t first = SkyCells::first_child(at.cell);
-        const std::uint32_t fine =
-            sky_.is_split(first) ? (bits.fine & seen.divided) | (bits.fine_alike & ~seen.divided)
-                                 : 0xf;
-        const std::uint32_t open = bits.lit & seen.visible, mixed = bits.lit & seen.mixed;
+        const Choice choice = chosen(first, seen, bits);
+        at.whole = static_cast<std::uint16_t>(choice.whole);
+        at.divided = static_cast<std::uint16_t>(choice.divided);
+        const std::uint32_t open = choice.whole & seen.visible;
         for (std::uint32_t i = 0; i < 4; ++i) {
             search_.open[search_.num_open] = below.rows.data() + i;
-            search_.num_open += (open & fine) >> i & 1u;
+            search_.num_open += open >> i & 1u;
         }
-        for (std::uint32_t left = open & ~fine & 0xfu; left != 0; left &= left - 1)
-            divide_later({.cell = first + lowest_bit(left),
-                          .place = {.kind = VisibilityPyramid::Kind::Visible}});
-        for (std::uint32_t left = mixed; left != 0; left &= left - 1) {
+        const VisibilityPyramid::Place place = at.place;
+        for (std::uint32_t left = choice.divided & seen.visible; left != 0; left &= left - 1)
+            divide_later(first + lowest_bit(left),
+                         VisibilityPyramid::Place(VisibilityPyramid::Kind::Visible));
+        for (std::uint32_t left = bits.lit & seen.mixed; left != 0; left &= left - 1) {
             const std::uint32_t i = lowest_bit(left);
-            const VisibilityPyramid::Place place = visibility_.child(block_, at.place, seen, i);
-            if ((fine >> i & 1u) == 0) {
-                divide_later({.cell = first + i, .place = place});
+            const VisibilityPyramid::Place child = visibility_.child(block_, place, seen, i);
+            if ((choice.divided >> i & 1u) != 0) {
+                divide_later(first + i, child);
                 continue;
             }
-            hwy::Prefetch(visibility_.first_part(place));
-            search_.partly[search_.num_partly++] = {.light = below.rows.data() + i, .place = place};
+            hwy::Prefetch(visibility_.first_part(child));
+            EyeCut::Partly& partly = search_.partly[search_.num_partly++];
+            partly.light = below.rows.data() + i;
+            partly.place = child;
         }
     }
 
@@ -224,11 +277,13 @@ private:
         return static_cast<std::uint32_t>(std::countr_zero(bits));
     }
 
-    void divide_later(const EyeCut::Item& item) {
-        const SisterCells& below = sky_.children(item.cell);
+    void divide_later(std::uint32_t cell, const VisibilityPyramid::Place& place) {
+        const SisterCells& below = sky_.children(cell);
         hwy::Prefetch(below.rows.data());
         hwy::Prefetch(below.rows.data() + SisterCells::Red * SisterCells::Stride);
-        search_.divided[search_.num_divided++] = item;
+        EyeCut::Item& item = search_.divided[search_.num_divided++];
+        item.cell = cell;
+        item.place = place;
     }
 
     const VisibilityPyramid& visibility_;
@@ -242,6 +297,13 @@ void find_cells(const VisibilityPyramid& visibility, const SkyCells& sky, std::s
     CellSearch(visibility, sky, block, search).run(Judge(lobe, error));
 }
 
+bool update_cells(const VisibilityPyramid& visibility, const SkyCells& sky, std::size_t block,
+                  const BlockLobe& lobe, float error, std::span<EyeCut::Item> items,
+                  LitCells& cells) {
+    EyeCut::Search none;
+    return CellSearch(visibility, sky, block, none).update(Judge(lobe, error), items, cells);
+}
+
 } // namespace relumine::relight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -249,6 +311,7 @@ HWY_AFTER_NAMESPACE();
 namespace relumine::relight {
 
 HWY_EXPORT(find_cells);
+HWY_EXPORT(update_cells);
 
 namespace {
 
@@ -290,20 +353,29 @@ std::optional<BlockLobe> lobe_of(const prt::BlockSurfaces& block,
     return lobe;
 }
 
+bool EyeCut::update(std::size_t block, const BlockLobe& lobe, std::span<Item> divided,
+                    LitCells& cells) const {
+    return HWY_DYNAMIC_DISPATCH(update_cells)(visibility_, sky_, block, lobe, error_, divided,
+                                              cells);
+}
+
 void EyeCut::find(std::size_t block, const BlockLobe& lobe, LitCells& cells) {
     search_.num_divided = search_.num_open = search_.num_partly = 0;
     search_.divided.resize(std::max(search_.divided.size(), std::size_t{cubemap::NumFaces}));
     for (std::uint32_t face = 0; face < cubemap::NumFaces; ++face)
         if (const VisibilityPyramid::Place place = visibility_.face(block, face);
-            place.kind != VisibilityPyramid::Kind::Hidden)
-            search_.divided[search_.num_divided++] = {.cell = face, .place = place};
+            place.kind() != VisibilityPyramid::Kind::Hidden)
+            search_.divided[search_.num_divided++] = {
+                .cell = face, .whole = 0, .divided = 0, .place = place};
     HWY_DYNAMIC_DISPATCH(find_cells)(visibility_, sky_, block, lobe, error_, search_);
     cells.open.insert(cells.open.end(), search_.open.begin(),
                       search_.open.begin() + static_cast<std::ptrdiff_t>(search_.num_open));
+    const std::size_t first = cells.partly.size();
+    cells.partly.resize(first + search_.num_partly);
     for (std::size_t i = 0; i < search_.num_partly; ++i) {
-        const VisibilityPyramid::Parts seen = visibility_.parts(search_.partly[i].place);
-        cells.partly.push_back(
-            {.light = search_.partly[i].light, .unit = seen.unit, .parts = seen.parts});
+        PartlyCell& cell = cells.partly[first + i];
+        cell.light = search_.partly[i].light;
+        cell.unit = visibility_.copy_parts(search_.partly[i].place, cell.parts);
     }
 }
 

@@ -47,14 +47,31 @@ public:
     EyeCut(const VisibilityPyramid& visibility, const SkyCells& sky, float error)
         : visibility_(visibility), sky_(sky), error_(error) {}
 
+    /// A cell of the sky that is divided, and how the block sees it.
+    struct Item {
+        std::uint32_t cell = 0;
+        /// Children that are part of the cut, and those that are divided further: a bit each.
+        std::uint16_t whole = 0, divided = 0;
+        VisibilityPyramid::Place place = {};
+    };
+
     /// Appends the cells that light a block through a lobe. Faces are always divided.
     void find(std::size_t block, const BlockLobe& lobe, LitCells& cells);
 
-    /// A cell of the sky and how the block sees it.
-    struct Item {
-        std::uint32_t cell = 0;
-        VisibilityPyramid::Place place = {};
-    };
+    /// Returns the cells that the last search divided; good until the next one.
+    [[nodiscard]] std::span<const Item> divided() const {
+        return std::span(search_.divided).first(search_.num_divided);
+    }
+
+    /// Takes the last change of the sky to a cut, by the cells that its search divided: appends
+    /// the light that came, and the light that went with a negative part. Returns false where
+    /// other cells would be divided now: the cut must be found again, and what was appended is of
+    /// no use.
+    ///
+    /// Cost:    that of cells above the change, in place of all.
+    [[nodiscard]] bool update(std::size_t block, const BlockLobe& lobe, std::span<Item> divided,
+                              LitCells& cells) const;
+
     /// A cell that receivers see in part.
     struct Partly {
         CellLight light = nullptr;

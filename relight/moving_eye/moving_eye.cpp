@@ -16,6 +16,7 @@
 #include "prt/glossy/brdf.h"
 #include "relight/moving_eye/eye_cut.h"
 #include "relight/moving_eye/eye_kernel.h"
+#include "relight/moving_eye/seen_blocks.h"
 #include "relight/moving_eye/sky_cells.h"
 #include "relight/moving_eye/visibility_pyramid.h"
 #include "relight/sharp/traced_light.h"
@@ -50,21 +51,65 @@ float smallest_alpha(std::span<const prt::Surface> surfaces) {
     return alpha;
 }
 
+void check(const prt::Transfer& transfer, std::span<const prt::Surface> surfaces) {
+    if (surfaces.size() != transfer.num_receivers())
+        throw std::invalid_argument("expected one surface per receiver");
+    if (std::none_of(surfaces.begin(), surfaces.end(), is_ggx))
+        throw std::invalid_argument("expected surfaces with highlights, got none");
+}
+
+/// Sums of a block take so many changes before they are summed anew: rounding adds up.
+constexpr std::uint32_t MostUpdates = 64;
+
+void add(EyeLight& to, const EyeLight& light) {
+    for (std::size_t channel = 0; channel < to.all.channels.size(); ++channel)
+        for (std::size_t i = 0; i < prt::BlockSize; ++i) {
+            to.all.channels[channel][i] += light.all.channels[channel][i];
+            to.grazing.channels[channel][i] += light.grazing.channels[channel][i];
+        }
+}
+
+/// What one thread works with, and counts.
+struct Worker {
+    EyeCut cut;
+    LitCells cells = {}, traced = {};
+    EyeReport counts = {};
+};
+
+/// The light of a block's cut, for an eye that stands still.
+struct Kept {
+    EyeLight light;
+    std::vector<EyeCut::Item> divided;
+    /// Of the sky and of the eye that the light is for.
+    std::uint64_t version = 0, generation = 0;
+    std::size_t num_cells = 0;
+    std::uint32_t num_updates = 0;
+};
+
 } // namespace
 
 struct MovingEye::Impl {
     Impl(const prt::Transfer& of, std::span<const glm::vec3> at,
-         std::span<const prt::Surface> shiny)
+         std::span<const prt::Surface> shiny, std::span<const SeenBlocks::Triangle> triangles)
         : transfer(of), visibility(of), sky(level_for(smallest_alpha(shiny))),
           result(of.num_receivers()) {
-        for (const std::uint32_t receiver : of.order) {
+        for (const std::uint32_t receiver : of.order)
             positions.push_back(at[receiver]);
+        set_surfaces(shiny);
+        if (!triangles.empty())
+            seen.emplace(transfer, visibility, positions, triangles);
+    }
+
+    void set_surfaces(std::span<const prt::Surface> shiny) {
+        surfaces.clear();
+        is_matt.clear();
+        for (const std::uint32_t receiver : transfer.order)
             surfaces.push_back(is_ggx(shiny[receiver]) ? shiny[receiver] : prt::Surface());
-        }
-        for (std::size_t block = 0; block < of.counts.num_blocks(); ++block) {
+        for (std::size_t block = 0; block < transfer.counts.num_blocks(); ++block) {
             const auto own = std::span(surfaces).subspan(block * prt::BlockSize, size_of(block));
             is_matt.push_back(std::none_of(own.begin(), own.end(), is_ggx));
         }
+        last_error = -1.0f;
     }
 
     /// The lobes of a block's receivers for an eye.
@@ -130,11 +175,48 @@ struct MovingEye::Impl {
         }
     }
 
+    /// What light of the cut sends through a block's lobes.
+    [[nodiscard]] EyeLight cut_light(std::size_t block, const prt::BlockSurfaces& lanes,
+                                     const BlockLobe& lobe, Worker& worker) {
+        auto& [cut, cells, traced_cells, counts] = worker;
+        EyeLight light;
+        Kept* own = stands ? &kept[block] : nullptr;
+        if (own != nullptr && own->generation == generation && own->num_updates < MostUpdates &&
+            own->version + 1 >= sky.version()) {
+            if (own->version == sky.version() || cut.update(block, lobe, own->divided, cells)) {
+                ++counts.num_updated;
+                counts.num_cells += own->num_cells;
+                if (cells.size() != 0) {
+                    sum_cells(lanes, cells, light);
+                    add(light, own->light);
+                    own->light = light;
+                    ++own->num_updates;
+                }
+                own->version = sky.version();
+                return own->light;
+            }
+            cells.clear();
+        }
+        cut.find(block, lobe, cells);
+        sum_cells(lanes, cells, light);
+        counts.num_cells += cells.size();
+        if (own != nullptr) {
+            own->light = light;
+            own->divided.assign(cut.divided().begin(), cut.divided().end());
+            own->version = sky.version();
+            own->generation = generation;
+            own->num_cells = cells.size();
+            own->num_updates = 0;
+        }
+        return light;
+    }
+
     void light_block(std::size_t block, const glm::vec3& eye, std::span<const glm::vec3> radiance,
-                     EyeCut& cut, LitCells& cells) {
+                     bool is_needed, Worker& worker) {
         const std::size_t first = block * prt::BlockSize, size = size_of(block);
-        cells.clear();
-        if (is_matt[block]) {
+        worker.cells.clear();
+        worker.traced.clear();
+        if (is_matt[block] || !is_needed) {
             for (std::size_t i = first; i < first + size; ++i)
                 result[transfer.order[i]] = radiance[transfer.order[i]];
             return;
@@ -144,9 +226,15 @@ struct MovingEye::Impl {
         const std::optional<BlockLobe> lobe = lobe_of(lanes, own);
         EyeLight light;
         if (lobe) {
-            cut.find(block, *lobe, cells);
-            add_traced(block, cells);
-            sum_cells(lanes, cells, light);
+            ++worker.counts.num_blocks;
+            light = cut_light(block, lanes, *lobe, worker);
+            add_traced(block, worker.traced);
+            if (worker.traced.size() != 0) {
+                EyeLight of_traced;
+                sum_cells(lanes, worker.traced, of_traced);
+                add(light, of_traced);
+                worker.counts.num_cells += worker.traced.size();
+            }
         }
         for (std::size_t i = 0; i < size; ++i) {
             const std::uint32_t receiver = transfer.order[first + i];
@@ -168,6 +256,17 @@ struct MovingEye::Impl {
         }
     }
 
+    /// Says where the next look is from, and what errors its cells may make.
+    void stand_at(const glm::vec3& eye, float error) {
+        stands = generation != 0 && eye == last_eye && error == last_error;
+        if (!stands)
+            ++generation;
+        else if (kept.empty())
+            kept.resize(transfer.counts.num_blocks());
+        last_eye = eye;
+        last_error = error;
+    }
+
     const prt::Transfer& transfer;
     /// [num_receivers] by place.
     std::vector<glm::vec3> positions;
@@ -176,27 +275,49 @@ struct MovingEye::Impl {
     std::vector<bool> is_matt;
     VisibilityPyramid visibility;
     SkyCells sky;
+    /// Where pictures are known.
+    std::optional<SeenBlocks> seen;
     std::optional<TracedLight> traced;
     std::vector<SharpLight> lights;
     /// The same, as the kernel takes them.
     std::vector<SisterCells> traced_lights;
     bool is_lit = false;
-    /// What a white matt surface sends: root of the mean square.
-    double white = 0.0;
+    /// [num_blocks] once an eye has stood still.
+    std::vector<Kept> kept;
+    /// Counts eyes, which differ in where they are or in the error of their cuts.
+    std::uint64_t generation = 0;
+    glm::vec3 last_eye{0.0f};
+    float last_error = -1.0f;
+    /// Whether the present look is from where the last one was.
+    bool stands = false;
+    /// About what a white matt surface sends: root of the mean square.
+    float white = 0.0f;
     EyeReport report;
     std::vector<glm::vec3> result;
 };
 
 MovingEye::MovingEye(const prt::Transfer& transfer, std::span<const glm::vec3> positions,
-                     std::span<const prt::Surface> surfaces) {
-    if (positions.size() != transfer.num_receivers() || surfaces.size() != positions.size())
-        throw std::invalid_argument("expected one position and one surface per receiver");
-    if (std::none_of(surfaces.begin(), surfaces.end(), is_ggx))
-        throw std::invalid_argument("expected surfaces with highlights, got none");
-    impl_ = std::make_unique<Impl>(transfer, positions, surfaces);
+                     std::span<const prt::Surface> surfaces,
+                     std::span<const SeenBlocks::Triangle> triangles) {
+    if (positions.size() != transfer.num_receivers())
+        throw std::invalid_argument("expected one position per receiver");
+    check(transfer, surfaces);
+    impl_ = std::make_unique<Impl>(transfer, positions, surfaces, triangles);
 }
 MovingEye::~MovingEye() = default;
 MovingEye::MovingEye(MovingEye&&) noexcept = default;
+
+bool MovingEye::set_surfaces(std::span<const prt::Surface> surfaces) {
+    check(impl_->transfer, surfaces);
+    impl_->set_surfaces(surfaces);
+    const std::uint32_t level = level_for(smallest_alpha(surfaces));
+    if (level == impl_->sky.deepest_level())
+        return false;
+    impl_->sky = SkyCells(level);
+    impl_->kept.clear();
+    impl_->is_lit = false;
+    return true;
+}
 
 void MovingEye::set_light(const Relighter& relighter) {
     impl_->trace(relighter);
@@ -207,12 +328,18 @@ void MovingEye::set_light(const Relighter& relighter) {
         const double luminance = cubemap::luminance(glm::dvec3(b));
         sum += luminance * luminance;
     }
-    impl_->white = std::sqrt(sum / static_cast<double>(impl_->result.size()));
+    // In steps of a fifth: cuts stay where the light changes a little.
+    constexpr double Steps = 4.0;
+    const double white = std::sqrt(sum / static_cast<double>(impl_->result.size()));
+    impl_->white = white > 0.0
+                       ? static_cast<float>(std::exp2(std::round(Steps * std::log2(white)) / Steps))
+                       : 0.0f;
 }
 
 std::span<const glm::vec3> MovingEye::look(const glm::vec3& eye,
                                            std::span<const glm::vec3> radiance,
-                                           const EyeOptions& options) {
+                                           const EyeOptions& options,
+                                           std::span<const glm::vec4> sides) {
     if (!impl_->is_lit)
         throw std::logic_error("expected light before a look");
     if (radiance.size() != impl_->result.size())
@@ -222,28 +349,37 @@ std::span<const glm::vec3> MovingEye::look(const glm::vec3& eye,
     EyeReport& report = impl_->report;
     const float before = report.tolerance;
     const double seconds_before = report.seconds;
+    // A look that only took changes says little of the next one's time.
+    const bool may_refine = report.num_updated == 0 || seconds_before * 1e3 > options.budget_ms;
     report = {.tolerance = options.tolerance};
-    if (options.budget_ms > 0.0 && seconds_before > 0.0)
+    if (options.budget_ms > 0.0 && seconds_before > 0.0 && !may_refine)
+        report.tolerance = before;
+    else if (options.budget_ms > 0.0 && seconds_before > 0.0)
         report.tolerance =
             std::clamp(before * static_cast<float>(
                                     std::clamp(1e3 * seconds_before / options.budget_ms, 0.5, 2.0)),
                        0.002f, 0.5f);
-    const float error = report.tolerance * static_cast<float>(impl_->white) * ShareOfCell;
-    std::atomic<std::size_t> num_cells = 0, num_blocks = 0;
+    const float error = report.tolerance * impl_->white * ShareOfCell;
+    impl_->stand_at(eye, error);
+    std::span<const std::uint8_t> needed;
+    if (options.seen_only && impl_->seen)
+        needed = impl_->seen->find(eye, sides);
+    std::atomic<std::size_t> num_cells = 0, num_blocks = 0, num_updated = 0;
     constexpr std::size_t Grain = 16;
     files::parallel_for(
         files::IndexRange<std::size_t>(0, impl_->transfer.counts.num_blocks(), Grain),
         [&](const auto& some) {
-            EyeCut cut(impl_->visibility, impl_->sky, error);
-            LitCells cells;
-            for (std::size_t block = some.begin(); block < some.end(); ++block) {
-                impl_->light_block(block, eye, radiance, cut, cells);
-                num_cells += cells.size();
-                num_blocks += cells.size() == 0 ? 0 : 1;
-            }
+            Worker worker{EyeCut(impl_->visibility, impl_->sky, error)};
+            for (std::size_t block = some.begin(); block < some.end(); ++block)
+                impl_->light_block(block, eye, radiance, needed.empty() || needed[block] != 0,
+                                   worker);
+            num_cells += worker.counts.num_cells;
+            num_blocks += worker.counts.num_blocks;
+            num_updated += worker.counts.num_updated;
         });
     report.num_cells = num_cells;
     report.num_blocks = num_blocks;
+    report.num_updated = num_updated;
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return impl_->result;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #include <glm/geometric.hpp>
 
@@ -45,9 +46,19 @@ void SisterCells::set_contrast(std::size_t i, float contrast) {
     size_and_contrast[i] = (size_and_contrast[i] & 0xffff0000u) | upper_half(contrast);
 }
 
+bool SisterCells::is_alike(std::size_t i, const SisterCells& other) const {
+    bool is_black = true, is_same = true;
+    for (std::size_t row = 0; row < NumRows; ++row)
+        is_same = is_same && rows[row * Stride + i] == other.rows[row * Stride + i];
+    for (const Row color : {Red, Green, Blue})
+        is_black =
+            is_black && rows[color * Stride + i] == 0.0f && other.rows[color * Stride + i] == 0.0f;
+    return is_black || (is_same && size_and_contrast[i] == other.size_and_contrast[i]);
+}
+
 SkyCells::SkyCells(std::uint32_t deepest_level)
     : deepest_level_(deepest_level), light_(deepest_level),
-      sisters_(prt::num_cells_above(deepest_level)),
+      sisters_(prt::num_cells_above(deepest_level)), changed_(sisters_.size()),
       solid_angles_(prt::num_cells_above(deepest_level + 1)) {
     files::parallel_for(
         files::IndexRange<std::size_t>(0, sisters_.size(), CellsPerTask / 4),
@@ -64,6 +75,7 @@ SkyCells::SkyCells(std::uint32_t deepest_level)
                     sisters_[parent].set_size(i, std::sqrt(solid_angles_[index]));
                 }
         });
+    before_ = sisters_;
 }
 
 void SkyCells::set(const Relighter& relighter, std::span<const SharpLight> without) {
@@ -71,6 +83,8 @@ void SkyCells::set(const Relighter& relighter, std::span<const SharpLight> witho
         light_.set(relighter.environment(), *relighter.binning(), without);
     else
         light_.set_lights({});
+    ++version_;
+    std::swap(sisters_, before_);
     // Faces are always split, so nothing is kept of them.
     for (std::uint32_t level = deepest_level_; level > 0; --level)
         set_level(level);
@@ -117,11 +131,19 @@ void SkyCells::set_level(std::uint32_t level) {
             i, static_cast<float>(std::min(
                    std::sqrt(std::max(squares * solid_angle / (power * power) - 1.0, 0.0)), 1.0)));
     };
-    files::parallel_for(files::IndexRange<std::size_t>(0, count, CellsPerTask),
-                        [&](const auto& some) {
-                            for (std::size_t place = some.begin(); place < some.end(); ++place)
-                                set(place);
-                        });
+    files::parallel_for(
+        files::IndexRange<std::size_t>(0, count / 4, CellsPerTask / 4), [&](const auto& some) {
+            for (std::size_t group = some.begin(); group < some.end(); ++group) {
+                const std::size_t parent = (first - cubemap::NumFaces) / 4 + group;
+                for (std::size_t i = 0; i < 4; ++i)
+                    set(4 * group + i);
+                unsigned changed = 0;
+                if (std::memcmp(&sisters_[parent], &before_[parent], sizeof(SisterCells)) != 0)
+                    for (unsigned i = 0; i < 4; ++i)
+                        changed |= sisters_[parent].is_alike(i, before_[parent]) ? 0 : 1u << i;
+                changed_[parent] = static_cast<std::uint8_t>(changed);
+            }
+        });
     std::swap(vectors_, above_);
     std::swap(squares_, squares_above_);
 }

@@ -42,6 +42,8 @@ struct alignas(64) SisterCells {
     [[nodiscard]] float& at(Row row, std::size_t i) { return rows[row * Stride + i]; }
     void set_direction(std::size_t i, const glm::vec3& direction);
     void set_light(std::size_t i, const glm::vec3& light);
+    /// Whether light i is that of another four, as cuts see it.
+    [[nodiscard]] bool is_alike(std::size_t i, const SisterCells& other) const;
     void set_size(std::size_t i, float size);
     void set_contrast(std::size_t i, float contrast);
 };
@@ -49,7 +51,7 @@ struct alignas(64) SisterCells {
 /// The light of an environment at all levels.
 class SkyCells {
 public:
-    /// Memory:  44 bytes for each of about 8 * 4^level cells.
+    /// Memory:  80 bytes for each of about 8 * 4^level cells.
     explicit SkyCells(std::uint32_t deepest_level);
 
     /// Takes the environment of a Relighter, without the lights in `without`. It may have none,
@@ -59,8 +61,19 @@ public:
     /// Threads: parallel; the same bits for any number of threads.
     void set(const Relighter& relighter, std::span<const SharpLight> without);
 
+    [[nodiscard]] std::uint32_t deepest_level() const { return deepest_level_; }
     /// Returns the children of a cell by prt::cell_index().
     [[nodiscard]] const SisterCells& children(std::uint32_t cell) const { return sisters_[cell]; }
+    /// The same before the last set().
+    [[nodiscard]] const SisterCells& children_before(std::uint32_t cell) const {
+        return before_[cell];
+    }
+    /// Returns which children the last set() changed: bit i for child i.
+    [[nodiscard]] std::uint32_t changed_children(std::uint32_t cell) const {
+        return changed_[cell];
+    }
+    /// How often set() was called.
+    [[nodiscard]] std::uint64_t version() const { return version_; }
     /// Returns the number of a cell's first child; the others follow.
     [[nodiscard]] static std::uint32_t first_child(std::uint32_t cell) {
         return cubemap::NumFaces + 4 * cell;
@@ -74,7 +87,9 @@ private:
     std::uint32_t deepest_level_;
     LightPyramid light_;
     /// [cells above the deepest level]
-    std::vector<SisterCells> sisters_;
+    std::vector<SisterCells> sisters_, before_;
+    std::vector<std::uint8_t> changed_;
+    std::uint64_t version_ = 0;
     /// [cells]
     std::vector<float> solid_angles_;
     /// [cells of a level] of the level that was set last, and of the one above.

@@ -32,7 +32,7 @@ struct VisibilityPyramid::Node {
 
 /// What is kept of one block; links count from its own first entries.
 struct VisibilityPyramid::BlockEntries {
-    std::vector<std::uint8_t> branch_sights, parts, quad_sights;
+    std::vector<std::uint8_t> parts, quad_sights;
     std::vector<Links> links;
     std::vector<std::uint32_t> quads;
 };
@@ -84,18 +84,19 @@ public:
         for (std::uint32_t face = 0; face < faces.size(); ++face) {
             Sums sums{};
             static_cast<void>(add(face, sums));
-            faces[face] = {.kind = kinds_[face], .branch = face};
             // A branch's number counts branches alone; faces before this one may be none.
+            std::uint32_t branch = 0, entry = 0;
             for (std::uint32_t i = 0; i < face; ++i)
-                faces[face].branch -= nodes_[i].is_branch() ? 0 : 1;
+                branch += nodes_[i].is_branch() ? 1 : 0;
             if (kinds_[face] == Kind::Cluster)
-                faces[face].entry = pyramid_.entry_of(block, nodes_[face].first_leaf);
+                entry = pyramid_.entry_of(block, nodes_[face].first_leaf);
             else if (is_inner(kinds_[face]))
-                faces[face].entry = open(face, entries);
+                entry = open(face, entries);
+            faces[face] = Place(kinds_[face], entry, branch);
         }
         for (std::uint32_t face = 0; face < faces.size(); ++face)
             if (kinds_[face] == Kind::Branch)
-                descend(face, faces[face].entry, entries);
+                descend(face, faces[face].entry(), entries);
     }
 
 private:
@@ -161,9 +162,8 @@ private:
                 first_mixed < node.end_leaf ? pyramid_.entry_of(block_, first_mixed) : 0);
             return static_cast<std::uint32_t>(entries.quads.size() - 1);
         }
-        entries.branch_sights.push_back(static_cast<std::uint8_t>(sights));
         entries.parts.insert(entries.parts.end(), means_[index].begin(), means_[index].end());
-        entries.links.emplace_back();
+        entries.links.emplace_back().sights = sights & 0xffu;
         return static_cast<std::uint32_t>(entries.links.size() - 1);
     }
 
@@ -171,8 +171,9 @@ private:
     /// entries follow each other.
     void descend(std::uint32_t index, std::uint32_t entry, BlockEntries& entries) const {
         const std::uint32_t first = nodes_[index].first_child;
-        entries.links[entry] = {.first_branch = static_cast<std::uint32_t>(entries.links.size()),
-                                .first_quad = static_cast<std::uint32_t>(entries.quads.size())};
+        entries.links[entry].to_branch =
+            static_cast<std::uint32_t>(entries.links.size() - entry) & 0xffffffu;
+        entries.links[entry].first_quad = static_cast<std::uint32_t>(entries.quads.size());
         std::array<std::uint32_t, 4> opened{};
         for (std::uint32_t i = 0; i < 4; ++i)
             if (is_inner(kinds_[first + i]))
@@ -252,6 +253,9 @@ VisibilityPyramid::VisibilityPyramid(const prt::Transfer& transfer) : counts_(tr
     for (std::uint32_t face = 0, branch = 0; face < cubemap::NumFaces; ++face)
         if (nodes[face].is_branch())
             add_families(nodes, face, branch++);
+    // What Links and Place can count.
+    if (families_.size() >= std::size_t{1} << 24u)
+        throw std::length_error("expected a scene with fewer clusters");
 
     const std::size_t num_blocks = counts_.num_blocks();
     faces_.resize(num_blocks * cubemap::NumFaces);
@@ -300,7 +304,6 @@ void VisibilityPyramid::append(std::vector<BlockEntries>& blocks) {
         num_branches += block.links.size();
         num_quads += block.quads.size();
     }
-    branch_sights_.reserve(num_branches);
     links_.reserve(num_branches);
     parts_.reserve(num_branches * prt::BlockSize);
     quad_sights_.reserve(num_quads);
@@ -309,17 +312,15 @@ void VisibilityPyramid::append(std::vector<BlockEntries>& blocks) {
         BlockEntries& entries = blocks[block];
         const auto first_branch = static_cast<std::uint32_t>(links_.size());
         const auto first_quad = static_cast<std::uint32_t>(quads_.size());
-        for (Links& links : entries.links) {
-            links.first_branch += first_branch;
+        for (Links& links : entries.links)
             links.first_quad += first_quad;
-        }
         for (std::uint32_t face = 0; face < cubemap::NumFaces; ++face) {
             Place& place = faces_[block * cubemap::NumFaces + face];
-            place.entry += place.kind == Kind::Branch ? first_branch
-                           : place.kind == Kind::Quad ? first_quad
-                                                      : 0;
+            const std::uint32_t first = place.kind() == Kind::Branch ? first_branch
+                                        : place.kind() == Kind::Quad ? first_quad
+                                                                     : 0;
+            place = Place(place.kind(), place.entry() + first, place.branch());
         }
-        append_all(branch_sights_, entries.branch_sights);
         append_all(links_, entries.links);
         append_all(parts_, entries.parts);
         append_all(quad_sights_, entries.quad_sights);
@@ -337,35 +338,20 @@ std::uint32_t VisibilityPyramid::entry_of(std::size_t block, std::uint32_t leaf)
 
 std::size_t VisibilityPyramid::num_bytes() const {
     return families_.size() * (sizeof(Family) + sizeof leaves_[0]) + faces_.size() * sizeof(Place) +
-           branch_sights_.size() + links_.size() * sizeof(Links) + parts_.size() +
-           quad_sights_.size() + quads_.size() * sizeof quads_[0];
+           links_.size() * sizeof(Links) + parts_.size() + quad_sights_.size() +
+           quads_.size() * sizeof quads_[0];
 }
 
-VisibilityPyramid::Parts VisibilityPyramid::parts(const Place& place) const {
-    Parts result;
-    switch (place.kind) {
-    case Kind::Hidden:
-        break;
-    case Kind::Visible:
-        result.parts.fill(1);
-        break;
-    case Kind::Branch:
-    case Kind::Cluster:
-        std::copy_n(first_part(place), prt::BlockSize, result.parts.data());
-        result.unit = place.kind == Kind::Branch ? 1.0f / 255.0f : 1.0f / 16.0f;
-        break;
-    case Kind::Quad: {
-        const Sights seen = sights(place);
-        const std::uint8_t* counts = first_part(place);
-        result.parts.fill(static_cast<std::uint8_t>(16 * num_bits(seen.visible)));
-        for (std::uint32_t child = num_bits(seen.mixed); child > 0; --child)
-            for (std::size_t i = 0; i < prt::BlockSize; ++i)
-                result.parts[i] = static_cast<std::uint8_t>(result.parts[i] + *counts++);
-        result.unit = 1.0f / 64.0f;
-        break;
-    }
-    }
-    return result;
+void VisibilityPyramid::add_quad(const Place& place,
+                                 std::array<std::uint8_t, prt::BlockSize>& parts) const {
+    const Sights seen = sights(place);
+    const std::uint8_t* counts = first_part(place);
+    std::array<std::uint8_t, prt::BlockSize> sums;
+    sums.fill(static_cast<std::uint8_t>(16 * num_bits(seen.visible)));
+    for (std::uint32_t child = num_bits(seen.mixed); child > 0; --child, counts += prt::BlockSize)
+        for (std::size_t i = 0; i < prt::BlockSize; ++i)
+            sums[i] = static_cast<std::uint8_t>(sums[i] + counts[i]);
+    parts = sums;
 }
 
 } // namespace relumine::relight

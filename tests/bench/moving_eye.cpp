@@ -41,8 +41,13 @@ struct Settings {
     std::size_t num_samples = 200;
     /// Of a turntable, whose flicker is measured; 0: of none.
     std::size_t num_frames = 0;
+    /// Steps of a light that is dragged while the eye stands still; 0: none.
+    std::size_t num_drags = 0;
+    double disc_degrees = 10.0;
     /// Whether other ways are measured, too.
     int beside = 1;
+    /// Whether only what pictures show is lit: 1 or 0.
+    int seen = 0;
 };
 
 /// Eyes all around and above, as far as the automatic camera.
@@ -60,10 +65,10 @@ std::vector<glm::vec3> random_eyes(const Scene& scene, std::size_t count) {
     return eyes;
 }
 
-/// Receivers that face each eye, and exact radiance of them.
+/// Receivers that face each eye, and that it sees where there are rays to say so.
 struct Samples {
     Samples(const Scene& scene, std::span<const prt::Surface> surfaces,
-            std::span<const glm::vec3> eyes, std::size_t per_eye) {
+            std::span<const glm::vec3> eyes, std::size_t per_eye, const prt::RayScene* rays) {
         std::mt19937 random(11);
         const prt::Receivers& all = scene.receivers;
         std::uniform_int_distribution<std::uint32_t> any(
@@ -73,7 +78,10 @@ struct Samples {
                 const std::uint32_t i = any(random);
                 const glm::vec3 to_eye = glm::normalize(eye - all.positions[i]);
                 if (glm::dot(to_eye, all.normals[i]) < 0.05f ||
-                    surfaces[i].highlight == prt::Highlight::None)
+                    surfaces[i].highlight == prt::Highlight::None ||
+                    (rays != nullptr &&
+                     rays->occluded(all.positions[i] + scene.settings.bias * all.normals[i],
+                                    eye - all.positions[i], 1.0f)))
                     continue;
                 ++found;
                 index.push_back(i);
@@ -205,6 +213,67 @@ void print_turntable(const Settings& settings, const LitScene& lit, relight::Mov
                of_looks.report().mean_inconsistency / change, between.report().mean_inconsistency);
 }
 
+/// A disc of light that is dragged across the sky while the eye stands still: what an update costs,
+/// and how far it is from a look of an eye that comes new.
+void print_drag(const Settings& settings, LitScene& lit, relight::MovingEye& live,
+                const bench::NamedMap& map) {
+    const glm::vec3 eye = camera_of(lit.scene()).eye;
+    const relight::EyeOptions options{.tolerance = settings.tolerance,
+                                      .seen_only = settings.seen != 0};
+    std::vector<double> of_edit, of_light, of_look, of_all, processor;
+    std::size_t num_updated = 0, num_blocks = 0;
+    constexpr std::size_t NumFirst = 3;
+    for (std::size_t step = 0; step < settings.num_drags + NumFirst; ++step) {
+        const double phi = 0.03 * static_cast<double>(step);
+        const cubemap::Disc disc{
+            .direction = {0.8 * std::cos(phi), 0.6, 0.8 * std::sin(phi)},
+            .radius_degrees = settings.disc_degrees,
+        };
+        const double cpu = bench::cpu_seconds();
+        const auto start = std::chrono::steady_clock::now();
+        set_layers(lit, {{.name = "light",
+                          .region = disc,
+                          .effect = cubemap::Emit{.radiance = glm::vec3(5.0f)}}});
+        const auto edited = std::chrono::steady_clock::now();
+        live.set_light(lit.relighter());
+        const auto lit_at = std::chrono::steady_clock::now();
+        static_cast<void>(live.look(eye, lit.radiance(), options));
+        const auto end = std::chrono::steady_clock::now();
+        if (step < NumFirst)
+            continue;
+        const auto ms = [](auto from, auto to) {
+            return std::chrono::duration<double, std::milli>(to - from).count();
+        };
+        of_edit.push_back(ms(start, edited));
+        of_light.push_back(ms(edited, lit_at));
+        of_look.push_back(ms(lit_at, end));
+        of_all.push_back(ms(start, end));
+        processor.push_back(1e3 * (bench::cpu_seconds() - cpu));
+        num_updated += live.report().num_updated;
+        num_blocks += live.report().num_blocks;
+    }
+    const auto last = live.look(eye, lit.radiance(), options);
+    const std::vector<glm::vec3> kept(last.begin(), last.end());
+    static_cast<void>(live.look(-eye, lit.radiance(), options));
+    const auto fresh = live.look(eye, lit.radiance(), options);
+    const double fresh_ms = 1e3 * live.report().seconds;
+    double difference = 0.0, largest = 0.0;
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        difference = std::max(difference, double{glm::distance(kept[i], fresh[i])});
+        largest = std::max(largest, double{glm::length(fresh[i])});
+    }
+    fmt::print("| {} | drag of {} degrees, {} steps: {:.1f} ms = edit {:.1f} + light {:.1f} + look "
+               "{:.1f}, of a new eye {:.1f}; {:.1f} cpu ms; medians; {:.3f} of the blocks updated, "
+               "difference "
+               "{:.1e} of the largest\n",
+               map.name, settings.disc_degrees, settings.num_drags, bench::median(of_all),
+               bench::median(of_edit), bench::median(of_light), bench::median(of_look), fresh_ms,
+               bench::median(processor),
+               static_cast<double>(num_updated) / static_cast<double>(num_blocks),
+               difference / largest);
+    set_layers(lit, {});
+}
+
 void print_rows(float roughness, const Settings& settings, LitScene& lit,
                 const std::vector<bench::NamedMap>& maps) {
     const Scene& scene = lit.scene();
@@ -219,7 +288,8 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
             surfaces[i] = {};
     double seconds_made = 0.0;
     const auto start = std::chrono::steady_clock::now();
-    relight::MovingEye live(scene.transfer, scene.receivers.positions, surfaces);
+    relight::MovingEye live(scene.transfer, scene.receivers.positions, surfaces,
+                            scene.mesh.triangles);
     seconds_made = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const prt::VisibleCounts& counts = scene.transfer.counts;
     fmt::print("roughness {}: {} receivers, {} clusters; pyramid {:.1f} MB in {:.2f} s, counts "
@@ -228,7 +298,8 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
                1e-6 * static_cast<double>(live.num_bytes()), seconds_made,
                1e-6 * static_cast<double>(counts.counts.size() + 24 * counts.mixed.size()));
     const std::vector<glm::vec3> eyes = random_eyes(scene, settings.num_eyes);
-    const Samples samples(scene, surfaces, eyes, settings.num_samples);
+    const Samples samples(scene, surfaces, eyes, settings.num_samples,
+                          settings.seen != 0 ? &lit.rays().of_mesh() : nullptr);
     std::vector<std::uint32_t> order(samples.index.size());
     for (std::uint32_t i = 0; i < order.size(); ++i)
         order[i] = i;
@@ -253,11 +324,14 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
             plain.add(sum.radiance[i], exact[i]);
             open.add(filtered[i], exact[i]);
         }
-        const double cpu = bench::cpu_seconds();
-        double seconds = 0.0, cells = 0.0, blocks = 0.0;
+        double seconds = 0.0, processor = 0.0, cells = 0.0, blocks = 0.0;
+        std::size_t num_left_out = 0;
         for (std::size_t eye = 0; eye < eyes.size(); ++eye) {
+            const double cpu = bench::cpu_seconds();
             const auto radiance =
-                live.look(eyes[eye], lit.radiance(), {.tolerance = settings.tolerance});
+                live.look(eyes[eye], lit.radiance(),
+                          {.tolerance = settings.tolerance, .seen_only = settings.seen != 0});
+            processor += bench::cpu_seconds() - cpu;
             seconds += live.report().seconds;
             cells += static_cast<double>(live.report().num_cells);
             blocks += static_cast<double>(live.report().num_blocks);
@@ -266,6 +340,15 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
                 error.add(glm::dvec3(radiance[samples.index[i]]), exact[i]);
                 matt.add(glm::dvec3(lit.radiance()[samples.index[i]]), exact[i]);
             }
+            if (settings.seen == 0 || exact.empty())
+                continue;
+            // What a picture leaves out although the eye sees it.
+            const std::vector<glm::vec3> kept(radiance.begin(), radiance.end());
+            const auto all =
+                live.look(eyes[eye], lit.radiance(), {.tolerance = settings.tolerance});
+            for (std::size_t i = eye * settings.num_samples; i < (eye + 1) * settings.num_samples;
+                 ++i)
+                num_left_out += kept[samples.index[i]] != all[samples.index[i]] ? 1 : 0;
         }
         const auto num_eyes = static_cast<double>(eyes.size());
         // The sum's time for all receivers that a look lights
@@ -273,17 +356,20 @@ void print_rows(float roughness, const Settings& settings, LitScene& lit,
                                 blocks / num_eyes * prt::BlockSize;
         fmt::print("| {} | {:.0f} blocks, {:.0f} cells | {:.1f} cpu ms, {:.1f} ms | {} sharp, set "
                    "{:.1f} ms",
-                   map.name, blocks / num_eyes, cells / blocks,
-                   1e3 * (bench::cpu_seconds() - cpu) / num_eyes, 1e3 * seconds / num_eyes,
-                   live.num_traced(), 1e3 * set_seconds);
+                   map.name, blocks / num_eyes, cells / blocks, 1e3 * processor / num_eyes,
+                   1e3 * seconds / num_eyes, live.num_traced(), 1e3 * set_seconds);
         if (!exact.empty())
             fmt::print(" | {:.4f} | matt {:.3f}", error.relative_l2(), matt.relative_l2());
+        if (num_left_out != 0)
+            fmt::print(" | {} of {} seen receivers left out", num_left_out, exact.size());
         if (!filtered.empty())
             fmt::print(" | plain sum {:.4f}, {:.0f} cpu ms | no visibility {:.3f}",
                        plain.relative_l2(), plain_ms, open.relative_l2());
         fmt::print("\n");
         if (settings.num_frames != 0 && settings.num_samples != 0)
             print_turntable(settings, lit, live, surfaces, map);
+        if (settings.num_drags != 0)
+            print_drag(settings, lit, live, map);
         std::fflush(stdout);
     }
 }
@@ -303,7 +389,10 @@ int main(int argc, char** argv) {
     program.add("--resolution", settings.resolution, "R of the environments");
     program.add("--eyes", settings.num_eyes, "eyes around the mesh");
     program.add("--turntable", settings.num_frames, "frames of a turntable, 0 for none");
+    program.add("--drags", settings.num_drags, "steps of a light that is dragged, 0 for none");
+    program.add("--disc", settings.disc_degrees, "radius of that light, degrees");
     program.add("--beside", settings.beside, "the plain sum and no visibility, too: 1 or 0");
+    program.add("--seen", settings.seen, "only what pictures show: 1 or 0");
     program.add("--samples", settings.num_samples,
                 "receivers of each eye; 0: only times are measured");
     return program.run(argc, argv, [&] {
@@ -312,6 +401,7 @@ int main(int argc, char** argv) {
             settings.transfer_tolerance = 0.06f;
             settings.resolution = 32;
             settings.num_eyes = 3;
+            settings.num_drags = 2;
         }
         LitScene lit(settings.scene.empty() ? precompute(inputs.mesh(settings.mesh, settings.floor),
                                                          {.tolerance = settings.transfer_tolerance})

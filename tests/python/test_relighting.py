@@ -87,7 +87,24 @@ def test_highlights_follow_the_eye():
         relighter.towards([0, 0])
     with pytest.raises(ValueError, match="tolerance: expected 1e-5 to 1, got 2"):
         relighter.towards([0, 0, 5], tolerance=2)
+    rough, made_rough = (
+        relumine.Relighter(scene, surface_roughness=0.8),
+        relumine.Relighter(
+            relumine.precompute(
+                vertices,
+                triangles,
+                material=relumine.Ggx(0.8, albedo=0.0, f0=1.0),
+                refine=False,
+            )
+        ),
+    )
+    for each in (rough, made_rough):
+        each.set_environment(relumine.Environment(left))
+    assert (rough.towards([0, 0, 5]) == made_rough.towards([0, 0, 5])).all()
+    assert abs(rough.towards([0, 0, 5]) - light).max() > 0.1
     matt = relumine.Relighter(relumine.precompute(vertices, triangles, refine=False))
+    with pytest.raises(ValueError, match="surface|materials"):
+        relumine.Relighter(matt.scene, surface_roughness=0.5)
     matt.set_environment(relumine.Environment(left))
     with pytest.raises(ValueError, match="expected vertices with glossy materials"):
         matt.towards([0, 0, 5])

@@ -45,6 +45,27 @@ TEST(OrbitCamera, RayThroughAPixelMeetsThePointThatIsSeenThere) {
     EXPECT_LT(glm::length(glm::cross(ray.direction, glm::normalize(point - ray.origin))), 1e-4f);
 }
 
+TEST(OrbitCamera, SidesOfThePictureGoThroughItsEdges) {
+    const OrbitCamera camera{
+        .target = {0.2f, 0.1f, 0.3f}, .distance = 4.0f, .yaw = 0.7f, .pitch = 0.4f};
+    const auto x = static_cast<float>(Viewport.x), y = static_cast<float>(Viewport.y),
+               right = x + static_cast<float>(Viewport.width),
+               bottom = y + static_cast<float>(Viewport.height);
+    const auto least = [&](const glm::vec2& pixel) {
+        const Ray ray = ray_through(camera, Viewport, pixel);
+        float result = 1.0f;
+        for (const glm::vec4& side : picture_sides(camera, Viewport))
+            result = std::min(result, glm::dot(glm::vec3(side), ray.origin + 3.0f * ray.direction) +
+                                          side.w);
+        return result;
+    };
+    EXPECT_GT(least({0.5f * (x + right), 0.5f * (y + bottom)}), 0.1f);
+    for (const glm::vec2& edge :
+         {glm::vec2(x, y + 20.0f), {right, y + 30.0f}, {x + 20.0f, y}, {x + 30.0f, bottom}}) {
+        EXPECT_NEAR(least(edge), 0.0f, 1e-4f);
+    }
+}
+
 TEST(OrbitCamera, PanningMovesTheTargetWithThePointer) {
     OrbitCamera camera{.target = {1, 2, 3}, .distance = 4.0f, .yaw = 0.5f, .pitch = 0.3f};
     const glm::vec3 point = camera.target;

@@ -1,10 +1,13 @@
 // The window as a user has it, on a display without a screen: a script drags a light, the pictures
 // show what it lights.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -442,6 +445,45 @@ TEST_F(WindowTest, AScriptThatFailsEndsWithOneLine) {
               "relumine: script line 1: expected the name of a layer, got 'Nobody'\n");
     EXPECT_EQ(play("open missing.exr\n"), 1);
     EXPECT_NE(words("err.txt").find("missing.exr"), std::string::npos);
+}
+
+TEST_F(WindowTest, RoughnessChangesHighlightsThatFollowTheEye) {
+    const std::string script = "roughness 0.2\nwait 1\nscreenshot smooth.exr\n"
+                               "roughness 0.9\nwait 1\nscreenshot rough.exr\n"
+                               "roughness 0.2\nwait 1\nscreenshot again.exr\n";
+    EXPECT_EQ(play(script), 1);
+    EXPECT_NE(words("err.txt").find("expected a scene whose highlights follow the eye"),
+              std::string::npos)
+        << words("err.txt");
+    const prt::Surface shiny{.albedo = glm::vec3(0.1f),
+                             .specular = glm::vec3(0.6f),
+                             .highlight = prt::Highlight::GgxWhole,
+                             .roughness_or_exponent = 0.4f};
+    prt::save_scene(
+        folder_ / "scene.prt",
+        precompute(data_gen::sphere(4000),
+                   {.tolerance = 0.06f,
+                    .face_resolution = 64,
+                    .surface = [&](const mesh::TriangleMesh&, std::uint32_t, const prt::Surface&) {
+                        return shiny;
+                    }}));
+    ASSERT_EQ(play(script), 0) << words("err.txt");
+    // Of the scene's view alone: panels show times.
+    const auto pixels = [&](const std::string& name) {
+        const cubemap::Picture all = picture(name);
+        std::vector<glm::vec3> result;
+        for (int y = viewport_.y; y < viewport_.y + viewport_.height; ++y)
+            for (int x = viewport_.x; x < viewport_.x + viewport_.width; ++x)
+                result.push_back(all.pixels[static_cast<std::size_t>(y) * all.width +
+                                            static_cast<std::size_t>(x)]);
+        return result;
+    };
+    const auto smooth = pixels("smooth.exr"), rough = pixels("rough.exr");
+    EXPECT_TRUE(smooth == pixels("again.exr"));
+    float largest = 0.0f;
+    for (std::size_t i = 0; i < smooth.size(); ++i)
+        largest = std::max(largest, std::abs(smooth[i].b - rough[i].b));
+    EXPECT_GT(largest, 0.02f);
 }
 
 } // namespace

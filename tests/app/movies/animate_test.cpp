@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -123,6 +124,40 @@ TEST_F(Animate, ACameraGoesAlongItsPath) {
         {"frame": 0, "eye": [0, 1, 5], "target": [0, 0, 0]},
         {"frame": 6, "eye": [3, 1, 3], "target": [0, 0, 0]}]})");
     EXPECT_EQ(succeed(command).json()["frames_kept"], 0);
+}
+
+TEST_F(Animate, HighlightsFollowACameraPath) {
+    write("lamp.hdr", lamp_hdr(10));
+    write("walk.json", R"({"version": 1, "frames": [
+        {"frame": 0, "eye": [0, 1, 4], "target": [0, 0, 0], "fov_degrees": 35},
+        {"frame": 2, "eye": [3, 1, 3], "target": [0, 0, 0]}]})");
+    succeed({"precompute", "mesh.obj", "-o", "shiny.prt", "--face-resolution", "16", "-q",
+             "--no-refine", "--material", "ggx:roughness=0.4,albedo=0.3,f0=0.5"});
+    succeed({"animate", "shiny.prt", "lamp.hdr", "-o", "walk.%d.exr", "--size", "24x18",
+             "--background", "none", "--camera-path", "walk.json", "-q"});
+    const auto picture = [&](const std::string& eye, const std::vector<std::string>& more) {
+        std::vector<std::string> command = {"relight", "shiny.prt", "lamp.hdr", "-o",
+                                            "one.exr", "--size",    "24x18",    "--background",
+                                            "none",    "--eye",     eye,        "--target",
+                                            "0,0,0",   "--fov",     "35",       "-q"};
+        command.insert(command.end(), more.begin(), more.end());
+        succeed(command);
+        return exr_channels(folder() / "one.exr");
+    };
+    const auto difference = [](const auto& a, const auto& b) {
+        double result = 0.0, sum = 0.0;
+        for (std::size_t i = 0; i < a.at("R").size(); ++i) {
+            result += std::abs(a.at("R")[i] - b.at("R")[i]);
+            sum += a.at("R")[i];
+        }
+        return result / sum;
+    };
+    for (const auto& [frame, eye] :
+         {std::pair<std::string, std::string>{"0", "0,1,4"}, {"2", "3,1,3"}}) {
+        const auto seen = exr_channels(folder() / ("walk." + frame + ".exr"));
+        EXPECT_LT(difference(picture(eye, {}), seen), 1e-3) << frame;
+        EXPECT_GT(difference(picture(eye, {"--surface-specular", "0"}), seen), 0.05) << frame;
+    }
 }
 
 TEST_F(Animate, ACameraPathThatCannotBeIsToldInOneLine) {

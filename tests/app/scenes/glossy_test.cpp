@@ -121,6 +121,54 @@ TEST_F(Glossy, ColoursMayChangeAfterwards) {
            "--surface-albedo");
 }
 
+TEST_F(Glossy, RoughnessMayChangeWhereHighlightsFollowTheEye) {
+    const std::string colors = "albedo=0.2,f0=0.9";
+    make("one.prt", {"--material", "ggx:roughness=0.3," + colors});
+    make("two.prt", {"--material", "ggx:roughness=0.7," + colors});
+    const auto picture = [&](const std::string& scene, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = {"relight", scene,    "white.hdr", "-o",
+                                              "lit.exr", "--size", "16x12"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        succeed(arguments);
+        return read("lit.exr");
+    };
+    EXPECT_TRUE(picture("one.prt", {"--surface-roughness", "0.7"}) == picture("two.prt", {}));
+    EXPECT_EQ(succeed({"verify", "one.prt", "white.hdr", "--eye", "3,2,5", "--surface-roughness",
+                       "0.7", "--json"})
+                  .json()["relative_l2"],
+              succeed({"verify", "two.prt", "white.hdr", "--eye", "3,2,5", "--json"})
+                  .json()["relative_l2"]);
+    make("fixed.prt", {"--material", "ggx:roughness=0.4," + colors, "--view", "auto"});
+    misuse({"relight", "fixed.prt", "white.hdr", "-o", "n.npy", "--surface-roughness", "0.5"},
+           "--surface-roughness: fixed.prt: expected highlights that follow the eye");
+    make("matt.prt", {"--material", "lambert:albedo=0.3"});
+    misuse({"relight", "matt.prt", "white.hdr", "-o", "n.npy", "--surface-roughness", "0.5"},
+           "--surface-roughness: matt.prt: expected surfaces with GGX highlights");
+    misuse({"relight", "one.prt", "white.hdr", "-o", "n.npy", "--surface-roughness", "2"},
+           "--surface-roughness");
+}
+
+TEST_F(Glossy, EyesWithoutSenseAreToldOf) {
+    make("live.prt", {"--material", "ggx:roughness=0.05,albedo=0.2,f0=0.9"});
+    make("matt.prt", {});
+    const auto verified = [&](const std::string& eye) {
+        return succeed({"verify", "live.prt", "white.hdr", "--eye", eye, "--json"})
+            .json()["warnings"]
+            .dump();
+    };
+    EXPECT_THAT(verified("0,0.01,0"), testing::HasSubstr("is inside of the mesh"));
+    const std::string outside = verified("3,2,5");
+    EXPECT_THAT(outside, testing::Not(testing::HasSubstr("inside")));
+    EXPECT_THAT(outside, testing::HasSubstr("smoother than roughness 0.11"));
+    const std::string drawn = succeed({"relight", "live.prt", "white.hdr", "-o", "in.png", "--size",
+                                       "8x6", "--eye", "0,0.01,0", "--json"})
+                                  .json()["warnings"]
+                                  .dump();
+    EXPECT_THAT(drawn, testing::HasSubstr("is inside of the mesh"));
+    const Result refused = fail({"verify", "matt.prt", "white.hdr", "--eye", "3,2,5"});
+    EXPECT_THAT(refused.err, testing::HasSubstr("expected vertices with glossy materials"));
+}
+
 TEST_F(Glossy, LimitsAreSaid) {
     const std::string sharp = "ggx:roughness=0.05,f0=0.5";
     const Result warned = succeed({"precompute", "mesh.obj", "-o", "s.prt", "--face-resolution",

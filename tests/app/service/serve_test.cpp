@@ -110,6 +110,43 @@ protected:
     const std::string environment_ = R"({"do": "environment", "env": "studio.hdr"})";
 };
 
+TEST_F(Serve, AnEyeHasItsHighlights) {
+    succeed({"precompute", "mesh.obj", "-o", "shiny.prt", "--face-resolution", "16", "-q",
+             "--no-refine", "--material", "ggx:roughness=0.4,albedo=0.3,f0=0.5"});
+    const std::string scene = R"({"do": "scene", "scene": "shiny.prt"})";
+    const auto edit = [](int degrees) {
+        return fmt::format(R"({{"do": "edit", "layers": [{{"name": "key", "type": "disc", )"
+                           R"("effect": "emit", "radiance": [9, 9, 9], "direction": [0, 1, 0.{}], )"
+                           R"("radius_degrees": 20}}]}})",
+                           degrees);
+    };
+    const std::string eye = R"({"do": "radiance", "eye": [1, 2, 4], "output": ")";
+    const std::vector<json> all =
+        answers(scene + "\n" + environment_ + "\n" + R"({"do": "radiance", "output": "matt.npy"})" +
+                "\n" + eye + "first.npy\"}\n" + edit(1) + "\n" + eye + "1.npy\"}\n" + edit(2) +
+                "\n" + eye + "2.npy\"}\n" + edit(3) + "\n" + eye + "kept.npy\"}\n" + scene_ + "\n" +
+                environment_ + "\n" + eye + "none.npy\"}");
+    ASSERT_EQ(all.size(), 13u);
+    for (std::size_t i = 0; i < 12; ++i)
+        EXPECT_EQ(all[i]["ok"], true) << all[i];
+    EXPECT_NE(all[12]["error"].get<std::string>().find("expected vertices with glossy materials"),
+              std::string::npos)
+        << all[12];
+    const auto fresh =
+        answers(scene + "\n" + environment_ + "\n" + edit(3) + "\n" + eye + "fresh.npy\"}");
+    EXPECT_EQ(fresh.back()["ok"], true) << fresh.back();
+    const auto kept = npy_values(read("kept.npy")), expected = npy_values(read("fresh.npy")),
+               matt = npy_values(read("matt.npy")), first = npy_values(read("first.npy"));
+    ASSERT_EQ(kept.size(), expected.size());
+    bool is_shiny = false;
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        is_shiny = is_shiny || std::abs(first[i][0] - matt[i][0]) > 0.05f;
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            EXPECT_NEAR(kept[i][channel], expected[i][channel], 1e-4f) << i;
+    }
+    EXPECT_TRUE(is_shiny);
+}
+
 TEST_F(Serve, GivesWhatTheCommandsGive) {
     write("layers.json", R"({"version": 1, "layers": [{"name": "key", "type": "disc", "effect":
         "gain", "factor": 4, "direction": [0, 1, 0], "radius_degrees": 30}]})");

@@ -1,6 +1,8 @@
 // Highlights for an eye that moves, against the plain sum over clusters and exact integration.
 #include "relight/moving_eye/moving_eye.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -46,7 +48,8 @@ struct Lit {
         const ShadowRays& rays = scenes::relit_scene().shadow_rays())
         : relighter(scenes::relit_scene().transfer, rays),
           eye(scenes::relit_scene().transfer, scenes::relit_scene().receivers.positions,
-              std::vector(scenes::relit_scene().receivers.size(), surface)) {
+              std::vector(scenes::relit_scene().receivers.size(), surface),
+              scenes::relit_scene().mesh.triangles) {
         relighter.set_environment(std::move(environment));
         eye.set_light(relighter);
     }
@@ -288,6 +291,135 @@ TEST(MovingEye, RefusesWhatItCannotLight) {
     EXPECT_THROW(static_cast<void>(eye.look(Eye, {})), std::logic_error);
 }
 
+/// Two fine spheres, one of which hides a part of the other from most eyes.
+struct TwoSpheres {
+    mesh::TriangleMesh mesh = scenes::joined(scenes::icosphere(5, 1.0f, glm::vec3(0.0f)),
+                                             scenes::icosphere(4, 0.8f, {2.2f, 0.3f, 0.0f}));
+    prt::Receivers receivers = prt::vertex_receivers(mesh);
+    prt::RayScene rays{mesh};
+    float bias = prt::automatic_bias(mesh);
+    prt::Transfer transfer =
+        prt::precompute(receivers, rays, {.tolerance = 0.03f, .face_resolution = 64, .bias = bias});
+    Relighter relighter{transfer};
+    MovingEye eye{transfer, receivers.positions, std::vector(receivers.size(), shiny(0.3f)),
+                  mesh.triangles};
+
+    TwoSpheres() {
+        relighter.set_environment(scenes::random_environment(32, 7));
+        eye.set_light(relighter);
+    }
+    std::vector<glm::vec3> look(const glm::vec3& from, const EyeOptions& options = {},
+                                std::span<const glm::vec4> sides = {}) {
+        const auto radiance = eye.look(from, relighter.radiance(), options, sides);
+        return {radiance.begin(), radiance.end()};
+    }
+    /// Whether a triangle of a receiver has a corner that an eye sees, by rays.
+    [[nodiscard]] std::vector<bool> shown_by_rays(const glm::vec3& from) const {
+        const auto sees = [&](std::uint32_t i) {
+            const glm::vec3 ray = from - receivers.positions[i];
+            return glm::dot(ray, receivers.normals[i]) > 0.0f &&
+                   !rays.occluded(receivers.positions[i] + bias * receivers.normals[i], ray, 1.0f);
+        };
+        std::vector<bool> shown(receivers.size());
+        for (const mesh::Triangle& triangle : mesh.triangles)
+            if (std::any_of(triangle.begin(), triangle.end(), sees))
+                for (const std::uint32_t corner : triangle)
+                    shown[corner] = true;
+        return shown;
+    }
+};
+
+TEST(MovingEye, APictureHasAllThatItShows) {
+    TwoSpheres scene;
+    for (const glm::vec3& from : {glm::vec3(-4.0f, 0.6f, 1.0f), glm::vec3(6.0f, 1.0f, 0.1f),
+                                  glm::vec3(5.0f, 0.4f, -3.0f)}) {
+        const std::vector<glm::vec3> all = scene.look(from);
+        const std::size_t num_blocks = scene.eye.report().num_blocks;
+        const std::vector<glm::vec3> seen = scene.look(from, {.seen_only = true});
+        EXPECT_LT(scene.eye.report().num_blocks, num_blocks);
+        const std::vector<bool> shown = scene.shown_by_rays(from);
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (shown[i]) {
+                EXPECT_EQ(seen[i], all[i]) << i;
+            } else {
+                EXPECT_TRUE(seen[i] == all[i] || seen[i] == scene.relighter.radiance()[i]) << i;
+            }
+    }
+}
+
+TEST(MovingEye, APictureHasAllBetweenItsSides) {
+    TwoSpheres scene;
+    const glm::vec3 from(0.5f, 1.0f, 5.0f), across(1.0f, 0.0f, 0.0f);
+    const std::vector<glm::vec3> all = scene.look(from);
+    const std::array sides = {glm::vec4(across, -glm::dot(across, from))};
+    static_cast<void>(scene.look(from, {.seen_only = true}));
+    const std::size_t num_blocks = scene.eye.report().num_blocks;
+    const std::vector<glm::vec3> part = scene.look(from, {.seen_only = true}, sides);
+    EXPECT_LT(scene.eye.report().num_blocks, num_blocks);
+    const std::vector<bool> shown = scene.shown_by_rays(from);
+    std::size_t num_inside = 0;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (shown[i] && glm::dot(across, scene.receivers.positions[i] - from) > 0.0f) {
+            ++num_inside;
+            EXPECT_EQ(part[i], all[i]) << i;
+        }
+    EXPECT_GT(num_inside, all.size() / 10);
+}
+
+// A light is dragged over the map while the eye stands still; each look is compared with that of an
+// eye that comes new.
+TEST(MovingEye, AStandingEyeTakesTheChangesOfTheLight) {
+    TwoSpheres scene;
+    const glm::vec3 from(0.5f, 1.0f, 5.0f);
+    MovingEye fresh(scene.transfer, scene.receivers.positions,
+                    std::vector(scene.receivers.size(), shiny(0.3f)));
+    std::size_t num_updated = 0, num_blocks = 0;
+    for (std::uint32_t step = 0; step < 12; ++step) {
+        cubemap::CubeMap map = scenes::smooth_environment(32);
+        for (std::uint32_t y = 10; y < 14; ++y)
+            for (std::uint32_t x = 2 * step; x < 2 * step + 4; ++x)
+                map.at(cubemap::Face::PositiveZ, x, y) += glm::vec3(8.0f, 6.0f, 4.0f);
+        scene.relighter.set_environment(map);
+        scene.eye.set_light(scene.relighter);
+        const std::vector<glm::vec3> kept = scene.look(from);
+        if (step > 2) {
+            num_updated += scene.eye.report().num_updated;
+            num_blocks += scene.eye.report().num_blocks;
+        }
+        fresh.set_light(scene.relighter);
+        // Another eye in between, so that nothing is kept.
+        static_cast<void>(fresh.look(-from, scene.relighter.radiance()));
+        const auto expected = fresh.look(from, scene.relighter.radiance());
+        EXPECT_EQ(fresh.report().num_updated, 0u);
+        for (std::size_t i = 0; i < kept.size(); ++i)
+            for (int channel = 0; channel < 3; ++channel)
+                EXPECT_NEAR(kept[i][channel], expected[i][channel], 1e-5f) << step << " " << i;
+    }
+    EXPECT_GT(num_updated, num_blocks / 2);
+    // The same light again changes nothing, not a bit.
+    const std::vector<glm::vec3> before = scene.look(from);
+    scene.eye.set_light(scene.relighter);
+    EXPECT_EQ(scene.look(from), before);
+    EXPECT_EQ(scene.eye.report().num_updated, scene.eye.report().num_blocks);
+}
+
+// Blockers may stand behind an eye that is among them, so all that faces it is lit.
+TEST(MovingEye, AnEyeWithinTheSceneSeesAllThatFacesIt) {
+    Lit lit(shiny(0.3f), scenes::random_environment(32, 7));
+    const prt::Receivers& receivers = scenes::relit_scene().receivers;
+    glm::vec3 low = receivers.positions[0], high = low;
+    for (const glm::vec3& position : receivers.positions) {
+        low = glm::min(low, position);
+        high = glm::max(high, position);
+    }
+    const glm::vec3 eye(0.5f * (low.x + high.x), low.y + 0.3f * (high.y - low.y),
+                        0.5f * (low.z + high.z));
+    const std::span<const glm::vec3> look = lit.eye.look(eye, lit.relighter.radiance());
+    const std::vector<glm::vec3> all(look.begin(), look.end());
+    const auto seen = lit.eye.look(eye, lit.relighter.radiance(), {.seen_only = true});
+    EXPECT_TRUE(std::equal(all.begin(), all.end(), seen.begin()));
+}
+
 /// Compares what a block sees of a cell, and of the cells below it, with the counts. Returns how
 /// many cells it sees in part.
 class PyramidWalk {
@@ -310,7 +442,7 @@ private:
         const std::uint32_t first_leaf = next_leaf_;
         if (flags_[next_flag_++]) {
             const VisibilityPyramid::Sights seen =
-                place.kind == Kind::Hidden ? VisibilityPyramid::Sights() : pyramid_.sights(place);
+                place.kind() == Kind::Hidden ? VisibilityPyramid::Sights() : pyramid_.sights(place);
             EXPECT_EQ(seen.visible & seen.mixed, 0u);
             for (std::uint32_t i = 0; i < 4; ++i)
                 visit(((seen.visible | seen.mixed) >> i & 1u) != 0
@@ -320,7 +452,7 @@ private:
             ++next_leaf_;
         }
         const VisibilityPyramid::Parts parts = pyramid_.parts(place);
-        num_mixed_ += place.kind != Kind::Hidden && place.kind != Kind::Visible ? 1 : 0;
+        num_mixed_ += place.kind() != Kind::Hidden && place.kind() != Kind::Visible ? 1 : 0;
         for (std::size_t i = 0; i < prt::BlockSize; ++i) {
             int least = 16, most = 0, sum = 0;
             for (std::uint32_t leaf = first_leaf; leaf < next_leaf_; ++leaf) {
@@ -333,9 +465,9 @@ private:
             EXPECT_GE(part, static_cast<float>(least) - 0.04f);
             EXPECT_LE(part, static_cast<float>(most) + 0.04f);
             // What is seen alike has no entry; a quad has the plain mean.
-            EXPECT_TRUE(place.kind != Kind::Hidden || most == 0);
-            EXPECT_TRUE(place.kind != Kind::Visible || least == 16);
-            if (place.kind == Kind::Quad) {
+            EXPECT_TRUE(place.kind() != Kind::Hidden || most == 0);
+            EXPECT_TRUE(place.kind() != Kind::Visible || least == 16);
+            if (place.kind() == Kind::Quad) {
                 EXPECT_EQ(next_leaf_ - first_leaf, 4u);
                 EXPECT_NEAR(part, static_cast<float>(sum) / 4.0f, 1e-5f);
             }
