@@ -92,11 +92,21 @@ Relighter::~Relighter() = default;
 Relighter::Relighter(Relighter&&) noexcept = default;
 
 UpdateReport Relighter::set_environment(cubemap::CubeMap environment) {
-    const auto own = std::make_shared<cubemap::CubeMap>(std::move(environment));
+    auto own = std::make_shared<cubemap::CubeMap>(std::move(environment));
     BinnedEnvironment binned = binner_.bin(own);
+    return light_by(std::move(binned), std::move(own));
+}
+
+UpdateReport Relighter::set_environment(std::shared_ptr<const cubemap::CubeMap> environment) {
+    return light_by(binner_.bin(std::move(environment)), nullptr);
+}
+
+/// `own`: the map, if nobody else holds it.
+UpdateReport Relighter::light_by(BinnedEnvironment binned, std::shared_ptr<cubemap::CubeMap> own) {
     UpdateReport report{.seconds_bin = binned.seconds_bin, .seconds_trace = binned.seconds_sharp};
     auto start = std::chrono::steady_clock::now();
-    hold_own(own);
+    environment_ = std::move(binned.map);
+    own_environment_ = std::move(own);
     binning_ = std::move(binned.binning);
     sums_ = std::move(binned.sums);
     powers_ = std::move(binned.powers);
@@ -109,6 +119,17 @@ UpdateReport Relighter::set_environment(cubemap::CubeMap environment) {
     report.seconds_bin += seconds_since(start);
     sum_all(report);
     return report;
+}
+
+cubemap::CubeMap Relighter::lend_environment() {
+    // environment_ and own_environment_
+    if (!own_environment_ || own_environment_.use_count() > 2)
+        return {};
+    return std::exchange(*own_environment_, {});
+}
+
+void Relighter::return_environment(cubemap::CubeMap environment) {
+    hold_own(std::make_shared<cubemap::CubeMap>(std::move(environment)));
 }
 
 /// Ends the report of light that is wholly new.

@@ -77,6 +77,15 @@ public:
     /// Throws:  std::invalid_argument for a map without texels, or a radiance that
     ///          require_radiance() refuses.
     UpdateReport set_environment(cubemap::CubeMap environment);
+    /// With a map that others hold, too. The first update copies it.
+    UpdateReport set_environment(std::shared_ptr<const cubemap::CubeMap> environment);
+
+    /// Gives the map's memory away, for the next map to be written in: new memory takes longer than
+    /// to write it. Until return_environment() or new light the map must not be asked for. Returns
+    /// a map without texels where others hold it, too.
+    [[nodiscard]] cubemap::CubeMap lend_environment();
+    /// Takes back a map with the same texels.
+    void return_environment(cubemap::CubeMap environment);
 
     /// Takes the next frame of a sequence, binned by an EnvironmentBinner of the same transfer and
     /// ShadowRays::tolerance (0 without shadow rays).
@@ -157,6 +166,7 @@ public:
 
 private:
     void hold_own(std::shared_ptr<cubemap::CubeMap> map);
+    UpdateReport light_by(BinnedEnvironment binned, std::shared_ptr<cubemap::CubeMap> own);
     std::optional<std::size_t> replace_sharp_lights(std::vector<SharpLight> lights);
     void set_cells();
     void sum_all(UpdateReport& report);

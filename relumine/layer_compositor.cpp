@@ -112,19 +112,23 @@ added_piece(const cubemap::LightLayer& a, const cubemap::LightLayer& b, std::uin
 } // namespace
 
 LayerCompositor::LayerCompositor(const LightState& state)
-    : rotation_degrees_(state.rotation_degrees),
-      now_{.base = rotation_degrees_ == 0.0
-                       ? state.base->map()
-                       : std::make_shared<const cubemap::CubeMap>(
-                             cubemap::rotated(*state.base->map(), rotation_degrees_))} {
+    : LayerCompositor(state, state.rotation_degrees == 0.0
+                                 ? state.base->map()
+                                 : std::make_shared<const cubemap::CubeMap>(cubemap::rotated(
+                                       *state.base->map(), state.rotation_degrees))) {}
+
+LayerCompositor::LayerCompositor(const LightState& state,
+                                 std::shared_ptr<const cubemap::CubeMap> turned_base)
+    : rotation_degrees_(state.rotation_degrees), now_{.base = std::move(turned_base)} {
     turn_layers(state, now_.layers);
 }
 
-cubemap::CubeMap LayerCompositor::whole() {
+cubemap::CubeMap LayerCompositor::whole(cubemap::CubeMap memory) {
     changed_ = cubemap::all_texels(now_.base->resolution);
-    cubemap::CubeMap environment = *now_.base;
-    cubemap::composite(environment, now_.layers, changed_, environment);
-    return environment;
+    if (memory.resolution != now_.base->resolution)
+        memory = cubemap::CubeMap(now_.base->resolution);
+    cubemap::composite(*now_.base, now_.layers, changed_, memory);
+    return memory;
 }
 
 void LayerCompositor::turn_layers(const LightState& state,

@@ -23,9 +23,14 @@ public:
     LayerCompositor() = default;
     /// The state must have a base with a map.
     explicit LayerCompositor(const LightState& state);
+    /// With a base that was turned already.
+    LayerCompositor(const LightState& state, std::shared_ptr<const cubemap::CubeMap> turned_base);
 
-    /// Returns base and layers together, turned.
-    [[nodiscard]] cubemap::CubeMap whole();
+    [[nodiscard]] bool is_set() const { return now_.base != nullptr; }
+
+    /// Returns base and layers together, turned. `memory` is a map that nobody needs any more: one
+    /// of the same resolution is written over, which is much quicker than new memory.
+    [[nodiscard]] cubemap::CubeMap whole(cubemap::CubeMap memory = {});
 
     /// Finds what differs in another state of the same turn, and without one the base may be
     /// another of the same resolution; its changes are found by comparing tiles of 16 x 16 texels.

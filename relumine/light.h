@@ -27,6 +27,10 @@ using relight::BinnedEnvironment;
 struct Light {
     Light() = default;
     Light(cubemap::CubeMap map) : environment(std::move(map)) {}
+    /// A map that others hold, too, is not copied.
+    Light(std::shared_ptr<const cubemap::CubeMap> map, cubemap::EnvironmentFile of = {},
+          std::filesystem::path from = {})
+        : environment(std::move(map)), file(std::move(of)), path(std::move(from)) {}
     Light(Environment of)
         : environment(std::move(of.map)), file(std::move(of.file)), path(std::move(of.path)) {}
     /// An environment that bin() of the scene has summed. Clusters whose light stays are not summed
@@ -36,7 +40,9 @@ struct Light {
         : environment(std::move(binned)), file(std::move(of)) {}
     Light(std::vector<lights::DistantLight> list) : lights(std::move(list)) {}
 
-    std::variant<std::monostate, cubemap::CubeMap, BinnedEnvironment> environment = {};
+    std::variant<std::monostate, cubemap::CubeMap, std::shared_ptr<const cubemap::CubeMap>,
+                 BinnedEnvironment>
+        environment = {};
     /// The pixels that pictures show behind the mesh; without an image: those of the map.
     cubemap::EnvironmentFile file = {};
     std::filesystem::path path = {};

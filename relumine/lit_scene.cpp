@@ -24,6 +24,14 @@ namespace relumine {
 
 namespace {
 
+/// Returns the map of a light that is not binned yet, or null.
+const cubemap::CubeMap* map_of(const Light& light) {
+    if (const auto* shared =
+            std::get_if<std::shared_ptr<const cubemap::CubeMap>>(&light.environment))
+        return shared->get();
+    return std::get_if<cubemap::CubeMap>(&light.environment);
+}
+
 void add(std::span<const glm::vec3> values, std::span<glm::vec3> sum) {
     std::transform(sum.begin(), sum.end(), values.begin(), sum.begin(), std::plus<>());
 }
@@ -117,7 +125,7 @@ std::span<const glm::vec3> LitScene::radiance() const {
 void LitScene::require_same_light(const Light& light) const {
     if (!team_->has_others())
         return;
-    if (const auto* map = std::get_if<cubemap::CubeMap>(&light.environment))
+    if (const cubemap::CubeMap* map = map_of(light))
         require_same(*team_, path_, map);
     else if (const auto* binned = std::get_if<BinnedEnvironment>(&light.environment))
         require_same(*team_, path_, binned->map.get());
@@ -135,7 +143,7 @@ UpdateReport LitScene::light(Light light) {
     if (!has_environment && relighter_) {
         report = relighter_->set_lights(light.lights);
     } else if (!has_environment || !light.lights.empty()) {
-        if (const auto* map = std::get_if<cubemap::CubeMap>(&light.environment))
+        if (const cubemap::CubeMap* map = map_of(light))
             relight::require_radiance(map->texels);
         added = light_of_list(light.lights);
     }
@@ -186,19 +194,22 @@ LitScene::Added LitScene::light_of_list(std::span<const lights::DistantLight> li
 
 UpdateReport LitScene::light_by_environment(Light& light) {
     auto* map = std::get_if<cubemap::CubeMap>(&light.environment);
+    auto* shared = std::get_if<std::shared_ptr<const cubemap::CubeMap>>(&light.environment);
     auto* binned = std::get_if<BinnedEnvironment>(&light.environment);
     if (is_edited()) {
         LightState next = state_;
         next.base = std::make_shared<const LightBase>(
-            map != nullptr ? std::make_shared<const cubemap::CubeMap>(std::move(*map))
-                           : binned->map,
+            map != nullptr      ? std::make_shared<const cubemap::CubeMap>(std::move(*map))
+            : shared != nullptr ? *shared
+                                : binned->map,
             std::move(light.file), std::move(light.path));
         const UpdateReport report = relight_all(next);
         state_ = std::move(next);
         return report;
     }
-    const UpdateReport report = map != nullptr
-                                    ? relighter_->set_environment(std::move(*map))
+    const UpdateReport report = map != nullptr ? relighter_->set_environment(std::move(*map))
+                                : shared != nullptr
+                                    ? relighter_->set_environment(*shared)
                                     : relighter_->set_frame(std::move(*binned), light.bound);
     state_ = {.base = std::make_shared<const LightBase>(nullptr, std::move(light.file),
                                                         std::move(light.path))};
@@ -210,8 +221,21 @@ UpdateReport LitScene::light_by_environment(Light& light) {
 UpdateReport LitScene::relight_all(const LightState& next) {
     if (!next.base->map() || next.base->map()->resolution == 0)
         throw std::invalid_argument("expected a base with texels");
-    LayerCompositor compositor(next);
-    UpdateReport report = relighter_->set_environment(compositor.whole());
+    return relight_all(LayerCompositor(next));
+}
+
+UpdateReport LitScene::relight_all(LayerCompositor compositor) {
+    // The map that the layers were composited in is composited anew.
+    const bool has_memory = is_edited() && compositor_.is_set();
+    UpdateReport report;
+    try {
+        report = relighter_->set_environment(
+            compositor.whole(has_memory ? relighter_->lend_environment() : cubemap::CubeMap()));
+    } catch (...) {
+        if (has_memory)
+            relighter_->return_environment(compositor_.whole());
+        throw;
+    }
     compositor_ = std::move(compositor);
     coarse_.is_shown = false;
     report.texels = compositor_.changed();
@@ -220,14 +244,17 @@ UpdateReport LitScene::relight_all(const LightState& next) {
 
 /// Relights by a map that is quick to turn.
 UpdateReport LitScene::relight_coarse(const LightState& next) {
-    if (coarse_.of != next.base)
-        coarse_ = {.of = next.base,
-                   .base =
-                       std::make_shared<const LightBase>(std::make_shared<const cubemap::CubeMap>(
-                           cubemap::halved_to(*next.base->map(), MovingResolution)))};
-    LightState coarse = next;
-    coarse.base = coarse_.base;
-    const UpdateReport report = relight_all(coarse);
+    if (coarse_.of != next.base || !coarse_.turns) {
+        const std::shared_ptr<const cubemap::CubeMap>& map = next.base->map();
+        coarse_.of = next.base;
+        coarse_.turns.emplace(map->resolution <= MovingResolution
+                                  ? map
+                                  : std::make_shared<const cubemap::CubeMap>(
+                                        cubemap::halved_to(*map, MovingResolution)));
+    }
+    const UpdateReport report = relight_all(
+        LayerCompositor(next, std::make_shared<const cubemap::CubeMap>(coarse_.turns->turned(
+                                  cubemap::turn_about_y(next.rotation_degrees)))));
     coarse_.is_shown = true;
     return report;
 }
@@ -279,7 +306,7 @@ UpdateReport LitScene::edit(LightState next, Ending ending) {
     if (!has_base)
         next.base = state_.base;
     const bool is_moving = ending == Ending::Moving && !is_dark && next.rotation_degrees != 0.0 &&
-                           next.base->map()->resolution > MovingResolution;
+                           next.base->map()->resolution >= cubemap::QuickTurns::MinResolution;
     const bool is_whole = is_dark || coarse_.is_shown ||
                           next.rotation_degrees != state_.rotation_degrees ||
                           (next.base != state_.base &&

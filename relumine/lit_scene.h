@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 
 #include "cubemap/cube_map.h"
 #include "cubemap/layers/light_layer.h"
+#include "cubemap/quick_turns.h"
 #include "cubemap/texel_rectangle.h"
 #include "prt/parts/scene_part.h"
 #include "prt/team.h"
@@ -50,9 +52,8 @@ struct LightOptions {
 
 /// How an edit ends.
 enum class Ending {
-    /// As Quick, but a turn is that of a map of at most MovingResolution, which is some ten times
-    /// as quick to turn as 6 x 1024 x 1024: for a slider while it moves. Any other edit brings the
-    /// whole map back.
+    /// As Quick, but a turn is near, as cubemap::QuickTurns, and that of a map of at most
+    /// MovingResolution: for a slider while it moves. Any other edit brings the whole map back.
     Moving,
     /// With what changed. The last bits may depend on the way to the state.
     Quick,
@@ -218,6 +219,7 @@ private:
     [[nodiscard]] Added light_of_list(std::span<const lights::DistantLight> lights);
     UpdateReport light_by_environment(Light& light);
     UpdateReport relight_all(const LightState& next);
+    UpdateReport relight_all(LayerCompositor compositor);
     UpdateReport relight_coarse(const LightState& next);
     UpdateReport update(const LightState& next);
     void begin_edits();
@@ -249,11 +251,11 @@ private:
     LightState state_;
     /// Of state_, once it was edited.
     LayerCompositor compositor_;
-    /// What turns while a slider moves: the base of `of` with fewer texels. Empty where the light
-    /// is that of the whole map.
+    /// What turns while a slider moves: the map of `of`, with fewer texels where it has many.
     struct Coarse {
         std::shared_ptr<const LightBase> of = {};
-        std::shared_ptr<const LightBase> base = {};
+        std::optional<cubemap::QuickTurns> turns = {};
+        /// Whether its light is the present one.
         bool is_shown = false;
     };
     Coarse coarse_;

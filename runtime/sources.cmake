@@ -1,6 +1,6 @@
 # What the runtime takes of the libraries' sources, from the project's folder. web/wasm/ takes the same.
 set(runtime_sources
-    cubemap/cube_map.cpp cubemap/face.cpp cubemap/image/image_layout.cpp cubemap/image/projection.cpp cubemap/resample/resample_lat_long.cpp cubemap/rotation.cpp cubemap/turned_span.cpp
+    cubemap/cube_map.cpp cubemap/face.cpp cubemap/image/image_layout.cpp cubemap/image/projection.cpp cubemap/resample/resample_lat_long.cpp cubemap/rotation.cpp cubemap/turned_span.cpp cubemap/turned_texels.cpp
     files/compression.cpp files/free_memory.cpp files/hash.cpp files/json.cpp files/output_file.cpp files/packed_parts.cpp files/posix_file.cpp files/printable.cpp
     mesh/materials/brdf_table.cpp mesh/triangle_mesh.cpp
     prt/bounces/bounce_matrix.cpp prt/bounces/point_rows.cpp prt/clusters/lattice.cpp prt/glossy/brdf.cpp prt/glossy/ggx_energy.cpp prt/glossy/lobe_kernel.cpp prt/glossy/sheen_lobe.cpp

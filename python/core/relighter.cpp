@@ -476,9 +476,11 @@ void bind_relighters(py::module_& module) {
         .def_property_readonly("radiance",
                                [](const LitPointer& own) { return view(own, own->radiance()); })
         .def("set_environment",
-             [](Lit& own, const EnvironmentHandle& environment) {
-                 return times_of(
-                     change(own, [&](LitScene& lit) { return lit.light(environment.made); }));
+             [](Lit& own, const std::shared_ptr<EnvironmentHandle>& environment) {
+                 const Environment& made = environment->made;
+                 return times_of(change(own, [&](LitScene& lit) {
+                     return lit.light(Light({environment, &made.map}, made.file, made.path));
+                 }));
              })
         .def("update_environment",
              [](Lit& own, const EnvironmentHandle& environment) {

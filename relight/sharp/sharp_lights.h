@@ -30,9 +30,7 @@ struct SharpLight {
     bool operator==(const SharpLight&) const = default;
 };
 
-/// Returns the sharp lights of an environment, clusters ascending. Under fine clusters there are a
-/// few dozen at most, as large sources have no sharp cells; under coarse ones, some hundred.
-/// Deterministic.
+/// Returns the sharp lights of an environment, clusters ascending. Deterministic.
 ///
 /// Cells two levels below a cluster are candidates. A candidate of power p is sharp when p is large
 /// beside the map's power P. In the cluster, a point light of power p may make an error of
@@ -41,6 +39,10 @@ struct SharpLight {
 /// Also, the candidate or a sister must hold more than an eighth of the cluster's power, unless
 /// cells with even light are to count, too (`even_too`). It is cut into lights of 0.2 degrees, but
 /// no further than a 64th of its own power and, unless `even_too`, a 256th of the map's.
+///
+/// There are at most 64 lights, unless `even_too`. Where there would be more, the strongest cells
+/// are cut where it matters most: a light's power times its width is the harm of not cutting it.
+/// The light of weaker cells stays in their clusters.
 ///
 /// Shape:   powers is [clusters.size()]: the length of each cluster's full vector irradiance, in
 ///          luminance.

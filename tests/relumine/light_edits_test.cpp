@@ -274,6 +274,44 @@ TEST(LightEdits, RefusesABadBaseAndStaysAsItWas) {
     EXPECT_EQ(environment_of(editor).texels, texels) << "the turned base is the old one";
 }
 
+TEST(LightEdits, AMapThatIsTooBrightUnderLayersChangesNothing) {
+    LitScene lit = scenes::relit_clusters();
+    lit.light(scenes::random_environment(16, 2));
+    set_layers(lit,
+               {named_disc("lamp", {0.0, 1.0, 0.3}, 20.0, glm::vec3(0.5f * relight::MaxRadiance))});
+    const std::vector<glm::vec3> texels = environment_of(lit).texels,
+                                 radiance = copy(lit.radiance());
+    EXPECT_THROW(lit.light(cubemap::CubeMap(16, glm::vec3(0.75f * relight::MaxRadiance))),
+                 std::invalid_argument);
+    EXPECT_EQ(environment_of(lit).texels, texels);
+    EXPECT_EQ(copy(lit.radiance()), radiance);
+    // And edits go on.
+    set_layers(lit, {});
+    EXPECT_EQ(environment_of(lit).texels, scenes::random_environment(16, 2).texels);
+}
+
+TEST(LightEdits, ASharedMapIsNeitherCopiedNorChanged) {
+    const auto map = std::make_shared<const cubemap::CubeMap>(scenes::random_environment(16, 2));
+    LitScene shared = scenes::relit_clusters(), own = scenes::relit_clusters();
+    shared.light(Light(map));
+    EXPECT_EQ(&environment_of(shared), map.get());
+    own.light(*map);
+    EXPECT_EQ(copy(shared.radiance()), copy(own.radiance()));
+    const std::vector<glm::vec3> bright(4, glm::vec3(7.0f));
+    for (LitScene* lit : {&shared, &own}) {
+        lit->update_region({cubemap::Face::PositiveY, 3, 4, 5, 6}, bright);
+        set_layers(*lit, {named_disc("lamp", {0.0, 1.0, 0.3}, 20.0, glm::vec3(3.0f))});
+    }
+    EXPECT_EQ(copy(shared.radiance()), copy(own.radiance()));
+    // Under layers.
+    shared.light(Light(map));
+    own.light(*map);
+    EXPECT_EQ(environment_of(shared).texels, environment_of(own).texels);
+    EXPECT_EQ(shared.state().base->map(), map);
+    EXPECT_EQ(copy(shared.radiance()), copy(own.radiance()));
+    EXPECT_EQ(map->texels, scenes::random_environment(16, 2).texels);
+}
+
 TEST(LightEdits, AMovingTurnIsNearAndLeavesNoTrace) {
     // Twice as fine as what moves, with a lamp between its texels.
     cubemap::CubeMap base(2 * MovingResolution, glm::vec3(0.2f, 0.3f, 0.4f));

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 #include <tuple>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -79,8 +80,9 @@ TEST(SharpLights, PicturesTraceFewOfAnEnvironmentAndAllOfAList) {
         for (std::uint32_t i = 0; i < 25; ++i)
             lamps.at(face, 12 + 25 * (i % 5), 12 + 25 * (i / 5)) = glm::vec3(1e4f);
     relighter.set_environment(lamps);
-    ASSERT_GT(relighter.sharp_lights().size(), 64u);
-    EXPECT_TRUE(picture_lights(relighter).empty());
+    EXPECT_GT(relighter.sharp_lights().size(), 40u);
+    EXPECT_LE(relighter.sharp_lights().size(), 64u) << "the strongest of 150";
+    EXPECT_EQ(picture_lights(relighter).size(), relighter.sharp_lights().size());
     std::vector<lights::DistantLight> list(100);
     for (std::size_t i = 0; i < list.size(); ++i) {
         const double angle = 0.01 * static_cast<double>(i);
@@ -89,6 +91,42 @@ TEST(SharpLights, PicturesTraceFewOfAnEnvironmentAndAllOfAList) {
     }
     relighter.set_lights(list);
     EXPECT_EQ(picture_lights(relighter).size(), list.size());
+}
+
+TEST(SharpLights, OfManyTheStrongestAreCutWhereTheyAreWide) {
+    // Under clusters as wide as faces: a wide lamp, a sun, and many weak lamps.
+    cubemap::CubeMap map(256);
+    for (std::uint32_t y = 64; y < 128; ++y)
+        for (std::uint32_t x = 64; x < 128; ++x)
+            map.at(cubemap::Face::PositiveZ, x, y) = glm::vec3(100.0f);
+    map.at(cubemap::Face::PositiveX, 40, 50) = glm::vec3(1e5f);
+    for (std::uint32_t i = 0; i < 100; ++i)
+        map.at(cubemap::Face::PositiveY, 3 + 25 * (i % 10), 3 + 25 * (i / 10)) = glm::vec3(500.0f);
+    std::vector<prt::Cell> clusters;
+    for (const cubemap::Face face : cubemap::AllFaces)
+        for (std::uint32_t i = 0; i < 64; ++i)
+            clusters.push_back({face, 3, i % 8, i / 8});
+    const LightBinning binning(256);
+    std::vector<double> powers;
+    for (const prt::Cell& cell : clusters)
+        powers.push_back(binning.sum(map, cell).power());
+    const std::vector<SharpLight> all = find_sharp_lights(map, binning, clusters, powers, 10.0f,
+                                                          true),
+                                  few = find_sharp_lights(map, binning, clusters, powers, 10.0f);
+    ASSERT_GT(all.size(), 64u);
+    EXPECT_LE(few.size(), 64u);
+    EXPECT_GE(few.size(), 48u) << "as many cells are kept";
+    EXPECT_TRUE(std::is_sorted(few.begin(), few.end(),
+                               [](const auto& a, const auto& b) { return a.cluster < b.cluster; }));
+    // All light of each light's cell, and the sun among them.
+    const glm::dvec3 sun = cubemap::texel_direction(cubemap::Face::PositiveX, 40, 50, 256);
+    bool has_sun = false;
+    for (const SharpLight& light : few) {
+        const VectorIrradiance expected = binning.sum(map, light.cell);
+        EXPECT_EQ(light.irradiance, expected);
+        has_sun = has_sun || glm::distance(light.direction, sun) < 1e-6;
+    }
+    EXPECT_TRUE(has_sun);
 }
 
 TEST(SharpLights, LightsOfOneSmallCellBecomeOne) {
