@@ -26,7 +26,8 @@ public:
     /// Returns the map turned by an orthogonal matrix, as cubemap::turned() nearly does.
     ///
     /// Error:   the map's power and the irradiance of any normal are within 3e-4 of the power.
-    /// Cost:    O(texels), parallel; a texel near bright edges costs what one of cubemap::turned() does.
+    /// Cost:    O(texels), parallel; a texel near bright edges costs what one of cubemap::turned()
+    /// does.
     [[nodiscard]] CubeMap turned(const glm::dmat3& turn) const;
 
     /// The map that is turned.
