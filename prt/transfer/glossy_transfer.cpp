@@ -21,6 +21,12 @@ void LobeCuts::append(const LobeCuts& from, std::size_t first_block, std::size_t
     add(values, from.values, BlockSize);
 }
 
+bool GlossyTransfer::is_stored() const {
+    return whole_depth != 0 || std::any_of(lobes.begin(), lobes.end(), [](const LobeCuts& lobe) {
+               return lobe.num_entries() != 0;
+           });
+}
+
 std::uint32_t GlossyTransfer::deepest_level() const {
     std::uint32_t largest = 0;
     for (const LobeCuts& lobe : lobes)

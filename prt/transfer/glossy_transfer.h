@@ -56,6 +56,9 @@ struct GlossyTransfer {
     /// there.
     std::uint32_t whole_depth = 0;
 
+    /// Whether highlights are stored. Where they are not, rays find them, and closed forms those of
+    /// sharp lights.
+    [[nodiscard]] bool is_stored() const;
     /// Returns the deepest level of any cell, or the whole scene's.
     [[nodiscard]] std::uint32_t deepest_level() const;
     [[nodiscard]] std::size_t num_bytes() const;

@@ -285,7 +285,8 @@ std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
                                           std::span<const double> powers, float tolerance) {
     return find_sharp_lights(environment, binning, transfer.quadtree.leaves(), powers,
                              transfer.num_points != 0 ? PointSensitivity * tolerance : tolerance,
-                             transfer.glossy || transfer.num_points != 0);
+                             (transfer.glossy && transfer.glossy->is_stored()) ||
+                                 transfer.num_points != 0);
 }
 
 } // namespace relumine::relight
