@@ -141,6 +141,8 @@ struct PageWords {
     std::vector<std::string> left_out = {};
     /// What is said of bounces with fewer samples
     std::string thinned = {};
+    /// Their error, as error_of_bounces() finds it
+    double thinned_error = 0.0;
 };
 
 /// The page's files but the parts that all pages have.
@@ -178,6 +180,8 @@ Page made_page(const Scene& scene, const ExportWebArguments& options, const Page
                             {"environments", environments.list}};
     manifest.set("lamps", lamps.list);
     manifest.set("leftOut", std::move(left));
+    if (page.has_bounces)
+        manifest.set("bouncesError", words.thinned_error);
     page.worst = environments.worst;
     page.files.push_back({"scene.json", bytes_of(manifest.text())});
     page.files.push_back({std::string(SceneFile), runtime_scene(scene)});
@@ -277,12 +281,12 @@ void thin_bounces(Scene& scene, const ExportWebArguments& options, PageWords& wo
     prt::BounceMatrix few = prt::thinned(*scene.bounces, options.bounce_samples);
     if (few.emitters.places.size() == scene.bounces->emitters.places.size())
         return;
-    const double error = error_of_bounces(scene, few);
+    words.thinned_error = error_of_bounces(scene, few);
     words.thinned = fmt::format(
         "{}: bounces keep {:.0f} % of their samples, the light within {:.2g} %", options.scene,
         100.0 * static_cast<double>(few.emitters.places.size()) /
             static_cast<double>(scene.bounces->emitters.places.size()),
-        100.0 * error);
+        100.0 * words.thinned_error);
     scene.bounces = std::move(few);
 }
 

@@ -68,6 +68,7 @@ TEST_F(ExportWeb, WritesAFolderThatTheRuntimeReads) {
 
     const nlohmann::json page = manifest();
     EXPECT_EQ(page["title"], "A <b> & c");
+    EXPECT_EQ(page["bouncesError"], 0.0) << "so few receivers keep all samples";
     EXPECT_EQ(page["look"]["groups"].size(), 2u) << "the mesh and its floor";
     EXPECT_EQ(page["look"]["groups"][1]["start"], 24);
     EXPECT_TRUE(page["look"]["materials"][1]["isFloor"]);
@@ -75,6 +76,10 @@ TEST_F(ExportWeb, WritesAFolderThatTheRuntimeReads) {
     EXPECT_THAT(page["tone"]["source"], HasSubstr("vec3 on_screen(int curve, vec3 radiance)"));
     // The environment is one that the program reads: white.
     succeed({"relight", "coarse.prt", "site/environments/1.hdr", "-o", "light.npy", "-q"});
+
+    succeed({"export", "web", "scene.prt", "white.hdr", "-o", "site", "--force", "--samples", "0",
+             "--bounce-samples", "1"});
+    EXPECT_GT(manifest()["bouncesError"], 0.0);
 }
 
 TEST_F(ExportWeb, PutsAllIntoASingleFile) {

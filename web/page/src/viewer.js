@@ -211,11 +211,12 @@ class RelumineViewer extends HTMLElement {
     }
 
     #errorLine({verified}) {
-        const {leftOut} = this.#manifest;
+        const {leftOut, bouncesError} = this.#manifest;
+        const bounces = bouncesError > 0 ? ` Light between surfaces is thinned, within ${this.#percent(bouncesError)} of all light.` : '';
         const left = leftOut.length > 0 ? ` Left out: ${leftOut.join(', ')}.` : '';
         if (!verified)
-            return `Light not verified.${left}`;
-        return `Light within ${this.#percent(verified.relativeL2)} of exact integration here.${left}`;
+            return `Light not verified.${bounces}${left}`;
+        return `Light within ${this.#percent(verified.relativeL2)} of exact integration here.${bounces}${left}`;
     }
 
     #percent(value) { return `${Number((100 * value).toPrecision(2))} %`; }
