@@ -260,7 +260,7 @@ void compare(const std::string& name, Mesh mesh, std::span<const Map> lights,
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     options.bounce_tolerance = vertices->bounces ? prt::BounceOptions{}.tolerance : 0.0f;
     options.tolerance = prt::PrecomputeOptions{}.tolerance;
-    options.receivers = Pixels{settings.width, settings.height};
+    options.receivers = Pixels{settings.width, settings.height, 1}; // one sample a pixel
     Shot first;
     first.camera = camera_of(*vertices, static_cast<float>(settings.width) /
                                             static_cast<float>(settings.height));

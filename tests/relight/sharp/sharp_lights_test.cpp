@@ -129,6 +129,31 @@ TEST(SharpLights, OfManyTheStrongestAreCutWhereTheyAreWide) {
     EXPECT_TRUE(has_sun);
 }
 
+// Stored highlights show the lights themselves. Where rays find highlights they see the rest.
+TEST(SharpLights, StoredHighlightsNeedMoreThanTracedOnes) {
+    prt::Transfer transfer;
+    transfer.quadtree = scenes::relit_scene().transfer.quadtree;
+    cubemap::CubeMap map(256);
+    for (std::uint32_t y = 64; y < 128; ++y)
+        for (std::uint32_t x = 64; x < 128; ++x)
+            map.at(cubemap::Face::PositiveZ, x, y) = glm::vec3(100.0f);
+    const LightBinning binning(256);
+    std::vector<double> powers;
+    for (const prt::Cell& cell : transfer.quadtree.leaves())
+        powers.push_back(binning.sum(map, cell).power());
+    const auto num_lights = [&] {
+        return find_sharp_lights(map, binning, transfer, powers, 10.0f).size();
+    };
+    const std::size_t matt = num_lights();
+    EXPECT_LE(matt, 64u);
+    transfer.glossy.emplace();
+    EXPECT_FALSE(transfer.glossy->is_stored());
+    EXPECT_EQ(num_lights(), matt);
+    transfer.glossy->lobes[0].cells = {0};
+    EXPECT_TRUE(transfer.glossy->is_stored());
+    EXPECT_GT(num_lights(), 64u);
+}
+
 TEST(SharpLights, LightsOfOneSmallCellBecomeOne) {
     const LightBinning binning(512);
     const cubemap::CubeMap white(512, glm::vec3(1.0f));
