@@ -66,8 +66,7 @@ QuickTurns::QuickTurns(std::shared_ptr<const CubeMap> map)
         }
     });
     // Bright edges, then what lies within a texel of one.
-    const double least =
-        EdgeShare * luminance(total_power(*map_).x, total_power(*map_).y, total_power(*map_).z);
+    const double least = EdgeShare * luminance(total_power(*map_));
     const std::vector<double> angles = texel_solid_angles(r);
     std::vector<unsigned char> is_edge(texels_.size());
     const auto brightness = [&](std::size_t at) {

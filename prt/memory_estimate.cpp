@@ -142,10 +142,7 @@ MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receive
                                const Blockers& blockers, const PrecomputeOptions& options,
                                std::uint64_t max_bytes, const std::stop_token& stop) {
     const Receivers trial = trial_receivers(receivers);
-    PrecomputeOptions trial_options = options;
-    // The same RMS for fewer receivers.
-    trial_options.epsilon = {};
-    trial_options.tolerance = rms_tolerance(options.tolerance, options.epsilon, receivers.size());
+    PrecomputeOptions trial_options = for_sample(options, receivers.size());
     const PrecomputeContext context{.column_scale = static_cast<double>(receivers.size()) /
                                                     static_cast<double>(trial.size())};
     // No limit is the largest number, which must not overflow when scaled.

@@ -59,16 +59,14 @@ constexpr std::uint32_t MinLevelOfChance = 3;
 
 /// Chooses clusters from a sample of the receivers: with the tolerance, or the least larger one
 /// that makes no more than are wanted. Returns order and quadtree.
-Transfer chosen(const Receivers& receivers, const Blockers& blockers, PrecomputeOptions options,
-                const Work& work, const PrecomputeContext& context,
+Transfer chosen(const Receivers& receivers, const Blockers& blockers,
+                const PrecomputeOptions& of_all, const Work& work, const PrecomputeContext& context,
                 PrecomputeStatistics& statistics) {
     constexpr float Growth = 1.25f;
     Transfer result;
     result.order = context.given != nullptr ? context.given->order : spatial_order(receivers);
     const Receivers sample = sample_of(receivers, result.order);
-    // The same RMS for fewer receivers.
-    options.tolerance = rms_tolerance(options.tolerance, options.epsilon, receivers.size());
-    options.epsilon = {};
+    PrecomputeOptions options = for_sample(of_all, receivers.size());
     while (true)
         try {
             result.quadtree =

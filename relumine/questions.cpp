@@ -15,6 +15,7 @@
 #include "files/parallel.h"
 #include "prt/receivers/lit_position.h"
 #include "prt/receivers/pixel_receivers.h"
+#include "prt/receivers/point_receivers.h"
 #include "relight/adjoint/adjoint.h"
 #include "relight/adjoint/contribution.h"
 #include "relight/adjoint/harmonic_adjoint.h"
@@ -354,26 +355,7 @@ Share lit_by(const LitScene& lit, const cubemap::Region& region) {
 }
 
 bool is_inside(const LitScene& lit, const glm::vec3& point) {
-    const mesh::TriangleMesh& mesh = lit.scene().mesh;
-    int num_backs = 0, num_directions = 0;
-    for (int x = -1; x <= 1; ++x)
-        for (int y = -1; y <= 1; ++y)
-            for (int z = -1; z <= 1; ++z) {
-                if (x == 0 && y == 0 && z == 0)
-                    continue;
-                ++num_directions;
-                const glm::vec3 direction(static_cast<float>(x), static_cast<float>(y),
-                                          static_cast<float>(z));
-                const auto hit = lit.rays().of_mesh().closest_hit(point, direction);
-                if (!hit)
-                    continue;
-                const mesh::Triangle& triangle = mesh.triangles[hit->triangle];
-                const glm::vec3& corner = mesh.positions[triangle[0]];
-                const glm::vec3 normal = glm::cross(mesh.positions[triangle[1]] - corner,
-                                                    mesh.positions[triangle[2]] - corner);
-                num_backs += glm::dot(normal, direction) > 0.0f ? 1 : 0;
-            }
-    return 4 * num_backs > 3 * num_directions;
+    return prt::part_of_backs(point, lit.scene().mesh, lit.rays().of_mesh()) > 0.75;
 }
 
 std::vector<std::uint8_t> sees(const LitScene& lit, std::span<const glm::vec3> points) {

@@ -180,7 +180,7 @@ void relight_batch(const LitScene& lit, std::span<const cubemap::CubeMap> enviro
 /// Whether a point is inside of the mesh: in most directions it sees backs of surfaces. A small
 /// hole, as of scans, does not matter; a room is open to its inside.
 ///
-/// Cost:    26 rays.
+/// Cost:    64 rays.
 [[nodiscard]] bool is_inside(const LitScene& lit, const glm::vec3& point);
 
 /// Where a light stands for a point that is seen.

@@ -78,7 +78,7 @@ namespace {
 /// Whether a material has a highlight that follows the eye, and colours of its own for its diffuse
 /// light and for its highlight.
 bool is_live(const Scene& scene, const mesh::Material& material) {
-    return scene.receivers.to_eye.empty() && has_ggx(material) &&
+    return scene.receivers.to_eye.empty() && prt::has_highlight(material) &&
            material.model == mesh::MaterialModel::SpecularGlossiness;
 }
 

@@ -84,12 +84,8 @@ Transfer plan_clusters(const Receivers& receivers, const Blockers& blockers,
                        PrecomputeStatistics* statistics, Transfer* of_sample) {
     Transfer plan;
     plan.order = spatial_order(receivers);
-    PrecomputeOptions for_sample = options;
-    // The same RMS for fewer receivers.
-    for_sample.epsilon = {};
-    for_sample.tolerance = rms_tolerance(options.tolerance, options.epsilon, receivers.size());
-    Transfer sampled =
-        precompute(sample_of(receivers, plan.order), blockers, for_sample, work, statistics);
+    Transfer sampled = precompute(sample_of(receivers, plan.order), blockers,
+                                  for_sample(options, receivers.size()), work, statistics);
     plan.quadtree = sampled.quadtree;
     plan.num_points = receivers.num_points();
     for (const std::uint32_t receiver : plan.order)

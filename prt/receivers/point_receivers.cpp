@@ -37,24 +37,6 @@ std::array<DirectionPacket, NumPackets> spread_directions() {
     return packets;
 }
 
-bool meets_mostly_backs(const glm::vec3& point, const mesh::TriangleMesh& mesh,
-                        const RayScene& rays) {
-    static const std::array<DirectionPacket, NumPackets> Packets = spread_directions();
-    constexpr std::uint32_t All = (1u << PacketSize) - 1;
-    std::size_t num_backs = 0;
-    for (const DirectionPacket& packet : Packets) {
-        std::array<Hit, PacketSize> hits;
-        for (std::uint32_t hit = rays.closest_hits(point, packet, All, hits); hit != 0;
-             hit &= hit - 1) {
-            const auto i = static_cast<std::uint32_t>(std::countr_zero(hit));
-            num_backs +=
-                meets_front(mesh, {hits[i].triangle, hits[i].barycentric}, packet.direction(i)) ? 0
-                                                                                                : 1;
-        }
-    }
-    return 2 * num_backs > NumRays;
-}
-
 /// Finds the nearest of some points: a k-d tree, whose nodes are the middles of ranges.
 class NearestPoints {
 public:
@@ -150,7 +132,7 @@ Receivers point_receivers(std::span<const glm::vec3> points, const mesh::Triangl
     std::vector<std::uint8_t> is_inside(points.size());
     files::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         progress.poll();
-        is_inside[i] = meets_mostly_backs(points[i], mesh, rays) ? 1 : 0;
+        is_inside[i] = part_of_backs(points[i], mesh, rays) > 0.5 ? 1 : 0;
     });
     std::vector<std::uint32_t> outside;
     for (std::uint32_t i = 0; i < points.size(); ++i)
@@ -164,6 +146,23 @@ Receivers point_receivers(std::span<const glm::vec3> points, const mesh::Triangl
         if (is_inside[i] != 0)
             receivers.positions[i] = points[nearest.nearest(points[i])];
     return receivers;
+}
+
+double part_of_backs(const glm::vec3& point, const mesh::TriangleMesh& mesh, const RayScene& rays) {
+    static const std::array<DirectionPacket, NumPackets> Packets = spread_directions();
+    constexpr std::uint32_t All = (1u << PacketSize) - 1;
+    std::size_t num_backs = 0;
+    for (const DirectionPacket& packet : Packets) {
+        std::array<Hit, PacketSize> hits;
+        for (std::uint32_t hit = rays.closest_hits(point, packet, All, hits); hit != 0;
+             hit &= hit - 1) {
+            const auto i = static_cast<std::uint32_t>(std::countr_zero(hit));
+            num_backs +=
+                meets_front(mesh, {hits[i].triangle, hits[i].barycentric}, packet.direction(i)) ? 0
+                                                                                                : 1;
+        }
+    }
+    return static_cast<double>(num_backs) / NumRays;
 }
 
 std::size_t num_inside(const Receivers& receivers) {

@@ -38,6 +38,12 @@ inline constexpr std::uint32_t MinLevelOfPoints = 6;
                                         const mesh::TriangleMesh& mesh, const RayScene& rays,
                                         const Work& work = {});
 
+/// Returns the part of the directions around a point in which it meets the backs of surfaces.
+///
+/// Cost:    64 rays.
+[[nodiscard]] double part_of_backs(const glm::vec3& point, const mesh::TriangleMesh& mesh,
+                                   const RayScene& rays);
+
 /// Returns how many points are inside of an object.
 [[nodiscard]] std::size_t num_inside(const Receivers& receivers);
 

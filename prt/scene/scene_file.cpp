@@ -1,5 +1,4 @@
 #include "prt/scene/scene_file.h"
-#include "prt/glossy/glossy_precompute.h"
 
 #include <stdexcept>
 #include <utility>
@@ -8,6 +7,7 @@
 
 #include "files/hash.h"
 #include "files/output_file.h"
+#include "prt/glossy/glossy_precompute.h"
 #include "prt/scene/section_group.h"
 
 namespace relumine::prt {

@@ -37,11 +37,6 @@ double chance(const SeeThrough::Meeting& meeting) {
     return place - std::floor(place);
 }
 
-/// Alpha knows no colours, and neither do rays of light.
-float part_of(const mesh::Veil& veil) {
-    return (veil.through.r + veil.through.g + veil.through.b) / 3.0f;
-}
-
 /// The least and the largest value of the texels of a texture that a triangle may touch.
 struct TexelRange {
     glm::vec3 least{std::numeric_limits<float>::infinity()}, most{-least};

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "files/parallel.h"
-#include "mesh/opacity.h"
 
 namespace relumine::prt {
 
@@ -53,8 +52,7 @@ VeilCells::VeilCells(const mesh::Material& material, std::span<const mesh::Textu
     files::parallel_for(std::uint32_t{0}, size_[1], [&](std::uint32_t y) {
         for (std::uint32_t x = 0; x < size_[0]; ++x) {
             const glm::vec2 place = (glm::vec2(x, y) + 0.5f) / glm::vec2(size_[0], size_[1]);
-            const glm::vec3 through = mesh::veil(material, textures, place).through;
-            parts_[std::size_t{y} * size_[0] + x] = (through.r + through.g + through.b) / 3.0f;
+            parts_[std::size_t{y} * size_[0] + x] = part_of(mesh::veil(material, textures, place));
         }
     });
 }

@@ -11,9 +11,16 @@
 
 #include "mesh/materials/material.h"
 #include "mesh/materials/texture.h"
+#include "mesh/opacity.h"
 #include "prt/visibility/texel_index.h"
 
 namespace relumine::prt {
+
+/// Returns the part of light that passes a veil. Alpha knows no colours, and neither do rays of
+/// light.
+[[nodiscard]] inline float part_of(const mesh::Veil& veil) {
+    return (veil.through.r + veil.through.g + veil.through.b) / 3.0f;
+}
 
 /// The part of light that passes glass or what is blended, the mean over the colours, in cells of
 /// up to 512 to a side of its textures. Rays of light pass by chance, so what counts are means over

@@ -1,15 +1,14 @@
 #include "relight/moving_eye/seen_blocks.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
 #include "cubemap/face.h"
 #include "files/parallel.h"
+#include "prt/bounces/point_rows.h"
 
 namespace relumine::relight {
 
@@ -17,7 +16,7 @@ namespace {
 
 /// Planes around all receivers, spread evenly: an eye that is not outside of one, as one that looks
 /// into a valley, has all that faces it lit.
-constexpr std::size_t NumPlanes = 96;
+constexpr std::uint32_t NumPlanes = 96;
 constexpr std::size_t BlocksPerTask = 64;
 
 /// A square of a cell, [0, 1]^2.
@@ -66,14 +65,8 @@ SeenBlocks::SeenBlocks(const prt::Transfer& transfer, const VisibilityPyramid& v
         for (const glm::vec3& position : own)
             sphere.radius = std::max(sphere.radius, glm::distance(sphere.middle, position));
     }
-    for (std::size_t i = 0; i < NumPlanes; ++i) {
-        // A spiral of equal steps in height turns by the golden angle.
-        const float y =
-            1.0f - (2.0f * static_cast<float>(i) + 1.0f) / static_cast<float>(NumPlanes);
-        const float phi =
-            static_cast<float>(i) * std::numbers::pi_v<float> * (3.0f - std::sqrt(5.0f));
-        const float r = std::sqrt(1.0f - y * y);
-        const glm::vec3 normal(r * std::cos(phi), y, r * std::sin(phi));
+    for (const glm::dvec3& direction : prt::even_directions(NumPlanes)) {
+        const glm::vec3 normal(direction);
         float farthest = std::numeric_limits<float>::lowest();
         for (const glm::vec3& position : positions)
             farthest = std::max(farthest, glm::dot(normal, position));
