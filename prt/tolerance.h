@@ -13,7 +13,7 @@ namespace relumine::prt {
 [[nodiscard]] float rms_tolerance(float tolerance, std::optional<float> epsilon,
                                   std::size_t num_receivers);
 
-/// Returns options that ask a sample for the RMS that `options` ask of `num_receivers`, all of them.
+/// Returns options that ask a sample for the RMS that `options` ask of all `num_receivers`.
 [[nodiscard]] PrecomputeOptions for_sample(PrecomputeOptions options, std::size_t num_receivers);
 
 } // namespace relumine::prt
