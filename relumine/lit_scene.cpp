@@ -53,7 +53,7 @@ void require_same_hash(prt::Team& team, const std::filesystem::path& path, std::
 LitScene::LitScene(Scene scene, const LightOptions& options)
     : LitScene(std::make_shared<Scene>(std::move(scene)), options) {}
 
-LitScene::LitScene(std::shared_ptr<Scene> own, const LightOptions& options)
+LitScene::LitScene(const std::shared_ptr<Scene>& own, const LightOptions& options)
     : LitScene(std::shared_ptr<const Scene>(own), nullptr, options) {
     own_scene_ = own.get();
 }

@@ -198,7 +198,7 @@ public:
     [[nodiscard]] Lighting lighting(bool is_drawn = true) const;
 
 private:
-    LitScene(std::shared_ptr<Scene> own, const LightOptions& options);
+    LitScene(const std::shared_ptr<Scene>& own, const LightOptions& options);
     /// Light of a list that comes on top, [receivers of this process] each.
     struct Added {
         std::vector<glm::vec3> radiance = {};

@@ -1,12 +1,15 @@
 #include "relumine/scene_mirrors.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "files/parallel.h"
 #include "prt/glossy/brdf.h"
+#include "prt/glossy/ggx_energy.h"
+#include "prt/glossy/sheen_lobe.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/visibility/twin_triangles.h"
@@ -71,6 +74,22 @@ private:
     std::vector<glm::vec3> light_, sent_, emission_;
 };
 
+/// Returns which part of the rays that a mirror of metal gets is enough for a surface: the noise of
+/// what rays find counts as much as the surface sends of it, and a narrow lobe has less.
+float part_of_rays(const prt::Surface& surface, const prt::EyeCosines& n_v) {
+    if (!prt::facts_of(surface.highlight).is_roughness || prt::has_coat(surface) ||
+        prt::has_sheen(surface) || n_v.base <= 0.0f)
+        return 1.0f;
+    constexpr float WholeFrom = 0.25f, WideFrom = 0.3f;
+    const float roughness = surface.roughness_or_exponent;
+    const prt::GgxAlbedo albedo = prt::ggx_albedo(roughness, n_v.base);
+    const glm::vec3 sent = prt::reflect(
+        surface, {.specular = glm::vec3(albedo.all), .specular_grazing = glm::vec3(albedo.grazing)},
+        n_v);
+    return std::min(std::max({sent.r, sent.g, sent.b}) / WholeFrom, 1.0f) *
+           std::min(roughness / WideFrom, 1.0f);
+}
+
 } // namespace
 
 SceneMirrors::SceneMirrors(const Scene& scene, const SceneRays& rays, std::uint32_t num_rays)
@@ -80,14 +99,16 @@ SceneMirrors::SceneMirrors(const Scene& scene, const SceneRays& rays, std::uint3
     rays_per_pixel_ = num_rays;
 }
 
-std::uint32_t SceneMirrors::rays_of(std::size_t receiver) const {
+std::uint32_t SceneMirrors::rays_of(std::size_t receiver, const prt::EyeCosines& n_v) const {
     constexpr std::uint32_t Least = 4;
-    const auto* pixels = std::get_if<prt::PixelLayout>(&scene_->layout);
-    if (pixels == nullptr || rays_per_pixel_ == 0)
-        return rays_per_pixel_;
-    const auto samples = static_cast<std::uint32_t>(pixels->samples_per_pixel());
-    const auto shown = static_cast<std::uint32_t>(pixels->num_shown(receiver));
-    return std::max((rays_per_pixel_ * shown + samples - 1) / samples, Least);
+    if (rays_per_pixel_ == 0)
+        return 0;
+    float rays = static_cast<float>(rays_per_pixel_) *
+                 part_of_rays(scene_->receivers.surfaces[receiver], n_v);
+    if (const auto* pixels = std::get_if<prt::PixelLayout>(&scene_->layout))
+        rays *= static_cast<float>(pixels->num_shown(receiver)) /
+                static_cast<float>(pixels->samples_per_pixel());
+    return std::max(static_cast<std::uint32_t>(std::ceil(rays)), Least);
 }
 
 void SceneMirrors::add(const relight::Relighter& light, const Surfaces& surfaces,
@@ -115,10 +136,10 @@ void SceneMirrors::add(const relight::Relighter& light, const Surfaces& surfaces
             .to_eye = to_eye,
             .shift = glm::vec2(
                 glm::fract(number * glm::dvec2(0.75487766624669276, 0.56984029099805327)))};
-        const prt::Lobes<glm::vec3> lobes =
-            relight::lobes_of(surface, reflections.light(surface, point, rays_of(receiver), seen),
-                              glm::dot(normal, to_eye));
-        radiance[i] += prt::reflect(surface, lobes, {surface, normal, to_eye});
+        const prt::EyeCosines n_v(surface, normal, to_eye);
+        const prt::Lobes<glm::vec3> lobes = relight::lobes_of(
+            surface, reflections.light(surface, point, rays_of(receiver, n_v), seen), n_v);
+        radiance[i] += prt::reflect(surface, lobes, n_v);
     });
 }
 

@@ -54,6 +54,11 @@ struct ViewState {
     Click click = Click::Ask;
     /// The pointer places the chosen layer on the mesh.
     bool is_aiming = false;
+    /// The contribution map must be made anew.
+    bool heat_is_stale = false;
+    /// The text field takes the keyboard.
+    bool wants_path = false;
+    bool message_is_error = false;
     cubemap::LightLayer brush{.name = "Stroke", .region = cubemap::Stroke::as_added()};
     cubemap::LightLayer lasso{.name = "Lasso",
                               .region = cubemap::Lasso::as_added(),
@@ -61,22 +66,19 @@ struct ViewState {
 
     /// Where keys steer the eye: right, up and forward.
     glm::vec3 steering{0.0f};
+    /// Of all surfaces that highlights follow the eye on, as it shall be.
+    float roughness = 0.0f;
 
     /// The vertex that was clicked.
     std::optional<std::uint32_t> receiver = {};
-    /// The contribution map must be made anew.
-    bool heat_is_stale = false;
 
     /// Key frames of the layer file, kept for saving.
     std::vector<cubemap::KeyFrame> frames = {};
     /// Content of the text field.
     std::string path = {};
-    /// The text field takes the keyboard.
-    bool wants_path = false;
     /// A dropped picture, until the dialogue has asked how to use it; empty: none.
     std::filesystem::path dropped = {};
     std::string message = {};
-    bool message_is_error = false;
     double frame_seconds = 0.0;
 
     /// Shows the points of the scene; null: its receivers are vertices.
@@ -85,8 +87,6 @@ struct ViewState {
     /// Highlights that follow the eye, and how finely; null: the scene has none.
     std::unique_ptr<LiveEye> live_eye = {};
     EyeOptions eye_options = {};
-    /// Of all surfaces that highlights follow the eye on, as it shall be.
-    float roughness = 0.0f;
 };
 
 /// Returns what is seen behind the mesh now, for a Refiner. It does not change any more.

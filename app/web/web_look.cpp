@@ -37,6 +37,7 @@ struct GroupKey {
     /// The other side of each has a triangle of its own, so only fronts are drawn.
     bool is_one_side = false;
 
+    // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 sees one in the comparison with 0
     [[nodiscard]] auto operator<=>(const GroupKey&) const = default;
     /// Returns what a vertex looks like: no matter from which side.
     [[nodiscard]] std::pair<bool, std::uint32_t> look() const { return {is_floor, material}; }

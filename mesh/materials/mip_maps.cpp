@@ -124,15 +124,18 @@ glm::vec3 MipMaps::sample(const TextureSlot& slot, const glm::vec2& mesh_uv,
     if (!(length > 1.0f) || !std::isfinite(length))
         return mesh::sample(texture, slot, mesh_uv);
     const float width = std::abs(longer.x * other.y - longer.y * other.x) / length;
-    const float looks = std::ceil(std::min(length / std::max(width, 1.0f), MostLooks));
+    const auto num_looks =
+        static_cast<int>(std::ceil(std::min(length / std::max(width, 1.0f), MostLooks)));
+    const auto looks = static_cast<float>(num_looks);
     const float detail = std::log2(std::max(length / looks, 1.0f));
     const auto level = static_cast<std::size_t>(detail);
     const float rest = detail - static_cast<float>(level);
     const glm::vec2 uv = slot.uv_from_mesh_uv * mesh_uv + slot.uv_offset;
     Pyramid& pyramid = pyramids_[2 * std::size_t{slot.texture} + (slot.is_srgb ? 1 : 0)];
     glm::vec3 sum(0.0f);
-    for (float i = 0.5f; i < looks; ++i) {
-        const glm::vec2 at = uv + (i / looks - 0.5f) * longer / size;
+    for (int i = 0; i < num_looks; ++i) {
+        const float place = (static_cast<float>(i) + 0.5f) / looks - 0.5f;
+        const glm::vec2 at = uv + place * longer / size;
         sum += glm::mix(pyramid.sample(texture, slot, at, level),
                         pyramid.sample(texture, slot, at, level + 1), rest);
     }

@@ -157,11 +157,12 @@ glm::vec3 emission_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
 }
 
 Surface measured_surface(std::shared_ptr<const mesh::BrdfTable> table) {
-    return {.albedo = glm::min(table->lambert(), 1.0f),
-            .specular = glm::vec3(1.0f),
-            .highlight = Highlight::Measured,
-            .roughness_or_exponent = table->roughness(),
-            .table = std::move(table)};
+    Surface surface{.albedo = glm::min(table->lambert(), 1.0f),
+                    .specular = glm::vec3(1.0f),
+                    .highlight = Highlight::Measured,
+                    .roughness_or_exponent = table->roughness()};
+    surface.table = std::move(table);
+    return surface;
 }
 
 bool has_highlight(const mesh::Material& material) {

@@ -16,7 +16,7 @@ namespace relumine::prt {
 
 namespace {
 
-using CountNames::Visible, CountNames::Mixed, CountNames::Codes, CountNames::Rare;
+using count_names::Visible, count_names::Mixed, count_names::Codes, count_names::Rare;
 
 /// Entries [begin, end) of a scene's counts, even numbers.
 using EntryRange = SectionPicker::Range;

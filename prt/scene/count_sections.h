@@ -16,10 +16,10 @@ namespace relumine::prt {
 /// Counts are codes of four bits, two in a byte. Counts are 0 to 16, and hardly ever 14: so the
 /// code 14 stands for 16, and a list names the entries that are 14 after all. Beside bytes, the
 /// file of the Stanford bunny is 7 % smaller for it.
-namespace CountNames {
+namespace count_names {
 inline const std::string Visible = "visible", Mixed = "mixed", Codes = "count_codes",
                          Rare = "counts_14";
-} // namespace CountNames
+} // namespace count_names
 inline constexpr std::uint8_t RareCount = 14;
 
 /// Adds the sections of counts, which must last until they are written.

@@ -65,9 +65,9 @@ void JoinedCounts::add(const SectionReader& reader, const Part& part, const Visi
             if (entries[i] == RareCount)
                 rare_.emplace_back(tile, i);
     }
-    parts_[part.index] = {.visible = reader.stored(CountNames::Visible),
-                          .mixed = reader.stored(CountNames::Mixed),
-                          .codes = reader.stored(CountNames::Codes)};
+    parts_[part.index] = {.visible = reader.stored(count_names::Visible),
+                          .mixed = reader.stored(count_names::Mixed),
+                          .codes = reader.stored(count_names::Codes)};
 }
 
 std::vector<std::uint64_t> JoinedCounts::bits_per_tile() const {
@@ -91,8 +91,8 @@ SectionContent JoinedCounts::woven(StoredSection Stored::*section,
 }
 
 void JoinedCounts::add_to(NewSections& sections) const {
-    sections[CountNames::Visible] = woven(&Stored::visible, bits_per_tile());
-    sections[CountNames::Mixed] = woven(&Stored::mixed, bits_per_tile());
+    sections[count_names::Visible] = woven(&Stored::visible, bits_per_tile());
+    sections[count_names::Mixed] = woven(&Stored::mixed, bits_per_tile());
     std::vector<std::uint64_t> code_bytes, entries_before;
     std::uint64_t num_entries = 0;
     for (const std::uint64_t pairs : pairs_) {
@@ -100,7 +100,7 @@ void JoinedCounts::add_to(NewSections& sections) const {
         entries_before.push_back(num_entries);
         num_entries += pairs * BlockSize;
     }
-    sections[CountNames::Codes] = woven(&Stored::codes, std::move(code_bytes));
+    sections[count_names::Codes] = woven(&Stored::codes, std::move(code_bytes));
     auto rare = rare_;
     std::sort(rare.begin(), rare.end());
     std::vector<std::uint8_t> gaps;
@@ -110,7 +110,7 @@ void JoinedCounts::add_to(NewSections& sections) const {
         append_small(gaps, entry - next);
         next = entry + 1;
     }
-    sections[CountNames::Rare] = bytes_of(gaps);
+    sections[count_names::Rare] = bytes_of(gaps);
 }
 
 } // namespace relumine::prt

@@ -151,6 +151,7 @@ void add_surfaces(NewSections& sections, const std::vector<Surface>& surfaces) {
                         [&](const Surface& surface) { return surface.*member == usual; }))
             return;
         std::vector<std::remove_const_t<decltype(usual)>> values;
+        values.reserve(surfaces.size());
         for (const Surface& surface : surfaces)
             values.push_back(surface.*member);
         sections[name] = bytes_of(values);

@@ -242,32 +242,85 @@ private:
     alignas(64) std::array<std::uint32_t, Width> covered_low_, covered_high_;
 };
 
-/// Judges rays that the leaf may block in double precision.
-template<class D>
-RayVerdicts judge_rays(D d, const TriangleTree::Leaf& leaf, const PlacedLeaf& placed,
-                       const BeamPatch& patch, const AskedRays& asked, const glm::vec3& origin) {
-    RayVerdicts verdicts;
+/// Calls meet(triangle, ray, is_certain) where an asked ray may meet a triangle of the leaf.
+template<class D, class Meet>
+void find_meetings(D d, const PlacedLeaf& leaf, const PatchPlane& patch, const AskedRays& asked,
+                   const Meet& meet) {
     for (std::size_t lane = 0; lane < leaf.size; lane += hn::Lanes(d)) {
-        const TriangleView<D> view = view_of(d, placed, lane, patch.plane.sign, asked.origin);
+        const TriangleView<D> view = view_of(d, leaf, lane, patch.sign, asked.origin);
+        const std::size_t count = std::min<std::size_t>(leaf.size - lane, hn::Lanes(d));
+        const std::uint32_t near = near_rays(d, view, asked) & ((1u << count) - 1);
+        if (near == 0)
+            continue;
         for (std::uint64_t rays = asked.rays; rays != 0; rays &= rays - 1) {
             const auto j = static_cast<std::size_t>(std::countr_zero(rays));
-            const Meets<D> met = meets(d, view, true, patch.plane.s[j], patch.plane.t[j]);
-            for (std::uint32_t bits = bits_of(d, met.maybe); bits != 0; bits &= bits - 1) {
-                const std::size_t triangle =
-                    lane + static_cast<std::size_t>(std::countr_zero(bits));
-                const Verdict verdict =
-                    judge(leaf, triangle, origin, patch.directions.direction(j));
-                verdicts.hits |= std::uint64_t{verdict == Verdict::Hit} << j;
-                verdicts.maybes |= std::uint64_t{verdict == Verdict::Doubt} << j;
+            const Meets<D> met = meets(d, view, true, patch.s[j], patch.t[j]);
+            const std::uint32_t hits = bits_of(d, met.hit);
+            for (std::uint32_t bits = bits_of(d, met.maybe) & near; bits != 0; bits &= bits - 1) {
+                const auto triangle = static_cast<std::size_t>(std::countr_zero(bits));
+                meet(lane + triangle, j, (hits >> triangle & 1u) != 0);
             }
         }
     }
+}
+
+/// Finds the rays that the leaf blocks, and as maybes those that only the exact tracer knows. What
+/// single precision leaves in doubt is judged in double.
+template<class D>
+RayVerdicts test_blocking_leaf(D d, const TriangleTree::Leaf& leaf, const PlacedLeaf& placed,
+                               const BeamPatch& patch, AskedRays asked, const glm::vec3& origin) {
+    RayVerdicts verdicts = test_leaf(d, placed, patch.plane, asked);
+    asked.rays &= verdicts.maybes & ~verdicts.hits;
+    verdicts.maybes = 0;
+    if (asked.rays != 0) [[unlikely]]
+        find_meetings(d, placed, patch.plane, asked,
+                      [&](std::size_t triangle, std::size_t j, bool) {
+                          const Verdict verdict =
+                              judge(leaf, triangle, origin, patch.directions.direction(j));
+                          verdicts.hits |= std::uint64_t{verdict == Verdict::Hit} << j;
+                          verdicts.maybes |= std::uint64_t{verdict == Verdict::Doubt} << j;
+                      });
     return verdicts;
 }
 
-void clear_certain(const TriangleTree& tree, const BeamPatch& patch, const ShaftLeaves& leaves,
-                   const GroupOrigins& origins, const ReceiverCones& cones,
-                   std::span<std::uint64_t> rays, std::span<std::uint64_t> doubts) {
+/// The same for triangles that rays may pass, given their numbers in the mesh.
+template<class D>
+RayVerdicts test_passed_leaf(D d, const TriangleTree::Leaf& leaf,
+                             const std::array<std::uint32_t, Width>& numbers,
+                             const PlacedLeaf& placed, const BeamPatch& patch,
+                             const PassedTriangles& passed, const AskedRays& asked,
+                             const glm::vec3& origin) {
+    RayVerdicts verdicts;
+    const auto passes = [&](std::size_t triangle, const glm::vec3& direction) {
+        std::array<glm::dvec3, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k)
+            corners[k] =
+                glm::dvec3(leaf.corners[3 * k][triangle], leaf.corners[3 * k + 1][triangle],
+                           leaf.corners[3 * k + 2][triangle]) -
+                glm::dvec3(origin);
+        return passed.see_through.light_passes(numbers[triangle], corners, origin, direction,
+                                               passed.of);
+    };
+    find_meetings(d, placed, patch.plane, asked,
+                  [&](std::size_t triangle, std::size_t j, bool is_certain) {
+                      const std::uint64_t ray = std::uint64_t{1} << j;
+                      if ((verdicts.hits & ray) != 0)
+                          return;
+                      const glm::vec3 direction = patch.directions.direction(j);
+                      const Verdict verdict =
+                          is_certain ? Verdict::Hit : judge(leaf, triangle, origin, direction);
+                      if (verdict == Verdict::Doubt)
+                          verdicts.maybes |= ray;
+                      else if (verdict == Verdict::Hit && !passes(triangle, direction))
+                          verdicts.hits |= ray;
+                  });
+    return verdicts;
+}
+
+void clear_certain(const TriangleTree& tree, const PassedTriangles* passed, const BeamPatch& patch,
+                   const ShaftLeaves& leaves, const GroupOrigins& origins,
+                   const ReceiverCones& cones, std::span<std::uint64_t> rays,
+                   std::span<std::uint64_t> doubts) {
     const hn::CappedTag<float, Width> d;
     OpenRays<hn::CappedTag<float, Width>> open(patch.plane, origins, cones, rays);
     PlacedLeaf placed;
@@ -283,16 +336,16 @@ void clear_certain(const TriangleTree& tree, const BeamPatch& patch, const Shaft
             if (!is_placed)
                 place_leaf(d, leaf, patch.plane, placed);
             is_placed = true;
-            AskedRays asked = open.asked(first, lane);
-            RayVerdicts verdicts = test_leaf(d, placed, patch.plane, asked);
+            const AskedRays asked = open.asked(first, lane);
             const std::size_t receiver = first + lane;
-            asked.rays &= verdicts.maybes & ~verdicts.hits;
-            if (asked.rays != 0) [[unlikely]] {
-                const RayVerdicts judged =
-                    judge_rays(d, leaf, placed, patch, asked, origins.all[receiver]);
-                verdicts.hits |= judged.hits;
-                doubts[receiver] |= judged.maybes;
-            }
+            const glm::vec3& origin = origins.all[receiver];
+            const RayVerdicts verdicts =
+                passed == nullptr
+                    ? test_blocking_leaf(d, leaf, placed, patch, asked, origin)
+                    : test_passed_leaf(d, leaf,
+                                       tree.triangles[static_cast<std::size_t>(found.leaf)], placed,
+                                       patch, *passed, asked, origin);
+            doubts[receiver] |= verdicts.maybes;
             open.clear(receiver, verdicts.hits);
         };
         for (std::uint32_t bundles = open.in_bundles(in_shaft); bundles != 0;
@@ -325,10 +378,12 @@ namespace {
 HWY_EXPORT(clear_certain);
 } // namespace
 
-void clear_certain(const TriangleTree& tree, const BeamPatch& patch, const ShaftLeaves& leaves,
-                   const GroupOrigins& origins, const ReceiverCones& cones,
-                   std::span<std::uint64_t> rays, std::span<std::uint64_t> doubts) {
-    HWY_DYNAMIC_DISPATCH(clear_certain)(tree, patch, leaves, origins, cones, rays, doubts);
+void clear_certain(const TriangleTree& tree, const PassedTriangles* passed, const BeamPatch& patch,
+                   const ShaftLeaves& leaves, const GroupOrigins& origins,
+                   const ReceiverCones& cones, std::span<std::uint64_t> rays,
+                   std::span<std::uint64_t> doubts) {
+    HWY_DYNAMIC_DISPATCH(clear_certain)
+    (tree, passed, patch, leaves, origins, cones, rays, doubts);
 }
 
 } // namespace relumine::prt

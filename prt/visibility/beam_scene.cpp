@@ -12,6 +12,7 @@
 #include "prt/visibility/bit_matrix.h"
 #include "prt/visibility/group_origins.h"
 #include "prt/visibility/parallel_rays.h"
+#include "prt/visibility/ray_scene.h"
 #include "prt/visibility/see_through.h"
 #include "prt/visibility/shaft.h"
 #include "prt/visibility/shaft_leaves.h"
@@ -100,9 +101,11 @@ void clear_by_direction(const TriangleTree& tree, const Asked& asked, const Grou
 }
 
 /// Clears the rays that a tree blocks for certain, and sets `in_doubt` to the remaining rays that
-/// it may block. False: the exact tracer is faster, and nothing was done.
-bool clear_by_tree(const TriangleTree& tree, std::size_t crowded_shaft, const Asked& asked,
-                   std::span<std::uint64_t> rays, std::span<std::uint64_t> in_doubt) {
+/// it may block. `passed` is as in clear_certain(). False: the exact tracer is faster, and nothing
+/// was done.
+bool clear_by_tree(const TriangleTree& tree, const PassedTriangles* passed,
+                   std::size_t crowded_shaft, const Asked& asked, std::span<std::uint64_t> rays,
+                   std::span<std::uint64_t> in_doubt) {
     if (tree.nodes.empty())
         return true;
     const PatchPlane& plane = asked.plane;
@@ -115,54 +118,81 @@ bool clear_by_tree(const TriangleTree& tree, std::size_t crowded_shaft, const As
     if (!find_leaves(tree, shaft, crowded_shaft, leaves)) {
         if (std::max(plane.s1 - plane.s0, plane.t1 - plane.t0) > WidestCrowdedPatch)
             return false;
+        RayWords before{};
+        std::copy(rays.begin(), rays.end(), before.begin());
         clear_by_direction(tree, asked, origins, rays, in_doubt);
+        if (passed != nullptr) // it only knows which rays meet a triangle
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                in_doubt[i] |= before[i] & ~rays[i];
+                rays[i] = before[i];
+            }
         return true;
     }
     if (!leaves.found.empty())
-        clear_certain(tree, {asked.patch, plane, shaft}, leaves, origins, cones, rays, in_doubt);
+        clear_certain(tree, passed, {asked.patch, plane, shaft}, leaves, origins, cones, rays,
+                      in_doubt);
     return true;
 }
 
+/// Triangles of a mesh, and their numbers there.
+struct ChosenTriangles {
+    mesh::TriangleMesh mesh;
+    std::vector<std::uint32_t> numbers;
+};
+
 /// Returns the triangles of a mesh that stop all rays, or those that stop some of them.
-mesh::TriangleMesh chosen_triangles(const mesh::TriangleMesh& mesh, const SeeThrough& see_through,
-                                    RayOf of, SeeThrough::All all) {
-    mesh::TriangleMesh chosen;
-    chosen.positions = mesh.positions;
+ChosenTriangles chosen_triangles(const mesh::TriangleMesh& mesh, const SeeThrough& see_through,
+                                 RayOf of, SeeThrough::All all) {
+    ChosenTriangles chosen;
+    chosen.mesh.positions = mesh.positions;
     for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i)
-        if (see_through.all_at(i, of) == all)
-            chosen.triangles.push_back(mesh.triangles[i]);
+        if (see_through.all_at(i, of) == all) {
+            chosen.mesh.triangles.push_back(mesh.triangles[i]);
+            chosen.numbers.push_back(i);
+        }
     return chosen;
 }
 
 } // namespace
 
 struct BeamScene::Trees {
-    Trees(const mesh::TriangleMesh& mesh, const SeeThrough& see_through, RayOf of) {
+    Trees(const mesh::TriangleMesh& mesh, std::shared_ptr<const SeeThrough> passed, RayOf whose)
+        : see_through(std::move(passed)), of(whose) {
         if (!mesh::lets_light_pass(mesh)) {
             opaque = triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh));
             return;
         }
         const auto chosen = [&](SeeThrough::All all) {
-            return chosen_triangles(mesh, see_through, of, all);
+            return chosen_triangles(mesh, *see_through, of, all);
         };
-        const mesh::TriangleMesh stopping = chosen(SeeThrough::All::Stop);
-        const mesh::TriangleMesh thin = chosen(SeeThrough::All::Differ);
+        const mesh::TriangleMesh stopping = chosen(SeeThrough::All::Stop).mesh;
         opaque = triangle_tree(stopping.positions, mesh::with_flat_regions_merged(stopping));
+        const auto [thin, numbers] = chosen(SeeThrough::All::Differ);
         some_pass = triangle_tree(thin.positions, thin.triangles);
+        for (std::size_t leaf = 0; leaf < some_pass.leaves.size(); ++leaf)
+            for (std::size_t lane = 0; lane < some_pass.leaves[leaf].size; ++lane) {
+                std::uint32_t& number = some_pass.triangles[leaf][lane];
+                number = numbers[number];
+            }
     }
+    std::shared_ptr<const SeeThrough> see_through;
+    RayOf of;
     /// Of triangles that stop all rays, and of those that stop some of them.
     TriangleTree opaque, some_pass;
 };
 
-BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact,
+BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const RayScene& exact,
                      std::size_t crowded_shaft)
-    : exact_(&exact), crowded_shaft_(std::min(crowded_shaft, CrowdedShaft)) {
-    const SeeThrough see_through = mesh::lets_light_pass(mesh) ? SeeThrough(mesh) : SeeThrough();
-    trees_ = std::make_unique<const Trees>(mesh, see_through, RayOf::Light);
+    : BeamScene(mesh, exact, exact.see_through(), crowded_shaft) {}
+
+BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact,
+                     std::shared_ptr<const SeeThrough> see_through, std::size_t crowded_shaft)
+    : trees_(std::make_unique<const Trees>(mesh, see_through, RayOf::Light)), exact_(&exact),
+      crowded_shaft_(std::min(crowded_shaft, CrowdedShaft)) {
     if (const Blockers* settled = exact.settled())
-        settled_.reset(
-            new BeamScene(std::make_unique<const Trees>(mesh, see_through, RayOf::SettledLight),
-                          *settled, crowded_shaft_));
+        settled_.reset(new BeamScene(
+            std::make_unique<const Trees>(mesh, std::move(see_through), RayOf::SettledLight),
+            *settled, crowded_shaft_));
 }
 
 BeamScene::BeamScene(std::unique_ptr<const Trees> trees, const Blockers& exact,
@@ -185,23 +215,22 @@ void BeamScene::clear_blocked(const ReceiverGroup& group, const DirectionPatch& 
     const PatchPlane plane = patch_plane(patch);
     const Asked asked{group, patch, plane};
     RayWords doubts{};
-    if (!clear_by_tree(trees_->opaque, crowded_shaft_, asked, rays,
+    if (!clear_by_tree(trees_->opaque, nullptr, crowded_shaft_, asked, rays,
                        std::span(doubts).first(rays.size()))) {
         exact_->clear_blocked(group, patch, rays);
         return;
     }
     if (!trees_->some_pass.nodes.empty()) {
-        // Whatever such a triangle may block is in doubt.
-        RayWords clear{}, more{};
-        const std::span<std::uint64_t> rest = std::span(clear).first(rays.size());
-        std::copy(rays.begin(), rays.end(), rest.begin());
-        const bool is_tested = clear_by_tree(trees_->some_pass, crowded_shaft_, asked, rest,
-                                             std::span(more).first(rays.size()));
+        const PassedTriangles passed{*trees_->see_through, trees_->of};
+        RayWords more{};
+        if (!clear_by_tree(trees_->some_pass, &passed, crowded_shaft_, asked, rays,
+                           std::span(more).first(rays.size())))
+            std::copy(rays.begin(), rays.end(), more.begin());
         for (std::size_t i = 0; i < rays.size(); ++i)
-            doubts[i] |= is_tested ? (rays[i] & ~rest[i]) | more[i] : rays[i];
+            doubts[i] |= more[i];
     }
     for (std::size_t i = 0; i < rays.size(); ++i)
-        ask(*exact_, group.origins[i], patch, doubts[i], rays[i]);
+        ask(*exact_, group.origins[i], patch, doubts[i] & rays[i], rays[i]);
 }
 
 } // namespace relumine::prt

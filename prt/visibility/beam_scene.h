@@ -11,6 +11,9 @@
 
 namespace relumine::prt {
 
+class RayScene;
+class SeeThrough;
+
 /// Answers for a group of receivers and a patch of directions together, with the answers that
 /// another tracer gives ray by ray.
 ///
@@ -31,8 +34,8 @@ namespace relumine::prt {
 /// Why nothing changes: rounding errors have bounds, and a test here only decides where its result
 /// is beyond its bound. A ray hits a triangle for certain, misses all of them for certain, or is in
 /// doubt, because it passes an edge within some 1e-6 of its length. `exact` is asked for rays in
-/// doubt and for wide patches. Triangles that let some rays pass have a tree of their own: every
-/// ray that may hit one of them is in doubt.
+/// doubt and for wide patches. Triangles that let some rays pass have a tree of their own: a ray
+/// that hits one of them for certain passes it or not as it does there.
 ///
 /// A shaft of a fixed angle holds more triangles on a finer mesh, while a group of receivers
 /// shrinks there. So a crowded patch is traced direction by direction, all receivers of the group
@@ -48,7 +51,11 @@ public:
     /// not. `crowded_shaft`, at most the default, changes no answer.
     ///
     /// Memory:  about 250 bytes per triangle.
+    BeamScene(const mesh::TriangleMesh& mesh, const RayScene& exact,
+              std::size_t crowded_shaft = CrowdedShaft);
+    /// The same with any tracer of the mesh, of which `see_through` says what its rays pass.
     BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact,
+              std::shared_ptr<const SeeThrough> see_through,
               std::size_t crowded_shaft = CrowdedShaft);
     ~BeamScene() override;
     BeamScene(BeamScene&&) noexcept;

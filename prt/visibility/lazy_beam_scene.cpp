@@ -1,6 +1,7 @@
 #include "prt/visibility/lazy_beam_scene.h"
 
 #include "files/parallel.h"
+#include "prt/visibility/ray_scene.h"
 
 namespace relumine::prt {
 
@@ -14,7 +15,7 @@ constexpr std::size_t MostTriangles = 4'000'000;
 
 } // namespace
 
-LazyBeamScene::LazyBeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact)
+LazyBeamScene::LazyBeamScene(const mesh::TriangleMesh& mesh, const RayScene& exact)
     : mesh_(mesh), exact_(exact) {}
 
 LazyBeamScene::~LazyBeamScene() = default;

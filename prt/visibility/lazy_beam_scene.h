@@ -21,7 +21,7 @@ namespace relumine::prt {
 class LazyBeamScene final : public Blockers {
 public:
     /// Both must outlive this object; `exact` traces the triangles of the mesh.
-    LazyBeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact);
+    LazyBeamScene(const mesh::TriangleMesh& mesh, const RayScene& exact);
     ~LazyBeamScene() override;
 
     [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
@@ -35,7 +35,7 @@ public:
 
 private:
     const mesh::TriangleMesh& mesh_;
-    const Blockers& exact_;
+    const RayScene& exact_;
     mutable std::mutex mutex_;
     mutable std::uint64_t num_rays_ = 0;
     mutable std::unique_ptr<const BeamScene> beams_;

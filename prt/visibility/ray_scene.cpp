@@ -68,7 +68,7 @@ const Element* fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat f
 struct Buffers {
     const glm::vec3* positions = nullptr;
     const mesh::Triangle* triangles = nullptr;
-    SeeThrough see_through;
+    std::shared_ptr<const SeeThrough> see_through;
 };
 
 /// The nearest hit of a ray so far.
@@ -126,19 +126,18 @@ struct Candidate {
 
     /// Whether the ray goes on behind the triangle.
     [[nodiscard]] bool passes(RayOf of) const {
-        if (!buffers.see_through.may_pass(triangle, of))
-            return false;
         if (!is_eye(of))
-            if (const auto all = buffers.see_through.all_at(triangle, of);
-                all != SeeThrough::All::Differ)
-                return all == SeeThrough::All::Pass;
+            return buffers.see_through->light_passes(triangle, corners, origin,
+                                                     glm::vec3(direction), of);
+        if (!buffers.see_through->may_pass(triangle, of))
+            return false;
         const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-        return buffers.see_through.passes(
+        return buffers.see_through->passes(
             {.triangle = triangle,
              .barycentric = glm::vec2(meeting_of(corners, direction).barycentric),
              .origin = origin,
              .direction = glm::vec3(direction),
-             .is_back = is_eye(of) && glm::dot(normal, direction) > 0.0},
+             .is_back = glm::dot(normal, direction) > 0.0},
             of);
     }
 
@@ -299,9 +298,9 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
     std::vector<mesh::Triangle> triangles = mesh.triangles;
     const auto nowhere = static_cast<std::uint32_t>(positions.size());
     positions.emplace_back(std::numeric_limits<float>::quiet_NaN());
-    SeeThrough see_through(mesh);
+    auto see_through = std::make_shared<const SeeThrough>(mesh);
     for (std::uint32_t i = 0; i < triangles.size(); ++i)
-        if (has_no_area(mesh, triangles[i]) || see_through.is_cut_out(i))
+        if (has_no_area(mesh, triangles[i]) || see_through->is_cut_out(i))
             triangles[i] = {nowhere, nowhere, nowhere};
     impl_->buffers = {
         .positions = fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions),
@@ -315,7 +314,7 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
     rtcReleaseGeometry(geometry);
     rtcCommitScene(impl_->scene.get());
     throw_on_error(device, "build the ray accelerator");
-    if (impl_->buffers.see_through.has_thin())
+    if (impl_->buffers.see_through->has_thin())
         impl_->settled = std::make_unique<const Settled>(*impl_);
 }
 
@@ -424,11 +423,15 @@ const Blockers* RayScene::settled() const {
 }
 
 bool RayScene::is_thin(std::uint32_t triangle) const {
-    return impl_->buffers.see_through.is_thin(triangle);
+    return impl_->buffers.see_through->is_thin(triangle);
+}
+
+const std::shared_ptr<const SeeThrough>& RayScene::see_through() const {
+    return impl_->buffers.see_through;
 }
 
 RayScene::Stops RayScene::stops(std::uint32_t triangle) const {
-    const SeeThrough& see_through = impl_->buffers.see_through;
+    const SeeThrough& see_through = *impl_->buffers.see_through;
     if (see_through.may_pass(triangle, RayOf::Light))
         return Stops::Somewhere;
     return see_through.is_one_sided(triangle) ? Stops::Front : Stops::BothSides;
@@ -456,7 +459,7 @@ void RayScene::layers(const glm::vec3& origin, const glm::vec3& direction,
         if (!impl_->trace(origin, direction, query))
             return;
         const Hit hit = hit_of(nearest);
-        layers.push_back({hit, impl_->buffers.see_through.veil(hit.triangle, hit.barycentric)});
+        layers.push_back({hit, impl_->buffers.see_through->veil(hit.triangle, hit.barycentric)});
         if (layers.back().veil.through == glm::vec3(0.0f))
             return;
         last = nearest;

@@ -92,6 +92,8 @@ public:
     [[nodiscard]] Stops stops(std::uint32_t triangle) const;
 
     [[nodiscard]] const Blockers* settled() const override;
+    /// What rays pass; never null.
+    [[nodiscard]] const std::shared_ptr<const SeeThrough>& see_through() const;
 
 private:
     struct Impl;

@@ -12,6 +12,7 @@
 #include "cubemap/split_mix64.h"
 #include "files/parallel.h"
 #include "mesh/tangents.h"
+#include "prt/visibility/half_line.h"
 
 namespace relumine::prt {
 
@@ -270,6 +271,18 @@ bool SeeThrough::passes(const Meeting& meeting, RayOf of) const {
     if (of == RayOf::SettledLight)
         return part >= 0.5f;
     return part > 0.0f && (part >= 1.0f || chance(meeting) < static_cast<double>(part));
+}
+
+bool SeeThrough::light_passes(std::uint32_t triangle, const std::array<glm::dvec3, 3>& corners,
+                              const glm::vec3& origin, const glm::vec3& direction, RayOf of) const {
+    if (!may_pass(triangle, of))
+        return false;
+    if (const All all = all_at(triangle, of); all != All::Differ)
+        return all == All::Pass;
+    Meeting meeting{.triangle = triangle, .origin = origin, .direction = direction};
+    if (even_[triangle] < 0.0f)
+        meeting.barycentric = glm::vec2(meeting_of(corners, glm::dvec3(direction)).barycentric);
+    return passes(meeting, of);
 }
 
 } // namespace relumine::prt

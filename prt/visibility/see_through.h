@@ -81,6 +81,11 @@ public:
     };
     /// Whether the ray goes on behind it. The same ray and triangle have the same answer.
     [[nodiscard]] bool passes(const Meeting& meeting, RayOf of) const;
+    /// The same for a ray of light, given the triangle's corners as seen from the ray's start.
+    [[nodiscard]] bool light_passes(std::uint32_t triangle,
+                                    const std::array<glm::dvec3, 3>& corners,
+                                    const glm::vec3& origin, const glm::vec3& direction,
+                                    RayOf of) const;
 
     /// Returns the veil that a triangle's point is.
     [[nodiscard]] mesh::Veil veil(std::uint32_t triangle, const glm::vec2& barycentric) const;

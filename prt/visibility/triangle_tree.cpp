@@ -164,9 +164,11 @@ public:
 private:
     std::int32_t leaf(const Part& part) {
         TriangleTree::Leaf& leaf = tree_.leaves.emplace_back();
+        auto& numbers = tree_.triangles.emplace_back();
         for (const Item& item : part.items) {
             const mesh::Triangle& triangle = triangles_[item.triangle];
             const std::size_t lane = leaf.size++;
+            numbers[lane] = item.triangle;
             leaf.longest[lane] = 0.0f;
             for (std::size_t corner = 0; corner < 3; ++corner) {
                 const glm::vec3& place = positions_[triangle[corner]];

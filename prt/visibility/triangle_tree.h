@@ -38,6 +38,8 @@ struct TriangleTree {
     /// The root comes first; empty without triangles.
     std::vector<Node> nodes;
     std::vector<Leaf> leaves;
+    /// [leaves] numbers of their triangles among the given ones
+    std::vector<std::array<std::uint32_t, Width>> triangles;
     glm::vec3 centre{0.0f};
     /// Largest absolute coordinate of the boxes.
     float extent = 0.0f;

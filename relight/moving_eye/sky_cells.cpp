@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 #include <glm/geometric.hpp>
 
@@ -138,7 +137,7 @@ void SkyCells::set_level(std::uint32_t level) {
                 for (std::size_t i = 0; i < 4; ++i)
                     set(4 * group + i);
                 unsigned changed = 0;
-                if (std::memcmp(&sisters_[parent], &before_[parent], sizeof(SisterCells)) != 0)
+                if (sisters_[parent] != before_[parent])
                     for (unsigned i = 0; i < 4; ++i)
                         changed |= sisters_[parent].is_alike(i, before_[parent]) ? 0 : 1u << i;
                 changed_[parent] = static_cast<std::uint8_t>(changed);

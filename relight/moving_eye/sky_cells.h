@@ -44,6 +44,7 @@ struct alignas(64) SisterCells {
     void set_light(std::size_t i, const glm::vec3& light);
     /// Whether light i is that of another four, as cuts see it.
     [[nodiscard]] bool is_alike(std::size_t i, const SisterCells& other) const;
+    bool operator==(const SisterCells&) const = default;
     void set_size(std::size_t i, float size);
     void set_contrast(std::size_t i, float contrast);
 };
@@ -76,7 +77,7 @@ public:
     [[nodiscard]] std::uint64_t version() const { return version_; }
     /// Returns the number of a cell's first child; the others follow.
     [[nodiscard]] static std::uint32_t first_child(std::uint32_t cell) {
-        return cubemap::NumFaces + 4 * cell;
+        return static_cast<std::uint32_t>(cubemap::NumFaces) + 4 * cell;
     }
     /// Whether a cell has children.
     [[nodiscard]] bool is_split(std::uint32_t cell) const { return cell < sisters_.size(); }

@@ -106,6 +106,7 @@ public:
             order.resize(most_cells);
             std::sort(order.begin(), order.end());
             std::vector<SharpCell> strongest;
+            strongest.reserve(order.size());
             for (const std::size_t i : order)
                 strongest.push_back(sharp_[i]);
             sharp_ = std::move(strongest);

@@ -93,9 +93,10 @@ TEST_F(Info, MaterialsOfAMesh) {
     EXPECT_EQ(info["groups"], nlohmann::json{"lid"});
     EXPECT_EQ(info["missing"], nlohmann::json{"gone.png"});
     const Result told = succeed({"info", "parts.obj"});
+    constexpr const char* Heads =
+        "material  model               colour       metallic  roughness  specular        exponent";
     for (const char* part :
-         {"material  model               colour       metallic  roughness  specular        "
-          "exponent",
+         {Heads,
           "shiny     Blinn-Phong         0.5 0.5 0.5                       0.25 0.25 0.25  50",
           "metal     metallic-roughness  1 1 1        1         0.25", "group               lid",
           "not found           gone.png"})

@@ -46,8 +46,9 @@ std::uint32_t log_2(std::uint32_t value) {
 std::uint32_t read_below(ForwardBits& bits, std::uint32_t largest) {
     const std::uint32_t num_bits = log_2(largest) + 1;
     const std::uint32_t value = bits.read(num_bits);
-    const std::uint32_t lower_mask = (1u << (num_bits - 1)) - 1;
-    const std::uint32_t threshold = (1u << num_bits) - 1 - largest;
+    const std::uint32_t power = 1u << num_bits;
+    const std::uint32_t lower_mask = power / 2 - 1;
+    const std::uint32_t threshold = power - 1 - largest;
     if ((value & lower_mask) < threshold) {
         bits.step_back();
         return value & lower_mask;
