@@ -239,7 +239,7 @@ glm::vec3 shown(const glm::vec3& radiance, double exposure) {
     return 255.0f * color;
 }
 
-LitScene lit_by(std::shared_ptr<const Scene> scene, const Environment& environment,
+LitScene lit_by(const std::shared_ptr<const Scene>& scene, const Environment& environment,
                 const Settings& settings) {
     LitScene lit(scene);
     lit.light(Environment(environment));

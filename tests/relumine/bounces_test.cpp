@@ -16,7 +16,7 @@ using scenes::corner;
 
 constexpr Camera View45{.eye = {0.5f, 1.2f, 2.5f}, .target = {0.5f, 0.3f, 0.3f}, .fov_degrees = 30};
 
-PrecomputeOptions options(ReceiverChoice receivers) {
+PrecomputeOptions options(const ReceiverChoice& receivers) {
     PrecomputeOptions result{
         .tolerance = 0.03f, .receivers = receivers, .no_refine = true, .bounce_tolerance = 0.01f};
     if (std::holds_alternative<Pixels>(receivers))

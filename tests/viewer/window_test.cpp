@@ -455,10 +455,10 @@ TEST_F(WindowTest, RoughnessChangesHighlightsThatFollowTheEye) {
     EXPECT_NE(words("err.txt").find("expected a scene whose highlights follow the eye"),
               std::string::npos)
         << words("err.txt");
-    const prt::Surface shiny{.albedo = glm::vec3(0.1f),
-                             .specular = glm::vec3(0.6f),
-                             .highlight = prt::Highlight::GgxWhole,
-                             .roughness_or_exponent = 0.4f};
+    prt::Surface shiny{.albedo = glm::vec3(0.1f),
+                       .specular = glm::vec3(0.6f),
+                       .highlight = prt::Highlight::GgxWhole,
+                       .roughness_or_exponent = 0.4f};
     prt::save_scene(
         folder_ / "scene.prt",
         precompute(data_gen::sphere(4000),
