@@ -15,6 +15,8 @@ constexpr double Pi = std::numbers::pi;
 
 /// A node this wide, over its distance, counts as one point: what is left out is the square of it.
 constexpr double LargestWidth = 0.12;
+/// The same for one that the horizon cuts.
+constexpr double LargestCutWidth = 0.04;
 /// Radians; so even a node's fronts must be.
 constexpr double LargestTurn = 0.4;
 
@@ -89,6 +91,8 @@ void EmitterTree::summarise(Node& node) const {
     }
     node.center /= power;
     node.radius = glm::length(glm::max(high - node.center, node.center - low));
+    node.middle = 0.5 * (low + high);
+    node.half = 0.5 * (high - low);
     const double length = glm::length(node.axis);
     double cosine = -1.0;
     if (length > 0.0) {
@@ -98,28 +102,58 @@ void EmitterTree::summarise(Node& node) const {
             cosine = std::min(cosine, glm::dot(node.axis, glows_[i].front));
     }
     node.half_angle = std::acos(std::clamp(cosine, -1.0, 1.0));
+    constexpr double Rounding = 1e-6; // of corners in float
+    node.is_flat = cosine > 1.0 - Rounding * Rounding;
+    for (std::size_t i = node.begin; i < node.end && node.is_flat; ++i)
+        for (const glm::dvec3& corner : glows_[i].corners)
+            node.is_flat = node.is_flat && std::abs(glm::dot(node.axis, corner - node.center)) <
+                                               Rounding * node.radius;
 }
 
-/// Halves a node by the median along the longest side of its middles, and so on.
+EmitterTree::Fronts EmitterTree::fronts_seen(const Node& node, const glm::dvec3& way,
+                                             double distance) {
+    const double cosine = -glm::dot(node.axis, way) / distance;
+    if (node.is_flat)
+        return cosine > 0.0 ? Fronts::All : Fronts::None;
+    if (distance <= node.radius)
+        return Fronts::Some;
+    const double turn = std::acos(std::clamp(cosine, -1.0, 1.0));
+    const double spread = node.half_angle + std::asin(node.radius / distance);
+    if (turn - spread >= 0.5 * Pi)
+        return Fronts::None;
+    return turn + spread < 0.5 * Pi ? Fronts::All : Fronts::Some;
+}
+
+/// Halves a node by the median along the longest side of its middles, or of its fronts where they
+/// differ more, and so on.
 void EmitterTree::split(std::size_t index) {
     summarise(nodes_[index]);
     const std::size_t begin = nodes_[index].begin, end = nodes_[index].end;
     if (end - begin == 1)
         return;
     glm::dvec3 low = middle_of(glows_[begin]), high = low;
+    glm::dvec3 least_front = glows_[begin].front, largest_front = least_front;
     for (std::size_t i = begin; i < end; ++i) {
         low = glm::min(low, middle_of(glows_[i]));
         high = glm::max(high, middle_of(glows_[i]));
+        least_front = glm::min(least_front, glows_[i].front);
+        largest_front = glm::max(largest_front, glows_[i].front);
     }
-    const glm::dvec3 size = high - low;
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const auto longest = [](const glm::dvec3& size) {
+        return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    };
+    const glm::dvec3 size = high - low, turn = nodes_[index].radius * (largest_front - least_front);
+    const bool by_front = turn[longest(turn)] > size[longest(size)];
+    const int axis = longest(by_front ? turn : size);
+    const auto key = [&](const Glow& glow) {
+        return by_front ? glow.front[axis] : middle_of(glow)[axis];
+    };
     const auto at = [&](std::size_t i) {
         return glows_.begin() + static_cast<std::ptrdiff_t>(i);
     };
     const std::size_t middle = begin + (end - begin) / 2;
-    std::nth_element(at(begin), at(middle), at(end), [&](const Glow& a, const Glow& b) {
-        return middle_of(a)[axis] < middle_of(b)[axis];
-    });
+    std::nth_element(at(begin), at(middle), at(end),
+                     [&](const Glow& a, const Glow& b) { return key(a) < key(b); });
     const std::size_t child = nodes_.size();
     nodes_[index].first_child = child;
     nodes_.push_back({.begin = begin, .end = middle});
@@ -138,25 +172,26 @@ void EmitterTree::look(const glm::dvec3& position, const glm::dvec3& normal,
     std::size_t size = 1;
     while (size > 0) {
         const Node& node = nodes_[stack[--size]];
-        const glm::dvec3 way = node.center - position;
-        const double distance = glm::length(way), height = glm::dot(normal, way);
-        if (height + node.radius <= 0.0)
+        const double middle = glm::dot(normal, node.middle - position);
+        const double reach = glm::dot(glm::abs(normal), node.half);
+        if (middle + reach <= 0.0)
             continue;
         if (node.first_child == 0) {
             see_leaf(node, position, normal, seen);
             continue;
         }
-        bool is_one = false;
-        if (distance > node.radius) {
-            const double turn =
-                std::acos(std::clamp(-glm::dot(node.axis, way) / distance, -1.0, 1.0));
-            const double spread = node.half_angle + std::asin(node.radius / distance);
-            if (turn - spread >= 0.5 * Pi)
-                continue;
-            is_one = turn + spread < 0.5 * Pi && height > node.radius &&
-                     node.radius < LargestWidth * distance && node.half_angle < LargestTurn;
-        }
-        if (is_one) {
+        const glm::dvec3 way = node.center - position;
+        const double distance = glm::length(way);
+        const Fronts fronts = fronts_seen(node, way, distance);
+        if (fronts == Fronts::None)
+            continue;
+        const double largest = middle >= reach ? LargestWidth : LargestCutWidth;
+        if (fronts == Fronts::All && node.radius < largest * distance &&
+            node.half_angle < LargestTurn) {
+            // What the horizon cuts counts as if it were spread evenly over its heights.
+            const double above = middle + reach;
+            const double height =
+                middle >= reach ? glm::dot(normal, way) : above * above / (4.0 * reach);
             const double squared = distance * distance;
             seen.push_back({.begin = node.begin,
                             .end = node.end,

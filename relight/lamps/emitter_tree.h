@@ -66,6 +66,10 @@ private:
         std::size_t first_child = 0;
         glm::dvec3 center{0.0};
         double radius = 0.0;
+        /// Of a box around them
+        glm::dvec3 middle{0.0}, half{0.0};
+        /// All lie in one plane and look to one side of it.
+        bool is_flat = false;
         /// Axis and half angle of the cone of fronts.
         glm::dvec3 axis{0.0};
         double half_angle = 0.0;
@@ -73,6 +77,10 @@ private:
         glm::dmat3 fluxes{0.0};
     };
     void summarise(Node& node) const;
+    /// Whether a receiver sees all fronts of a node, none, or perhaps some.
+    enum class Fronts { All, None, Some };
+    [[nodiscard]] static Fronts fronts_seen(const Node& node, const glm::dvec3& way,
+                                            double distance);
     void split(std::size_t node);
     void see_leaf(const Node& node, const glm::dvec3& position, const glm::dvec3& normal,
                   std::vector<Seen>& seen) const;

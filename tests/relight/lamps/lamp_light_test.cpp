@@ -109,6 +109,46 @@ TEST(LampLight, OfASphereIsThatOfItsSolidAngle) {
             << d;
 }
 
+// A slab of 768 parts, whose fronts and sides lie beside each other, is some points from afar, also
+// where the horizon cuts it.
+TEST(EmitterTree, FarPartsCountTogether) {
+    const mesh::TriangleMesh slab = scenes::box({-0.5f, -0.1f, -0.02f}, {0.5f, 0.1f, 0.02f});
+    std::vector<prt::Emitter> emitters;
+    for (std::uint32_t triangle = 0; triangle < slab.num_triangles(); ++triangle)
+        for (std::uint32_t part = 64; part < 128; ++part)
+            emitters.push_back(
+                {.triangle = triangle, .part = part, .radiance = glm::vec3(1.0f, 2.0f, 3.0f)});
+    const EmitterTree tree(slab, emitters, false);
+    std::mt19937 random(5);
+    std::vector<EmitterTree::Seen> seen;
+    for (int round = 0; round < 500; ++round) {
+        const glm::dvec3 to_slab(scenes::random_direction(random));
+        const double distance = round % 2 == 0 ? 4.0 : 20.0;
+        const glm::dvec3 place = -distance * to_slab;
+        glm::dvec3 normal(scenes::random_direction(random));
+        if (round % 3 == 0) // its middle lies on the horizon
+            normal = glm::normalize(normal - glm::dot(normal, to_slab) * to_slab);
+        double expected = 0.0, facing = 0.0;
+        for (const prt::Emitter& emitter : emitters) {
+            std::array<glm::dvec3, 3> corners = prt::corners_of(slab, emitter);
+            if (glm::dot(prt::front_of(slab, emitter.triangle), place - corners[0]) <= 0.0)
+                continue;
+            for (glm::dvec3& corner : corners)
+                corner -= place;
+            expected += triangle_light(corners, normal);
+            facing += triangle_light(corners, to_slab);
+        }
+        tree.look(place, normal, seen);
+        double light = 0.0;
+        for (const EmitterTree::Seen& part : seen) {
+            light += part.light.r;
+            EXPECT_NEAR(part.light.b, 3.0 * part.light.r, 1e-12);
+        }
+        EXPECT_NEAR(light, expected, 0.005 * facing) << round;
+        EXPECT_LT(seen.size(), 100u) << round;
+    }
+}
+
 // Half of a lamp is behind an edge, as seen from the middle.
 TEST(LampLight, AHalfShadowIsHalf) {
     mesh::TriangleMesh lamp = ceiling(1.0f, 2.0f);
