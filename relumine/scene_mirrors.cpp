@@ -8,7 +8,6 @@
 
 #include "files/parallel.h"
 #include "prt/glossy/brdf.h"
-#include "prt/glossy/ggx_energy.h"
 #include "prt/glossy/sheen_lobe.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/mesh_point.h"
@@ -74,20 +73,13 @@ private:
     std::vector<glm::vec3> light_, sent_, emission_;
 };
 
-/// Returns which part of the rays that a mirror of metal gets is enough for a surface: the noise of
-/// what rays find counts as much as the surface sends of it, and a narrow lobe has less.
-float part_of_rays(const prt::Surface& surface, const prt::EyeCosines& n_v) {
+/// Returns which part of the rays is enough for a surface: those of a narrow lobe go one way.
+float part_of_rays(const prt::Surface& surface) {
+    constexpr float WideFrom = 0.1f;
     if (!prt::facts_of(surface.highlight).is_roughness || prt::has_coat(surface) ||
-        prt::has_sheen(surface) || n_v.base <= 0.0f)
+        prt::has_sheen(surface))
         return 1.0f;
-    constexpr float WholeFrom = 0.25f, WideFrom = 0.3f;
-    const float roughness = surface.roughness_or_exponent;
-    const prt::GgxAlbedo albedo = prt::ggx_albedo(roughness, n_v.base);
-    const glm::vec3 sent = prt::reflect(
-        surface, {.specular = glm::vec3(albedo.all), .specular_grazing = glm::vec3(albedo.grazing)},
-        n_v);
-    return std::min(std::max({sent.r, sent.g, sent.b}) / WholeFrom, 1.0f) *
-           std::min(roughness / WideFrom, 1.0f);
+    return std::min(surface.roughness_or_exponent / WideFrom, 1.0f);
 }
 
 } // namespace
@@ -99,12 +91,12 @@ SceneMirrors::SceneMirrors(const Scene& scene, const SceneRays& rays, std::uint3
     rays_per_pixel_ = num_rays;
 }
 
-std::uint32_t SceneMirrors::rays_of(std::size_t receiver, const prt::EyeCosines& n_v) const {
+std::uint32_t SceneMirrors::rays_of(std::size_t receiver) const {
     constexpr std::uint32_t Least = 4;
     if (rays_per_pixel_ == 0)
         return 0;
-    float rays = static_cast<float>(rays_per_pixel_) *
-                 part_of_rays(scene_->receivers.surfaces[receiver], n_v);
+    float rays =
+        static_cast<float>(rays_per_pixel_) * part_of_rays(scene_->receivers.surfaces[receiver]);
     if (const auto* pixels = std::get_if<prt::PixelLayout>(&scene_->layout))
         rays *= static_cast<float>(pixels->num_shown(receiver)) /
                 static_cast<float>(pixels->samples_per_pixel());
@@ -138,7 +130,7 @@ void SceneMirrors::add(const relight::Relighter& light, const Surfaces& surfaces
                 glm::fract(number * glm::dvec2(0.75487766624669276, 0.56984029099805327)))};
         const prt::EyeCosines n_v(surface, normal, to_eye);
         const prt::Lobes<glm::vec3> lobes = relight::lobes_of(
-            surface, reflections.light(surface, point, rays_of(receiver, n_v), seen), n_v);
+            surface, reflections.light(surface, point, rays_of(receiver), seen), n_v);
         radiance[i] += prt::reflect(surface, lobes, n_v);
     });
 }

@@ -41,13 +41,13 @@ public:
     /// Adds what the highlights mirror to the radiance of some receivers.
     ///
     /// Shape:   radiance is [receivers.size()].
-    /// Cost:    num_rays rays a pixel, fewer where its highlight is weak or narrow.
+    /// Cost:    num_rays rays a pixel, fewer where its highlight is narrow.
     void add(const relight::Relighter& light, const Surfaces& surfaces,
              std::span<const std::uint32_t> receivers, std::span<glm::vec3> radiance) const;
 
 private:
     /// Returns how many rays of a pixel a receiver gets.
-    [[nodiscard]] std::uint32_t rays_of(std::size_t receiver, const prt::EyeCosines& n_v) const;
+    [[nodiscard]] std::uint32_t rays_of(std::size_t receiver) const;
 
     const Scene* scene_;
     const SceneRays* rays_;

@@ -44,9 +44,11 @@ struct TexelRange {
     [[nodiscard]] bool is_even() const { return least == most; }
 };
 
-/// Returns nothing where the triangle covers too many texels for the search to be worth it.
+/// Returns nothing where the triangle covers too many texels for the search to be worth it, and
+/// what was found so far once is_enough(range) says so.
+template<typename IsEnough>
 std::optional<TexelRange> texels_under(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
-                                       const mesh::TextureSlot& slot) {
+                                       const mesh::TextureSlot& slot, const IsEnough& is_enough) {
     constexpr float MostTexels = 4096.0f;
     const mesh::Texture& texture = mesh.textures[slot.texture];
     const glm::vec2 size(texture.width, texture.height);
@@ -66,7 +68,7 @@ std::optional<TexelRange> texels_under(const mesh::TriangleMesh& mesh, std::uint
     if (!(count.x * count.y <= MostTexels))
         return std::nullopt;
     TexelRange range;
-    for (int row_index = 0; row_index < static_cast<int>(count.y); ++row_index)
+    for (int row_index = 0; row_index < static_cast<int>(count.y); ++row_index) {
         for (int column_index = 0; column_index < static_cast<int>(count.x); ++column_index) {
             const float x = first.x + static_cast<float>(column_index);
             const float y = first.y + static_cast<float>(row_index);
@@ -81,6 +83,9 @@ std::optional<TexelRange> texels_under(const mesh::TriangleMesh& mesh, std::uint
             add(column.first, row.first);
             add(column.second, row.second);
         }
+        if (is_enough(range))
+            break;
+    }
     return range;
 }
 
@@ -89,13 +94,22 @@ std::optional<float> even_part(const mesh::TriangleMesh& mesh, std::uint32_t tri
     const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
     const bool is_mask = material.alpha_mode == mesh::AlphaMode::Mask;
     if (is_mask && material.alpha_texture) {
-        const auto alpha = texels_under(mesh, triangle, *material.alpha_texture);
+        constexpr float Rounding = 1e-5f; // of the bilinear mean
+        const auto all_cut = [&](const TexelRange& alpha) {
+            return material.alpha * alpha.most.r < material.alpha_cutoff - Rounding;
+        };
+        const auto some_cut = [&](const TexelRange& alpha) {
+            return material.alpha * alpha.least.r < material.alpha_cutoff + Rounding;
+        };
+        const auto alpha =
+            texels_under(mesh, triangle, *material.alpha_texture, [&](const TexelRange& range) {
+                return some_cut(range) && !all_cut(range);
+            });
         if (!alpha)
             return std::nullopt;
-        constexpr float Rounding = 1e-5f; // of the bilinear mean
-        if (material.alpha * alpha->most.r < material.alpha_cutoff - Rounding)
+        if (all_cut(*alpha))
             return 1.0f;
-        if (material.alpha * alpha->least.r < material.alpha_cutoff + Rounding)
+        if (some_cut(*alpha))
             return std::nullopt;
         if (material.transmission == 0.0f)
             return 0.0f;
@@ -103,7 +117,8 @@ std::optional<float> even_part(const mesh::TriangleMesh& mesh, std::uint32_t tri
     const auto is_even = [&](const std::optional<mesh::TextureSlot>& slot) {
         if (!slot)
             return true;
-        const auto range = texels_under(mesh, triangle, *slot);
+        const auto range = texels_under(mesh, triangle, *slot,
+                                        [](const TexelRange& found) { return !found.is_even(); });
         return range && range->is_even();
     };
     if (!is_mask && material.alpha_mode != mesh::AlphaMode::Opaque &&
