@@ -40,6 +40,10 @@ struct UpdateReport {
     double seconds_trace = 0.0;
     /// Summing the clusters into radiance [JN, Eq. 8].
     double seconds_relight = 0.0;
+    /// Of a whole scene: finding the light of its lamps, and what highlights of receivers mirror by
+    /// rays (LitScene).
+    double seconds_lamps = 0.0;
+    double seconds_highlights = 0.0;
     /// All clusters were summed, because that was less work.
     bool resummed = false;
     /// Of an edited scene: rectangles without overlaps that hold every texel that changed; good

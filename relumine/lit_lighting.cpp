@@ -1,6 +1,8 @@
-// What LitScene tells of its light.
+// How LitScene sums the parts of its light, and what it tells of it.
+#include <chrono>
 #include <memory>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 #include "prt/clusters/dealt_tiles.h"
@@ -12,6 +14,116 @@
 #include "relumine/lit_scene.h"
 
 namespace relumine {
+
+namespace {
+
+void add(std::span<const glm::vec3> values, std::span<glm::vec3> sum) {
+    std::transform(sum.begin(), sum.end(), values.begin(), sum.begin(), std::plus<>());
+}
+
+std::vector<glm::vec3> copy_of(std::span<const glm::vec3> values) {
+    return {values.begin(), values.end()};
+}
+
+} // namespace
+
+/// Values of this process's receivers become those of all, in every process.
+std::vector<glm::vec3> LitScene::of_all(std::span<const glm::vec3> own) const {
+    if (!team_->has_others())
+        return copy_of(own);
+    const std::vector<std::uint32_t>& order = scene_->transfer.order;
+    const std::vector<std::uint32_t> places = prt::places_of(team_->part(), order.size());
+    std::vector<glm::vec3> by_place(order.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+        by_place[places[i]] = own[i];
+    prt::share_by_place(*team_, std::span(by_place));
+    std::vector<glm::vec3> result(order.size());
+    for (std::size_t place = 0; place < order.size(); ++place)
+        result[order[place]] = by_place[place];
+    return result;
+}
+
+BounceReport LitScene::find_bounces(bool is_step) {
+    std::span<const glm::vec3> direct = relighter_->diffuse_radiance();
+    std::vector<glm::vec3> sum;
+    if (!added_.diffuse.empty() || team_->has_others()) {
+        sum = copy_of(direct);
+        if (!added_.diffuse.empty())
+            add(added_.diffuse, sum);
+        if (team_->has_others())
+            sum = of_all(sum);
+        direct = sum;
+    }
+    return is_step ? bounces_.step(direct) : bounces_.find(direct);
+}
+
+/// Adds values of all receivers, or none, to those of this process's.
+void LitScene::add_of_all(std::span<const glm::vec3> of_all, std::span<glm::vec3> own) const {
+    if (of_all.empty())
+        return;
+    if (!part_)
+        return add(of_all, own);
+    for (std::size_t i = 0; i < own.size(); ++i)
+        own[i] += of_all[part_->receivers[i]];
+}
+
+/// Adds what surfaces send, and what lamps give, to values of this process's receivers.
+void LitScene::add_surfaces(std::span<glm::vec3> own) const {
+    for (const auto& of_all : {bounces_.bounced(), lamps_.direct(), lamps_.bounced()})
+        add_of_all(of_all, own);
+}
+
+/// Sums the parts of the light.
+LitScene::FinishTimes LitScene::finish() {
+    using Clock = std::chrono::steady_clock;
+    const auto seconds_since = [](Clock::time_point start) {
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    };
+    FinishTimes times;
+    const auto start = Clock::now();
+    lamps_.find();
+    times.seconds_lamps = seconds_since(start);
+    const bool has_mirrors = relighter_ && is_lit_ && mirrors_.is_needed();
+    if (relighter_ && bounces_.bounced().empty() && added_.radiance.empty() &&
+        lamps_.direct().empty() && !has_mirrors) {
+        total_.clear();
+        return times;
+    }
+    if (!relighter_) {
+        total_ = added_.radiance;
+        add_surfaces(total_);
+        return times;
+    }
+    total_.assign(relighter_->radiance().begin(), relighter_->radiance().end());
+    add_surfaces(total_);
+    if (!added_.radiance.empty())
+        add(added_.radiance, total_);
+    if (has_mirrors) {
+        const auto start_mirrors = Clock::now();
+        add_mirrored();
+        times.seconds_highlights = seconds_since(start_mirrors);
+    }
+    return times;
+}
+
+/// Adds the highlights that rays find.
+void LitScene::add_mirrored() {
+    SceneMirrors::Surfaces surfaces{.emission = lamps_.gains()};
+    std::vector<glm::vec3> whole;
+    if (mirrors_.shows_surfaces()) {
+        whole = of_all(total_);
+        surfaces.radiance = whole;
+        if (bounces_.is_set())
+            surfaces.albedo = bounces_.surfaces().albedo;
+    }
+    std::vector<std::uint32_t> receivers;
+    if (!part_) {
+        receivers.resize(total_.size());
+        std::iota(receivers.begin(), receivers.end(), 0u);
+    }
+    mirrors_.add(*relighter_, surfaces,
+                 part_ ? std::span<const std::uint32_t>(part_->receivers) : receivers, total_);
+}
 
 std::vector<glm::vec3> LitScene::harmonics() const {
     if (!is_lit_ || harmonics_ == 0)
@@ -120,6 +232,13 @@ Lighting LitScene::lighting(bool is_drawn) const {
     else if (state_.shows_base())
         result.sharp =
             relight::edited_backdrop(state_.base->backdrop(), *state_.base->map(), result.behind());
+    return result;
+}
+
+std::vector<glm::vec3> bounced(const LitScene& lit) {
+    std::vector<glm::vec3> result = copy_of(lit.bounces().bounced());
+    if (!result.empty() && !lit.lamps().bounced().empty())
+        add(lit.lamps().bounced(), result);
     return result;
 }
 

@@ -3,22 +3,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
-#include <functional>
 #include <numbers>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "files/hash.h"
-#include "prt/clusters/dealt_tiles.h"
 #include "relight/harmonics/harmonics.h"
 #include "relight/receiver_light.h"
 #include "relight/sharp/light_packets.h"
 #include "relight/sharp/shadow_rays.h"
-#include "relumine/gathered.h"
 
 namespace relumine {
 
@@ -30,14 +25,6 @@ const cubemap::CubeMap* map_of(const Light& light) {
             std::get_if<std::shared_ptr<const cubemap::CubeMap>>(&light.environment))
         return shared->get();
     return std::get_if<cubemap::CubeMap>(&light.environment);
-}
-
-void add(std::span<const glm::vec3> values, std::span<glm::vec3> sum) {
-    std::transform(sum.begin(), sum.end(), values.begin(), sum.begin(), std::plus<>());
-}
-
-std::vector<glm::vec3> copy_of(std::span<const glm::vec3> values) {
-    return {values.begin(), values.end()};
 }
 
 void require_same_hash(prt::Team& team, const std::filesystem::path& path, std::uint64_t own) {
@@ -157,7 +144,9 @@ UpdateReport LitScene::light(Light light) {
     bounces_.forget();
     lamps_.forget_bounces();
     is_lit_ = true;
-    finish();
+    const FinishTimes times = finish();
+    report.seconds_lamps = times.seconds_lamps;
+    report.seconds_highlights = times.seconds_highlights;
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return report;
@@ -171,8 +160,11 @@ LitScene::Added LitScene::light_of_list(std::span<const lights::DistantLight> li
             relight::vector_irradiance(light).on({0.0f, 1.0f, 0.0f}) / std::numbers::pi;
     if (relighter_) {
         relighter_->set_lights(lights);
-        added.radiance = copy_of(relighter_->radiance());
-        added.diffuse = copy_of(relighter_->diffuse_radiance());
+        const auto copy = [](std::span<const glm::vec3> from, std::vector<glm::vec3>& to) {
+            to.assign(from.begin(), from.end());
+        };
+        copy(relighter_->radiance(), added.radiance);
+        copy(relighter_->diffuse_radiance(), added.diffuse);
         if (harmonics_ != 0)
             added.harmonics = relighter_->harmonics();
         added.lights = relight::picture_lights(*relighter_);
@@ -388,92 +380,6 @@ void LitScene::dim(std::vector<EmissionGain> gains) {
         finish();
 }
 
-/// Values of this process's receivers become those of all, in every process.
-std::vector<glm::vec3> LitScene::of_all(std::span<const glm::vec3> own) const {
-    if (!team_->has_others())
-        return copy_of(own);
-    const std::vector<std::uint32_t>& order = scene_->transfer.order;
-    const std::vector<std::uint32_t> places = prt::places_of(team_->part(), order.size());
-    std::vector<glm::vec3> by_place(order.size());
-    for (std::size_t i = 0; i < places.size(); ++i)
-        by_place[places[i]] = own[i];
-    prt::share_by_place(*team_, std::span(by_place));
-    std::vector<glm::vec3> result(order.size());
-    for (std::size_t place = 0; place < order.size(); ++place)
-        result[order[place]] = by_place[place];
-    return result;
-}
-
-BounceReport LitScene::find_bounces(bool is_step) {
-    std::span<const glm::vec3> direct = relighter_->diffuse_radiance();
-    std::vector<glm::vec3> sum;
-    if (!added_.diffuse.empty() || team_->has_others()) {
-        sum = copy_of(direct);
-        if (!added_.diffuse.empty())
-            add(added_.diffuse, sum);
-        if (team_->has_others())
-            sum = of_all(sum);
-        direct = sum;
-    }
-    return is_step ? bounces_.step(direct) : bounces_.find(direct);
-}
-
-/// Adds values of all receivers, or none, to those of this process's.
-void LitScene::add_of_all(std::span<const glm::vec3> of_all, std::span<glm::vec3> own) const {
-    if (of_all.empty())
-        return;
-    if (!part_)
-        return add(of_all, own);
-    for (std::size_t i = 0; i < own.size(); ++i)
-        own[i] += of_all[part_->receivers[i]];
-}
-
-/// Adds what surfaces send, and what lamps give, to values of this process's receivers.
-void LitScene::add_surfaces(std::span<glm::vec3> own) const {
-    for (const auto& of_all : {bounces_.bounced(), lamps_.direct(), lamps_.bounced()})
-        add_of_all(of_all, own);
-}
-
-/// Sums the parts of the light.
-void LitScene::finish() {
-    lamps_.find();
-    const bool has_mirrors = relighter_ && is_lit_ && mirrors_.is_needed();
-    if (relighter_ && bounces_.bounced().empty() && added_.radiance.empty() &&
-        lamps_.direct().empty() && !has_mirrors) {
-        total_.clear();
-        return;
-    }
-    if (!relighter_) {
-        total_ = added_.radiance;
-        return add_surfaces(total_);
-    }
-    total_.assign(relighter_->radiance().begin(), relighter_->radiance().end());
-    add_surfaces(total_);
-    if (!added_.radiance.empty())
-        add(added_.radiance, total_);
-    if (has_mirrors)
-        add_mirrored();
-}
-
-/// Adds the highlights that rays find.
-void LitScene::add_mirrored() {
-    SceneMirrors::Surfaces surfaces{.emission = lamps_.gains()};
-    std::vector<glm::vec3> whole;
-    if (mirrors_.shows_surfaces()) {
-        whole = of_all(total_);
-        surfaces.radiance = whole;
-        if (bounces_.is_set())
-            surfaces.albedo = bounces_.surfaces().albedo;
-    }
-    std::vector<std::uint32_t> receivers;
-    if (!part_) {
-        receivers.resize(total_.size());
-        std::iota(receivers.begin(), receivers.end(), 0u);
-    }
-    mirrors_.add(*relighter_, surfaces,
-                 part_ ? std::span<const std::uint32_t>(part_->receivers) : receivers, total_);
-}
-
 void require_same(prt::Team& team, const std::filesystem::path& path,
                   const cubemap::CubeMap* environment) {
     if (team.has_others())
@@ -492,13 +398,6 @@ const cubemap::CubeMap& environment_of(const LitScene& lit) {
     if (has_environment(lit))
         return lit.relighter().environment();
     return lit.radiance().empty() ? Nothing : Black;
-}
-
-std::vector<glm::vec3> bounced(const LitScene& lit) {
-    std::vector<glm::vec3> result = copy_of(lit.bounces().bounced());
-    if (!result.empty() && !lit.lamps().bounced().empty())
-        add(lit.lamps().bounced(), result);
-    return result;
 }
 
 BinnedEnvironment bin(const LitScene& lit, cubemap::CubeMap environment) {

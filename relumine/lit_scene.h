@@ -229,7 +229,12 @@ private:
     void add_to_points(std::span<glm::vec3> harmonics) const;
     [[nodiscard]] std::vector<glm::vec3> of_all(std::span<const glm::vec3> own) const;
     void add_mirrored();
-    void finish();
+    /// Where a time went.
+    struct FinishTimes {
+        double seconds_lamps = 0.0;
+        double seconds_highlights = 0.0;
+    };
+    FinishTimes finish();
 
     std::shared_ptr<const Scene> scene_;
     /// The same, where nobody else has it.

@@ -133,18 +133,25 @@ struct Lit {
     double seconds_load_scene, seconds_light, seconds_output, seconds;
 };
 
+/// ", lamps 12.3", and nothing where there are none
+std::string time_text(const char* name, bool is_there, double seconds) {
+    return is_there ? fmt::format(", {} {:.1f}", name, 1e3 * seconds) : "";
+}
+
 void report_light(const RelightArguments& options, Session& session, const Lit& made) {
     const Scene& scene = made.lit.scene();
     const UpdateReport& times = made.times;
     session.say(fmt::format(
         "{}: {} under {} in {:.2f} s{}: scene {:.0f}, {}bin {:.1f}, trace {:.1f} ({}), relight "
-        "{:.1f}{}, output {:.0f} ms{}{}",
+        "{:.1f}{}{}{}, output {:.0f} ms{}{}",
         options.output.path, files::counted(scene.receivers.num_own(), "receiver"),
         name_of(options, made.lit, made.num_lights), made.seconds,
         session.team != nullptr ? fmt::format(" by {} processes", session.team->part().count) : "",
         1e3 * made.seconds_load_scene, made.given.text, 1e3 * times.seconds_bin,
         1e3 * times.seconds_trace, files::counted(times.num_sharp_lights, "light"),
-        1e3 * times.seconds_relight, text_of(made.bounces), 1e3 * made.seconds_output,
+        1e3 * times.seconds_relight, time_text("lamps", !scene.lamps.empty(), times.seconds_lamps),
+        time_text("highlights", made.lit.mirrors().is_needed(), times.seconds_highlights),
+        text_of(made.bounces), 1e3 * made.seconds_output,
         options.scene.clusters_only ? ", through the clusters" : "",
         options.output.exposure_text(made.painter)));
     Report report = {{"receivers", scene.receivers.num_own()},
@@ -155,6 +162,8 @@ void report_light(const RelightArguments& options, Session& session, const Lit& 
                      {"seconds_bin", times.seconds_bin},
                      {"seconds_trace", times.seconds_trace},
                      {"seconds_relight", times.seconds_relight},
+                     {"seconds_lamps", times.seconds_lamps},
+                     {"seconds_highlights", times.seconds_highlights},
                      {"bounces", made.bounces ? made.bounces->num_bounces : 0},
                      {"seconds_bounces", made.bounces ? made.bounces->seconds : 0.0},
                      {"sharp_lights", times.num_sharp_lights},
