@@ -196,6 +196,9 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
         });
     }
     if (prt::has_sheen(surface)) {
+        // Its rays are as dense everywhere, and the mean of a ray's share reaches below the
+        // horizon.
+        fan.num_rays = 2 * num_rays;
         fan.alpha = 0.0f;
         fan.normal = point.normal;
         send(fan, surfaces, [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {

@@ -65,7 +65,7 @@ public:
     /// Returns what the highlight, the coat and the sheen mirror: black for Highlight::None, and
     /// for points that look away from the eye.
     ///
-    /// Cost:    num_rays rays, and half as many for a coat and for sheen each.
+    /// Cost:    num_rays rays, half as many for a coat, and twice as many for sheen.
     /// Threads: any.
     [[nodiscard]] MirroredLight light(const prt::Surface& surface, const MirrorPoint& point,
                                       std::uint32_t num_rays, const Surfaces& surfaces) const;

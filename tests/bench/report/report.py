@@ -68,6 +68,25 @@ class Run:
             return None
         return done.stdout, seconds, load
 
+    def known(self, name, commit):
+        """Whether an earlier run of the same commit has the chapter, which then is taken from there."""
+        kept = self.kept(name)
+        if not (self.arguments.resume and kept.exists()):
+            return False
+        chapter = json.loads(kept.read_text())
+        if chapter.pop("commit") != commit:
+            return False
+        self.chapters.append(chapter)
+        return True
+
+    def kept(self, name):
+        return self.work / f"{name}.chapter.json"
+
+    def keep(self, name, commit):
+        for chapter in self.chapters:
+            if chapter["name"] == name:
+                self.kept(name).write_text(json.dumps({**chapter, "commit": commit}))
+
     def fail(self, reason):
         """The other chapters go on."""
         print(f"report: {reason}", file=sys.stderr, flush=True)
@@ -160,6 +179,7 @@ def arguments_of(argv):
     data = os.environ.get("RELUMINE_DATA")
     parser.add_argument("--data", type=Path, default=Path(data) if data else None, help="folder with meshes, envs and khronos")
     parser.add_argument("--quick", action="store_true", help="smaller meshes, fewer rows: some minutes")
+    parser.add_argument("--resume", action="store_true", help="keep the chapters that the folder has of the same commit")
     parser.add_argument("--only", help="these chapters, with commas between them")
     parser.add_argument("-o", "--out", type=Path, default=Path("report"), help="folder to write (report)")
     return parser.parse_args(argv)
@@ -184,6 +204,8 @@ def main(argv):
     for name in known:
         if wanted is not None and name not in wanted:
             continue
+        if run.known(name, about["commit"]):
+            continue
         if name == "baselines":
             run.baselines()
         elif name == "khronos":
@@ -191,7 +213,9 @@ def main(argv):
         else:
             run.chapter(next(chapter for chapter in CHAPTERS if chapter.name == name))
         # After each chapter: what takes an hour is not lost when it is stopped.
+        run.keep(name, about["commit"])
         write(arguments.out, about, run)
+    write(arguments.out, about, run)
     print(arguments.out / "index.html")
     return 1 if run.failed else 0
 

@@ -143,6 +143,21 @@ class Report(unittest.TestCase):
             self.assertIn("layouts: exit 3", Path(folder, "out", "index.html").read_text())
             self.assertEqual(json.loads(Path(folder, "out", "figures.json").read_text())["chapters"], [])
 
+    def test_chapters_of_the_same_commit_are_kept(self):
+        with tempfile.TemporaryDirectory() as folder:
+            bench = Path(folder) / "tests" / "bench" / "bench_layouts"
+            bench.parent.mkdir(parents=True)
+            out = Path(folder) / "out"
+            arguments = ["--build", folder, "--only", "layouts", "-o", str(out)]
+            for lines in ("echo '| way | error | power |'; echo '|---|---|---|'; echo '| a to b | 0.1 | 0.5 % |'", "exit 3"):
+                bench.write_text(f"#!/bin/sh\n{lines}\n")
+                bench.chmod(0o755)
+                self.assertEqual(main([*arguments, "--resume"]), 0)
+                figures = json.loads((out / "figures.json").read_text())
+                self.assertIn("0.5 %", figures["chapters"][0]["finding"])
+                self.assertIn("a to b", (out / "index.html").read_text())
+            self.assertEqual(main(arguments), 1, "without --resume it runs again")
+
 
 if __name__ == "__main__":
     unittest.main()
