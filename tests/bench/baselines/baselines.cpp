@@ -54,7 +54,7 @@ struct Settings {
     struct Cpca {
         std::size_t clusters, components;
     };
-    std::vector<Cpca> cpca = {{24, 8}, {24, 16}, {48, 16}, {96, 16}, {96, 24}, {96, 32}};
+    std::vector<Cpca> cpca = {{24, 8}, {48, 16}, {96, 16}, {96, 32}};
 };
 
 /// Of zstd, as in scene files.
