@@ -21,6 +21,14 @@ namespace relumine::relight {
 
 namespace {
 
+/// The part of its share of the lobe over which a ray sees the mean. Over all of it, 32 rays of a
+/// rough metal under lamps were 9 of 255 brighter than many rays.
+constexpr float SeenPart = 0.5f;
+
+/// Lobes as wide as this take twice as many rays, and so does sheen: what a part of a share leaves
+/// out is noise.
+constexpr float WideAlpha = 0.25f;
+
 /// Sums of weights and of weighted radiance, by colour.
 struct Weighted {
     glm::vec3 weight{0.0f};
@@ -158,7 +166,7 @@ void Reflections::send(const Fan& fan, const Surfaces& surfaces, const Add& add)
                 continue;
             const glm::vec3 w = packet.direction(lane);
             const float share = 1.0f / (static_cast<float>(fan.num_rays) * densities[lane]);
-            glm::vec3 radiance = sky(w, share);
+            glm::vec3 radiance = sky(w, SeenPart * share);
             if ((met >> lane & 1u) != 0)
                 radiance = surfaces(hits[lane], w, radiance);
             add(w, densities[lane], radiance);
@@ -174,11 +182,12 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
     const auto lobes = [&](const glm::vec3& w) {
         return prt::evaluate_lobes(surface, point.normal, point.to_eye, w);
     };
+    const std::uint32_t num_all = lobe_alpha(surface) > WideAlpha ? 2 * num_rays : num_rays;
     Fan fan{.origin = point.position + bias_ * point.normal,
             .normal = point.normal,
             .to_eye = point.to_eye,
             .alpha = lobe_alpha(surface),
-            .num_rays = num_rays,
+            .num_rays = num_all,
             .shift = point.shift};
     Weighted all, grazing, coat, sheen;
     send(fan, surfaces, [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
@@ -196,9 +205,7 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
         });
     }
     if (prt::has_sheen(surface)) {
-        // Its rays are as dense everywhere, and the mean of a ray's share reaches below the
-        // horizon.
-        fan.num_rays = 2 * num_rays;
+        fan.num_rays = 2 * num_rays; // which are as dense everywhere
         fan.alpha = 0.0f;
         fan.normal = point.normal;
         send(fan, surfaces, [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
@@ -207,7 +214,7 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
     }
     return {.all = all.mean(),
             .grazing = grazing.mean(),
-            .whole = all.weight.r / static_cast<float>(num_rays),
+            .whole = all.weight.r / static_cast<float>(num_all),
             .coat = coat.mean(),
             .sheen = sheen.mean()};
 }

@@ -3,7 +3,7 @@
 //
 // Based on: E. Heitz, "Sampling the GGX Distribution of Visible Normals", JCGT 2018 (directions);
 // J. Krivanek and M. Colbert, "Real-time Shading with Filtered Importance Sampling", EGSR 2008 (a
-// ray that leaves sees the mean over its share of the lobe).
+// ray that leaves sees the mean over half of its share of the lobe).
 #pragma once
 
 #include <cstdint>
@@ -65,7 +65,8 @@ public:
     /// Returns what the highlight, the coat and the sheen mirror: black for Highlight::None, and
     /// for points that look away from the eye.
     ///
-    /// Cost:    num_rays rays, half as many for a coat, and twice as many for sheen.
+    /// Cost:    num_rays rays, twice as many for a wide lobe; half as many for a coat, and twice as
+    ///          many for sheen.
     /// Threads: any.
     [[nodiscard]] MirroredLight light(const prt::Surface& surface, const MirrorPoint& point,
                                       std::uint32_t num_rays, const Surfaces& surfaces) const;
