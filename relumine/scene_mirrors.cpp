@@ -120,14 +120,10 @@ void SceneMirrors::add(const relight::Relighter& light, const Surfaces& surfaces
             return;
         const glm::vec3& normal = all.normals[receiver];
         const glm::vec3& to_eye = all.to_eye[receiver];
-        // Roberts' R2 sequence: neighbours get shifts that are far apart.
-        const auto number = static_cast<double>(receiver);
-        const relight::MirrorPoint point{
-            .position = all.positions[receiver],
-            .normal = normal,
-            .to_eye = to_eye,
-            .shift = glm::vec2(
-                glm::fract(number * glm::dvec2(0.75487766624669276, 0.56984029099805327)))};
+        const relight::MirrorPoint point{.position = all.positions[receiver],
+                                         .normal = normal,
+                                         .to_eye = to_eye,
+                                         .shift = relight::ray_shift(receiver)};
         const prt::EyeCosines n_v(surface, normal, to_eye);
         const prt::Lobes<glm::vec3> lobes = relight::lobes_of(
             surface, reflections.light(surface, point, rays_of(receiver), seen), n_v);

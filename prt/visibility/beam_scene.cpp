@@ -153,20 +153,27 @@ ChosenTriangles chosen_triangles(const mesh::TriangleMesh& mesh, const SeeThroug
     return chosen;
 }
 
+/// Returns the tree of triangles that stop all rays, with flat regions merged: numbers of merged
+/// triangles mean nothing.
+TriangleTree opaque_tree(const mesh::TriangleMesh& mesh) {
+    TriangleTree tree = triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh));
+    tree.triangles = {};
+    return tree;
+}
+
 } // namespace
 
 struct BeamScene::Trees {
     Trees(const mesh::TriangleMesh& mesh, std::shared_ptr<const SeeThrough> passed, RayOf whose)
         : see_through(std::move(passed)), of(whose) {
         if (!mesh::lets_light_pass(mesh)) {
-            opaque = triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh));
+            opaque = opaque_tree(mesh);
             return;
         }
         const auto chosen = [&](SeeThrough::All all) {
             return chosen_triangles(mesh, *see_through, of, all);
         };
-        const mesh::TriangleMesh stopping = chosen(SeeThrough::All::Stop).mesh;
-        opaque = triangle_tree(stopping.positions, mesh::with_flat_regions_merged(stopping));
+        opaque = opaque_tree(chosen(SeeThrough::All::Stop).mesh);
         const auto [thin, numbers] = chosen(SeeThrough::All::Differ);
         some_pass = triangle_tree(thin.positions, thin.triangles);
         for (std::size_t leaf = 0; leaf < some_pass.leaves.size(); ++leaf)

@@ -49,15 +49,13 @@ std::uint32_t reach_of(float alpha) {
                                       Widest.begin());
 }
 
-/// Roberts' R2 sequence along Morton's curve: pixels of a square, which share their rays, get
-/// shifts that are far apart.
+/// Shifts along Morton's curve: pixels of a square, which share their rays, have ones far apart.
 glm::vec2 shift_of(std::uint32_t x, std::uint32_t y) {
     std::uint64_t number = 0;
     for (unsigned bit = 0; bit < 16; ++bit)
         number |= std::uint64_t{x >> bit & 1u} << (2 * bit) | std::uint64_t{y >> bit & 1u}
                                                                   << (2 * bit + 1);
-    const auto place = static_cast<double>(number);
-    return glm::vec2(glm::fract(place * glm::dvec2(0.75487766624669276, 0.56984029099805327)));
+    return ray_shift(number);
 }
 
 } // namespace

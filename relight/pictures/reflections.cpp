@@ -54,6 +54,11 @@ glm::vec3 highlight_of(const prt::Surface& surface, const prt::Lobes<float>& lob
 
 } // namespace
 
+glm::vec2 ray_shift(std::uint64_t i) {
+    return glm::vec2(
+        glm::fract(static_cast<double>(i) * glm::dvec2(0.75487766624669276, 0.56984029099805327)));
+}
+
 float lobe_alpha(const prt::Surface& surface) {
     if (surface.highlight == prt::Highlight::BlinnPhong)
         return std::max(std::sqrt(2.0f / (surface.roughness_or_exponent + 2.0f)), 1e-3f);

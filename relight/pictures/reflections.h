@@ -32,6 +32,10 @@ struct MirrorPoint {
     glm::vec2 shift;
 };
 
+/// Returns a shift for the rays of point i, far from those of the points before and after: Roberts'
+/// R2 sequence.
+[[nodiscard]] glm::vec2 ray_shift(std::uint64_t i);
+
 /// Mean radiance in a highlight's lobes, which points of nearly the same normal share.
 struct MirroredLight {
     /// Weighted by S and by Sc (prt/glossy/brdf.h).

@@ -45,8 +45,9 @@ def commit_of(root):
 class Run:
     """Runs programs one after the other and keeps what they print."""
 
-    def __init__(self, arguments, work):
+    def __init__(self, arguments, work, commit):
         self.arguments = arguments
+        self.commit = commit
         self.work = work
         self.chapters = []
         self.skipped = []
@@ -68,24 +69,19 @@ class Run:
             return None
         return done.stdout, seconds, load
 
-    def known(self, name, commit):
-        """Whether an earlier run of the same commit has the chapter, which then is taken from there."""
+    def take_kept(self, name):
+        """Takes a chapter from an earlier run of the same commit; False where there is none."""
         kept = self.kept(name)
         if not (self.arguments.resume and kept.exists()):
             return False
         chapter = json.loads(kept.read_text())
-        if chapter.pop("commit") != commit:
+        if chapter.pop("commit") != self.commit:
             return False
         self.chapters.append(chapter)
         return True
 
     def kept(self, name):
         return self.work / f"{name}.chapter.json"
-
-    def keep(self, name, commit):
-        for chapter in self.chapters:
-            if chapter["name"] == name:
-                self.kept(name).write_text(json.dumps({**chapter, "commit": commit}))
 
     def fail(self, reason):
         """The other chapters go on."""
@@ -95,19 +91,19 @@ class Run:
 
     def add(self, name, title, command, captured, finding, body, remarks=(), figures=None):
         text, seconds, load = captured
-        self.chapters.append(
-            {
-                "name": name,
-                "title": title,
-                "command": command,
-                "seconds": seconds,
-                "load": load,
-                "finding": finding,
-                "remarks": list(remarks),
-                "body": body,
-                "figures": tables(text) if figures is None else figures,
-            }
-        )
+        chapter = {
+            "name": name,
+            "title": title,
+            "command": command,
+            "seconds": seconds,
+            "load": load,
+            "finding": finding,
+            "remarks": list(remarks),
+            "body": body,
+            "figures": tables(text) if figures is None else figures,
+        }
+        self.chapters.append(chapter)
+        self.kept(name).write_text(json.dumps({**chapter, "commit": self.commit}))
 
     def bench(self, name):
         return str(self.arguments.build / "tests" / "bench" / name)
@@ -201,17 +197,17 @@ def main(argv):
     arguments.out.mkdir(parents=True, exist_ok=True)
     work = (arguments.out / "work").resolve()
     work.mkdir(exist_ok=True)
-    run = Run(arguments, work)
     wanted = arguments.only.split(",") if arguments.only else None
     known = ["baselines", "khronos", *(chapter.name for chapter in CHAPTERS)]
     for name in wanted or []:
         if name not in known:
             raise SystemExit(f"report: expected chapters of {', '.join(known)}, got {name}")
     about = machine(commit_of(ROOT))
+    run = Run(arguments, work, about["commit"])
     for name in known:
         if wanted is not None and name not in wanted:
             continue
-        if run.known(name, about["commit"]):
+        if run.take_kept(name):
             continue
         if name == "baselines":
             run.baselines()
@@ -220,7 +216,6 @@ def main(argv):
         else:
             run.chapter(next(chapter for chapter in CHAPTERS if chapter.name == name))
         # After each chapter: what takes an hour is not lost when it is stopped.
-        run.keep(name, about["commit"])
         write(arguments.out, about, run)
     write(arguments.out, about, run)
     print(arguments.out / "index.html")
