@@ -242,12 +242,7 @@ private:
     [[nodiscard]] bool are_traced() const {
         if (options_.highlights)
             return *options_.highlights == Highlights::Traced;
-        const auto is_layered = [](const prt::Surface& surface) {
-            return prt::has_coat(surface) || prt::has_sheen(surface);
-        };
-        const std::vector<prt::Surface>& surfaces = scene_.receivers.surfaces;
-        return std::holds_alternative<prt::PixelLayout>(scene_.layout) &&
-               std::none_of(surfaces.begin(), surfaces.end(), is_layered);
+        return std::holds_alternative<prt::PixelLayout>(scene_.layout);
     }
 
     /// What was asked for. Where nothing was, vertices bounce light if surfaces are before them.

@@ -347,8 +347,7 @@ OptionTable options_of(PrecomputeOptions& o) {
             "back, and a white surface stays white), or published (glTF's formula)"),
         row("--highlights", o.highlights,
             "stored in the scene, exact and free of noise, or traced: rays find them when pixels "
-            "are lit (pixels trace them, unless surfaces have coats or sheen; vertices and texels "
-            "store them)"),
+            "are lit (by default pixels trace them, vertices and texels store them)"),
         row("--glossy-tolerance", o.glossy_tolerance,
             "relative error of a stored highlight under a small light anywhere",
             {.min = 1e-4, .max = 1}),

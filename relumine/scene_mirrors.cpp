@@ -73,11 +73,12 @@ private:
     std::vector<glm::vec3> light_, sent_, emission_;
 };
 
-/// Returns which part of the rays is enough for a surface: those of a narrow lobe go one way.
+/// Returns the rays of a surface, as a factor: those of a narrow lobe go one way, and of sheen all.
 float part_of_rays(const prt::Surface& surface) {
     constexpr float WideFrom = 0.1f;
-    if (!prt::facts_of(surface.highlight).is_roughness || prt::has_coat(surface) ||
-        prt::has_sheen(surface))
+    if (prt::has_sheen(surface))
+        return 2.0f;
+    if (!prt::facts_of(surface.highlight).is_roughness || prt::has_coat(surface))
         return 1.0f;
     return std::min(surface.roughness_or_exponent / WideFrom, 1.0f);
 }

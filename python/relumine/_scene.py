@@ -135,7 +135,7 @@ def precompute(
                "floor" is the added floor
     ggx        "whole": highlights of GGX keep their energy; "published": glTF's formula
     highlights "stored": exact and free of noise; "traced": rays find them when pixels are lit; None:
-               traced for pixels, unless surfaces have coats or sheen, and stored for the rest
+               traced for pixels, stored for the rest
     bounces    light goes on from surface to surface: True, or its standard error; False: direct
                light alone; None: where vertices see other surfaces
     max_memory bytes; work that would take more is refused with MemoryError

@@ -96,7 +96,8 @@ TEST(NormalMaps, LayersOfAWhiteSurfaceStayWhite) {
     const Camera camera{.eye = {0, -3, 3}, .target = {0, 0, 0}, .fov_degrees = 20};
     const Scene scene = precompute(mesh, {.tolerance = 0.02f,
                                           .receivers = Pixels{.width = 4, .height = 4},
-                                          .view = View{.camera = camera}});
+                                          .view = View{.camera = camera},
+                                          .highlights = Highlights::Stored});
     ASSERT_TRUE(scene.transfer.glossy);
     for (const prt::GlossyLobe lobe : {prt::GlossyLobe::Coat, prt::GlossyLobe::Sheen})
         EXPECT_GT(scene.transfer.glossy->lobes[static_cast<std::size_t>(lobe)].num_entries(), 0u);
