@@ -43,7 +43,7 @@ struct BlockLobe {
 class EyeCut {
 public:
     /// Both must outlive this object. A cell stays whole where its share of a block's radiance is
-    /// off by no more than `error`.
+    /// off by no more than `error`, or some more for lobes narrower than roughness 0.3.
     EyeCut(const VisibilityPyramid& visibility, const SkyCells& sky, float error)
         : visibility_(visibility), sky_(sky), error_(error) {}
 

@@ -229,7 +229,7 @@ TEST(MovingEye, AWhiteMetalIsWhiteUnderAWhiteSky) {
         eye.set_light(relighter);
         // A block of so coarse a sphere has lobes 20 degrees apart.
         const auto radiance =
-            eye.look({0.0f, 0.0f, 4.0f}, relighter.radiance(), {.tolerance = 5e-4f});
+            eye.look({0.0f, 0.0f, 4.0f}, relighter.radiance(), {.tolerance = 2e-4f});
         for (std::size_t i = 0; i < receivers.size(); ++i)
             if (const glm::vec3 ray = glm::vec3(0.0f, 0.0f, 4.0f) - receivers.positions[i];
                 glm::dot(receivers.normals[i], glm::normalize(ray)) > 0.3f) {
