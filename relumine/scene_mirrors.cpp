@@ -73,11 +73,15 @@ private:
     std::vector<glm::vec3> light_, sent_, emission_;
 };
 
-/// Returns the rays of a surface, as a factor: those of a narrow lobe go one way, and of sheen all.
+/// Returns the rays of a surface, as a factor: those of a narrow lobe go one way, of sheen all, and
+/// a rough metal shows nothing but its rays.
 float part_of_rays(const prt::Surface& surface) {
-    constexpr float WideFrom = 0.1f;
+    constexpr float WideFrom = 0.1f, LeastOfMetals = 0.25f, WideAlpha = 0.1f;
     if (prt::has_sheen(surface))
         return 2.0f;
+    if (std::max({surface.specular.r, surface.specular.g, surface.specular.b}) > LeastOfMetals &&
+        relight::lobe_alpha(surface) > WideAlpha)
+        return 4.0f;
     if (!prt::facts_of(surface.highlight).is_roughness || prt::has_coat(surface))
         return 1.0f;
     return std::min(surface.roughness_or_exponent / WideFrom, 1.0f);

@@ -23,6 +23,7 @@
 #include "relight/sharp/shadow_rays.h"
 #include "relumine/relumine.h"
 #include "tests/bench/baselines/cpca.h"
+#include "tests/bench/baselines/cycles.h"
 #include "tests/bench/baselines/dense_transport.h"
 #include "tests/bench/baselines/features.h"
 #include "tests/bench/baselines/sparse_columns.h"
@@ -55,6 +56,8 @@ struct Settings {
         std::size_t clusters, components;
     };
     std::vector<Cpca> cpca = {{24, 8}, {48, 16}, {96, 16}, {96, 32}};
+    /// Of Cycles a vertex; empty: it is left out.
+    std::vector<std::uint32_t> cycles_samples = {16, 64, 256, 1024};
 };
 
 /// Of zstd, as in scene files.
@@ -311,11 +314,27 @@ void add_lights(Comparison& comparison) {
     }
 }
 
+/// Cycles starts anew for each environment. Its time is that of the bake alone.
+void add_cycles(Comparison& comparison) {
+    const std::vector<std::uint32_t>& all = comparison.settings().cycles_samples;
+    if (all.empty() || !bench::Cycles::is_there())
+        return;
+    const bench::Cycles cycles(comparison.lit().scene().mesh);
+    for (const std::uint32_t samples : all)
+        comparison.add({.method = "Cycles", .setting = fmt::format("{} samples", samples)},
+                       [&](const cubemap::CubeMap& map) {
+                           bench::Cycles::Baked baked = cycles.bake(map, samples);
+                           return Comparison::Relit{.radiance = std::move(baked.radiance),
+                                                    .seconds = baked.seconds};
+                       });
+}
+
 void compare_all(Comparison& comparison) {
     const Settings& settings = comparison.settings();
     comparison.draw_exact();
     add_clusters(comparison);
     add_lights(comparison);
+    add_cycles(comparison);
     const bench::Stopwatch watch;
     const bench::DenseTransport dense(comparison.mesh(), settings.resolution);
     const double seconds_dense = watch.seconds();
@@ -363,6 +382,7 @@ void make_quick(Settings& settings) {
     settings.dense_resolutions = {8, 16, 32};
     settings.wavelet_megabytes = {1, 4, 16};
     settings.cpca = {{24, 8}, {96, 16}};
+    settings.cycles_samples = {16, 256};
 }
 
 } // namespace
@@ -390,7 +410,8 @@ int main(int argc, char** argv) {
                         .orders = {3, 4},
                         .dense_resolutions = {4, 16},
                         .wavelet_megabytes = {1},
-                        .cpca = {{4, 3}}};
+                        .cpca = {{4, 3}},
+                        .cycles_samples = {}};
         if (settings.quick)
             make_quick(settings);
         std::vector<bench::NamedMap> maps = inputs.probes_and_sky(settings.map_resolution);

@@ -22,6 +22,7 @@ FAMILIES = {
     "harmonics": "harmonics (Sloan)",
     "harmonics, windowed": "harmonics (Sloan)",
     "median cut, traced": "median cut, traced (Debevec)",
+    "Cycles": "path tracing (Cycles)",
 }
 
 
