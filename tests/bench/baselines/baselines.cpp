@@ -56,8 +56,9 @@ struct Settings {
         std::size_t clusters, components;
     };
     std::vector<Cpca> cpca = {{24, 8}, {48, 16}, {96, 16}, {96, 32}};
-    /// Of Cycles a vertex; empty: it is left out.
-    std::vector<std::uint32_t> cycles_samples = {16, 64, 256, 1024};
+    /// Cycles takes 16 samples a vertex, then four times as many each time up to these. 0: it is
+    /// left out.
+    std::uint32_t most_cycles_samples = 1024;
 };
 
 /// Of zstd, as in scene files.
@@ -316,11 +317,11 @@ void add_lights(Comparison& comparison) {
 
 /// Cycles starts anew for each environment. Its time is that of the bake alone.
 void add_cycles(Comparison& comparison) {
-    const std::vector<std::uint32_t>& all = comparison.settings().cycles_samples;
-    if (all.empty() || !bench::Cycles::is_there())
+    const std::uint32_t most = comparison.settings().most_cycles_samples;
+    if (most == 0 || !bench::Cycles::is_there())
         return;
     const bench::Cycles cycles(comparison.lit().scene().mesh);
-    for (const std::uint32_t samples : all)
+    for (std::uint32_t samples = 16; samples <= most; samples *= 4)
         comparison.add({.method = "Cycles", .setting = fmt::format("{} samples", samples)},
                        [&](const cubemap::CubeMap& map) {
                            bench::Cycles::Baked baked = cycles.bake(map, samples);
@@ -382,7 +383,7 @@ void make_quick(Settings& settings) {
     settings.dense_resolutions = {8, 16, 32};
     settings.wavelet_megabytes = {1, 4, 16};
     settings.cpca = {{24, 8}, {96, 16}};
-    settings.cycles_samples = {16, 256};
+    settings.most_cycles_samples = 64;
 }
 
 } // namespace
@@ -397,6 +398,8 @@ int main(int argc, char** argv) {
     program.add("--scenes", settings.scenes, "scenes");
     program.add("--pictures", settings.pictures, "folder for a picture of each row");
     program.add_flag("--quick", settings.quick, "smaller meshes and fewer rows");
+    program.add("--cycles", settings.most_cycles_samples,
+                "most samples of Cycles; 64 with --quick, 0: leave it out");
     program.add("--samples", settings.num_samples, "receivers that are integrated exactly");
     program.add("--resolution", settings.resolution, "R of the transport that others compress");
     return program.run(argc, argv, [&] {
@@ -411,7 +414,7 @@ int main(int argc, char** argv) {
                         .dense_resolutions = {4, 16},
                         .wavelet_megabytes = {1},
                         .cpca = {{4, 3}},
-                        .cycles_samples = {}};
+                        .most_cycles_samples = 0};
         if (settings.quick)
             make_quick(settings);
         std::vector<bench::NamedMap> maps = inputs.probes_and_sky(settings.map_resolution);

@@ -35,9 +35,10 @@ other methods, with tests of their own.
 METHODS = """Errors are relative L2 of radiance at receivers drawn at random, against exact integration of maps of
 256 x 256 texels a face: the mean over five probes, sun and sky, and a studio. "Stored" is a file, through
 zstd. "Relight" goes from an environment in the method's own basis to all radiance, on all cores. Ours
-holds the shadow rays of small lights; "without shadow rays" has none. All others but traced lights
-compress the same transport, traced for every texel of a cube map. A row is the best setting of each
-method that stores no more than Relumine's default, or 5 % more.
+holds the shadow rays of small lights; "without shadow rays" has none. Traced lights and Cycles store
+nothing: Blender bakes direct light to the same vertices with the same normals, and its time is that of the
+bake alone. All others compress the same transport, traced for every texel of a cube map. A row is the best
+setting of each method that stores no more than Relumine's default, or 5 % more.
 """
 
 
