@@ -9,3 +9,8 @@ header=$(dirname "${BASH_SOURCE[0]}")/../../runtime/relumine_runtime.h
 shown=$(nm -D --defined-only "$library" | awk '{print $3}' | sort)
 declared=$(grep -oE '^RELUMINE_API .*' "$header" | grep -oE 'relumine_[a-z_]+' | sort)
 [ "$shown" = "$declared" ] || { diff <(echo "$declared") <(echo "$shown"); exit 1; }
+stripped=$(mktemp)
+trap 'rm -f "$stripped"' EXIT
+strip -o "$stripped" "$library"
+size=$(stat -c %s "$stripped")
+[ "$size" -le 1500000 ] || { echo "expected 1.5 MB at most without symbols, got $size bytes"; exit 1; }
