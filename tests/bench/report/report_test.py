@@ -94,6 +94,11 @@ class Baselines(unittest.TestCase):
         self.assertNotIn("wins", baselines.finding(self.ROWS))
         self.assertIn("A baseline wins for bunny under grace", baselines.finding(self.ROWS + [row("harmonics", 50, 0.001)]))
 
+    def test_the_finding_says_what_path_tracing_costs(self):
+        traced = [row("Cycles", 0, 0.4, "16 samples"), row("Cycles", 0, 0.2, "64 samples", relight=5500.0)]
+        self.assertIn("bunny: 64 samples a vertex, 5.5 s, 20 times the error", baselines.finding(self.ROWS + traced))
+        self.assertNotIn("Cycles", baselines.finding(self.ROWS))
+
     def test_curves_leave_out_what_is_worse_in_both(self):
         series = baselines.curves(self.ROWS + [row("dense bytes", 200, 0.5)], "stored_bytes")
         self.assertEqual([point[0] for point in series["dense bytes"]], [80, 300])
