@@ -47,6 +47,7 @@ if there "the edit" "$dragon" "$dawn"; then
 fi
 
 if there "the still pictures" "$dragon" "$park" "$studio" "$dawn" lowpoly/kloppenheim_05_1k.hdr \
-    meshes/stanford/bun_zipper_res3.ply; then
+    meshes/stanford/bun_zipper.ply meshes/stanford/bun_zipper_res3.ply \
+    envs/debevec/uffizi_latlong_1200.hdr envs/debevec/stpeters_cross.hdr; then
     "$here/pictures.sh" "$relumine" "$folder" "$pictures"
 fi

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Draws the pictures of README.md: one mesh under four photographs, plaster without an option but the size, and metal. And those of
+# Draws the pictures of README.md: one mesh under four photographs, plaster without an option but the size, and metal;
+# those of the gallery, under two of Debevec's probes; and those of
 # docs/meshes.md: a mesh as it is, refined evenly, by light, and for the sun, at equal numbers of vertices. Needs meshes
 # and environments of RELUMINE_DATA (docs/data.md). FOLDER keeps the scenes.
 #
@@ -20,6 +21,10 @@ for environment in envs/polyhaven/rooitou_park lowpoly/kloppenheim_05; do
     "$relumine" relight "$folder/metal.prt" "$RELUMINE_DATA/${environment}_1k.hdr" --size 400x300 \
         -o "$pictures/dragon_${environment##*/}.png" -q
 done
+"$relumine" relight "$folder/metal.prt" "$RELUMINE_DATA/envs/debevec/uffizi_latlong_1200.hdr" --size 400x300 \
+    -o "$pictures/dragon_uffizi.png" -q
+"$relumine" relight "$RELUMINE_DATA/meshes/stanford/bun_zipper.ply" "$RELUMINE_DATA/envs/debevec/stpeters_cross.hdr" \
+    --size 400x300 -o "$pictures/bunny_stpeters.png" -q
 
 for environment in sun_sky soft_boxes; do
     "$relumine" generate "$environment" -o "$folder" -q
