@@ -172,7 +172,7 @@ CHAPTERS = [
     Chapter("table1", "Johan and Nishita's table", [], None, table1),
     Chapter("edit", "Editing", BUNNY, BUNNY, edit),
     Chapter("precompute", "Precompute", ["--threads"], ["--threads"], precompute),
-    Chapter("growth", "Growth and memory", ["--folder", "{work}"], ["--folder", "{work}", "--vertices", "100000", "--triangles", "200000", "--only", "vertices"], growth),
+    Chapter("growth", "Growth and memory", ["--folder", "{work}", "--vertices", "700000"], ["--folder", "{work}", "--vertices", "100000", "--triangles", "200000", "--only", "vertices"], growth),
     Chapter("coarse", "First pictures of coarse meshes", ["--direct", "--width", "160", "--height", "120"], None, coarse),
     Chapter("refinement", "Refinement", [], None, refinement),
     Chapter("bounces", "Bounces", [], None, bounces),
