@@ -167,7 +167,8 @@ struct Painter::Impl {
     [[nodiscard]] relight::Backdrop plain_view(const Lighting& lighting) const {
         if (const auto* color = std::get_if<glm::vec3>(&options.background))
             return relight::plain_backdrop(*color);
-        if (lighting.environment == nullptr)
+        if (lighting.environment == nullptr ||
+            std::holds_alternative<NothingBehind>(options.background))
             return relight::plain_backdrop(glm::vec3(0.0f));
         if (const double blur = std::get<EnvironmentBehind>(options.background).blur_degrees;
             blur > 0.0)

@@ -313,6 +313,26 @@ Scene post_under_lamp(const ReceiverChoice& receivers) {
     return precompute(std::move(mesh), options);
 }
 
+/// Its exposure is metered before a ground that a cut-out does not show.
+TEST_F(Output, ALampOnThePhotographIsCutOut) {
+    for (const ReceiverChoice& receivers :
+         {ReceiverChoice(Vertices{}), ReceiverChoice(Pixels{.width = 80, .height = 60})}) {
+        LitScene lit(post_under_lamp(receivers));
+        lit.light(cubemap::CubeMap(8, glm::vec3(0.05f)));
+        OutputOptions options{.floor = FloorLook::Photo,
+                              .width = 80,
+                              .height = 60,
+                              .samples_per_axis = 1,
+                              .background = NothingBehind{}};
+        options.camera = LookingDown;
+        Painter painter(lit, options);
+        EXPECT_TRUE(std::isfinite(painter.choose_exposure_ev(lit.lighting())));
+        const Picture picture = painter.draw(lit.lighting());
+        EXPECT_EQ(picture.alpha.size(), picture.pixels.size());
+        EXPECT_EQ(*std::ranges::max_element(picture.alpha), 1.0f);
+    }
+}
+
 TEST_F(Output, ExposureDoesNotBurnAFloorUnderLamps) {
     for (const ReceiverChoice& receivers :
          {ReceiverChoice(Vertices{}), ReceiverChoice(Pixels{.width = 80, .height = 60})}) {

@@ -26,6 +26,9 @@ FAMILIES = {
 }
 
 
+#: Of all curves, in the order of their colours.
+NAMES = [*dict.fromkeys(FAMILIES.values()), "clustered components (Sloan)"]
+
 #: As many bytes, where sizes come in steps.
 SLACK = 1.05
 
@@ -194,7 +197,7 @@ def body(rows, folder):
             ("milliseconds_relight", "relight, ms"),
             ("seconds_precompute", "precompute, s"),
         ):
-            parts.append(log_plot(curves(of_scene, x), label, "relative L2 error", ("Relumine",)))
+            parts.append(log_plot(curves(of_scene, x), label, "relative L2 error", ("Relumine",), NAMES))
         parts.append("</div>" + pictures(of_scene, folder, scene))
         names = list(of_scene[0]["relative_l2"])
         short = [name.removesuffix("_cross.hdr") for name in names]

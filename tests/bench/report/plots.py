@@ -5,8 +5,8 @@ import html
 import math
 
 # Black stands for the page's ink, so the palette fits dark pages, too.
-PALETTE = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#b8a800", "#888888"]
-MARKS = ["circle", "square", "diamond", "up", "down", "cross", "circle", "square"]
+PALETTE = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#b8a800", "#888888", "#9467bd"]
+MARKS = ["circle", "square", "diamond", "up", "down", "cross", "circle", "square", "up"]
 
 WIDTH, HEIGHT = 640, 400
 LEFT, RIGHT, TOP, BOTTOM = 70, 14, 14, 52
@@ -50,9 +50,10 @@ def mark(shape, x, y, colour, title):
     return f'<polygon points="{points}" fill="{colour}">{tip}</polygon>'
 
 
-def log_plot(series, x_label, y_label, emphasised=()):
+def log_plot(series, x_label, y_label, emphasised=(), names=()):
     """series: {name: [(x, y, what it is)]} with positive numbers; names in `emphasised` get thick
-    lines. Returns SVG with a legend under it."""
+    lines. `names` are those of all plots of a page: each has one colour in all. Returns SVG with a
+    legend under it."""
     series = {name: sorted(points) for name, points in series.items() if points}
     values = [point for points in series.values() for point in points]
     x0, x1, x_ticks = decades(min(p[0] for p in values), max(p[0] for p in values))
@@ -79,7 +80,9 @@ def log_plot(series, x_label, y_label, emphasised=()):
         f'<text class="label" x="16" y="{middle_y}" text-anchor="middle" transform="rotate(-90 16 {middle_y})">{html.escape(y_label)}</text>'
     )
     legend = []
-    for index, (name, points) in enumerate(series.items()):
+    names = list(names) or list(series)
+    for name, points in series.items():
+        index = names.index(name)
         colour, shape = PALETTE[index % len(PALETTE)], MARKS[index % len(MARKS)]
         line = "M" + "L".join(f"{place_x(p[0]):.1f} {place_y(p[1]):.1f}" for p in points)
         width = 3 if name in emphasised else 1.5
