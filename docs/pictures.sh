@@ -16,7 +16,8 @@ for environment in kiara_1_dawn studio_small_03; do
     "$relumine" relight "$dragon" "$RELUMINE_DATA/envs/polyhaven/${environment}_1k.hdr" --size 400x300 \
         -o "$pictures/dragon_$environment.png" -q
 done
-"$relumine" precompute "$dragon" --floor --material ggx:roughness=0.25,albedo=0,f0=0.9 -o "$folder/metal.prt" -q
+[ -f "$folder/metal.prt" ] || "$relumine" precompute "$dragon" --floor \
+    --material ggx:roughness=0.25,albedo=0,f0=0.9 -o "$folder/metal.prt" -q
 for environment in envs/polyhaven/rooitou_park lowpoly/kloppenheim_05; do
     "$relumine" relight "$folder/metal.prt" "$RELUMINE_DATA/${environment}_1k.hdr" --size 400x300 \
         -o "$pictures/dragon_${environment##*/}.png" -q

@@ -313,18 +313,23 @@ Scene post_under_lamp(const ReceiverChoice& receivers) {
     return precompute(std::move(mesh), options);
 }
 
+/// The post under a dim sky, by its vertices or by the pixels of the picture.
+LitScene lit_post(const ReceiverChoice& receivers) {
+    LitScene lit(post_under_lamp(receivers));
+    lit.light(cubemap::CubeMap(8, glm::vec3(0.05f)));
+    return lit;
+}
+const std::array<ReceiverChoice, 2> PostReceivers = {Vertices{}, Pixels{.width = 80, .height = 60}};
+const OutputOptions OfPost = {
+    .width = 80, .height = 60, .samples_per_axis = 1, .camera = LookingDown};
+
 /// Its exposure is metered before a ground that a cut-out does not show.
 TEST_F(Output, ALampOnThePhotographIsCutOut) {
-    for (const ReceiverChoice& receivers :
-         {ReceiverChoice(Vertices{}), ReceiverChoice(Pixels{.width = 80, .height = 60})}) {
-        LitScene lit(post_under_lamp(receivers));
-        lit.light(cubemap::CubeMap(8, glm::vec3(0.05f)));
-        OutputOptions options{.floor = FloorLook::Photo,
-                              .width = 80,
-                              .height = 60,
-                              .samples_per_axis = 1,
-                              .background = NothingBehind{}};
-        options.camera = LookingDown;
+    for (const ReceiverChoice& receivers : PostReceivers) {
+        const LitScene lit = lit_post(receivers);
+        OutputOptions options = OfPost;
+        options.floor = FloorLook::Photo;
+        options.background = NothingBehind{};
         Painter painter(lit, options);
         EXPECT_TRUE(std::isfinite(painter.choose_exposure_ev(lit.lighting())));
         const Picture picture = painter.draw(lit.lighting());
@@ -334,17 +339,12 @@ TEST_F(Output, ALampOnThePhotographIsCutOut) {
 }
 
 TEST_F(Output, ExposureDoesNotBurnAFloorUnderLamps) {
-    for (const ReceiverChoice& receivers :
-         {ReceiverChoice(Vertices{}), ReceiverChoice(Pixels{.width = 80, .height = 60})}) {
-        LitScene lit(post_under_lamp(receivers));
-        lit.light(cubemap::CubeMap(8, glm::vec3(0.05f)));
-        OutputOptions options{.floor = FloorLook::Grey,
-                              .floor_albedo = glm::vec3(0.5f),
-                              .width = 80,
-                              .height = 60,
-                              .samples_per_axis = 1,
-                              .background = glm::vec3(0.0f)};
-        options.camera = LookingDown;
+    for (const ReceiverChoice& receivers : PostReceivers) {
+        const LitScene lit = lit_post(receivers);
+        OutputOptions options = OfPost;
+        options.floor = FloorLook::Grey;
+        options.floor_albedo = glm::vec3(0.5f);
+        options.background = glm::vec3(0.0f);
         const auto bright_share = [&](double ev) {
             const Picture picture = draw(lit, options);
             const auto num_bright = std::count_if(

@@ -11,6 +11,7 @@ from plots import log_plot
 from tables import table_html
 
 OWN = "relumine"
+COMPONENTS = "clustered components (Sloan)"
 #: Variants of a method share its curve: at each size the better one counts for it.
 FAMILIES = {
     "relumine": "Relumine",
@@ -24,17 +25,15 @@ FAMILIES = {
     "median cut, traced": "median cut, traced (Debevec)",
     "Cycles": "path tracing (Cycles)",
 }
-
-
 #: Of all curves, in the order of their colours.
-NAMES = [*dict.fromkeys(FAMILIES.values()), "clustered components (Sloan)"]
+NAMES = [*dict.fromkeys(FAMILIES.values()), COMPONENTS]
 
 #: As many bytes, where sizes come in steps.
 SLACK = 1.05
 
 
 def family(method):
-    return FAMILIES.get(method, "clustered components (Sloan)" if method.startswith("CPCA") else method)
+    return FAMILIES.get(method, COMPONENTS if method.startswith("CPCA") else method)
 
 
 def mean_error(row):
