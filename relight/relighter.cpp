@@ -211,7 +211,8 @@ UpdateReport Relighter::set_lights(std::span<const lights::DistantLight> lights)
             sharp_lights_.push_back({.cluster = cluster,
                                      .cell = transfer_.quadtree.leaves()[cluster],
                                      .direction = light.direction,
-                                     .irradiance = irradiance});
+                                     .irradiance = irradiance,
+                                     .is_of_list = true});
     }
     std::stable_sort(
         sharp_lights_.begin(), sharp_lights_.end(),

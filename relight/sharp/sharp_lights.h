@@ -27,6 +27,8 @@ struct SharpLight {
     glm::dvec3 direction{0.0, 0.0, 1.0};
     /// Taken out of the cluster's own irradiance.
     VectorIrradiance irradiance;
+    /// Whether it stands in a light list, where no cluster answers for it.
+    bool is_of_list = false;
     bool operator==(const SharpLight&) const = default;
 };
 

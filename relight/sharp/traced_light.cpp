@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -10,24 +9,11 @@
 
 #include "files/parallel.h"
 #include "relight/sharp/light_packets.h"
+#include "relight/sharp/traced_kernel.h"
 
 namespace relumine::relight {
 
-namespace {
-
-void set(TracedRadiance& radiance, std::size_t receiver, const glm::dvec3& value) {
-    for (int channel = 0; channel < 3; ++channel)
-        radiance.channels[static_cast<std::size_t>(channel)][receiver] = value[channel];
-}
-
-/// Calls visit(receiver) for the set bits.
-template<class Visit>
-void for_receivers(std::uint32_t bits, const Visit& visit) {
-    for (; bits != 0; bits &= bits - 1)
-        visit(static_cast<std::size_t>(std::countr_zero(bits)));
-}
-
-} // namespace
+namespace {} // namespace
 
 TracedLight::TracedLight(const prt::Transfer& transfer, const ShadowRays& rays)
     : transfer_(transfer), rays_(rays) {
@@ -57,7 +43,7 @@ std::size_t TracedLight::trace(std::span<const SharpLight> lights) {
                 place->second = std::move(before->second);
             } else {
                 place->second = std::make_unique<Reached>(diffuse_.size());
-                add(fresh, direction, place->second.get());
+                add(fresh, light, place->second.get());
                 ++num_fresh;
             }
         }
@@ -75,6 +61,8 @@ std::size_t TracedLight::trace(std::span<const SharpLight> lights) {
             std::min(prt::ReceiverGroup::MaxSize, transfer_.num_receivers() - first);
         std::array<glm::vec3, prt::ReceiverGroup::MaxSize> origins;
         glm::vec3 mean_normal(0.0f);
+        const std::vector<BlockNormals> normals =
+            block_normals(std::span(transfer_.normals).subspan(first, size));
         for (std::size_t i = 0; i < size && !fresh.empty(); ++i) {
             const glm::vec3& normal = transfer_.normals[first + i];
             origins[i] =
@@ -82,13 +70,13 @@ std::size_t TracedLight::trace(std::span<const SharpLight> lights) {
             mean_normal += normal;
         }
         for (const FreshPatch& patch : fresh)
-            find_reached(patch, first, {std::span(origins).first(size), mean_normal});
-        for (std::size_t block = index * BlocksPerGroup;
-             block < std::min((index + 1) * BlocksPerGroup, diffuse_.size()); ++block) {
+            find_reached(patch, first, {std::span(origins).first(size), mean_normal}, normals);
+        for (std::size_t i = 0; i < normals.size(); ++i) {
+            const std::size_t block = index * BlocksPerGroup + i;
             if (transfer_.glossy)
                 light_glossy_block(lights, of_light, block);
             else
-                light_block(lights, of_light, block);
+                light_block(lights, of_light, normals[i], block);
         }
     });
     return num_fresh;
@@ -100,33 +88,58 @@ std::span<const std::uint16_t> TracedLight::reached(const SharpLight& light) con
 }
 
 /// Lights of neighbouring clusters follow each other.
-void TracedLight::add(std::vector<FreshPatch>& patches, const glm::vec3& direction,
-                      Reached* reached) {
+void TracedLight::add(std::vector<FreshPatch>& patches, const SharpLight& light, Reached* reached) {
     // So wide a patch makes a shaft that few triangles lie in: 3 degrees around its first light.
     constexpr float CosineOfPatch = 0.9986f;
+    const glm::vec3 direction(light.direction);
     if (patches.empty() || patches.back().directions.full() ||
         glm::dot(patches.back().directions.direction(0), direction) < CosineOfPatch)
         patches.emplace_back();
     FreshPatch& patch = patches.back();
     patch.reached[patch.directions.num_directions] = reached;
+    if (!light.is_of_list)
+        patch.cluster[patch.directions.num_directions] = light.cluster;
     patch.directions.add(direction);
+}
+
+void TracedLight::choose_rays(const FreshPatch& patch, std::size_t direction, std::size_t first,
+                              std::span<const BlockNormals> normals,
+                              std::span<std::uint64_t> rays) const {
+    const prt::VisibleCounts& counts = transfer_.counts;
+    const glm::vec3 towards = patch.directions.direction(direction);
+    const std::optional<std::uint32_t> cluster = patch.cluster[direction];
+    for (std::size_t begin = 0; begin < rays.size(); begin += prt::BlockSize) {
+        const std::size_t block = (first + begin) / prt::BlockSize;
+        bool is_mixed = true;
+        if (cluster) {
+            const std::size_t word = counts.word(block, *cluster / 64);
+            const std::uint64_t bit = std::uint64_t{1} << *cluster % 64;
+            is_mixed = (counts.mixed[word] & bit) != 0;
+            if (!is_mixed && (counts.visible[word] & bit) == 0)
+                continue;
+        }
+        const std::size_t size = std::min(prt::BlockSize, rays.size() - begin);
+        const std::size_t num_points =
+            std::min(size, transfer_.num_points - std::min(transfer_.num_points, first + begin));
+        const std::uint32_t above =
+            lanes_above(normals[begin / prt::BlockSize], towards) | ((1u << num_points) - 1);
+        if (!is_mixed)
+            (*patch.reached[direction])[block] = static_cast<std::uint16_t>(above);
+        for (std::size_t i = 0; is_mixed && i < size; ++i)
+            rays[begin + i] |= std::uint64_t{above >> i & 1u} << direction;
+    }
 }
 
 /// Traces the rays of neighbouring receivers, the first one at place `first`, through a patch.
 void TracedLight::find_reached(const FreshPatch& patch, std::size_t first,
-                               const prt::ReceiverGroup& group) const {
+                               const prt::ReceiverGroup& group,
+                               std::span<const BlockNormals> normals) const {
     std::array<std::uint64_t, prt::ReceiverGroup::MaxSize> rays{}; // a bit per direction
     const std::span<std::uint64_t> of_group(rays.data(), group.origins.size());
     const std::size_t num_directions = patch.directions.num_directions;
     std::uint64_t any = 0;
-    for (std::size_t j = 0; j < num_directions; ++j) {
-        const glm::vec3 direction = patch.directions.direction(j);
-        for (std::size_t i = 0; i < of_group.size(); ++i)
-            of_group[i] |=
-                static_cast<std::uint64_t>(first + i < transfer_.num_points ||
-                                           prt::is_above(transfer_.normals[first + i], direction))
-                << j;
-    }
+    for (std::size_t j = 0; j < num_directions; ++j)
+        choose_rays(patch, j, first, normals, of_group);
     for (const std::uint64_t bits : of_group)
         any |= bits;
     if (any == 0)
@@ -142,15 +155,14 @@ void TracedLight::find_reached(const FreshPatch& patch, std::size_t first,
 }
 
 void TracedLight::light_block(std::span<const SharpLight> lights,
-                              std::span<Reached* const> of_light, std::size_t block) {
-    const std::size_t begin = block * prt::BlockSize;
-    std::array<glm::dvec3, prt::BlockSize> irradiance{};
+                              std::span<Reached* const> of_light, const BlockNormals& normals,
+                              std::size_t block) {
+    std::vector<ReachingLight> reaching;
+    reaching.reserve(lights.size());
     for (std::size_t light = 0; light < lights.size(); ++light)
-        for_receivers((*of_light[light])[block], [&](std::size_t i) {
-            irradiance[i] += lights[light].irradiance.on(transfer_.normals[begin + i]);
-        });
-    for (std::size_t i = 0; i < irradiance.size(); ++i)
-        set(diffuse_[block], i, irradiance[i] / std::numbers::pi);
+        if (const std::uint16_t reached = (*of_light[light])[block]; reached != 0)
+            reaching.push_back({&lights[light].irradiance, reached});
+    diffuse_[block] = traced_radiance(normals, reaching);
 }
 
 void TracedLight::light_glossy_block(std::span<const SharpLight> lights,
@@ -167,7 +179,9 @@ void TracedLight::light_glossy_block(std::span<const SharpLight> lights,
         add_light(surfaces, normals, glm::vec3(lights[light].direction), lights[light].irradiance,
                   (*of_light[light])[block], std::span(lobes).first(size));
     for (std::size_t i = 0; i < size; ++i) {
-        set(diffuse_[block], i, lobes[i].diffuse);
+        for (int channel = 0; channel < 3; ++channel)
+            diffuse_[block].channels[static_cast<std::size_t>(channel)][i] =
+                lobes[i].diffuse[channel];
         highlights_[begin + i] = prt::converted<glm::vec3>(lobes[i]);
         highlights_[begin + i].diffuse = glm::vec3(0.0f);
     }

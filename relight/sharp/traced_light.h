@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "prt/glossy/brdf.h"
 #include "prt/transfer/transfer.h"
 #include "relight/kernels/block_kernels.h"
+#include "relight/kernels/block_normals.h"
 #include "relight/sharp/shadow_rays.h"
 #include "relight/sharp/sharp_lights.h"
 
@@ -30,8 +32,12 @@ public:
 
     /// Takes new lights in place of all before; parallel. Returns how many directions were traced.
     ///
-    /// Cost:    a shadow ray for each receiver that faces a light. Lights that stand where a light
-    ///          stood before need none, however bright they are now.
+    /// Where a block of receivers sees all or nothing of a light's cluster, in 16 times nine
+    /// samples, it sees all or nothing of the light. Lights of a list are traced everywhere.
+    ///
+    /// Cost:    a shadow ray for each receiver that faces a light and sees its cluster in part.
+    ///          Lights that stand where a light stood before need none, however bright they are
+    ///          now.
     /// Memory:  a bit for each receiver and light.
     std::size_t trace(std::span<const SharpLight> lights);
 
@@ -65,13 +71,18 @@ private:
     struct FreshPatch {
         prt::DirectionPatch directions;
         std::array<Reached*, prt::DirectionPatch::Size> reached{};
+        /// The cluster that answers for a light in part; none for lights of a list.
+        std::array<std::optional<std::uint32_t>, prt::DirectionPatch::Size> cluster{};
     };
-    static void add(std::vector<FreshPatch>& patches, const glm::vec3& direction, Reached* reached);
+    static void add(std::vector<FreshPatch>& patches, const SharpLight& light, Reached* reached);
 
-    void find_reached(const FreshPatch& patch, std::size_t first,
-                      const prt::ReceiverGroup& group) const;
+    /// Sets the bit of a direction for the receivers that must ask it, and what others see of it.
+    void choose_rays(const FreshPatch& patch, std::size_t direction, std::size_t first,
+                     std::span<const BlockNormals> normals, std::span<std::uint64_t> rays) const;
+    void find_reached(const FreshPatch& patch, std::size_t first, const prt::ReceiverGroup& group,
+                      std::span<const BlockNormals> normals) const;
     void light_block(std::span<const SharpLight> lights, std::span<Reached* const> of_light,
-                     std::size_t block);
+                     const BlockNormals& normals, std::size_t block);
     void light_glossy_block(std::span<const SharpLight> lights, std::span<Reached* const> of_light,
                             std::size_t block);
 

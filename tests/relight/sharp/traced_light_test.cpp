@@ -16,7 +16,8 @@ SharpLight light_from(const glm::dvec3& direction, double power) {
     return {.direction = direction,
             .irradiance = {.red = power * direction,
                            .green = 0.5 * power * direction,
-                           .blue = 0.1 * power * direction}};
+                           .blue = 0.1 * power * direction},
+            .is_of_list = true};
 }
 
 std::vector<SharpLight> random_lights(std::size_t count, unsigned seed) {
@@ -80,6 +81,39 @@ TEST(TracedLight, TracesOnlyWhatIsNew) {
     step(0);
     lights = random_lights(2, 1); // both are forgotten by now
     step(2);
+}
+
+/// Where a block sees its cluster in part every receiver has its own ray, elsewhere none has.
+TEST(TracedLight, ClustersAnswerForLightsOfAnEnvironment) {
+    const scenes::RelitScene& scene = scenes::relit_scene();
+    const prt::Transfer& transfer = scene.transfer;
+    std::vector<SharpLight> lights = random_lights(60, 5);
+    TracedLight exact(transfer, scene.shadow_rays());
+    static_cast<void>(exact.trace(lights));
+    for (SharpLight& light : lights) {
+        light.is_of_list = false;
+        light.cluster = transfer.quadtree.leaf_at(cubemap::face_point(light.direction));
+    }
+    TracedLight traced(transfer, scene.shadow_rays());
+    static_cast<void>(traced.trace(lights));
+    std::size_t num_mixed = 0, num_sure = 0, num_wrong = 0;
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        for (std::size_t place = 0; place < transfer.num_receivers(); ++place) {
+            const std::size_t block = place / prt::BlockSize, lane = place % prt::BlockSize;
+            const std::uint32_t cluster = lights[i].cluster;
+            const std::size_t word = transfer.counts.word(block, cluster / 64);
+            const bool is_mixed = (transfer.counts.mixed[word] >> cluster % 64 & 1u) != 0;
+            const bool is_reached = (traced.reached(i, block) >> lane & 1u) != 0;
+            const bool is_exact = (exact.reached(i, block) >> lane & 1u) != 0;
+            (is_mixed ? num_mixed : num_sure) += 1;
+            if (is_mixed)
+                EXPECT_EQ(is_reached, is_exact) << "light " << i << ", place " << place;
+            else
+                num_wrong += is_reached != is_exact ? 1 : 0;
+        }
+    EXPECT_GT(num_mixed, 1000u);
+    // What nine samples of 16 receivers all miss.
+    EXPECT_LT(num_wrong * 200, num_sure);
 }
 
 TEST(TracedLight, KeepsWhatHighlightsNeed) {
