@@ -25,7 +25,7 @@ namespace {
 
 struct Settings {
     std::vector<std::string> environments = {"grace_cross.hdr", "stpeters_cross.hdr",
-                                             "galileo_cross.hdr", "uffizi_cross.hdr", "sun_sky"};
+                                             "galileo_cross.hdr", "kitchen_cross.hdr", "sun_sky"};
     std::uint32_t resolution = 0;
     std::vector<float> numbers = {16, 64, 256};
     std::size_t num_samples = 2000;
