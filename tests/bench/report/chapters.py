@@ -61,7 +61,7 @@ def precompute(text):
 
 def growth(text):
     exponents = first(r"Against vertices: precompute grows with exponent ([\d.]+)", text)
-    relit = first(r"Against vertices: .*relighting with ([\d.]+)", text)
+    relit = first(r"Against vertices: .*relighting with (\d+\.\d+)", text)
     if exponents:
         return f"With more vertices at the same clusters, precompute grows with exponent {exponents} and relighting with {relit}; 1 is in proportion."
 
@@ -70,7 +70,7 @@ def adjoint(text):
     rows = [row for row in data_rows(text) if "traced" not in row[0]]
     if rows:
         ratios = sorted(float(row[3]) for row in rows)
-        batch = first(r"ratio ([\d.]+)", text)
+        batch = first(r"environments at .* ratio ([\d.]+)", text)
         return f"The derivative by every texel of the environment costs {ratios[0]} to {ratios[-1]} relights, and a batch of environments {batch} of single calls."
 
 
@@ -143,7 +143,8 @@ def scale(text):
 def coarse(text):
     rows = data_rows(text)
     if rows:
-        return f"First pictures of {len(rows)} coarse meshes as they come, beside receivers in every pixel: mean difference of 255 for each light in the table."
+        off = sorted((max(map(float, row[4:])), row[0]) for row in rows)
+        return f"First pictures of {len(rows)} coarse meshes lie {off[len(off) // 2][0]} of 255 from receivers in every pixel (median over the meshes, the worse of the lights); the farthest, {off[-1][1]}, {off[-1][0]}."
 
 
 def refinement(text):

@@ -25,7 +25,7 @@ data, and Relumine's pictures beside those of Khronos' reference renderers. The 
 plots and pictures, is one page that one command makes:
 
 ```
-./dev bench report -o report/          # more than an hour; --quick leaves much out
+./dev bench report -o report/          # 85 minutes on two cores; --quick leaves much out
 ```
 
 This page is written from `docs/figures.json`, which such a run wrote. `tests/bench/baselines/` has the

@@ -110,6 +110,31 @@ class Findings(unittest.TestCase):
         for figure in ("73196", "8.255 ms", "6.7 times", "0.162 ms"):
             self.assertIn(figure, sentence)
 
+    def test_batches_are_not_taken_for_harmonics(self):
+        printed = """| light | relight | adjoint | ratio | error |
+|---|---|---|---|---|
+| beach | 12.11 ms | 27.68 ms | 2.29 | 1.4e-10 |
+
+nine coefficients, processor time: relight 55.1 ms, adjoint 155.8 ms, ratio 2.83; difference 4.9e-10
+64 environments at R = 64: 1194 ms of processors one by one, 687 ms at once, ratio 0.58
+"""
+        self.assertIn("a batch of environments 0.58 of", chapters.adjoint(printed))
+
+    def test_growth_ends_without_a_full_stop_of_the_bench(self):
+        printed = "Against vertices: precompute grows with exponent 1.50, relighting with 1.03.\n"
+        self.assertIn("relighting with 1.03; 1 is", chapters.growth(printed))
+
+    def test_coarse_pictures_have_a_median_and_a_farthest(self):
+        printed = """| mesh | vertices | refined | precompute | sun | studio |
+|---|---|---|---|---|---|
+| lamp | 769 | 43343 | 1.6 s | 0.06 | 0.36 |
+| house | 2008 | 54154 | 3.5 s | 0.94 | 0.85 |
+| castle | 4220 | 56235 | 4.3 s | 8.73 | 11.88 |
+"""
+        sentence = chapters.coarse(printed)
+        self.assertIn("lie 0.94 of 255", sentence)
+        self.assertIn("castle, 11.88.", sentence)
+
     def test_nothing_is_found_in_nothing(self):
         for chapter in chapters.CHAPTERS:
             self.assertIsNone(chapter.finding("no figures here\n"), chapter.name)
