@@ -13,8 +13,6 @@
 
 namespace relumine::relight {
 
-namespace {} // namespace
-
 TracedLight::TracedLight(const prt::Transfer& transfer, const ShadowRays& rays)
     : transfer_(transfer), rays_(rays) {
     if (rays.blockers == nullptr)
