@@ -181,7 +181,7 @@ CHAPTERS = [
     Chapter("moving_eye", "Highlights for an eye that moves", [], ["--eyes", "4", "--roughness", "0.3"], moving_eye),
     Chapter("frames", "Environments that change", BUNNY, None, frames),
     Chapter("video", "Video without flicker", BUNNY + ["--plots", "{work}"], None, video),
-    Chapter("light_lists", "Light lists", BUNNY, BUNNY + ["--receivers", "300", "--env", "grace_cross.hdr,sun_sky"], light_lists),
+    Chapter("light_lists", "Light lists", BUNNY, BUNNY + ["--receivers", "300", "--env", "grace_cross.hdr,sun_sky", "--numbers", "64"], light_lists),
     Chapter("layouts", "Layouts of environments", [], ["--tiny"], layouts),
     Chapter("harmonics", "Points and harmonics", BUNNY, BUNNY + ["--points", "300", "--parts", "grid,normals"], harmonics),
     Chapter("adjoint", "Backwards and in batches", BUNNY, BUNNY, adjoint),
