@@ -179,7 +179,8 @@ LitScene::Added LitScene::light_of_list(std::span<const lights::DistantLight> li
                                 .direction = light.direction,
                                 .irradiance = {.red = light.irradiance.r * light.direction,
                                                .green = light.irradiance.g * light.direction,
-                                               .blue = light.irradiance.b * light.direction}});
+                                               .blue = light.irradiance.b * light.direction},
+                                .is_of_list = true});
     added.soft.resize(added.radiance.size());
     return added;
 }

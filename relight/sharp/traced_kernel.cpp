@@ -10,7 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "relight/kernels/wasm_doubles-inl.h"
+#include "relight/kernels/block_loops-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::relight::HWY_NAMESPACE {
@@ -31,18 +31,13 @@ constexpr std::array<std::array<double, NibbleSize>, 16> parts_of_bits() {
 constexpr std::array<std::array<double, NibbleSize>, 16> PartsOfBits = parts_of_bits();
 
 std::uint32_t lanes_above(const BlockNormals& normals, const glm::vec3& direction) {
-    const hn::CappedTag<float, 8> d;
-    const auto x = hn::Set(d, direction.x), y = hn::Set(d, direction.y),
-               z = hn::Set(d, direction.z);
+    const Floats d;
     std::uint32_t above = 0;
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
-        const auto dot =
-            hn::MulAdd(x, hn::Load(d, normals.axes[0].data() + lane),
-                       hn::MulAdd(y, hn::Load(d, normals.axes[1].data() + lane),
-                                  hn::Mul(z, hn::Load(d, normals.axes[2].data() + lane))));
+        const auto cosine = Normals<Floats>(normals, lane).dot(&direction.x);
         std::array<std::uint8_t, 8> stored{};
-        hn::StoreMaskBits(d, hn::Gt(dot, hn::Zero(d)), stored.data());
-        above |= std::uint32_t{stored[0]} << lane;
+        hn::StoreMaskBits(d, hn::Gt(cosine, hn::Zero(d)), stored.data());
+        above |= (std::uint32_t{stored[0]} | std::uint32_t{stored[1]} << 8u) << lane;
     }
     return above;
 }

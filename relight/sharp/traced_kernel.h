@@ -22,8 +22,8 @@ struct ReachingLight {
 /// Returns the receivers of a block that have a direction above their horizons, a bit each.
 [[nodiscard]] std::uint32_t lanes_above(const BlockNormals& normals, const glm::vec3& direction);
 
-/// Returns the radiance for albedo 1 of a block under lights: the sum of irradiance.on(normal) of
-/// those that reach a receiver, over pi.
+/// Returns the radiance for albedo 1 of a block: for each receiver, the sum of
+/// irradiance.on(normal) over the lights that reach it, over pi.
 [[nodiscard]] TracedRadiance traced_radiance(const BlockNormals& normals,
                                              std::span<const ReachingLight> lights);
 

@@ -27,15 +27,14 @@ TracedLight::TracedLight(const prt::Transfer& transfer, const ShadowRays& rays)
 std::size_t TracedLight::trace(std::span<const SharpLight> lights) {
     if (rays_.blockers == nullptr)
         return 0;
-    // What a ray meets depends on its direction in float alone.
+    // What a light reaches depends on its direction in float, and on whether clusters answer for
+    // it.
     ReachedBlocks reached;
     std::vector<FreshPatch> fresh;
     std::size_t num_fresh = 0;
     std::vector<Reached*> of_light;
     for (const SharpLight& light : lights) {
-        const glm::vec3 direction(light.direction);
-        const auto [place, is_new] =
-            reached.try_emplace({direction.x, direction.y, direction.z}, nullptr);
+        const auto [place, is_new] = reached.try_emplace(key_of(light), nullptr);
         if (is_new) {
             if (const auto before = reached_.find(place->first); before != reached_.end()) {
                 place->second = std::move(before->second);
@@ -81,8 +80,12 @@ std::size_t TracedLight::trace(std::span<const SharpLight> lights) {
 }
 
 std::span<const std::uint16_t> TracedLight::reached(const SharpLight& light) const {
+    return *reached_.at(key_of(light));
+}
+
+TracedLight::Key TracedLight::key_of(const SharpLight& light) {
     const glm::vec3 direction(light.direction);
-    return *reached_.at({direction.x, direction.y, direction.z});
+    return {{direction.x, direction.y, direction.z}, light.is_of_list};
 }
 
 /// Lights of neighbouring clusters follow each other.

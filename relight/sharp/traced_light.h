@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -64,8 +65,9 @@ public:
 private:
     /// [num_blocks] bit i is set where a light reaches the block's receiver i.
     using Reached = std::vector<std::uint16_t>;
-    /// By direction: x, y, z.
-    using ReachedBlocks = std::map<std::array<float, 3>, std::unique_ptr<Reached>>;
+    /// A light's direction, and whether it is of a list.
+    using Key = std::pair<std::array<float, 3>, bool>;
+    using ReachedBlocks = std::map<Key, std::unique_ptr<Reached>>;
 
     /// New lights side by side in the sky, and what they reach.
     struct FreshPatch {
@@ -74,6 +76,7 @@ private:
         /// The cluster that answers for a light in part; none for lights of a list.
         std::array<std::optional<std::uint32_t>, prt::DirectionPatch::Size> cluster{};
     };
+    static Key key_of(const SharpLight& light);
     static void add(std::vector<FreshPatch>& patches, const SharpLight& light, Reached* reached);
 
     /// Sets the bit of a direction for the receivers that must ask it, and what others see of it.

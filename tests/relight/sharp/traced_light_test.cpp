@@ -114,6 +114,11 @@ TEST(TracedLight, ClustersAnswerForLightsOfAnEnvironment) {
     EXPECT_GT(num_mixed, 1000u);
     // What nine samples of 16 receivers all miss.
     EXPECT_LT(num_wrong * 200, num_sure);
+    // A list of the same directions has rays of its own.
+    for (SharpLight& light : lights)
+        light.is_of_list = true;
+    EXPECT_EQ(traced.trace(lights), lights.size());
+    expect_equal(traced, exact, transfer);
 }
 
 TEST(TracedLight, KeepsWhatHighlightsNeed) {
