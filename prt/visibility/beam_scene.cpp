@@ -53,9 +53,11 @@ void transpose_squares(RayWords& words) {
 /// Measured.
 constexpr std::size_t LeavesPerRay = 4;
 
-/// Wider patches are left to the exact tracer where they are crowded: their directions meet too
-/// many leaves. Measured.
-constexpr float WidestCrowdedPatch = 0.75f;
+/// A shaft with so few leaves is not compared with its directions.
+constexpr std::size_t FewLeaves = 512;
+/// With more leaves for each leaf that a single direction meets, a patch is traced direction by
+/// direction. Measured.
+constexpr std::size_t LeavesPerDirection = 10;
 
 /// What is asked of a tree: which rays of a group through a patch it blocks.
 struct Asked {
@@ -100,6 +102,16 @@ void clear_by_direction(const TriangleTree& tree, const Asked& asked, const Grou
     std::copy_n(doubts.begin(), rays.size(), in_doubt.begin());
 }
 
+/// Returns how many leaves a direction in the middle of a patch meets.
+std::size_t leaves_along_middle(const TriangleTree& tree, const Asked& asked,
+                                const GroupOrigins& origins, std::span<const std::uint64_t> rays) {
+    ReceiverBits active{};
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        active[i / 64] |= std::uint64_t{rays[i] != 0} << (i % 64);
+    return num_leaves_along(tree, {asked.patch, asked.plane, asked.patch.num_directions / 2},
+                            origins, active);
+}
+
 /// Clears the rays that a tree blocks for certain, and sets `in_doubt` to the remaining rays that
 /// it may block. `passed` is as in clear_certain(). False: the exact tracer is faster, and nothing
 /// was done.
@@ -115,9 +127,12 @@ bool clear_by_tree(const TriangleTree& tree, const PassedTriangles* passed,
     thread_local ShaftLeaves leaves;
     Shaft shaft = shaft_of(plane, asked.group.mean_normal, origins.reach);
     const ReceiverCones cones = place_shaft(origins, rays, shaft);
-    if (!find_leaves(tree, shaft, crowded_shaft, leaves)) {
-        if (std::max(plane.s1 - plane.s0, plane.t1 - plane.t0) > WidestCrowdedPatch)
-            return false;
+    const auto is_crowded = [&](std::size_t most) {
+        return !find_leaves(tree, shaft, most, leaves);
+    };
+    if (is_crowded(std::min(FewLeaves, crowded_shaft)) &&
+        is_crowded(std::min(LeavesPerDirection * leaves_along_middle(tree, asked, origins, rays),
+                            crowded_shaft))) {
         RayWords before{};
         std::copy(rays.begin(), rays.end(), before.begin());
         clear_by_direction(tree, asked, origins, rays, in_doubt);

@@ -311,35 +311,59 @@ void test_bundles(D d, const TriangleTree::Leaf& leaf, const ShaftLeaves::Found&
     }
 }
 
+/// The rays of a group in one direction.
+struct ParallelRays {
+    static constexpr hn::CappedTag<float, Width> Floats{};
+
+    Direction direction;
+    Shaft shaft;
+    ProjectedReceivers receivers;
+
+    ParallelRays(const PatchDirection& of_patch, const GroupOrigins& origins,
+                 const ReceiverBits& active) {
+        const PatchPlane& patch = of_patch.plane;
+        const std::size_t j = of_patch.index;
+        const auto axis = static_cast<std::size_t>(patch.axis);
+        direction = {.axes = {axis, (axis + 1) % 3, (axis + 2) % 3},
+                     .sign = patch.sign,
+                     .s = patch.s[j],
+                     .t = patch.t[j],
+                     .unit = of_patch.patch.direction(j)};
+        shaft = shaft_of({.axis = patch.axis,
+                          .sign = patch.sign,
+                          .s0 = patch.s[j] - DirectionSlack,
+                          .s1 = patch.s[j] + DirectionSlack,
+                          .t0 = patch.t[j] - DirectionSlack,
+                          .t1 = patch.t[j] + DirectionSlack},
+                         origins.mean_normal, origins.reach);
+        project(Floats, direction, origins, active, shaft, receivers);
+    }
+    /// As prt::find_leaves(); among too many triangles all rays are in doubt.
+    [[nodiscard]] bool find_leaves(const TriangleTree& tree, ShaftLeaves& leaves) const {
+        return prt::find_leaves(tree, shaft, MostLeaves, leaves);
+    }
+};
+
+std::size_t num_leaves_along(const TriangleTree& tree, const PatchDirection& of_patch,
+                             const GroupOrigins& origins, const ReceiverBits& active) {
+    const ParallelRays rays(of_patch, origins, active);
+    thread_local ShaftLeaves leaves;
+    static_cast<void>(rays.find_leaves(tree, leaves));
+    return leaves.found.size();
+}
+
 ParallelResult test_parallel_rays(const TriangleTree& tree, const PatchDirection& of_patch,
                                   const GroupOrigins& origins, const ReceiverBits& active) {
-    const hn::CappedTag<float, Width> d;
-    const PatchPlane& patch = of_patch.plane;
-    const std::size_t j = of_patch.index;
-    const auto axis = static_cast<std::size_t>(patch.axis);
-    const Direction direction{.axes = {axis, (axis + 1) % 3, (axis + 2) % 3},
-                              .sign = patch.sign,
-                              .s = patch.s[j],
-                              .t = patch.t[j],
-                              .unit = of_patch.patch.direction(j)};
-    Shaft shaft = shaft_of({.axis = patch.axis,
-                            .sign = patch.sign,
-                            .s0 = patch.s[j] - DirectionSlack,
-                            .s1 = patch.s[j] + DirectionSlack,
-                            .t0 = patch.t[j] - DirectionSlack,
-                            .t1 = patch.t[j] + DirectionSlack},
-                           origins.mean_normal, origins.reach);
-    ProjectedReceivers receivers;
-    project(d, direction, origins, active, shaft, receivers);
+    ParallelRays rays(of_patch, origins, active);
     thread_local ShaftLeaves leaves;
-    if (!find_leaves(tree, shaft, MostLeaves, leaves))
+    if (!rays.find_leaves(tree, leaves))
         return {.blocked = {}, .doubtful = active, .num_leaves = leaves.found.size()};
     ReceiverBits lit = active;
     ReceiverBits doubtful{};
     for (const std::uint32_t i : leaves.order) {
         const ShaftLeaves::Found& found = leaves.found[i];
-        test_bundles(d, tree.leaves[static_cast<std::size_t>(found.leaf)], found, direction,
-                     origins, receivers, lit, doubtful);
+        test_bundles(ParallelRays::Floats, tree.leaves[static_cast<std::size_t>(found.leaf)], found,
+                     rays.direction, origins, rays.receivers, lit, doubtful);
     }
     ParallelResult result{.num_leaves = leaves.found.size()};
     for (std::size_t i = 0; i < lit.size(); ++i) {
@@ -356,8 +380,14 @@ HWY_AFTER_NAMESPACE();
 namespace relumine::prt {
 
 namespace {
+HWY_EXPORT(num_leaves_along);
 HWY_EXPORT(test_parallel_rays);
 } // namespace
+
+std::size_t num_leaves_along(const TriangleTree& tree, const PatchDirection& of_patch,
+                             const GroupOrigins& origins, const ReceiverBits& active) {
+    return HWY_DYNAMIC_DISPATCH(num_leaves_along)(tree, of_patch, origins, active);
+}
 
 ParallelResult test_parallel_rays(const TriangleTree& tree, const PatchDirection& of_patch,
                                   const GroupOrigins& origins, const ReceiverBits& active) {

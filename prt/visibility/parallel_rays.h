@@ -49,4 +49,9 @@ struct ParallelResult {
                                                 const GroupOrigins& origins,
                                                 const ReceiverBits& active);
 
+/// Returns how many leaves the rays of `active` receivers in one direction may meet; more than a
+/// thousand are not all counted.
+[[nodiscard]] std::size_t num_leaves_along(const TriangleTree& tree, const PatchDirection& of_patch,
+                                           const GroupOrigins& origins, const ReceiverBits& active);
+
 } // namespace relumine::prt
