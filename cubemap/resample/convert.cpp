@@ -25,14 +25,20 @@ namespace relumine::cubemap {
 
 namespace {
 
-EnvironmentImage empty_image(const ImageShape& shape) {
+using Pixels = std::vector<glm::vec3>;
+
+EnvironmentImage image_of(const ImageShape& shape, Pixels pixels) {
     EnvironmentImage image;
     image.width = shape.width;
     image.height = shape.height;
     image.layout = shape.layout;
     image.sampling = shape.sampling;
-    image.pixels.resize(static_cast<std::size_t>(shape.width) * shape.height);
+    image.pixels = std::move(pixels);
     return image;
+}
+
+EnvironmentImage empty_image(const ImageShape& shape) {
+    return image_of(shape, Pixels(std::size_t{shape.width} * shape.height));
 }
 
 /// Copies pixel by pixel. Returns nothing unless every target pixel lies on a source pixel.
@@ -85,27 +91,25 @@ std::uint32_t resolution_between(const ImageShape& source, const ImageShape& tar
     return std::min(finer * natural, std::max(Finest, natural));
 }
 
-/// Averages from one shape to another and back, mostly by way of a cube map.
+/// Whether pixels are averaged over footprints without a cube map, from either shape to the other.
+bool is_direct(const ImageShape& source, const ImageShape& target,
+               const glm::dmat3& target_from_source) {
+    return source.layout == Layout::LatLong && target.layout == Layout::LatLong &&
+           keeps_vertical(target_from_source);
+}
+
+/// Averages from one shape to another and back, by way of a cube map.
 class Path {
 public:
     Path(const ImageShape& source, const ImageShape& target, const glm::dmat3& target_from_source,
          std::uint32_t finer = 2)
         : source_(source), target_(target), target_from_source_(target_from_source), finer_(finer) {
     }
-    /// Whether both ways go without a cube map.
-    [[nodiscard]] bool is_direct() const {
-        return source_.layout == Layout::LatLong && target_.layout == Layout::LatLong &&
-               keeps_vertical(target_from_source_);
-    }
     /// Each target pixel is the mean over its footprint.
     [[nodiscard]] EnvironmentImage forth(const EnvironmentImage& image) const {
-        if (is_direct())
-            return resize_lat_long(image, target_, target_from_source_);
         return averaged(image, source_, target_, target_from_source_);
     }
     [[nodiscard]] EnvironmentImage back(const EnvironmentImage& image) const {
-        if (is_direct())
-            return resize_lat_long(image, source_, glm::transpose(target_from_source_));
         return averaged(image, target_, source_, glm::transpose(target_from_source_));
     }
 
@@ -164,7 +168,16 @@ EnvironmentImage interpolated(const EnvironmentImage& image, const ImageShape& t
     return result;
 }
 
-using Pixels = std::vector<glm::vec3>;
+/// Each target pixel is the mean over its footprint.
+EnvironmentImage averaged(const EnvironmentImage& image, const ImageShape& target,
+                          const glm::dmat3& target_from_source) {
+    const ImageShape source = shape_of(image);
+    if (!is_direct(source, target, target_from_source))
+        return Path(source, target, target_from_source).forth(image);
+    Pixels pixels;
+    LatLongResize(source, target, target_from_source).average(image.pixels, pixels);
+    return image_of(target, std::move(pixels));
+}
 
 constexpr std::size_t ChunkSize = 1 << 14;
 
@@ -226,19 +239,24 @@ Sums take_ratio(Pixels& ratio, const Pixels& image) {
 /// Differs from them: a round starts beyond the end of the last one, in the same direction
 /// (Nesterov 1983; Biggs and Andrews 1997 for this iteration). This takes a fraction of the rounds.
 /// The result is the end of a round, so the power is still exact.
+/// `forth` and `back` average their first argument into their second.
 template<typename Forth, typename Back>
 void correct(const Pixels& image, const Forth& forth, const Back& back, int num_rounds,
              Pixels& grown) {
-    fill_zeros(grown, [&] { return forth(image); });
-    Pixels start = grown;
+    Pixels start, ratio, factor;
+    fill_zeros(grown, [&] {
+        forth(image, factor);
+        return factor;
+    });
+    start = grown;
     double last_difference = std::numeric_limits<double>::infinity(),
            earlier_difference = last_difference;
     // Rounds since the last restart.
     int run = 0;
     for (int round = 0; round < num_rounds; ++round) {
-        Pixels ratio = back(start);
+        back(start, ratio);
         const auto [difference, sum] = take_ratio(ratio, image);
-        const Pixels factor = forth(ratio);
+        forth(ratio, factor);
         // The difference rose, so the step was too long: restart.
         run = difference > last_difference ? 0 : run + 1;
         last_difference = difference;
@@ -280,26 +298,31 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
     // gigabytes. The interpolation is nearly right: its irradiance is off by 2e-4 at most, and by
     // less than 1e-5 after one round. So the cube map need not be finer than the pictures.
     constexpr std::size_t Large = std::size_t{1} << 22;
-    const Path path(source, target, target_from_source, 1);
-    if (path.is_direct() || std::max(image.pixels.size(), result.pixels.size()) > Large) {
-        const auto over = [](const ImageShape& shape, const Pixels& pixels) {
-            EnvironmentImage picture = empty_image(shape);
-            picture.pixels = pixels;
-            return picture;
-        };
+    if (is_direct(source, target, target_from_source)) {
+        LatLongResize forth(source, target, target_from_source);
+        LatLongResize back(target, source, glm::transpose(target_from_source));
+        correct(
+            image.pixels, [&](const Pixels& from, Pixels& to) { forth.average(from, to); },
+            [&](const Pixels& from, Pixels& to) { back.average(from, to); }, MostRounds,
+            result.pixels);
+        return result;
+    }
+    if (std::max(image.pixels.size(), result.pixels.size()) > Large) {
+        const Path path(source, target, target_from_source, 1);
         correct(
             image.pixels,
-            [&](const Pixels& pixels) { return path.forth(over(source, pixels)).pixels; },
-            [&](const Pixels& pixels) { return path.back(over(target, pixels)).pixels; },
-            path.is_direct() ? MostRounds : 1, result.pixels);
+            [&](const Pixels& from, Pixels& to) { to = path.forth(image_of(source, from)).pixels; },
+            [&](const Pixels& from, Pixels& to) { to = path.back(image_of(target, from)).pixels; },
+            1, result.pixels);
         return result;
     }
     const PixelLinks links(source, target, target_from_source, resolution_between(source, target),
                            has_faces(source.layout) ? PixelLinks::Axes::Source
                                                     : PixelLinks::Axes::Target);
     correct(
-        image.pixels, [&](const Pixels& pixels) { return links.to_target(pixels); },
-        [&](const Pixels& pixels) { return links.to_source(pixels); }, MostRounds, result.pixels);
+        image.pixels, [&](const Pixels& from, Pixels& to) { to = links.to_target(from); },
+        [&](const Pixels& from, Pixels& to) { to = links.to_source(from); }, MostRounds,
+        result.pixels);
     return result;
 }
 
@@ -314,9 +337,8 @@ EnvironmentImage convert(const EnvironmentImage& image, const ImageShape& target
         return std::move(*copy);
     // At about the same size there is nothing to smooth and hardly any room for corrections.
     const bool grows = 5 * natural_resolution(target) > 6 * natural_resolution(image);
-    EnvironmentImage result = grows
-                                  ? grown(image, target, target_from_source)
-                                  : Path(shape_of(image), target, target_from_source).forth(image);
+    EnvironmentImage result = grows ? grown(image, target, target_from_source)
+                                    : averaged(image, target, target_from_source);
     result.assumptions = "converted";
     return result;
 }

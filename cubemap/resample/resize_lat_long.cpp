@@ -81,53 +81,53 @@ bool keeps_vertical(const glm::dmat3& turn) {
     return std::abs(std::abs(turn[1][1]) - 1.0) < Rounding;
 }
 
-EnvironmentImage resize_lat_long(const EnvironmentImage& image, const ImageShape& target,
-                                 const glm::dmat3& target_from_source) {
+struct LatLongResize::Tables {
+    ImageShape source, target;
+    AxisMeans columns, rows;
+};
+
+LatLongResize::LatLongResize(const ImageShape& source, const ImageShape& target,
+                             const glm::dmat3& target_from_source) {
     constexpr double Pi = std::numbers::pi;
     // Longitude is 2 pi (1/2 - column), from +Z towards +X.
     const glm::dmat3& turn = target_from_source;
     const bool is_mirrored = turn[0][0] * turn[2][2] - turn[2][0] * turn[0][2] < 0.0;
     const double longitude = std::atan2(turn[2][0], turn[2][2]); // of what was at +Z
     const double offset = (is_mirrored ? 1.0 : 0.0) - longitude / (2.0 * Pi);
-    const AxisMeans columns(
-        cell_borders(image.width, image.sampling), cell_borders(target.width, target.sampling),
+    AxisMeans columns(
+        cell_borders(source.width, source.sampling), cell_borders(target.width, target.sampling),
         [&](double u) { return (is_mirrored ? -u : u) + offset; },
         [](double a, double b) { return b - a; });
     const bool is_turned_over = turn[1][1] < 0.0;
-    const AxisMeans rows(
-        cell_borders(image.height, image.sampling), cell_borders(target.height, target.sampling),
+    AxisMeans rows(
+        cell_borders(source.height, source.sampling), cell_borders(target.height, target.sampling),
         [&](double v) { return is_turned_over ? 1.0 - v : v; },
         [](double a, double b) { return std::cos(Pi * a) - std::cos(Pi * b); });
+    tables_ = std::make_unique<Tables>(source, target, std::move(columns), std::move(rows));
+    wide_.resize(std::size_t{target.width} * source.height);
+}
+LatLongResize::~LatLongResize() = default;
 
-    // First the columns, on the source's rows.
-    std::vector<glm::vec3> wide(static_cast<std::size_t>(target.width) * image.height);
-    files::parallel_for(std::uint32_t{0}, image.height, [&](std::uint32_t y) {
-        const glm::vec3* from = image.pixels.data() + std::size_t{y} * image.width;
-        glm::vec3* to = wide.data() + std::size_t{y} * target.width;
-        for (std::uint32_t x = 0; x < target.width; ++x) {
+void LatLongResize::average(std::span<const glm::vec3> from, std::vector<glm::vec3>& to) {
+    const std::size_t source_width = tables_->source.width, width = tables_->target.width;
+    files::parallel_for(std::uint32_t{0}, tables_->source.height, [&](std::uint32_t y) {
+        const glm::vec3* const row = from.data() + y * source_width;
+        for (std::size_t x = 0; x < width; ++x) {
             glm::dvec3 sum(0.0);
-            for (const auto& [source, weight] : columns.of(x))
-                sum += weight * glm::dvec3(from[source]);
-            to[x] = glm::vec3(sum);
+            for (const auto& [column, weight] : tables_->columns.of(x))
+                sum += weight * glm::dvec3(row[column]);
+            wide_[y * width + x] = glm::vec3(sum);
         }
     });
-    EnvironmentImage result;
-    result.width = target.width;
-    result.height = target.height;
-    result.layout = target.layout;
-    result.sampling = target.sampling;
-    result.pixels.resize(static_cast<std::size_t>(target.width) * target.height);
-    files::parallel_for(std::uint32_t{0}, target.height, [&](std::uint32_t y) {
-        std::vector<glm::dvec3> sums(target.width, glm::dvec3(0.0));
-        for (const auto& [source, weight] : rows.of(y)) {
-            const glm::vec3* from = wide.data() + std::size_t{source} * target.width;
-            for (std::uint32_t x = 0; x < target.width; ++x)
-                sums[x] += weight * glm::dvec3(from[x]);
-        }
-        for (std::uint32_t x = 0; x < target.width; ++x)
-            result.pixels[std::size_t{y} * target.width + x] = glm::vec3(sums[x]);
+    to.resize(width * tables_->target.height);
+    files::parallel_for(std::uint32_t{0}, tables_->target.height, [&](std::uint32_t y) {
+        std::vector<glm::dvec3> sums(width, glm::dvec3(0.0));
+        for (const auto& [row, weight] : tables_->rows.of(y))
+            for (std::size_t x = 0; x < width; ++x)
+                sums[x] += weight * glm::dvec3(wide_[row * width + x]);
+        for (std::size_t x = 0; x < width; ++x)
+            to[y * width + x] = glm::vec3(sums[x]);
     });
-    return result;
 }
 
 } // namespace relumine::cubemap

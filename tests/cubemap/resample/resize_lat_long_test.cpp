@@ -25,6 +25,14 @@ EnvironmentImage noise(std::uint32_t width, std::uint32_t height, Sampling sampl
     return image;
 }
 
+EnvironmentImage resized(const EnvironmentImage& image, const ImageShape& target,
+                         const glm::dmat3& turn) {
+    EnvironmentImage result =
+        black_image(target.layout, target.sampling, target.width, target.height);
+    LatLongResize(shape_of(image), target, turn).average(image.pixels, result.pixels);
+    return result;
+}
+
 /// The plain way: points spread evenly over each target pixel's part of the sphere look up the
 /// source pixel that they lie in.
 std::vector<glm::dvec3> means_of_points(const EnvironmentImage& image, const ImageShape& target,
@@ -75,7 +83,7 @@ TEST(ResizeLatLong, EachPixelIsTheMeanOverItsFootprint) {
                 const EnvironmentImage image = noise(16, 9, sampling, 3);
                 const ImageShape target{Layout::LatLong, Sampling::TexelCentres, size.width,
                                         size.height};
-                const EnvironmentImage result = resize_lat_long(image, target, turn);
+                const EnvironmentImage result = resized(image, target, turn);
                 const auto expected = means_of_points(image, target, turn, 40);
                 ASSERT_EQ(result.pixels.size(), expected.size());
                 for (std::size_t i = 0; i < expected.size(); ++i)
@@ -88,7 +96,7 @@ TEST(ResizeLatLong, EachPixelIsTheMeanOverItsFootprint) {
 TEST(ResizeLatLong, HalvesOfPixelsAreThePixels) {
     const EnvironmentImage image = noise(12, 6, Sampling::TexelCentres, 4);
     const ImageShape twice{Layout::LatLong, Sampling::TexelCentres, 24, 12};
-    const EnvironmentImage fine = resize_lat_long(image, twice, glm::dmat3(1.0));
+    const EnvironmentImage fine = resized(image, twice, glm::dmat3(1.0));
     for (std::uint32_t y = 0; y < 12; ++y)
         for (std::uint32_t x = 0; x < 24; ++x)
             EXPECT_NEAR(fine.pixels[y * 24 + x].x, image.pixels[y / 2 * 12 + x / 2].x, 1e-6f);
@@ -104,9 +112,9 @@ TEST(ResizeLatLong, KnowsWhichTurnsKeepTheVertical) {
 TEST(ResizeLatLong, IsTheSameForAnyNumberOfThreads) {
     const EnvironmentImage image = noise(40, 20, Sampling::TexelCentres, 5);
     const ImageShape target{Layout::LatLong, Sampling::TexelCentres, 77, 33};
-    const auto many = resize_lat_long(image, target, turn_about_y(5.0)).pixels;
+    const auto many = resized(image, target, turn_about_y(5.0)).pixels;
     const files::ThreadLimit one(1);
-    EXPECT_EQ(resize_lat_long(image, target, turn_about_y(5.0)).pixels, many);
+    EXPECT_EQ(resized(image, target, turn_about_y(5.0)).pixels, many);
 }
 
 } // namespace
