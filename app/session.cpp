@@ -220,17 +220,22 @@ std::function<void(double)> Session::progress(const std::string& what) {
         const double done = fraction - state.first_fraction;
         if (elapsed < 1.0 || done <= 0.0)
             return;
-        const std::string left = duration(elapsed / done * (1.0 - fraction));
+        // The first guess of how much there is may be off by a hundred times.
+        constexpr double LeastToJudge = 0.01;
+        const std::string left =
+            done < LeastToJudge
+                ? ""
+                : fmt::format(", about {} left", duration(elapsed / done * (1.0 - fraction)));
         if (terminal) {
             if (time - state.last_shown < 0.1 && fraction < 1.0)
                 return;
             state.last_shown = time;
-            fmt::print(stderr, "\r{}: {:3.0f} %, about {} left   ", what, 100.0 * fraction, left);
+            fmt::print(stderr, "\r{}: {:3.0f} %{}   ", what, 100.0 * fraction, left);
             std::fflush(stderr);
             bar_open_ = true;
             shared().is_bar_open = true;
         } else if (state.lines.is_due(fraction, elapsed)) {
-            fmt::print(stderr, "{}: {:.0f} %, about {} left\n", what, 100.0 * fraction, left);
+            fmt::print(stderr, "{}: {:.0f} %{}\n", what, 100.0 * fraction, left);
         }
     };
 }
