@@ -8,7 +8,9 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
+#include "cubemap/cube_map.h"
 #include "data_gen/sequences.h"
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
@@ -73,7 +75,25 @@ void measure_sequence(const data_gen::Sequence& sequence, const Settings& settin
     std::fflush(stdout);
 }
 
-/// Updates of a random part of the clusters, and the sum of all.
+/// Returns the clusters nearest to a direction, `share` of all.
+std::vector<bool> disc(const prt::Quadtree& quadtree, double share) {
+    const glm::dvec3 middle = glm::normalize(glm::dvec3(0.3, 0.8, 0.4));
+    std::vector<std::pair<double, std::size_t>> distances;
+    for (std::size_t i = 0; i < quadtree.num_leaves(); ++i) {
+        const prt::Cell& cell = quadtree.leaves()[i];
+        const glm::dvec3 direction = cubemap::direction(cell.face, (cell.x + 0.5) * cell.size(),
+                                                        (cell.y + 0.5) * cell.size());
+        distances.emplace_back(-glm::dot(direction, middle), i);
+    }
+    std::sort(distances.begin(), distances.end());
+    distances.resize(static_cast<std::size_t>(share * static_cast<double>(distances.size())));
+    std::vector<bool> result(quadtree.num_leaves());
+    for (const auto& [distance, cluster] : distances)
+        result[cluster] = true;
+    return result;
+}
+
+/// Updates of a part of the clusters, spread at random or in a disc, and the sum of all.
 void measure_shares(const Settings& settings, const Scene& scene) {
     relight::EnvironmentBinner binner(scene.transfer, 0.0f);
     const relight::BinnedEnvironment base =
@@ -88,24 +108,38 @@ void measure_shares(const Settings& settings, const Scene& scene) {
     }
     fmt::print("\nsum of all clusters: {:.1f} ms (least {:.1f})\n", bench::median(all),
                *std::min_element(all.begin(), all.end()));
-    std::mt19937 random(1);
-    for (const double share : {0.01, 0.05, 0.1, 0.2, 0.29, 0.4, 0.5}) {
+    const auto measure = [&](const std::string& what, const auto& choose) {
         std::vector<double> update;
         bool resummed = false;
         for (int i = 0; i < settings.passes; ++i) {
             relight::BinnedEnvironment frame = base;
-            for (relight::VectorIrradiance& sum : frame.sums)
-                if (std::uniform_real_distribution<double>()(random) < share)
-                    sum.red *= 1.0 + 0.1 * (i + 1);
+            const std::vector<bool> changed = choose();
+            for (std::size_t c = 0; c < changed.size(); ++c)
+                if (changed[c]) {
+                    // Its colour and its direction change.
+                    frame.sums[c].red *= 1.0 + 0.1 * (i + 1);
+                    frame.sums[c].blue += 1e-3 * (i + 1) * glm::length(frame.sums[c].blue);
+                }
             relighter.set_frame(base);
             const bench::Stopwatch watch;
             resummed = relighter.set_frame(std::move(frame)).resummed;
             update.push_back(1e3 * watch.seconds());
         }
-        fmt::print("{:.0f} % of the clusters: {:.1f} ms (least {:.1f}){}\n", 100.0 * share,
+        fmt::print("{}: {:.1f} ms (least {:.1f}), {:.2f} of the sum{}\n", what,
                    bench::median(update), *std::min_element(update.begin(), update.end()),
-                   resummed ? ", all summed" : "");
-    }
+                   bench::median(update) / bench::median(all), resummed ? ", all summed" : "");
+    };
+    std::mt19937 random(1);
+    for (const double share : {0.01, 0.05, 0.1, 0.2, 0.29, 0.4, 0.5})
+        measure(fmt::format("{:.0f} % of the clusters", 100.0 * share), [&] {
+            std::vector<bool> changed(base.sums.size());
+            std::generate(changed.begin(), changed.end(),
+                          [&] { return std::uniform_real_distribution<double>()(random) < share; });
+            return changed;
+        });
+    for (const double share : {0.01, 0.05})
+        measure(fmt::format("{:.0f} % in a disc", 100.0 * share),
+                [&] { return disc(scene.transfer.quadtree, share); });
 }
 
 void run(const Settings& settings, const bench::Inputs& inputs) {
