@@ -10,8 +10,8 @@ namespace {
 /// Preparing a triangle takes as long as 32 rays save (`./dev bench frames`, the sequence `sun`).
 constexpr std::uint64_t RaysPerTriangle = 32;
 
-/// A gigabyte of prepared triangles.
-constexpr std::size_t MostTriangles = 4'000'000;
+/// Three gigabytes of prepared triangles.
+constexpr std::size_t MostTriangles = 12'000'000;
 
 } // namespace
 

@@ -28,7 +28,7 @@ public:
                                          std::uint32_t active) const override;
     void clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
                        std::span<std::uint64_t> rays) const override;
-    /// Memory:  about 250 bytes per triangle from some call on; none beyond a gigabyte.
+    /// Memory:  about 250 bytes per triangle from some call on; none beyond three gigabytes.
     void prepare(std::uint64_t num_rays) const override;
 
     [[nodiscard]] bool has_beams() const { return ready_ != nullptr; }
