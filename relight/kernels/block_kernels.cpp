@@ -43,43 +43,59 @@ struct PairWord {
     const BlockNormals& normals;
 };
 
+/// Receivers of a block that are summed side by side: what is read and decided for a cluster serves
+/// all of them. Two vectors where one does not hold the block.
+struct Side {
+    static constexpr std::size_t NumVectors = hn::MaxLanes(Floats()) < prt::BlockSize ? 2 : 1;
+    static constexpr std::size_t Size = NumVectors * hn::MaxLanes(Floats());
+};
+
 /// Adds max(n.E, 0) of clusters.
 template<bool AnySpread>
-void add_whole(std::uint64_t bits, const Normals<Floats>& n, const WordLights& lights, Sum& sum) {
+HWY_INLINE void add_whole(std::uint64_t bits, const Normals<Floats>* normals,
+                          const WordLights& lights, Sum* sums) {
     const auto zero = hn::Zero(Floats());
-    const float* directionals = lights.directionals;
     for (; bits != 0; bits &= bits - 1) {
         const std::size_t i = first_bit(bits);
-        if (AnySpread && (lights.spread >> i & 1u) != 0) {
-            const float* e = lights.vectors + i * ClusterLights::Stride;
-            sum.red = hn::Add(sum.red, hn::Max(n.dot(e), zero));
-            sum.green = hn::Add(sum.green, hn::Max(n.dot(e + 3), zero));
-            sum.blue = hn::Add(sum.blue, hn::Max(n.dot(e + 6), zero));
-        } else {
-            const float* directional = directionals + i * ClusterLights::DirectionalStride;
-            sum.add(hn::Max(n.dot(directional), zero), directional + 3);
+        for (std::size_t v = 0; v < Side::NumVectors; ++v) {
+            const Normals<Floats>& n = normals[v];
+            Sum& sum = sums[v];
+            if (AnySpread && (lights.spread >> i & 1u) != 0) {
+                const float* e = lights.vectors + i * ClusterLights::Stride;
+                sum.red = hn::Add(sum.red, hn::Max(n.dot(e), zero));
+                sum.green = hn::Add(sum.green, hn::Max(n.dot(e + 3), zero));
+                sum.blue = hn::Add(sum.blue, hn::Max(n.dot(e + 6), zero));
+            } else {
+                const float* directional =
+                    lights.directionals + i * ClusterLights::DirectionalStride;
+                sum.add(hn::Max(n.dot(directional), zero), directional + 3);
+            }
         }
     }
 }
 
 /// Adds c max(n.E, 0) of clusters.
 template<bool AnySpread>
-void add_counted(std::uint64_t bits, const std::uint8_t* counts, const Normals<Floats>& n,
-                 const WordLights& lights, Sum& sum) {
+HWY_INLINE void add_counted(std::uint64_t bits, const std::uint8_t* counts,
+                            const Normals<Floats>* normals, const WordLights& lights, Sum* sums) {
     const Floats d;
     const auto zero = hn::Zero(d);
-    const float* directionals = lights.directionals;
     for (; bits != 0; bits &= bits - 1, counts += prt::BlockSize) {
         const std::size_t i = first_bit(bits);
-        const auto count = load_counts(d, counts);
-        if (AnySpread && (lights.spread >> i & 1u) != 0) {
-            const float* e = lights.vectors + i * ClusterLights::Stride;
-            sum.red = hn::MulAdd(count, hn::Max(n.dot(e), zero), sum.red);
-            sum.green = hn::MulAdd(count, hn::Max(n.dot(e + 3), zero), sum.green);
-            sum.blue = hn::MulAdd(count, hn::Max(n.dot(e + 6), zero), sum.blue);
-        } else {
-            const float* directional = directionals + i * ClusterLights::DirectionalStride;
-            sum.add(hn::Mul(count, hn::Max(n.dot(directional), zero)), directional + 3);
+        for (std::size_t v = 0; v < Side::NumVectors; ++v) {
+            const Normals<Floats>& n = normals[v];
+            Sum& sum = sums[v];
+            const auto count = load_counts(d, counts + v * hn::Lanes(d));
+            if (AnySpread && (lights.spread >> i & 1u) != 0) {
+                const float* e = lights.vectors + i * ClusterLights::Stride;
+                sum.red = hn::MulAdd(count, hn::Max(n.dot(e), zero), sum.red);
+                sum.green = hn::MulAdd(count, hn::Max(n.dot(e + 3), zero), sum.green);
+                sum.blue = hn::MulAdd(count, hn::Max(n.dot(e + 6), zero), sum.blue);
+            } else {
+                const float* directional =
+                    lights.directionals + i * ClusterLights::DirectionalStride;
+                sum.add(hn::Mul(count, hn::Max(n.dot(directional), zero)), directional + 3);
+            }
         }
     }
 }
@@ -88,19 +104,24 @@ void add_counted(std::uint64_t bits, const std::uint8_t* counts, const Normals<F
 template<bool AnySpread>
 void add_pairs(const PairWord& word, const WordLights& lights, FloatSum& result) {
     const Floats d;
-    for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
-        const Normals<Floats> n(word.normals, lane);
-        Sum sum(result, lane);
+    constexpr std::size_t Last = Side::NumVectors - 1;
+    for (std::size_t lane = 0; lane < prt::BlockSize; lane += Side::Size) {
+        const std::size_t last = lane + Last * hn::Lanes(d);
+        const Normals<Floats> n[] = {{word.normals, lane}, {word.normals, last}};
+        Sum sums[] = {{result, lane}, {result, last}};
         if (word.across != 0) {
-            Sum whole;
+            Sum whole[2];
             add_whole<AnySpread>(word.across, n, lights, whole);
             const auto full = hn::Set(d, static_cast<float>(prt::FullCount));
-            sum.red = hn::MulAdd(full, whole.red, sum.red);
-            sum.green = hn::MulAdd(full, whole.green, sum.green);
-            sum.blue = hn::MulAdd(full, whole.blue, sum.blue);
+            for (std::size_t v = 0; v < Side::NumVectors; ++v) {
+                sums[v].red = hn::MulAdd(full, whole[v].red, sums[v].red);
+                sums[v].green = hn::MulAdd(full, whole[v].green, sums[v].green);
+                sums[v].blue = hn::MulAdd(full, whole[v].blue, sums[v].blue);
+            }
         }
-        add_counted<AnySpread>(word.mixed, word.counts + lane, n, lights, sum);
-        sum.store(result, lane);
+        add_counted<AnySpread>(word.mixed, word.counts + lane, n, lights, sums);
+        for (std::size_t v = 0; v < Side::NumVectors; ++v)
+            sums[v].store(result, lane + v * hn::Lanes(d));
     }
 }
 
