@@ -103,7 +103,7 @@ LatLongResize::LatLongResize(const ImageShape& source, const ImageShape& target,
         cell_borders(source.height, source.sampling), cell_borders(target.height, target.sampling),
         [&](double v) { return is_turned_over ? 1.0 - v : v; },
         [](double a, double b) { return std::cos(Pi * a) - std::cos(Pi * b); });
-    tables_ = std::make_unique<Tables>(source, target, std::move(columns), std::move(rows));
+    tables_ = std::make_unique<Tables>(Tables{source, target, std::move(columns), std::move(rows)});
     wide_.resize(std::size_t{target.width} * source.height);
 }
 LatLongResize::~LatLongResize() = default;
