@@ -34,8 +34,8 @@ class SeeThrough;
 /// Why nothing changes: rounding errors have bounds, and a test here only decides where its result
 /// is beyond its bound. A ray hits a triangle for certain, misses all of them for certain, or is in
 /// doubt, because it passes an edge within some 1e-6 of its length. `exact` is asked for rays in
-/// doubt and for wide patches. Triangles that let some rays pass have a tree of their own: a ray
-/// that hits one of them for certain passes it or not as it does there.
+/// doubt and where directions meet too many triangles. Triangles that let some rays pass have a
+/// tree of their own: a ray that hits one of them for certain passes it or not as it does there.
 ///
 /// A shaft of a fixed angle holds more triangles on a finer mesh, while a group of receivers
 /// shrinks there. So a crowded patch is traced direction by direction, all receivers of the group
@@ -43,8 +43,8 @@ class SeeThrough;
 /// the depth of the tree.
 class BeamScene final : public Blockers {
 public:
-    /// Leaves of up to 16 triangles in a shaft; with more, directions are traced one by one.
-    /// Measured (docs/performance.md).
+    /// Leaves of up to 16 triangles in a shaft; with more, directions are traced one by one. With
+    /// fewer, too, where a direction meets but few of them. Measured (docs/performance.md).
     static constexpr std::size_t CrowdedShaft = 4096;
 
     /// `exact` traces the triangles of the same mesh and must outlive this object; the mesh need

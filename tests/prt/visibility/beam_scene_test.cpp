@@ -311,6 +311,24 @@ TEST(BeamScene, AsksTheRayTracerRarelyOnFineMeshes) {
     EXPECT_LT(static_cast<double>(counting.rays().size()), 0.05 * static_cast<double>(num_blocked));
 }
 
+// From inside a fine sphere the shaft of a wide patch holds many triangles, and each direction few.
+TEST(BeamScene, TracesCrowdedPatchesByDirectionHoweverWide) {
+    const mesh::TriangleMesh fine = scenes::icosphere(6, 1.0f, glm::vec3(0.0f));
+    const RayScene rays(fine);
+    const scenes::CountingBlockers counting(rays);
+    const BeamScene beams(fine, counting, rays.see_through(), 0);
+    const DirectionPatch patch = lattice_patch({.face = cubemap::Face::PositiveY, .level = 1}, 8);
+    std::mt19937 random(15);
+    std::vector<glm::vec3> origins;
+    for (std::size_t i = 0; i < ReceiverGroup::MaxSize; ++i)
+        origins.push_back(0.01f * scenes::random_direction(random));
+    std::vector<std::uint64_t> lit(origins.size(), all_of(patch)), expected = lit;
+    beams.clear_blocked({origins, {0, 1, 0}}, patch, lit);
+    EXPECT_LT(counting.rays().size(), origins.size() * 64 / 20);
+    rays.clear_blocked({origins, {0, 1, 0}}, patch, expected);
+    EXPECT_EQ(lit, expected);
+}
+
 TEST(BeamScene, ChangesNoTransfer) {
     const auto same = [](const mesh::TriangleMesh& mesh, const std::string& name) {
         const RayScene rays(mesh);
