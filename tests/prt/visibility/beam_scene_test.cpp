@@ -317,7 +317,10 @@ TEST(BeamScene, TracesCrowdedPatchesByDirectionHoweverWide) {
     const RayScene rays(fine);
     const scenes::CountingBlockers counting(rays);
     const BeamScene beams(fine, counting, rays.see_through(), 0);
-    const DirectionPatch patch = lattice_patch({.face = cubemap::Face::PositiveY, .level = 1}, 8);
+    DirectionPatch patch;
+    for (int i = 0; i < 64; ++i)
+        patch.add(glm::normalize(
+            glm::vec3(static_cast<float>(i % 8) - 3.5f, 8.0f, static_cast<float>(i / 8) - 3.5f)));
     std::mt19937 random(15);
     std::vector<glm::vec3> origins;
     for (std::size_t i = 0; i < ReceiverGroup::MaxSize; ++i)
