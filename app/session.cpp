@@ -220,7 +220,7 @@ std::function<void(double)> Session::progress(const std::string& what) {
         const double done = fraction - state.first_fraction;
         if (elapsed < 1.0 || done <= 0.0)
             return;
-        // The first guess of how much there is may be off by a hundred times.
+        // The first guess of how much there is may be far off.
         constexpr double LeastToJudge = 0.01;
         const std::string left =
             done < LeastToJudge

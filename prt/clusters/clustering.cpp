@@ -46,6 +46,12 @@ double allowed_squared_distance(const PrecomputeOptions& options, std::size_t nu
     return times_pi * times_pi;
 }
 
+/// The tolerance of the options, or that of their epsilon.
+double tolerance_of(const PrecomputeOptions& options, std::size_t num_receivers) {
+    const auto n = static_cast<double>(std::max<std::size_t>(num_receivers, 1));
+    return std::sqrt(allowed_squared_distance(options, num_receivers) / n) / std::numbers::pi;
+}
+
 /// Allocations and links beside the bytes themselves. They matter when receivers are few.
 constexpr std::uint64_t OverheadOfPlane = 112;
 constexpr std::uint64_t OverheadOfCluster = 256;
@@ -73,7 +79,8 @@ Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
                            work, CheckpointPart, [this] { return content(); },
                            [this] { num_saved_ = clusters_.size(); }),
       max_level_(texel_level(options.face_resolution)),
-      allowed_(allowed_squared_distance(options, receivers.size())), estimate_(max_level_) {
+      allowed_(allowed_squared_distance(options, receivers.size())),
+      estimate_(max_level_, tolerance_of(options, receivers.size())) {
     ordered_normals_.reserve(order_.size());
     for (const std::uint32_t receiver : order_)
         ordered_normals_.push_back(receivers.normals[receiver]);

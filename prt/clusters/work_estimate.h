@@ -25,8 +25,9 @@ public:
     /// the allowed one: none below 1.
     [[nodiscard]] static std::uint8_t expected_depth(double excess);
 
-    /// Cells of `max_level` are never split.
-    explicit WorkEstimate(std::uint32_t max_level) : max_level_(max_level) {}
+    /// Cells of `max_level` are never split. `tolerance` is that of PrecomputeOptions: how many
+    /// levels there will be is guessed from it as long as nothing was added.
+    WorkEstimate(std::uint32_t max_level, double tolerance);
 
     /// Says that cells of one level were tested, and how long it took.
     void add(std::uint32_t level, const Depths& cells, double seconds);
@@ -51,6 +52,7 @@ private:
     };
     std::array<Level, MaxLevel + 1> levels_;
     std::uint32_t max_level_;
+    double first_share_;
     double seconds_ = 0.0;
 };
 

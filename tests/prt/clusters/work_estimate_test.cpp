@@ -28,12 +28,14 @@ const std::vector<std::vector<LevelTime>> Measured = {{{3, {121, 7, 37, 184, 35}
                                                        {6, {6636, 572}, 1.132},
                                                        {7, {2288}, 0.294}}};
 
+constexpr double DefaultTolerance = 0.0135;
+
 TEST(WorkEstimate, AfterAFifthOfTheTimeTheRestIsKnownToAThird) {
     for (const std::vector<LevelTime>& levels : Measured) {
         double all = 0.0;
         for (const LevelTime& level : levels)
             all += level.seconds;
-        WorkEstimate estimate(8);
+        WorkEstimate estimate(8, DefaultTolerance);
         auto level = levels.begin();
         for (; estimate.seconds() < 0.19 * all; ++level)
             estimate.add(level->level, level->cells, level->seconds);
@@ -57,7 +59,7 @@ TEST(WorkEstimate, CellsFarOverTheLimitHaveManyLevelsBelow) {
 TEST(WorkEstimate, ChildrenHaveOneLevelLessBelow) {
     // Of 64 cells, 32 are split; the children of 8 are split again, and then no more. A cell takes
     // six tenths of its parent's time.
-    WorkEstimate estimate(5);
+    WorkEstimate estimate(5, DefaultTolerance);
     estimate.add(2, {32, 24, 8}, 64.0);
     WorkEstimate::Counts cells{};
     cells[3] = 128;
@@ -75,18 +77,26 @@ TEST(WorkEstimate, ChildrenHaveOneLevelLessBelow) {
 }
 
 TEST(WorkEstimate, CellsOfTheDeepestLevelAreNeverSplit) {
-    WorkEstimate estimate(3);
+    WorkEstimate estimate(3, DefaultTolerance);
     estimate.add(2, {0, 0, 0, 16}, 16.0);
     WorkEstimate::Counts cells{};
     cells[3] = 64;
     EXPECT_DOUBLE_EQ(estimate.seconds_of(cells), 64 * 0.6);
 }
 
-TEST(WorkEstimate, ExpectsSomethingBeforeAnythingIsKnown) {
-    const WorkEstimate estimate(8);
-    WorkEstimate::Counts cells{};
-    cells[3] = 384;
-    EXPECT_GT(estimate.seconds_of(cells), 384 * estimate.seconds_of_cell(3));
+// As long as nothing is known, what the bunny on its floor took: 20 times its first level at the
+// default tolerance, hardly more than that at a coarse one.
+TEST(WorkEstimate, ExpectsWhatTheToleranceSaysBeforeAnythingIsKnown) {
+    const auto times_first = [](double tolerance) {
+        const WorkEstimate estimate(8, tolerance);
+        WorkEstimate::Counts cells{};
+        cells[0] = 6;
+        return estimate.seconds_of(cells) / (6 * estimate.seconds_of_cell(0));
+    };
+    EXPECT_NEAR(times_first(DefaultTolerance), 20.0, 2.0);
+    EXPECT_NEAR(times_first(0.03), 2.2, 0.3);
+    EXPECT_NEAR(times_first(0.05), 1.5, 0.3);
+    EXPECT_GT(times_first(0.01), 40.0);
 }
 
 } // namespace
