@@ -239,16 +239,17 @@ Sums take_ratio(Pixels& ratio, const Pixels& image) {
 /// Differs from them: a round starts beyond the end of the last one, in the same direction
 /// (Nesterov 1983; Biggs and Andrews 1997 for this iteration). This takes a fraction of the rounds.
 /// The result is the end of a round, so the power is still exact.
+///
 /// `forth` and `back` average their first argument into their second.
 template<typename Forth, typename Back>
 void correct(const Pixels& image, const Forth& forth, const Back& back, int num_rounds,
              Pixels& grown) {
-    Pixels start, ratio, factor;
+    Pixels ratio, factor;
     fill_zeros(grown, [&] {
         forth(image, factor);
         return factor;
     });
-    start = grown;
+    Pixels start = grown;
     double last_difference = std::numeric_limits<double>::infinity(),
            earlier_difference = last_difference;
     // Rounds since the last restart.
@@ -294,10 +295,6 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
     const ImageShape source = shape_of(image);
     EnvironmentImage result = interpolated(image, target, target_from_source);
     constexpr int MostRounds = 200; // a sun in a disc's rim needs most of them
-    // In pictures this large a sun is never smaller than a pixel, and the links would take
-    // gigabytes. The interpolation is nearly right: its irradiance is off by 2e-4 at most, and by
-    // less than 1e-5 after one round. So the cube map need not be finer than the pictures.
-    constexpr std::size_t Large = std::size_t{1} << 22;
     if (is_direct(source, target, target_from_source)) {
         LatLongResize forth(source, target, target_from_source);
         LatLongResize back(target, source, glm::transpose(target_from_source));
@@ -307,6 +304,10 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
             result.pixels);
         return result;
     }
+    // In pictures this large a sun is never smaller than a pixel, and the links would take
+    // gigabytes. The interpolation is nearly right: its irradiance is off by 2e-4 at most, and by
+    // less than 1e-5 after one round. So the cube map need not be finer than the pictures.
+    constexpr std::size_t Large = std::size_t{1} << 22;
     if (std::max(image.pixels.size(), result.pixels.size()) > Large) {
         const Path path(source, target, target_from_source, 1);
         correct(

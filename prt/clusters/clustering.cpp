@@ -17,6 +17,7 @@
 #include "prt/clusters/lattice.h"
 #include "prt/free_memory.h"
 #include "prt/receivers/receiver_order.h"
+#include "prt/tolerance.h"
 #include "prt/transfer/cell_index.h"
 
 namespace relumine::prt {
@@ -44,12 +45,6 @@ double allowed_squared_distance(const PrecomputeOptions& options, std::size_t nu
                                             : static_cast<double>(options.tolerance) * std::sqrt(n);
     const double times_pi = distance * std::numbers::pi;
     return times_pi * times_pi;
-}
-
-/// The tolerance of the options, or that of their epsilon.
-double tolerance_of(const PrecomputeOptions& options, std::size_t num_receivers) {
-    const auto n = static_cast<double>(std::max<std::size_t>(num_receivers, 1));
-    return std::sqrt(allowed_squared_distance(options, num_receivers) / n) / std::numbers::pi;
 }
 
 /// Allocations and links beside the bytes themselves. They matter when receivers are few.
@@ -80,7 +75,7 @@ Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
                            [this] { num_saved_ = clusters_.size(); }),
       max_level_(texel_level(options.face_resolution)),
       allowed_(allowed_squared_distance(options, receivers.size())),
-      estimate_(max_level_, tolerance_of(options, receivers.size())) {
+      estimate_(max_level_, rms_tolerance(options.tolerance, options.epsilon, receivers.size())) {
     ordered_normals_.reserve(order_.size());
     for (const std::uint32_t receiver : order_)
         ordered_normals_.push_back(receivers.normals[receiver]);

@@ -25,9 +25,9 @@ public:
     /// the allowed one: none below 1.
     [[nodiscard]] static std::uint8_t expected_depth(double excess);
 
-    /// Cells of `max_level` are never split. `tolerance` is that of PrecomputeOptions: how many
-    /// levels there will be is guessed from it as long as nothing was added.
-    WorkEstimate(std::uint32_t max_level, double tolerance);
+    /// Cells of `max_level` are never split. As long as nothing was added, the number of levels is
+    /// guessed from `tolerance`, a PrecomputeOptions::tolerance.
+    WorkEstimate(std::uint32_t max_level, float tolerance);
 
     /// Says that cells of one level were tested, and how long it took.
     void add(std::uint32_t level, const Depths& cells, double seconds);

@@ -44,7 +44,7 @@ class SeeThrough;
 class BeamScene final : public Blockers {
 public:
     /// Leaves of up to 16 triangles in a shaft; with more, directions are traced one by one. With
-    /// fewer, too, where a direction meets but few of them. Measured (docs/performance.md).
+    /// fewer leaves, too, where a direction meets few. Measured (docs/performance.md).
     static constexpr std::size_t CrowdedShaft = 4096;
 
     /// `exact` traces the triangles of the same mesh and must outlive this object; the mesh need

@@ -47,14 +47,8 @@ public:
             add_normals(clusters & ~common, mixed, counts, normals);
     }
 
-    /// The light of a word's clusters in one environment.
-    struct WordLight {
-        const float* vectors;
-        const float* directionals;
-        std::uint64_t spread;
-    };
     /// Adds all of them for environments side by side.
-    HWY_INLINE void light(const std::array<WordLight, Side>& lights, FloatSum* sums) const {
+    HWY_INLINE void light(const std::array<WordLights, Side>& lights, FloatSum* sums) const {
         const Floats d;
         for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
             Sum a(sums[0], lane), b(sums[1], lane), c(sums[2], lane), e(sums[3], lane);
@@ -133,22 +127,9 @@ private:
     }
 
     /// Adds the clusters whose direction is each environment's own.
-    HWY_INLINE void add_own(const WordLight& light, std::size_t lane, Sum& sum) const {
-        const auto zero = hn::Zero(Floats());
-        for (std::size_t pair = 0; pair < num_own_; ++pair) {
-            const Normals<Floats> n(normals_[pair], lane);
-            const std::size_t i = own_[pair];
-            if ((light.spread >> i & 1u) != 0) {
-                const float* e = light.vectors + i * ClusterLights::Stride;
-                sum.red = hn::Add(sum.red, hn::Max(n.dot(e), zero));
-                sum.green = hn::Add(sum.green, hn::Max(n.dot(e + 3), zero));
-                sum.blue = hn::Add(sum.blue, hn::Max(n.dot(e + 6), zero));
-            } else {
-                const float* directional =
-                    light.directionals + i * ClusterLights::DirectionalStride;
-                sum.add(hn::Max(n.dot(directional), zero), directional + 3);
-            }
-        }
+    HWY_INLINE void add_own(const WordLights& lights, std::size_t lane, Sum& sum) const {
+        for (std::size_t pair = 0; pair < num_own_; ++pair)
+            add_cluster<true>(lights, own_[pair], Normals<Floats>(normals_[pair], lane), sum);
     }
 
     std::size_t num_common_ = 0, num_own_ = 0;
@@ -175,12 +156,9 @@ void add_per_receiver(const BlockScene& scene, std::size_t tile, const BatchLigh
     for (std::size_t w = 0; w < num_words; ++w) {
         const TileWord& blocks = scene.words.words[tile * num_words + w];
         const std::uint8_t* of_pairs = counts.counts.data() + blocks.mixed_before * prt::BlockSize;
-        std::array<WordPairs::WordLight, Most> of_word;
+        std::array<WordLights, Most> of_word;
         for (std::size_t k = 0; k < Most; ++k)
-            of_word[k] = {.vectors = lights.each[k].vectors.data() + w * 64 * ClusterLights::Stride,
-                          .directionals = lights.each[k].directionals.data() +
-                                          w * 64 * ClusterLights::DirectionalStride,
-                          .spread = lights.each[k].spread[w]};
+            of_word[k] = WordLights(lights.each[k], w);
         for_blocks(blocks.mixed | blocks.across, [&](std::size_t block) {
             const std::uint64_t mixed = counts.mixed[counts.word(begin, w) + block];
             pairs.clear();

@@ -25,13 +25,6 @@ std::size_t counts_before(std::uint64_t mixed, std::uint64_t cluster) {
     return num_counts(mixed & (cluster - 1));
 }
 
-/// The light of a word's clusters.
-struct WordLights {
-    const float* vectors;
-    const float* directionals;
-    std::uint64_t spread;
-};
-
 /// The clusters of a block and word that add up per receiver.
 struct PairWord {
     /// Seen in part.
@@ -43,9 +36,9 @@ struct PairWord {
     const BlockNormals& normals;
 };
 
-/// Receivers of a block that are summed side by side: what is read and decided for a cluster serves
-/// all of them. Two vectors where one does not hold the block.
-struct Side {
+/// Receivers of a block that are summed side by side, so that each cluster is read and decided
+/// about once for them: two vectors of them where one does not hold the block.
+struct SideBySide {
     static constexpr std::size_t NumVectors = hn::MaxLanes(Floats()) < prt::BlockSize ? 2 : 1;
     static constexpr std::size_t Size = NumVectors * hn::MaxLanes(Floats());
 };
@@ -54,24 +47,9 @@ struct Side {
 template<bool AnySpread>
 HWY_INLINE void add_whole(std::uint64_t bits, const Normals<Floats>* normals,
                           const WordLights& lights, Sum* sums) {
-    const auto zero = hn::Zero(Floats());
-    for (; bits != 0; bits &= bits - 1) {
-        const std::size_t i = first_bit(bits);
-        for (std::size_t v = 0; v < Side::NumVectors; ++v) {
-            const Normals<Floats>& n = normals[v];
-            Sum& sum = sums[v];
-            if (AnySpread && (lights.spread >> i & 1u) != 0) {
-                const float* e = lights.vectors + i * ClusterLights::Stride;
-                sum.red = hn::Add(sum.red, hn::Max(n.dot(e), zero));
-                sum.green = hn::Add(sum.green, hn::Max(n.dot(e + 3), zero));
-                sum.blue = hn::Add(sum.blue, hn::Max(n.dot(e + 6), zero));
-            } else {
-                const float* directional =
-                    lights.directionals + i * ClusterLights::DirectionalStride;
-                sum.add(hn::Max(n.dot(directional), zero), directional + 3);
-            }
-        }
-    }
+    for (; bits != 0; bits &= bits - 1)
+        for (std::size_t v = 0; v < SideBySide::NumVectors; ++v)
+            add_cluster<AnySpread>(lights, first_bit(bits), normals[v], sums[v]);
 }
 
 /// Adds c max(n.E, 0) of clusters.
@@ -82,7 +60,7 @@ HWY_INLINE void add_counted(std::uint64_t bits, const std::uint8_t* counts,
     const auto zero = hn::Zero(d);
     for (; bits != 0; bits &= bits - 1, counts += prt::BlockSize) {
         const std::size_t i = first_bit(bits);
-        for (std::size_t v = 0; v < Side::NumVectors; ++v) {
+        for (std::size_t v = 0; v < SideBySide::NumVectors; ++v) {
             const Normals<Floats>& n = normals[v];
             Sum& sum = sums[v];
             const auto count = load_counts(d, counts + v * hn::Lanes(d));
@@ -104,8 +82,8 @@ HWY_INLINE void add_counted(std::uint64_t bits, const std::uint8_t* counts,
 template<bool AnySpread>
 void add_pairs(const PairWord& word, const WordLights& lights, FloatSum& result) {
     const Floats d;
-    constexpr std::size_t Last = Side::NumVectors - 1;
-    for (std::size_t lane = 0; lane < prt::BlockSize; lane += Side::Size) {
+    constexpr std::size_t Last = SideBySide::NumVectors - 1;
+    for (std::size_t lane = 0; lane < prt::BlockSize; lane += SideBySide::Size) {
         const std::size_t last = lane + Last * hn::Lanes(d);
         const Normals<Floats> n[] = {{word.normals, lane}, {word.normals, last}};
         Sum sums[] = {{result, lane}, {result, last}};
@@ -113,14 +91,14 @@ void add_pairs(const PairWord& word, const WordLights& lights, FloatSum& result)
             Sum whole[2];
             add_whole<AnySpread>(word.across, n, lights, whole);
             const auto full = hn::Set(d, static_cast<float>(prt::FullCount));
-            for (std::size_t v = 0; v < Side::NumVectors; ++v) {
+            for (std::size_t v = 0; v < SideBySide::NumVectors; ++v) {
                 sums[v].red = hn::MulAdd(full, whole[v].red, sums[v].red);
                 sums[v].green = hn::MulAdd(full, whole[v].green, sums[v].green);
                 sums[v].blue = hn::MulAdd(full, whole[v].blue, sums[v].blue);
             }
         }
         add_counted<AnySpread>(word.mixed, word.counts + lane, n, lights, sums);
-        for (std::size_t v = 0; v < Side::NumVectors; ++v)
+        for (std::size_t v = 0; v < SideBySide::NumVectors; ++v)
             sums[v].store(result, lane + v * hn::Lanes(d));
     }
 }
@@ -222,10 +200,7 @@ void add_per_receiver(const BlockScene& scene, std::size_t tile, const ClusterLi
     for (std::size_t w = 0; w < num_words; ++w) {
         const TileWord& blocks = scene.words.words[tile * num_words + w];
         const std::size_t first_word = counts.word(begin, w);
-        const WordLights of_word{.vectors = lights.vectors.data() + w * 64 * ClusterLights::Stride,
-                                 .directionals = lights.directionals.data() +
-                                                 w * 64 * ClusterLights::DirectionalStride,
-                                 .spread = lights.spread[w]};
+        const WordLights of_word(lights, w);
         const std::uint64_t pairs = (blocks.mixed | blocks.across) & chosen;
         const std::uint8_t* of_pairs = counts.counts.data() + blocks.mixed_before * prt::BlockSize;
         for_blocks(blocks.mixed | pairs, [&](std::size_t block) {

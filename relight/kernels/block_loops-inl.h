@@ -94,6 +94,35 @@ struct Sum {
     }
 };
 
+/// The light of a word's clusters, in one environment.
+struct WordLights {
+    const float* vectors;
+    const float* directionals;
+    std::uint64_t spread;
+
+    WordLights() = default;
+    WordLights(const ClusterLights& lights, std::size_t w)
+        : vectors(lights.vectors.data() + w * 64 * ClusterLights::Stride),
+          directionals(lights.directionals.data() + w * 64 * ClusterLights::DirectionalStride),
+          spread(lights.spread[w]) {}
+};
+
+/// Adds max(n.E, 0) of cluster i of a word. Without AnySpread it is not spread.
+template<bool AnySpread>
+HWY_INLINE void add_cluster(const WordLights& lights, std::size_t i, const Normals<Floats>& n,
+                            Sum& sum) {
+    const auto zero = hn::Zero(Floats());
+    if (AnySpread && (lights.spread >> i & 1u) != 0) {
+        const float* e = lights.vectors + i * ClusterLights::Stride;
+        sum.red = hn::Add(sum.red, hn::Max(n.dot(e), zero));
+        sum.green = hn::Add(sum.green, hn::Max(n.dot(e + 3), zero));
+        sum.blue = hn::Add(sum.blue, hn::Max(n.dot(e + 6), zero));
+    } else {
+        const float* directional = lights.directionals + i * ClusterLights::DirectionalStride;
+        sum.add(hn::Max(n.dot(directional), zero), directional + 3);
+    }
+}
+
 /// Adds float sums to those in double.
 HWY_INLINE void add(const FloatSum& sum, BlockLight& light) {
     const hn::CappedTag<double, prt::BlockSize> d;

@@ -139,7 +139,7 @@ void measure_shares(const Settings& settings, const Scene& scene) {
         });
     for (const double share : {0.01, 0.05})
         measure(fmt::format("{:.0f} % in a disc", 100.0 * share),
-                [&] { return disc(scene.transfer.quadtree, share); });
+                [changed = disc(scene.transfer.quadtree, share)] { return changed; });
 }
 
 void run(const Settings& settings, const bench::Inputs& inputs) {

@@ -28,7 +28,7 @@ const std::vector<std::vector<LevelTime>> Measured = {{{3, {121, 7, 37, 184, 35}
                                                        {6, {6636, 572}, 1.132},
                                                        {7, {2288}, 0.294}}};
 
-constexpr double DefaultTolerance = 0.0135;
+constexpr float DefaultTolerance = 0.0135f;
 
 TEST(WorkEstimate, AfterAFifthOfTheTimeTheRestIsKnownToAThird) {
     for (const std::vector<LevelTime>& levels : Measured) {
@@ -84,19 +84,26 @@ TEST(WorkEstimate, CellsOfTheDeepestLevelAreNeverSplit) {
     EXPECT_DOUBLE_EQ(estimate.seconds_of(cells), 64 * 0.6);
 }
 
+TEST(WorkEstimate, ExpectsSomethingBeforeAnythingIsKnown) {
+    const WorkEstimate estimate(8, DefaultTolerance);
+    WorkEstimate::Counts cells{};
+    cells[3] = 384;
+    EXPECT_GT(estimate.seconds_of(cells), 384 * estimate.seconds_of_cell(3));
+}
+
 // As long as nothing is known, what the bunny on its floor took: 20 times its first level at the
 // default tolerance, hardly more than that at a coarse one.
-TEST(WorkEstimate, ExpectsWhatTheToleranceSaysBeforeAnythingIsKnown) {
-    const auto times_first = [](double tolerance) {
+TEST(WorkEstimate, ExpectsWhatTheToleranceSays) {
+    const auto times_first = [](float tolerance) {
         const WorkEstimate estimate(8, tolerance);
         WorkEstimate::Counts cells{};
         cells[0] = 6;
         return estimate.seconds_of(cells) / (6 * estimate.seconds_of_cell(0));
     };
     EXPECT_NEAR(times_first(DefaultTolerance), 20.0, 2.0);
-    EXPECT_NEAR(times_first(0.03), 2.2, 0.3);
-    EXPECT_NEAR(times_first(0.05), 1.5, 0.3);
-    EXPECT_GT(times_first(0.01), 40.0);
+    EXPECT_NEAR(times_first(0.03f), 2.2, 0.3);
+    EXPECT_NEAR(times_first(0.05f), 1.5, 0.3);
+    EXPECT_GT(times_first(0.01f), 40.0);
 }
 
 } // namespace
