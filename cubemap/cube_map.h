@@ -73,8 +73,9 @@ struct CubeMap {
 
 /// Returns the map turned by an orthogonal matrix; mirror images are allowed. What was seen in
 /// direction w is then seen in direction `turn` w. A matrix that carries axes to axes moves texels.
-/// Any other mixes them, and energy is kept as in resample().
-[[nodiscard]] CubeMap turned(const CubeMap& map, const glm::dmat3& turn);
+/// Any other mixes them, and energy is kept as in resample(). `memory` is a map that nobody needs
+/// any more: one of the same resolution is written over, which is quicker than new memory.
+[[nodiscard]] CubeMap turned(const CubeMap& map, const glm::dmat3& turn, CubeMap memory = {});
 
 /// Returns true if a matrix carries axes to axes.
 [[nodiscard]] bool carries_axes_to_axes(const glm::dmat3& turn);
@@ -88,8 +89,8 @@ struct CubeMap {
 /// matrix is exact for multiples of 90 degrees.
 [[nodiscard]] glm::dmat3 turn_about_x(double degrees);
 
-/// Returns the map turned by turn_about_y().
+/// Returns the map turned by turn_about_y(), as turned().
 /// Throws:  std::invalid_argument for an angle that is not finite.
-[[nodiscard]] CubeMap rotated(const CubeMap& map, double degrees_about_y);
+[[nodiscard]] CubeMap rotated(const CubeMap& map, double degrees_about_y, CubeMap memory = {});
 
 } // namespace relumine::cubemap

@@ -23,10 +23,6 @@ namespace {
 // bright edge. Less than that is lost among texels that err to either side.
 constexpr double EdgeShare = 1.0 / 16384.0;
 
-// Exact texels that lie so near in a row are done together, with those in between: to begin anew
-// costs as much.
-constexpr std::uint32_t LargestGap = 4;
-
 /// The axes of a face: of a direction d on it, (u, v) is (d.right, d.down) / d.outwards.
 struct FaceAxes {
     glm::dvec3 right, down, outwards;
@@ -110,7 +106,7 @@ QuickTurns::QuickTurns(std::shared_ptr<const CubeMap> map)
     }
 }
 
-/// Writes a row of a face, bilinear, and notes the texels near bright edges.
+/// Writes a row of a face, bilinear, and adds the columns near bright edges.
 void QuickTurns::fill_row(Face face, std::uint32_t y, const glm::dmat3& source_from_destination,
                           glm::vec3* row, std::vector<std::uint32_t>& near_edges) const {
     static const std::array<FaceAxes, NumFaces> Axes = axes_of_faces();
@@ -122,7 +118,6 @@ void QuickTurns::fill_row(Face face, std::uint32_t y, const glm::dmat3& source_f
     const glm::dvec3 step =
         (source_from_destination * cube_point(face, (r - 0.5) / n, height) - first) / (n - 1.0);
     const auto half = static_cast<float>(0.5 * n);
-    near_edges.clear();
     std::uint32_t x = 0;
     while (x < r) {
         const Face from = face_point(first + step * static_cast<double>(x)).face;
@@ -170,21 +165,25 @@ CubeMap QuickTurns::turned(const glm::dmat3& turn) const {
     const glm::dmat3 source_from_destination = glm::transpose(turn);
     const TurnedTexels exact(*map_, source_from_destination);
     CubeMap result(r);
+    const std::size_t num_rows = exact.num_rows();
     files::parallel_for(
-        files::IndexRange<std::uint32_t>(0, NumFaces * r, 16), [&](const auto& rows) {
-            TurnedTexels::Worker worker(r);
+        files::IndexRange<std::size_t>(0, NumFaces * num_rows), [&](const auto& rows) {
             std::vector<std::uint32_t> near_edges;
-            for (std::uint32_t i = rows.begin(); i != rows.end(); ++i) {
-                const Face face = AllFaces[i / r];
-                glm::vec3* row = &result.at(face, 0, i % r);
-                fill_row(face, i % r, source_from_destination, row, near_edges);
-                for (std::size_t k = 0; k < near_edges.size();) {
-                    const std::uint32_t begin = near_edges[k];
-                    std::uint32_t end = begin + 1;
-                    for (++k; k < near_edges.size() && near_edges[k] <= end + LargestGap; ++k)
-                        end = near_edges[k] + 1;
-                    exact.fill(face, i % r, begin, end, false, worker, row);
-                }
+            TurnedTile sums;
+            for (std::size_t i = rows.begin(); i != rows.end(); ++i) {
+                const Face face = AllFaces[i / num_rows];
+                const auto row = static_cast<std::uint32_t>(i % num_rows);
+                const TexelRectangle first = exact.tile(face, row, 0);
+                near_edges.clear();
+                for (std::uint32_t y = first.y0; y < first.y1; ++y)
+                    fill_row(face, y, source_from_destination, &result.at(face, 0, y), near_edges);
+                std::ranges::transform(near_edges, near_edges.begin(),
+                                       [&](std::uint32_t x) { return exact.column_of(x); });
+                std::ranges::sort(near_edges);
+                const auto rest = std::ranges::unique(near_edges);
+                near_edges.erase(rest.begin(), rest.end());
+                for (const std::uint32_t column : near_edges)
+                    exact.fill(exact.tile(face, row, column), sums, result);
             }
         });
     return result;

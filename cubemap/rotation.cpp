@@ -2,13 +2,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include <glm/matrix.hpp>
 
 #include "cubemap/cube_map.h"
+#include "cubemap/spherical_overlap.h"
 #include "cubemap/turned_texels.h"
 #include "files/parallel.h"
 
@@ -32,23 +35,59 @@ Angle angle_of(double degrees) {
     return {Cosines[quarter], Cosines[(quarter + 3) % 4]};
 }
 
-/// By any matrix.
-CubeMap mixed(const CubeMap& map, const glm::dmat3& source_from_destination) {
-    const TurnedTexels texels(map, source_from_destination);
-    CubeMap result(map.resolution);
-    files::parallel_for(files::IndexRange<std::uint32_t>(0, map.resolution), [&](const auto& rows) {
-        TurnedTexels::Worker worker(map.resolution);
-        for (const Face face : AllFaces)
-            for (std::uint32_t y = rows.begin(); y != rows.end(); ++y)
-                texels.fill(face, y, 0, map.resolution, y != rows.begin(), worker,
-                            &result.at(face, 0, y));
+/// A texel by itself.
+glm::vec3 mixed_texel(const CubeMap& map, const glm::dmat3& source_from_destination, Face face,
+                      std::uint32_t x, std::uint32_t y, TexelOverlaps& overlaps) {
+    const double n = map.resolution;
+    const auto corner = [&](std::uint32_t i, std::uint32_t j) {
+        return source_from_destination * cube_point(face, i / n, j / n);
+    };
+    std::array<glm::dvec3, 4> corners = {corner(x, y), corner(x + 1, y), corner(x + 1, y + 1),
+                                         corner(x, y + 1)};
+    if (glm::determinant(source_from_destination) < 0.0)
+        std::swap(corners[1], corners[3]);
+    glm::dvec3 sum(0.0);
+    double weights = 0.0;
+    overlaps.find(corners, [&](Face from, std::uint32_t column, std::uint32_t row, double weight) {
+        sum += glm::dvec3(map.at(from, column, row)) * weight;
+        weights += weight;
     });
-    return result;
+    return glm::vec3(sum / weights);
+}
+
+/// By any matrix, texel by texel. In coarse maps TexelOverlaps takes the solid angle in finer cells
+/// than texels.
+void mix_coarse(const CubeMap& map, const glm::dmat3& source_from_destination, CubeMap& result) {
+    const std::uint32_t r = map.resolution;
+    files::parallel_for(files::IndexRange<std::size_t>(0, NumFaces * r), [&](const auto& rows) {
+        TexelOverlaps overlaps(r);
+        for (std::size_t i = rows.begin(); i != rows.end(); ++i) {
+            const Face face = AllFaces[i / r];
+            const auto y = static_cast<std::uint32_t>(i % r);
+            for (std::uint32_t x = 0; x < r; ++x)
+                result.at(face, x, y) =
+                    mixed_texel(map, source_from_destination, face, x, y, overlaps);
+        }
+    });
+}
+
+/// By any matrix.
+void mix(const CubeMap& map, const glm::dmat3& source_from_destination, CubeMap& result) {
+    const TurnedTexels texels(map, source_from_destination);
+    const std::uint32_t num_rows = texels.num_rows();
+    files::parallel_for(
+        files::IndexRange<std::size_t>(0, NumFaces * num_rows, 2), [&](const auto& rows) {
+            TurnedTile sums;
+            for (std::size_t i = rows.begin(); i != rows.end(); ++i)
+                for (std::uint32_t column = 0; column < texels.num_columns(); ++column)
+                    texels.fill(texels.tile(AllFaces[i / num_rows],
+                                            static_cast<std::uint32_t>(i % num_rows), column),
+                                sums, result);
+        });
 }
 
 /// By a matrix that carries axes to axes.
-CubeMap moved(const CubeMap& map, const glm::dmat3& source_from_destination) {
-    CubeMap result(map.resolution);
+void move(const CubeMap& map, const glm::dmat3& source_from_destination, CubeMap& result) {
     const auto texel = [&](double s) {
         return std::min(static_cast<std::uint32_t>(s * map.resolution), map.resolution - 1);
     };
@@ -60,7 +99,6 @@ CubeMap moved(const CubeMap& map, const glm::dmat3& source_from_destination) {
                 result.at(face, x, y) = map.at(source.face, texel(source.s), texel(source.t));
             }
     });
-    return result;
 }
 
 } // namespace
@@ -76,12 +114,19 @@ bool carries_axes_to_axes(const glm::dmat3& turn) {
     return true;
 }
 
-CubeMap turned(const CubeMap& map, const glm::dmat3& turn) {
+CubeMap turned(const CubeMap& map, const glm::dmat3& turn, CubeMap memory) {
     if (turn == glm::dmat3(1.0))
         return map;
     const glm::dmat3 source_from_destination = glm::transpose(turn);
-    return carries_axes_to_axes(turn) ? moved(map, source_from_destination)
-                                      : mixed(map, source_from_destination);
+    if (memory.resolution != map.resolution)
+        memory = CubeMap(map.resolution);
+    if (carries_axes_to_axes(turn))
+        move(map, source_from_destination, memory);
+    else if (map.resolution < TurnedTexels::MinResolution)
+        mix_coarse(map, source_from_destination, memory);
+    else
+        mix(map, source_from_destination, memory);
+    return memory;
 }
 
 glm::dmat3 turn_about_y(double degrees) {
@@ -94,10 +139,10 @@ glm::dmat3 turn_about_x(double degrees) {
     return {{1.0, 0.0, 0.0}, {0.0, cosine, sine}, {0.0, -sine, cosine}}; // columns
 }
 
-CubeMap rotated(const CubeMap& map, double degrees_about_y) {
+CubeMap rotated(const CubeMap& map, double degrees_about_y, CubeMap memory) {
     if (!std::isfinite(degrees_about_y))
         throw std::invalid_argument("rotation: expected a finite number of degrees");
-    return turned(map, turn_about_y(degrees_about_y));
+    return turned(map, turn_about_y(degrees_about_y), std::move(memory));
 }
 
 } // namespace relumine::cubemap

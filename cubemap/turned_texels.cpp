@@ -1,84 +1,79 @@
 #include "cubemap/turned_texels.h"
 
-#include <array>
+#include <algorithm>
 #include <cstddef>
-#include <utility>
 
-#include <glm/matrix.hpp>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 namespace relumine::cubemap {
 
+namespace {
+
+std::uint32_t num_parts(std::uint32_t size, std::uint32_t most) {
+    return (size + most - 1) / most;
+}
+
+/// A direction along the axes of a face: to the right and down in its image, and outwards.
+glm::dvec3 on_face(const glm::dvec3& direction, Face face) {
+    const glm::dvec3 outwards = cube_point(face, 0.5, 0.5);
+    return {glm::dot(direction, cube_point(face, 1.0, 0.5) - outwards),
+            glm::dot(direction, cube_point(face, 0.5, 1.0) - outwards),
+            glm::dot(direction, outwards)};
+}
+
+/// Whether a tile may meet a face: the bounds of its corners do, in front of the face.
+bool meets_face(const TilePlace& place, double width, double height) {
+    glm::dvec2 least(1.0), most(-1.0);
+    for (const glm::dvec3& corner : {place.corner(0.0, 0.0), place.corner(width, 0.0),
+                                     place.corner(0.0, height), place.corner(width, height)}) {
+        if (!(corner.z > 0.0))
+            return false;
+        least = glm::min(least, glm::dvec2(corner) / corner.z);
+        most = glm::max(most, glm::dvec2(corner) / corner.z);
+    }
+    return least.x < 1.0 && least.y < 1.0 && most.x > -1.0 && most.y > -1.0;
+}
+
+} // namespace
+
+// Tiles are so small that on a face they reach from no side to the other.
 TurnedTexels::TurnedTexels(const CubeMap& map, const glm::dmat3& source_from_destination)
-    : map_(map), source_from_destination_(source_from_destination),
-      is_mirrored_(glm::determinant(source_from_destination) < 0.0) {}
-
-glm::dvec3 TurnedTexels::corner(Face face, std::uint32_t x, std::uint32_t y) const {
-    const double n = map_.resolution;
-    return source_from_destination_ * cube_point(face, x / n, y / n);
-}
-
-void TurnedTexels::find_corners(Face face, std::uint32_t y, std::uint32_t begin, std::uint32_t end,
-                                Worker::CornerLine& line) const {
-    const double n = map_.resolution;
-    line.faces.resize(map_.resolution + 1);
-    line.points.resize(map_.resolution + 1);
-    const glm::dvec3 first = corner(face, 0, y), across = corner(face, map_.resolution, y) - first;
-    for (std::uint32_t x = begin; x <= end; ++x) {
-        const FacePoint point = face_point(first + across * (x / n));
-        line.faces[x] = point.face;
-        line.points[x] = glm::dvec2(point.s, point.t) * n;
+    : map_(map),
+      num_rows_(num_parts(map.resolution, std::min(TurnedTile::MaxHeight, map.resolution / 8))),
+      num_columns_(num_parts(map.resolution, std::min(TurnedTile::MaxWidth, map.resolution / 8))) {
+    const double n = map.resolution;
+    for (std::size_t face = 0; face < NumFaces; ++face) {
+        const auto corner = [&](double s, double t) {
+            return source_from_destination * cube_point(AllFaces[face], s, t);
+        };
+        const glm::dvec3 first = corner(0.0, 0.0);
+        for (std::size_t from = 0; from < NumFaces; ++from)
+            places_[face][from] = {on_face(first, AllFaces[from]),
+                                   on_face((corner(1.0, 0.0) - first) / n, AllFaces[from]),
+                                   on_face((corner(0.0, 1.0) - first) / n, AllFaces[from])};
     }
 }
 
-/// Texels that lie on one face go together; those on several, a share of some 10 / R, by
-/// themselves.
-void TurnedTexels::fill(Face face, std::uint32_t y, std::uint32_t begin, std::uint32_t end,
-                        bool goes_on, Worker& worker, glm::vec3* row) const {
-    Worker::CornerLine &top = worker.top_, &bottom = worker.bottom_;
-    if (goes_on)
-        std::swap(top, bottom);
-    else
-        find_corners(face, y, begin, end, top);
-    find_corners(face, y + 1, begin, end, bottom);
-    // In coarser maps TexelOverlaps takes the solid angle in finer cells than texels.
-    const bool has_spans = map_.resolution >= TexelOverlaps::FinestCell;
-    std::uint32_t x = begin;
-    while (x < end) {
-        const Face from = top.faces[x];
-        TurnedSpan& span = worker.span_;
-        span.size = 0;
-        const std::uint32_t first = x;
-        while (has_spans && x < end && span.size < TurnedSpan::MaxSize && top.faces[x] == from &&
-               top.faces[x + 1] == from && bottom.faces[x] == from && bottom.faces[x + 1] == from) {
-            std::array<glm::dvec2, 4> corners = {top.points[x], top.points[x + 1],
-                                                 bottom.points[x + 1], bottom.points[x]};
-            if (is_mirrored_)
-                std::swap(corners[1], corners[3]);
-            span.add(corners);
-            ++x;
-        }
-        if (span.size > 0)
-            mean_under(span, &map_.at(from, 0, 0), map_.resolution, row + first);
-        else {
-            row[x] = mean_on_several_faces(face, x, y, worker.overlaps_);
-            ++x;
-        }
-    }
+TexelRectangle TurnedTexels::tile(Face face, std::uint32_t row, std::uint32_t column) const {
+    const std::uint32_t r = map_.resolution;
+    return {.face = face,
+            .x0 = column * r / num_columns_,
+            .y0 = row * r / num_rows_,
+            .x1 = (column + 1) * r / num_columns_,
+            .y1 = (row + 1) * r / num_rows_};
 }
 
-glm::vec3 TurnedTexels::mean_on_several_faces(Face face, std::uint32_t x, std::uint32_t y,
-                                              TexelOverlaps& overlaps) const {
-    std::array<glm::dvec3, 4> corners = {corner(face, x, y), corner(face, x + 1, y),
-                                         corner(face, x + 1, y + 1), corner(face, x, y + 1)};
-    if (is_mirrored_)
-        std::swap(corners[1], corners[3]);
-    glm::dvec3 sum(0.0);
-    double weights = 0.0;
-    overlaps.find(corners, [&](Face from, std::uint32_t column, std::uint32_t row, double weight) {
-        sum += glm::dvec3(map_.at(from, column, row)) * weight;
-        weights += weight;
-    });
-    return glm::vec3(sum / weights);
+void TurnedTexels::fill(const TexelRectangle& tile, TurnedTile& sums, CubeMap& turned) const {
+    const std::uint32_t width = tile.x1 - tile.x0, height = tile.y1 - tile.y0;
+    sums.begin(width, height);
+    for (std::size_t from = 0; from < NumFaces; ++from) {
+        TilePlace place = places_[static_cast<std::size_t>(tile.face)][from];
+        place.origin = place.corner(tile.x0, tile.y0);
+        if (meets_face(place, width, height))
+            sums.add(place, &map_.at(AllFaces[from], 0, 0), map_.resolution);
+    }
+    sums.store(&turned.at(tile.face, tile.x0, tile.y0), map_.resolution);
 }
 
 } // namespace relumine::cubemap

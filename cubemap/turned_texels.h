@@ -1,57 +1,43 @@
 // Texels of a turned map, exactly.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <vector>
 
 #include <glm/mat3x3.hpp>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "cubemap/spherical_overlap.h"
-#include "cubemap/turned_span.h"
+#include "cubemap/texel_rectangle.h"
+#include "cubemap/turned_tile.h"
 
 namespace relumine::cubemap {
 
-/// Mixes texels of a map into those of the turned one. The map must outlive this object.
+/// Mixes texels of a map into those of the turned one, a tile at a time. The map must outlive this
+/// object.
 class TurnedTexels {
 public:
-    /// What one thread keeps.
-    class Worker {
-    public:
-        explicit Worker(std::uint32_t resolution) : overlaps_(resolution) {}
+    static constexpr std::uint32_t MinResolution = 128;
 
-    private:
-        friend TurnedTexels;
-        /// A row of the corners of a face's texels, on the map that is turned.
-        struct CornerLine {
-            std::vector<Face> faces;
-            /// In texels of that face.
-            std::vector<glm::dvec2> points;
-        };
-        TexelOverlaps overlaps_;
-        CornerLine top_, bottom_;
-        TurnedSpan span_;
-    };
-
+    /// The map needs R >= MinResolution, and the matrix to be orthogonal.
     TurnedTexels(const CubeMap& map, const glm::dmat3& source_from_destination);
 
-    /// Writes texels [begin, end) of a face's row to row[begin], row[begin + 1] and so on. Where
-    /// `goes_on`, the worker's last call was for the row above and the same texels.
-    void fill(Face face, std::uint32_t y, std::uint32_t begin, std::uint32_t end, bool goes_on,
-              Worker& worker, glm::vec3* row) const;
+    /// Each face has as many rows and columns of tiles.
+    [[nodiscard]] std::uint32_t num_rows() const { return num_rows_; }
+    [[nodiscard]] std::uint32_t num_columns() const { return num_columns_; }
+    [[nodiscard]] TexelRectangle tile(Face face, std::uint32_t row, std::uint32_t column) const;
+    /// The column of tiles that has the texels of column x.
+    [[nodiscard]] std::uint32_t column_of(std::uint32_t x) const {
+        return ((x + 1) * num_columns_ - 1) / map_.resolution;
+    }
+
+    /// Writes the texels of a tile. `sums` is the caller's memory, one for each thread.
+    void fill(const TexelRectangle& tile, TurnedTile& sums, CubeMap& turned) const;
 
 private:
-    [[nodiscard]] glm::dvec3 corner(Face face, std::uint32_t x, std::uint32_t y) const;
-    void find_corners(Face face, std::uint32_t y, std::uint32_t begin, std::uint32_t end,
-                      Worker::CornerLine& line) const;
-    [[nodiscard]] glm::vec3 mean_on_several_faces(Face face, std::uint32_t x, std::uint32_t y,
-                                                  TexelOverlaps& overlaps) const;
-
     const CubeMap& map_;
-    glm::dmat3 source_from_destination_;
-    bool is_mirrored_;
+    std::uint32_t num_rows_, num_columns_;
+    /// Of the first texel of each face of the turned map, on each of the map's.
+    std::array<std::array<TilePlace, NumFaces>, NumFaces> places_;
 };
 
 } // namespace relumine::cubemap

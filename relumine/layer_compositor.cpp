@@ -111,16 +111,23 @@ added_piece(const cubemap::LightLayer& a, const cubemap::LightLayer& b, std::uin
 
 } // namespace
 
-LayerCompositor::LayerCompositor(const LightState& state)
-    : LayerCompositor(state, state.rotation_degrees == 0.0
-                                 ? state.base->map()
-                                 : std::make_shared<const cubemap::CubeMap>(cubemap::rotated(
-                                       *state.base->map(), state.rotation_degrees))) {}
+LayerCompositor::LayerCompositor(const LightState& state, cubemap::CubeMap memory)
+    : LayerCompositor(state, state.base->map()) {
+    if (rotation_degrees_ == 0.0)
+        return;
+    turned_base_ = std::make_shared<cubemap::CubeMap>(
+        cubemap::rotated(*state.base->map(), rotation_degrees_, std::move(memory)));
+    now_.base = turned_base_;
+}
 
 LayerCompositor::LayerCompositor(const LightState& state,
                                  std::shared_ptr<const cubemap::CubeMap> turned_base)
     : rotation_degrees_(state.rotation_degrees), now_{.base = std::move(turned_base)} {
     turn_layers(state, now_.layers);
+}
+
+cubemap::CubeMap LayerCompositor::take_turned() {
+    return turned_base_ ? std::move(*turned_base_) : cubemap::CubeMap();
 }
 
 cubemap::CubeMap LayerCompositor::whole(cubemap::CubeMap memory) {

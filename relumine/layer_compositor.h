@@ -21,12 +21,16 @@ namespace relumine {
 class LayerCompositor {
 public:
     LayerCompositor() = default;
-    /// The state must have a base with a map.
-    explicit LayerCompositor(const LightState& state);
+    /// The state must have a base with a map. One that turns may be written over `memory`, as
+    /// take_turned() returns it.
+    explicit LayerCompositor(const LightState& state, cubemap::CubeMap memory = {});
     /// With a base that was turned already.
     LayerCompositor(const LightState& state, std::shared_ptr<const cubemap::CubeMap> turned_base);
 
     [[nodiscard]] bool is_set() const { return now_.base != nullptr; }
+
+    /// Gives away the turned base, if it made one; nothing else may be asked of it then.
+    [[nodiscard]] cubemap::CubeMap take_turned();
 
     /// Returns base and layers together, turned. `memory` is a map that nobody needs any more: one
     /// of the same resolution is written over, which is much quicker than new memory.
@@ -64,6 +68,8 @@ private:
     void turn_layers(const LightState& state, std::vector<cubemap::LightLayer>& turned) const;
 
     double rotation_degrees_ = 0.0;
+    /// Null where the base does not turn or was turned before.
+    std::shared_ptr<cubemap::CubeMap> turned_base_;
     Turned now_;
     Turned next_;
     std::vector<cubemap::TexelRectangle> changed_;

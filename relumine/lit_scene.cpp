@@ -214,7 +214,7 @@ UpdateReport LitScene::light_by_environment(Light& light) {
 UpdateReport LitScene::relight_all(const LightState& next) {
     if (!next.base->map() || next.base->map()->resolution == 0)
         throw std::invalid_argument("expected a base with texels");
-    return relight_all(LayerCompositor(next));
+    return relight_all(LayerCompositor(next, std::move(turning_memory_)));
 }
 
 UpdateReport LitScene::relight_all(LayerCompositor compositor) {
@@ -229,6 +229,7 @@ UpdateReport LitScene::relight_all(LayerCompositor compositor) {
             relighter_->return_environment(compositor_.whole());
         throw;
     }
+    turning_memory_ = compositor_.take_turned();
     compositor_ = std::move(compositor);
     coarse_.is_shown = false;
     report.texels = compositor_.changed();

@@ -256,6 +256,8 @@ private:
     LightState state_;
     /// Of state_, once it was edited.
     LayerCompositor compositor_;
+    /// For the next turn's map.
+    cubemap::CubeMap turning_memory_;
     /// What turns while a slider moves: the map of `of`, with fewer texels where it has many.
     struct Coarse {
         std::shared_ptr<const LightBase> of = {};

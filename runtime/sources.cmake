@@ -2,7 +2,7 @@
 # Without locales, which were a fourth of the library, for commas in large numbers.
 set(runtime_definitions FMT_HEADER_ONLY FMT_STATIC_THOUSANDS_SEPARATOR=',' XXH_INLINE_ALL)
 set(runtime_sources
-    cubemap/cube_map.cpp cubemap/face.cpp cubemap/image/image_layout.cpp cubemap/image/projection.cpp cubemap/resample/resample_lat_long.cpp cubemap/rotation.cpp cubemap/turned_span.cpp cubemap/turned_texels.cpp
+    cubemap/cube_map.cpp cubemap/face.cpp cubemap/image/image_layout.cpp cubemap/image/projection.cpp cubemap/resample/resample_lat_long.cpp cubemap/rotation.cpp cubemap/turned_texels.cpp cubemap/turned_tile.cpp cubemap/turned_tile_kernels.cpp
     files/compression.cpp files/free_memory.cpp files/hash.cpp files/json.cpp files/output_file.cpp files/packed_parts.cpp files/posix_file.cpp files/printable.cpp
     mesh/materials/brdf_table.cpp mesh/triangle_mesh.cpp
     prt/bounces/bounce_matrix.cpp prt/bounces/point_rows.cpp prt/clusters/lattice.cpp prt/glossy/brdf.cpp prt/glossy/ggx_energy.cpp prt/glossy/lobe_kernel.cpp prt/glossy/sheen_lobe.cpp

@@ -14,8 +14,8 @@
 
 #include <hwy/highway.h>
 
+#include "files/wasm_doubles-inl.h"
 #include "relight/kernels/block_kernels.h"
-#include "relight/kernels/wasm_doubles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::relight::HWY_NAMESPACE {

@@ -1,10 +1,10 @@
 // Vectors of two doubles for WebAssembly, which Highway 1.0.3 lacks there: the operations that the
 // kernels use. Nothing on other processors. Compiled once per instruction set.
-#if defined(RELUMINE_RELIGHT_WASM_DOUBLES_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RELUMINE_RELIGHT_WASM_DOUBLES_INL_H
-#undef RELUMINE_RELIGHT_WASM_DOUBLES_INL_H
+#if defined(RELUMINE_FILES_WASM_DOUBLES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RELUMINE_FILES_WASM_DOUBLES_INL_H
+#undef RELUMINE_FILES_WASM_DOUBLES_INL_H
 #else
-#define RELUMINE_RELIGHT_WASM_DOUBLES_INL_H
+#define RELUMINE_FILES_WASM_DOUBLES_INL_H
 #endif
 
 #include <cstddef>
@@ -36,6 +36,26 @@ HWY_API Vec128<double, N> Mul(const Vec128<double, N> a, const Vec128<double, N>
     return a * b;
 }
 template<std::size_t N>
+HWY_API Vec128<double, N> Sub(const Vec128<double, N> a, const Vec128<double, N> b) {
+    return {wasm_f64x2_sub(a.raw, b.raw)};
+}
+template<std::size_t N>
+HWY_API Vec128<double, N> Div(const Vec128<double, N> a, const Vec128<double, N> b) {
+    return {wasm_f64x2_div(a.raw, b.raw)};
+}
+template<std::size_t N>
+HWY_API Vec128<double, N> Abs(const Vec128<double, N> v) {
+    return {wasm_f64x2_abs(v.raw)};
+}
+template<std::size_t N>
+HWY_API Vec128<double, N> Floor(const Vec128<double, N> v) {
+    return {wasm_f64x2_floor(v.raw)};
+}
+template<std::size_t N>
+HWY_API Mask128<double, N> Gt(const Vec128<double, N> a, const Vec128<double, N> b) {
+    return {wasm_f64x2_gt(a.raw, b.raw)};
+}
+template<std::size_t N>
 HWY_API Vec128<double, N> Max(const Vec128<double, N> a, const Vec128<double, N> b) {
     return {wasm_f64x2_max(a.raw, b.raw)};
 }
@@ -48,6 +68,11 @@ template<std::size_t N>
 HWY_API Vec128<double, N> MulAdd(const Vec128<double, N> a, const Vec128<double, N> b,
                                  const Vec128<double, N> c) {
     return a * b + c;
+}
+template<std::size_t N>
+HWY_API Vec128<double, N> NegMulAdd(const Vec128<double, N> a, const Vec128<double, N> b,
+                                    const Vec128<double, N> c) {
+    return Sub(c, a * b);
 }
 template<std::size_t N>
 HWY_API Vec128<double, N> PromoteTo(Simd<double, N, 0>, const Vec128<float, N> v) {

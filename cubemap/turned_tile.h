@@ -1,0 +1,56 @@
+// Mean radiance of the texels of a turned map, a tile of them at a time.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include <glm/vec3.hpp>
+
+namespace relumine::cubemap {
+
+/// Where the corners of a tile's texels lie to a face: corner (x, y) is in the direction origin +
+/// x across + y down, whose parts are to the right, down and out of the face.
+struct TilePlace {
+    glm::dvec3 origin, across, down;
+
+    [[nodiscard]] glm::dvec3 corner(double x, double y) const {
+        return origin + x * across + y * down;
+    }
+};
+
+/// Sums over a tile of texels. Keeps its memory; use one for each thread.
+///
+/// By Green's theorem what comes through a texel is a sum over its edges: of the light to their
+/// left on the face, from the first column that the tile meets. So each edge is walked once for
+/// the two texels beside it and no polygon is cut. An edge over several faces has a part on each.
+class TurnedTile {
+public:
+    /// Texels, at most.
+    static constexpr std::uint32_t MaxWidth = 31, MaxHeight = 16;
+
+    TurnedTile();
+    ~TurnedTile();
+
+    /// Starts a tile of width x height texels.
+    void begin(std::uint32_t width, std::uint32_t height);
+
+    /// Adds what comes from a face of R x R texels, R >= 128. All corners must be in front of the
+    /// face, z > 0. The density of solid angle is taken to second order about each texel's middle,
+    /// as solid_angle_about() does. What the tile meets of the face must not reach from its left
+    /// side to its right one.
+    ///
+    /// Error:   beside that of the expansion, 1e-6 of the largest radiance that a texel meets.
+    /// Cost:    35 to 45 ns for each texel of the tile with AVX2.
+    void add(const TilePlace& place, const glm::vec3* face, std::uint32_t resolution);
+
+    /// Writes the mean radiance over the solid angle of each texel, row by row.
+    void store(glm::vec3* texels, std::size_t stride) const;
+
+    struct Work;
+
+private:
+    std::unique_ptr<Work> work_;
+};
+
+} // namespace relumine::cubemap

@@ -1,0 +1,537 @@
+#include "cubemap/turned_tile_kernels.h"
+
+#include <algorithm>
+
+#include <glm/common.hpp>
+#include <hwy/cache_control.h>
+
+// Highway compiles the block below once per instruction set and picks one at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "cubemap/turned_tile_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "files/wasm_doubles-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relumine::cubemap::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Work = TurnedTile::Work;
+using Points = Work::Points;
+using Cell = Work::Cell;
+constexpr std::size_t Stride = Work::Stride;
+
+constexpr std::size_t MaxLanes = 16;
+using Lanes = hn::CappedTag<float, MaxLanes>;
+using Vec = hn::Vec<Lanes>;
+using IntLanes = hn::RebindToSigned<Lanes>;
+using Doubles = hn::CappedTag<double, MaxLanes / 2>;
+using SumLanes = hn::CappedTag<double, 4>;
+
+Vec number(float value) {
+    return hn::Set(Lanes(), value);
+}
+
+/// A texel's middle in [-1, 1].
+Vec middle(Vec texel, float scale) {
+    return hn::MulAdd(texel, number(scale), number(0.5f * scale - 1.0f));
+}
+
+/// Solid angle in texels of R x R near (u, v), in parts of the density at a texel's middle: 1 + a x
+/// + b y + (x, y) C (x, y), x and y in [-1/2, 1/2]. a and b are a texel's own, C that at (u, v).
+class Density {
+public:
+    Density(float u, float v, float scale) : scale_(scale) {
+        const float inverse = 1.0f / (1.0f + u * u + v * v);
+        const float slope = -1.5f * scale * scale * inverse;
+        const float bend = 7.5f * scale * scale * inverse * inverse;
+        xx_ = slope + bend * u * u;
+        yy_ = slope + bend * v * v;
+        xy_ = 2.0f * bend * u * v;
+        y_ = -3.0f * scale * inverse * v;
+    }
+
+    /// The integral from side to side at the middle's height.
+    [[nodiscard]] float across_middle() const { return 1.0f + xx_ / 12.0f; }
+    /// b less that at (u, v).
+    [[nodiscard]] Vec change(Vec y_slope) const { return hn::Sub(y_slope, number(y_)); }
+
+    /// a and b of a texel, whose middle is given.
+    struct Slopes {
+        Vec x, y;
+    };
+    [[nodiscard]] Slopes slopes(Vec u, Vec v) const {
+        const Vec inverse =
+            hn::ApproximateReciprocal(hn::MulAdd(u, u, hn::MulAdd(v, v, number(1.0f))));
+        const Vec slope = hn::Mul(number(-3.0f * scale_), inverse);
+        return {hn::Mul(slope, u), hn::Mul(slope, v)};
+    }
+
+    /// The mean, on the line from (x, y) - half to (x, y) + half, of the integral from the left
+    /// side to the line. That is cubic there, whose mean is the middle's value and a sixth of the
+    /// second derivative there.
+    [[nodiscard]] Vec mean_left_of(const Slopes& slopes, Vec x, Vec y, Vec half_x,
+                                   Vec half_y) const {
+        const Vec half = number(0.5f), xx = number(xx_), yy = number(yy_), xy = number(xy_);
+        const Vec from_left = hn::Add(x, half);
+        const Vec of_y = hn::MulAdd(hn::MulAdd(yy, y, slopes.y), y, number(1.0f));
+        const Vec half_slope = hn::Mul(half, hn::MulAdd(xy, y, slopes.x));
+        const Vec square = hn::MulAdd(hn::Sub(x, half), x, number(0.25f));
+        const Vec mean =
+            hn::MulAdd(number(xx_ / 3.0f), square, hn::MulAdd(half_slope, hn::Sub(x, half), of_y));
+        const Vec half_xx = hn::MulAdd(xx, x, half_slope);
+        const Vec mixed = hn::MulAdd(number(2.0f * yy_), y, hn::MulAdd(xy, x, slopes.y));
+        const Vec bend = hn::MulAdd(half_x, hn::MulAdd(half_xx, half_x, hn::Mul(mixed, half_y)),
+                                    hn::Mul(hn::Mul(yy, from_left), hn::Mul(half_y, half_y)));
+        return hn::MulAdd(from_left, mean, hn::Mul(bend, number(1.0f / 3.0f)));
+    }
+
+    /// What whole texels of a row have up to height y: the integral of their density, of which y is
+    /// a part, and for each unit of change(). Multiples of powers of two, so that differences are
+    /// exact: where they cancel, nothing is left of a sun in the row.
+    struct Heights {
+        Vec density, change;
+    };
+    [[nodiscard]] Heights up_to(Vec y) const {
+        const Vec square = hn::Mul(y, y), coarse = number(1.5f), fine = number(0.75f);
+        const Vec density = hn::Mul(square, hn::MulAdd(number(yy_ / 3.0f), y, number(0.5f * y_)));
+        return {hn::Sub(hn::Add(density, coarse), coarse),
+                hn::Sub(hn::MulAdd(number(0.5f), square, fine), fine)};
+    }
+
+private:
+    float scale_, y_, xx_, yy_, xy_;
+};
+
+void place_corners(const TilePlace& place, Work& work) {
+    const Doubles d;
+    const auto half = hn::Set(d, 0.5 * work.num_cells);
+    for (std::size_t y = 0; y <= work.height; ++y) {
+        const glm::dvec3 first = place.corner(0.0, static_cast<double>(y));
+        for (std::size_t x = 0; x < Stride; x += hn::Lanes(d)) {
+            const auto steps = hn::Iota(d, static_cast<double>(x));
+            const auto along = [&](int axis) {
+                return hn::MulAdd(hn::Set(d, place.across[axis]), steps, hn::Set(d, first[axis]));
+            };
+            const auto scale = hn::Div(half, along(2));
+            const std::size_t at = y * Stride + x;
+            hn::Store(hn::MulAdd(along(0), scale, half), d, work.x.data() + at);
+            hn::Store(hn::MulAdd(along(1), scale, half), d, work.y.data() + at);
+        }
+    }
+}
+
+void widen(const float* values, std::size_t count, double* to) {
+    const Doubles d;
+    const hn::Rebind<float, Doubles> narrow;
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d))
+        hn::StoreU(hn::PromoteTo(d, hn::Load(narrow, values + i)), d, to + i);
+}
+void store_wide(Vec values, double* to) {
+    HWY_ALIGN std::array<float, MaxLanes> narrow;
+    hn::Store(values, Lanes(), narrow.data());
+    widen(narrow.data(), hn::Lanes(Lanes()), to);
+}
+
+/// From coordinates on the face to cells and places in them.
+void split(const double* positions, std::int32_t num_cells, float* cells, float* places) {
+    const Doubles wide;
+    const hn::Rebind<float, Doubles> half;
+    for (std::size_t i = 0; i < hn::Lanes(Lanes()); i += hn::Lanes(wide)) {
+        const auto position = hn::LoadU(wide, positions + i);
+        const auto cell =
+            hn::Max(hn::Zero(wide), hn::Min(hn::Floor(position), hn::Set(wide, num_cells - 1.0)));
+        const auto place = hn::DemoteTo(half, hn::Sub(position, cell));
+        // Multiples of 2^-23, whose differences are exact.
+        const auto one = hn::Set(half, 1.0f);
+        hn::StoreU(hn::DemoteTo(half, cell), half, cells + i);
+        hn::StoreU(hn::Sub(hn::Add(place, one), one), half, places + i);
+    }
+}
+
+void find_points(Work& work) {
+    for (std::size_t at = 0; at < (work.height + 1) * Stride; at += hn::Lanes(Lanes())) {
+        split(work.x.data() + at, work.num_cells, work.corners.column.data() + at,
+              work.corners.x.data() + at);
+        split(work.y.data() + at, work.num_cells, work.corners.row.data() + at,
+              work.corners.y.data() + at);
+    }
+}
+
+/// Writes what a row's cells from `begin` to `end` have at their middles.
+void find_densities(std::int32_t row, std::int32_t begin, std::int32_t end, const Density& density,
+                    Work& work) {
+    const Vec v = middle(number(static_cast<float>(row)), work.scale);
+    const auto lanes = static_cast<std::int32_t>(hn::Lanes(Lanes()));
+    for (std::int32_t column = begin; column < end; column += lanes) {
+        const Vec u = middle(hn::Iota(Lanes(), static_cast<float>(column)), work.scale);
+        const Vec inverse = hn::Div(number(1.0f), hn::MulAdd(u, u, hn::MulAdd(v, v, number(1.0f))));
+        store_wide(hn::Mul(inverse, hn::Sqrt(inverse)), work.middles.data() + (column - begin));
+        const Vec y_slope = hn::Mul(number(-3.0f * work.scale), hn::Mul(inverse, v));
+        store_wide(density.change(y_slope), work.changes.data() + (column - begin));
+    }
+}
+
+/// Fills a row's cells from `begin` to `end`. Sums run from the left; where the part ends at the
+/// face's right side, from there, so that what lies outside the face has no part in an edge's sum.
+void fill_row(std::int32_t row, std::int32_t begin, std::int32_t end, const Density& density,
+              Work& work) {
+    const SumLanes ds;
+    const hn::Rebind<float, SumLanes> narrow;
+    find_densities(row, begin, end, density, work);
+    Cell* cells = work.cells.data() + (row - work.first.y) * work.size.x + (begin - work.first.x);
+    const glm::vec3* texels =
+        work.face + std::ptrdiff_t{row >> work.shift} * work.resolution + (begin >> work.shift);
+    const std::int32_t in_texel = begin - (begin >> work.shift << work.shift);
+    const std::ptrdiff_t count = end - begin;
+    // A vector has four numbers, one more than a colour.
+    const glm::vec3& last = texels[(count - 1 + in_texel) >> work.shift];
+    const std::array<float, 4> tail = {last.x, last.y, last.z, 1.0f};
+    const auto across = hn::Set(ds, double{density.across_middle()});
+    const bool from_right = end == work.num_cells;
+    for (std::size_t j = 0; j < 4; j += hn::Lanes(ds)) {
+        const auto is_color = hn::FirstN(narrow, 3 - std::min<std::size_t>(j, 3));
+        const auto one = hn::Set(narrow, 1.0f);
+        auto sum = hn::Zero(ds), change_sum = hn::Zero(ds);
+        const auto light_of = [&](std::ptrdiff_t i) {
+            const std::ptrdiff_t texel = (i + in_texel) >> work.shift;
+            const float* color = &texels[texel] == &last ? tail.data() : &texels[texel].x;
+            const auto values = hn::IfThenElse(is_color, hn::LoadU(narrow, color + j), one);
+            return hn::Mul(hn::PromoteTo(ds, values),
+                           hn::Set(ds, work.middles[static_cast<std::size_t>(i)]));
+        };
+        const auto change_of = [&](std::ptrdiff_t i) {
+            return hn::Set(ds, work.changes[static_cast<std::size_t>(i)]);
+        };
+        const auto store = [&](std::ptrdiff_t i, const auto& light) {
+            hn::Store(sum, ds, cells[i].left.data() + j);
+            hn::Store(change_sum, ds, cells[i].change_left.data() + j);
+            hn::Store(hn::DemoteTo(narrow, light), narrow, cells[i].density.data() + j);
+        };
+        if (from_right)
+            for (std::ptrdiff_t i = count - 1; i >= 0; --i) {
+                const auto light = light_of(i);
+                sum = hn::NegMulAdd(light, across, sum);
+                change_sum = hn::NegMulAdd(light, change_of(i), change_sum);
+                store(i, light);
+            }
+        else
+            for (std::ptrdiff_t i = 0; i < count; ++i) {
+                const auto light = light_of(i);
+                store(i, light);
+                sum = hn::MulAdd(light, across, sum);
+                change_sum = hn::MulAdd(light, change_of(i), change_sum);
+            }
+    }
+}
+
+/// That at the middle of the tile's part.
+Density density_of(const Work& work) {
+    const auto middle = [&](std::int32_t first, std::int32_t count) {
+        return (static_cast<float>(first) + 0.5f * static_cast<float>(count)) * work.scale - 1.0f;
+    };
+    return {middle(work.first.x, work.size.x), middle(work.first.y, work.size.y), work.scale};
+}
+
+/// The columns of a row that the tile meets.
+glm::ivec2 columns_in_row(std::int32_t row, const Work& work) {
+    const double top = row - Work::Margin, bottom = row + 1 + Work::Margin;
+    const std::array<std::size_t, 5> corners = {0, work.width, work.height * Stride + work.width,
+                                                work.height * Stride, 0};
+    const std::int32_t end = work.first.x + work.size.x;
+    double least = end, most = work.first.x;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const double x = work.x[corners[i]], y = work.y[corners[i]];
+        const double end_x = work.x[corners[i + 1]], end_y = work.y[corners[i + 1]];
+        if (std::max(y, end_y) < top || std::min(y, end_y) > bottom)
+            continue;
+        const double slope = y == end_y ? 0.0 : (end_x - x) / (end_y - y);
+        const double at_start = x + (std::clamp(y, top, bottom) - y) * slope,
+                     at_end = end_x + (std::clamp(end_y, top, bottom) - end_y) * slope;
+        least = std::min({least, at_start, at_end});
+        most = std::max({most, at_start, at_end});
+    }
+    const auto cell = [](double position) {
+        return static_cast<std::int32_t>(std::max(position, 0.0));
+    };
+    return {std::clamp(cell(least - Work::Margin), work.first.x, end - 1),
+            std::clamp(cell(most + Work::Margin) + 1, work.first.x + 1, end)};
+}
+
+void fill_cells(Work& work) {
+    find_points(work);
+    const Density density = density_of(work);
+    work.columns.clear();
+    // All rows are asked for before the first is needed.
+    constexpr std::ptrdiff_t CacheLine = 64 / sizeof(float);
+    for (std::int32_t row = work.first.y; row < work.first.y + work.size.y; ++row) {
+        const glm::ivec2 columns = columns_in_row(row, work);
+        work.columns.push_back(columns);
+        const glm::vec3* texels = work.face + std::ptrdiff_t{row >> work.shift} * work.resolution;
+        const float* end = &texels[(columns.y - 1) >> work.shift].x;
+        for (const float* at = &texels[columns.x >> work.shift].x; at <= end; at += CacheLine)
+            hwy::Prefetch(at);
+    }
+    for (std::int32_t r = 0; r < work.size.y; ++r) {
+        const glm::ivec2 columns = work.columns[static_cast<std::size_t>(r)];
+        fill_row(work.first.y + r, columns.x, columns.y, density, work);
+    }
+}
+
+/// Edges, as many as there are lanes, that go from cell to cell.
+class Walk {
+public:
+    /// Of the lanes, only the first `count` go anywhere.
+    Walk(const Points& from, std::size_t start, const Points& to, std::size_t end,
+         std::size_t count, const Work& work, const Density& density)
+        : density_(density), scale_(work.scale), first_column_(static_cast<float>(work.first.x)),
+          first_row_(static_cast<float>(work.first.y)),
+          num_columns_(static_cast<float>(work.size.x)) {
+        const Lanes d;
+        const auto is_edge = hn::FirstN(d, count);
+        const auto load = [&](const auto& values, std::size_t at) {
+            return hn::IfThenElseZero(is_edge, hn::LoadU(d, values.data() + at));
+        };
+        column_ = load(from.column, start);
+        row_ = load(from.row, start);
+        x_ = start_x_ = load(from.x, start);
+        y_ = start_y_ = load(from.y, start);
+        end_column_ = load(to.column, end);
+        end_row_ = load(to.row, end);
+        const Vec end_x = load(to.x, end);
+        end_y_ = load(to.y, end);
+        const Vec columns = hn::Sub(end_column_, column_), rows = hn::Sub(end_row_, row_);
+        const Vec zero = hn::Zero(d), one = number(1.0f);
+        column_step_ = hn::Min(hn::Max(columns, number(-1.0f)), one);
+        row_step_ = hn::Min(hn::Max(rows, number(-1.0f)), one);
+        side_x_ = hn::Max(column_step_, zero);
+        side_y_ = hn::Max(row_step_, zero);
+        width_ = hn::Add(columns, hn::Sub(end_x, x_));
+        height_ = hn::Add(rows, hn::Sub(end_y_, y_));
+        per_column_ = hn::Div(one, hn::Max(hn::Abs(width_), number(Least)));
+        per_row_ = hn::Div(one, hn::Max(hn::Abs(height_), number(Least)));
+        next_x_ = hn::Mul(hn::Abs(hn::Sub(side_x_, x_)), per_column_);
+        next_y_ = hn::Mul(hn::Abs(hn::Sub(side_y_, y_)), per_row_);
+        up_to_here_ = density_.up_to(hn::Sub(y_, number(0.5f)));
+        num_pieces_ = 1 + static_cast<std::size_t>(hn::GetLane(
+                              hn::MaxOfLanes(d, hn::Add(hn::Abs(columns), hn::Abs(rows)))));
+    }
+
+    /// The largest number of cells that an edge meets.
+    [[nodiscard]] std::size_t num_pieces() const { return num_pieces_; }
+
+    /// Of the pieces in the next cells: the cell, and the factors of what it holds.
+    struct Pieces {
+        std::int32_t* cells;
+        float *heights, *changes, *in_cells;
+    };
+    void next(const Pieces& pieces) {
+        const Lanes d;
+        const Vec zero = hn::Zero(d), half = number(0.5f), one = number(1.0f), last = number(2.0f);
+        const auto has_columns = hn::Ne(column_, end_column_);
+        const auto has_rows = hn::Ne(row_, end_row_);
+        // Rounding neither makes an edge longer nor lets it miss a cell.
+        const Vec until_x = hn::IfThenElse(has_columns, hn::Min(next_x_, one), last);
+        const Vec until_y = hn::IfThenElse(has_rows, hn::Min(next_y_, one), last);
+        const auto goes_across = hn::And(has_columns, hn::Le(until_x, until_y));
+        const auto goes_down = hn::AndNot(goes_across, has_rows);
+        const Vec until = hn::Min(hn::Min(until_x, until_y), one);
+        const Vec x_there = hn::Min(hn::Max(hn::MulAdd(until, width_, start_x_), zero), one);
+        const Vec y_there = hn::Sub(
+            hn::Add(hn::Min(hn::Max(hn::MulAdd(until, height_, start_y_), zero), one), one), one);
+        const Vec x = hn::IfThenElse(goes_across, side_x_, x_there);
+        const Vec y =
+            hn::IfThenElse(goes_across, y_there, hn::IfThenElse(goes_down, side_y_, end_y_));
+        const Vec height = hn::Sub(y, y_);
+        const Density::Slopes slopes =
+            density_.slopes(middle(column_, scale_), middle(row_, scale_));
+        const Vec in_cell = hn::Mul(
+            height, density_.mean_left_of(slopes, hn::MulSub(half, hn::Add(x, x_), half),
+                                          hn::MulSub(half, hn::Add(y, y_), half),
+                                          hn::Mul(half, hn::Sub(x, x_)), hn::Mul(half, height)));
+        const Density::Heights up_to = density_.up_to(hn::Sub(y, half));
+        const Vec cell = hn::MulAdd(hn::Sub(row_, number(first_row_)), number(num_columns_),
+                                    hn::Sub(column_, number(first_column_)));
+        hn::Store(hn::ConvertTo(IntLanes(), cell), IntLanes(), pieces.cells);
+        hn::Store(hn::Add(height, hn::Sub(up_to.density, up_to_here_.density)), d, pieces.heights);
+        hn::Store(hn::Sub(up_to.change, up_to_here_.change), d, pieces.changes);
+        hn::Store(in_cell, d, pieces.in_cells);
+        // On to the next cell.
+        const Vec columns = hn::IfThenElseZero(goes_across, column_step_);
+        const Vec rows = hn::IfThenElseZero(goes_down, row_step_);
+        column_ = hn::Add(column_, columns);
+        row_ = hn::Add(row_, rows);
+        start_x_ = hn::Sub(start_x_, columns);
+        start_y_ = hn::Sub(start_y_, rows);
+        x_ = hn::Sub(x, columns);
+        y_ = hn::Sub(y, rows);
+        up_to_here_.change = up_to.change; // the same at both sides of a row
+        up_to_here_.density =
+            hn::IfThenElse(goes_down, density_.up_to(hn::Sub(y_, half)).density, up_to.density);
+        next_x_ = hn::Add(next_x_, hn::IfThenElseZero(goes_across, per_column_));
+        next_y_ = hn::Add(next_y_, hn::IfThenElseZero(goes_down, per_row_));
+    }
+
+private:
+    static constexpr float Least = 1e-30f;
+
+    const Density& density_;
+    float scale_, first_column_, first_row_, num_columns_;
+    /// Where the edges begin, from the upper left corner of the cells where they are.
+    Vec start_x_, start_y_;
+    /// Where they end.
+    Vec end_column_, end_row_, end_y_;
+    Vec width_, height_;
+    /// Parts of the edge until the next column and row, and for each one more.
+    Vec next_x_, next_y_, per_column_, per_row_;
+    /// The cells where they are, the place where they came in, and the sides they go to.
+    Vec column_, row_, column_step_, row_step_, x_, y_, side_x_, side_y_;
+    Density::Heights up_to_here_;
+    std::size_t num_pieces_;
+};
+
+/// Sums over the edges from start to end, as many as there are lanes.
+void sum_edges(const Points& from, std::size_t start, const Points& to, std::size_t end,
+               std::size_t count, const Work& work, const Density& density, Work::Sum* sums) {
+    // As many at once; edges are seldom longer.
+    constexpr std::size_t MaxPieces = 8;
+    const SumLanes ds;
+    const hn::Rebind<float, SumLanes> narrow;
+    const std::size_t lanes = hn::Lanes(Lanes());
+    HWY_ALIGN std::array<std::int32_t, MaxPieces * MaxLanes> cells;
+    HWY_ALIGN std::array<float, MaxPieces * MaxLanes> heights, changes, in_cells;
+    HWY_ALIGN std::array<double, MaxPieces * MaxLanes> wide_heights, wide_changes;
+    Walk walk(from, start, to, end, count, work, density);
+    for (std::size_t done = 0; done < walk.num_pieces();) {
+        const std::size_t num_pieces = std::min(MaxPieces, walk.num_pieces() - done);
+        for (std::size_t k = 0; k < num_pieces * lanes; k += lanes)
+            walk.next(
+                {cells.data() + k, heights.data() + k, changes.data() + k, in_cells.data() + k});
+        widen(heights.data(), num_pieces * lanes, wide_heights.data());
+        widen(changes.data(), num_pieces * lanes, wide_changes.data());
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t j = 0; j < 4; j += hn::Lanes(ds)) {
+                auto sum = done == 0 ? hn::Zero(ds) : hn::Load(ds, sums[i].data() + j);
+                auto of_texels = hn::Zero(narrow);
+                for (std::size_t k = i; k < num_pieces * lanes; k += lanes) {
+                    const Cell& cell = work.cells[static_cast<std::size_t>(cells[k])];
+                    sum = hn::MulAdd(hn::Set(ds, wide_heights[k]),
+                                     hn::Load(ds, cell.left.data() + j), sum);
+                    sum = hn::MulAdd(hn::Set(ds, wide_changes[k]),
+                                     hn::Load(ds, cell.change_left.data() + j), sum);
+                    of_texels = hn::MulAdd(hn::Set(narrow, in_cells[k]),
+                                           hn::Load(narrow, cell.density.data() + j), of_texels);
+                }
+                sum = hn::Add(sum, hn::PromoteTo(ds, of_texels));
+                hn::Store(sum, ds, sums[i].data() + j);
+            }
+        }
+        done += num_pieces;
+    }
+}
+
+void add_texels(Work& work) {
+    // What rounding leaves of sums that cancel.
+    constexpr double Rounding = 4e-15;
+    const SumLanes ds;
+    for (std::size_t y = 0; y < work.height; ++y)
+        for (std::size_t x = 0; x < work.width; ++x) {
+            const std::size_t at = y * Stride + x;
+            for (std::size_t j = 0; j < 4; j += hn::Lanes(ds)) {
+                const auto top = hn::Load(ds, work.of_across[at].data() + j);
+                const auto right = hn::Load(ds, work.of_down[at + 1].data() + j);
+                const auto bottom = hn::Load(ds, work.of_across[at + Stride].data() + j);
+                const auto left = hn::Load(ds, work.of_down[at].data() + j);
+                const auto sum = hn::Sub(hn::Add(top, right), hn::Add(bottom, left));
+                const auto size = hn::Add(hn::Add(hn::Abs(top), hn::Abs(right)),
+                                          hn::Add(hn::Abs(bottom), hn::Abs(left)));
+                const auto is_sum = hn::Gt(hn::Abs(sum), hn::Mul(size, hn::Set(ds, Rounding)));
+                double* texel = work.texels[at].data() + j;
+                const auto kept = hn::IfThenElseZero(is_sum, sum);
+                hn::Store(work.is_first ? kept : hn::Add(hn::Load(ds, texel), kept), ds, texel);
+            }
+        }
+}
+
+void store_means(const Work& work, glm::vec3* texels, std::size_t stride) {
+    const SumLanes ds;
+    const hn::Rebind<float, SumLanes> narrow;
+    for (std::size_t y = 0; y < work.height; ++y)
+        for (std::size_t x = 0; x < work.width; ++x) {
+            const Work::Sum& sum = work.texels[y * Stride + x];
+            const auto scale = hn::Set(ds, 1.0 / sum[3]);
+            HWY_ALIGN std::array<float, 4> mean;
+            for (std::size_t j = 0; j < 4; j += hn::Lanes(ds))
+                hn::StoreU(
+                    hn::DemoteTo(narrow, hn::Max(hn::Zero(ds),
+                                                 hn::Mul(scale, hn::Load(ds, sum.data() + j)))),
+                    narrow, mean.data() + j);
+            texels[y * stride + x] = {mean[0], mean[1], mean[2]};
+        }
+}
+
+/// Sums along the edges of width x height corners, each to the corner `next` further on.
+void sum_edges_of(std::size_t width, std::size_t height, std::size_t next, Work& work,
+                  Work::Sums& sums) {
+    const Density density = density_of(work);
+    const std::size_t lanes = hn::Lanes(Lanes());
+    const Points& starts = work.is_cut ? work.starts : work.corners;
+    const Points& ends = work.is_cut ? work.ends : work.corners;
+    const std::size_t to_end = work.is_cut ? 0 : next;
+    for (std::size_t y = 0; y < height; ++y)
+        for (std::size_t x = 0; x < width; x += lanes) {
+            const std::size_t at = y * Stride + x;
+            sum_edges(starts, at, ends, at + to_end, std::min(lanes, width - x), work, density,
+                      sums.data() + at);
+        }
+}
+void sum_across(Work& work) {
+    sum_edges_of(work.width, work.height + 1, 1, work, work.of_across);
+}
+void sum_down(Work& work) {
+    sum_edges_of(work.width + 1, work.height, Stride, work, work.of_down);
+}
+
+} // namespace relumine::cubemap::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace relumine::cubemap {
+
+namespace {
+HWY_EXPORT(place_corners);
+HWY_EXPORT(fill_cells);
+HWY_EXPORT(sum_across);
+HWY_EXPORT(sum_down);
+HWY_EXPORT(add_texels);
+HWY_EXPORT(store_means);
+} // namespace
+
+void place_corners(const TilePlace& place, TurnedTile::Work& work) {
+    HWY_DYNAMIC_DISPATCH(place_corners)(place, work);
+}
+
+void fill_cells(TurnedTile::Work& work) {
+    HWY_DYNAMIC_DISPATCH(fill_cells)(work);
+}
+
+void sum_across(TurnedTile::Work& work) {
+    HWY_DYNAMIC_DISPATCH(sum_across)(work);
+}
+
+void sum_down(TurnedTile::Work& work) {
+    HWY_DYNAMIC_DISPATCH(sum_down)(work);
+}
+
+void add_texels(TurnedTile::Work& work) {
+    HWY_DYNAMIC_DISPATCH(add_texels)(work);
+}
+
+void store_means(const TurnedTile::Work& work, glm::vec3* texels, std::size_t stride) {
+    HWY_DYNAMIC_DISPATCH(store_means)(work, texels, stride);
+}
+
+} // namespace relumine::cubemap
+#endif // HWY_ONCE

@@ -1,0 +1,80 @@
+// The sums of TurnedTile, several edges at a time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "cubemap/turned_tile.h"
+
+namespace relumine::cubemap {
+
+/// What a tile keeps. Corners, and the texels whose upper left they are, lie row by row, `Stride`
+/// apart, which vectors divide.
+struct TurnedTile::Work {
+    static constexpr std::size_t Stride = MaxWidth + 1;
+    static constexpr std::size_t NumCorners = (MaxHeight + 1) * Stride;
+    /// Of what the outermost corners bound, rounding may set others so far outside.
+    static constexpr double Margin = 1e-6;
+
+    /// Points on the face: a cell, and the place in it, in [0, 1].
+    struct Points {
+        alignas(64) std::array<float, NumCorners> column, row, x, y;
+    };
+    /// Three colours and solid angle.
+    using Sum = std::array<double, 4>;
+    using Sums = std::array<Sum, NumCorners>;
+    struct alignas(32) Cell {
+        /// What lies to the left of the cell in its row; and how that changes over the row's height
+        /// where it does not as at the middle of the part.
+        Sum left, change_left;
+        /// What lies in the cell, for each unit of its area.
+        std::array<float, 4> density;
+    };
+
+    std::uint32_t width = 0, height = 0;
+    /// Whether no face was added yet.
+    bool is_first = true;
+    alignas(64) Sums texels;
+
+    /// The face: its texels along a side, and of each 2^shift cells. Its cells along a side, and
+    /// how far these reach in [-1, 1].
+    const glm::vec3* face = nullptr;
+    std::int32_t resolution = 0, shift = 0, num_cells = 0;
+    float scale = 0.0f;
+
+    /// Of the corners, in cells.
+    alignas(64) std::array<double, NumCorners> x, y;
+    Points corners;
+    /// Of edges, where the tile reaches over the face's sides.
+    Points starts, ends;
+    bool is_cut = false;
+
+    /// The part of the face that the tile meets: the first cell and the numbers of columns and
+    /// rows; the cells row by row; and the columns of each row, from and to.
+    glm::ivec2 first = {}, size = {};
+    std::vector<Cell> cells;
+    std::vector<glm::ivec2> columns;
+    /// Of a row's cells, the density at their middles and change_left of each.
+    std::vector<double> middles, changes;
+
+    /// Of the edges to the right of each corner and down from it.
+    alignas(64) Sums of_across, of_down;
+};
+
+/// Sets where the corners lie.
+void place_corners(const TilePlace& place, TurnedTile::Work& work);
+/// Sets the corners' points, and the cells.
+void fill_cells(TurnedTile::Work& work);
+/// Sums along the edges to the right of the corners, or down from them.
+void sum_across(TurnedTile::Work& work);
+void sum_down(TurnedTile::Work& work);
+/// Adds to the texels what their edges say.
+void add_texels(TurnedTile::Work& work);
+void store_means(const TurnedTile::Work& work, glm::vec3* texels, std::size_t stride);
+
+} // namespace relumine::cubemap
