@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -11,19 +10,10 @@
 #include "cubemap/cube_map.h"
 #include "prt/transfer/transfer.h"
 #include "relight/kernels/cluster_lights.h"
+#include "relight/radiance.h"
 #include "relight/sharp/sharp_lights.h"
 
 namespace relumine::relight {
-
-/// The limit on a texel's radiance. Sums over a whole sphere of such texels stay finite in float,
-/// with room to spare.
-inline constexpr float MaxRadiance = 1e30f;
-
-/// Checks radiance.
-///
-/// Cost:    parallel, at the speed of memory.
-/// Throws:  std::invalid_argument for a radiance that is NaN, negative or above MaxRadiance.
-void require_radiance(std::span<const glm::vec3> texels);
 
 /// Everything that relighting needs of an environment. Copies share the map.
 struct BinnedEnvironment {

@@ -12,7 +12,7 @@ set(runtime_sources
     prt/transfer/glossy_transfer.cpp prt/transfer/quadtree.cpp prt/transfer/transfer.cpp prt/transfer/visible_counts.cpp
     prt/visibility/bias.cpp prt/visibility/blockers.cpp
     relight/adjoint/adjoint.cpp relight/adjoint/adjoint_kernel.cpp relight/adjoint/contribution.cpp
-    relight/binned_environment.cpp relight/bounces/bounce_adjoint.cpp relight/bounces/bounce_kernel.cpp relight/bounces/bounce_light.cpp relight/bounces/bounce_product.cpp relight/bounces/coarse_bounces.cpp relight/bounces/point_gather.cpp
+    relight/binned_environment.cpp relight/radiance.cpp relight/bounces/bounce_adjoint.cpp relight/bounces/bounce_kernel.cpp relight/bounces/bounce_light.cpp relight/bounces/bounce_product.cpp relight/bounces/coarse_bounces.cpp relight/bounces/point_gather.cpp
     relight/harmonics/cluster_harmonics.cpp relight/harmonics/harmonic_kernels.cpp relight/harmonics/harmonic_light.cpp relight/harmonics/harmonics.cpp
     relight/kernels/band_sums.cpp relight/kernels/block_kernels.cpp relight/kernels/cluster_lights.cpp relight/kernels/glossy_kernels.cpp relight/kernels/kernel_lights.cpp
     relight/kernels/texel_kernel.cpp relight/kernels/tile_words.cpp relight/light_pyramid.cpp relight/receiver_light.cpp relight/relighter.cpp relight/visible_parts.cpp

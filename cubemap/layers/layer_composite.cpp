@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <variant>
 
 #include <fmt/format.h>
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
 
 #include "cubemap/layers/texel_range.h"
 #include "files/parallel.h"
@@ -164,8 +167,44 @@ void apply(const PreparedLayer& layer, const FaceGrid& grid, const TexelRange& t
         change(std::get<Filter>(layer.effect));
 }
 
+/// Copies past the caches: what is larger than they would fetch each line before it is written.
+void stream(const float* from, std::size_t count, float* to) {
+    namespace hn = hwy::HWY_NAMESPACE;
+    const hn::ScalableTag<float> d;
+    const std::size_t lanes = hn::Lanes(d);
+    const std::size_t past = reinterpret_cast<std::uintptr_t>(to) / sizeof(float) % lanes;
+    std::size_t i = std::min(count, past == 0 ? 0 : lanes - past);
+    std::copy_n(from, i, to);
+    for (; i + lanes <= count; i += lanes)
+        hn::Stream(hn::LoadU(d, from + i), d, to + i);
+    std::copy_n(from + i, count - i, to + i);
+}
+
+void copy_rectangle(const CubeMap& base, const TexelRectangle& rectangle, CubeMap& target) {
+    constexpr std::size_t CachedTexels = 1u << 19;
+    const bool is_streamed = rectangle.num_texels() > CachedTexels;
+    const std::size_t width = rectangle.x1 - rectangle.x0;
+    files::parallel_for(files::IndexRange<std::uint32_t>(rectangle.y0, rectangle.y1, 16),
+                        [&](const auto& rows) {
+                            for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
+                                const glm::vec3* from = &base.at(rectangle.face, rectangle.x0, y);
+                                glm::vec3* to = &target.at(rectangle.face, rectangle.x0, y);
+                                if (is_streamed)
+                                    stream(&from->x, 3 * width, &to->x);
+                                else
+                                    std::copy_n(from, width, to);
+                            }
+                            if (is_streamed)
+                                hwy::FlushStream();
+                        });
+}
+
 void composite_rectangle(const CubeMap& base, std::span<const PreparedLayer> layers,
                          const TexelRectangle& rectangle, CubeMap& target) {
+    if (&base != &target)
+        copy_rectangle(base, rectangle, target);
+    if (layers.empty())
+        return;
     const FaceGrid grid(rectangle.face, base.resolution);
     const auto end_tile = [](std::uint32_t texel) {
         return (texel + TileSize - 1) / TileSize;
@@ -177,10 +216,6 @@ void composite_rectangle(const CubeMap& base, std::span<const PreparedLayer> lay
         const std::uint32_t row = first_row + index / num_columns,
                             column = first_column + index % num_columns;
         const TexelRange tile(column * TileSize, row * TileSize, TileSize, base.resolution);
-        const TexelRange part = tile.within(rectangle);
-        for (std::uint32_t y = part.y0; y < part.y1 && &base != &target; ++y)
-            std::copy_n(&base.at(rectangle.face, part.x0, y), part.x1 - part.x0,
-                        &target.at(rectangle.face, part.x0, y));
         for (const PreparedLayer& layer : layers)
             apply(layer, grid, tile, rectangle, target);
     });

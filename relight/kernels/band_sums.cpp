@@ -51,27 +51,28 @@ std::size_t BandSums::columns_of(const prt::Cell& cell) const {
 }
 
 std::vector<TexelSums> BandSums::sums(const cubemap::CubeMap& environment,
-                                      std::span<const float> weights) const {
+                                      std::span<const float> weights, const RowVisit& visit) const {
     std::vector<TexelSums> result(cells_.size());
-    if (cell_at_.empty())
+    if (!reads_all())
         return result;
     files::parallel_for(std::size_t{0}, BandsPerFace * cubemap::NumFaces, [&](std::size_t i) {
-        sum_band(environment, weights, i / BandsPerFace, i % BandsPerFace * steps_per_band_,
+        sum_band(environment, weights, visit, i / BandsPerFace, i % BandsPerFace * steps_per_band_,
                  result);
     });
     return result;
 }
 
 void BandSums::sum_band(const cubemap::CubeMap& environment, std::span<const float> weights,
-                        std::size_t face, std::size_t first_step,
+                        const RowVisit& visit, std::size_t face, std::size_t first_step,
                         std::vector<TexelSums>& sums) const {
     const std::size_t resolution = environment.resolution;
     std::vector<TexelColumn> columns(num_columns_);
     for (std::size_t step = first_step; step < first_step + steps_per_band_; ++step) {
         const std::size_t row = step * Width;
-        add_rows(
-            &environment.at(static_cast<cubemap::Face>(face), 0, static_cast<std::uint32_t>(row)),
-            weights.data() + row * resolution, resolution, Width, columns);
+        const glm::vec3* texels =
+            &environment.at(static_cast<cubemap::Face>(face), 0, static_cast<std::uint32_t>(row));
+        visit({texels, Width * resolution});
+        add_rows(texels, weights.data() + row * resolution, resolution, Width, columns);
         const bool is_last = step + 1 == first_step + steps_per_band_;
         const std::uint32_t* const here = &cell_at_[row_of(face, step)];
         const std::uint32_t* const below = is_last ? nullptr : here + num_columns_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -21,13 +22,20 @@ public:
 
     /// Whether sums() has the cell's.
     [[nodiscard]] bool has(std::size_t cell) const { return is_summed_[cell]; }
-    /// Returns texel_sums() of the cells' texels, bit by bit; parallel.
+    /// Whether sums() reads every texel, whichever cells have it.
+    [[nodiscard]] bool reads_all() const { return !cell_at_.empty(); }
+
+    using RowVisit = std::function<void(std::span<const glm::vec3>)>;
+    /// Returns texel_sums() of the cells' texels, bit by bit; parallel. `visit` is called for rows
+    /// before they are summed, which leaves them in the caches.
     [[nodiscard]] std::vector<TexelSums> sums(const cubemap::CubeMap& environment,
-                                              std::span<const float> weights) const;
+                                              std::span<const float> weights,
+                                              const RowVisit& visit) const;
 
 private:
     void sum_band(const cubemap::CubeMap& environment, std::span<const float> weights,
-                  std::size_t face, std::size_t first_step, std::vector<TexelSums>& sums) const;
+                  const RowVisit& visit, std::size_t face, std::size_t first_step,
+                  std::vector<TexelSums>& sums) const;
     /// Returns the cell's edge in columns; 0 for a cell that is no square of whole columns.
     [[nodiscard]] std::size_t columns_of(const prt::Cell& cell) const;
     /// Returns the place of a step's first column in `cell_at_`.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -9,6 +10,7 @@
 #include "files/parallel.h"
 #include "relight/kernels/band_sums.h"
 #include "relight/kernels/texel_kernel.h"
+#include "relight/radiance.h"
 
 namespace relumine::relight {
 
@@ -186,9 +188,17 @@ void LightBinning::add_derivative(const prt::Cell& cell, const VectorIrradiance&
 }
 
 std::vector<VectorIrradiance> LightBinning::sums(const cubemap::CubeMap& environment,
-                                                 std::span<const prt::Cell> cells) const {
+                                                 std::span<const prt::Cell> cells,
+                                                 Texels texels) const {
     const BandSums bands(resolution_, cells);
-    const std::vector<TexelSums> whole = bands.sums(environment, weights_);
+    std::atomic<bool> all_good = bands.reads_all();
+    const std::vector<TexelSums> whole =
+        bands.sums(environment, weights_, [&](std::span<const glm::vec3> rows) {
+            if (texels == Texels::Unchecked && !is_surely_radiance(rows))
+                all_good = false;
+        });
+    if (texels == Texels::Unchecked && !all_good)
+        require_radiance(environment.texels);
     std::vector<VectorIrradiance> result(cells.size());
     files::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
         const prt::Cell& cell = cells[i];

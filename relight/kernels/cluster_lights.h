@@ -61,9 +61,15 @@ public:
     [[nodiscard]] VectorIrradiance sum(const cubemap::CubeMap& environment,
                                        const prt::Cell& cell) const;
 
+    /// Whether it is known that all texels are radiance.
+    enum class Texels { Checked, Unchecked };
+
     /// Returns sum() of every cell; parallel.
+    ///
+    /// Throws:  std::invalid_argument for unchecked texels that require_radiance() refuses.
     [[nodiscard]] std::vector<VectorIrradiance> sums(const cubemap::CubeMap& environment,
-                                                     std::span<const prt::Cell> cells) const;
+                                                     std::span<const prt::Cell> cells,
+                                                     Texels texels = Texels::Checked) const;
 
     /// Adds to the cell's texels the derivative of a number by their radiance, given its derivative
     /// by the cell's vector irradiance: the transpose of sum().

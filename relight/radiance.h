@@ -1,0 +1,24 @@
+// Which radiance light may have.
+#pragma once
+
+#include <span>
+
+#include <glm/vec3.hpp>
+
+namespace relumine::relight {
+
+/// The limit on a texel's radiance. Sums over a whole sphere of such texels stay finite in float,
+/// with room to spare.
+inline constexpr float MaxRadiance = 1e30f;
+
+/// Checks radiance.
+///
+/// Cost:    parallel, at the speed of memory.
+/// Throws:  std::invalid_argument for a radiance that is NaN, negative or above MaxRadiance.
+void require_radiance(std::span<const glm::vec3> texels);
+
+/// Returns true only where require_radiance() refuses none; false also for some that it accepts
+/// (-0). On one thread, for texels that lie in the caches.
+[[nodiscard]] bool is_surely_radiance(std::span<const glm::vec3> texels);
+
+} // namespace relumine::relight
