@@ -73,8 +73,9 @@ struct CubeMap {
 
 /// Returns the map turned by an orthogonal matrix; mirror images are allowed. What was seen in
 /// direction w is then seen in direction `turn` w. A matrix that carries axes to axes moves texels.
-/// Any other mixes them, and energy is kept as in resample(). `memory` is a map that nobody needs
-/// any more: one of the same resolution is written over, which is quicker than new memory.
+/// Any other mixes them, and energy is kept as in resample(); texels must be finite. `memory` is a
+/// map that nobody needs any more: one of the same resolution is written over, which is quicker
+/// than new memory.
 [[nodiscard]] CubeMap turned(const CubeMap& map, const glm::dmat3& turn, CubeMap memory = {});
 
 /// Returns true if a matrix carries axes to axes.

@@ -119,6 +119,7 @@ void TurnedTile::begin(std::uint32_t width, std::uint32_t height) {
     work_->width = width;
     work_->height = height;
     work_->is_first = true;
+    work_->least = {};
 }
 
 void TurnedTile::add(const TilePlace& place, const glm::vec3* face, std::uint32_t resolution) {

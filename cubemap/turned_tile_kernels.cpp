@@ -195,10 +195,12 @@ void fill_row(std::int32_t row, std::int32_t begin, std::int32_t end, const Dens
         const auto is_color = hn::FirstN(narrow, 3 - std::min<std::size_t>(j, 3));
         const auto one = hn::Set(narrow, 1.0f);
         auto sum = hn::Zero(ds), change_sum = hn::Zero(ds);
+        auto least = hn::LoadU(narrow, work.least.data() + j);
         const auto light_of = [&](std::ptrdiff_t i) {
             const std::ptrdiff_t texel = (i + in_texel) >> work.shift;
             const float* color = &texels[texel] == &last ? tail.data() : &texels[texel].x;
             const auto values = hn::IfThenElse(is_color, hn::LoadU(narrow, color + j), one);
+            least = hn::Min(least, values);
             return hn::Mul(hn::PromoteTo(ds, values),
                            hn::Set(ds, work.middles[static_cast<std::size_t>(i)]));
         };
@@ -224,6 +226,7 @@ void fill_row(std::int32_t row, std::int32_t begin, std::int32_t end, const Dens
                 sum = hn::MulAdd(light, across, sum);
                 change_sum = hn::MulAdd(light, change_of(i), change_sum);
             }
+        hn::StoreU(least, narrow, work.least.data() + j);
     }
 }
 
@@ -463,11 +466,12 @@ void store_means(const Work& work, glm::vec3* texels, std::size_t stride) {
             const Work::Sum& sum = work.texels[y * Stride + x];
             const auto scale = hn::Set(ds, 1.0 / sum[3]);
             HWY_ALIGN std::array<float, 4> mean;
-            for (std::size_t j = 0; j < 4; j += hn::Lanes(ds))
+            for (std::size_t j = 0; j < 4; j += hn::Lanes(ds)) {
+                const auto exact = hn::Mul(scale, hn::Load(ds, sum.data() + j));
                 hn::StoreU(
-                    hn::DemoteTo(narrow, hn::Max(hn::Zero(ds),
-                                                 hn::Mul(scale, hn::Load(ds, sum.data() + j)))),
+                    hn::Max(hn::DemoteTo(narrow, exact), hn::LoadU(narrow, work.least.data() + j)),
                     narrow, mean.data() + j);
+            }
             texels[y * stride + x] = {mean[0], mean[1], mean[2]};
         }
 }

@@ -40,6 +40,9 @@ struct TurnedTile::Work {
     /// Whether no face was added yet.
     bool is_first = true;
     alignas(64) Sums texels;
+    /// The least of 0 and the colours that the tile meets: where a texel touches a sun, rounding
+    /// may make less of its dark.
+    std::array<float, 4> least = {};
 
     /// The face: its texels along a side, and of each 2^shift cells. Its cells along a side, and
     /// how far these reach in [-1, 1].

@@ -158,6 +158,31 @@ TEST(Rotation, ATexelThatMeetsNoLightStaysDark) {
     EXPECT_LE(num_lit, 16u);
 }
 
+TEST(Rotation, DifferencesOfMapsTurnToo) {
+    const CubeMap map = random_map(256);
+    CubeMap negative = map;
+    for (glm::vec3& texel : negative.texels)
+        texel = -texel;
+    const CubeMap there = rotated(map, 33.0), negative_there = rotated(negative, 33.0);
+    for (std::size_t i = 0; i < map.texels.size(); ++i)
+        ASSERT_EQ(negative_there.texels[i], -there.texels[i]) << i;
+}
+
+TEST(Rotation, MemoryOfAMapIsWrittenOver) {
+    for (const std::uint32_t resolution : {64u, 256u}) {
+        const CubeMap map = random_map(resolution);
+        for (const double degrees : {33.0, 90.0}) {
+            const CubeMap expected = rotated(map, degrees);
+            CubeMap memory(resolution, glm::vec3(7.0f));
+            const glm::vec3* const texels = memory.texels.data();
+            const CubeMap result = rotated(map, degrees, std::move(memory));
+            EXPECT_EQ(result.texels, expected.texels);
+            EXPECT_EQ(result.texels.data(), texels);
+            EXPECT_EQ(rotated(map, degrees, CubeMap(16)).texels, expected.texels);
+        }
+    }
+}
+
 TEST(Rotation, IrradianceTurnsWithTheLight) {
     CubeMap map(96);
     for (const Face face : AllFaces) {

@@ -203,6 +203,23 @@ TEST(LayerComposite, DoesNotDependOnHowRectanglesAreCut) {
     }
 }
 
+TEST(LayerComposite, LargeMapsGoPastTheCaches) {
+    // Whole faces are streamed, rectangles are not.
+    for (const std::uint32_t resolution : {741u, 768u}) {
+        const CubeMap base = random_map(resolution, 8);
+        EXPECT_TRUE(same_bits(composite(base, {}), base));
+        const std::vector<LightLayer> layers = random_layers(3, 9);
+        const CubeMap whole = composite(base, layers);
+        CubeMap by_rows(resolution);
+        std::vector<TexelRectangle> rows;
+        for (const Face face : AllFaces)
+            for (std::uint32_t y = 0; y < resolution; y += 57)
+                rows.push_back({face, 0, y, resolution, std::min(y + 57, resolution)});
+        composite(base, layers, rows, by_rows);
+        EXPECT_TRUE(same_bits(by_rows, whole));
+    }
+}
+
 TEST(LayerComposite, DoesNotDependOnTheNumberOfThreads) {
     const CubeMap base = random_map(200, 5);
     const std::vector<LightLayer> layers = random_layers(20, 6);
