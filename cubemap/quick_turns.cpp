@@ -177,11 +177,11 @@ CubeMap QuickTurns::turned(const glm::dmat3& turn) const {
                 near_edges.clear();
                 for (std::uint32_t y = first.y0; y < first.y1; ++y)
                     fill_row(face, y, source_from_destination, &result.at(face, 0, y), near_edges);
-                std::ranges::transform(near_edges, near_edges.begin(),
-                                       [&](std::uint32_t x) { return exact.column_of(x); });
-                std::ranges::sort(near_edges);
-                const auto rest = std::ranges::unique(near_edges);
-                near_edges.erase(rest.begin(), rest.end());
+                std::transform(near_edges.begin(), near_edges.end(), near_edges.begin(),
+                               [&](std::uint32_t x) { return exact.column_of(x); });
+                std::sort(near_edges.begin(), near_edges.end());
+                near_edges.erase(std::unique(near_edges.begin(), near_edges.end()),
+                                 near_edges.end());
                 for (const std::uint32_t column : near_edges)
                     exact.fill(exact.tile(face, row, column), sums, result);
             }

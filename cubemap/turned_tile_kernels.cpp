@@ -181,7 +181,8 @@ void fill_row(std::int32_t row, std::int32_t begin, std::int32_t end, const Dens
     const SumLanes ds;
     const hn::Rebind<float, SumLanes> narrow;
     find_densities(row, begin, end, density, work);
-    Cell* cells = work.cells.data() + (row - work.first.y) * work.size.x + (begin - work.first.x);
+    Cell* cells = work.cells.data() + std::ptrdiff_t{row - work.first.y} * work.size.x +
+                  (begin - work.first.x);
     const glm::vec3* texels =
         work.face + std::ptrdiff_t{row >> work.shift} * work.resolution + (begin >> work.shift);
     const std::int32_t in_texel = begin - (begin >> work.shift << work.shift);

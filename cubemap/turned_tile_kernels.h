@@ -36,13 +36,25 @@ struct TurnedTile::Work {
         std::array<float, 4> density;
     };
 
-    std::uint32_t width = 0, height = 0;
-    /// Whether no face was added yet.
-    bool is_first = true;
     alignas(64) Sums texels;
-    /// The least of 0 and the colours that the tile meets: where a texel touches a sun, rounding
-    /// may make less of its dark.
-    std::array<float, 4> least = {};
+
+    /// Of the corners, in cells.
+    alignas(64) std::array<double, NumCorners> x, y;
+    Points corners;
+    /// Of edges, where the tile reaches over the face's sides.
+    Points starts, ends;
+
+    /// Of the edges to the right of each corner and down from it.
+    alignas(64) Sums of_across, of_down;
+
+    /// The part of the face that the tile meets: its cells row by row, and of each row the columns
+    /// from and to.
+    std::vector<Cell> cells;
+    std::vector<glm::ivec2> columns;
+    /// Of a row's cells, the density at their middles and change_left of each.
+    std::vector<double> middles, changes;
+    /// Of the part, the first cell and the numbers of columns and rows.
+    glm::ivec2 first = {}, size = {};
 
     /// The face: its texels along a side, and of each 2^shift cells. Its cells along a side, and
     /// how far these reach in [-1, 1].
@@ -50,23 +62,13 @@ struct TurnedTile::Work {
     std::int32_t resolution = 0, shift = 0, num_cells = 0;
     float scale = 0.0f;
 
-    /// Of the corners, in cells.
-    alignas(64) std::array<double, NumCorners> x, y;
-    Points corners;
-    /// Of edges, where the tile reaches over the face's sides.
-    Points starts, ends;
+    std::uint32_t width = 0, height = 0;
+    /// The least of 0 and the colours that the tile meets: where a texel touches a sun, rounding
+    /// may make less of its dark.
+    std::array<float, 4> least = {};
+    /// Whether no face was added yet.
+    bool is_first = true;
     bool is_cut = false;
-
-    /// The part of the face that the tile meets: the first cell and the numbers of columns and
-    /// rows; the cells row by row; and the columns of each row, from and to.
-    glm::ivec2 first = {}, size = {};
-    std::vector<Cell> cells;
-    std::vector<glm::ivec2> columns;
-    /// Of a row's cells, the density at their middles and change_left of each.
-    std::vector<double> middles, changes;
-
-    /// Of the edges to the right of each corner and down from it.
-    alignas(64) Sums of_across, of_down;
 };
 
 /// Sets where the corners lie.
