@@ -5,13 +5,11 @@
 
 #include <glm/common.hpp>
 
-#include "cubemap/turned_tile_kernels.h"
-
 namespace relumine::cubemap {
 
 namespace {
 
-using Work = TurnedTile::Work;
+using Work = TileWork;
 
 // Cells along a side of a face, at least. Over larger ones the density of solid angle curves more
 // than second order says.
@@ -111,9 +109,6 @@ void find_part(Work& work) {
 }
 
 } // namespace
-
-TurnedTile::TurnedTile() : work_(new Work) {} // its arrays stay as they come
-TurnedTile::~TurnedTile() = default;
 
 void TurnedTile::begin(std::uint32_t width, std::uint32_t height) {
     work_->width = width;

@@ -7,17 +7,9 @@
 
 #include <glm/vec3.hpp>
 
+#include "cubemap/turned_tile_kernels.h"
+
 namespace relumine::cubemap {
-
-/// Where the corners of a tile's texels lie to a face: corner (x, y) is in the direction origin +
-/// x across + y down, whose parts are to the right, down and out of the face.
-struct TilePlace {
-    glm::dvec3 origin, across, down;
-
-    [[nodiscard]] glm::dvec3 corner(double x, double y) const {
-        return origin + x * across + y * down;
-    }
-};
 
 /// Sums over a tile of texels. Keeps its memory; use one for each thread.
 ///
@@ -27,10 +19,9 @@ struct TilePlace {
 class TurnedTile {
 public:
     /// Texels, at most.
-    static constexpr std::uint32_t MaxWidth = 31, MaxHeight = 16;
+    static constexpr std::uint32_t MaxWidth = TileWork::MaxWidth, MaxHeight = TileWork::MaxHeight;
 
-    TurnedTile();
-    ~TurnedTile();
+    TurnedTile() : work_(new TileWork) {} // its arrays stay as they come
 
     /// Starts a tile of width x height texels.
     void begin(std::uint32_t width, std::uint32_t height);
@@ -47,10 +38,8 @@ public:
     /// Writes the mean radiance over the solid angle of each texel, row by row.
     void store(glm::vec3* texels, std::size_t stride) const;
 
-    struct Work;
-
 private:
-    std::unique_ptr<Work> work_;
+    std::unique_ptr<TileWork> work_;
 };
 
 } // namespace relumine::cubemap

@@ -18,7 +18,7 @@ namespace relumine::cubemap::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Work = TurnedTile::Work;
+using Work = TileWork;
 using Points = Work::Points;
 using Cell = Work::Cell;
 constexpr std::size_t Stride = Work::Stride;
@@ -514,27 +514,27 @@ HWY_EXPORT(add_texels);
 HWY_EXPORT(store_means);
 } // namespace
 
-void place_corners(const TilePlace& place, TurnedTile::Work& work) {
+void place_corners(const TilePlace& place, TileWork& work) {
     HWY_DYNAMIC_DISPATCH(place_corners)(place, work);
 }
 
-void fill_cells(TurnedTile::Work& work) {
+void fill_cells(TileWork& work) {
     HWY_DYNAMIC_DISPATCH(fill_cells)(work);
 }
 
-void sum_across(TurnedTile::Work& work) {
+void sum_across(TileWork& work) {
     HWY_DYNAMIC_DISPATCH(sum_across)(work);
 }
 
-void sum_down(TurnedTile::Work& work) {
+void sum_down(TileWork& work) {
     HWY_DYNAMIC_DISPATCH(sum_down)(work);
 }
 
-void add_texels(TurnedTile::Work& work) {
+void add_texels(TileWork& work) {
     HWY_DYNAMIC_DISPATCH(add_texels)(work);
 }
 
-void store_means(const TurnedTile::Work& work, glm::vec3* texels, std::size_t stride) {
+void store_means(const TileWork& work, glm::vec3* texels, std::size_t stride) {
     HWY_DYNAMIC_DISPATCH(store_means)(work, texels, stride);
 }
 

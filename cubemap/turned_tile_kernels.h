@@ -9,13 +9,22 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "cubemap/turned_tile.h"
-
 namespace relumine::cubemap {
+
+/// Where the corners of a tile's texels lie to a face: corner (x, y) is in the direction origin +
+/// x across + y down, whose parts are to the right, down and out of the face.
+struct TilePlace {
+    glm::dvec3 origin, across, down;
+
+    [[nodiscard]] glm::dvec3 corner(double x, double y) const {
+        return origin + x * across + y * down;
+    }
+};
 
 /// What a tile keeps. Corners, and the texels whose upper left they are, lie row by row, `Stride`
 /// apart, which vectors divide.
-struct TurnedTile::Work {
+struct TileWork {
+    static constexpr std::uint32_t MaxWidth = 31, MaxHeight = 16;
     static constexpr std::size_t Stride = MaxWidth + 1;
     static constexpr std::size_t NumCorners = (MaxHeight + 1) * Stride;
     /// Of what the outermost corners bound, rounding may set others so far outside.
@@ -72,14 +81,14 @@ struct TurnedTile::Work {
 };
 
 /// Sets where the corners lie.
-void place_corners(const TilePlace& place, TurnedTile::Work& work);
+void place_corners(const TilePlace& place, TileWork& work);
 /// Sets the corners' points, and the cells.
-void fill_cells(TurnedTile::Work& work);
+void fill_cells(TileWork& work);
 /// Sums along the edges to the right of the corners, or down from them.
-void sum_across(TurnedTile::Work& work);
-void sum_down(TurnedTile::Work& work);
+void sum_across(TileWork& work);
+void sum_down(TileWork& work);
 /// Adds to the texels what their edges say.
-void add_texels(TurnedTile::Work& work);
-void store_means(const TurnedTile::Work& work, glm::vec3* texels, std::size_t stride);
+void add_texels(TileWork& work);
+void store_means(const TileWork& work, glm::vec3* texels, std::size_t stride);
 
 } // namespace relumine::cubemap

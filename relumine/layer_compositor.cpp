@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "files/parallel.h"
-#include "relight/binned_environment.h"
+#include "relight/radiance.h"
 
 namespace relumine {
 

@@ -214,7 +214,7 @@ UpdateReport LitScene::light_by_environment(Light& light) {
 UpdateReport LitScene::relight_all(const LightState& next) {
     if (!next.base->map() || next.base->map()->resolution == 0)
         throw std::invalid_argument("expected a base with texels");
-    return relight_all(LayerCompositor(next, std::move(turning_memory_)));
+    return relight_all(LayerCompositor(next, std::exchange(turning_memory_, {})));
 }
 
 UpdateReport LitScene::relight_all(LayerCompositor compositor) {

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "relight/adjoint/contribution.h"
-#include "relight/binned_environment.h"
 #include "relight/harmonics/harmonics.h"
+#include "relight/radiance.h"
 #include "relight/receiver_light.h"
 #include "relight/visible_parts.h"
 

@@ -180,31 +180,26 @@ void stream(const float* from, std::size_t count, float* to) {
     std::copy_n(from + i, count - i, to + i);
 }
 
-void copy_rectangle(const CubeMap& base, const TexelRectangle& rectangle, CubeMap& target) {
-    constexpr std::size_t CachedTexels = 1u << 19;
-    const bool is_streamed = rectangle.num_texels() > CachedTexels;
+void stream_rectangle(const CubeMap& base, const TexelRectangle& rectangle, CubeMap& target) {
     const std::size_t width = rectangle.x1 - rectangle.x0;
     files::parallel_for(files::IndexRange<std::uint32_t>(rectangle.y0, rectangle.y1, 16),
                         [&](const auto& rows) {
-                            for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
-                                const glm::vec3* from = &base.at(rectangle.face, rectangle.x0, y);
-                                glm::vec3* to = &target.at(rectangle.face, rectangle.x0, y);
-                                if (is_streamed)
-                                    stream(&from->x, 3 * width, &to->x);
-                                else
-                                    std::copy_n(from, width, to);
-                            }
-                            if (is_streamed)
-                                hwy::FlushStream();
+                            for (std::uint32_t y = rows.begin(); y != rows.end(); ++y)
+                                stream(&base.at(rectangle.face, rectangle.x0, y).x, 3 * width,
+                                       &target.at(rectangle.face, rectangle.x0, y).x);
+                            hwy::FlushStream();
                         });
 }
 
 void composite_rectangle(const CubeMap& base, std::span<const PreparedLayer> layers,
                          const TexelRectangle& rectangle, CubeMap& target) {
-    if (&base != &target)
-        copy_rectangle(base, rectangle, target);
-    if (layers.empty())
-        return;
+    constexpr std::size_t CachedTexels = 1u << 19;
+    const bool is_streamed = &base != &target && rectangle.num_texels() > CachedTexels;
+    if (is_streamed) {
+        stream_rectangle(base, rectangle, target);
+        if (layers.empty())
+            return;
+    }
     const FaceGrid grid(rectangle.face, base.resolution);
     const auto end_tile = [](std::uint32_t texel) {
         return (texel + TileSize - 1) / TileSize;
@@ -216,6 +211,10 @@ void composite_rectangle(const CubeMap& base, std::span<const PreparedLayer> lay
         const std::uint32_t row = first_row + index / num_columns,
                             column = first_column + index % num_columns;
         const TexelRange tile(column * TileSize, row * TileSize, TileSize, base.resolution);
+        const TexelRange part = tile.within(rectangle);
+        for (std::uint32_t y = part.y0; y < part.y1 && &base != &target && !is_streamed; ++y)
+            std::copy_n(&base.at(rectangle.face, part.x0, y), part.x1 - part.x0,
+                        &target.at(rectangle.face, part.x0, y));
         for (const PreparedLayer& layer : layers)
             apply(layer, grid, tile, rectangle, target);
     });
