@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -64,6 +65,13 @@ CubeMap::CubeMap(std::uint32_t face_resolution, const glm::vec3& radiance)
             fmt::format("cube map: expected a face resolution from 1 to {}, got {}", MaxResolution,
                         face_resolution));
     texels.assign(std::size_t{NumFaces} * face_resolution * face_resolution, radiance);
+}
+
+CubeMap written_over(CubeMap memory, std::uint32_t face_resolution) {
+    const bool has_texels =
+        memory.texels.size() == std::size_t{NumFaces} * face_resolution * face_resolution;
+    return has_texels && memory.resolution == face_resolution ? std::move(memory)
+                                                              : CubeMap(face_resolution);
 }
 
 glm::dvec3 texel_direction(Face face, std::uint32_t x, std::uint32_t y, std::uint32_t resolution) {

@@ -71,11 +71,14 @@ struct CubeMap {
 /// Returns the integral of radiance over the sphere, per channel, in double.
 [[nodiscard]] glm::dvec3 total_power(const CubeMap& map);
 
+/// Returns a map whose texels hold anything, in the memory of a map that nobody needs any more
+/// where that has the same resolution, which is quicker than new memory.
+[[nodiscard]] CubeMap written_over(CubeMap memory, std::uint32_t face_resolution);
+
 /// Returns the map turned by an orthogonal matrix; mirror images are allowed. What was seen in
 /// direction w is then seen in direction `turn` w. A matrix that carries axes to axes moves texels.
-/// Any other mixes them, and energy is kept as in resample(); texels must be finite. `memory` is a
-/// map that nobody needs any more: one of the same resolution is written over, which is quicker
-/// than new memory.
+/// Any other mixes them, and energy is kept as in resample(); texels must be finite. `memory`
+/// may be written_over().
 [[nodiscard]] CubeMap turned(const CubeMap& map, const glm::dmat3& turn, CubeMap memory = {});
 
 /// Returns true if a matrix carries axes to axes.

@@ -56,6 +56,11 @@ glm::dvec3 cube_point(Face face, double s, double t) {
     return {u, -v, -1.0};
 }
 
+FaceAxes::FaceAxes(Face face)
+    : right(cube_point(face, 1.0, 0.5) - cube_point(face, 0.5, 0.5)),
+      down(cube_point(face, 0.5, 1.0) - cube_point(face, 0.5, 0.5)),
+      outwards(cube_point(face, 0.5, 0.5)) {}
+
 glm::dvec3 direction(Face face, double s, double t) {
     return glm::normalize(cube_point(face, s, t));
 }

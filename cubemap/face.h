@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -46,6 +48,24 @@ struct FacePoint {
 /// Returns the direction of a face point on the cube [-1, 1]^3. The vector is not normalised: its
 /// largest component has size 1.
 [[nodiscard]] glm::dvec3 cube_point(Face face, double s, double t);
+
+/// The axes of a face, to the right and down in its image and outwards: cube_point() is outwards +
+/// u right + v down, where (u, v) = (2s - 1, 2t - 1).
+struct FaceAxes {
+    glm::dvec3 right, down, outwards;
+
+    explicit FaceAxes(Face face);
+    /// Returns the unit direction of (u, v).
+    [[nodiscard]] glm::dvec3 direction(double u, double v) const {
+        // The three axes are perpendicular, so the length follows from u and v.
+        return (outwards + u * right + v * down) * (1.0 / std::sqrt(1.0 + u * u + v * v));
+    }
+    /// Returns a direction's parts along the axes. It goes through (u, v) = (x, y) / z.
+    [[nodiscard]] glm::dvec3 parts(const glm::dvec3& direction) const {
+        return {glm::dot(direction, right), glm::dot(direction, down),
+                glm::dot(direction, outwards)};
+    }
+};
 
 /// Returns the unit direction of a face point.
 [[nodiscard]] glm::dvec3 direction(Face face, double s, double t);

@@ -19,24 +19,11 @@ namespace relumine::cubemap {
 
 namespace {
 
+static_assert(QuickTurns::MinResolution >= TurnedTexels::MinResolution);
+
 // A texel that differs from the mean of its neighbours by this part of the map's power stands at a
 // bright edge. Less than that is lost among texels that err to either side.
 constexpr double EdgeShare = 1.0 / 16384.0;
-
-/// The axes of a face: of a direction d on it, (u, v) is (d.right, d.down) / d.outwards.
-struct FaceAxes {
-    glm::dvec3 right, down, outwards;
-
-    explicit FaceAxes(Face face)
-        : right(0.5 * (cube_point(face, 1.0, 0.5) - cube_point(face, 0.0, 0.5))),
-          down(0.5 * (cube_point(face, 0.5, 1.0) - cube_point(face, 0.5, 0.0))),
-          outwards(cube_point(face, 0.5, 0.5)) {}
-};
-
-std::array<FaceAxes, NumFaces> axes_of_faces() {
-    return {FaceAxes(AllFaces[0]), FaceAxes(AllFaces[1]), FaceAxes(AllFaces[2]),
-            FaceAxes(AllFaces[3]), FaceAxes(AllFaces[4]), FaceAxes(AllFaces[5])};
-}
 
 } // namespace
 
@@ -109,7 +96,6 @@ QuickTurns::QuickTurns(std::shared_ptr<const CubeMap> map)
 /// Writes a row of a face, bilinear, and adds the columns near bright edges.
 void QuickTurns::fill_row(Face face, std::uint32_t y, const glm::dmat3& source_from_destination,
                           glm::vec3* row, std::vector<std::uint32_t>& near_edges) const {
-    static const std::array<FaceAxes, NumFaces> Axes = axes_of_faces();
     const std::uint32_t r = map_->resolution;
     const double n = r;
     const double height = (y + 0.5) / n;
@@ -121,11 +107,8 @@ void QuickTurns::fill_row(Face face, std::uint32_t y, const glm::dmat3& source_f
     std::uint32_t x = 0;
     while (x < r) {
         const Face from = face_point(first + step * static_cast<double>(x)).face;
-        const FaceAxes& axes = Axes[static_cast<std::size_t>(from)];
-        const glm::vec3 begin(glm::dot(first, axes.right), glm::dot(first, axes.down),
-                              glm::dot(first, axes.outwards));
-        const glm::vec3 change(glm::dot(step, axes.right), glm::dot(step, axes.down),
-                               glm::dot(step, axes.outwards));
+        const FaceAxes axes(from);
+        const glm::vec3 begin(axes.parts(first)), change(axes.parts(step));
         const Texel* texels = this->face(from);
         const std::uint32_t begin_x = x;
         for (; x < r; ++x) {
@@ -177,13 +160,12 @@ CubeMap QuickTurns::turned(const glm::dmat3& turn) const {
                 near_edges.clear();
                 for (std::uint32_t y = first.y0; y < first.y1; ++y)
                     fill_row(face, y, source_from_destination, &result.at(face, 0, y), near_edges);
-                std::transform(near_edges.begin(), near_edges.end(), near_edges.begin(),
-                               [&](std::uint32_t x) { return exact.column_of(x); });
-                std::sort(near_edges.begin(), near_edges.end());
-                near_edges.erase(std::unique(near_edges.begin(), near_edges.end()),
-                                 near_edges.end());
-                for (const std::uint32_t column : near_edges)
-                    exact.fill(exact.tile(face, row, column), sums, result);
+                std::vector<bool> has_edge(exact.num_columns());
+                for (const std::uint32_t x : near_edges)
+                    has_edge[exact.column_of(x)] = true;
+                for (std::uint32_t column = 0; column < exact.num_columns(); ++column)
+                    if (has_edge[column])
+                        exact.fill(exact.tile(face, row, column), sums, result);
             }
         });
     return result;

@@ -15,7 +15,7 @@ namespace relumine::cubemap {
 ///
 /// A texel of the turned map is the map's radiance at the texel's centre, bilinear between centres.
 /// Tiles of texels where the map's light is bright beside its neighbours, as at a sun or the edge
-/// of a window, are those of turned(). So the energy of small lights is kept.
+/// of a window, are exact, as turned() makes them. So the energy of small lights is kept.
 class QuickTurns {
 public:
     /// The map needs R >= MinResolution.
@@ -26,7 +26,7 @@ public:
     /// Returns the map turned by an orthogonal matrix, as cubemap::turned() nearly does.
     ///
     /// Error:   the map's power and the irradiance of any normal are within 3e-4 of the power.
-    /// Cost:    O(texels), parallel; near bright edges that of cubemap::turned().
+    /// Cost:    O(texels), parallel; near bright edges as much as cubemap::turned().
     [[nodiscard]] CubeMap turned(const glm::dmat3& turn) const;
 
     /// The map that is turned.

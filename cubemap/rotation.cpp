@@ -118,8 +118,7 @@ CubeMap turned(const CubeMap& map, const glm::dmat3& turn, CubeMap memory) {
     if (turn == glm::dmat3(1.0))
         return map;
     const glm::dmat3 source_from_destination = glm::transpose(turn);
-    if (memory.resolution != map.resolution || memory.texels.size() != map.texels.size())
-        memory = CubeMap(map.resolution);
+    memory = written_over(std::move(memory), map.resolution);
     if (carries_axes_to_axes(turn))
         move(map, source_from_destination, memory);
     else if (map.resolution < TurnedTexels::MinResolution)

@@ -86,18 +86,9 @@ public:
     }
 
 private:
-    /// Axes of a face: to the right and down in its image, and outwards.
-    struct Axes {
-        glm::dvec3 right, down, out;
-    };
-    [[nodiscard]] static Axes axes(Face face) {
-        const glm::dvec3 out = cube_point(face, 0.5, 0.5);
-        return {cube_point(face, 1.0, 0.5) - out, cube_point(face, 0.5, 1.0) - out, out};
-    }
-
     /// Puts the polygon's part inside the pyramid of a face into clipped_.
     void clip(std::span<const glm::dvec3> corners, Face face) {
-        const auto [right, down, out] = axes(face);
+        const auto [right, down, out] = FaceAxes(face);
         const std::array<glm::dvec3, 4> planes = {out - right, out + right, out - down, out + down};
         clipped_.assign(corners.begin(), corners.end());
         for (const glm::dvec3& plane : planes) {
@@ -123,15 +114,15 @@ private:
 
     template<typename Visit>
     void cut(Face face, const Visit& visit) {
-        const auto [right, down, out] = axes(face);
+        const FaceAxes axes(face);
         const double n = num_cells_;
         polygon_.clear();
         for (const glm::dvec3& corner : clipped_) {
-            const double distance = glm::dot(out, corner);
-            if (!(distance > 0.0))
+            const glm::dvec3 parts = axes.parts(corner);
+            if (!(parts.z > 0.0))
                 return; // the part is the origin alone
-            polygon_.emplace_back((glm::dot(right, corner) / distance + 1.0) * 0.5 * n,
-                                  (glm::dot(down, corner) / distance + 1.0) * 0.5 * n);
+            polygon_.emplace_back((parts.x / parts.z + 1.0) * 0.5 * n,
+                                  (parts.y / parts.z + 1.0) * 0.5 * n);
         }
         UnitLines columns(num_cells_), rows(num_cells_);
         cutter_.cut(polygon_, columns, rows,

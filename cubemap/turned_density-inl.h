@@ -78,9 +78,9 @@ public:
         return hn::MulAdd(from_left, mean, hn::Mul(bend, number(1.0f / 3.0f)));
     }
 
-    /// What whole texels of a row have up to height y: the integral of their density, of which y is
-    /// a part, and for each unit of change(). Multiples of powers of two, so that differences are
-    /// exact: where they cancel, nothing is left of a sun in the row.
+    /// What whole texels of a row have up to height y: the integral of their density less y, and
+    /// for each unit of change(). Multiples of powers of two, so that differences are exact: where
+    /// they cancel, nothing is left of a sun in the row.
     struct Heights {
         Vec density, change;
     };

@@ -4,7 +4,6 @@
 #include <cstddef>
 
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 
 namespace relumine::cubemap {
 
@@ -12,14 +11,6 @@ namespace {
 
 std::uint32_t num_parts(std::uint32_t size, std::uint32_t most) {
     return (size + most - 1) / most;
-}
-
-/// A direction along the axes of a face: to the right and down in its image, and outwards.
-glm::dvec3 on_face(const glm::dvec3& direction, Face face) {
-    const glm::dvec3 outwards = cube_point(face, 0.5, 0.5);
-    return {glm::dot(direction, cube_point(face, 1.0, 0.5) - outwards),
-            glm::dot(direction, cube_point(face, 0.5, 1.0) - outwards),
-            glm::dot(direction, outwards)};
 }
 
 /// Whether a tile may meet a face: the bounds of its corners do, in front of the face.
@@ -48,10 +39,11 @@ TurnedTexels::TurnedTexels(const CubeMap& map, const glm::dmat3& source_from_des
             return source_from_destination * cube_point(AllFaces[face], s, t);
         };
         const glm::dvec3 first = corner(0.0, 0.0);
-        for (std::size_t from = 0; from < NumFaces; ++from)
-            places_[face][from] = {on_face(first, AllFaces[from]),
-                                   on_face((corner(1.0, 0.0) - first) / n, AllFaces[from]),
-                                   on_face((corner(0.0, 1.0) - first) / n, AllFaces[from])};
+        for (std::size_t from = 0; from < NumFaces; ++from) {
+            const FaceAxes axes(AllFaces[from]);
+            places_[face][from] = {axes.parts(first), axes.parts((corner(1.0, 0.0) - first) / n),
+                                   axes.parts((corner(0.0, 1.0) - first) / n)};
+        }
     }
 }
 

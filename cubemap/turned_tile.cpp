@@ -15,21 +15,6 @@ using Work = TileWork;
 // than second order says.
 constexpr std::uint32_t LeastCells = 256;
 
-/// A point of the face by itself, as the kernels find those of corners.
-void set_point(const glm::dvec2& position, const Work& work, std::size_t at, Work::Points& points) {
-    const auto cell = [&](double p) {
-        return static_cast<float>(std::clamp(static_cast<std::int32_t>(p), 0, work.num_cells - 1));
-    };
-    const auto place = [](double p, float of) {
-        const auto exact = static_cast<float>(p - double{of});
-        return (exact + 1.0f) - 1.0f;
-    };
-    points.column[at] = cell(position.x);
-    points.row[at] = cell(position.y);
-    points.x[at] = place(position.x, points.column[at]);
-    points.y[at] = place(position.y, points.row[at]);
-}
-
 /// Keeps the part of an edge between 0 and n along an axis. Returns whether there is any.
 bool cut(glm::dvec2& a, glm::dvec2& b, int axis, double n) {
     if (std::max(a[axis], b[axis]) <= 0.0 || std::min(a[axis], b[axis]) >= n)
@@ -49,34 +34,33 @@ bool cut(glm::dvec2& a, glm::dvec2& b, int axis, double n) {
 /// what lies on the face. Edges beside it become points.
 void cut_edges(std::size_t width, std::size_t height, std::size_t next, Work& work) {
     const double n = work.num_cells;
-    const auto is_inside = [&](std::size_t at) {
-        return work.x[at] >= 0.0 && work.x[at] <= n && work.y[at] >= 0.0 && work.y[at] <= n;
+    const auto is_inside = [&](const glm::dvec2& p) {
+        return p.x >= 0.0 && p.x <= n && p.y >= 0.0 && p.y <= n;
     };
     for (std::size_t y = 0; y < height; ++y)
         for (std::size_t x = 0; x < width; ++x) {
             const std::size_t at = y * Work::Stride + x;
-            const auto copy = [&](std::size_t from, Work::Points& points) {
-                points.column[at] = work.corners.column[from];
-                points.row[at] = work.corners.row[from];
-                points.x[at] = work.corners.x[from];
-                points.y[at] = work.corners.y[from];
-            };
-            const bool starts_inside = is_inside(at), ends_inside = is_inside(at + next);
-            glm::dvec2 a(work.x[at], work.y[at]), b(work.x[at + next], work.y[at + next]);
-            if (!(starts_inside && ends_inside) && !(cut(a, b, 0, n) && cut(a, b, 1, n))) {
-                copy(at, work.starts);
-                copy(at, work.ends);
-                continue;
-            }
-            if (starts_inside)
-                copy(at, work.starts);
-            else
-                set_point(a, work, at, work.starts);
-            if (ends_inside)
-                copy(at + next, work.ends);
-            else
-                set_point(b, work, at, work.ends);
+            glm::dvec2 a = work.corners.position(at), b = work.corners.position(at + next);
+            const bool is_on_face =
+                (is_inside(a) && is_inside(b)) || (cut(a, b, 0, n) && cut(a, b, 1, n));
+            if (!is_on_face)
+                a = b = work.corners.position(at);
+            work.starts.set(at, a);
+            work.ends.set(at, b);
         }
+}
+
+/// Sums along the edges of width x height corners, each to the corner `next` further on.
+void sum_along_edges(std::size_t width, std::size_t height, std::size_t next, Work& work,
+                     Work::Sums& sums) {
+    if (work.is_cut) {
+        cut_edges(width, height, next, work);
+        find_cells(height, work, work.starts);
+        find_cells(height, work, work.ends);
+        sum_edges(width, height, work.starts, work.ends, 0, work, sums);
+    } else {
+        sum_edges(width, height, work.corners, work.corners, next, work, sums);
+    }
 }
 
 /// Sets the part of the face that the tile meets.
@@ -87,8 +71,8 @@ void find_part(Work& work) {
     glm::dvec2 least(n), most(0.0);
     for (const std::size_t at :
          {std::size_t{0}, std::size_t{work.width}, lower, lower + work.width}) {
-        least = glm::min(least, glm::dvec2(work.x[at], work.y[at]));
-        most = glm::max(most, glm::dvec2(work.x[at], work.y[at]));
+        least = glm::min(least, work.corners.position(at));
+        most = glm::max(most, work.corners.position(at));
     }
     work.is_cut = least.x < 0.0 || least.y < 0.0 || most.x > n || most.y > n;
     const auto cell = [&](const glm::dvec2& p) {
@@ -127,12 +111,10 @@ void TurnedTile::add(const TilePlace& place, const glm::vec3* face, std::uint32_
     place_corners(place, work);
     find_part(work);
     fill_cells(work);
-    if (work.is_cut)
-        cut_edges(work.width, work.height + 1, 1, work);
-    sum_across(work);
-    if (work.is_cut)
-        cut_edges(work.width + 1, work.height, Work::Stride, work);
-    sum_down(work);
+    if (!work.is_cut)
+        find_cells(work.height + 1, work, work.corners);
+    sum_along_edges(work.width, work.height + 1, 1, work, work.of_across);
+    sum_along_edges(work.width + 1, work.height, Work::Stride, work, work.of_down);
     add_texels(work);
     work.is_first = false;
 }

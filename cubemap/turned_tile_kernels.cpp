@@ -40,8 +40,8 @@ void place_corners(const TilePlace& place, Work& work) {
             };
             const auto scale = hn::Div(half, along(2));
             const std::size_t at = y * Stride + x;
-            hn::Store(hn::MulAdd(along(0), scale, half), d, work.x.data() + at);
-            hn::Store(hn::MulAdd(along(1), scale, half), d, work.y.data() + at);
+            hn::Store(hn::MulAdd(along(0), scale, half), d, work.corners.position_x.data() + at);
+            hn::Store(hn::MulAdd(along(1), scale, half), d, work.corners.position_y.data() + at);
         }
     }
 }
@@ -74,12 +74,12 @@ void split(const double* positions, std::int32_t num_cells, float* cells, float*
     }
 }
 
-void find_points(Work& work) {
-    for (std::size_t at = 0; at < (work.height + 1) * Stride; at += hn::Lanes(Lanes())) {
-        split(work.x.data() + at, work.num_cells, work.corners.column.data() + at,
-              work.corners.x.data() + at);
-        split(work.y.data() + at, work.num_cells, work.corners.row.data() + at,
-              work.corners.y.data() + at);
+void find_cells(std::size_t num_rows, const Work& work, Points& points) {
+    for (std::size_t at = 0; at < num_rows * Stride; at += hn::Lanes(Lanes())) {
+        split(points.position_x.data() + at, work.num_cells, points.column.data() + at,
+              points.x.data() + at);
+        split(points.position_y.data() + at, work.num_cells, points.row.data() + at,
+              points.y.data() + at);
     }
 }
 
@@ -170,8 +170,10 @@ glm::ivec2 columns_in_row(std::int32_t row, const Work& work) {
     const std::int32_t end = work.first.x + work.size.x;
     double least = end, most = work.first.x;
     for (std::size_t i = 0; i < 4; ++i) {
-        const double x = work.x[corners[i]], y = work.y[corners[i]];
-        const double end_x = work.x[corners[i + 1]], end_y = work.y[corners[i + 1]];
+        const double x = work.corners.position_x[corners[i]],
+                     y = work.corners.position_y[corners[i]],
+                     end_x = work.corners.position_x[corners[i + 1]],
+                     end_y = work.corners.position_y[corners[i + 1]];
         if (std::max(y, end_y) < top || std::min(y, end_y) > bottom)
             continue;
         const double slope = y == end_y ? 0.0 : (end_x - x) / (end_y - y);
@@ -188,7 +190,6 @@ glm::ivec2 columns_in_row(std::int32_t row, const Work& work) {
 }
 
 void fill_cells(Work& work) {
-    find_points(work);
     const Density density = density_of(work);
     work.columns.clear();
     // All rows are asked for before the first is needed.
@@ -320,7 +321,7 @@ private:
 };
 
 /// Sums over the edges from start to end, as many as there are lanes.
-void sum_edges(const Points& from, std::size_t start, const Points& to, std::size_t end,
+void sum_lanes(const Points& from, std::size_t start, const Points& to, std::size_t end,
                std::size_t count, const Work& work, const Density& density, Work::Sum* sums) {
     // As many at once; edges are seldom longer.
     constexpr std::size_t MaxPieces = 8;
@@ -400,26 +401,16 @@ void store_means(const Work& work, glm::vec3* texels, std::size_t stride) {
         }
 }
 
-/// Sums along the edges of width x height corners, each to the corner `next` further on.
-void sum_edges_of(std::size_t width, std::size_t height, std::size_t next, Work& work,
-                  Work::Sums& sums) {
+void sum_edges(std::size_t width, std::size_t height, const Points& starts, const Points& ends,
+               std::size_t to_end, const Work& work, Work::Sums& sums) {
     const Density density = density_of(work);
     const std::size_t lanes = hn::Lanes(Lanes());
-    const Points& starts = work.is_cut ? work.starts : work.corners;
-    const Points& ends = work.is_cut ? work.ends : work.corners;
-    const std::size_t to_end = work.is_cut ? 0 : next;
     for (std::size_t y = 0; y < height; ++y)
         for (std::size_t x = 0; x < width; x += lanes) {
             const std::size_t at = y * Stride + x;
-            sum_edges(starts, at, ends, at + to_end, std::min(lanes, width - x), work, density,
+            sum_lanes(starts, at, ends, at + to_end, std::min(lanes, width - x), work, density,
                       sums.data() + at);
         }
-}
-void sum_across(Work& work) {
-    sum_edges_of(work.width, work.height + 1, 1, work, work.of_across);
-}
-void sum_down(Work& work) {
-    sum_edges_of(work.width + 1, work.height, Stride, work, work.of_down);
 }
 
 } // namespace relumine::cubemap::HWY_NAMESPACE
@@ -431,8 +422,8 @@ namespace relumine::cubemap {
 namespace {
 HWY_EXPORT(place_corners);
 HWY_EXPORT(fill_cells);
-HWY_EXPORT(sum_across);
-HWY_EXPORT(sum_down);
+HWY_EXPORT(find_cells);
+HWY_EXPORT(sum_edges);
 HWY_EXPORT(add_texels);
 HWY_EXPORT(store_means);
 } // namespace
@@ -445,12 +436,14 @@ void fill_cells(TileWork& work) {
     HWY_DYNAMIC_DISPATCH(fill_cells)(work);
 }
 
-void sum_across(TileWork& work) {
-    HWY_DYNAMIC_DISPATCH(sum_across)(work);
+void find_cells(std::size_t num_rows, const TileWork& work, TileWork::Points& points) {
+    HWY_DYNAMIC_DISPATCH(find_cells)(num_rows, work, points);
 }
 
-void sum_down(TileWork& work) {
-    HWY_DYNAMIC_DISPATCH(sum_down)(work);
+void sum_edges(std::size_t width, std::size_t height, const TileWork::Points& starts,
+               const TileWork::Points& ends, std::size_t to_end, const TileWork& work,
+               TileWork::Sums& sums) {
+    HWY_DYNAMIC_DISPATCH(sum_edges)(width, height, starts, ends, to_end, work, sums);
 }
 
 void add_texels(TileWork& work) {

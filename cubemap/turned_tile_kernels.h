@@ -30,9 +30,18 @@ struct TileWork {
     /// Of what the outermost corners bound, rounding may set others so far outside.
     static constexpr double Margin = 1e-6;
 
-    /// Points on the face: a cell, and the place in it, in [0, 1].
+    /// Points on the face, in cells; and for each the cell, and the place in it, in [0, 1].
     struct Points {
+        alignas(64) std::array<double, NumCorners> position_x, position_y;
         alignas(64) std::array<float, NumCorners> column, row, x, y;
+
+        [[nodiscard]] glm::dvec2 position(std::size_t at) const {
+            return {position_x[at], position_y[at]};
+        }
+        void set(std::size_t at, const glm::dvec2& position) {
+            position_x[at] = position.x;
+            position_y[at] = position.y;
+        }
     };
     /// Three colours and solid angle.
     using Sum = std::array<double, 4>;
@@ -47,8 +56,6 @@ struct TileWork {
 
     alignas(64) Sums texels;
 
-    /// Of the corners, in cells.
-    alignas(64) std::array<double, NumCorners> x, y;
     Points corners;
     /// Of edges, where the tile reaches over the face's sides.
     Points starts, ends;
@@ -82,11 +89,14 @@ struct TileWork {
 
 /// Sets where the corners lie.
 void place_corners(const TilePlace& place, TileWork& work);
-/// Sets the corners' points, and the cells.
+/// Fills the cells of the part.
 void fill_cells(TileWork& work);
-/// Sums along the edges to the right of the corners, or down from them.
-void sum_across(TileWork& work);
-void sum_down(TileWork& work);
+/// Finds the cells of rows of points.
+void find_cells(std::size_t num_rows, const TileWork& work, TileWork::Points& points);
+/// Sums along the edges from width x height starts, each to the end `to_end` further on.
+void sum_edges(std::size_t width, std::size_t height, const TileWork::Points& starts,
+               const TileWork::Points& ends, std::size_t to_end, const TileWork& work,
+               TileWork::Sums& sums);
 /// Adds to the texels what their edges say.
 void add_texels(TileWork& work);
 void store_means(const TileWork& work, glm::vec3* texels, std::size_t stride);

@@ -127,13 +127,12 @@ LayerCompositor::LayerCompositor(const LightState& state,
 }
 
 cubemap::CubeMap LayerCompositor::take_turned() {
-    return turned_base_ ? std::move(*turned_base_) : cubemap::CubeMap();
+    return turned_base_ ? std::exchange(*turned_base_, {}) : cubemap::CubeMap();
 }
 
 cubemap::CubeMap LayerCompositor::whole(cubemap::CubeMap memory) {
     changed_ = cubemap::all_texels(now_.base->resolution);
-    if (memory.resolution != now_.base->resolution)
-        memory = cubemap::CubeMap(now_.base->resolution);
+    memory = cubemap::written_over(std::move(memory), now_.base->resolution);
     cubemap::composite(*now_.base, now_.layers, changed_, memory);
     return memory;
 }

@@ -32,8 +32,8 @@ public:
     /// Gives away the turned base, if it made one; nothing else may be asked of it then.
     [[nodiscard]] cubemap::CubeMap take_turned();
 
-    /// Returns base and layers together, turned. `memory` is a map that nobody needs any more: one
-    /// of the same resolution is written over, which is much quicker than new memory.
+    /// Returns base and layers together, turned. `memory` may be written over, as
+    /// cubemap::written_over() says.
     [[nodiscard]] cubemap::CubeMap whole(cubemap::CubeMap memory = {});
 
     /// Finds what differs in another state of the same turn, and without one the base may be

@@ -135,7 +135,7 @@ private:
 
     const RectangleShape& rectangle_;
     const ImagePyramid& picture_;
-    const FacePlane& plane_;
+    const FaceAxes& plane_;
     std::size_t level_;
     double largest_part_;
 };
@@ -194,8 +194,9 @@ void stream_rectangle(const CubeMap& base, const TexelRectangle& rectangle, Cube
 void composite_rectangle(const CubeMap& base, std::span<const PreparedLayer> layers,
                          const TexelRectangle& rectangle, CubeMap& target) {
     constexpr std::size_t CachedTexels = 1u << 19;
-    const bool is_streamed = &base != &target && rectangle.num_texels() > CachedTexels;
-    if (is_streamed) {
+    bool is_copied = &base == &target;
+    if (!is_copied && rectangle.num_texels() > CachedTexels) {
+        is_copied = true;
         stream_rectangle(base, rectangle, target);
         if (layers.empty())
             return;
@@ -212,7 +213,7 @@ void composite_rectangle(const CubeMap& base, std::span<const PreparedLayer> lay
                             column = first_column + index % num_columns;
         const TexelRange tile(column * TileSize, row * TileSize, TileSize, base.resolution);
         const TexelRange part = tile.within(rectangle);
-        for (std::uint32_t y = part.y0; y < part.y1 && &base != &target && !is_streamed; ++y)
+        for (std::uint32_t y = part.y0; y < part.y1 && !is_copied; ++y)
             std::copy_n(&base.at(rectangle.face, part.x0, y), part.x1 - part.x0,
                         &target.at(rectangle.face, part.x0, y));
         for (const PreparedLayer& layer : layers)

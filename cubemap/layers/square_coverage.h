@@ -20,19 +20,6 @@
 
 namespace relumine::cubemap {
 
-/// The plane of a face. The point (u, v) of [-1, 1]^2 is origin + u right + v down, which is
-/// cube_point() of face.h with u = 2s - 1, v = 2t - 1.
-struct FacePlane {
-    explicit FacePlane(Face face)
-        : origin(cube_point(face, 0.5, 0.5)), right(cube_point(face, 1.0, 0.5) - origin),
-          down(cube_point(face, 0.5, 1.0) - origin) {}
-    [[nodiscard]] glm::dvec3 direction(double u, double v) const {
-        // The three axes are perpendicular, so the length follows from u and v.
-        return (origin + u * right + v * down) * (1.0 / std::sqrt(1.0 + u * u + v * v));
-    }
-    glm::dvec3 origin, right, down;
-};
-
 /// The square [u - half, u + half] x [v - half, v + half] of a face's plane.
 struct FaceSquare {
     double u = 0.0;
@@ -62,7 +49,7 @@ struct FaceSquare {
 
 /// Returns the mean coverage, in [0, 1], of a square for which bound() gives Part.
 template<typename Shape>
-[[nodiscard]] double mean_coverage(const Shape& shape, const FacePlane& plane,
+[[nodiscard]] double mean_coverage(const Shape& shape, const FaceAxes& plane,
                                    const FaceSquare& square);
 
 namespace detail {
@@ -84,7 +71,7 @@ struct RampFit {
 
 /// Returns the product of the ramps' means, or nothing if the fits cannot be trusted.
 template<typename Shape>
-std::optional<double> fitted_coverage(const Shape& shape, const FacePlane& plane,
+std::optional<double> fitted_coverage(const Shape& shape, const FaceAxes& plane,
                                       const FaceSquare& square) {
     constexpr std::size_t N = Shape::NumRamps;
     // In larger squares the density of solid angle varies by more than a percent.
@@ -126,7 +113,7 @@ std::optional<double> fitted_coverage(const Shape& shape, const FacePlane& plane
 
 /// Returns the integral of coverage over a square's solid angle.
 template<typename Shape>
-double covered_solid_angle(const Shape& shape, const FacePlane& plane, const FaceSquare& square) {
+double covered_solid_angle(const Shape& shape, const FaceAxes& plane, const FaceSquare& square) {
     switch (shape.bound(plane.direction(square.u, square.v), square.chord())) {
     case Overlap::None:
         return 0.0;
@@ -146,7 +133,7 @@ double covered_solid_angle(const Shape& shape, const FacePlane& plane, const Fac
 } // namespace detail
 
 template<typename Shape>
-double mean_coverage(const Shape& shape, const FacePlane& plane, const FaceSquare& square) {
+double mean_coverage(const Shape& shape, const FaceAxes& plane, const FaceSquare& square) {
     if (const std::optional<double> fitted = detail::fitted_coverage(shape, plane, square))
         return *fitted;
     double sum = 0.0;

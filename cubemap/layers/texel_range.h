@@ -43,7 +43,7 @@ struct FaceGrid {
     FaceGrid(Face which, std::uint32_t resolution)
         : face(which), plane(which), half_texel(1.0 / resolution) {}
     Face face;
-    FacePlane plane;
+    FaceAxes plane;
     /// Half the width of a texel on the plane of [-1, 1]^2.
     double half_texel;
 

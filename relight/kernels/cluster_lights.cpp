@@ -55,21 +55,11 @@ void add_whole(const TexelSums& whole, std::uint32_t x, std::uint32_t y, double 
     sums.v += whole.y * step + whole.one * ((y + 0.5) * step - 1.0);
 }
 
-/// The axes of 1, u and v: cube_point() is linear in (1, u, v) = (1, 2s - 1, 2t - 1) for a face.
-struct FaceAxes {
-    glm::dvec3 centre, right, down;
-
-    explicit FaceAxes(cubemap::Face face)
-        : centre(cubemap::cube_point(face, 0.5, 0.5)),
-          right(cubemap::cube_point(face, 1.0, 0.5) - centre),
-          down(cubemap::cube_point(face, 0.5, 1.0) - centre) {}
-};
-
 /// Turns sums in the coordinates of a face to the world.
 VectorIrradiance to_world(cubemap::Face face, const FaceSums& sums) {
-    const FaceAxes axes(face);
+    const cubemap::FaceAxes axes(face);
     const auto channel = [&](int i) {
-        return sums.one[i] * axes.centre + sums.u[i] * axes.right + sums.v[i] * axes.down;
+        return sums.one[i] * axes.outwards + sums.u[i] * axes.right + sums.v[i] * axes.down;
     };
     return {.red = channel(0), .green = channel(1), .blue = channel(2)};
 }
@@ -164,12 +154,12 @@ VectorIrradiance LightBinning::sum(const cubemap::CubeMap& environment,
 
 void LightBinning::add_derivative(const prt::Cell& cell, const VectorIrradiance& derivative,
                                   cubemap::CubeMap& texels) const {
-    const FaceAxes axes(cell.face);
+    const cubemap::FaceAxes axes(cell.face);
     const auto along = [&](const glm::dvec3& axis) {
         return glm::dvec3(glm::dot(derivative.red, axis), glm::dot(derivative.green, axis),
                           glm::dot(derivative.blue, axis));
     };
-    const glm::dvec3 one = along(axes.centre), of_u = along(axes.right), of_v = along(axes.down);
+    const glm::dvec3 one = along(axes.outwards), of_u = along(axes.right), of_v = along(axes.down);
     for_texels(
         cell, resolution_,
         [&](std::uint32_t x, std::uint32_t y, double u, double v, double weight) {
