@@ -19,6 +19,7 @@ set(relumine_find_OpenMeshCore "find_dependency(OpenMesh)" -lOpenMeshCore libope
 set(relumine_find_OpenMeshTools "find_dependency(OpenMesh)" -lOpenMeshTools libopenmesh-dev)
 set(relumine_find_JPEG_JPEG "find_dependency(JPEG)" -ljpeg libjpeg-dev)
 set(relumine_find_ZLIB_ZLIB "find_dependency(ZLIB)" -lz zlib1g-dev)
+set(relumine_find_PkgConfig_deflate "relumine_find_module(deflate)" -ldeflate libdeflate-dev pkg-config)
 set(relumine_find_meshoptimizer_meshoptimizer "find_dependency(meshoptimizer)" -lmeshoptimizer libmeshoptimizer-dev)
 set(relumine_find_PkgConfig_webp "relumine_find_module(webp)" -lwebp libwebp-dev pkg-config)
 set(relumine_find_PkgConfig_hwy "relumine_find_module(hwy)" -lhwy libhwy-dev pkg-config)

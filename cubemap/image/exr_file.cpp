@@ -1,4 +1,4 @@
-// Reads and writes OpenEXR pictures in memory.
+// Reads OpenEXR pictures in memory.
 #include <algorithm>
 #include <cstring>
 #include <memory>
@@ -12,12 +12,10 @@
 #include <ImfIO.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
-#include <ImfOutputFile.h>
 #include <ImfPartType.h>
 #include <ImfRgbaFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
-#include <ImfThreading.h>
 #include <ImfTileDescription.h>
 #include <fmt/format.h>
 
@@ -52,25 +50,6 @@ public:
 
 private:
     std::span<const std::byte> bytes_;
-    std::size_t position_ = 0;
-};
-
-class MemoryOutput : public Imf::OStream {
-public:
-    MemoryOutput() : Imf::OStream("file") {}
-    void write(const char* source, int n) override {
-        const std::size_t end = position_ + static_cast<std::size_t>(n);
-        if (end > bytes.size())
-            bytes.resize(end);
-        std::memcpy(bytes.data() + position_, source, static_cast<std::size_t>(n));
-        position_ = end;
-    }
-    std::uint64_t tellp() override { return position_; }
-    void seekp(std::uint64_t position) override { position_ = position; }
-
-    std::vector<std::byte> bytes;
-
-private:
     std::size_t position_ = 0;
 };
 
@@ -375,66 +354,6 @@ ImageFile decode_exr(std::span<const std::byte> bytes, const std::string& name) 
 ImageSize exr_size(const std::filesystem::path& path) {
     const std::string name = path.string();
     return with_own_messages(name, [&] { return ExrDecoder({}, name).size(path); });
-}
-
-namespace {
-
-/// Returns the number of OpenEXR's threads that compress a picture; the file is the same for any
-/// number. Small pictures are written by the caller's thread. Large ones switch on OpenEXR's pool,
-/// for as many threads as this program may have.
-int num_writers(const Picture& picture) {
-    constexpr std::size_t Small = std::size_t{1} << 18;
-    if (picture.pixels.size() <= Small)
-        return 0;
-    const auto allowed = static_cast<int>(files::num_threads());
-    if (allowed <= 1)
-        return 0;
-    static const int pool = [&] {
-        Imf::setGlobalThreadCount(allowed);
-        return allowed;
-    }();
-    return std::min(allowed, pool);
-}
-
-} // namespace
-
-std::vector<std::byte> encode_exr(const EnvironmentImage& image, std::span<const ExrLayer> layers) {
-    Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
-    header.compression() = Imf::ZIP_COMPRESSION;
-    if (image.sampling == Sampling::Borders &&
-        (image.layout == Layout::LatLong || image.layout == Layout::Cube))
-        Imf::addEnvmap(header,
-                       image.layout == Layout::Cube ? Imf::ENVMAP_CUBE : Imf::ENVMAP_LATLONG);
-    Imf::FrameBuffer buffer;
-    // OpenEXR only reads here, but its frame buffers are made for reading and writing.
-    const auto insert = [&](const std::string& prefix, std::span<const glm::vec3> pixels) {
-        char* base = const_cast<char*>(reinterpret_cast<const char*>(pixels.data()));
-        std::size_t offset = 0;
-        for (const char* letter : {"R", "G", "B"}) {
-            const std::string channel = prefix + letter;
-            header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
-            buffer.insert(channel, Imf::Slice(Imf::FLOAT, base + offset, sizeof(glm::vec3),
-                                              sizeof(glm::vec3) * image.width));
-            offset += sizeof(float);
-        }
-    };
-    insert("", image.pixels);
-    for (const ExrLayer& layer : layers)
-        insert(layer.name + ".", layer.pixels);
-    if (!image.alpha.empty()) {
-        header.channels().insert("A", Imf::Channel(Imf::FLOAT));
-        buffer.insert(
-            "A", Imf::Slice(Imf::FLOAT,
-                            const_cast<char*>(reinterpret_cast<const char*>(image.alpha.data())),
-                            sizeof(float), sizeof(float) * image.width));
-    }
-    MemoryOutput stream;
-    {
-        Imf::OutputFile file(stream, header, num_writers(image));
-        file.setFrameBuffer(buffer);
-        file.writePixels(static_cast<int>(image.height));
-    }
-    return std::move(stream.bytes);
 }
 
 } // namespace relumine::cubemap
