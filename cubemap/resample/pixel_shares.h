@@ -103,10 +103,17 @@ public:
         : footprints_(shape), overlaps_(resolution), symmetries_(symmetries), turn_(turn),
           is_turned_(turn != glm::dmat3(1.0)), is_mirrored_(glm::determinant(turn) < 0.0) {}
 
-    /// Puts the shares of a row into `shares`. All shares of a pixel follow each other; a texel may
-    /// come more than once.
-    void find(std::uint32_t y, std::vector<PixelShare>& shares) {
-        shares.clear();
+    /// The overlap of a pixel with a texel.
+    struct Found {
+        Face face;
+        std::uint32_t x, y;
+        double solid_angle;
+    };
+
+    /// Calls `take(pixel_index, x, std::span<const Found>)` for the pixels of a row that are the
+    /// first of their images and overlap texels. A texel may come more than once.
+    template<typename Take>
+    void find_first(std::uint32_t y, const Take& take) {
         found_.clear();
         const auto is_first = [&](std::uint32_t x, std::size_t pixel) {
             return std::all_of(symmetries_.begin() + 1, symmetries_.end(),
@@ -115,11 +122,16 @@ public:
         // A pixel has several pieces; its shares are complete when the next pixel begins.
         std::size_t current = 0;
         std::uint32_t column = 0;
+        const auto flush = [&] {
+            if (!found_.empty())
+                take(current, column, std::span<const Found>(found_));
+            found_.clear();
+        };
         footprints_.visit_row(
             y, is_first,
             [&](std::size_t pixel, std::uint32_t x, std::span<const glm::dvec3> corners) {
                 if (pixel != current)
-                    flush(current, column, y, shares);
+                    flush();
                 current = pixel;
                 column = x;
                 if (is_turned_) {
@@ -135,34 +147,34 @@ public:
                     found_.push_back({face, texel_x, texel_y, solid_angle});
                 });
             });
-        flush(current, column, y, shares);
+        flush();
+    }
+
+    /// Puts the shares of a row into `shares`. All shares of a pixel follow each other; a texel may
+    /// come more than once.
+    void find(std::uint32_t y, std::vector<PixelShare>& shares) {
+        shares.clear();
+        find_first(y, [&](std::size_t pixel, std::uint32_t x, std::span<const Found> found) {
+            add_images(pixel, x, y, found, shares);
+        });
     }
 
 private:
-    struct Found {
-        Face face;
-        std::uint32_t x, y;
-        double solid_angle;
-    };
-
     /// Writes the shares of a pixel and of its images.
-    void flush(std::size_t pixel, std::uint32_t x, std::uint32_t y,
-               std::vector<PixelShare>& shares) {
-        if (found_.empty())
-            return;
+    void add_images(std::size_t pixel, std::uint32_t x, std::uint32_t y,
+                    std::span<const Found> found, std::vector<PixelShare>& shares) {
         images_.clear();
         for (const PixelSymmetry& symmetry : symmetries_) {
             const std::size_t image = images_.empty() ? pixel : symmetry.pixel(x, y);
             if (std::find(images_.begin(), images_.end(), image) != images_.end())
                 continue; // the pixel lies on a mirror
             images_.push_back(image);
-            for (const Found& each : found_)
+            for (const Found& each : found)
                 shares.push_back(
                     {static_cast<std::uint32_t>(image), // MaxPixels is below 2^32
                      static_cast<std::uint32_t>(symmetry.texel(each.face, each.x, each.y)),
                      each.solid_angle});
         }
-        found_.clear();
     }
 
     PixelFootprints footprints_;
