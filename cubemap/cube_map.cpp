@@ -129,10 +129,25 @@ glm::vec3 sample(const CubeMap& map, const glm::vec3& direction) {
     const auto resolution = static_cast<std::int64_t>(map.resolution);
     const double x = point.s * static_cast<double>(resolution) - 0.5;
     const double y = point.t * static_cast<double>(resolution) - 0.5;
-    const auto x0 = static_cast<std::int64_t>(std::floor(x));
-    const auto y0 = static_cast<std::int64_t>(std::floor(y));
+    // As std::floor(), which is a call of a function for processors without SSE4.
+    const auto floor = [](double value) {
+        const auto whole = static_cast<std::int64_t>(value);
+        return whole - (value < static_cast<double>(whole) ? 1 : 0);
+    };
+    const std::int64_t x0 = floor(x), y0 = floor(y);
     const auto fx = static_cast<float>(x - static_cast<double>(x0));
     const auto fy = static_cast<float>(y - static_cast<double>(y0));
+    const auto mixed = [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
+                           const glm::vec3& d) {
+        return glm::mix(glm::mix(a, b, fx), glm::mix(c, d, fx), fy);
+    };
+    // Nearly always all four texels lie on the face.
+    if (std::min(x0, y0) >= 0 && std::max(x0, y0) + 1 < resolution) {
+        const glm::vec3* const above =
+            &map.at(point.face, static_cast<std::uint32_t>(x0), static_cast<std::uint32_t>(y0));
+        const glm::vec3* const below = above + resolution;
+        return mixed(above[0], above[1], below[0], below[1]);
+    }
 
     const auto inside = [&](std::int64_t i) {
         return i >= 0 && i < resolution;
@@ -154,7 +169,7 @@ glm::vec3 sample(const CubeMap& map, const glm::vec3& direction) {
         const glm::vec3 mean = (corners[0] + corners[1] + corners[2] + corners[3]) / 3.0f;
         corners[static_cast<std::size_t>(missing)] = mean;
     }
-    return glm::mix(glm::mix(corners[0], corners[1], fx), glm::mix(corners[2], corners[3], fx), fy);
+    return mixed(corners[0], corners[1], corners[2], corners[3]);
 }
 
 glm::dvec3 irradiance(const CubeMap& map, const glm::dvec3& normal) {

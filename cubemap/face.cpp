@@ -36,50 +36,10 @@ double gauss_solid_angle(double u0, double v0, double u1, double v1) {
 
 } // namespace
 
-glm::dvec3 cube_point(Face face, double s, double t) {
-    const double u = 2.0 * s - 1.0;
-    const double v = 2.0 * t - 1.0;
-    switch (face) {
-    case Face::PositiveX:
-        return {1.0, -v, u};
-    case Face::NegativeX:
-        return {-1.0, -v, -u};
-    case Face::PositiveY:
-        return {u, 1.0, -v};
-    case Face::NegativeY:
-        return {u, -1.0, v};
-    case Face::PositiveZ:
-        return {-u, -v, 1.0};
-    case Face::NegativeZ:
-        break;
-    }
-    return {u, -v, -1.0};
-}
-
 FaceAxes::FaceAxes(Face face)
     : right(cube_point(face, 1.0, 0.5) - cube_point(face, 0.5, 0.5)),
       down(cube_point(face, 0.5, 1.0) - cube_point(face, 0.5, 0.5)),
       outwards(cube_point(face, 0.5, 0.5)) {}
-
-glm::dvec3 direction(Face face, double s, double t) {
-    return glm::normalize(cube_point(face, s, t));
-}
-
-FacePoint face_point(const glm::dvec3& w) {
-    const glm::dvec3 size = glm::abs(w);
-    const auto at = [](Face face, double u, double v) {
-        return FacePoint{face, std::clamp(0.5 * (u + 1.0), 0.0, 1.0),
-                         std::clamp(0.5 * (v + 1.0), 0.0, 1.0)};
-    };
-    if (size.x >= size.y && size.x >= size.z)
-        return w.x > 0.0 ? at(Face::PositiveX, w.z / size.x, -w.y / size.x)
-                         : at(Face::NegativeX, -w.z / size.x, -w.y / size.x);
-    if (size.y >= size.z)
-        return w.y > 0.0 ? at(Face::PositiveY, w.x / size.y, -w.z / size.y)
-                         : at(Face::NegativeY, w.x / size.y, w.z / size.y);
-    return w.z > 0.0 ? at(Face::PositiveZ, -w.x / size.z, -w.y / size.z)
-                     : at(Face::NegativeZ, w.x / size.z, -w.y / size.z);
-}
 
 double solid_angle(double s0, double t0, double s1, double t1) {
     const double u0 = 2.0 * s0 - 1.0, u1 = 2.0 * s1 - 1.0;

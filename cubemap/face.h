@@ -1,10 +1,12 @@
 // The one place that says how cube faces lie in space. All other code calls these functions.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -47,7 +49,25 @@ struct FacePoint {
 
 /// Returns the direction of a face point on the cube [-1, 1]^3. The vector is not normalised: its
 /// largest component has size 1.
-[[nodiscard]] glm::dvec3 cube_point(Face face, double s, double t);
+[[nodiscard]] inline glm::dvec3 cube_point(Face face, double s, double t) {
+    const double u = 2.0 * s - 1.0;
+    const double v = 2.0 * t - 1.0;
+    switch (face) {
+    case Face::PositiveX:
+        return {1.0, -v, u};
+    case Face::NegativeX:
+        return {-1.0, -v, -u};
+    case Face::PositiveY:
+        return {u, 1.0, -v};
+    case Face::NegativeY:
+        return {u, -1.0, v};
+    case Face::PositiveZ:
+        return {-u, -v, 1.0};
+    case Face::NegativeZ:
+        break;
+    }
+    return {u, -v, -1.0};
+}
 
 /// The axes of a face, to the right and down in its image and outwards: cube_point() is outwards +
 /// u right + v down, where (u, v) = (2s - 1, 2t - 1).
@@ -68,11 +88,28 @@ struct FaceAxes {
 };
 
 /// Returns the unit direction of a face point.
-[[nodiscard]] glm::dvec3 direction(Face face, double s, double t);
+[[nodiscard]] inline glm::dvec3 direction(Face face, double s, double t) {
+    return glm::normalize(cube_point(face, s, t));
+}
 
 /// Returns the face point that a direction goes through. The direction may have any length but
 /// zero. A direction on an edge or a corner belongs to the face that comes first in Face.
-[[nodiscard]] FacePoint face_point(const glm::dvec3& direction);
+[[nodiscard]] inline FacePoint face_point(const glm::dvec3& direction) {
+    const glm::dvec3& w = direction;
+    const glm::dvec3 size = glm::abs(w);
+    const auto at = [](Face face, double u, double v) {
+        return FacePoint{face, std::clamp(0.5 * (u + 1.0), 0.0, 1.0),
+                         std::clamp(0.5 * (v + 1.0), 0.0, 1.0)};
+    };
+    if (size.x >= size.y && size.x >= size.z)
+        return w.x > 0.0 ? at(Face::PositiveX, w.z / size.x, -w.y / size.x)
+                         : at(Face::NegativeX, -w.z / size.x, -w.y / size.x);
+    if (size.y >= size.z)
+        return w.y > 0.0 ? at(Face::PositiveY, w.x / size.y, -w.z / size.y)
+                         : at(Face::NegativeY, w.x / size.y, w.z / size.y);
+    return w.z > 0.0 ? at(Face::PositiveZ, -w.x / size.z, -w.y / size.z)
+                     : at(Face::NegativeZ, w.x / size.z, -w.y / size.z);
+}
 
 /// Returns the solid angle of the rectangle [s0, s1] x [t0, t1] of any face, in steradians. The
 /// value is exact (four arctangents). The six full faces sum to 4 pi.

@@ -186,38 +186,54 @@ std::vector<PixelPlace> projected_places(const ImageShape& shape) {
     const double area = 1.0 / (static_cast<double>(shape.width) * shape.height);
     // Gauss-Legendre with three points in each direction is exact to 1e-9 of such a small pixel.
     constexpr std::uint32_t SmallPixels = 32;
-    files::parallel_for(files::IndexRange<std::uint32_t>(0, shape.height), [&](const auto& rows) {
-        ProjectionFootprints pieces(picture, shape.width, shape.height);
-        for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
-            for (std::uint32_t x = 0; x < shape.width; ++x) {
-                PixelPlace& place = places[static_cast<std::size_t>(y) * shape.width + x];
-                const auto point = [&](double dx, double dy) {
-                    return glm::dvec2((x + 0.5 + dx) / shape.width, (y + 0.5 + dy) / shape.height);
-                };
-                const bool is_whole = pieces.is_whole(x, y);
-                if (is_whole)
-                    place.direction = picture.direction(point(0.0, 0.0));
-                if (is_whole && shape.width >= SmallPixels) {
-                    constexpr std::array<double, 3> Nodes = {-0.387298334620741689, 0.0,
-                                                             0.387298334620741689};
-                    constexpr std::array<double, 3> Weights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-                    for (std::size_t i = 0; i < 9; ++i)
-                        place.solid_angle += Weights[i % 3] * Weights[i / 3] * area *
-                                             picture.density(point(Nodes[i % 3], Nodes[i / 3]));
-                    continue;
-                }
-                glm::dvec3 mean(0.0);
-                pieces.visit(x, y, [&](std::span<const glm::dvec3> corners) {
-                    const double angle = solid_angle(corners);
-                    glm::dvec3 sum(0.0);
-                    for (const glm::dvec3& corner : corners)
-                        sum += corner;
-                    place.solid_angle += angle;
-                    mean += angle * sum / static_cast<double>(corners.size());
-                });
-                if (!is_whole && glm::length(mean) > 0.0)
-                    place.direction = glm::normalize(mean);
+    const auto point = [&](double x, double y) {
+        return glm::dvec2((x + 0.5) / shape.width, (y + 0.5) / shape.height);
+    };
+    const auto whole_angle = [&](std::uint32_t x, std::uint32_t y) {
+        constexpr std::array<double, 3> Nodes = {-0.387298334620741689, 0.0, 0.387298334620741689};
+        constexpr std::array<double, 3> Weights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+        double angle = 0.0;
+        for (std::size_t i = 0; i < 9; ++i)
+            angle += Weights[i % 3] * Weights[i / 3] * area *
+                     picture.density(point(x + Nodes[i % 3], y + Nodes[i / 3]));
+        return angle;
+    };
+    const auto fill_row = [&](std::uint32_t y, ProjectionFootprints& pieces,
+                              const std::vector<double>& whole_angles) {
+        for (std::uint32_t x = 0; x < shape.width; ++x) {
+            PixelPlace& place = places[static_cast<std::size_t>(y) * shape.width + x];
+            const bool is_whole = pieces.is_whole(x, y);
+            if (is_whole)
+                place.direction = picture.direction(point(x, y));
+            if (is_whole && shape.width >= SmallPixels) {
+                place.solid_angle = whole_angles[std::min(x, shape.width - 1 - x)];
+                continue;
             }
+            glm::dvec3 mean(0.0);
+            pieces.visit(x, y, [&](std::span<const glm::dvec3> corners) {
+                const double angle = solid_angle(corners);
+                glm::dvec3 sum(0.0);
+                for (const glm::dvec3& corner : corners)
+                    sum += corner;
+                place.solid_angle += angle;
+                mean += angle * sum / static_cast<double>(corners.size());
+            });
+            if (!is_whole && glm::length(mean) > 0.0)
+                place.direction = glm::normalize(mean);
+        }
+    };
+    // Both axes through the middle mirror the density of every projection.
+    const std::uint32_t half_height = (shape.height + 1) / 2, half_width = (shape.width + 1) / 2;
+    files::parallel_for(files::IndexRange<std::uint32_t>(0, half_height), [&](const auto& rows) {
+        ProjectionFootprints pieces(picture, shape.width, shape.height);
+        std::vector<double> whole_angles(half_width);
+        for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
+            if (shape.width >= SmallPixels)
+                for (std::uint32_t x = 0; x < half_width; ++x)
+                    whole_angles[x] = whole_angle(x, y);
+            fill_row(y, pieces, whole_angles);
+            if (y != shape.height - 1 - y)
+                fill_row(shape.height - 1 - y, pieces, whole_angles);
         }
     });
     return places;

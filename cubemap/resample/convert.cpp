@@ -181,11 +181,13 @@ EnvironmentImage interpolated(const EnvironmentImage& image, const ImageShape& t
     const std::uint32_t coarse = has_faces(image.layout) ? natural : natural + natural / 4 + 1;
     const CubeMap source = resample(image, coarse);
     const glm::dmat3 source_from_target = glm::transpose(target_from_source);
+    const bool is_turned = source_from_target != glm::dmat3(1.0);
     EnvironmentImage result = empty_image(target);
     for_each_pixel_points(target, [&](std::size_t pixel, std::span<const glm::dvec3> directions) {
         glm::vec3 sum(0.0f);
         for (const glm::dvec3& direction : directions)
-            sum += sample(source, glm::vec3(source_from_target * direction));
+            sum +=
+                sample(source, glm::vec3(is_turned ? source_from_target * direction : direction));
         result.pixels[pixel] = sum / static_cast<float>(directions.size());
     });
     return result;

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,11 +16,21 @@
 
 #include "cubemap/image/image_layout.h"
 #include "cubemap/image/projection.h"
+#include "cubemap/resample/pixel_symmetry.h"
 #include "files/parallel.h"
 
 namespace relumine::cubemap {
 
 namespace detail {
+
+/// Two places within each cell between borders.
+[[nodiscard]] inline std::vector<double> quarters_within(const std::vector<double>& borders) {
+    std::vector<double> places;
+    for (std::size_t i = 0; i + 1 < borders.size(); ++i)
+        for (const double part : {0.25, 0.75})
+            places.push_back(borders[i] + part * (borders[i + 1] - borders[i]));
+    return places;
+}
 
 /// for_each_pixel_points() for a lat-long. All rows share the longitudes, all columns the
 /// latitudes.
@@ -30,12 +39,10 @@ void for_each_lat_long_points(const ImageShape& shape, const Visit& visit) {
     // Sine and cosine of 2 points of each cell.
     const auto angles_within = [](const std::vector<double>& borders, double first, double range) {
         std::vector<glm::dvec2> points;
-        for (std::size_t i = 0; i + 1 < borders.size(); ++i)
-            for (const double part : {0.25, 0.75}) {
-                const double angle =
-                    first + range * (borders[i] + part * (borders[i + 1] - borders[i]));
-                points.emplace_back(std::sin(angle), std::cos(angle));
-            }
+        for (const double place : quarters_within(borders)) {
+            const double angle = first + range * place;
+            points.emplace_back(std::sin(angle), std::cos(angle));
+        }
         return points;
     };
     constexpr double Pi = std::numbers::pi;
@@ -56,56 +63,86 @@ void for_each_lat_long_points(const ImageShape& shape, const Visit& visit) {
     });
 }
 
+/// for_each_pixel_points() for layouts with faces. All faces share the lengths of their directions.
+template<typename Visit>
+void for_each_face_points(const ImageShape& shape, const Visit& visit) {
+    const FaceSquares squares(shape.layout, shape.width, shape.height);
+    const std::uint32_t resolution = squares.resolution();
+    const std::vector<double> places = quarters_within(cell_borders(resolution, shape.sampling));
+    files::parallel_for(std::uint32_t{0}, resolution, [&](std::uint32_t y) {
+        for (const Face face : AllFaces) {
+            const FaceAxes axes(face);
+            for (std::uint32_t x = 0; x < resolution; ++x) {
+                std::array<glm::dvec3, 4> directions;
+                for (std::size_t i = 0; i < 4; ++i)
+                    directions[i] = axes.direction(2.0 * places[std::size_t{2} * x + i % 2] - 1.0,
+                                                   2.0 * places[std::size_t{2} * y + i / 2] - 1.0);
+                visit(squares.pixel(face, x, y), std::span<const glm::dvec3>(directions));
+            }
+        }
+    });
+}
+
+/// for_each_pixel_points() for a Projection. The points of pixels that are images of each other
+/// under the picture's symmetries are found once.
+template<typename Visit>
+void for_each_projected_points(const ImageShape& shape, const Visit& visit) {
+    const Projection& picture = *projection(shape.layout);
+    const std::vector<PixelSymmetry> symmetries = pixel_symmetries(shape, glm::dmat3(1.0), 1);
+    const std::vector<double> columns = quarters_within(cell_borders(shape.width, shape.sampling)),
+                              rows = quarters_within(cell_borders(shape.height, shape.sampling));
+    const auto visit_images = [&](std::uint32_t x, std::uint32_t y) {
+        std::array<glm::dvec3, 4> own;
+        std::array<bool, 4> shows{};
+        for (std::size_t i = 0; i < 4; ++i) {
+            const glm::dvec2 point(columns[std::size_t{2} * x + i % 2],
+                                   rows[std::size_t{2} * y + i / 2]);
+            shows[i] = !picture.is_disc() || glm::distance(point, glm::dvec2(0.5)) < 0.5;
+            if (shows[i])
+                own[i] = picture.direction(point);
+        }
+        const std::size_t pixel = symmetries.front().pixel(x, y);
+        for (const PixelSymmetry& symmetry : symmetries) {
+            const std::size_t image = symmetry.pixel(x, y);
+            if (image == pixel && &symmetry != &symmetries.front())
+                continue; // the pixel lies on a mirror
+            // In the order of the image's quarters.
+            std::array<glm::dvec3, 4> moved;
+            std::array<bool, 4> is_shown{};
+            for (std::size_t i = 0; i < 4; ++i) {
+                const std::size_t to = symmetry.quarter(i);
+                is_shown[to] = shows[i];
+                moved[to] = symmetry.direction(own[i]);
+            }
+            std::size_t count = 0;
+            for (std::size_t i = 0; i < 4; ++i)
+                if (is_shown[i])
+                    moved[count++] = moved[i];
+            if (count > 0)
+                visit(image, std::span<const glm::dvec3>(moved).first(count));
+        }
+    };
+    files::parallel_for(std::uint32_t{0}, shape.height, [&](std::uint32_t y) {
+        for (std::uint32_t x = 0; x < shape.width; ++x)
+            if (is_first_of_images(symmetries, x, y))
+                visit_images(x, y);
+    });
+}
+
 } // namespace detail
 
 /// Calls `visit(pixel_index, std::span<const glm::dvec3>)` in parallel for each pixel that shows
 /// something. The span holds the unit directions of up to four points of the pixel. The points lie
-/// a quarter of a side away from the pixel's sides.
+/// a quarter of a side away from the pixel's sides. A pixel may be visited more than once, by the
+/// same thread and with the same points.
 template<typename Visit>
 void for_each_pixel_points(const ImageShape& shape, const Visit& visit) {
     if (shape.layout == Layout::LatLong)
-        return detail::for_each_lat_long_points(shape, visit);
-    const bool faces = has_faces(shape.layout);
-    const Projection* const picture = projection(shape.layout);
-    std::optional<FaceSquares> squares;
-    if (faces)
-        squares.emplace(shape.layout, shape.width, shape.height);
-    const std::uint32_t width = faces ? squares->resolution() : shape.width,
-                        height = faces ? squares->resolution() : shape.height;
-    const std::vector<double> columns = cell_borders(width, shape.sampling),
-                              rows = cell_borders(height, shape.sampling);
-    const auto visit_pixel = [&](std::size_t pixel, std::uint32_t x, std::uint32_t y,
-                                 const auto& direction_of) {
-        std::array<glm::dvec3, 4> directions;
-        std::size_t count = 0;
-        for (const double dy : {0.25, 0.75}) {
-            for (const double dx : {0.25, 0.75}) {
-                const glm::dvec2 point(columns[x] + dx * (columns[x + 1] - columns[x]),
-                                       rows[y] + dy * (rows[y + 1] - rows[y]));
-                if (!faces && picture->is_disc() && glm::distance(point, glm::dvec2(0.5)) >= 0.5)
-                    continue;
-                directions[count++] = direction_of(point);
-            }
-        }
-        if (count > 0)
-            visit(pixel, std::span<const glm::dvec3>(directions).first(count));
-    };
-    files::parallel_for(files::IndexRange<std::uint32_t>(0, height), [&](const auto& range) {
-        for (std::uint32_t y = range.begin(); y != range.end(); ++y) {
-            if (faces) {
-                for (const Face face : AllFaces) {
-                    for (std::uint32_t x = 0; x < width; ++x)
-                        visit_pixel(squares->pixel(face, x, y), x, y, [&](const glm::dvec2& point) {
-                            return direction(face, point.x, point.y);
-                        });
-                }
-                continue;
-            }
-            for (std::uint32_t x = 0; x < width; ++x)
-                visit_pixel(static_cast<std::size_t>(y) * width + x, x, y,
-                            [&](const glm::dvec2& point) { return picture->direction(point); });
-        }
-    });
+        detail::for_each_lat_long_points(shape, visit);
+    else if (has_faces(shape.layout))
+        detail::for_each_face_points(shape, visit);
+    else
+        detail::for_each_projected_points(shape, visit);
 }
 
 } // namespace relumine::cubemap

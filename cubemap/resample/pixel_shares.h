@@ -52,7 +52,7 @@ public:
     [[nodiscard]] std::uint32_t num_rows() const { return num_rows_; }
 
     /// Calls `visit(pixel_index, x, std::span<const glm::dvec3>)` with the corners of each piece of
-    /// the pixels that `wants(x, pixel_index)`, clockwise seen from the middle of the sphere.
+    /// the pixels that `wants(x)`, clockwise seen from the middle of the sphere.
     template<typename Wants, typename Visit>
     void visit_row(std::uint32_t y, const Wants& wants, const Visit& visit) {
         if (squares_) {
@@ -69,9 +69,9 @@ public:
             return;
         }
         for (std::uint32_t x = 0; x < width_; ++x) {
-            const std::size_t pixel = static_cast<std::size_t>(y) * width_ + x;
-            if (!wants(x, pixel))
+            if (!wants(x))
                 continue;
+            const std::size_t pixel = static_cast<std::size_t>(y) * width_ + x;
             const auto take = [&](std::span<const glm::dvec3> corners) {
                 visit(pixel, x, corners);
             };
@@ -115,9 +115,8 @@ public:
     template<typename Take>
     void find_first(std::uint32_t y, const Take& take) {
         found_.clear();
-        const auto is_first = [&](std::uint32_t x, std::size_t pixel) {
-            return std::all_of(symmetries_.begin() + 1, symmetries_.end(),
-                               [&](const auto& each) { return each.pixel(x, y) >= pixel; });
+        const auto is_first = [&](std::uint32_t x) {
+            return is_first_of_images(symmetries_, x, y);
         };
         // A pixel has several pieces; its shares are complete when the next pixel begins.
         std::size_t current = 0;

@@ -2,9 +2,12 @@
 // pixel holds for its images, too.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include <glm/mat3x3.hpp>
@@ -35,6 +38,16 @@ public:
         x = x >= width_ ? x - width_ : x;
         return static_cast<std::size_t>(y) * width_ + x;
     }
+    /// Returns the number of the quarter of a pixel to which one of its quarters, 2 row + column,
+    /// moves.
+    [[nodiscard]] std::size_t quarter(std::size_t from) const {
+        const bool right = (from & 1) != 0, below = (from & 2) != 0;
+        const bool to_right = (move_.swaps ? below : right) != move_.mirrors_x,
+                   to_below = (move_.swaps ? right : below) != move_.mirrors_y;
+        return (to_below ? 2u : 0u) + (to_right ? 1u : 0u);
+    }
+    /// Returns the direction to which a direction moves.
+    [[nodiscard]] glm::dvec3 direction(const glm::dvec3& from) const { return turn_ * from; }
     /// Returns the index of the texel to which a texel moves.
     [[nodiscard]] std::size_t texel(Face face, std::uint32_t x, std::uint32_t y) const {
         const FaceMove& to = faces_[static_cast<std::size_t>(face)];
@@ -47,6 +60,7 @@ private:
         std::int64_t start, per_x, per_y;
     };
     Move move_;
+    glm::dmat3 turn_;
     std::uint32_t width_, height_;
     std::array<FaceMove, NumFaces> faces_{};
 };
@@ -56,5 +70,13 @@ private:
 /// layouts with faces.
 [[nodiscard]] std::vector<PixelSymmetry>
 pixel_symmetries(const ImageShape& shape, const glm::dmat3& turn, std::uint32_t resolution);
+
+/// Whether none of the images of pixel (x, y) under the symmetries comes before it.
+[[nodiscard]] inline bool is_first_of_images(std::span<const PixelSymmetry> symmetries,
+                                             std::uint32_t x, std::uint32_t y) {
+    const std::size_t own = symmetries.front().pixel(x, y);
+    return std::all_of(symmetries.begin() + 1, symmetries.end(),
+                       [&](const auto& each) { return each.pixel(x, y) >= own; });
+}
 
 } // namespace relumine::cubemap::detail

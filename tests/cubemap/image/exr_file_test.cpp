@@ -1,3 +1,4 @@
+#include <bit>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <ImfEnvmapAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfInputFile.h>
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
@@ -329,6 +331,47 @@ TEST(ExrFile, RoundTripIsExact) {
     EXPECT_EQ(back.envmap, Layout::Cube);
     image.sampling = Sampling::TexelCentres;
     EXPECT_EQ(decode_exr(encode_exr(image), "name").envmap, std::nullopt);
+}
+
+TEST(ExrFile, OpenExrReadsWhatIsWritten) {
+    const TemporaryFolder folder;
+    // Rows that are no multiple of a block's 16, and noise that deflate cannot make smaller.
+    EnvironmentImage image = black_image(Layout::LatLong, Sampling::TexelCentres, 70, 35);
+    std::uint32_t state = 1;
+    const auto noise = [&] {
+        state = state * 1664525u + 1013904223u;
+        return std::bit_cast<float>((state >> 2) ^ (state << 17 & 0x3fffffffu));
+    };
+    for (std::size_t i = image.pixels.size() / 2; i < image.pixels.size(); ++i)
+        image.pixels[i] = {noise(), noise(), noise()};
+    image.alpha.assign(image.pixels.size(), 0.5f);
+    image.alpha[3] = 0.25f;
+    std::vector<glm::vec3> layer(image.pixels.rbegin(), image.pixels.rend());
+    const std::vector<ExrLayer> layers = {{"a lamp", layer}};
+    const std::vector<std::byte> bytes = encode_exr(image, layers);
+    std::ofstream(folder / "a.exr", std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+    Imf::InputFile file((folder / "a.exr").c_str());
+    EXPECT_TRUE(file.isComplete());
+    EXPECT_EQ(file.header().compression(), Imf::ZIP_COMPRESSION);
+    const auto expect_channel = [&](const char* name, const float* expected, std::size_t step) {
+        std::vector<float> values(image.pixels.size());
+        Imf::FrameBuffer buffer;
+        buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), 4, 280));
+        file.setFrameBuffer(buffer);
+        file.readPixels(0, 34);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            ASSERT_EQ(std::bit_cast<std::uint32_t>(values[i]),
+                      std::bit_cast<std::uint32_t>(expected[i * step]))
+                << name << " " << i;
+    };
+    expect_channel("A", image.alpha.data(), 1);
+    expect_channel("R", &image.pixels[0].x, 3);
+    expect_channel("G", &image.pixels[0].y, 3);
+    expect_channel("B", &image.pixels[0].z, 3);
+    expect_channel("a lamp.R", &layer[0].x, 3);
+    expect_channel("a lamp.B", &layer[0].z, 3);
 }
 
 TEST(ExrFile, AConstantPictureInAnyCompressionIsNoBomb) {
