@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "files/parallel.h"
 #include "mesh/exact_sign.h"
 
 namespace relumine::mesh {
@@ -141,18 +142,52 @@ std::optional<std::vector<std::uint32_t>> convex_outline(const TriangleMesh& mes
     return corners;
 }
 
-/// Returns all edges of all triangles. Edges between the same two vertices follow each other.
-std::vector<HalfEdge> edges_of(const TriangleMesh& mesh) {
-    std::vector<HalfEdge> edges;
-    edges.reserve(3 * mesh.num_triangles());
-    for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i)
-        for (std::size_t k = 0; k < 3; ++k)
-            edges.push_back({mesh.triangles[i][k], mesh.triangles[i][(k + 1) % 3], i});
-    std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-        return a.ends() != b.ends() ? a.ends() < b.ends() : a.triangle < b.triangle;
-    });
-    return edges;
-}
+/// All edges of all triangles, by their lower vertices.
+class Edges {
+public:
+    explicit Edges(const TriangleMesh& mesh)
+        : begins_(mesh.positions.size() + 1), all_(3 * mesh.num_triangles()) {
+        const auto for_each = [&](const auto& visit) {
+            for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i)
+                for (std::size_t k = 0; k < 3; ++k)
+                    visit(HalfEdge{mesh.triangles[i][k], mesh.triangles[i][(k + 1) % 3], i});
+        };
+        for_each([&](const HalfEdge& edge) { ++begins_[edge.ends().first + 1]; });
+        std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+        std::vector<std::size_t> places(begins_.begin(), begins_.end() - 1);
+        for_each([&](const HalfEdge& edge) { all_[places[edge.ends().first]++] = edge; });
+        files::parallel_for(std::size_t{0}, places.size(), [&](std::size_t vertex) {
+            const auto begin = all_.begin() + static_cast<std::ptrdiff_t>(begins_[vertex]);
+            const auto end = all_.begin() + static_cast<std::ptrdiff_t>(begins_[vertex + 1]);
+            std::sort(begin, end, [](const HalfEdge& a, const HalfEdge& b) {
+                return std::pair(a.ends().second, a.triangle) <
+                       std::pair(b.ends().second, b.triangle);
+            });
+        });
+    }
+
+    /// Edges between the same two vertices follow each other.
+    [[nodiscard]] const std::vector<HalfEdge>& all() const { return all_; }
+
+    /// Calls `visit(begin, end)` with the places in all() of the edges between the same two
+    /// vertices, in parallel.
+    template<typename Visit>
+    void for_each_line(const Visit& visit) const {
+        files::parallel_for(std::size_t{0}, begins_.size() - 1, [&](std::size_t vertex) {
+            for (std::size_t begin = begins_[vertex], end = begin; begin < begins_[vertex + 1];
+                 begin = end) {
+                while (end < begins_[vertex + 1] && all_[end].ends() == all_[begin].ends())
+                    ++end;
+                visit(begin, end);
+            }
+        });
+    }
+
+private:
+    /// [num_vertices + 1] edges before those of each lower vertex.
+    std::vector<std::size_t> begins_;
+    std::vector<HalfEdge> all_;
+};
 
 /// Returns true if the triangles on both sides of an edge lie in one plane with the same side up.
 bool lie_flat(const TriangleMesh& mesh, const HalfEdge& a, const HalfEdge& b) {
@@ -173,21 +208,17 @@ bool lie_flat(const TriangleMesh& mesh, const HalfEdge& a, const HalfEdge& b) {
            orientation == turns(mesh, mesh.triangles[b.triangle]);
 }
 
-/// Joins the two triangles of an edge if they lie flat. Edges with one triangle or with many stay
-/// outlines. Returns whether each edge is inside a region.
-std::vector<bool> join_flat_triangles(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges,
-                                      Regions& regions) {
-    std::vector<bool> is_inner(edges.size(), false);
-    for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-        while (end < edges.size() && edges[end].ends() == edges[begin].ends())
-            ++end;
-        const HalfEdge& a = edges[begin];
-        if (end - begin != 2 || a.from != edges[begin + 1].to ||
-            !lie_flat(mesh, a, edges[begin + 1]))
-            continue;
-        regions.join(a.triangle, edges[begin + 1].triangle);
-        is_inner[begin] = is_inner[begin + 1] = true;
-    }
+/// Returns whether each edge lies between two triangles that lie flat, and so is inside a region.
+/// Edges with one triangle or with many stay outlines.
+std::vector<std::uint8_t> inner_edges(const TriangleMesh& mesh, const Edges& edges) {
+    std::vector<std::uint8_t> is_inner(edges.all().size(), 0); // not bool: many threads write
+    edges.for_each_line([&](std::size_t begin, std::size_t end) {
+        if (end - begin != 2)
+            return;
+        const HalfEdge &a = edges.all()[begin], &b = edges.all()[begin + 1];
+        if (a.from == b.to && lie_flat(mesh, a, b))
+            is_inner[begin] = is_inner[begin + 1] = 1;
+    });
     return is_inner;
 }
 
@@ -195,19 +226,26 @@ std::vector<bool> join_flat_triangles(const TriangleMesh& mesh, const std::vecto
 
 std::vector<Triangle> with_flat_regions_merged(const TriangleMesh& mesh) {
     const std::size_t num_triangles = mesh.num_triangles();
-    const std::vector<HalfEdge> edges = edges_of(mesh);
+    const Edges edges(mesh);
+    const std::vector<std::uint8_t> is_inner = inner_edges(mesh, edges);
     Regions regions(num_triangles);
-    const std::vector<bool> is_inner = join_flat_triangles(mesh, edges, regions);
+    for (std::size_t i = 0; i < edges.all().size(); ++i)
+        if (is_inner[i] != 0) {
+            regions.join(edges.all()[i].triangle, edges.all()[i + 1].triangle);
+            ++i; // the other side of the same edge
+        }
 
     // The outlines of regions with more than two triangles, region by region.
     std::vector<std::uint32_t> sizes(num_triangles, 0);
     for (std::uint32_t i = 0; i < num_triangles; ++i)
         ++sizes[regions.root(i)];
+    if (std::ranges::all_of(sizes, [](std::uint32_t size) { return size <= 2; }))
+        return mesh.triangles;
     std::vector<std::pair<std::uint32_t, HalfEdge>> outlines;
-    for (std::size_t i = 0; i < edges.size(); ++i)
-        if (const std::uint32_t region = regions.root(edges[i].triangle);
-            !is_inner[i] && sizes[region] > 2)
-            outlines.emplace_back(region, edges[i]);
+    for (std::size_t i = 0; i < edges.all().size(); ++i)
+        if (const std::uint32_t region = regions.root(edges.all()[i].triangle);
+            is_inner[i] == 0 && sizes[region] > 2)
+            outlines.emplace_back(region, edges.all()[i]);
     std::sort(outlines.begin(), outlines.end(), [](const auto& a, const auto& b) {
         return std::pair(a.first, a.second.from) < std::pair(b.first, b.second.from);
     });

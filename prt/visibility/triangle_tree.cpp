@@ -5,8 +5,11 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include <glm/common.hpp>
+
+#include "files/parallel.h"
 
 namespace relumine::prt {
 
@@ -45,20 +48,57 @@ struct Part {
     [[nodiscard]] bool fits_leaf() const { return items.size() <= Width; }
 };
 
-Part part_of(std::span<Item> items) {
-    Part part{items, {}, items.size() == 1};
-    for (const Item& item : items)
-        part.box.include(item.box);
-    return part;
+/// Returns what `add(result, items)` makes of all items. Many are added in pieces, in parallel, and
+/// the pieces' results included in the first one's.
+template<typename Result, typename Add>
+Result sum_of(std::span<const Item> items, const Add& add) {
+    constexpr std::size_t Piece = std::size_t{1} << 15;
+    if (items.size() <= Piece) {
+        Result result;
+        add(result, items);
+        return result;
+    }
+    std::vector<Result> results(items.size() / Piece + 1);
+    files::parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) {
+        const auto from = items.subspan(i * Piece);
+        add(results[i], from.first(std::min(Piece, from.size())));
+    });
+    for (std::size_t i = 1; i < results.size(); ++i)
+        results.front().include(results[i]);
+    return results.front();
 }
+
+Part part_of(std::span<Item> items) {
+    const Box box = sum_of<Box>(items, [](Box& sum, std::span<const Item> some) {
+        for (const Item& item : some)
+            sum.include(item.box);
+    });
+    return {items, box, items.size() == 1};
+}
+
+constexpr std::size_t NumBins = 16;
+
+/// Triangles by their middles along each axis.
+struct Bins {
+    std::array<std::array<Box, NumBins>, 3> boxes;
+    std::array<std::array<std::size_t, NumBins>, 3> counts{};
+
+    void include(const Bins& other) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            for (std::size_t bin = 0; bin < NumBins; ++bin) {
+                boxes[axis][bin].include(other.boxes[axis][bin]);
+                counts[axis][bin] += other.counts[axis][bin];
+            }
+    }
+};
 
 /// Cuts a part in two at the best of 15 planes on each axis. The surface area heuristic counts
 /// whole leaves.
 std::pair<Part, Part> split(const Part& part) {
-    constexpr int NumBins = 16;
-    Box middles;
-    for (const Item& item : part.items)
-        middles.include({item.middle(0), item.middle(1), item.middle(2)});
+    const Box middles = sum_of<Box>(part.items, [](Box& sum, std::span<const Item> some) {
+        for (const Item& item : some)
+            sum.include({item.middle(0), item.middle(1), item.middle(2)});
+    });
     const auto leaves = [](std::size_t n) {
         const std::size_t num_leaves = (n + Width - 1) / Width;
         return static_cast<double>(num_leaves);
@@ -66,22 +106,32 @@ std::pair<Part, Part> split(const Part& part) {
 
     double best_cost = std::numeric_limits<double>::infinity();
     int best_axis = 0;
-    int best_cut = 0;
+    std::size_t best_cut = 0;
     const auto bin_of = [&](const Item& item, int axis) {
         const float part_of_axis =
             (item.middle(axis) - middles.low[axis]) / (middles.high[axis] - middles.low[axis]);
-        return std::min(static_cast<int>(part_of_axis * NumBins), NumBins - 1);
+        return std::min(static_cast<std::size_t>(part_of_axis * NumBins), NumBins - 1);
     };
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!(middles.low[axis] < middles.high[axis]))
-            continue;
-        std::array<Box, NumBins> boxes;
-        std::array<std::size_t, NumBins> counts{};
-        for (const Item& item : part.items) {
-            const auto bin = static_cast<std::size_t>(bin_of(item, axis));
-            boxes[bin].include(item.box);
-            ++counts[bin];
+    const auto is_wide = [&](int axis) {
+        return middles.low[axis] < middles.high[axis];
+    };
+    const Bins bins = sum_of<Bins>(part.items, [&](Bins& sum, std::span<const Item> some) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!is_wide(axis))
+                continue;
+            const auto along = static_cast<std::size_t>(axis);
+            for (const Item& item : some) {
+                const std::size_t bin = bin_of(item, axis);
+                sum.boxes[along][bin].include(item.box);
+                ++sum.counts[along][bin];
+            }
         }
+    });
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!is_wide(axis))
+            continue;
+        const auto& boxes = bins.boxes[static_cast<std::size_t>(axis)];
+        const auto& counts = bins.counts[static_cast<std::size_t>(axis)];
         std::array<double, NumBins> cost_after{}; // of all bins from here on
         Box box;
         std::size_t count = 0;
@@ -99,7 +149,7 @@ std::pair<Part, Part> split(const Part& part) {
             if (count > 0 && count < part.items.size() && cost < best_cost) {
                 best_cost = cost;
                 best_axis = axis;
-                best_cut = static_cast<int>(cut);
+                best_cut = cut;
             }
         }
     }
@@ -149,8 +199,12 @@ public:
             tree_.nodes[index].bounds[static_cast<std::size_t>(axis) + 3].fill(-Far);
         }
         tree_.nodes[index].child.fill(0);
+        std::vector<TriangleTree> large = large_children(parts);
+        reserve_for(large);
         for (std::size_t i = 0; i < parts.size(); ++i) {
-            const std::int32_t child = parts[i].fits_leaf() ? ~leaf(parts[i]) : node(parts[i]);
+            const std::int32_t child = !large[i].nodes.empty() ? append(std::exchange(large[i], {}))
+                                       : parts[i].fits_leaf()  ? ~leaf(parts[i])
+                                                               : node(parts[i]);
             TriangleTree::Node& node = tree_.nodes[index];
             node.child[i] = child;
             for (int axis = 0; axis < 3; ++axis) {
@@ -162,6 +216,46 @@ public:
     }
 
 private:
+    /// Builds the large parts in parallel, each as a tree; the others' are empty.
+    std::vector<TriangleTree> large_children(std::span<const Part> parts) const {
+        constexpr std::size_t Large = std::size_t{1} << 14;
+        std::vector<TriangleTree> trees(parts.size());
+        files::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+            if (parts[i].items.size() >= Large)
+                Builder(positions_, triangles_, trees[i]).node(parts[i]);
+        });
+        return trees;
+    }
+    /// Makes room for trees. Vectors that grow on their way take new pages again and again.
+    void reserve_for(std::span<const TriangleTree> trees) {
+        std::size_t num_nodes = tree_.nodes.size(), num_leaves = tree_.leaves.size();
+        for (const TriangleTree& tree : trees) {
+            num_nodes += tree.nodes.size();
+            num_leaves += tree.leaves.size();
+        }
+        if (num_leaves == tree_.leaves.size())
+            return;
+        tree_.nodes.reserve(num_nodes);
+        tree_.leaves.reserve(num_leaves);
+        tree_.triangles.reserve(num_leaves);
+    }
+    /// Adds the nodes and leaves of another tree and returns the index of its root.
+    std::int32_t append(const TriangleTree& other) {
+        const auto root = static_cast<std::int32_t>(tree_.nodes.size());
+        const auto first_leaf = static_cast<std::int32_t>(tree_.leaves.size());
+        tree_.nodes.insert(tree_.nodes.end(), other.nodes.begin(), other.nodes.end());
+        for (auto node = tree_.nodes.begin() + root; node != tree_.nodes.end(); ++node)
+            for (std::size_t lane = 0; lane < Width; ++lane) {
+                std::int32_t& child = node->child[lane];
+                if (node->bounds[0][lane] > node->bounds[3][lane])
+                    continue; // unused
+                child = child >= 0 ? child + root : child - first_leaf;
+            }
+        tree_.leaves.insert(tree_.leaves.end(), other.leaves.begin(), other.leaves.end());
+        tree_.triangles.insert(tree_.triangles.end(), other.triangles.begin(),
+                               other.triangles.end());
+        return root;
+    }
     std::int32_t leaf(const Part& part) {
         TriangleTree::Leaf& leaf = tree_.leaves.emplace_back();
         auto& numbers = tree_.triangles.emplace_back();
@@ -202,11 +296,11 @@ TriangleTree triangle_tree(std::span<const glm::vec3> positions,
             box.include(positions[vertex]);
     tree.centre = 0.5f * (box.low + box.high);
     std::vector<Item> items(triangles.size());
-    for (std::uint32_t i = 0; i < items.size(); ++i) {
-        items[i].triangle = i;
+    files::parallel_for(std::size_t{0}, items.size(), [&](std::size_t i) {
+        items[i].triangle = static_cast<std::uint32_t>(i);
         for (const std::uint32_t vertex : triangles[i])
             items[i].box.include(positions[vertex] - tree.centre);
-    }
+    });
     const Part whole = part_of(items);
     for (int axis = 0; axis < 3; ++axis)
         tree.extent =

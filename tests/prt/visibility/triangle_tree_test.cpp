@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 #include <gtest/gtest.h>
 
+#include "files/parallel.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine::prt {
@@ -68,9 +69,34 @@ void check(const mesh::TriangleMesh& mesh) {
 }
 
 TEST(TriangleTree, HoldsEveryTriangleOnceInsideItsBoxes) {
-    for (const std::size_t n : {0u, 1u, 2u, 16u, 17u, 100u, 5000u})
+    // The last is so large that its parts are built in parallel, two levels deep.
+    for (const std::size_t n : {0u, 1u, 2u, 16u, 17u, 100u, 5000u, 400000u})
         check(scenes::triangle_soup(n, 1));
     check(scenes::sphere_and_box_on_floor());
+}
+
+TEST(TriangleTree, IsTheSameOnAnyNumberOfThreads) {
+    const mesh::TriangleMesh mesh = scenes::triangle_soup(100000, 3);
+    const auto tree_on = [&](std::size_t num_threads) {
+        const files::ThreadLimit limit(num_threads);
+        return triangle_tree(mesh.positions, mesh.triangles);
+    };
+    const TriangleTree one = tree_on(1), many = tree_on(0);
+    ASSERT_EQ(one.nodes.size(), many.nodes.size());
+    for (std::size_t i = 0; i < one.nodes.size(); ++i) {
+        EXPECT_EQ(one.nodes[i].bounds, many.nodes[i].bounds);
+        EXPECT_EQ(one.nodes[i].child, many.nodes[i].child);
+    }
+    ASSERT_EQ(one.leaves.size(), many.leaves.size());
+    ASSERT_EQ(one.triangles.size(), many.leaves.size());
+    for (std::size_t i = 0; i < one.leaves.size(); ++i) {
+        EXPECT_EQ(one.leaves[i].corners, many.leaves[i].corners);
+        for (std::size_t lane = 0; lane < one.leaves[i].size; ++lane) {
+            const std::uint32_t number = one.triangles[i][lane];
+            EXPECT_EQ(number, many.triangles[i][lane]);
+            EXPECT_EQ(one.leaves[i].corners[0][lane], mesh.positions[mesh.triangles[number][0]].x);
+        }
+    }
 }
 
 TEST(TriangleTree, ManyTrianglesInOnePlace) {
