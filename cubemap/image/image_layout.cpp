@@ -180,37 +180,30 @@ std::vector<LatLongColumn> lat_long_columns(const ImageShape& shape) {
     return columns;
 }
 
-std::vector<PixelPlace> projected_places(const ImageShape& shape) {
-    const Projection& picture = *projection(shape.layout);
-    std::vector<PixelPlace> places(static_cast<std::size_t>(shape.width) * shape.height);
-    const double area = 1.0 / (static_cast<double>(shape.width) * shape.height);
-    // Gauss-Legendre with three points in each direction is exact to 1e-9 of such a small pixel.
-    constexpr std::uint32_t SmallPixels = 32;
-    const auto point = [&](double x, double y) {
-        return glm::dvec2((x + 0.5) / shape.width, (y + 0.5) / shape.height);
-    };
-    const auto whole_angle = [&](std::uint32_t x, std::uint32_t y) {
-        constexpr std::array<double, 3> Nodes = {-0.387298334620741689, 0.0, 0.387298334620741689};
-        constexpr std::array<double, 3> Weights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-        double angle = 0.0;
-        for (std::size_t i = 0; i < 9; ++i)
-            angle += Weights[i % 3] * Weights[i / 3] * area *
-                     picture.density(point(x + Nodes[i % 3], y + Nodes[i / 3]));
-        return angle;
-    };
-    const auto fill_row = [&](std::uint32_t y, ProjectionFootprints& pieces,
-                              const std::vector<double>& whole_angles) {
-        for (std::uint32_t x = 0; x < shape.width; ++x) {
-            PixelPlace& place = places[static_cast<std::size_t>(y) * shape.width + x];
-            const bool is_whole = pieces.is_whole(x, y);
+namespace {
+
+/// Finds rows of a Projection's pixels.
+class ProjectedRow {
+public:
+    explicit ProjectedRow(const ImageShape& shape)
+        : picture_(*projection(shape.layout)), width_(shape.width), height_(shape.height),
+          pieces_(picture_, shape.width, shape.height) {}
+
+    /// Puts the places of a row's pixels into `row`. `angles` are the solid angles of whole pixels;
+    /// empty: of no pixel.
+    void find(std::uint32_t y, std::span<const double> angles, std::vector<PixelPlace>& row) {
+        row.resize(width_);
+        for (std::uint32_t x = 0; x < width_; ++x) {
+            PixelPlace& place = row[x];
+            const bool is_whole = pieces_.is_whole(x, y);
             if (is_whole)
-                place.direction = picture.direction(point(x, y));
-            if (is_whole && shape.width >= SmallPixels) {
-                place.solid_angle = whole_angles[std::min(x, shape.width - 1 - x)];
+                place.direction = picture_.direction(point(x, y));
+            if (is_whole && !angles.empty()) {
+                place.solid_angle = angles[std::min(x, width_ - 1 - x)];
                 continue;
             }
             glm::dvec3 mean(0.0);
-            pieces.visit(x, y, [&](std::span<const glm::dvec3> corners) {
+            pieces_.visit(x, y, [&](std::span<const glm::dvec3> corners) {
                 const double angle = solid_angle(corners);
                 glm::dvec3 sum(0.0);
                 for (const glm::dvec3& corner : corners)
@@ -221,22 +214,59 @@ std::vector<PixelPlace> projected_places(const ImageShape& shape) {
             if (!is_whole && glm::length(mean) > 0.0)
                 place.direction = glm::normalize(mean);
         }
-    };
+    }
+
+    /// Returns the solid angles of whole pixels in the left half of a row.
+    [[nodiscard]] std::vector<double> whole_angles(std::uint32_t y) const {
+        // Gauss-Legendre with three points in each direction is exact to 1e-9 of a small pixel.
+        constexpr std::uint32_t SmallPixels = 32;
+        constexpr std::array<double, 3> Nodes = {-0.387298334620741689, 0.0, 0.387298334620741689};
+        constexpr std::array<double, 3> Weights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+        if (width_ < SmallPixels)
+            return {};
+        const double area = 1.0 / (static_cast<double>(width_) * height_);
+        std::vector<double> angles((width_ + 1) / 2);
+        for (std::size_t x = 0; x < angles.size(); ++x)
+            for (std::size_t i = 0; i < 9; ++i)
+                angles[x] += Weights[i % 3] * Weights[i / 3] * area *
+                             picture_.density(
+                                 point(static_cast<double>(x) + Nodes[i % 3], y + Nodes[i / 3]));
+        return angles;
+    }
+
+private:
+    [[nodiscard]] glm::dvec2 point(double x, double y) const {
+        return {(x + 0.5) / width_, (y + 0.5) / height_};
+    }
+
+    const Projection& picture_;
+    std::uint32_t width_, height_;
+    ProjectionFootprints pieces_;
+};
+
+} // namespace
+
+ProjectedRows::ProjectedRows(const ImageShape& shape, std::uint32_t y) {
+    ProjectedRow row(shape);
     // Both axes through the middle mirror the density of every projection.
-    const std::uint32_t half_height = (shape.height + 1) / 2, half_width = (shape.width + 1) / 2;
-    files::parallel_for(files::IndexRange<std::uint32_t>(0, half_height), [&](const auto& rows) {
-        ProjectionFootprints pieces(picture, shape.width, shape.height);
-        std::vector<double> whole_angles(half_width);
-        for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
-            if (shape.width >= SmallPixels)
-                for (std::uint32_t x = 0; x < half_width; ++x)
-                    whole_angles[x] = whole_angle(x, y);
-            fill_row(y, pieces, whole_angles);
-            if (y != shape.height - 1 - y)
-                fill_row(shape.height - 1 - y, pieces, whole_angles);
-        }
-    });
-    return places;
+    const std::vector<double> angles = row.whole_angles(y);
+    row.find(y, angles, upper);
+    row.find(shape.height - 1 - y, angles, lower);
+}
+
+void for_each_projected_rows(
+    const ImageShape& shape,
+    const std::function<void(std::uint32_t, const ProjectedRows&)>& visit) {
+    constexpr std::uint32_t NumTogether = 64;
+    const std::uint32_t half = (shape.height + 1) / 2;
+    for (std::uint32_t first = 0; first < half; first += NumTogether) {
+        const std::uint32_t end = std::min(first + NumTogether, half);
+        std::vector<std::optional<ProjectedRows>> rows(end - first);
+        files::parallel_for(first, end,
+                            [&](std::uint32_t y) { rows[y - first].emplace(shape, y); });
+        for (std::uint32_t y = first; y < end; ++y)
+            visit(y, *rows[y - first]);
+    }
 }
 
 } // namespace detail

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -118,49 +119,106 @@ struct LatLongColumn {
 };
 [[nodiscard]] std::vector<LatLongColumn> lat_long_columns(const ImageShape& shape);
 
-/// Returns the places of all pixels of a Projection. A pixel on the rim of a disc stands for its
-/// part inside the disc, with the mean direction of this part.
-///
-/// Shape:   [height * width].
-[[nodiscard]] std::vector<PixelPlace> projected_places(const ImageShape& shape);
+/// A row of a Projection's pixels, and the one that mirrors it: their solid angles are the same. A
+/// pixel on the rim of a disc stands for its part inside the disc, with the mean direction of this
+/// part; one outside has no solid angle.
+struct ProjectedRows {
+    /// [width]
+    std::vector<PixelPlace> upper, lower;
+
+    ProjectedRows(const ImageShape& shape, std::uint32_t y);
+
+    /// Calls `visit(pixel_index, PixelPlace)` for the pixels of both; of one in the middle row.
+    template<typename Visit>
+    void visit(const ImageShape& shape, std::uint32_t y, const Visit& visit) const {
+        const std::uint32_t mirrored = shape.height - 1 - y;
+        for (std::size_t x = 0; x < upper.size(); ++x)
+            if (upper[x].solid_angle > 0.0)
+                visit(std::size_t{y} * shape.width + x, upper[x]);
+        for (std::size_t x = 0; x < lower.size() && mirrored != y; ++x)
+            if (lower[x].solid_angle > 0.0)
+                visit(std::size_t{mirrored} * shape.width + x, lower[x]);
+    }
+};
+
+/// Calls `visit(y, ProjectedRows)` for the upper half of the rows. Some are found at a time, in
+/// parallel.
+void for_each_projected_rows(const ImageShape& shape,
+                             const std::function<void(std::uint32_t, const ProjectedRows&)>& visit);
 
 } // namespace detail
 
+/// Pixels that show a part of the sphere, in groups whose places are found together: rows, or pairs
+/// of rows that mirror each other.
+///
+/// Threads: safe.
+class PixelRows {
+public:
+    explicit PixelRows(const ImageShape& shape) : shape_(shape) {
+        if (shape.layout == Layout::LatLong) {
+            lat_long_rows_ = detail::lat_long_rows(shape);
+            lat_long_columns_ = detail::lat_long_columns(shape);
+        } else if (has_faces(shape.layout)) {
+            squares_.emplace(shape.layout, shape.width, shape.height);
+            borders_ = cell_borders(squares_->resolution(), shape.sampling);
+        }
+    }
+
+    /// Returns the number of groups.
+    [[nodiscard]] std::uint32_t size() const {
+        if (squares_)
+            return static_cast<std::uint32_t>(NumFaces) * squares_->resolution();
+        return shape_.layout == Layout::LatLong ? shape_.height : (shape_.height + 1) / 2;
+    }
+
+    /// Calls `visit(pixel_index, PixelPlace)` for the pixels of a group.
+    template<typename Visit>
+    void visit(std::uint32_t row, const Visit& visit) const {
+        if (squares_)
+            return visit_face(row, visit);
+        if (shape_.layout != Layout::LatLong)
+            return detail::ProjectedRows(shape_, row).visit(shape_, row, visit);
+        const detail::LatLongRow& of_row = lat_long_rows_[row];
+        std::size_t index = std::size_t{row} * shape_.width;
+        for (const auto& column : lat_long_columns_)
+            visit(index++, PixelPlace{{of_row.sin_polar * column.sin_longitude, of_row.cos_polar,
+                                       of_row.sin_polar * column.cos_longitude},
+                                      of_row.height * column.width});
+    }
+
+private:
+    template<typename Visit>
+    void visit_face(std::uint32_t row, const Visit& visit) const {
+        const std::uint32_t resolution = squares_->resolution();
+        const Face face = AllFaces[row / resolution];
+        const std::uint32_t y = row % resolution;
+        for (std::uint32_t x = 0; x < resolution; ++x)
+            visit(squares_->pixel(face, x, y),
+                  PixelPlace{
+                      direction(face, sample_position(x, resolution, shape_.sampling),
+                                sample_position(y, resolution, shape_.sampling)),
+                      solid_angle(borders_[x], borders_[y], borders_[x + 1], borders_[y + 1])});
+    }
+
+    ImageShape shape_;
+    std::vector<detail::LatLongRow> lat_long_rows_;
+    std::vector<detail::LatLongColumn> lat_long_columns_;
+    /// Set for layouts with faces.
+    std::optional<FaceSquares> squares_;
+    std::vector<double> borders_;
+};
+
 template<typename Visit>
 void for_each_pixel(const ImageShape& shape, const Visit& visit) {
-    if (shape.layout == Layout::LatLong) {
-        const auto rows = detail::lat_long_rows(shape);
-        const auto columns = detail::lat_long_columns(shape);
-        std::size_t index = 0;
-        for (const auto& row : rows) {
-            for (const auto& column : columns)
-                visit(index++, PixelPlace{{row.sin_polar * column.sin_longitude, row.cos_polar,
-                                           row.sin_polar * column.cos_longitude},
-                                          row.height * column.width});
-        }
+    if (shape.layout == Layout::LatLong || has_faces(shape.layout)) {
+        const PixelRows rows(shape);
+        for (std::uint32_t row = 0; row < rows.size(); ++row)
+            rows.visit(row, visit);
         return;
     }
-    if (!has_faces(shape.layout)) {
-        const std::vector<PixelPlace> places = detail::projected_places(shape);
-        for (std::size_t index = 0; index < places.size(); ++index) {
-            if (places[index].solid_angle > 0.0)
-                visit(index, places[index]);
-        }
-        return;
-    }
-    const FaceSquares squares(shape.layout, shape.width, shape.height);
-    const std::uint32_t resolution = squares.resolution();
-    const std::vector<double> borders = cell_borders(resolution, shape.sampling);
-    for (const Face face : AllFaces) {
-        for (std::uint32_t y = 0; y < resolution; ++y) {
-            for (std::uint32_t x = 0; x < resolution; ++x)
-                visit(squares.pixel(face, x, y),
-                      PixelPlace{
-                          direction(face, sample_position(x, resolution, shape.sampling),
-                                    sample_position(y, resolution, shape.sampling)),
-                          solid_angle(borders[x], borders[y], borders[x + 1], borders[y + 1])});
-        }
-    }
+    detail::for_each_projected_rows(shape, [&](std::uint32_t y, const detail::ProjectedRows& rows) {
+        rows.visit(shape, y, visit);
+    });
 }
 
 } // namespace relumine::cubemap

@@ -1,6 +1,7 @@
 #include "cubemap/resample/convert.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -59,14 +60,17 @@ std::optional<EnvironmentImage> copied(const EnvironmentImage& image, const Imag
         return image;
     EnvironmentImage result = empty_image(target);
     const ImageShape source = shape_of(image);
-    bool complete = true;
-    for_each_pixel(target, [&](std::size_t index, const PixelPlace& place) {
-        if (!complete)
-            return;
-        const auto from = pixel_at(source, source_from_target * place.direction);
-        complete = from.has_value();
-        if (from)
-            result.pixels[index] = image.pixels[*from];
+    std::atomic<bool> complete = true;
+    const PixelRows rows(target);
+    files::parallel_for(std::uint32_t{0}, rows.size(), [&](std::uint32_t row) {
+        if (complete)
+            rows.visit(row, [&](std::size_t index, const PixelPlace& place) {
+                const auto from = pixel_at(source, source_from_target * place.direction);
+                if (from)
+                    result.pixels[index] = image.pixels[*from];
+                else
+                    complete = false;
+            });
     });
     return complete ? std::optional(std::move(result)) : std::nullopt;
 }
