@@ -184,7 +184,7 @@ public:
     }
 
 private:
-    /// [num_vertices + 1] edges before those of each lower vertex.
+    /// [num_vertices + 1] number of edges whose lower vertex comes before each vertex.
     std::vector<std::size_t> begins_;
     std::vector<HalfEdge> all_;
 };

@@ -1,8 +1,8 @@
 // Writes OpenEXR pictures in memory.
 //
 // OpenEXR writes the header. The blocks of pixels are compressed here, with libdeflate: it takes
-// less than half of the time of zlib, which OpenEXR before 3.2 uses, for the same size. Their form
-// is that of ZIP_COMPRESSION in OpenEXR's ImfZip.cpp, so every reader reads it.
+// less than half of the time of zlib, which OpenEXR before 3.2 uses, for the same size. They have
+// the form of ZIP_COMPRESSION in OpenEXR's ImfZip.cpp, so every reader reads them.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -125,8 +125,8 @@ public:
     }
 
 private:
-    /// Puts the bytes of even places before those of odd ones, and replaces each by its difference
-    /// to the one before, plus 128.
+    /// Puts the bytes of even places before the bytes of odd places. Then replaces each byte by its
+    /// difference to the byte before, plus 128.
     void take_differences() {
         const std::size_t half = 2 * values_.size();
         bytes_.resize(2 * half);

@@ -1,7 +1,6 @@
 #include "cubemap/resample/kept_shares.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <span>
@@ -32,13 +31,8 @@ KeptShares::Row KeptShares::found_row(std::uint32_t y, RowsOfShares& finder) con
     finder.find_first(
         y, [&](std::size_t pixel, std::uint32_t x, std::span<const RowsOfShares::Found> found) {
             std::uint32_t images = 0, faces = 0;
-            std::array<std::size_t, 32> places{};
-            for (std::size_t i = 0; i < symmetries_.size(); ++i) {
-                places[i] = i == 0 ? pixel : symmetries_[i].pixel(x, y);
-                auto* const end = places.begin() + i;
-                if (std::find(places.begin(), end, places[i]) == end) // else it lies on a mirror
-                    images |= 1u << i;
-            }
+            for_each_image(symmetries_, pixel, x, y,
+                           [&](std::size_t i, std::size_t) { images |= 1u << i; });
             for (const RowsOfShares::Found& each : found) {
                 faces |= 1u << static_cast<unsigned>(each.face);
                 row.texels.push_back({static_cast<std::uint32_t>(each.face) & 0xf, each.x & 0x3fff,

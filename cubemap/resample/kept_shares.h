@@ -37,7 +37,7 @@ public:
 private:
     struct Pixel {
         std::uint32_t x;
-        /// Of its shares in the row; they begin where those of the pixel before end.
+        /// Where its shares end in the row. They begin where the shares of the pixel before end.
         std::uint32_t end;
         /// The symmetries that carry it to different pixels, as bits.
         std::uint32_t images;

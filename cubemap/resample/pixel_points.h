@@ -102,10 +102,8 @@ void for_each_projected_points(const ImageShape& shape, const Visit& visit) {
                 own[i] = picture.direction(point);
         }
         const std::size_t pixel = symmetries.front().pixel(x, y);
-        for (const PixelSymmetry& symmetry : symmetries) {
-            const std::size_t image = symmetry.pixel(x, y);
-            if (image == pixel && &symmetry != &symmetries.front())
-                continue; // the pixel lies on a mirror
+        for_each_image(symmetries, pixel, x, y, [&](std::size_t index, std::size_t image) {
+            const PixelSymmetry& symmetry = symmetries[index];
             // In the order of the image's quarters.
             std::array<glm::dvec3, 4> moved;
             std::array<bool, 4> is_shown{};
@@ -120,7 +118,7 @@ void for_each_projected_points(const ImageShape& shape, const Visit& visit) {
                     moved[count++] = moved[i];
             if (count > 0)
                 visit(image, std::span<const glm::dvec3>(moved).first(count));
-        }
+        });
     };
     files::parallel_for(std::uint32_t{0}, shape.height, [&](std::uint32_t y) {
         for (std::uint32_t x = 0; x < shape.width; ++x)
@@ -133,8 +131,7 @@ void for_each_projected_points(const ImageShape& shape, const Visit& visit) {
 
 /// Calls `visit(pixel_index, std::span<const glm::dvec3>)` in parallel for each pixel that shows
 /// something. The span holds the unit directions of up to four points of the pixel. The points lie
-/// a quarter of a side away from the pixel's sides. A pixel may be visited more than once, by the
-/// same thread and with the same points.
+/// a quarter of a side away from the pixel's sides.
 template<typename Visit>
 void for_each_pixel_points(const ImageShape& shape, const Visit& visit) {
     if (shape.layout == Layout::LatLong)

@@ -162,18 +162,13 @@ private:
     /// Writes the shares of a pixel and of its images.
     void add_images(std::size_t pixel, std::uint32_t x, std::uint32_t y,
                     std::span<const Found> found, std::vector<PixelShare>& shares) {
-        images_.clear();
-        for (const PixelSymmetry& symmetry : symmetries_) {
-            const std::size_t image = images_.empty() ? pixel : symmetry.pixel(x, y);
-            if (std::find(images_.begin(), images_.end(), image) != images_.end())
-                continue; // the pixel lies on a mirror
-            images_.push_back(image);
+        for_each_image(symmetries_, pixel, x, y, [&](std::size_t i, std::size_t image) {
             for (const Found& each : found)
                 shares.push_back(
                     {static_cast<std::uint32_t>(image), // MaxPixels is below 2^32
-                     static_cast<std::uint32_t>(symmetry.texel(each.face, each.x, each.y)),
+                     static_cast<std::uint32_t>(symmetries_[i].texel(each.face, each.x, each.y)),
                      each.solid_angle});
-        }
+        });
     }
 
     PixelFootprints footprints_;
@@ -183,7 +178,6 @@ private:
     bool is_turned_, is_mirrored_;
     std::vector<glm::dvec3> turned_;
     std::vector<Found> found_;
-    std::vector<std::size_t> images_;
 };
 
 /// Calls `take(std::span<const PixelShare>)` for rows of shares, in order. Rows are computed in

@@ -71,7 +71,22 @@ private:
 [[nodiscard]] std::vector<PixelSymmetry>
 pixel_symmetries(const ImageShape& shape, const glm::dmat3& turn, std::uint32_t resolution);
 
-/// Whether none of the images of pixel (x, y) under the symmetries comes before it.
+/// Calls `visit(symmetry_index, pixel_index)` for the images of pixel (x, y), whose index is
+/// `pixel`, itself first. An image that several symmetries make, because the pixel lies on a
+/// mirror, comes once.
+template<typename Visit>
+void for_each_image(std::span<const PixelSymmetry> symmetries, std::size_t pixel, std::uint32_t x,
+                    std::uint32_t y, const Visit& visit) {
+    std::array<std::size_t, 32> images{};
+    for (std::size_t i = 0; i < symmetries.size(); ++i) {
+        images[i] = i == 0 ? pixel : symmetries[i].pixel(x, y);
+        auto* const end = images.begin() + i;
+        if (std::find(images.begin(), end, images[i]) == end)
+            visit(i, images[i]);
+    }
+}
+
+/// Whether none of the images of pixel (x, y) under the symmetries comes before this pixel.
 [[nodiscard]] inline bool is_first_of_images(std::span<const PixelSymmetry> symmetries,
                                              std::uint32_t x, std::uint32_t y) {
     const std::size_t own = symmetries.front().pixel(x, y);
