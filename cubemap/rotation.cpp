@@ -76,11 +76,11 @@ void mix(const CubeMap& map, const glm::dmat3& source_from_destination, CubeMap&
     const TurnedTexels texels(map, source_from_destination);
     const std::uint32_t num_rows = texels.num_rows();
     files::parallel_for(
-        files::IndexRange<std::size_t>(0, NumFaces * num_rows, 2), [&](const auto& rows) {
+        files::IndexRange<std::size_t>(0, TurnedTexels::Faces.size() * num_rows), [&](const auto& rows) {
             TurnedTile sums;
             for (std::size_t i = rows.begin(); i != rows.end(); ++i)
                 for (std::uint32_t column = 0; column < texels.num_columns(); ++column)
-                    texels.fill(texels.tile(AllFaces[i / num_rows],
+                    texels.fill(texels.tile(TurnedTexels::Faces[i / num_rows],
                                             static_cast<std::uint32_t>(i % num_rows), column),
                                 sums, result);
         });

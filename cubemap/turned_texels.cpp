@@ -26,6 +26,18 @@ bool meets_face(const TilePlace& place, double width, double height) {
     return least.x < 1.0 && least.y < 1.0 && most.x > -1.0 && most.y > -1.0;
 }
 
+/// A map's texels from (x, y) of a face on, and those opposite of them.
+template<class Texel, class Map>
+TurnedTile::BothSides<Texel> both_sides(Map& map, Face face, std::uint32_t x, std::uint32_t y) {
+    const std::uint32_t r = map.resolution;
+    const std::ptrdiff_t row = r;
+    const auto [other, columns_are_mirrored, rows_are_mirrored] = opposite(face);
+    return {TexelRows<Texel>{&map.at(face, x, y), 1, row},
+            TexelRows<Texel>{&map.at(other, columns_are_mirrored ? r - 1 - x : x,
+                                     rows_are_mirrored ? r - 1 - y : y),
+                             columns_are_mirrored ? -1 : 1, rows_are_mirrored ? -row : row}};
+}
+
 } // namespace
 
 // Tiles are so small that on a face they reach from no side to the other.
@@ -63,9 +75,10 @@ void TurnedTexels::fill(const TexelRectangle& tile, TurnedTile& sums, CubeMap& t
         TilePlace place = places_[static_cast<std::size_t>(tile.face)][from];
         place.origin = place.corner(tile.x0, tile.y0);
         if (meets_face(place, width, height))
-            sums.add(place, &map_.at(AllFaces[from], 0, 0), map_.resolution);
+            sums.add(place, both_sides<const glm::vec3>(map_, AllFaces[from], 0, 0),
+                     map_.resolution);
     }
-    sums.store(&turned.at(tile.face, tile.x0, tile.y0), map_.resolution);
+    sums.store(both_sides<glm::vec3>(turned, tile.face, tile.x0, tile.y0));
 }
 
 } // namespace relumine::cubemap

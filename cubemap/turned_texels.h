@@ -12,8 +12,8 @@
 
 namespace relumine::cubemap {
 
-/// Mixes texels of a map into those of the turned one, a tile at a time. The map must outlive this
-/// object.
+/// Mixes texels of a map into those of the turned one, a tile and the texels opposite of it at a
+/// time. The map must outlive this object.
 class TurnedTexels {
 public:
     static constexpr std::uint32_t MinResolution = 128;
@@ -21,6 +21,9 @@ public:
     /// The map needs R >= MinResolution, and the matrix to be orthogonal.
     TurnedTexels(const CubeMap& map, const glm::dmat3& source_from_destination);
 
+    /// Faces with tiles. The others lie opposite of them.
+    static constexpr std::array<Face, NumFaces / 2> Faces = {Face::PositiveX, Face::PositiveY,
+                                                             Face::PositiveZ};
     /// Each face has as many rows and columns of tiles.
     [[nodiscard]] std::uint32_t num_rows() const { return num_rows_; }
     [[nodiscard]] std::uint32_t num_columns() const { return num_columns_; }
@@ -30,7 +33,7 @@ public:
         return ((x + 1) * num_columns_ - 1) / map_.resolution;
     }
 
-    /// Writes the texels of a tile. `sums` is the caller's memory, one for each thread.
+    /// Writes the texels of a tile and those opposite. `sums` is the caller's memory, one for each thread.
     void fill(const TexelRectangle& tile, TurnedTile& sums, CubeMap& turned) const;
 
 private:

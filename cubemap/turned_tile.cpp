@@ -101,9 +101,10 @@ void TurnedTile::begin(std::uint32_t width, std::uint32_t height) {
     work_->least = {};
 }
 
-void TurnedTile::add(const TilePlace& place, const glm::vec3* face, std::uint32_t resolution) {
+void TurnedTile::add(const TilePlace& place, const BothSides<const glm::vec3>& faces,
+                     std::uint32_t resolution) {
     Work& work = *work_;
-    work.face = face;
+    work.faces = faces;
     work.resolution = static_cast<std::int32_t>(resolution);
     work.shift = resolution < LeastCells ? 1 : 0;
     work.num_cells = work.resolution << work.shift;
@@ -119,8 +120,8 @@ void TurnedTile::add(const TilePlace& place, const glm::vec3* face, std::uint32_
     work.is_first = false;
 }
 
-void TurnedTile::store(glm::vec3* texels, std::size_t stride) const {
-    store_means(*work_, texels, stride);
+void TurnedTile::store(const BothSides<glm::vec3>& tiles) const {
+    store_means(*work_, tiles);
 }
 
 } // namespace relumine::cubemap

@@ -1,7 +1,7 @@
 // Mean radiance of the texels of a turned map, a tile of them at a time.
 #pragma once
 
-#include <cstddef>
+#include <array>
 #include <cstdint>
 #include <memory>
 
@@ -16,6 +16,9 @@ namespace relumine::cubemap {
 /// By Green's theorem what comes through a texel is a sum over its edges: of the light to their
 /// left on the face, from the first column that the tile meets. So each edge is walked once for
 /// the two texels beside it and no polygon is cut. An edge over several faces has a part on each.
+///
+/// A turn carries opposite directions to opposite ones. So the texels opposite of a tile mix those
+/// opposite of its own, in the same parts, and both are summed along the same edges.
 class TurnedTile {
 public:
     /// Texels, at most.
@@ -26,17 +29,23 @@ public:
     /// Starts a tile of width x height texels.
     void begin(std::uint32_t width, std::uint32_t height);
 
-    /// Adds what comes from a face of R x R texels, R >= 128. All corners must be in front of the
+    template<class Texel>
+    using BothSides = std::array<TexelRows<Texel>, TileWork::NumSides>;
+
+    /// Adds what comes from a face of R x R texels, R >= 128, and from the opposite one: of texels
+    /// that lie opposite each other, both have the same place in their rows. All corners must be in front of the
     /// face, z > 0. The density of solid angle is taken to second order about each texel's middle,
     /// as solid_angle_about() does. What the tile meets of the face must not reach from its left
     /// side to its right one.
     ///
     /// Error:   1e-6 of the largest radiance that a texel meets, beside the expansion's.
     /// Cost:    35 to 45 ns for each texel of the tile with AVX2.
-    void add(const TilePlace& place, const glm::vec3* face, std::uint32_t resolution);
+    void add(const TilePlace& place, const BothSides<const glm::vec3>& faces,
+             std::uint32_t resolution);
 
-    /// Writes the mean radiance over the solid angle of each texel, row by row.
-    void store(glm::vec3* texels, std::size_t stride) const;
+    /// Writes the mean radiance over the solid angle of each texel of the tile and of those
+    /// opposite.
+    void store(const BothSides<glm::vec3>& tiles) const;
 
 private:
     std::unique_ptr<TileWork> work_;

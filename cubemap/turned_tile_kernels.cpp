@@ -26,7 +26,10 @@ constexpr std::size_t Stride = Work::Stride;
 
 using IntLanes = hn::RebindToSigned<Lanes>;
 using Doubles = hn::CappedTag<double, MaxLanes / 2>;
-using SumLanes = hn::CappedTag<double, 4>;
+using SumLanes = hn::CappedTag<double, Work::NumSums>;
+constexpr std::size_t NumSums = Work::NumSums;
+/// Sums of one side, or a part of them.
+using SideLanes = hn::CappedTag<double, Work::NumValues>;
 
 void place_corners(const TilePlace& place, Work& work) {
     const Doubles d;
@@ -101,57 +104,78 @@ void find_densities(std::int32_t row, std::int32_t begin, std::int32_t end, cons
 /// face's right side, from there, so that what lies outside the face has no part in an edge's sum.
 void fill_row(std::int32_t row, std::int32_t begin, std::int32_t end, const Density& density,
               Work& work) {
-    const SumLanes ds;
-    const hn::Rebind<float, SumLanes> narrow;
     find_densities(row, begin, end, density, work);
     Cell* cells = work.cells.data() + std::ptrdiff_t{row - work.first.y} * work.size.x +
                   (begin - work.first.x);
-    const glm::vec3* texels =
-        work.face + std::ptrdiff_t{row >> work.shift} * work.resolution + (begin >> work.shift);
-    const std::int32_t in_texel = begin - (begin >> work.shift << work.shift);
-    const std::ptrdiff_t count = end - begin;
-    // A vector has four numbers, one more than a colour.
-    const glm::vec3& last = texels[(count - 1 + in_texel) >> work.shift];
-    const std::array<float, 4> tail = {last.x, last.y, last.z, 1.0f};
-    const auto across = hn::Set(ds, double{density.across_middle()});
     const bool from_right = end == work.num_cells;
-    for (std::size_t j = 0; j < 4; j += hn::Lanes(ds)) {
-        const auto is_color = hn::FirstN(narrow, 3 - std::min<std::size_t>(j, 3));
-        const auto one = hn::Set(narrow, 1.0f);
-        auto sum = hn::Zero(ds), change_sum = hn::Zero(ds);
-        auto least = hn::LoadU(narrow, work.least.data() + j);
-        const auto light_of = [&](std::ptrdiff_t i) {
-            const std::ptrdiff_t texel = (i + in_texel) >> work.shift;
-            const float* color = &texels[texel] == &last ? tail.data() : &texels[texel].x;
-            const auto values = hn::IfThenElse(is_color, hn::LoadU(narrow, color + j), one);
-            least = hn::Min(least, values);
-            return hn::Mul(hn::PromoteTo(ds, values),
-                           hn::Set(ds, work.middles[static_cast<std::size_t>(i)]));
-        };
-        const auto change_of = [&](std::ptrdiff_t i) {
-            return hn::Set(ds, work.changes[static_cast<std::size_t>(i)]);
-        };
-        const auto store = [&](std::ptrdiff_t i, const auto& light) {
-            hn::Store(sum, ds, cells[i].left.data() + j);
-            hn::Store(change_sum, ds, cells[i].change_left.data() + j);
-            hn::Store(hn::DemoteTo(narrow, light), narrow, cells[i].density.data() + j);
-        };
-        if (from_right)
-            for (std::ptrdiff_t i = count - 1; i >= 0; --i) {
-                const auto light = light_of(i);
-                sum = hn::NegMulAdd(light, across, sum);
-                change_sum = hn::NegMulAdd(light, change_of(i), change_sum);
-                store(i, light);
-            }
-        else
-            for (std::ptrdiff_t i = 0; i < count; ++i) {
-                const auto light = light_of(i);
-                store(i, light);
-                sum = hn::MulAdd(light, across, sum);
-                change_sum = hn::MulAdd(light, change_of(i), change_sum);
-            }
-        hn::StoreU(least, narrow, work.least.data() + j);
+    const std::ptrdiff_t count = end - begin;
+    const std::int32_t in_texel = begin - (begin >> work.shift << work.shift);
+    const SideLanes ds;
+    const hn::Rebind<float, SideLanes> narrow;
+    using Sums = hn::Vec<SideLanes>;
+    using Light = hn::Vec<decltype(narrow)>;
+    constexpr std::size_t Step = hn::MaxLanes(SideLanes()), NumVectors = NumSums / Step;
+    const auto side_of = [](std::size_t i) {
+        return i * Step / Work::NumValues;
+    };
+    const auto value_of = [](std::size_t i) {
+        return i * Step % Work::NumValues;
+    };
+    // A vector has four numbers, one more than a colour.
+    std::array<TexelRows<const glm::vec3>, Work::NumSides> texels;
+    std::array<const glm::vec3*, Work::NumSides> last;
+    std::array<std::array<float, Work::NumValues>, Work::NumSides> tail;
+    for (std::size_t side = 0; side < Work::NumSides; ++side) {
+        texels[side] = work.faces[side];
+        texels[side].first = texels[side].at(begin >> work.shift, row >> work.shift);
+        last[side] = std::max(texels[side].at(0, 0),
+                              texels[side].at((count - 1 + in_texel) >> work.shift, 0));
+        tail[side] = {last[side]->x, last[side]->y, last[side]->z, 1.0f};
     }
+    const auto across = hn::Set(ds, double{density.across_middle()});
+    const auto one = hn::Set(narrow, 1.0f);
+    Sums sum[NumVectors], change_sum[NumVectors];
+    Light least[NumVectors];
+    for (std::size_t i = 0; i < NumVectors; ++i) {
+        sum[i] = change_sum[i] = hn::Zero(ds);
+        least[i] = hn::LoadU(narrow, work.least.data() + i * Step);
+    }
+    const auto light_of = [&](std::size_t i, std::ptrdiff_t column, const Sums& density_there) {
+        const std::size_t side = side_of(i);
+        const glm::vec3* texel = texels[side].at((column + in_texel) >> work.shift, 0);
+        const float* color = texel == last[side] ? tail[side].data() : &texel->x;
+        const auto is_color = hn::FirstN(narrow, 3 - std::min<std::size_t>(value_of(i), 3));
+        const auto values =
+            hn::IfThenElse(is_color, hn::LoadU(narrow, color + value_of(i)), one);
+        least[i] = hn::Min(least[i], values);
+        return hn::Mul(hn::PromoteTo(ds, values), density_there);
+    };
+    const auto store = [&](std::size_t i, Cell& cell, const Sums& light) {
+        hn::Store(sum[i], ds, cell.left.data() + i * Step);
+        hn::Store(change_sum[i], ds, cell.change_left.data() + i * Step);
+        hn::Store(hn::DemoteTo(narrow, light), narrow, cell.density.data() + i * Step);
+    };
+    const auto at = [&](const std::vector<double>& values, std::ptrdiff_t column) {
+        return hn::Set(ds, values[static_cast<std::size_t>(column)]);
+    };
+    if (from_right)
+        for (std::ptrdiff_t column = count - 1; column >= 0; --column)
+            for (std::size_t i = 0; i < NumVectors; ++i) {
+                const Sums light = light_of(i, column, at(work.middles, column));
+                sum[i] = hn::NegMulAdd(light, across, sum[i]);
+                change_sum[i] = hn::NegMulAdd(light, at(work.changes, column), change_sum[i]);
+                store(i, cells[column], light);
+            }
+    else
+        for (std::ptrdiff_t column = 0; column < count; ++column)
+            for (std::size_t i = 0; i < NumVectors; ++i) {
+                const Sums light = light_of(i, column, at(work.middles, column));
+                store(i, cells[column], light);
+                sum[i] = hn::MulAdd(light, across, sum[i]);
+                change_sum[i] = hn::MulAdd(light, at(work.changes, column), change_sum[i]);
+            }
+    for (std::size_t i = 0; i < NumVectors; ++i)
+        hn::StoreU(least[i], narrow, work.least.data() + i * Step);
 }
 
 /// That at the middle of the tile's part.
@@ -197,10 +221,13 @@ void fill_cells(Work& work) {
     for (std::int32_t row = work.first.y; row < work.first.y + work.size.y; ++row) {
         const glm::ivec2 columns = columns_in_row(row, work);
         work.columns.push_back(columns);
-        const glm::vec3* texels = work.face + std::ptrdiff_t{row >> work.shift} * work.resolution;
-        const float* end = &texels[(columns.y - 1) >> work.shift].x;
-        for (const float* at = &texels[columns.x >> work.shift].x; at <= end; at += CacheLine)
-            hwy::Prefetch(at);
+        for (const TexelRows<const glm::vec3>& face : work.faces) {
+            const float* first = &face.at(columns.x >> work.shift, row >> work.shift)->x;
+            const float* last = &face.at((columns.y - 1) >> work.shift, row >> work.shift)->x;
+            for (const float* at = std::min(first, last); at <= std::max(first, last);
+                 at += CacheLine)
+                hwy::Prefetch(at);
+        }
     }
     for (std::int32_t r = 0; r < work.size.y; ++r) {
         const glm::ivec2 columns = work.columns[static_cast<std::size_t>(r)];
@@ -325,8 +352,12 @@ void sum_lanes(const Points& from, std::size_t start, const Points& to, std::siz
                std::size_t count, const Work& work, const Density& density, Work::Sum* sums) {
     // As many at once; edges are seldom longer.
     constexpr std::size_t MaxPieces = 8;
+    using NarrowLanes = hn::CappedTag<float, NumSums>;
+    constexpr std::size_t Step = hn::MaxLanes(SumLanes()), NumVectors = NumSums / Step,
+                          NarrowStep = hn::MaxLanes(NarrowLanes()),
+                          NumNarrow = NumSums / NarrowStep;
     const SumLanes ds;
-    const hn::Rebind<float, SumLanes> narrow;
+    const NarrowLanes narrow;
     const std::size_t lanes = hn::Lanes(Lanes());
     HWY_ALIGN std::array<std::int32_t, MaxPieces * MaxLanes> cells;
     HWY_ALIGN std::array<float, MaxPieces * MaxLanes> heights, changes, in_cells;
@@ -340,20 +371,32 @@ void sum_lanes(const Points& from, std::size_t start, const Points& to, std::siz
         widen(heights.data(), num_pieces * lanes, wide_heights.data());
         widen(changes.data(), num_pieces * lanes, wide_changes.data());
         for (std::size_t i = 0; i < count; ++i) {
-            for (std::size_t j = 0; j < 4; j += hn::Lanes(ds)) {
-                auto sum = done == 0 ? hn::Zero(ds) : hn::Load(ds, sums[i].data() + j);
-                auto of_texels = hn::Zero(narrow);
-                for (std::size_t k = i; k < num_pieces * lanes; k += lanes) {
-                    const Cell& cell = work.cells[static_cast<std::size_t>(cells[k])];
-                    sum = hn::MulAdd(hn::Set(ds, wide_heights[k]),
-                                     hn::Load(ds, cell.left.data() + j), sum);
-                    sum = hn::MulAdd(hn::Set(ds, wide_changes[k]),
-                                     hn::Load(ds, cell.change_left.data() + j), sum);
-                    of_texels = hn::MulAdd(hn::Set(narrow, in_cells[k]),
-                                           hn::Load(narrow, cell.density.data() + j), of_texels);
+            hn::Vec<SumLanes> sum[NumVectors];
+            hn::Vec<NarrowLanes> of_texels[NumNarrow];
+            for (std::size_t j = 0; j < NumVectors; ++j)
+                sum[j] = done == 0 ? hn::Zero(ds) : hn::Load(ds, sums[i].data() + j * Step);
+            for (std::size_t j = 0; j < NumNarrow; ++j)
+                of_texels[j] = hn::Zero(narrow);
+            for (std::size_t k = i; k < num_pieces * lanes; k += lanes) {
+                const Cell& cell = work.cells[static_cast<std::size_t>(cells[k])];
+                for (std::size_t j = 0; j < NumVectors; ++j) {
+                    sum[j] = hn::MulAdd(hn::Set(ds, wide_heights[k]),
+                                        hn::Load(ds, cell.left.data() + j * Step), sum[j]);
+                    sum[j] = hn::MulAdd(hn::Set(ds, wide_changes[k]),
+                                        hn::Load(ds, cell.change_left.data() + j * Step), sum[j]);
                 }
-                sum = hn::Add(sum, hn::PromoteTo(ds, of_texels));
-                hn::Store(sum, ds, sums[i].data() + j);
+                for (std::size_t j = 0; j < NumNarrow; ++j)
+                    of_texels[j] = hn::MulAdd(
+                        hn::Set(narrow, in_cells[k]),
+                        hn::Load(narrow, cell.density.data() + j * NarrowStep), of_texels[j]);
+            }
+            HWY_ALIGN std::array<float, NumSums> in_texels;
+            for (std::size_t j = 0; j < NumNarrow; ++j)
+                hn::Store(of_texels[j], narrow, in_texels.data() + j * NarrowStep);
+            for (std::size_t j = 0; j < NumVectors; ++j) {
+                const auto wide = hn::PromoteTo(
+                    ds, hn::Load(hn::Rebind<float, SumLanes>(), in_texels.data() + j * Step));
+                hn::Store(hn::Add(sum[j], wide), ds, sums[i].data() + j * Step);
             }
         }
         done += num_pieces;
@@ -367,7 +410,7 @@ void add_texels(Work& work) {
     for (std::size_t y = 0; y < work.height; ++y)
         for (std::size_t x = 0; x < work.width; ++x) {
             const std::size_t at = y * Stride + x;
-            for (std::size_t j = 0; j < 4; j += hn::Lanes(ds)) {
+            for (std::size_t j = 0; j < NumSums; j += hn::Lanes(ds)) {
                 const auto top = hn::Load(ds, work.of_across[at].data() + j);
                 const auto right = hn::Load(ds, work.of_down[at + 1].data() + j);
                 const auto bottom = hn::Load(ds, work.of_across[at + Stride].data() + j);
@@ -383,21 +426,26 @@ void add_texels(Work& work) {
         }
 }
 
-void store_means(const Work& work, glm::vec3* texels, std::size_t stride) {
+void store_means(const Work& work,
+                 const std::array<TexelRows<glm::vec3>, Work::NumSides>& tiles) {
     const SumLanes ds;
     const hn::Rebind<float, SumLanes> narrow;
     for (std::size_t y = 0; y < work.height; ++y)
         for (std::size_t x = 0; x < work.width; ++x) {
             const Work::Sum& sum = work.texels[y * Stride + x];
-            const auto scale = hn::Set(ds, 1.0 / sum[3]);
-            HWY_ALIGN std::array<float, 4> mean;
-            for (std::size_t j = 0; j < 4; j += hn::Lanes(ds)) {
+            const auto scale = hn::Set(ds, 1.0 / sum[3]); // both sides have the same solid angle
+            HWY_ALIGN std::array<float, NumSums> means;
+            for (std::size_t j = 0; j < NumSums; j += hn::Lanes(ds)) {
                 const auto exact = hn::Mul(scale, hn::Load(ds, sum.data() + j));
                 hn::StoreU(
                     hn::Max(hn::DemoteTo(narrow, exact), hn::LoadU(narrow, work.least.data() + j)),
-                    narrow, mean.data() + j);
+                    narrow, means.data() + j);
             }
-            texels[y * stride + x] = {mean[0], mean[1], mean[2]};
+            for (std::size_t side = 0; side < Work::NumSides; ++side) {
+                const float* mean = means.data() + side * Work::NumValues;
+                *tiles[side].at(static_cast<std::ptrdiff_t>(x), static_cast<std::ptrdiff_t>(y)) = {
+                    mean[0], mean[1], mean[2]};
+            }
         }
 }
 
@@ -450,8 +498,9 @@ void add_texels(TileWork& work) {
     HWY_DYNAMIC_DISPATCH(add_texels)(work);
 }
 
-void store_means(const TileWork& work, glm::vec3* texels, std::size_t stride) {
-    HWY_DYNAMIC_DISPATCH(store_means)(work, texels, stride);
+void store_means(const TileWork& work,
+                 const std::array<TexelRows<glm::vec3>, TileWork::NumSides>& tiles) {
+    HWY_DYNAMIC_DISPATCH(store_means)(work, tiles);
 }
 
 } // namespace relumine::cubemap

@@ -21,9 +21,23 @@ struct TilePlace {
     }
 };
 
+/// Rows of texels in memory: the first texel, and how far it is to the next column and row.
+template<class Texel>
+struct TexelRows {
+    Texel* first = nullptr;
+    std::ptrdiff_t next_column = 1, next_row = 0;
+
+    [[nodiscard]] Texel* at(std::ptrdiff_t x, std::ptrdiff_t y) const {
+        return first + x * next_column + y * next_row;
+    }
+};
+
 /// What a tile keeps. Corners, and the texels whose upper left they are, lie row by row, `Stride`
 /// apart, which vectors divide.
 struct TileWork {
+    /// The tile and the one opposite of it.
+    static constexpr std::size_t NumSides = 2;
+
     static constexpr std::uint32_t MaxWidth = 31, MaxHeight = 16;
     static constexpr std::size_t Stride = MaxWidth + 1;
     static constexpr std::size_t NumCorners = (MaxHeight + 1) * Stride;
@@ -43,15 +57,16 @@ struct TileWork {
             position_y[at] = position.y;
         }
     };
-    /// Three colours and solid angle.
-    using Sum = std::array<double, 4>;
+    /// Three colours and solid angle, of both sides.
+    static constexpr std::size_t NumValues = 4, NumSums = NumSides * NumValues;
+    using Sum = std::array<double, NumSums>;
     using Sums = std::array<Sum, NumCorners>;
-    struct alignas(32) Cell {
+    struct alignas(64) Cell {
         /// What lies to the left of the cell in its row; and how that changes over the row's height
         /// where it does not as at the middle of the part.
         Sum left, change_left;
         /// What lies in the cell, for each unit of its area.
-        std::array<float, 4> density;
+        std::array<float, NumSums> density;
     };
 
     alignas(64) Sums texels;
@@ -72,16 +87,16 @@ struct TileWork {
     /// Of the part, the first cell and the numbers of columns and rows.
     glm::ivec2 first = {}, size = {};
 
-    /// The face: its texels along a side, and of each 2^shift cells. Its cells along a side, and
-    /// how far these reach in [-1, 1].
-    const glm::vec3* face = nullptr;
+    /// The face and the opposite one, as far as texels lie opposite each other. Texels along a
+    /// side, and of each 2^shift cells. Cells along a side, and how far these reach in [-1, 1].
+    std::array<TexelRows<const glm::vec3>, NumSides> faces;
     std::int32_t resolution = 0, shift = 0, num_cells = 0;
     float scale = 0.0f;
 
     std::uint32_t width = 0, height = 0;
     /// The least of 0 and the colours that the tile meets: where a texel touches a sun, rounding
     /// may make less of its dark.
-    std::array<float, 4> least = {};
+    std::array<float, NumSums> least = {};
     /// Whether no face was added yet.
     bool is_first = true;
     bool is_cut = false;
@@ -99,6 +114,7 @@ void sum_edges(std::size_t width, std::size_t height, const TileWork::Points& st
                TileWork::Sums& sums);
 /// Adds to the texels what their edges say.
 void add_texels(TileWork& work);
-void store_means(const TileWork& work, glm::vec3* texels, std::size_t stride);
+void store_means(const TileWork& work,
+                 const std::array<TexelRows<glm::vec3>, TileWork::NumSides>& tiles);
 
 } // namespace relumine::cubemap
