@@ -87,18 +87,6 @@ struct FaceAxes {
     }
 };
 
-/// The face on the other side of the cube. The point opposite of (s, t), through the cube's centre,
-/// is (1 - s, t) there where columns are mirrored, or (s, 1 - t) where rows are.
-struct OppositeFace {
-    Face face;
-    bool columns_are_mirrored, rows_are_mirrored;
-};
-[[nodiscard]] inline OppositeFace opposite(Face face) {
-    const auto index = static_cast<std::size_t>(face);
-    const bool is_y = face == Face::PositiveY || face == Face::NegativeY;
-    return {AllFaces[index ^ 1u], is_y, !is_y};
-}
-
 /// Returns the unit direction of a face point.
 [[nodiscard]] inline glm::dvec3 direction(Face face, double s, double t) {
     return glm::normalize(cube_point(face, s, t));

@@ -71,21 +71,6 @@ void mix_coarse(const CubeMap& map, const glm::dmat3& source_from_destination, C
     });
 }
 
-/// By any matrix.
-void mix(const CubeMap& map, const glm::dmat3& source_from_destination, CubeMap& result) {
-    const TurnedTexels texels(map, source_from_destination);
-    const std::uint32_t num_rows = texels.num_rows();
-    files::parallel_for(
-        files::IndexRange<std::size_t>(0, TurnedTexels::Faces.size() * num_rows), [&](const auto& rows) {
-            TurnedTile sums;
-            for (std::size_t i = rows.begin(); i != rows.end(); ++i)
-                for (std::uint32_t column = 0; column < texels.num_columns(); ++column)
-                    texels.fill(texels.tile(TurnedTexels::Faces[i / num_rows],
-                                            static_cast<std::uint32_t>(i % num_rows), column),
-                                sums, result);
-        });
-}
-
 /// By a matrix that carries axes to axes.
 void move(const CubeMap& map, const glm::dmat3& source_from_destination, CubeMap& result) {
     const auto texel = [&](double s) {
@@ -124,7 +109,7 @@ CubeMap turned(const CubeMap& map, const glm::dmat3& turn, CubeMap memory) {
     else if (map.resolution < TurnedTexels::MinResolution)
         mix_coarse(map, source_from_destination, memory);
     else
-        mix(map, source_from_destination, memory);
+        TurnedTexels(map, source_from_destination).fill_all(memory);
     return memory;
 }
 

@@ -1,9 +1,13 @@
 #include "cubemap/turned_texels.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include <glm/common.hpp>
+#include <glm/matrix.hpp>
+
+#include "files/parallel.h"
 
 namespace relumine::cubemap {
 
@@ -26,16 +30,24 @@ bool meets_face(const TilePlace& place, double width, double height) {
     return least.x < 1.0 && least.y < 1.0 && most.x > -1.0 && most.y > -1.0;
 }
 
-/// A map's texels from (x, y) of a face on, and those opposite of them.
+/// The texels of a map where a symmetry of the cube carries those of a face from (x, y) on.
 template<class Texel, class Map>
-TurnedTile::BothSides<Texel> both_sides(Map& map, Face face, std::uint32_t x, std::uint32_t y) {
-    const std::uint32_t r = map.resolution;
-    const std::ptrdiff_t row = r;
-    const auto [other, columns_are_mirrored, rows_are_mirrored] = opposite(face);
-    return {TexelRows<Texel>{&map.at(face, x, y), 1, row},
-            TexelRows<Texel>{&map.at(other, columns_are_mirrored ? r - 1 - x : x,
-                                     rows_are_mirrored ? r - 1 - y : y),
-                             columns_are_mirrored ? -1 : 1, rows_are_mirrored ? -row : row}};
+TexelRows<Texel> rows_at(Map& map, const glm::dmat3& symmetry, Face face, std::uint32_t x,
+                         std::uint32_t y) {
+    const double n = map.resolution;
+    const auto texel = [&](std::uint32_t column, std::uint32_t row) -> Texel* {
+        const FacePoint point =
+            face_point(symmetry * cube_point(face, (column + 0.5) / n, (row + 0.5) / n));
+        return &map.at(point.face, static_cast<std::uint32_t>(point.s * n),
+                       static_cast<std::uint32_t>(point.t * n));
+    };
+    return {texel(x, y), texel(1, 0) - texel(0, 0), texel(0, 1) - texel(0, 0)};
+}
+
+template<class Texel, class Map>
+TexelPair<Texel> pair_at(Map& map, const glm::dmat3& symmetry, Face face, std::uint32_t x,
+                         std::uint32_t y) {
+    return {rows_at<Texel>(map, symmetry, face, x, y), rows_at<Texel>(map, -symmetry, face, x, y)};
 }
 
 } // namespace
@@ -57,6 +69,35 @@ TurnedTexels::TurnedTexels(const CubeMap& map, const glm::dmat3& source_from_des
                                    axes.parts((corner(0.0, 1.0) - first) / n)};
         }
     }
+    find_symmetries(source_from_destination);
+    for (std::size_t face = 0; face < NumFaces; ++face)
+        for (const Symmetry& symmetry : symmetries_)
+            faces_[face].push_back(
+                pair_at<const glm::vec3>(map, symmetry.source, AllFaces[face], 0, 0));
+}
+
+/// A turn that carries an axis of the cube to an axis carries quarter turns about the one to those
+/// about the other. The middle row of an odd map would be its own image.
+void TurnedTexels::find_symmetries(const glm::dmat3& source_from_destination) {
+    symmetries_ = {{glm::dmat3(1.0), glm::dmat3(1.0)}};
+    for (int axis = 0; axis < 3 && map_.resolution % 2 == 0; ++axis) {
+        const glm::dvec3 there = glm::abs(source_from_destination[axis]);
+        if (std::max({there.x, there.y, there.z}) != 1.0)
+            continue;
+        axis_ = axis;
+        glm::dmat3 quarter(0.0);
+        quarter[axis][axis] = 1.0;
+        quarter[(axis + 1) % 3][(axis + 2) % 3] = 1.0;
+        quarter[(axis + 2) % 3][(axis + 1) % 3] = -1.0;
+        while (symmetries_.size() < 4) {
+            const glm::dmat3 turned = quarter * symmetries_.back().turned;
+            const glm::dmat3 source =
+                source_from_destination * turned * glm::transpose(source_from_destination);
+            symmetries_.push_back(
+                {turned, {glm::round(source[0]), glm::round(source[1]), glm::round(source[2])}});
+        }
+        return;
+    }
 }
 
 TexelRectangle TurnedTexels::tile(Face face, std::uint32_t row, std::uint32_t column) const {
@@ -68,17 +109,62 @@ TexelRectangle TurnedTexels::tile(Face face, std::uint32_t row, std::uint32_t co
             .y1 = (row + 1) * r / num_rows_};
 }
 
-void TurnedTexels::fill(const TexelRectangle& tile, TurnedTile& sums, CubeMap& turned) const {
+void TurnedTexels::fill(const TexelRectangle& tile, std::size_t num_pairs, TurnedTile& sums,
+                        CubeMap& turned) const {
     const std::uint32_t width = tile.x1 - tile.x0, height = tile.y1 - tile.y0;
-    sums.begin(width, height);
+    sums.begin(width, height, num_pairs);
     for (std::size_t from = 0; from < NumFaces; ++from) {
         TilePlace place = places_[static_cast<std::size_t>(tile.face)][from];
         place.origin = place.corner(tile.x0, tile.y0);
         if (meets_face(place, width, height))
-            sums.add(place, both_sides<const glm::vec3>(map_, AllFaces[from], 0, 0),
-                     map_.resolution);
+            sums.add(place, faces_[from], map_.resolution);
     }
-    sums.store(both_sides<glm::vec3>(turned, tile.face, tile.x0, tile.y0));
+    std::vector<TexelPair<glm::vec3>> tiles;
+    for (std::size_t i = 0; i < num_pairs; ++i)
+        tiles.push_back(
+            pair_at<glm::vec3>(turned, symmetries_[i].turned, tile.face, tile.x0, tile.y0));
+    sums.store(tiles);
+}
+
+void TurnedTexels::fill_all(CubeMap& turned) const {
+    // Of each set of texels that symmetries carry to each other, one is in these rectangles.
+    std::vector<TexelRectangle> parts;
+    const std::uint32_t r = map_.resolution;
+    for (const Face face : Faces) {
+        TexelRectangle part = {.face = face, .x0 = 0, .y0 = 0, .x1 = r, .y1 = r};
+        if (axis_ >= 0) {
+            const FaceAxes axes(face);
+            const bool is_side = axes.outwards[axis_] == 0.0;
+            if (is_side &&
+                std::any_of(parts.begin(), parts.end(), [&](const TexelRectangle& other) {
+                    return FaceAxes(other.face).outwards[axis_] == 0.0;
+                }))
+                continue;
+            if (!is_side || axes.right[axis_] != 0.0)
+                part.x1 = r / 2;
+            if (!is_side || axes.down[axis_] != 0.0)
+                part.y1 = r / 2;
+        }
+        parts.push_back(part);
+    }
+    std::vector<TexelRectangle> tiles;
+    for (const TexelRectangle& part : parts) {
+        const std::uint32_t rows = num_parts(part.y1, r / num_rows_),
+                            columns = num_parts(part.x1, r / num_columns_);
+        for (std::uint32_t row = 0; row < rows; ++row)
+            for (std::uint32_t column = 0; column < columns; ++column)
+                tiles.push_back({.face = part.face,
+                                 .x0 = column * part.x1 / columns,
+                                 .y0 = row * part.y1 / rows,
+                                 .x1 = (column + 1) * part.x1 / columns,
+                                 .y1 = (row + 1) * part.y1 / rows});
+    }
+    files::parallel_for(files::IndexRange<std::size_t>(0, tiles.size(), 64),
+                        [&](const auto& range) {
+                            TurnedTile sums;
+                            for (std::size_t i = range.begin(); i != range.end(); ++i)
+                                fill(tiles[i], symmetries_.size(), sums, turned);
+                        });
 }
 
 } // namespace relumine::cubemap

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include <glm/mat3x3.hpp>
 
@@ -12,18 +13,18 @@
 
 namespace relumine::cubemap {
 
-/// Mixes texels of a map into those of the turned one, a tile and the texels opposite of it at a
-/// time. The map must outlive this object.
+/// Mixes texels of a map into those of the turned one, a tile at a time. The map must outlive this
+/// object.
 class TurnedTexels {
 public:
     static constexpr std::uint32_t MinResolution = 128;
+    /// Faces that no others of them lie opposite of.
+    static constexpr std::array<Face, NumFaces / 2> Faces = {Face::PositiveX, Face::PositiveY,
+                                                             Face::PositiveZ};
 
     /// The map needs R >= MinResolution, and the matrix to be orthogonal.
     TurnedTexels(const CubeMap& map, const glm::dmat3& source_from_destination);
 
-    /// Faces with tiles. The others lie opposite of them.
-    static constexpr std::array<Face, NumFaces / 2> Faces = {Face::PositiveX, Face::PositiveY,
-                                                             Face::PositiveZ};
     /// Each face has as many rows and columns of tiles.
     [[nodiscard]] std::uint32_t num_rows() const { return num_rows_; }
     [[nodiscard]] std::uint32_t num_columns() const { return num_columns_; }
@@ -33,14 +34,35 @@ public:
         return ((x + 1) * num_columns_ - 1) / map_.resolution;
     }
 
-    /// Writes the texels of a tile and those opposite. `sums` is the caller's memory, one for each thread.
-    void fill(const TexelRectangle& tile, TurnedTile& sums, CubeMap& turned) const;
+    /// Writes the texels of a tile and those opposite. `sums` is the caller's memory, one for each
+    /// thread.
+    void fill(const TexelRectangle& tile, TurnedTile& sums, CubeMap& turned) const {
+        fill(tile, 1, sums, turned);
+    }
+    /// Writes all texels. Parallel (TBB).
+    void fill_all(CubeMap& turned) const;
 
 private:
+    /// A symmetry of the cube, and the one that its texels have in the map when they have this one
+    /// in the turned map.
+    struct Symmetry {
+        glm::dmat3 turned, source;
+    };
+
+    void find_symmetries(const glm::dmat3& source_from_destination);
+    void fill(const TexelRectangle& tile, std::size_t num_pairs, TurnedTile& sums,
+              CubeMap& turned) const;
+
     const CubeMap& map_;
     std::uint32_t num_rows_, num_columns_;
     /// Of the first texel of each face of the turned map, on each of the map's.
     std::array<std::array<TilePlace, NumFaces>, NumFaces> places_;
+    /// Turns, the first of which changes nothing. With their opposites they are all.
+    std::vector<Symmetry> symmetries_;
+    /// The axis of the turned map about which they turn, or -1.
+    int axis_ = -1;
+    /// [face of the map] what lies there by each symmetry.
+    std::array<std::vector<TexelPair<const glm::vec3>>, NumFaces> faces_;
 };
 
 } // namespace relumine::cubemap

@@ -51,15 +51,15 @@ void cut_edges(std::size_t width, std::size_t height, std::size_t next, Work& wo
 }
 
 /// Sums along the edges of width x height corners, each to the corner `next` further on.
-void sum_along_edges(std::size_t width, std::size_t height, std::size_t next, Work& work,
-                     Work::Sums& sums) {
+void walk(std::size_t width, std::size_t height, std::size_t next, Work& work, Work::Pieces& pieces,
+          Work::Sums& sums) {
     if (work.is_cut) {
         cut_edges(width, height, next, work);
         find_cells(height, work, work.starts);
         find_cells(height, work, work.ends);
-        sum_edges(width, height, work.starts, work.ends, 0, work, sums);
+        walk_edges(width, height, work.starts, work.ends, 0, work, pieces, sums);
     } else {
-        sum_edges(width, height, work.corners, work.corners, next, work, sums);
+        walk_edges(width, height, work.corners, work.corners, next, work, pieces, sums);
     }
 }
 
@@ -84,44 +84,56 @@ void find_part(Work& work) {
         static_cast<std::size_t>(work.size.x) * static_cast<std::size_t>(work.size.y);
     if (work.cells.size() < num_cells)
         work.cells.resize(num_cells);
+    work.colors.resize(std::max(work.colors.size(), static_cast<std::size_t>(work.size.x)));
     // Kernels write whole vectors.
-    const std::size_t most_columns = static_cast<std::size_t>(work.size.x) + Work::Stride;
-    if (work.middles.size() < most_columns) {
-        work.middles.resize(most_columns);
-        work.changes.resize(most_columns);
+    const std::size_t num_densities = num_cells + Work::Stride;
+    if (work.middles.size() < num_densities) {
+        work.middles.resize(num_densities);
+        work.changes.resize(num_densities);
     }
 }
 
 } // namespace
 
-void TurnedTile::begin(std::uint32_t width, std::uint32_t height) {
+void TurnedTile::begin(std::uint32_t width, std::uint32_t height, std::size_t num_pairs) {
     work_->width = width;
     work_->height = height;
     work_->is_first = true;
-    work_->least = {};
+    work_->pairs.resize(num_pairs);
+    for (Work::Pair& pair : work_->pairs)
+        pair.least = {};
 }
 
-void TurnedTile::add(const TilePlace& place, const BothSides<const glm::vec3>& faces,
+void TurnedTile::add(const TilePlace& place, std::span<const TexelPair<const glm::vec3>> faces,
                      std::uint32_t resolution) {
     Work& work = *work_;
-    work.faces = faces;
-    work.resolution = static_cast<std::int32_t>(resolution);
     work.shift = resolution < LeastCells ? 1 : 0;
-    work.num_cells = work.resolution << work.shift;
+    work.num_cells = static_cast<std::int32_t>(resolution) << work.shift;
     work.scale = 2.0f / static_cast<float>(work.num_cells);
     place_corners(place, work);
     find_part(work);
-    fill_cells(work);
+    find_columns(faces[0], work);
     if (!work.is_cut)
         find_cells(work.height + 1, work, work.corners);
-    sum_along_edges(work.width, work.height + 1, 1, work, work.of_across);
-    sum_along_edges(work.width + 1, work.height, Work::Stride, work, work.of_down);
-    add_texels(work);
+    const std::size_t width = work.width, height = work.height;
+    for (std::size_t i = 0; i < work.pairs.size(); ++i) {
+        const bool is_last = i + 1 == work.pairs.size();
+        fill_cells(faces[i], is_last ? nullptr : &faces[i + 1], work, work.pairs[i]);
+        if (i == 0) {
+            walk(width, height + 1, 1, work, work.across, work.of_across);
+            walk(width + 1, height, Work::Stride, work, work.down, work.of_down);
+        } else {
+            sum_edges(width, height + 1, work.across, work, work.of_across);
+            sum_edges(width + 1, height, work.down, work, work.of_down);
+        }
+        add_texels(work, work.pairs[i]);
+    }
     work.is_first = false;
 }
 
-void TurnedTile::store(const BothSides<glm::vec3>& tiles) const {
-    store_means(*work_, tiles);
+void TurnedTile::store(std::span<const TexelPair<glm::vec3>> tiles) const {
+    for (std::size_t i = 0; i < tiles.size(); ++i)
+        store_means(*work_, work_->pairs[i], tiles[i]);
 }
 
 } // namespace relumine::cubemap

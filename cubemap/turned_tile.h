@@ -1,9 +1,10 @@
 // Mean radiance of the texels of a turned map, a tile of them at a time.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include <glm/vec3.hpp>
 
@@ -18,7 +19,8 @@ namespace relumine::cubemap {
 /// the two texels beside it and no polygon is cut. An edge over several faces has a part on each.
 ///
 /// A turn carries opposite directions to opposite ones. So the texels opposite of a tile mix those
-/// opposite of its own, in the same parts, and both are summed along the same edges.
+/// opposite of its own, in the same parts, and both are summed along the same edges. Where it
+/// carries other symmetries of the cube to such ones, more pairs are.
 class TurnedTile {
 public:
     /// Texels, at most.
@@ -26,26 +28,23 @@ public:
 
     TurnedTile() : work_(new TileWork) {} // its arrays stay as they come
 
-    /// Starts a tile of width x height texels.
-    void begin(std::uint32_t width, std::uint32_t height);
+    /// Starts so many pairs of width x height texels.
+    void begin(std::uint32_t width, std::uint32_t height, std::size_t num_pairs = 1);
 
-    template<class Texel>
-    using BothSides = std::array<TexelRows<Texel>, TileWork::NumSides>;
-
-    /// Adds what comes from a face of R x R texels, R >= 128, and from the opposite one: of texels
-    /// that lie opposite each other, both have the same place in their rows. All corners must be in front of the
+    /// Adds what comes from a face of R x R texels, R >= 128, and what its symmetric ones give the
+    /// symmetric texels, [pairs]. What lies in the same place has the same place in the rows. All
+    /// corners must be in front of the
     /// face, z > 0. The density of solid angle is taken to second order about each texel's middle,
     /// as solid_angle_about() does. What the tile meets of the face must not reach from its left
     /// side to its right one.
     ///
     /// Error:   1e-6 of the largest radiance that a texel meets, beside the expansion's.
     /// Cost:    35 to 45 ns for each texel of the tile with AVX2.
-    void add(const TilePlace& place, const BothSides<const glm::vec3>& faces,
+    void add(const TilePlace& place, std::span<const TexelPair<const glm::vec3>> faces,
              std::uint32_t resolution);
 
-    /// Writes the mean radiance over the solid angle of each texel of the tile and of those
-    /// opposite.
-    void store(const BothSides<glm::vec3>& tiles) const;
+    /// Writes the mean radiance over the solid angle of each texel. [pairs]
+    void store(std::span<const TexelPair<glm::vec3>> tiles) const;
 
 private:
     std::unique_ptr<TileWork> work_;

@@ -1,8 +1,11 @@
 #include "cubemap/turned_tile_kernels.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <cstring>
 
 #include <glm/common.hpp>
+#include <glm/vec4.hpp>
 #include <hwy/cache_control.h>
 
 // Highway compiles the block below once per instruction set and picks one at run time.
@@ -22,14 +25,16 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Work = TileWork;
 using Points = Work::Points;
 using Cell = Work::Cell;
+using Faces = TexelPair<const glm::vec3>;
 constexpr std::size_t Stride = Work::Stride;
 
 using IntLanes = hn::RebindToSigned<Lanes>;
 using Doubles = hn::CappedTag<double, MaxLanes / 2>;
 using SumLanes = hn::CappedTag<double, Work::NumSums>;
 constexpr std::size_t NumSums = Work::NumSums;
-/// Sums of one side, or a part of them.
-using SideLanes = hn::CappedTag<double, Work::NumValues>;
+/// 1 where a sum is of solid angle.
+HWY_ALIGN constexpr std::array<float, NumSums> IsAngle = {0.0f, 0.0f, 0.0f, 1.0f,
+                                                          0.0f, 0.0f, 0.0f, 1.0f};
 
 void place_corners(const TilePlace& place, Work& work) {
     const Doubles d;
@@ -86,96 +91,95 @@ void find_cells(std::size_t num_rows, const Work& work, Points& points) {
     }
 }
 
+/// Of a cell of the part.
+std::size_t index_of(std::int32_t column, std::int32_t row, const Work& work) {
+    return static_cast<std::size_t>((row - work.first.y) * work.size.x + column - work.first.x);
+}
+
 /// Writes what a row's cells from `begin` to `end` have at their middles.
 void find_densities(std::int32_t row, std::int32_t begin, std::int32_t end, const Density& density,
                     Work& work) {
+    const std::size_t first = index_of(begin, row, work);
     const Vec v = middle(number(static_cast<float>(row)), work.scale);
     const auto lanes = static_cast<std::int32_t>(hn::Lanes(Lanes()));
     for (std::int32_t column = begin; column < end; column += lanes) {
         const Vec u = middle(hn::Iota(Lanes(), static_cast<float>(column)), work.scale);
         const Vec inverse = hn::Div(number(1.0f), hn::MulAdd(u, u, hn::MulAdd(v, v, number(1.0f))));
-        store_wide(hn::Mul(inverse, hn::Sqrt(inverse)), work.middles.data() + (column - begin));
+        const std::size_t at = first + static_cast<std::size_t>(column - begin);
+        store_wide(hn::Mul(inverse, hn::Sqrt(inverse)), work.middles.data() + at);
         const Vec y_slope = hn::Mul(number(-3.0f * work.scale), hn::Mul(inverse, v));
-        store_wide(density.change(y_slope), work.changes.data() + (column - begin));
+        store_wide(density.change(y_slope), work.changes.data() + at);
+    }
+}
+
+/// Copies what a row's cells from `begin` to `end` have of both sides. The fourth numbers mean
+/// nothing.
+void copy_colors(std::int32_t row, std::int32_t begin, std::int32_t end, const Faces& faces,
+                 Work& work) {
+    const std::int32_t shift = work.shift;
+    for (std::size_t side = 0; side < Work::NumSides; ++side) {
+        const TexelRows<const glm::vec3> texels = faces[side];
+        const glm::vec3* line = texels.at(0, row >> shift);
+        const glm::vec3* first = line + (begin >> shift) * texels.next_column;
+        // Four numbers are one more than a colour, and a map may end there.
+        const glm::vec3* last = std::max(first, line + ((end - 1) >> shift) * texels.next_column);
+        float* to = work.colors.data()->values.data() + side * Work::NumValues;
+        for (std::int32_t column = begin; column < end; ++column, to += NumSums) {
+            const glm::vec3* texel = line + (column >> shift) * texels.next_column;
+            std::memcpy(to, texel, texel == last ? sizeof(glm::vec3) : sizeof(glm::vec4));
+        }
     }
 }
 
 /// Fills a row's cells from `begin` to `end`. Sums run from the left; where the part ends at the
 /// face's right side, from there, so that what lies outside the face has no part in an edge's sum.
 void fill_row(std::int32_t row, std::int32_t begin, std::int32_t end, const Density& density,
-              Work& work) {
-    find_densities(row, begin, end, density, work);
-    Cell* cells = work.cells.data() + std::ptrdiff_t{row - work.first.y} * work.size.x +
-                  (begin - work.first.x);
-    const bool from_right = end == work.num_cells;
-    const std::ptrdiff_t count = end - begin;
-    const std::int32_t in_texel = begin - (begin >> work.shift << work.shift);
-    const SideLanes ds;
-    const hn::Rebind<float, SideLanes> narrow;
-    using Sums = hn::Vec<SideLanes>;
-    using Light = hn::Vec<decltype(narrow)>;
-    constexpr std::size_t Step = hn::MaxLanes(SideLanes()), NumVectors = NumSums / Step;
-    const auto side_of = [](std::size_t i) {
-        return i * Step / Work::NumValues;
-    };
-    const auto value_of = [](std::size_t i) {
-        return i * Step % Work::NumValues;
-    };
-    // A vector has four numbers, one more than a colour.
-    std::array<TexelRows<const glm::vec3>, Work::NumSides> texels;
-    std::array<const glm::vec3*, Work::NumSides> last;
-    std::array<std::array<float, Work::NumValues>, Work::NumSides> tail;
-    for (std::size_t side = 0; side < Work::NumSides; ++side) {
-        texels[side] = work.faces[side];
-        texels[side].first = texels[side].at(begin >> work.shift, row >> work.shift);
-        last[side] = std::max(texels[side].at(0, 0),
-                              texels[side].at((count - 1 + in_texel) >> work.shift, 0));
-        tail[side] = {last[side]->x, last[side]->y, last[side]->z, 1.0f};
-    }
+              const Faces& faces, Work& work, Work::Pair& pair) {
+    copy_colors(row, begin, end, faces, work);
+    const std::size_t first = index_of(begin, row, work);
+    const auto count = static_cast<std::size_t>(end - begin);
+    const Work::Colors* colors = work.colors.data();
+    const double *middles = &work.middles[first], *changes = &work.changes[first];
+    Cell* cells = &work.cells[first];
+    const SumLanes ds;
+    const hn::Rebind<float, SumLanes> narrow;
     const auto across = hn::Set(ds, double{density.across_middle()});
     const auto one = hn::Set(narrow, 1.0f);
-    Sums sum[NumVectors], change_sum[NumVectors];
-    Light least[NumVectors];
-    for (std::size_t i = 0; i < NumVectors; ++i) {
-        sum[i] = change_sum[i] = hn::Zero(ds);
-        least[i] = hn::LoadU(narrow, work.least.data() + i * Step);
+    for (std::size_t j = 0; j < NumSums; j += hn::Lanes(ds)) {
+        const auto is_angle = hn::Eq(hn::Load(narrow, IsAngle.data() + j), one);
+        auto sum = hn::Zero(ds), change_sum = hn::Zero(ds);
+        auto least = hn::Load(narrow, pair.least.data() + j);
+        const auto light_of = [&](std::size_t i) {
+            const auto values =
+                hn::IfThenElse(is_angle, one, hn::Load(narrow, colors[i].values.data() + j));
+            least = hn::Min(least, values);
+            return hn::Mul(hn::PromoteTo(ds, values), hn::Set(ds, middles[i]));
+        };
+        const auto change_of = [&](std::size_t i) {
+            return hn::Set(ds, changes[i]);
+        };
+        const auto store = [&](std::size_t i, const auto& light) {
+            Cell& cell = cells[i];
+            hn::Store(sum, ds, cell.left.data() + j);
+            hn::Store(change_sum, ds, cell.change_left.data() + j);
+            hn::Store(hn::DemoteTo(narrow, light), narrow, cell.density.data() + j);
+        };
+        if (end == work.num_cells)
+            for (std::size_t i = count; i-- > 0;) {
+                const auto light = light_of(i);
+                sum = hn::NegMulAdd(light, across, sum);
+                change_sum = hn::NegMulAdd(light, change_of(i), change_sum);
+                store(i, light);
+            }
+        else
+            for (std::size_t i = 0; i < count; ++i) {
+                const auto light = light_of(i);
+                store(i, light);
+                sum = hn::MulAdd(light, across, sum);
+                change_sum = hn::MulAdd(light, change_of(i), change_sum);
+            }
+        hn::Store(least, narrow, pair.least.data() + j);
     }
-    const auto light_of = [&](std::size_t i, std::ptrdiff_t column, const Sums& density_there) {
-        const std::size_t side = side_of(i);
-        const glm::vec3* texel = texels[side].at((column + in_texel) >> work.shift, 0);
-        const float* color = texel == last[side] ? tail[side].data() : &texel->x;
-        const auto is_color = hn::FirstN(narrow, 3 - std::min<std::size_t>(value_of(i), 3));
-        const auto values =
-            hn::IfThenElse(is_color, hn::LoadU(narrow, color + value_of(i)), one);
-        least[i] = hn::Min(least[i], values);
-        return hn::Mul(hn::PromoteTo(ds, values), density_there);
-    };
-    const auto store = [&](std::size_t i, Cell& cell, const Sums& light) {
-        hn::Store(sum[i], ds, cell.left.data() + i * Step);
-        hn::Store(change_sum[i], ds, cell.change_left.data() + i * Step);
-        hn::Store(hn::DemoteTo(narrow, light), narrow, cell.density.data() + i * Step);
-    };
-    const auto at = [&](const std::vector<double>& values, std::ptrdiff_t column) {
-        return hn::Set(ds, values[static_cast<std::size_t>(column)]);
-    };
-    if (from_right)
-        for (std::ptrdiff_t column = count - 1; column >= 0; --column)
-            for (std::size_t i = 0; i < NumVectors; ++i) {
-                const Sums light = light_of(i, column, at(work.middles, column));
-                sum[i] = hn::NegMulAdd(light, across, sum[i]);
-                change_sum[i] = hn::NegMulAdd(light, at(work.changes, column), change_sum[i]);
-                store(i, cells[column], light);
-            }
-    else
-        for (std::ptrdiff_t column = 0; column < count; ++column)
-            for (std::size_t i = 0; i < NumVectors; ++i) {
-                const Sums light = light_of(i, column, at(work.middles, column));
-                store(i, cells[column], light);
-                sum[i] = hn::MulAdd(light, across, sum[i]);
-                change_sum[i] = hn::MulAdd(light, at(work.changes, column), change_sum[i]);
-            }
-    for (std::size_t i = 0; i < NumVectors; ++i)
-        hn::StoreU(least[i], narrow, work.least.data() + i * Step);
 }
 
 /// That at the middle of the tile's part.
@@ -213,25 +217,38 @@ glm::ivec2 columns_in_row(std::int32_t row, const Work& work) {
             std::clamp(cell(most + Work::Margin) + 1, work.first.x + 1, end)};
 }
 
-void fill_cells(Work& work) {
+/// Asks for the texels of a row's cells. Inline: gcc drops calls of functions that do nothing else.
+HWY_INLINE void prefetch(std::int32_t row, const glm::ivec2& columns, const Faces& faces,
+                         const Work& work) {
+    constexpr std::ptrdiff_t CacheLine = 64 / sizeof(float);
+    for (const TexelRows<const glm::vec3>& face : faces) {
+        const float* first = &face.at(columns.x >> work.shift, row >> work.shift)->x;
+        const float* last = &face.at((columns.y - 1) >> work.shift, row >> work.shift)->x;
+        const std::ptrdiff_t step = std::max(CacheLine, 3 * std::abs(face.next_column));
+        for (const float* at = std::min(first, last); at <= std::max(first, last); at += step)
+            hwy::Prefetch(at);
+    }
+}
+
+void find_columns(const Faces& first, Work& work) {
     const Density density = density_of(work);
     work.columns.clear();
-    // All rows are asked for before the first is needed.
-    constexpr std::ptrdiff_t CacheLine = 64 / sizeof(float);
     for (std::int32_t row = work.first.y; row < work.first.y + work.size.y; ++row) {
         const glm::ivec2 columns = columns_in_row(row, work);
         work.columns.push_back(columns);
-        for (const TexelRows<const glm::vec3>& face : work.faces) {
-            const float* first = &face.at(columns.x >> work.shift, row >> work.shift)->x;
-            const float* last = &face.at((columns.y - 1) >> work.shift, row >> work.shift)->x;
-            for (const float* at = std::min(first, last); at <= std::max(first, last);
-                 at += CacheLine)
-                hwy::Prefetch(at);
-        }
+        prefetch(row, columns, first, work);
+        find_densities(row, columns.x, columns.y, density, work);
     }
+}
+
+void fill_cells(const Faces& faces, const Faces* next, Work& work, Work::Pair& pair) {
+    const Density density = density_of(work);
     for (std::int32_t r = 0; r < work.size.y; ++r) {
         const glm::ivec2 columns = work.columns[static_cast<std::size_t>(r)];
-        fill_row(work.first.y + r, columns.x, columns.y, density, work);
+        const std::int32_t row = work.first.y + r;
+        fill_row(row, columns.x, columns.y, density, faces, work, pair);
+        if (next != nullptr)
+            prefetch(row, columns, *next, work);
     }
 }
 
@@ -309,10 +326,10 @@ public:
         const Density::Heights up_to = density_.up_to(hn::Sub(y, half));
         const Vec cell = hn::MulAdd(hn::Sub(row_, number(first_row_)), number(num_columns_),
                                     hn::Sub(column_, number(first_column_)));
-        hn::Store(hn::ConvertTo(IntLanes(), cell), IntLanes(), pieces.cells);
+        hn::StoreU(hn::ConvertTo(IntLanes(), cell), IntLanes(), pieces.cells);
         hn::Store(hn::Add(height, hn::Sub(up_to.density, up_to_here_.density)), d, pieces.heights);
         hn::Store(hn::Sub(up_to.change, up_to_here_.change), d, pieces.changes);
-        hn::Store(in_cell, d, pieces.in_cells);
+        hn::StoreU(in_cell, d, pieces.in_cells);
         // On to the next cell.
         const Vec columns = hn::IfThenElseZero(goes_across, column_step_);
         const Vec rows = hn::IfThenElseZero(goes_down, row_step_);
@@ -347,11 +364,20 @@ private:
     std::size_t num_pieces_;
 };
 
-/// Sums over the edges from start to end, as many as there are lanes.
-void sum_lanes(const Points& from, std::size_t start, const Points& to, std::size_t end,
-               std::size_t count, const Work& work, const Density& density, Work::Sum* sums) {
-    // As many at once; edges are seldom longer.
-    constexpr std::size_t MaxPieces = 8;
+/// Makes room for more lines.
+void reserve_lines(std::size_t count, Work::Pieces& pieces) {
+    const std::size_t size = pieces.size + count * MaxLanes;
+    if (size <= pieces.cells.size())
+        return;
+    pieces.cells.resize(2 * size);
+    pieces.heights.resize(2 * size);
+    pieces.changes.resize(2 * size);
+    pieces.in_cells.resize(2 * size);
+}
+
+/// Sums along `count` edges, whose pieces lie in the lines between.
+void sum_lines(const Work::Pieces& pieces, std::size_t first, std::size_t end, std::size_t count,
+               const Work& work, Work::Sum* sums) {
     using NarrowLanes = hn::CappedTag<float, NumSums>;
     constexpr std::size_t Step = hn::MaxLanes(SumLanes()), NumVectors = NumSums / Step,
                           NarrowStep = hn::MaxLanes(NarrowLanes()),
@@ -359,51 +385,85 @@ void sum_lanes(const Points& from, std::size_t start, const Points& to, std::siz
     const SumLanes ds;
     const NarrowLanes narrow;
     const std::size_t lanes = hn::Lanes(Lanes());
-    HWY_ALIGN std::array<std::int32_t, MaxPieces * MaxLanes> cells;
-    HWY_ALIGN std::array<float, MaxPieces * MaxLanes> heights, changes, in_cells;
-    HWY_ALIGN std::array<double, MaxPieces * MaxLanes> wide_heights, wide_changes;
-    Walk walk(from, start, to, end, count, work, density);
-    for (std::size_t done = 0; done < walk.num_pieces();) {
-        const std::size_t num_pieces = std::min(MaxPieces, walk.num_pieces() - done);
-        for (std::size_t k = 0; k < num_pieces * lanes; k += lanes)
-            walk.next(
-                {cells.data() + k, heights.data() + k, changes.data() + k, in_cells.data() + k});
-        widen(heights.data(), num_pieces * lanes, wide_heights.data());
-        widen(changes.data(), num_pieces * lanes, wide_changes.data());
-        for (std::size_t i = 0; i < count; ++i) {
-            hn::Vec<SumLanes> sum[NumVectors];
-            hn::Vec<NarrowLanes> of_texels[NumNarrow];
-            for (std::size_t j = 0; j < NumVectors; ++j)
-                sum[j] = done == 0 ? hn::Zero(ds) : hn::Load(ds, sums[i].data() + j * Step);
-            for (std::size_t j = 0; j < NumNarrow; ++j)
-                of_texels[j] = hn::Zero(narrow);
-            for (std::size_t k = i; k < num_pieces * lanes; k += lanes) {
-                const Cell& cell = work.cells[static_cast<std::size_t>(cells[k])];
-                for (std::size_t j = 0; j < NumVectors; ++j) {
-                    sum[j] = hn::MulAdd(hn::Set(ds, wide_heights[k]),
-                                        hn::Load(ds, cell.left.data() + j * Step), sum[j]);
-                    sum[j] = hn::MulAdd(hn::Set(ds, wide_changes[k]),
-                                        hn::Load(ds, cell.change_left.data() + j * Step), sum[j]);
-                }
-                for (std::size_t j = 0; j < NumNarrow; ++j)
-                    of_texels[j] = hn::MulAdd(
-                        hn::Set(narrow, in_cells[k]),
-                        hn::Load(narrow, cell.density.data() + j * NarrowStep), of_texels[j]);
-            }
-            HWY_ALIGN std::array<float, NumSums> in_texels;
-            for (std::size_t j = 0; j < NumNarrow; ++j)
-                hn::Store(of_texels[j], narrow, in_texels.data() + j * NarrowStep);
+    const Cell* cells = work.cells.data();
+    const std::int32_t* indices = pieces.cells.data();
+    const double *heights = pieces.heights.data(), *changes = pieces.changes.data();
+    const float* in_cells = pieces.in_cells.data();
+    for (std::size_t i = 0; i < count; ++i) {
+        hn::Vec<SumLanes> sum[NumVectors];
+        hn::Vec<NarrowLanes> of_texels[NumNarrow];
+        for (auto& vector : sum)
+            vector = hn::Zero(ds);
+        for (auto& vector : of_texels)
+            vector = hn::Zero(narrow);
+        for (std::size_t k = first + i; k < end; k += lanes) {
+            const Cell& cell = cells[indices[k]];
             for (std::size_t j = 0; j < NumVectors; ++j) {
-                const auto wide = hn::PromoteTo(
-                    ds, hn::Load(hn::Rebind<float, SumLanes>(), in_texels.data() + j * Step));
-                hn::Store(hn::Add(sum[j], wide), ds, sums[i].data() + j * Step);
+                sum[j] = hn::MulAdd(hn::Set(ds, heights[k]),
+                                    hn::Load(ds, cell.left.data() + j * Step), sum[j]);
+                sum[j] = hn::MulAdd(hn::Set(ds, changes[k]),
+                                    hn::Load(ds, cell.change_left.data() + j * Step), sum[j]);
             }
+            for (std::size_t j = 0; j < NumNarrow; ++j)
+                of_texels[j] = hn::MulAdd(hn::Set(narrow, in_cells[k]),
+                                          hn::Load(narrow, cell.density.data() + j * NarrowStep),
+                                          of_texels[j]);
         }
-        done += num_pieces;
+        HWY_ALIGN std::array<float, NumSums> in_texels;
+        for (std::size_t j = 0; j < NumNarrow; ++j)
+            hn::Store(of_texels[j], narrow, in_texels.data() + j * NarrowStep);
+        for (std::size_t j = 0; j < NumVectors; ++j) {
+            const auto wide = hn::PromoteTo(
+                ds, hn::Load(hn::Rebind<float, SumLanes>(), in_texels.data() + j * Step));
+            hn::Store(hn::Add(sum[j], wide), ds, sums[i].data() + j * Step);
+        }
     }
 }
 
-void add_texels(Work& work) {
+void walk_edges(std::size_t width, std::size_t height, const Points& starts, const Points& ends,
+                std::size_t to_end, const Work& work, Work::Pieces& pieces, Work::Sums& sums) {
+    const Density density = density_of(work);
+    const std::size_t lanes = hn::Lanes(Lanes());
+    const bool keeps_pieces = work.pairs.size() > 1;
+    pieces.size = 0;
+    pieces.counts.clear();
+    HWY_ALIGN std::array<float, MaxLanes> heights, changes;
+    for (std::size_t y = 0; y < height; ++y)
+        for (std::size_t x = 0; x < width; x += lanes) {
+            const std::size_t at = y * Stride + x, count = std::min(lanes, width - x);
+            const std::size_t first = pieces.size;
+            Walk walk(starts, at, ends, at + to_end, count, work, density);
+            reserve_lines(walk.num_pieces(), pieces);
+            for (std::size_t k = 0; k < walk.num_pieces(); ++k) {
+                walk.next({pieces.cells.data() + pieces.size, heights.data(), changes.data(),
+                           pieces.in_cells.data() + pieces.size});
+                widen(heights.data(), lanes, pieces.heights.data() + pieces.size);
+                widen(changes.data(), lanes, pieces.changes.data() + pieces.size);
+                pieces.size += lanes;
+            }
+            sum_lines(pieces, first, pieces.size, count, work, sums.data() + at);
+            if (keeps_pieces)
+                pieces.counts.push_back(walk.num_pieces());
+            else
+                pieces.size = 0;
+        }
+}
+
+void sum_edges(std::size_t width, std::size_t height, const Work::Pieces& pieces, const Work& work,
+               Work::Sums& sums) {
+    const std::size_t lanes = hn::Lanes(Lanes());
+    std::size_t first = 0;
+    const std::size_t* num_lines = pieces.counts.data();
+    for (std::size_t y = 0; y < height; ++y)
+        for (std::size_t x = 0; x < width; x += lanes) {
+            const std::size_t end = first + *num_lines++ * lanes;
+            sum_lines(pieces, first, end, std::min(lanes, width - x), work,
+                      sums.data() + y * Stride + x);
+            first = end;
+        }
+}
+
+void add_texels(const Work& work, Work::Pair& pair) {
     // What rounding leaves of sums that cancel.
     constexpr double Rounding = 4e-15;
     const SumLanes ds;
@@ -419,45 +479,32 @@ void add_texels(Work& work) {
                 const auto size = hn::Add(hn::Add(hn::Abs(top), hn::Abs(right)),
                                           hn::Add(hn::Abs(bottom), hn::Abs(left)));
                 const auto is_sum = hn::Gt(hn::Abs(sum), hn::Mul(size, hn::Set(ds, Rounding)));
-                double* texel = work.texels[at].data() + j;
+                double* texel = pair.texels[at].data() + j;
                 const auto kept = hn::IfThenElseZero(is_sum, sum);
                 hn::Store(work.is_first ? kept : hn::Add(hn::Load(ds, texel), kept), ds, texel);
             }
         }
 }
 
-void store_means(const Work& work,
-                 const std::array<TexelRows<glm::vec3>, Work::NumSides>& tiles) {
+void store_means(const Work& work, const Work::Pair& pair, const TexelPair<glm::vec3>& tiles) {
     const SumLanes ds;
     const hn::Rebind<float, SumLanes> narrow;
     for (std::size_t y = 0; y < work.height; ++y)
         for (std::size_t x = 0; x < work.width; ++x) {
-            const Work::Sum& sum = work.texels[y * Stride + x];
+            const Work::Sum& sum = pair.texels[y * Stride + x];
             const auto scale = hn::Set(ds, 1.0 / sum[3]); // both sides have the same solid angle
             HWY_ALIGN std::array<float, NumSums> means;
             for (std::size_t j = 0; j < NumSums; j += hn::Lanes(ds)) {
                 const auto exact = hn::Mul(scale, hn::Load(ds, sum.data() + j));
                 hn::StoreU(
-                    hn::Max(hn::DemoteTo(narrow, exact), hn::LoadU(narrow, work.least.data() + j)),
+                    hn::Max(hn::DemoteTo(narrow, exact), hn::LoadU(narrow, pair.least.data() + j)),
                     narrow, means.data() + j);
             }
             for (std::size_t side = 0; side < Work::NumSides; ++side) {
                 const float* mean = means.data() + side * Work::NumValues;
-                *tiles[side].at(static_cast<std::ptrdiff_t>(x), static_cast<std::ptrdiff_t>(y)) = {
-                    mean[0], mean[1], mean[2]};
+                *tiles[side].at(static_cast<std::ptrdiff_t>(x),
+                                static_cast<std::ptrdiff_t>(y)) = {mean[0], mean[1], mean[2]};
             }
-        }
-}
-
-void sum_edges(std::size_t width, std::size_t height, const Points& starts, const Points& ends,
-               std::size_t to_end, const Work& work, Work::Sums& sums) {
-    const Density density = density_of(work);
-    const std::size_t lanes = hn::Lanes(Lanes());
-    for (std::size_t y = 0; y < height; ++y)
-        for (std::size_t x = 0; x < width; x += lanes) {
-            const std::size_t at = y * Stride + x;
-            sum_lanes(starts, at, ends, at + to_end, std::min(lanes, width - x), work, density,
-                      sums.data() + at);
         }
 }
 
@@ -469,8 +516,10 @@ namespace relumine::cubemap {
 
 namespace {
 HWY_EXPORT(place_corners);
+HWY_EXPORT(find_columns);
 HWY_EXPORT(fill_cells);
 HWY_EXPORT(find_cells);
+HWY_EXPORT(walk_edges);
 HWY_EXPORT(sum_edges);
 HWY_EXPORT(add_texels);
 HWY_EXPORT(store_means);
@@ -480,27 +529,37 @@ void place_corners(const TilePlace& place, TileWork& work) {
     HWY_DYNAMIC_DISPATCH(place_corners)(place, work);
 }
 
-void fill_cells(TileWork& work) {
-    HWY_DYNAMIC_DISPATCH(fill_cells)(work);
+void find_columns(const TexelPair<const glm::vec3>& first, TileWork& work) {
+    HWY_DYNAMIC_DISPATCH(find_columns)(first, work);
+}
+
+void fill_cells(const TexelPair<const glm::vec3>& faces, const TexelPair<const glm::vec3>* next,
+                TileWork& work, TileWork::Pair& pair) {
+    HWY_DYNAMIC_DISPATCH(fill_cells)(faces, next, work, pair);
 }
 
 void find_cells(std::size_t num_rows, const TileWork& work, TileWork::Points& points) {
     HWY_DYNAMIC_DISPATCH(find_cells)(num_rows, work, points);
 }
 
-void sum_edges(std::size_t width, std::size_t height, const TileWork::Points& starts,
-               const TileWork::Points& ends, std::size_t to_end, const TileWork& work,
-               TileWork::Sums& sums) {
-    HWY_DYNAMIC_DISPATCH(sum_edges)(width, height, starts, ends, to_end, work, sums);
+void walk_edges(std::size_t width, std::size_t height, const TileWork::Points& starts,
+                const TileWork::Points& ends, std::size_t to_end, const TileWork& work,
+                TileWork::Pieces& pieces, TileWork::Sums& sums) {
+    HWY_DYNAMIC_DISPATCH(walk_edges)(width, height, starts, ends, to_end, work, pieces, sums);
 }
 
-void add_texels(TileWork& work) {
-    HWY_DYNAMIC_DISPATCH(add_texels)(work);
+void sum_edges(std::size_t width, std::size_t height, const TileWork::Pieces& pieces,
+               const TileWork& work, TileWork::Sums& sums) {
+    HWY_DYNAMIC_DISPATCH(sum_edges)(width, height, pieces, work, sums);
 }
 
-void store_means(const TileWork& work,
-                 const std::array<TexelRows<glm::vec3>, TileWork::NumSides>& tiles) {
-    HWY_DYNAMIC_DISPATCH(store_means)(work, tiles);
+void add_texels(const TileWork& work, TileWork::Pair& pair) {
+    HWY_DYNAMIC_DISPATCH(add_texels)(work, pair);
+}
+
+void store_means(const TileWork& work, const TileWork::Pair& pair,
+                 const TexelPair<glm::vec3>& tiles) {
+    HWY_DYNAMIC_DISPATCH(store_means)(work, pair, tiles);
 }
 
 } // namespace relumine::cubemap

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -32,11 +33,14 @@ struct TexelRows {
     }
 };
 
+/// A tile's texels, and those opposite of them.
+template<class Texel>
+using TexelPair = std::array<TexelRows<Texel>, 2>;
+
 /// What a tile keeps. Corners, and the texels whose upper left they are, lie row by row, `Stride`
 /// apart, which vectors divide.
 struct TileWork {
-    /// The tile and the one opposite of it.
-    static constexpr std::size_t NumSides = 2;
+    static constexpr std::size_t NumSides = std::tuple_size_v<TexelPair<glm::vec3>>;
 
     static constexpr std::uint32_t MaxWidth = 31, MaxHeight = 16;
     static constexpr std::size_t Stride = MaxWidth + 1;
@@ -61,6 +65,16 @@ struct TileWork {
     static constexpr std::size_t NumValues = 4, NumSums = NumSides * NumValues;
     using Sum = std::array<double, NumSums>;
     using Sums = std::array<Sum, NumCorners>;
+    /// What edges have of the cells that they meet: a line of lanes for each cell that one of them
+    /// meets, the lines of some edges side by side after those of others.
+    struct Pieces {
+        /// Lines of each of the groups of edges.
+        std::vector<std::size_t> counts;
+        std::vector<std::int32_t> cells;
+        std::vector<double> heights, changes;
+        std::vector<float> in_cells;
+        std::size_t size = 0;
+    };
     struct alignas(64) Cell {
         /// What lies to the left of the cell in its row; and how that changes over the row's height
         /// where it does not as at the middle of the part.
@@ -69,34 +83,43 @@ struct TileWork {
         std::array<float, NumSums> density;
     };
 
-    alignas(64) Sums texels;
+    /// What the texels of a pair have so far.
+    struct alignas(64) Pair {
+        Sums texels;
+        /// The least of 0 and the colours that they meet: where a texel touches a sun, rounding may
+        /// make less of its dark.
+        alignas(64) std::array<float, NumSums> least;
+    };
+    std::vector<Pair> pairs;
 
     Points corners;
     /// Of edges, where the tile reaches over the face's sides.
     Points starts, ends;
 
     /// Of the edges to the right of each corner and down from it.
+    Pieces across, down;
     alignas(64) Sums of_across, of_down;
 
     /// The part of the face that the tile meets: its cells row by row, and of each row the columns
     /// from and to.
     std::vector<Cell> cells;
     std::vector<glm::ivec2> columns;
-    /// Of a row's cells, the density at their middles and change_left of each.
+    /// Of each cell the density at its middle, and of that change_left.
     std::vector<double> middles, changes;
+    /// Of a row's cells, the colours of both sides.
+    struct alignas(32) Colors {
+        std::array<float, NumSums> values;
+    };
+    std::vector<Colors> colors;
     /// Of the part, the first cell and the numbers of columns and rows.
     glm::ivec2 first = {}, size = {};
 
-    /// The face and the opposite one, as far as texels lie opposite each other. Texels along a
-    /// side, and of each 2^shift cells. Cells along a side, and how far these reach in [-1, 1].
-    std::array<TexelRows<const glm::vec3>, NumSides> faces;
-    std::int32_t resolution = 0, shift = 0, num_cells = 0;
+    /// A texel of the face has 2^shift x 2^shift cells. Cells along a side, and how far these reach
+    /// in [-1, 1].
+    std::int32_t shift = 0, num_cells = 0;
     float scale = 0.0f;
 
     std::uint32_t width = 0, height = 0;
-    /// The least of 0 and the colours that the tile meets: where a texel touches a sun, rounding
-    /// may make less of its dark.
-    std::array<float, NumSums> least = {};
     /// Whether no face was added yet.
     bool is_first = true;
     bool is_cut = false;
@@ -104,17 +127,25 @@ struct TileWork {
 
 /// Sets where the corners lie.
 void place_corners(const TilePlace& place, TileWork& work);
-/// Fills the cells of the part.
-void fill_cells(TileWork& work);
+/// Finds the columns of each row of the part, and the densities there. Asks for the texels of the
+/// pair that comes first: memory takes as long as the walks along the edges.
+void find_columns(const TexelPair<const glm::vec3>& first, TileWork& work);
+/// Fills the cells of the part, and asks for the texels of the pair that comes next, if any.
+void fill_cells(const TexelPair<const glm::vec3>& faces, const TexelPair<const glm::vec3>* next,
+                TileWork& work, TileWork::Pair& pair);
 /// Finds the cells of rows of points.
 void find_cells(std::size_t num_rows, const TileWork& work, TileWork::Points& points);
-/// Sums along the edges from width x height starts, each to the end `to_end` further on.
-void sum_edges(std::size_t width, std::size_t height, const TileWork::Points& starts,
-               const TileWork::Points& ends, std::size_t to_end, const TileWork& work,
-               TileWork::Sums& sums);
+/// Sums along the edges from width x height starts, each to the end `to_end` further on. With more
+/// than one pair keeps the edges' pieces.
+void walk_edges(std::size_t width, std::size_t height, const TileWork::Points& starts,
+                const TileWork::Points& ends, std::size_t to_end, const TileWork& work,
+                TileWork::Pieces& pieces, TileWork::Sums& sums);
+/// Sums along the same edges what the cells hold now.
+void sum_edges(std::size_t width, std::size_t height, const TileWork::Pieces& pieces,
+               const TileWork& work, TileWork::Sums& sums);
 /// Adds to the texels what their edges say.
-void add_texels(TileWork& work);
-void store_means(const TileWork& work,
-                 const std::array<TexelRows<glm::vec3>, TileWork::NumSides>& tiles);
+void add_texels(const TileWork& work, TileWork::Pair& pair);
+void store_means(const TileWork& work, const TileWork::Pair& pair,
+                 const TexelPair<glm::vec3>& tiles);
 
 } // namespace relumine::cubemap
