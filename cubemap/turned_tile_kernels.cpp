@@ -294,12 +294,13 @@ public:
     /// The largest number of cells that an edge meets.
     [[nodiscard]] std::size_t num_pieces() const { return num_pieces_; }
 
-    /// Of the pieces in the next cells: the cell, and the factors of what it holds.
-    struct Pieces {
+    /// Where the line of the next pieces goes, as in TileWork::Pieces.
+    struct Line {
         std::int32_t* cells;
-        float *heights, *changes, *in_cells;
+        double *of_left, *of_change;
+        float* of_density;
     };
-    void next(const Pieces& pieces) {
+    void next(const Line& line) {
         const Lanes d;
         const Vec zero = hn::Zero(d), half = number(0.5f), one = number(1.0f), last = number(2.0f);
         const auto has_columns = hn::Ne(column_, end_column_);
@@ -326,10 +327,10 @@ public:
         const Density::Heights up_to = density_.up_to(hn::Sub(y, half));
         const Vec cell = hn::MulAdd(hn::Sub(row_, number(first_row_)), number(num_columns_),
                                     hn::Sub(column_, number(first_column_)));
-        hn::StoreU(hn::ConvertTo(IntLanes(), cell), IntLanes(), pieces.cells);
-        hn::Store(hn::Add(height, hn::Sub(up_to.density, up_to_here_.density)), d, pieces.heights);
-        hn::Store(hn::Sub(up_to.change, up_to_here_.change), d, pieces.changes);
-        hn::StoreU(in_cell, d, pieces.in_cells);
+        hn::StoreU(hn::ConvertTo(IntLanes(), cell), IntLanes(), line.cells);
+        store_wide(hn::Add(height, hn::Sub(up_to.density, up_to_here_.density)), line.of_left);
+        store_wide(hn::Sub(up_to.change, up_to_here_.change), line.of_change);
+        hn::StoreU(in_cell, d, line.of_density);
         // On to the next cell.
         const Vec columns = hn::IfThenElseZero(goes_across, column_step_);
         const Vec rows = hn::IfThenElseZero(goes_down, row_step_);
@@ -370,9 +371,9 @@ void reserve_lines(std::size_t count, Work::Pieces& pieces) {
     if (size <= pieces.cells.size())
         return;
     pieces.cells.resize(2 * size);
-    pieces.heights.resize(2 * size);
-    pieces.changes.resize(2 * size);
-    pieces.in_cells.resize(2 * size);
+    pieces.of_left.resize(2 * size);
+    pieces.of_change.resize(2 * size);
+    pieces.of_density.resize(2 * size);
 }
 
 /// Sums along `count` edges, whose pieces lie in the lines between.
@@ -387,8 +388,8 @@ void sum_lines(const Work::Pieces& pieces, std::size_t first, std::size_t end, s
     const std::size_t lanes = hn::Lanes(Lanes());
     const Cell* cells = work.cells.data();
     const std::int32_t* indices = pieces.cells.data();
-    const double *heights = pieces.heights.data(), *changes = pieces.changes.data();
-    const float* in_cells = pieces.in_cells.data();
+    const double *of_left = pieces.of_left.data(), *of_change = pieces.of_change.data();
+    const float* of_density = pieces.of_density.data();
     for (std::size_t i = 0; i < count; ++i) {
         hn::Vec<SumLanes> sum[NumVectors];
         hn::Vec<NarrowLanes> of_texels[NumNarrow];
@@ -399,13 +400,13 @@ void sum_lines(const Work::Pieces& pieces, std::size_t first, std::size_t end, s
         for (std::size_t k = first + i; k < end; k += lanes) {
             const Cell& cell = cells[indices[k]];
             for (std::size_t j = 0; j < NumVectors; ++j) {
-                sum[j] = hn::MulAdd(hn::Set(ds, heights[k]),
+                sum[j] = hn::MulAdd(hn::Set(ds, of_left[k]),
                                     hn::Load(ds, cell.left.data() + j * Step), sum[j]);
-                sum[j] = hn::MulAdd(hn::Set(ds, changes[k]),
+                sum[j] = hn::MulAdd(hn::Set(ds, of_change[k]),
                                     hn::Load(ds, cell.change_left.data() + j * Step), sum[j]);
             }
             for (std::size_t j = 0; j < NumNarrow; ++j)
-                of_texels[j] = hn::MulAdd(hn::Set(narrow, in_cells[k]),
+                of_texels[j] = hn::MulAdd(hn::Set(narrow, of_density[k]),
                                           hn::Load(narrow, cell.density.data() + j * NarrowStep),
                                           of_texels[j]);
         }
@@ -426,24 +427,19 @@ void walk_edges(std::size_t width, std::size_t height, const Points& starts, con
     const std::size_t lanes = hn::Lanes(Lanes());
     const bool keeps_pieces = work.pairs.size() > 1;
     pieces.size = 0;
-    pieces.counts.clear();
-    HWY_ALIGN std::array<float, MaxLanes> heights, changes;
+    pieces.num_lines.clear();
     for (std::size_t y = 0; y < height; ++y)
         for (std::size_t x = 0; x < width; x += lanes) {
             const std::size_t at = y * Stride + x, count = std::min(lanes, width - x);
-            const std::size_t first = pieces.size;
             Walk walk(starts, at, ends, at + to_end, count, work, density);
             reserve_lines(walk.num_pieces(), pieces);
-            for (std::size_t k = 0; k < walk.num_pieces(); ++k) {
-                walk.next({pieces.cells.data() + pieces.size, heights.data(), changes.data(),
-                           pieces.in_cells.data() + pieces.size});
-                widen(heights.data(), lanes, pieces.heights.data() + pieces.size);
-                widen(changes.data(), lanes, pieces.changes.data() + pieces.size);
-                pieces.size += lanes;
-            }
+            const std::size_t first = pieces.size;
+            for (std::size_t i = 0; i < walk.num_pieces(); ++i, pieces.size += lanes)
+                walk.next({&pieces.cells[pieces.size], &pieces.of_left[pieces.size],
+                           &pieces.of_change[pieces.size], &pieces.of_density[pieces.size]});
             sum_lines(pieces, first, pieces.size, count, work, sums.data() + at);
             if (keeps_pieces)
-                pieces.counts.push_back(walk.num_pieces());
+                pieces.num_lines.push_back(walk.num_pieces());
             else
                 pieces.size = 0;
         }
@@ -453,7 +449,7 @@ void sum_edges(std::size_t width, std::size_t height, const Work::Pieces& pieces
                Work::Sums& sums) {
     const std::size_t lanes = hn::Lanes(Lanes());
     std::size_t first = 0;
-    const std::size_t* num_lines = pieces.counts.data();
+    const std::size_t* num_lines = pieces.num_lines.data();
     for (std::size_t y = 0; y < height; ++y)
         for (std::size_t x = 0; x < width; x += lanes) {
             const std::size_t end = first + *num_lines++ * lanes;

@@ -41,7 +41,6 @@ using TexelPair = std::array<TexelRows<Texel>, 2>;
 /// apart, which vectors divide.
 struct TileWork {
     static constexpr std::size_t NumSides = std::tuple_size_v<TexelPair<glm::vec3>>;
-
     static constexpr std::uint32_t MaxWidth = 31, MaxHeight = 16;
     static constexpr std::size_t Stride = MaxWidth + 1;
     static constexpr std::size_t NumCorners = (MaxHeight + 1) * Stride;
@@ -65,15 +64,16 @@ struct TileWork {
     static constexpr std::size_t NumValues = 4, NumSums = NumSides * NumValues;
     using Sum = std::array<double, NumSums>;
     using Sums = std::array<Sum, NumCorners>;
-    /// What edges have of the cells that they meet: a line of lanes for each cell that one of them
-    /// meets, the lines of some edges side by side after those of others.
+    /// Edges cut where they go from cell to cell. As many edges as a vector has lanes are a group:
+    /// its first line has the first piece of each, and it has as many lines as its longest edge has
+    /// pieces. Of a piece the cell, and the factors of what the cell holds.
     struct Pieces {
-        /// Lines of each of the groups of edges.
-        std::vector<std::size_t> counts;
         std::vector<std::int32_t> cells;
-        std::vector<double> heights, changes;
-        std::vector<float> in_cells;
+        std::vector<double> of_left, of_change;
+        std::vector<float> of_density;
         std::size_t size = 0;
+        /// Lines of each group.
+        std::vector<std::size_t> num_lines;
     };
     struct alignas(64) Cell {
         /// What lies to the left of the cell in its row; and how that changes over the row's height
@@ -83,6 +83,9 @@ struct TileWork {
         std::array<float, NumSums> density;
     };
 
+    struct alignas(32) Colors {
+        std::array<float, NumSums> values;
+    };
     /// What the texels of a pair have so far.
     struct alignas(64) Pair {
         Sums texels;
@@ -90,15 +93,16 @@ struct TileWork {
         /// make less of its dark.
         alignas(64) std::array<float, NumSums> least;
     };
-    std::vector<Pair> pairs;
 
     Points corners;
     /// Of edges, where the tile reaches over the face's sides.
     Points starts, ends;
 
     /// Of the edges to the right of each corner and down from it.
-    Pieces across, down;
     alignas(64) Sums of_across, of_down;
+    Pieces across, down;
+
+    std::vector<Pair> pairs;
 
     /// The part of the face that the tile meets: its cells row by row, and of each row the columns
     /// from and to.
@@ -107,9 +111,6 @@ struct TileWork {
     /// Of each cell the density at its middle, and of that change_left.
     std::vector<double> middles, changes;
     /// Of a row's cells, the colours of both sides.
-    struct alignas(32) Colors {
-        std::array<float, NumSums> values;
-    };
     std::vector<Colors> colors;
     /// Of the part, the first cell and the numbers of columns and rows.
     glm::ivec2 first = {}, size = {};
@@ -145,6 +146,7 @@ void sum_edges(std::size_t width, std::size_t height, const TileWork::Pieces& pi
                const TileWork& work, TileWork::Sums& sums);
 /// Adds to the texels what their edges say.
 void add_texels(const TileWork& work, TileWork::Pair& pair);
+/// Writes the mean radiance of the texels.
 void store_means(const TileWork& work, const TileWork::Pair& pair,
                  const TexelPair<glm::vec3>& tiles);
 

@@ -11,6 +11,8 @@
 namespace relumine::cubemap {
 namespace {
 
+constexpr float BrightestSun = 2e5f;
+
 /// A soft sky with waves, a window, and suns: amid a face, at an edge, at a corner.
 CubeMap lit_room(std::uint32_t resolution) {
     CubeMap map(resolution);
@@ -23,7 +25,7 @@ CubeMap lit_room(std::uint32_t resolution) {
                 if (glm::distance(w, glm::normalize(glm::dvec3(0.2, 0.5, 1.0))) < 0.2)
                     map.at(face, x, y) += glm::vec3(30.0f);
             }
-    map.at(Face::PositiveZ, 60, 50) = glm::vec3(2e5f, 1e5f, 5e4f);
+    map.at(Face::PositiveZ, 60, 50) = glm::vec3(1.0f, 0.5f, 0.25f) * BrightestSun;
     map.at(Face::PositiveX, 0, 70) = glm::vec3(1e5f);
     map.at(Face::NegativeY, resolution - 1, resolution - 1) = glm::vec3(1e5f);
     return map;
@@ -45,9 +47,11 @@ TEST(QuickTurns, AreNearExactOnes) {
                                             glm::dvec3(-0.8, -0.6, 0), glm::dvec3(0, 0, -1)})
                 EXPECT_NEAR(irradiance(quick, normal).y, irradiance(exact, normal).y, 3e-4 * power);
             for (std::size_t i = 0; i < exact.texels.size(); ++i) {
-                // Where suns are, exactly.
+                // Where suns are, but for rounding.
                 if (exact.texels[i].y > 100.0f) {
-                    ASSERT_EQ(quick.texels[i], exact.texels[i]) << i;
+                    ASSERT_LT(glm::distance(quick.texels[i], exact.texels[i]),
+                              1e-6f * exact.texels[i].y + 5e-7f * BrightestSun)
+                        << i;
                 }
                 // Half of the window's step.
                 ASSERT_NEAR(quick.texels[i].y, exact.texels[i].y, 0.1 * exact.texels[i].y + 15.0)

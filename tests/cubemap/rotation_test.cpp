@@ -118,9 +118,12 @@ TEST(Rotation, LargeMapsTurnAsTexelByTexel) {
         // Suns beside dark texels.
         for (std::size_t i = 0; i < map.texels.size(); i += 977)
             map.texels[i] *= 1e5f;
-        for (const glm::dmat3& turn : {turn_about_y(33.0), turn_about_y(1e-3), turn_about_y(45.0),
-                                       turn_about_x(71.0), turn_about_x(-90.0) * turn_about_y(13.0),
-                                       turn_about_y(20.0) * turn_about_x(-50.0) * mirror}) {
+        for (const glm::dmat3& turn :
+             {turn_about_y(33.0), turn_about_y(1e-3), turn_about_y(45.0), turn_about_x(71.0),
+              turn_about_x(-90.0) * turn_about_y(13.0),
+              turn_about_x(90.0) * turn_about_y(33.0) * turn_about_x(-90.0),
+              mirror * turn_about_y(40.0), turn_about_x(20.0) * mirror,
+              turn_about_y(20.0) * turn_about_x(-50.0) * mirror}) {
             const CubeMap result = turned(map, turn);
             EXPECT_NEAR(total_power(result).y / total_power(map).y, 1.0, 1e-6);
             // Prime to the width, so that all columns come.
