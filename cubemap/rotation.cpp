@@ -113,6 +113,10 @@ CubeMap turned(const CubeMap& map, const glm::dmat3& turn, CubeMap memory) {
     return memory;
 }
 
+CubeMap turned(CubeMap&& map, const glm::dmat3& turn) {
+    return turn == glm::dmat3(1.0) ? std::move(map) : turned(std::as_const(map), turn);
+}
+
 glm::dmat3 turn_about_y(double degrees) {
     const auto [cosine, sine] = angle_of(degrees);
     return {{cosine, 0.0, -sine}, {0.0, 1.0, 0.0}, {sine, 0.0, cosine}}; // columns

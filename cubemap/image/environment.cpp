@@ -319,8 +319,11 @@ void save_image(const std::filesystem::path& path, const EnvironmentImage& image
     if (paths.size() > 1 && image.layout != Layout::Cube)
         throw std::invalid_argument(fmt::format("{}: expected layout cube for six files, got {}",
                                                 path.string(), name(image.layout)));
-    const auto encode = [&](const EnvironmentImage& part) {
-        return files::extension_of(path) == ".exr" ? encode_exr(part) : encode_hdr(part);
+    const auto write = [&](files::OutputFile& file, const EnvironmentImage& part) {
+        if (files::extension_of(path) == ".exr")
+            write_exr(file, part);
+        else
+            file.write(encode_hdr(part));
     };
     std::vector<std::unique_ptr<files::OutputFile>> outputs;
     outputs.reserve(paths.size());
@@ -328,7 +331,7 @@ void save_image(const std::filesystem::path& path, const EnvironmentImage& image
         outputs.push_back(std::make_unique<files::OutputFile>(each));
     try {
         if (paths.size() == 1) {
-            outputs.front()->write(encode(image));
+            write(*outputs.front(), image);
         } else {
             EnvironmentImage face;
             face.width = face.height = image.width;
@@ -338,7 +341,7 @@ void save_image(const std::filesystem::path& path, const EnvironmentImage& image
                 const auto first =
                     image.pixels.begin() + static_cast<std::ptrdiff_t>(i * num_pixels);
                 face.pixels.assign(first, first + static_cast<std::ptrdiff_t>(num_pixels));
-                outputs[i]->write(encode(face));
+                write(*outputs[i], face);
             }
         }
     } catch (const std::invalid_argument& error) {

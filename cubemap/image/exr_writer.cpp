@@ -5,9 +5,12 @@
 // the form of ZIP_COMPRESSION in OpenEXR's ImfZip.cpp, so every reader reads them.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstring>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <string>
 #include <utility>
@@ -21,6 +24,7 @@
 
 #include "cubemap/image/image_file.h"
 #include "cubemap/image/image_layout.h"
+#include "files/output_file.h"
 #include "files/parallel.h"
 
 namespace relumine::cubemap {
@@ -168,36 +172,70 @@ std::vector<std::byte> head_of(const EnvironmentImage& image, std::span<const Ch
     return std::move(stream.bytes);
 }
 
+/// Makes blocks in parallel and gives them to `append` one by one, in their order, while others are
+/// made. Writes their places into the table at the end of `head`.
+template<class Append>
+void add_blocks(const EnvironmentImage& image, std::span<const Channel> channels,
+                std::vector<std::byte>& head, const Append& append) {
+    const std::size_t num_blocks = (image.height + Block::NumRows - 1) / Block::NumRows;
+    std::byte* entry = head.data() + head.size() - 8 * num_blocks; // 8 bytes each
+    std::uint64_t place = head.size();
+    std::atomic<std::size_t> num_taken = 0;
+    std::mutex mutex;
+    std::map<std::size_t, std::vector<std::byte>> waiting;
+    std::size_t num_added = 0;
+    bool is_adding = false;
+    const auto add_those_ready = [&](std::unique_lock<std::mutex>& lock) {
+        if (is_adding)
+            return;
+        is_adding = true;
+        while (!waiting.empty() && waiting.begin()->first == num_added) {
+            const std::vector<std::byte> block = std::move(waiting.begin()->second);
+            waiting.erase(waiting.begin());
+            ++num_added;
+            lock.unlock();
+            put_little_endian(entry, place, 8);
+            entry += 8;
+            place += block.size();
+            append(block);
+            lock.lock();
+        }
+        is_adding = false;
+    };
+    files::parallel_for(std::size_t{0}, files::num_threads(), [&](std::size_t) {
+        Block block;
+        for (std::size_t i = num_taken++; i < num_blocks; i = num_taken++) {
+            const auto first = static_cast<std::uint32_t>(i * Block::NumRows);
+            std::vector<std::byte> made = block.made_of(
+                channels, image.width, first, std::min(first + Block::NumRows, image.height));
+            std::unique_lock lock(mutex);
+            waiting.emplace(i, std::move(made));
+            add_those_ready(lock);
+        }
+    });
+}
+
 } // namespace
 
 std::vector<std::byte> encode_exr(const EnvironmentImage& image, std::span<const ExrLayer> layers) {
     const std::vector<Channel> channels = channels_of(image, layers);
-    std::vector<std::byte> file = head_of(image, channels);
-    std::vector<std::vector<std::byte>> blocks((image.height + Block::NumRows - 1) /
-                                               Block::NumRows);
-    files::parallel_for(files::IndexRange<std::size_t>(0, blocks.size()), [&](const auto& range) {
-        Block block;
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            const auto first = static_cast<std::uint32_t>(i * Block::NumRows);
-            blocks[i] = block.made_of(channels, image.width, first,
-                                      std::min(first + Block::NumRows, image.height));
-        }
+    std::vector<std::byte> head = head_of(image, channels), file = head;
+    add_blocks(image, channels, head, [&](std::span<const std::byte> block) {
+        file.insert(file.end(), block.begin(), block.end());
     });
-    // The table of blocks, 8 bytes each, is the end of the head.
-    std::size_t entry = file.size() - 8 * blocks.size(), place = file.size();
-    std::vector<std::size_t> places;
-    for (const std::vector<std::byte>& block : blocks) {
-        put_little_endian(file.data() + entry, place, 8);
-        entry += 8;
-        places.push_back(place);
-        place += block.size();
-    }
-    file.resize(place);
-    files::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
-        std::memcpy(file.data() + places[i], blocks[i].data(), blocks[i].size());
-        blocks[i] = {};
-    });
+    std::copy(head.begin(), head.end(), file.begin());
     return file;
+}
+
+void write_exr(files::OutputFile& file, const EnvironmentImage& image,
+               std::span<const ExrLayer> layers) {
+    const std::vector<Channel> channels = channels_of(image, layers);
+    std::vector<std::byte> head = head_of(image, channels);
+    file.expect(head.size() + channels.size() * image.pixels.size() * sizeof(float));
+    file.append(head);
+    add_blocks(image, channels, head,
+               [&](std::span<const std::byte> block) { file.append(block); });
+    file.replace(0, head);
 }
 
 } // namespace relumine::cubemap

@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/image/environment.h"
+#include "files/output_file.h"
 
 namespace relumine::cubemap {
 
@@ -56,6 +57,10 @@ struct ExrLayer {
 /// NAME.B for each layer.
 [[nodiscard]] std::vector<std::byte> encode_exr(const EnvironmentImage& image,
                                                 std::span<const ExrLayer> layers = {});
+/// Adds the same bytes to an empty file. They are written while others are compressed.
+/// Throws:  as files::OutputFile::write().
+void write_exr(files::OutputFile& file, const EnvironmentImage& image,
+               std::span<const ExrLayer> layers = {});
 /// Returns an .hdr file: RGBE, run-length encoded, rounded to nearest.
 /// Throws:  std::invalid_argument for radiance that RGBE cannot hold.
 [[nodiscard]] std::vector<std::byte> encode_hdr(const EnvironmentImage& image);

@@ -142,10 +142,10 @@ private:
         if (from.layout == Layout::LatLong && has_faces(to.layout) &&
             carries_axes_to_axes(target_from_source))
             return faces_from_lat_long(image, to, target_from_source);
-        const CubeMap straight = from_end.kept && from.layout != Layout::LatLong
-                                     ? from_end.kept->to_cube(image.pixels)
-                                     : resample(image, resolution_between(from, to, finer_));
-        const CubeMap map = turned(straight, target_from_source);
+        const CubeMap map = turned(from_end.kept && from.layout != Layout::LatLong
+                                       ? from_end.kept->to_cube(image.pixels)
+                                       : resample(image, resolution_between(from, to, finer_)),
+                                   target_from_source);
         if (to_end.kept)
             return image_of(to, to_end.kept->to_pixels(map));
         return to_image(map, to.layout, to.width, to.height, to.sampling);

@@ -46,7 +46,7 @@ void save_layered_picture(const std::filesystem::path& path, LayeredPicture pict
     for (glm::vec3& pixel : image.pixels)
         pixel *= scale;
     files::OutputFile file(path);
-    file.write(cubemap::encode_exr(image, layers));
+    cubemap::write_exr(file, image, layers);
     file.commit();
 }
 
