@@ -79,16 +79,18 @@ TurnedTexels::TurnedTexels(const CubeMap& map, const glm::dmat3& source_from_des
 /// A turn that carries an axis of the cube to an axis carries quarter turns about the one to those
 /// about the other. The middle row of an odd map would be its own image.
 void TurnedTexels::find_symmetries(const glm::dmat3& source_from_destination) {
+    const std::uint32_t r = map_.resolution;
     symmetries_ = {{glm::dmat3(1.0), glm::dmat3(1.0)}};
-    for (int axis = 0; axis < 3 && map_.resolution % 2 == 0; ++axis) {
+    for (const Face face : Faces)
+        parts_.push_back({.face = face, .x0 = 0, .y0 = 0, .x1 = r, .y1 = r});
+    for (int axis = 0; axis < 3 && r % 2 == 0; ++axis) {
         const glm::dvec3 there = glm::abs(source_from_destination[axis]);
         if (std::max({there.x, there.y, there.z}) != 1.0)
             continue;
-        axis_ = axis;
+        const int second = (axis + 1) % 3, third = (axis + 2) % 3;
         glm::dmat3 quarter(0.0);
-        quarter[axis][axis] = 1.0;
-        quarter[(axis + 1) % 3][(axis + 2) % 3] = 1.0;
-        quarter[(axis + 2) % 3][(axis + 1) % 3] = -1.0;
+        quarter[axis][axis] = quarter[second][third] = 1.0;
+        quarter[third][second] = -1.0;
         while (symmetries_.size() < 4) {
             const glm::dmat3 turned = quarter * symmetries_.back().turned;
             const glm::dmat3 source =
@@ -96,6 +98,12 @@ void TurnedTexels::find_symmetries(const glm::dmat3& source_from_destination) {
             symmetries_.push_back(
                 {turned, {glm::round(source[0]), glm::round(source[1]), glm::round(source[2])}});
         }
+        // A quarter of the face on the axis, and the half of one beside it.
+        TexelRectangle& on_axis = parts_[static_cast<std::size_t>(axis)];
+        on_axis.x1 = on_axis.y1 = r / 2;
+        TexelRectangle& beside = parts_[static_cast<std::size_t>(second)];
+        (FaceAxes(beside.face).right[axis] != 0.0 ? beside.x1 : beside.y1) = r / 2;
+        parts_.erase(parts_.begin() + third);
         return;
     }
 }
@@ -127,28 +135,9 @@ void TurnedTexels::fill(const TexelRectangle& tile, std::size_t num_pairs, Turne
 }
 
 void TurnedTexels::fill_all(CubeMap& turned) const {
-    // Of each set of texels that symmetries carry to each other, one is in these rectangles.
-    std::vector<TexelRectangle> parts;
     const std::uint32_t r = map_.resolution;
-    for (const Face face : Faces) {
-        TexelRectangle part = {.face = face, .x0 = 0, .y0 = 0, .x1 = r, .y1 = r};
-        if (axis_ >= 0) {
-            const FaceAxes axes(face);
-            const bool is_side = axes.outwards[axis_] == 0.0;
-            if (is_side &&
-                std::any_of(parts.begin(), parts.end(), [&](const TexelRectangle& other) {
-                    return FaceAxes(other.face).outwards[axis_] == 0.0;
-                }))
-                continue;
-            if (!is_side || axes.right[axis_] != 0.0)
-                part.x1 = r / 2;
-            if (!is_side || axes.down[axis_] != 0.0)
-                part.y1 = r / 2;
-        }
-        parts.push_back(part);
-    }
     std::vector<TexelRectangle> tiles;
-    for (const TexelRectangle& part : parts) {
+    for (const TexelRectangle& part : parts_) {
         const std::uint32_t rows = num_parts(part.y1, r / num_rows_),
                             columns = num_parts(part.x1, r / num_columns_);
         for (std::uint32_t row = 0; row < rows; ++row)

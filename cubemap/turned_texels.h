@@ -59,8 +59,8 @@ private:
     std::array<std::array<TilePlace, NumFaces>, NumFaces> places_;
     /// Turns, the first of which changes nothing. With their opposites they are all.
     std::vector<Symmetry> symmetries_;
-    /// The axis of the turned map about which they turn, or -1.
-    int axis_ = -1;
+    /// Of each set of texels of the turned map that they carry to each other, one is in these.
+    std::vector<TexelRectangle> parts_;
     /// [face of the map] what lies there by each symmetry.
     std::array<std::vector<TexelPair<const glm::vec3>>, NumFaces> faces_;
 };
