@@ -5,6 +5,8 @@
 
 #include <glm/common.hpp>
 
+#include "cubemap/turned_tile_kernels.h"
+
 namespace relumine::cubemap {
 
 namespace {

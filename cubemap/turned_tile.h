@@ -8,7 +8,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "cubemap/turned_tile_kernels.h"
+#include "cubemap/turned_tile_work.h"
 
 namespace relumine::cubemap {
 

@@ -1,130 +1,13 @@
 // The sums of TurnedTile, several edges at a time.
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
-#include <tuple>
-#include <vector>
 
-#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "cubemap/turned_tile_work.h"
+
 namespace relumine::cubemap {
-
-/// Where the corners of a tile's texels lie to a face: corner (x, y) is in the direction origin +
-/// x across + y down, whose parts are to the right, down and out of the face.
-struct TilePlace {
-    glm::dvec3 origin, across, down;
-
-    [[nodiscard]] glm::dvec3 corner(double x, double y) const {
-        return origin + x * across + y * down;
-    }
-};
-
-/// Rows of texels in memory: the first texel, and how far it is to the next column and row.
-template<class Texel>
-struct TexelRows {
-    Texel* first = nullptr;
-    std::ptrdiff_t next_column = 1, next_row = 0;
-
-    [[nodiscard]] Texel* at(std::ptrdiff_t x, std::ptrdiff_t y) const {
-        return first + x * next_column + y * next_row;
-    }
-};
-
-/// A tile's texels, and those opposite of them.
-template<class Texel>
-using TexelPair = std::array<TexelRows<Texel>, 2>;
-
-/// What a tile keeps. Corners, and the texels whose upper left they are, lie row by row, `Stride`
-/// apart, which vectors divide.
-struct TileWork {
-    static constexpr std::size_t NumSides = std::tuple_size_v<TexelPair<glm::vec3>>;
-    static constexpr std::uint32_t MaxWidth = 31, MaxHeight = 16;
-    static constexpr std::size_t Stride = MaxWidth + 1;
-    static constexpr std::size_t NumCorners = (MaxHeight + 1) * Stride;
-    /// Of what the outermost corners bound, rounding may set others so far outside.
-    static constexpr double Margin = 1e-6;
-
-    /// Points on the face, in cells; and for each the cell, and the place in it, in [0, 1].
-    struct Points {
-        alignas(64) std::array<double, NumCorners> position_x, position_y;
-        alignas(64) std::array<float, NumCorners> column, row, x, y;
-
-        [[nodiscard]] glm::dvec2 position(std::size_t at) const {
-            return {position_x[at], position_y[at]};
-        }
-        void set(std::size_t at, const glm::dvec2& position) {
-            position_x[at] = position.x;
-            position_y[at] = position.y;
-        }
-    };
-    /// Three colours and solid angle, of both sides.
-    static constexpr std::size_t NumValues = 4, NumSums = NumSides * NumValues;
-    using Sum = std::array<double, NumSums>;
-    using Sums = std::array<Sum, NumCorners>;
-    /// Edges cut where they go from cell to cell. As many edges as a vector has lanes are a group:
-    /// its first line has the first piece of each, and it has as many lines as its longest edge has
-    /// pieces. Of a piece the cell, and the factors of what the cell holds.
-    struct Pieces {
-        std::vector<std::int32_t> cells;
-        std::vector<double> of_left, of_change;
-        std::vector<float> of_density;
-        std::size_t size = 0;
-        /// Lines of each group.
-        std::vector<std::size_t> num_lines;
-    };
-    struct alignas(64) Cell {
-        /// What lies to the left of the cell in its row; and how that changes over the row's height
-        /// where it does not as at the middle of the part.
-        Sum left, change_left;
-        /// What lies in the cell, for each unit of its area.
-        std::array<float, NumSums> density;
-    };
-
-    struct alignas(32) Colors {
-        std::array<float, NumSums> values;
-    };
-    /// What the texels of a pair have so far.
-    struct alignas(64) Pair {
-        Sums texels;
-        /// The least of 0 and the colours that they meet: where a texel touches a sun, rounding may
-        /// make less of its dark.
-        alignas(64) std::array<float, NumSums> least;
-    };
-
-    Points corners;
-    /// Of edges, where the tile reaches over the face's sides.
-    Points starts, ends;
-
-    /// Of the edges to the right of each corner and down from it.
-    alignas(64) Sums of_across, of_down;
-    Pieces across, down;
-
-    std::vector<Pair> pairs;
-
-    /// The part of the face that the tile meets: its cells row by row, and of each row the columns
-    /// from and to.
-    std::vector<Cell> cells;
-    std::vector<glm::ivec2> columns;
-    /// Of each cell the density at its middle, and of that change_left.
-    std::vector<double> middles, changes;
-    /// Of a row's cells, the colours of both sides.
-    std::vector<Colors> colors;
-    /// Of the part, the first cell and the numbers of columns and rows.
-    glm::ivec2 first = {}, size = {};
-
-    /// A texel of the face has 2^shift x 2^shift cells. Cells along a side, and how far these reach
-    /// in [-1, 1].
-    std::int32_t shift = 0, num_cells = 0;
-    float scale = 0.0f;
-
-    std::uint32_t width = 0, height = 0;
-    /// Whether no face was added yet.
-    bool is_first = true;
-    bool is_cut = false;
-};
 
 /// Sets where the corners lie.
 void place_corners(const TilePlace& place, TileWork& work);

@@ -14,7 +14,7 @@
 #include <hwy/highway.h>
 
 #include "cubemap/turned_density-inl.h"
-#include "cubemap/turned_tile_kernels.h"
+#include "cubemap/turned_tile_work.h"
 #include "files/wasm_doubles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
