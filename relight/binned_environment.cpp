@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "relight/kernels/band_sums.h"
+
 namespace relumine::relight {
 
 BinnedEnvironment EnvironmentBinner::bin(std::shared_ptr<const cubemap::CubeMap> map) {
@@ -24,12 +26,14 @@ BinnedEnvironment EnvironmentBinner::bin(std::shared_ptr<const cubemap::CubeMap>
 
     BinnedEnvironment result;
     auto start = Clock::now();
-    if (!binning_ || binning_->resolution() != map->resolution)
+    const std::span<const prt::Cell> cells = transfer_.quadtree.leaves();
+    if (!binning_ || binning_->resolution() != map->resolution) {
         binning_ = std::make_shared<const LightBinning>(map->resolution);
+        bands_ = std::make_shared<const BandSums>(map->resolution, cells);
+    }
     result.binning = binning_;
     result.map = std::move(map);
-    result.sums =
-        binning_->sums(*result.map, transfer_.quadtree.leaves(), LightBinning::Texels::Unchecked);
+    result.sums = binning_->sums(*result.map, *bands_, LightBinning::Texels::Unchecked);
     result.powers.resize(result.sums.size());
     std::transform(result.sums.begin(), result.sums.end(), result.powers.begin(),
                    std::mem_fn(&VectorIrradiance::power));

@@ -57,6 +57,7 @@ private:
     const prt::Transfer& transfer_;
     float sharp_tolerance_;
     std::shared_ptr<const LightBinning> binning_;
+    std::shared_ptr<const BandSums> bands_;
 };
 
 } // namespace relumine::relight

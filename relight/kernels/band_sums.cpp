@@ -56,8 +56,9 @@ std::vector<TexelSums> BandSums::sums(const cubemap::CubeMap& environment,
     if (!reads_all())
         return result;
     files::parallel_for(std::size_t{0}, BandsPerFace * cubemap::NumFaces, [&](std::size_t i) {
-        sum_band(environment, weights, visit, i / BandsPerFace, i % BandsPerFace * steps_per_band_,
-                 result);
+        // The weights of a band serve all faces while they are in the caches.
+        sum_band(environment, weights, visit, i % cubemap::NumFaces,
+                 i / cubemap::NumFaces * steps_per_band_, result);
     });
     return result;
 }

@@ -20,6 +20,7 @@ public:
     /// `cells` must last as long as this.
     BandSums(std::uint32_t face_resolution, std::span<const prt::Cell> cells);
 
+    [[nodiscard]] std::span<const prt::Cell> cells() const { return cells_; }
     /// Whether sums() has the cell's.
     [[nodiscard]] bool has(std::size_t cell) const { return is_summed_[cell]; }
     /// Whether sums() reads every texel, whichever cells have it.

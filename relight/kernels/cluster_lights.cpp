@@ -180,7 +180,12 @@ void LightBinning::add_derivative(const prt::Cell& cell, const VectorIrradiance&
 std::vector<VectorIrradiance> LightBinning::sums(const cubemap::CubeMap& environment,
                                                  std::span<const prt::Cell> cells,
                                                  Texels texels) const {
-    const BandSums bands(resolution_, cells);
+    return sums(environment, BandSums(resolution_, cells), texels);
+}
+
+std::vector<VectorIrradiance> LightBinning::sums(const cubemap::CubeMap& environment,
+                                                 const BandSums& bands, Texels texels) const {
+    const std::span<const prt::Cell> cells = bands.cells();
     std::atomic<bool> all_good = bands.reads_all();
     const std::vector<TexelSums> whole =
         bands.sums(environment, weights_, [&](std::span<const glm::vec3> rows) {

@@ -41,6 +41,8 @@ struct VectorIrradiance {
     [[nodiscard]] double power() const { return glm::length(luminance()); }
 };
 
+class BandSums;
+
 /// Sums an environment's texels into cells. Keeps the texels' solid angles for one resolution, so
 /// that many sums are cheap.
 ///
@@ -69,6 +71,10 @@ public:
     /// Throws:  std::invalid_argument for unchecked texels that require_radiance() refuses.
     [[nodiscard]] std::vector<VectorIrradiance> sums(const cubemap::CubeMap& environment,
                                                      std::span<const prt::Cell> cells,
+                                                     Texels texels = Texels::Checked) const;
+    /// The same for cells that are arranged already, for this resolution.
+    [[nodiscard]] std::vector<VectorIrradiance> sums(const cubemap::CubeMap& environment,
+                                                     const BandSums& bands,
                                                      Texels texels = Texels::Checked) const;
 
     /// Adds to the cell's texels the derivative of a number by their radiance, given its derivative
