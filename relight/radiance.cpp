@@ -23,10 +23,8 @@ bool is_radiance(const glm::vec3& texel) {
     return good(texel.r) && good(texel.g) && good(texel.b);
 }
 
-} // namespace
-
 // As whole numbers, floats from 0 up keep their order, and negative ones have the highest bit set.
-// So two operations a value suffice, which compilers turn into vectors.
+// So two operations a value suffice, which compilers turn into vectors. False for -0, too.
 bool is_surely_radiance(std::span<const glm::vec3> texels) {
     constexpr std::uint32_t Negative = 1u << 31u;
     if (texels.empty())
@@ -39,6 +37,8 @@ bool is_surely_radiance(std::span<const glm::vec3> texels) {
     }
     return (bad & Negative) == 0;
 }
+
+} // namespace
 
 void require_radiance(std::span<const glm::vec3> texels) {
     constexpr std::size_t Grain = 1 << 16;

@@ -17,8 +17,4 @@ inline constexpr float MaxRadiance = 1e30f;
 /// Throws:  std::invalid_argument for a radiance that is NaN, negative or above MaxRadiance.
 void require_radiance(std::span<const glm::vec3> texels);
 
-/// Returns true only where require_radiance() refuses none; false also for some that it accepts
-/// (-0). On one thread, for texels that lie in the caches.
-[[nodiscard]] bool is_surely_radiance(std::span<const glm::vec3> texels);
-
 } // namespace relumine::relight

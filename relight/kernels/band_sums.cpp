@@ -1,6 +1,7 @@
 #include "relight/kernels/band_sums.h"
 
 #include <algorithm>
+#include <array>
 
 #include "cubemap/face.h"
 #include "files/parallel.h"
@@ -50,30 +51,32 @@ std::size_t BandSums::columns_of(const prt::Cell& cell) const {
     return num_columns_ % cells_per_edge == 0 ? num_columns_ / cells_per_edge : 0;
 }
 
-std::vector<TexelSums> BandSums::sums(const cubemap::CubeMap& environment,
-                                      std::span<const float> weights, const RowVisit& visit) const {
-    std::vector<TexelSums> result(cells_.size());
+BandSums::Result BandSums::sums(const cubemap::CubeMap& environment,
+                                std::span<const float> weights) const {
+    Result result{.sums = std::vector<TexelSums>(cells_.size())};
     if (!reads_all())
         return result;
-    files::parallel_for(std::size_t{0}, BandsPerFace * cubemap::NumFaces, [&](std::size_t i) {
-        // The weights of a band serve all faces while they are in the caches.
-        sum_band(environment, weights, visit, i % cubemap::NumFaces,
-                 i / cubemap::NumFaces * steps_per_band_, result);
+    std::array<std::uint32_t, BandsPerFace * cubemap::NumFaces> largest_bits{};
+    files::parallel_for(std::size_t{0}, largest_bits.size(), [&](std::size_t i) {
+        largest_bits[i] = sum_band(environment, weights, i / BandsPerFace,
+                                   i % BandsPerFace * steps_per_band_, result.sums);
     });
+    result.largest_bits = *std::max_element(largest_bits.begin(), largest_bits.end());
     return result;
 }
 
-void BandSums::sum_band(const cubemap::CubeMap& environment, std::span<const float> weights,
-                        const RowVisit& visit, std::size_t face, std::size_t first_step,
-                        std::vector<TexelSums>& sums) const {
+std::uint32_t BandSums::sum_band(const cubemap::CubeMap& environment,
+                                 std::span<const float> weights, std::size_t face,
+                                 std::size_t first_step, std::vector<TexelSums>& sums) const {
+    std::uint32_t largest_bits = 0;
     const std::size_t resolution = environment.resolution;
     std::vector<TexelColumn> columns(num_columns_);
     for (std::size_t step = first_step; step < first_step + steps_per_band_; ++step) {
         const std::size_t row = step * Width;
         const glm::vec3* texels =
             &environment.at(static_cast<cubemap::Face>(face), 0, static_cast<std::uint32_t>(row));
-        visit({texels, Width * resolution});
-        add_rows(texels, weights.data() + row * resolution, resolution, Width, columns);
+        largest_bits = std::max(largest_bits, add_rows(texels, weights.data() + row * resolution,
+                                                       resolution, Width, columns));
         const bool is_last = step + 1 == first_step + steps_per_band_;
         const std::uint32_t* const here = &cell_at_[row_of(face, step)];
         const std::uint32_t* const below = is_last ? nullptr : here + num_columns_;
@@ -92,6 +95,7 @@ void BandSums::sum_band(const cubemap::CubeMap& environment, std::span<const flo
             column = {};
         }
     }
+    return largest_bits;
 }
 
 } // namespace relumine::relight

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -26,17 +25,21 @@ public:
     /// Whether sums() reads every texel, whichever cells have it.
     [[nodiscard]] bool reads_all() const { return !cell_at_.empty(); }
 
-    using RowVisit = std::function<void(std::span<const glm::vec3>)>;
-    /// Returns texel_sums() of the cells' texels, bit by bit; parallel. `visit` is called for rows
-    /// before they are summed, which leaves them in the caches.
-    [[nodiscard]] std::vector<TexelSums> sums(const cubemap::CubeMap& environment,
-                                              std::span<const float> weights,
-                                              const RowVisit& visit) const;
+    struct Result {
+        /// Of each cell; those that it has not are zero.
+        std::vector<TexelSums> sums;
+        /// The largest that add_rows() returned.
+        std::uint32_t largest_bits = 0;
+    };
+    /// Computes texel_sums() of the cells' texels, bit by bit; parallel.
+    [[nodiscard]] Result sums(const cubemap::CubeMap& environment,
+                              std::span<const float> weights) const;
 
 private:
-    void sum_band(const cubemap::CubeMap& environment, std::span<const float> weights,
-                  const RowVisit& visit, std::size_t face, std::size_t first_step,
-                  std::vector<TexelSums>& sums) const;
+    /// Returns the largest that add_rows() returned.
+    std::uint32_t sum_band(const cubemap::CubeMap& environment, std::span<const float> weights,
+                           std::size_t face, std::size_t first_step,
+                           std::vector<TexelSums>& sums) const;
     /// Returns the cell's edge in columns; 0 for a cell that is no square of whole columns.
     [[nodiscard]] std::size_t columns_of(const prt::Cell& cell) const;
     /// Returns the place of a step's first column in `cell_at_`.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
+#include <bit>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -186,13 +186,10 @@ std::vector<VectorIrradiance> LightBinning::sums(const cubemap::CubeMap& environ
 std::vector<VectorIrradiance> LightBinning::sums(const cubemap::CubeMap& environment,
                                                  const BandSums& bands, Texels texels) const {
     const std::span<const prt::Cell> cells = bands.cells();
-    std::atomic<bool> all_good = bands.reads_all();
-    const std::vector<TexelSums> whole =
-        bands.sums(environment, weights_, [&](std::span<const glm::vec3> rows) {
-            if (texels == Texels::Unchecked && !is_surely_radiance(rows))
-                all_good = false;
-        });
-    if (texels == Texels::Unchecked && !all_good)
+    const BandSums::Result whole = bands.sums(environment, weights_);
+    const bool is_good =
+        bands.reads_all() && whole.largest_bits <= std::bit_cast<std::uint32_t>(MaxRadiance);
+    if (texels == Texels::Unchecked && !is_good)
         require_radiance(environment.texels);
     std::vector<VectorIrradiance> result(cells.size());
     files::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
@@ -203,7 +200,7 @@ std::vector<VectorIrradiance> LightBinning::sums(const cubemap::CubeMap& environ
         }
         const std::uint32_t edge = resolution_ >> cell.level;
         FaceSums sums;
-        add_whole(whole[i], cell.x * edge, cell.y * edge, 2.0 / resolution_, sums);
+        add_whole(whole.sums[i], cell.x * edge, cell.y * edge, 2.0 / resolution_, sums);
         result[i] = to_world(cell.face, sums);
     });
     return result;

@@ -16,6 +16,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Lanes = hn::CappedTag<float, TexelColumn::Width>;
 using Vec = hn::Vec<Lanes>;
+using BitLanes = hn::RebindToUnsigned<Lanes>;
+using Bits = hn::Vec<BitLanes>;
 
 /// The texel of each colour of a column, as the colours lie in memory.
 constexpr auto TexelOf = [] {
@@ -33,9 +35,10 @@ Vec spread(Vec weights, std::size_t third) {
                                 hn::SetTableIndices(d, TexelOf.data() + third * hn::Lanes(d)));
 }
 
-/// Adds rows to texels [x, x + lanes) of a column.
-void add_rows_at(std::size_t x, const float* radiance, const float* weights, std::size_t stride,
-                 std::size_t num_rows, TexelColumn& column) {
+/// Adds rows to texels [x, x + lanes) of a column, and takes the larger of `largest` and the bits.
+HWY_INLINE void add_rows_at(std::size_t x, const float* radiance, const float* weights,
+                            std::size_t stride, std::size_t num_rows, TexelColumn& column,
+                            Bits& largest) {
     const Lanes d;
     const std::size_t n = hn::Lanes(d);
     float* const one = column.one.data() + 3 * x;
@@ -48,9 +51,12 @@ void add_rows_at(std::size_t x, const float* radiance, const float* weights, std
     for (std::size_t row = 0; row < num_rows; ++row, y = hn::Add(y, next)) {
         const float* l = radiance + 3 * (row * stride + x);
         const auto q = hn::LoadU(d, weights + row * stride + x);
-        const auto first = hn::Mul(spread(q, 0), hn::LoadU(d, l));
-        const auto second = hn::Mul(spread(q, 1), hn::LoadU(d, l + n));
-        const auto third = hn::Mul(spread(q, 2), hn::LoadU(d, l + 2 * n));
+        const auto colors = [&](std::size_t i) {
+            const Vec values = hn::LoadU(d, l + i * n);
+            largest = hn::Max(largest, hn::BitCast(BitLanes(), values));
+            return hn::Mul(spread(q, i), values);
+        };
+        const auto first = colors(0), second = colors(1), third = colors(2);
         one_0 = hn::Add(one_0, first);
         one_1 = hn::Add(one_1, second);
         one_2 = hn::Add(one_2, third);
@@ -66,16 +72,18 @@ void add_rows_at(std::size_t x, const float* radiance, const float* weights, std
     hn::StoreU(y_2, d, of_y + 2 * n);
 }
 
-void add_rows(const glm::vec3* radiance, const float* weights, std::size_t stride,
-              std::size_t num_rows, TexelColumn* columns, std::size_t num_columns) {
+std::uint32_t add_rows(const glm::vec3* radiance, const float* weights, std::size_t stride,
+                       std::size_t num_rows, TexelColumn* columns, std::size_t num_columns) {
     const auto* values = reinterpret_cast<const float*>(radiance);
+    Bits largest = hn::Zero(BitLanes());
     for (TexelColumn* column = columns; column < columns + num_columns; ++column) {
         for (std::size_t x = 0; x < TexelColumn::Width; x += hn::Lanes(Lanes()))
-            add_rows_at(x, values, weights, stride, num_rows, *column);
+            add_rows_at(x, values, weights, stride, num_rows, *column, largest);
         column->height += num_rows;
         values += 3 * TexelColumn::Width;
         weights += TexelColumn::Width;
     }
+    return hn::GetLane(hn::MaxOfLanes(BitLanes(), largest));
 }
 
 } // namespace relumine::relight::HWY_NAMESPACE
@@ -88,10 +96,10 @@ namespace {
 HWY_EXPORT(add_rows);
 }
 
-void add_rows(const glm::vec3* radiance, const float* weights, std::size_t stride,
-              std::size_t num_rows, std::span<TexelColumn> columns) {
-    HWY_DYNAMIC_DISPATCH(add_rows)
-    (radiance, weights, stride, num_rows, columns.data(), columns.size());
+std::uint32_t add_rows(const glm::vec3* radiance, const float* weights, std::size_t stride,
+                       std::size_t num_rows, std::span<TexelColumn> columns) {
+    return HWY_DYNAMIC_DISPATCH(add_rows)(radiance, weights, stride, num_rows, columns.data(),
+                                          columns.size());
 }
 
 void TexelColumn::add_to(TexelSums& sums, std::size_t first_x, std::size_t first_y) const {

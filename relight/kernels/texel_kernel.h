@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include <glm/vec3.hpp>
@@ -44,8 +45,10 @@ struct TexelColumn {
     void add_to(TexelSums& sums, std::size_t first_x, std::size_t first_y) const;
 };
 
-/// Adds rows to columns side by side. No column may become higher than its MaxHeight.
-void add_rows(const glm::vec3* radiance, const float* weights, std::size_t stride,
-              std::size_t num_rows, std::span<TexelColumn> columns);
+/// Adds rows to columns side by side. No column may become higher than its MaxHeight. Returns the
+/// largest of all values' bits, as whole numbers: floats from 0 up keep their order so, and
+/// negative ones and NaN are larger.
+std::uint32_t add_rows(const glm::vec3* radiance, const float* weights, std::size_t stride,
+                       std::size_t num_rows, std::span<TexelColumn> columns);
 
 } // namespace relumine::relight

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <stdexcept>
 #include <string>
 
 #include <glm/geometric.hpp>
@@ -11,6 +12,7 @@
 
 #include "files/parallel.h"
 #include "relight/kernels/texel_kernel.h"
+#include "relight/radiance.h"
 #include "tests/prt/every_target.h"
 #include "tests/prt/scenes.h"
 #include "tests/relight/environments.h"
@@ -144,6 +146,32 @@ TEST(LightBinning, AllCellsAtOnceHaveTheBitsOfEachAlone) {
             for (std::size_t i = 0; i < sums.size(); ++i)
                 ASSERT_EQ(sums[i], binning.sum(environment, tree.leaves()[i]))
                     << "R = " << r << ", level " << tree.leaves()[i].level;
+        });
+    }
+}
+
+TEST(LightBinning, RefusesWhatIsNoRadiance) {
+    constexpr float Infinity = std::numeric_limits<float>::infinity();
+    std::mt19937 random(4);
+    const prt::Quadtree tree(scenes::random_split_flags(random, 6, 0.8));
+    for (const std::uint32_t r : {32u, 256u}) {
+        cubemap::CubeMap environment = scenes::random_environment(r, 3);
+        const LightBinning binning(r);
+        const auto sums = [&] {
+            return binning.sums(environment, tree.leaves(), LightBinning::Texels::Unchecked);
+        };
+        scenes::on_every_target([&] {
+            float& value = environment.at(cubemap::Face::NegativeZ, r - 1, r / 3).z;
+            for (const float bad :
+                 {-1e-30f, -Infinity, Infinity, std::nanf(""), 1.01f * MaxRadiance}) {
+                value = bad;
+                EXPECT_THROW(static_cast<void>(sums()), std::invalid_argument) << r << " " << bad;
+            }
+            for (const float good : {0.0f, -0.0f, MaxRadiance}) {
+                value = good;
+                EXPECT_NO_THROW(static_cast<void>(sums())) << r << " " << good;
+            }
+            value = 1.0f;
         });
     }
 }
