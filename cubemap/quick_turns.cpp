@@ -148,40 +148,38 @@ CubeMap QuickTurns::turned(const glm::dmat3& turn) const {
     const glm::dmat3 source_from_destination = glm::transpose(turn);
     const TurnedTexels exact(*map_, source_from_destination);
     CubeMap result(r);
+    // A row of tiles of a face, and what lies opposite of it.
+    const auto fill_tiles = [&](Face face, std::uint32_t row, TurnedTile& sums) {
+        const TexelRectangle first = exact.tile(face, row, 0);
+        std::vector<std::uint32_t> near_edges;
+        const auto fill = [&](Face filled, std::uint32_t y) {
+            fill_row(filled, y, source_from_destination, &result.at(filled, 0, y), near_edges);
+        };
+        bool is_mirrored = false;
+        for (std::uint32_t y = first.y0; y < first.y1; ++y) {
+            const FacePoint opposite = face_point(-cube_point(face, 0.5 / r, (y + 0.5) / r));
+            fill(opposite.face, static_cast<std::uint32_t>(opposite.t * r));
+            is_mirrored = opposite.s > 0.5;
+        }
+        if (is_mirrored)
+            for (std::uint32_t& x : near_edges)
+                x = r - 1 - x;
+        for (std::uint32_t y = first.y0; y < first.y1; ++y)
+            fill(face, y);
+        std::vector<bool> has_edge(exact.num_columns());
+        for (const std::uint32_t x : near_edges)
+            has_edge[exact.column_of(x)] = true;
+        for (std::uint32_t column = 0; column < exact.num_columns(); ++column)
+            if (has_edge[column])
+                exact.fill(exact.tile(face, row, column), sums, result);
+    };
     const std::size_t num_rows = exact.num_rows();
     files::parallel_for(files::IndexRange<std::size_t>(0, TurnedTexels::Faces.size() * num_rows),
                         [&](const auto& rows) {
-                            std::vector<std::uint32_t> near_edges;
                             TurnedTile sums;
-                            for (std::size_t i = rows.begin(); i != rows.end(); ++i) {
-                                const Face face = TurnedTexels::Faces[i / num_rows];
-                                const auto row = static_cast<std::uint32_t>(i % num_rows);
-                                const TexelRectangle first = exact.tile(face, row, 0);
-                                near_edges.clear();
-                                const auto fill = [&](Face filled, std::uint32_t y) {
-                                    fill_row(filled, y, source_from_destination,
-                                             &result.at(filled, 0, y), near_edges);
-                                };
-                                bool is_mirrored = false;
-                                for (std::uint32_t y = first.y0; y < first.y1; ++y) {
-                                    const FacePoint opposite =
-                                        face_point(-cube_point(face, 0.5 / r, (y + 0.5) / r));
-                                    fill(opposite.face, static_cast<std::uint32_t>(opposite.t * r));
-                                    is_mirrored = opposite.s > 0.5;
-                                }
-                                if (is_mirrored)
-                                    for (std::uint32_t& x : near_edges)
-                                        x = r - 1 - x;
-                                for (std::uint32_t y = first.y0; y < first.y1; ++y)
-                                    fill(face, y);
-                                std::vector<bool> has_edge(exact.num_columns());
-                                for (const std::uint32_t x : near_edges)
-                                    has_edge[exact.column_of(x)] = true;
-                                for (std::uint32_t column = 0; column < exact.num_columns();
-                                     ++column)
-                                    if (has_edge[column])
-                                        exact.fill(exact.tile(face, row, column), sums, result);
-                            }
+                            for (std::size_t i = rows.begin(); i != rows.end(); ++i)
+                                fill_tiles(TurnedTexels::Faces[i / num_rows],
+                                           static_cast<std::uint32_t>(i % num_rows), sums);
                         });
     return result;
 }
