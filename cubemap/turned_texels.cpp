@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
@@ -15,6 +16,16 @@ namespace {
 
 std::uint32_t num_parts(std::uint32_t size, std::uint32_t most) {
     return (size + most - 1) / most;
+}
+
+/// Of so many rows and columns of tiles that make up a rectangle whose first texel is (0, 0).
+TexelRectangle tile_of(const TexelRectangle& whole, std::uint32_t num_rows, std::uint32_t row,
+                       std::uint32_t num_columns, std::uint32_t column) {
+    return {.face = whole.face,
+            .x0 = column * whole.x1 / num_columns,
+            .y0 = row * whole.y1 / num_rows,
+            .x1 = (column + 1) * whole.x1 / num_columns,
+            .y1 = (row + 1) * whole.y1 / num_rows};
 }
 
 /// Whether a tile may meet a face: the bounds of its corners do, in front of the face.
@@ -30,7 +41,8 @@ bool meets_face(const TilePlace& place, double width, double height) {
     return least.x < 1.0 && least.y < 1.0 && most.x > -1.0 && most.y > -1.0;
 }
 
-/// The texels of a map where a symmetry of the cube carries those of a face from (x, y) on.
+/// Rows of a map's texels: the images of a face's texels from (x, y) on under a symmetry of the
+/// cube.
 template<class Texel, class Map>
 TexelRows<Texel> rows_at(Map& map, const glm::dmat3& symmetry, Face face, std::uint32_t x,
                          std::uint32_t y) {
@@ -110,11 +122,8 @@ void TurnedTexels::find_symmetries(const glm::dmat3& source_from_destination) {
 
 TexelRectangle TurnedTexels::tile(Face face, std::uint32_t row, std::uint32_t column) const {
     const std::uint32_t r = map_.resolution;
-    return {.face = face,
-            .x0 = column * r / num_columns_,
-            .y0 = row * r / num_rows_,
-            .x1 = (column + 1) * r / num_columns_,
-            .y1 = (row + 1) * r / num_rows_};
+    return tile_of({.face = face, .x0 = 0, .y0 = 0, .x1 = r, .y1 = r}, num_rows_, row, num_columns_,
+                   column);
 }
 
 void TurnedTexels::fill(const TexelRectangle& tile, std::size_t num_pairs, TurnedTile& sums,
@@ -125,7 +134,7 @@ void TurnedTexels::fill(const TexelRectangle& tile, std::size_t num_pairs, Turne
         TilePlace place = places_[static_cast<std::size_t>(tile.face)][from];
         place.origin = place.corner(tile.x0, tile.y0);
         if (meets_face(place, width, height))
-            sums.add(place, faces_[from], map_.resolution);
+            sums.add(place, std::span(faces_[from]).first(num_pairs), map_.resolution);
     }
     std::vector<TexelPair<glm::vec3>> tiles;
     for (std::size_t i = 0; i < num_pairs; ++i)
@@ -142,11 +151,7 @@ void TurnedTexels::fill_all(CubeMap& turned) const {
                             columns = num_parts(part.x1, r / num_columns_);
         for (std::uint32_t row = 0; row < rows; ++row)
             for (std::uint32_t column = 0; column < columns; ++column)
-                tiles.push_back({.face = part.face,
-                                 .x0 = column * part.x1 / columns,
-                                 .y0 = row * part.y1 / rows,
-                                 .x1 = (column + 1) * part.x1 / columns,
-                                 .y1 = (row + 1) * part.y1 / rows});
+                tiles.push_back(tile_of(part, rows, row, columns, column));
     }
     files::parallel_for(files::IndexRange<std::size_t>(0, tiles.size(), 64),
                         [&](const auto& range) {

@@ -18,7 +18,7 @@ namespace relumine::cubemap {
 class TurnedTexels {
 public:
     static constexpr std::uint32_t MinResolution = 128;
-    /// Faces that no others of them lie opposite of.
+    /// One face of each two that lie opposite each other.
     static constexpr std::array<Face, NumFaces / 2> Faces = {Face::PositiveX, Face::PositiveY,
                                                              Face::PositiveZ};
 
@@ -57,9 +57,9 @@ private:
     std::uint32_t num_rows_, num_columns_;
     /// Of the first texel of each face of the turned map, on each of the map's.
     std::array<std::array<TilePlace, NumFaces>, NumFaces> places_;
-    /// Turns, the first of which changes nothing. With their opposites they are all.
+    /// Turns, of which the first changes nothing. Each of them times -1 is a symmetry, too.
     std::vector<Symmetry> symmetries_;
-    /// Of each set of texels of the turned map that they carry to each other, one is in these.
+    /// Rectangles of the turned map. Of texels that symmetries carry to each other, one lies here.
     std::vector<TexelRectangle> parts_;
     /// [face of the map] what lies there by each symmetry.
     std::array<std::vector<TexelPair<const glm::vec3>>, NumFaces> faces_;

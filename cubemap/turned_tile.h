@@ -19,8 +19,8 @@ namespace relumine::cubemap {
 /// the two texels beside it and no polygon is cut. An edge over several faces has a part on each.
 ///
 /// A turn carries opposite directions to opposite ones. So the texels opposite of a tile mix those
-/// opposite of its own, in the same parts, and both are summed along the same edges. Where it
-/// carries other symmetries of the cube to such ones, more pairs are.
+/// opposite of its own, in the same parts, and both are summed along the same edges. So are more
+/// pairs where the turn carries symmetries of the cube to symmetries of the cube.
 class TurnedTile {
 public:
     /// Texels, at most.
@@ -31,15 +31,16 @@ public:
     /// Starts so many pairs of width x height texels.
     void begin(std::uint32_t width, std::uint32_t height, std::size_t num_pairs = 1);
 
-    /// Adds what comes from a face of R x R texels, R >= 128, and what its symmetric ones give the
-    /// symmetric texels, [pairs]. What lies in the same place has the same place in the rows. All
-    /// corners must be in front of the
-    /// face, z > 0. The density of solid angle is taken to second order about each texel's middle,
-    /// as solid_angle_about() does. What the tile meets of the face must not reach from its left
-    /// side to its right one.
+    /// Adds what comes from a face of R x R texels, R >= 128, to the first pair's tile, and from
+    /// the face's images under symmetries of the cube to the images of the tile. [pairs] the same
+    /// row and column is the same place of the face. All corners lie in front of the face: z > 0.
+    /// The density of solid angle is taken to second order about each texel's middle, as
+    /// solid_angle_about() does. What the tile meets of the face must not reach from its left side
+    /// to its right one.
     ///
     /// Error:   1e-6 of the largest radiance that a texel meets, beside the expansion's.
-    /// Cost:    35 to 45 ns for each texel of the tile with AVX2.
+    /// Cost:    for each texel of a pair's tile and its opposite 45 to 50 ns with AVX2; 35 ns with
+    ///          four pairs.
     void add(const TilePlace& place, std::span<const TexelPair<const glm::vec3>> faces,
              std::uint32_t resolution);
 

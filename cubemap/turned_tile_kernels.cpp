@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include <glm/common.hpp>
-#include <glm/vec4.hpp>
 #include <hwy/cache_control.h>
 
 // Highway compiles the block below once per instruction set and picks one at run time.
@@ -31,9 +30,6 @@ constexpr std::size_t Stride = Work::Stride;
 
 using SumLanes = hn::CappedTag<double, Work::NumSums>;
 constexpr std::size_t NumSums = Work::NumSums;
-/// 1 where a sum is of solid angle.
-HWY_ALIGN constexpr std::array<float, NumSums> IsAngle = {0.0f, 0.0f, 0.0f, 1.0f,
-                                                          0.0f, 0.0f, 0.0f, 1.0f};
 
 void place_corners(const TilePlace& place, Work& work) {
     const Doubles d;
@@ -99,21 +95,17 @@ void find_densities(std::int32_t row, std::int32_t begin, std::int32_t end, cons
     }
 }
 
-/// Copies what a row's cells from `begin` to `end` have of both sides. The fourth numbers mean
-/// nothing.
+/// Copies the colours of a row's cells from `begin` to `end` on both sides, and 1 for solid angle.
 void copy_colors(std::int32_t row, std::int32_t begin, std::int32_t end, const Faces& faces,
                  Work& work) {
     const std::int32_t shift = work.shift;
     for (std::size_t side = 0; side < Work::NumSides; ++side) {
-        const TexelRows<const glm::vec3> texels = faces[side];
-        const glm::vec3* line = texels.at(0, row >> shift);
-        const glm::vec3* first = line + (begin >> shift) * texels.next_column;
-        // Four numbers are one more than a colour, and a map may end there.
-        const glm::vec3* last = std::max(first, line + ((end - 1) >> shift) * texels.next_column);
+        const std::ptrdiff_t step = faces[side].next_column;
+        const glm::vec3* texels = faces[side].at(0, row >> shift);
         float* to = work.colors.data()->values.data() + side * Work::NumValues;
         for (std::int32_t column = begin; column < end; ++column, to += NumSums) {
-            const glm::vec3* texel = line + (column >> shift) * texels.next_column;
-            std::memcpy(to, texel, texel == last ? sizeof(glm::vec3) : sizeof(glm::vec4));
+            std::memcpy(to, texels + (column >> shift) * step, sizeof(glm::vec3));
+            to[3] = 1.0f;
         }
     }
 }
@@ -131,14 +123,11 @@ void fill_row(std::int32_t row, std::int32_t begin, std::int32_t end, const Dens
     const SumLanes ds;
     const hn::Rebind<float, SumLanes> narrow;
     const auto across = hn::Set(ds, double{density.across_middle()});
-    const auto one = hn::Set(narrow, 1.0f);
     for (std::size_t j = 0; j < NumSums; j += hn::Lanes(ds)) {
-        const auto is_angle = hn::Eq(hn::Load(narrow, IsAngle.data() + j), one);
         auto sum = hn::Zero(ds), change_sum = hn::Zero(ds);
         auto least = hn::Load(narrow, pair.least.data() + j);
         const auto light_of = [&](std::size_t i) {
-            const auto values =
-                hn::IfThenElse(is_angle, one, hn::Load(narrow, colors[i].values.data() + j));
+            const auto values = hn::Load(narrow, colors[i].values.data() + j);
             least = hn::Min(least, values);
             return hn::Mul(hn::PromoteTo(ds, values), hn::Set(ds, middles[i]));
         };
@@ -366,8 +355,8 @@ void store_means(const Work& work, const Work::Pair& pair, const TexelPair<glm::
             HWY_ALIGN std::array<float, NumSums> means;
             for (std::size_t j = 0; j < NumSums; j += hn::Lanes(ds)) {
                 const auto exact = hn::Mul(scale, hn::Load(ds, sum.data() + j));
-                hn::StoreU(
-                    hn::Max(hn::DemoteTo(narrow, exact), hn::LoadU(narrow, pair.least.data() + j)),
+                hn::Store(
+                    hn::Max(hn::DemoteTo(narrow, exact), hn::Load(narrow, pair.least.data() + j)),
                     narrow, means.data() + j);
             }
             for (std::size_t side = 0; side < Work::NumSides; ++side) {

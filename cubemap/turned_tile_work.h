@@ -33,7 +33,7 @@ struct TexelRows {
     }
 };
 
-/// A tile's texels, and those opposite of them.
+/// The texels of a tile, and the texels on the opposite side of the cube.
 template<class Texel>
 using TexelPair = std::array<TexelRows<Texel>, 2>;
 
@@ -110,7 +110,7 @@ struct TileWork {
     std::vector<glm::ivec2> columns;
     /// Of each cell the density at its middle, and of that change_left.
     std::vector<double> middles, changes;
-    /// Of a row's cells, the colours of both sides.
+    /// Of a row's cells, the colours of both sides, and 1 for solid angle.
     std::vector<Colors> colors;
     /// Of the part, the first cell and the numbers of columns and rows.
     glm::ivec2 first = {}, size = {};

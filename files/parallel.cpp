@@ -1,6 +1,10 @@
 #include "files/parallel.h"
 
 #include <algorithm>
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <utility>
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
@@ -28,6 +32,41 @@ ThreadLimit::~ThreadLimit() = default;
 
 void run_isolated(const std::function<void()>& work) {
     tbb::this_task_arena::isolate(work);
+}
+
+void make_in_order(std::size_t count,
+                   const std::function<std::vector<std::byte>(std::size_t)>& make,
+                   const std::function<void(std::span<const std::byte>)>& take) {
+    std::atomic<std::size_t> next = 0;
+    std::mutex mutex;
+    std::map<std::size_t, std::vector<std::byte>> made;
+    std::size_t num_taken = 0;
+    bool is_taking = false;
+    const auto make_and_take = [&](std::size_t i) {
+        std::vector<std::byte> bytes = make(i);
+        std::unique_lock lock(mutex);
+        made.emplace(i, std::move(bytes));
+        if (is_taking)
+            return; // who takes looks again before it ends
+        is_taking = true;
+        for (auto first = made.extract(num_taken); first; first = made.extract(num_taken)) {
+            ++num_taken;
+            lock.unlock();
+            take(first.mapped());
+            lock.lock();
+        }
+        is_taking = false;
+    };
+    // Each thread goes on with the least number that is left, so that few wait for those before.
+    tbb::parallel_for(std::size_t{0}, num_threads(), [&](std::size_t) {
+        try {
+            for (std::size_t i = next++; i < count; i = next++)
+                make_and_take(i);
+        } catch (...) {
+            next = count;
+            throw;
+        }
+    });
 }
 
 void detail::run_loop(std::size_t size, std::size_t grain, LoopBody call, const void* body) {

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <span>
+#include <vector>
 
 namespace relumine::files {
 
@@ -29,6 +31,12 @@ private:
 /// Runs `work`, whose loops may use other threads. While the caller waits for them, it takes up no
 /// other loop's work: such work could ask for a lock that the caller holds.
 void run_isolated(const std::function<void()>& work);
+
+/// Makes bytes for the numbers [0, count) at the same time, and gives them to `take` one by one, in
+/// their order, while others are made. Throws what either throws first.
+void make_in_order(std::size_t count,
+                   const std::function<std::vector<std::byte>(std::size_t)>& make,
+                   const std::function<void(std::span<const std::byte>)>& take);
 
 /// The numbers [begin(), end()), or a piece of them. Pieces hold no fewer numbers than half of
 /// `grain`.

@@ -5,12 +5,9 @@
 // the form of ZIP_COMPRESSION in OpenEXR's ImfZip.cpp, so every reader reads them.
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cstring>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <new>
 #include <string>
 #include <utility>
@@ -172,47 +169,27 @@ std::vector<std::byte> head_of(const EnvironmentImage& image, std::span<const Ch
     return std::move(stream.bytes);
 }
 
-/// Makes blocks in parallel and gives them to `append` one by one, in their order, while others are
-/// made. Writes their places into the table at the end of `head`.
+/// Gives blocks to `append`, and writes their places into the table at the end of `head`.
 template<class Append>
 void add_blocks(const EnvironmentImage& image, std::span<const Channel> channels,
                 std::vector<std::byte>& head, const Append& append) {
     const std::size_t num_blocks = (image.height + Block::NumRows - 1) / Block::NumRows;
     std::byte* entry = head.data() + head.size() - 8 * num_blocks; // 8 bytes each
     std::uint64_t place = head.size();
-    std::atomic<std::size_t> num_taken = 0;
-    std::mutex mutex;
-    std::map<std::size_t, std::vector<std::byte>> waiting;
-    std::size_t num_added = 0;
-    bool is_adding = false;
-    const auto add_those_ready = [&](std::unique_lock<std::mutex>& lock) {
-        if (is_adding)
-            return;
-        is_adding = true;
-        while (!waiting.empty() && waiting.begin()->first == num_added) {
-            const std::vector<std::byte> block = std::move(waiting.begin()->second);
-            waiting.erase(waiting.begin());
-            ++num_added;
-            lock.unlock();
+    files::make_in_order(
+        num_blocks,
+        [&](std::size_t i) {
+            thread_local Block block;
+            const auto first = static_cast<std::uint32_t>(i * Block::NumRows);
+            return block.made_of(channels, image.width, first,
+                                 std::min(first + Block::NumRows, image.height));
+        },
+        [&](std::span<const std::byte> block) {
             put_little_endian(entry, place, 8);
             entry += 8;
             place += block.size();
             append(block);
-            lock.lock();
-        }
-        is_adding = false;
-    };
-    files::parallel_for(std::size_t{0}, files::num_threads(), [&](std::size_t) {
-        Block block;
-        for (std::size_t i = num_taken++; i < num_blocks; i = num_taken++) {
-            const auto first = static_cast<std::uint32_t>(i * Block::NumRows);
-            std::vector<std::byte> made = block.made_of(
-                channels, image.width, first, std::min(first + Block::NumRows, image.height));
-            std::unique_lock lock(mutex);
-            waiting.emplace(i, std::move(made));
-            add_those_ready(lock);
-        }
-    });
+        });
 }
 
 } // namespace

@@ -26,7 +26,7 @@ public:
     [[nodiscard]] bool reads_all() const { return !cell_at_.empty(); }
 
     struct Result {
-        /// Of each cell; those that it has not are zero.
+        /// [cells] zero for a cell that has() denies.
         std::vector<TexelSums> sums;
         /// The largest that add_rows() returned.
         std::uint32_t largest_bits = 0;
