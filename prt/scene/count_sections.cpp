@@ -6,7 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "files/parallel.h"
+#include "files/large_vector.h"
 #include "prt/clusters/lattice.h"
 #include "prt/scene/section_group.h"
 #include "prt/scene/section_picker.h"
@@ -57,23 +57,21 @@ std::vector<std::byte> rare_entries(const std::vector<std::uint8_t>& counts) {
     return bytes_of(bytes);
 }
 
-/// Returns the counts of some of the scene's entries.
-///
-/// codes:        of these entries, one range after the other.
-/// entries:      ascending.
-/// num_entries:  all entries of the scene.
-std::vector<std::uint8_t> counts_of(const SectionReader& reader, std::span<const std::byte> codes,
-                                    std::span<const EntryRange> entries,
-                                    std::uint64_t num_entries) {
+/// Writes two counts for each byte of codes.
+void expand(std::span<const std::byte> codes, std::uint8_t* counts) {
     static constexpr std::array<std::uint16_t, 256> Table = counts_by_code();
-    std::vector<std::uint8_t> counts(2 * codes.size());
-    constexpr std::size_t Grain = std::size_t{1} << 16;
-    files::parallel_for(files::IndexRange<std::size_t>(0, codes.size(), Grain),
-                        [&](const files::IndexRange<std::size_t>& piece) {
-                            for (std::size_t i = piece.begin(); i < piece.end(); ++i)
-                                std::memcpy(&counts[2 * i],
-                                            &Table[std::to_integer<std::size_t>(codes[i])], 2);
-                        });
+    for (const std::byte code : codes) {
+        std::memcpy(counts, &Table[std::to_integer<std::size_t>(code)], 2);
+        counts += 2;
+    }
+}
+
+/// Sets the counts of 14 among some of the scene's entries, which have another code's count.
+///
+/// entries:      ascending; `counts` has one range after the other.
+/// num_entries:  all entries of the scene.
+void set_rare_counts(const SectionReader& reader, std::span<const EntryRange> entries,
+                     std::uint64_t num_entries, std::span<std::uint8_t> counts) {
     SmallNumbers gaps(reader, Rare, "entries of counts");
     std::uint64_t entry = 0;
     std::uint64_t before = 0; // own entries in the ranges before
@@ -91,7 +89,6 @@ std::vector<std::uint8_t> counts_of(const SectionReader& reader, std::span<const
             reader.fail(Rare, "entries with the code of 14");
         count = RareCount;
     }
-    return counts;
 }
 
 } // namespace
@@ -106,9 +103,14 @@ void add_counts(NewSections& sections, const VisibleCounts& counts) {
 void read_counts(const SectionReader& reader, VisibleCounts& counts) {
     counts.visible = reader.elements<std::uint64_t>(Visible);
     counts.mixed = reader.elements<std::uint64_t>(Mixed);
-    const std::vector<std::byte> codes = reader.bytes(Codes);
-    const EntryRange all{0, 2 * codes.size()};
-    counts.counts = counts_of(reader, codes, {&all, 1}, all.end);
+    constexpr std::uint64_t CountsPerCode = 2;
+    const EntryRange all{0, CountsPerCode * reader.size(Codes)};
+    counts.counts = files::large_vector<std::uint8_t>(all.end);
+    reader.unpack_pieces(Codes, CountsPerCode,
+                         [&](std::uint64_t begin, std::span<const std::byte> codes) {
+                             expand(codes, counts.counts.data() + CountsPerCode * begin);
+                         });
+    set_rare_counts(reader, {&all, 1}, all.end, counts.counts);
     try {
         counts.index();
     } catch (const std::invalid_argument&) {
@@ -161,7 +163,10 @@ VisibleCounts read_counts_of_tiles(const SectionReader& reader, const VisibleCou
     const std::uint64_t num_entries = pairs[num_tiles] * BlockSize;
     SectionPicker codes(bytes);
     reader.stream(Codes, num_entries / 2, [&](auto piece) { codes.take(piece); });
-    counts.counts = counts_of(reader, codes.elements<std::byte>(), entries, num_entries);
+    const std::vector<std::byte> own_codes = codes.elements<std::byte>();
+    counts.counts.resize(2 * own_codes.size());
+    expand(own_codes, counts.counts.data());
+    set_rare_counts(reader, entries, num_entries, counts.counts);
     try {
         counts.index();
     } catch (const std::invalid_argument&) {

@@ -17,6 +17,7 @@
 #include "files/compression.h"
 #include "files/free_memory.h"
 #include "files/hash.h"
+#include "files/large_vector.h"
 #include "files/output_file.h"
 #include "files/parallel.h"
 
@@ -88,35 +89,6 @@ std::string name_of(const SectionEntry& entry) {
 bool is_padded_with_zeros(const SectionEntry& entry) {
     return std::all_of(std::find(entry.name.begin(), entry.name.end(), '\0'), entry.name.end(),
                        [](char c) { return c == '\0'; });
-}
-
-/// A zstd frame of a section, and where its content begins and how many bytes it says it has.
-struct Frame {
-    std::span<const std::byte> stored;
-    std::uint64_t begin;
-    std::uint64_t size;
-};
-
-/// Finds a section's frames, whose sizes add up to `size`. All but the last have at least
-/// LeastFrame bytes, so that a file cannot have millions of them. Returns no frames for a section
-/// that breaks these rules.
-std::vector<Frame> frames_of(std::span<const std::byte> stored_bytes, std::uint64_t size) {
-    std::vector<Frame> frames;
-    std::uint64_t done = 0;
-    while (!stored_bytes.empty()) {
-        const std::size_t stored =
-            ZSTD_findFrameCompressedSize(stored_bytes.data(), stored_bytes.size());
-        if (ZSTD_isError(stored) != 0 || (!frames.empty() && frames.back().size < LeastFrame))
-            return {};
-        const unsigned long long own = ZSTD_getFrameContentSize(stored_bytes.data(), stored);
-        // The two errors are larger than any size.
-        if (own > size - done)
-            return {};
-        frames.push_back({.stored = stored_bytes.first(stored), .begin = done, .size = own});
-        done += own;
-        stored_bytes = stored_bytes.subspan(stored);
-    }
-    return done == size ? frames : std::vector<Frame>();
 }
 
 /// Writes sections frame by frame: a batch of frames is packed in parallel, written and forgotten.
@@ -414,23 +386,78 @@ const PackedSections::Entry& PackedSections::entry(const std::string& name,
 }
 
 std::vector<std::byte> PackedSections::bytes(const std::string& name, std::uint64_t cost) const {
-    const auto& [stored, size, checksum] = entry(name, cost);
-    budget_ -= size * cost;
-    const std::vector<Frame> frames = frames_of(stored, size);
-    const auto fail_unpacking = [&] {
-        fail("zstd data", fmt::format("a damaged section '{}'", name));
-    };
-    if (frames.empty())
-        fail_unpacking();
-    std::vector<std::byte> result(size);
-    files::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
-        const Frame& frame = frames[i];
-        const std::size_t unpacked = ZSTD_decompress(result.data() + frame.begin, frame.size,
-                                                     frame.stored.data(), frame.stored.size());
-        if (ZSTD_isError(unpacked) != 0 || unpacked != frame.size)
-            fail_unpacking();
+    std::vector<std::byte> result;
+    unpack(name, cost, [&result](std::size_t size) {
+        result = files::large_vector<std::byte>(size);
+        return std::span(result);
     });
     return result;
+}
+
+void PackedSections::unpack(
+    const std::string& name, std::uint64_t cost,
+    const std::function<std::span<std::byte>(std::size_t size)>& make_room) const {
+    const std::vector<Frame> frames = take(name, cost);
+    const std::span<std::byte> room = make_room(entries_.at(name).size);
+    files::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
+        unpack(name, frames[i], room.subspan(frames[i].begin, frames[i].size));
+    });
+}
+
+void PackedSections::unpack_pieces(
+    const std::string& name, std::uint64_t cost,
+    const std::function<void(std::uint64_t begin, std::span<const std::byte>)>& on_piece) const {
+    const std::vector<Frame> frames = take(name, cost);
+    files::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
+        thread_local std::vector<std::byte> room;
+        room.resize(std::max<std::size_t>(room.size(), frames[i].size));
+        const std::span<std::byte> piece = std::span(room).first(frames[i].size);
+        unpack(name, frames[i], piece);
+        on_piece(frames[i].begin, piece);
+    });
+}
+
+/// Finds a section's frames, whose sizes add up to `size`. All but the last have at least
+/// LeastFrame bytes, so that a file cannot have millions of them. Returns no frames for a section
+/// that breaks these rules.
+std::vector<PackedSections::Frame>
+PackedSections::frames_of(std::span<const std::byte> stored_bytes, std::uint64_t size) {
+    std::vector<Frame> frames;
+    std::uint64_t done = 0;
+    while (!stored_bytes.empty()) {
+        const std::size_t stored =
+            ZSTD_findFrameCompressedSize(stored_bytes.data(), stored_bytes.size());
+        if (ZSTD_isError(stored) != 0 || (!frames.empty() && frames.back().size < LeastFrame))
+            return {};
+        const unsigned long long own = ZSTD_getFrameContentSize(stored_bytes.data(), stored);
+        // The two errors are larger than any size.
+        if (own > size - done)
+            return {};
+        frames.push_back({.stored = stored_bytes.first(stored), .begin = done, .size = own});
+        done += own;
+        stored_bytes = stored_bytes.subspan(stored);
+    }
+    return done == size ? frames : std::vector<Frame>();
+}
+
+/// Takes a section from the budget. Returns its frames.
+std::vector<PackedSections::Frame> PackedSections::take(const std::string& name,
+                                                        std::uint64_t cost) const {
+    const auto& [stored, size, checksum] = entry(name, cost);
+    budget_ -= size * cost;
+    std::vector<Frame> frames = frames_of(stored, size);
+    if (frames.empty())
+        fail("zstd data", fmt::format("a damaged section '{}'", name));
+    return frames;
+}
+
+/// Unpacks a frame into bytes of its size.
+void PackedSections::unpack(const std::string& name, const Frame& frame,
+                            std::span<std::byte> bytes) const {
+    const std::size_t size =
+        ZSTD_decompress(bytes.data(), bytes.size(), frame.stored.data(), frame.stored.size());
+    if (ZSTD_isError(size) != 0 || size != bytes.size())
+        fail("zstd data", fmt::format("a damaged section '{}'", name));
 }
 
 void PackedSections::stream(const std::string& name, std::optional<std::uint64_t> wanted_size,

@@ -136,6 +136,18 @@ public:
     [[nodiscard]] std::vector<std::byte> bytes(const std::string& name,
                                                std::uint64_t cost = 1) const;
 
+    /// Returns how many bytes a section has. Fails where there is none.
+    [[nodiscard]] std::uint64_t size(const std::string& name) const { return entry(name, 1).size; }
+    /// Unpacks a section into the room that the caller makes for so many bytes. `cost` as in
+    /// bytes().
+    void unpack(const std::string& name, std::uint64_t cost,
+                const std::function<std::span<std::byte>(std::size_t size)>& make_room) const;
+    /// Unpacks a section and passes its pieces on, at the same time and in any order, each with its
+    /// place in the section. `cost` as in bytes().
+    void unpack_pieces(
+        const std::string& name, std::uint64_t cost,
+        const std::function<void(std::uint64_t begin, std::span<const std::byte>)>& on_piece) const;
+
     /// Passes the bytes of one section on, piece by piece in their order. Without a `size` it may
     /// have any.
     ///
@@ -150,6 +162,16 @@ private:
         std::uint64_t size;
         std::uint64_t checksum;
     };
+    /// A zstd frame of a section, and where its content begins and how many bytes it says it has.
+    struct Frame {
+        std::span<const std::byte> stored;
+        std::uint64_t begin;
+        std::uint64_t size;
+    };
+    [[nodiscard]] static std::vector<Frame> frames_of(std::span<const std::byte> stored_bytes,
+                                                      std::uint64_t size);
+    [[nodiscard]] std::vector<Frame> take(const std::string& name, std::uint64_t cost) const;
+    void unpack(const std::string& name, const Frame& frame, std::span<std::byte> bytes) const;
     /// Returns a section. Fails where the ones before left fewer than `cost` bytes for each of its.
     [[nodiscard]] const Entry& entry(const std::string& name, std::uint64_t cost) const;
     [[noreturn]] void fail(std::string_view expected, std::string_view got) const;

@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "files/json.h"
+#include "files/large_vector.h"
 #include "prt/scene/section_file.h"
 
 namespace relumine::prt {
@@ -48,14 +50,14 @@ public:
     /// Returns all elements of a section.
     template<typename Element>
     [[nodiscard]] std::vector<Element> elements(const std::string& name) const {
-        const std::vector<std::byte> stored = bytes(name);
-        if (stored.size() % sizeof(Element) != 0)
-            fail(name, fmt::format("a multiple of {} bytes", sizeof(Element)));
-        static_assert(std::is_trivially_copyable_v<Element>);
-        // The bytes come from operator new, aligned for every element. Copied so, the memory is not
-        // filled with zeros first.
-        const auto* begin = reinterpret_cast<const Element*>(stored.data());
-        return {begin, begin + stored.size() / sizeof(Element)};
+        std::vector<Element> result;
+        unpack(name, 1, [&](std::size_t size) {
+            if (size % sizeof(Element) != 0)
+                fail(name, fmt::format("a multiple of {} bytes", sizeof(Element)));
+            result = files::large_vector<Element>(size / sizeof(Element));
+            return std::as_writable_bytes(std::span(result));
+        });
+        return result;
     }
 
     /// Returns exactly `count` elements, or none where an optional section is absent.

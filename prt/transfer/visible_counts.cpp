@@ -1,7 +1,13 @@
 #include "prt/transfer/visible_counts.h"
 
 #include <algorithm>
+#include <atomic>
+#include <numeric>
 #include <stdexcept>
+
+#include "files/large_vector.h"
+#include "files/parallel.h"
+#include "prt/clusters/lattice.h"
 
 namespace relumine::prt {
 
@@ -21,22 +27,53 @@ void VisibleCounts::index() {
         throw std::invalid_argument("visible counts: expected one bit per block and leaf");
     const std::uint64_t last_word_mask =
         num_leaves % 64 == 0 ? ~std::uint64_t{0} : (std::uint64_t{1} << num_leaves % 64) - 1;
-    mixed_before.resize(num_words);
-    std::uint64_t num_pairs = 0;
-    for (std::size_t word = 0; word < num_words; ++word) {
-        if ((visible[word] & mixed[word]) != 0)
-            throw std::invalid_argument("visible counts: expected consistent bits");
-        mixed_before[word] = num_pairs;
-        num_pairs += static_cast<std::uint64_t>(std::popcount(mixed[word]));
-    }
+    // By parts: their pairs first, and from those what lies before each part.
+    constexpr std::size_t WordsPerPart = std::size_t{1} << 14;
+    const std::size_t num_parts = (num_words + WordsPerPart - 1) / WordsPerPart;
+    const auto for_words = [num_words](std::size_t part, const auto& visit) {
+        const std::size_t end = std::min((part + 1) * WordsPerPart, num_words);
+        for (std::size_t word = part * WordsPerPart; word < end; ++word)
+            visit(word);
+    };
+    std::vector<std::uint64_t> before(num_parts + 1);
+    std::atomic<bool> is_consistent = true;
+    files::parallel_for(std::size_t{0}, num_parts, [&](std::size_t part) {
+        std::uint64_t overlap = 0;
+        for_words(part, [&](std::size_t word) {
+            overlap |= visible[word] & mixed[word];
+            before[part + 1] += static_cast<std::uint64_t>(std::popcount(mixed[word]));
+        });
+        if (overlap != 0)
+            is_consistent = false;
+    });
+    if (!is_consistent)
+        throw std::invalid_argument("visible counts: expected consistent bits");
+    std::partial_sum(before.begin(), before.end(), before.begin());
+    mixed_before = files::large_vector<std::uint64_t>(num_words);
+    files::parallel_for(std::size_t{0}, num_parts, [&](std::size_t part) {
+        std::uint64_t num_pairs = before[part];
+        for_words(part, [&](std::size_t word) {
+            mixed_before[word] = num_pairs;
+            num_pairs += static_cast<std::uint64_t>(std::popcount(mixed[word]));
+        });
+    });
     for (std::size_t block = 0; block < num_blocks(); ++block) {
         const std::size_t last = word(block, words_per_block() - 1);
         if (((visible[last] | mixed[last]) & ~last_word_mask) != 0)
             throw std::invalid_argument("visible counts: expected no bits beyond the last leaf");
     }
-    if (num_pairs != num_mixed())
+    if (before.back() != num_mixed())
         throw std::invalid_argument("visible counts: expected 16 counts per mixed block");
-    if (std::any_of(counts.begin(), counts.end(), [](std::uint8_t c) { return c > 16; }))
+    std::atomic<bool> is_in_range = true;
+    files::parallel_for(files::IndexRange<std::size_t>(0, counts.size(), std::size_t{1} << 20),
+                        [&](const files::IndexRange<std::size_t>& part) {
+                            std::uint8_t largest = 0;
+                            for (std::size_t i = part.begin(); i < part.end(); ++i)
+                                largest = std::max(largest, counts[i]);
+                            if (largest > FullCount)
+                                is_in_range = false;
+                        });
+    if (!is_in_range)
         throw std::invalid_argument("visible counts: expected counts up to 16");
 }
 

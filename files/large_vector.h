@@ -1,0 +1,26 @@
+// Vectors of many megabytes.
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+#include <vector>
+
+namespace relumine::files {
+
+/// Asks the system for the pages of memory that is to be written, on all threads at once. One by
+/// one, as they are written first, they take 0.5 ms for each MB. Does nothing for less than some
+/// MB, and where the system cannot.
+void take_pages(void* memory, std::size_t size);
+
+/// Returns a vector of zeros, as std::vector<Element>(size) does.
+template<typename Element>
+[[nodiscard]] std::vector<Element> large_vector(std::size_t size) {
+    static_assert(std::is_trivially_copyable_v<Element>);
+    std::vector<Element> result;
+    result.reserve(size);
+    take_pages(result.data(), size * sizeof(Element));
+    result.resize(size);
+    return result;
+}
+
+} // namespace relumine::files
