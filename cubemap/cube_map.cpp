@@ -10,6 +10,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "files/large_vector.h"
 #include "files/parallel.h"
 
 namespace relumine::cubemap {
@@ -64,7 +65,8 @@ CubeMap::CubeMap(std::uint32_t face_resolution, const glm::vec3& radiance)
         throw std::invalid_argument(
             fmt::format("cube map: expected a face resolution from 1 to {}, got {}", MaxResolution,
                         face_resolution));
-    texels.assign(std::size_t{NumFaces} * face_resolution * face_resolution, radiance);
+    texels =
+        files::large_vector(std::size_t{NumFaces} * face_resolution * face_resolution, radiance);
 }
 
 CubeMap written_over(CubeMap memory, std::uint32_t face_resolution) {

@@ -12,14 +12,15 @@ namespace relumine::files {
 /// MB, and where the system cannot.
 void take_pages(void* memory, std::size_t size);
 
-/// Returns a vector of zeros, as std::vector<Element>(size) does.
+/// Returns std::vector(size, value).
 template<typename Element>
-[[nodiscard]] std::vector<Element> large_vector(std::size_t size) {
+[[nodiscard]] std::vector<Element> large_vector(std::size_t size,
+                                                const Element& value = Element()) {
     static_assert(std::is_trivially_copyable_v<Element>);
     std::vector<Element> result;
     result.reserve(size);
     take_pages(result.data(), size * sizeof(Element));
-    result.resize(size);
+    result.resize(size, value);
     return result;
 }
 

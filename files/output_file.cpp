@@ -15,6 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "files/large_vector.h"
 #include "files/posix_file.h"
 
 namespace relumine::files {
@@ -224,7 +225,7 @@ namespace {
 
 std::vector<std::byte> read_from(const std::filesystem::path& path, const Descriptor& file,
                                  std::uint64_t offset, std::size_t size) {
-    std::vector<std::byte> bytes(size);
+    auto bytes = large_vector<std::byte>(size);
     std::size_t done = 0;
     while (done < size) {
         const ssize_t got = ::pread(file.get(), bytes.data() + done, size - done,

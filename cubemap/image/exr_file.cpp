@@ -23,6 +23,7 @@
 #include "cubemap/image/image_file.h"
 #include "cubemap/image/image_layout.h"
 #include "files/joined.h"
+#include "files/large_vector.h"
 #include "files/output_file.h"
 #include "files/parallel.h"
 #include "files/printable.h"
@@ -116,7 +117,8 @@ public:
         ImageFile image;
         image.width = window_.width;
         image.height = window_.height;
-        image.pixels.resize(static_cast<std::size_t>(image.width) * image.height);
+        image.pixels =
+            files::large_vector<glm::vec3>(static_cast<std::size_t>(image.width) * image.height);
         if (channels_.kind == Channels::Kind::LuminanceChroma)
             read_luminance_chroma(image);
         else

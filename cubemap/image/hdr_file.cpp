@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "cubemap/image/image_file.h"
+#include "files/large_vector.h"
 #include "files/printable.h"
 
 namespace relumine::cubemap {
@@ -45,7 +46,7 @@ public:
         ImageFile image;
         image.width = width_;
         image.height = height_;
-        image.pixels.resize(static_cast<std::size_t>(width_) * height_);
+        image.pixels = files::large_vector<glm::vec3>(static_cast<std::size_t>(width_) * height_);
         std::vector<Rgbe> scanline(width_);
         for (std::uint32_t row = 0; row < height_; ++row) {
             read_scanline(scanline, row);

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "cubemap/resample/pixel_shares.h"
+#include "files/large_vector.h"
 #include "files/parallel.h"
 
 namespace relumine::cubemap::detail {
@@ -92,7 +93,7 @@ void KeptShares::fill_face(const std::vector<glm::vec3>& pixels, std::size_t fac
 }
 
 std::vector<glm::vec3> KeptShares::to_pixels(const CubeMap& map) const {
-    std::vector<glm::vec3> pixels(std::size_t{shape_.width} * shape_.height);
+    auto pixels = files::large_vector<glm::vec3>(std::size_t{shape_.width} * shape_.height);
     files::parallel_for(std::uint32_t{0}, shape_.height, [&](std::uint32_t y) {
         const Row& row = rows_[y];
         std::uint32_t begin = 0;

@@ -6,6 +6,7 @@
 #include <glm/matrix.hpp>
 
 #include "cubemap/resample/pixel_shares.h"
+#include "files/large_vector.h"
 #include "files/parallel.h"
 
 namespace relumine::cubemap {
@@ -97,7 +98,7 @@ PixelLinks::PixelLinks(const ImageShape& source, const ImageShape& target,
 }
 
 std::vector<glm::vec3> PixelMeans::of(const std::vector<glm::vec3>& pixels) const {
-    std::vector<glm::vec3> result(starts.size() - 1);
+    auto result = files::large_vector<glm::vec3>(starts.size() - 1);
     files::parallel_for(files::IndexRange<std::size_t>(0, result.size()), [&](const auto& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
             glm::dvec3 sum(0.0);

@@ -10,6 +10,7 @@
 #include "cubemap/resample/pixel_shares.h"
 #include "cubemap/resample/resample_lat_long.h"
 #include "cubemap/resample/resample_projection.h"
+#include "files/large_vector.h"
 #include "files/parallel.h"
 
 namespace relumine::cubemap {
@@ -135,7 +136,7 @@ EnvironmentImage to_image(const CubeMap& map, Layout layout, std::uint32_t width
     image.layout = layout;
     image.sampling = sampling;
     image.assumptions = "made from a cube map";
-    image.pixels.resize(static_cast<std::size_t>(width) * height);
+    image.pixels = files::large_vector<glm::vec3>(static_cast<std::size_t>(width) * height);
     check(image);
     if (!has_faces(layout)) {
         detail::fill_from_shares(map, image);

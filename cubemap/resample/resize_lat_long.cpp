@@ -10,6 +10,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "files/large_vector.h"
 #include "files/parallel.h"
 
 namespace relumine::cubemap {
@@ -104,7 +105,7 @@ LatLongResize::LatLongResize(const ImageShape& source, const ImageShape& target,
         [&](double v) { return is_turned_over ? 1.0 - v : v; },
         [](double a, double b) { return std::cos(Pi * a) - std::cos(Pi * b); });
     tables_ = std::make_unique<Tables>(Tables{source, target, std::move(columns), std::move(rows)});
-    wide_.resize(std::size_t{target.width} * source.height);
+    wide_ = files::large_vector<glm::vec3>(std::size_t{target.width} * source.height);
 }
 LatLongResize::~LatLongResize() = default;
 
