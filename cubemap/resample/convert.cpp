@@ -21,6 +21,7 @@
 #include "cubemap/resample/resample.h"
 #include "cubemap/resample/resample_lat_long.h"
 #include "cubemap/resample/resize_lat_long.h"
+#include "files/large_vector.h"
 #include "files/parallel.h"
 
 namespace relumine::cubemap {
@@ -40,7 +41,7 @@ EnvironmentImage image_of(const ImageShape& shape, Pixels pixels) {
 }
 
 EnvironmentImage empty_image(const ImageShape& shape) {
-    return image_of(shape, Pixels(std::size_t{shape.width} * shape.height));
+    return image_of(shape, files::large_vector<glm::vec3>(std::size_t{shape.width} * shape.height));
 }
 
 /// Copies pixel by pixel. Returns nothing unless every target pixel lies on a source pixel.

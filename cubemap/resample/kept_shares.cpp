@@ -1,6 +1,7 @@
 #include "cubemap/resample/kept_shares.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <span>
@@ -47,20 +48,20 @@ KeptShares::Row KeptShares::found_row(std::uint32_t y, RowsOfShares& finder) con
 
 CubeMap KeptShares::to_cube(const std::vector<glm::vec3>& pixels) const {
     CubeMap map(resolution_);
-    // Each face has one writer, who adds in the order of the rows.
-    files::parallel_for(std::size_t{0}, NumFaces,
-                        [&](std::size_t face) { fill_face(pixels, face, map); });
+    // Each face has one writer, who adds in the order of the rows. A thread's faces share memory.
+    std::atomic<std::size_t> next_face = 0;
+    files::parallel_for(std::size_t{0}, files::num_threads(), [&](std::size_t) {
+        std::vector<Sum> sums;
+        for (std::size_t face = next_face++; face < NumFaces; face = next_face++)
+            fill_face(pixels, face, sums, map);
+    });
     return map;
 }
 
 void KeptShares::fill_face(const std::vector<glm::vec3>& pixels, std::size_t face,
-                           CubeMap& map) const {
-    struct Sum {
-        glm::dvec3 radiance{0.0};
-        double weight = 0.0;
-    };
+                           std::vector<Sum>& sums, CubeMap& map) const {
     const std::size_t size = std::size_t{resolution_} * resolution_;
-    std::vector<Sum> sums(size);
+    sums.assign(size, {});
     for (std::uint32_t y = 0; y < shape_.height; ++y) {
         const Row& row = rows_[y];
         std::uint32_t begin = 0;

@@ -54,8 +54,15 @@ private:
         std::vector<double> solid_angles;
     };
 
+    struct Sum {
+        glm::dvec3 radiance{0.0};
+        double weight = 0.0;
+    };
+
     [[nodiscard]] Row found_row(std::uint32_t y, RowsOfShares& finder) const;
-    void fill_face(const std::vector<glm::vec3>& pixels, std::size_t face, CubeMap& map) const;
+    /// `sums` is memory to use.
+    void fill_face(const std::vector<glm::vec3>& pixels, std::size_t face, std::vector<Sum>& sums,
+                   CubeMap& map) const;
 
     ImageShape shape_;
     std::uint32_t resolution_;
