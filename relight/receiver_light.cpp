@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "files/large_vector.h"
 #include "files/parallel.h"
 
 namespace relumine::relight {
@@ -18,8 +19,10 @@ namespace relumine::relight {
 ReceiverLight::ReceiverLight(const prt::Transfer& transfer, const ShadowRays& rays,
                              std::uint32_t harmonics)
     : transfer_(transfer), traced_(transfer, rays), normals_(block_normals(transfer.normals)),
-      words_(tile_words(transfer, normals_)), light_(transfer.counts.num_blocks()),
-      lights_(transfer.num_clusters()), radiance_(transfer.num_receivers()),
+      words_(tile_words(transfer, normals_)),
+      light_(files::large_vector<BlockLight>(transfer.counts.num_blocks())),
+      lights_(transfer.num_clusters()),
+      radiance_(files::large_vector<glm::vec3>(transfer.num_receivers())),
       diffuse_(transfer.surfaces.size()) {
     if ((!transfer.surfaces.empty() || transfer.glossy) &&
         transfer.surfaces.size() != transfer.num_receivers())

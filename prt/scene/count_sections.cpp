@@ -104,7 +104,7 @@ void read_counts(const SectionReader& reader, VisibleCounts& counts) {
     counts.visible = reader.elements<std::uint64_t>(Visible);
     counts.mixed = reader.elements<std::uint64_t>(Mixed);
     constexpr std::uint64_t CountsPerCode = 2;
-    const EntryRange all{0, CountsPerCode * reader.size(Codes)};
+    const EntryRange all{0, CountsPerCode * reader.size(Codes, CountsPerCode)};
     counts.counts = files::large_vector<std::uint8_t>(all.end);
     reader.unpack_pieces(Codes, CountsPerCode,
                          [&](std::uint64_t begin, std::span<const std::byte> codes) {
@@ -164,7 +164,7 @@ VisibleCounts read_counts_of_tiles(const SectionReader& reader, const VisibleCou
     SectionPicker codes(bytes);
     reader.stream(Codes, num_entries / 2, [&](auto piece) { codes.take(piece); });
     const std::vector<std::byte> own_codes = codes.elements<std::byte>();
-    counts.counts.resize(2 * own_codes.size());
+    counts.counts = files::large_vector<std::uint8_t>(2 * own_codes.size());
     expand(own_codes, counts.counts.data());
     set_rare_counts(reader, entries, num_entries, counts.counts);
     try {

@@ -408,13 +408,16 @@ void PackedSections::unpack_pieces(
     const std::string& name, std::uint64_t cost,
     const std::function<void(std::uint64_t begin, std::span<const std::byte>)>& on_piece) const {
     const std::vector<Frame> frames = take(name, cost);
-    files::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
-        thread_local std::vector<std::byte> room;
-        room.resize(std::max<std::size_t>(room.size(), frames[i].size));
-        const std::span<std::byte> piece = std::span(room).first(frames[i].size);
-        unpack(name, frames[i], piece);
-        on_piece(frames[i].begin, piece);
-    });
+    files::parallel_for(
+        files::IndexRange<std::size_t>(0, frames.size()), [&](const auto& of_thread) {
+            std::vector<std::byte> room;
+            for (std::size_t i = of_thread.begin(); i < of_thread.end(); ++i) {
+                room.resize(std::max<std::size_t>(room.size(), frames[i].size));
+                const std::span<std::byte> piece = std::span(room).first(frames[i].size);
+                unpack(name, frames[i], piece);
+                on_piece(frames[i].begin, piece);
+            }
+        });
 }
 
 /// Finds a section's frames, whose sizes add up to `size`. All but the last have at least

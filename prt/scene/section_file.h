@@ -136,8 +136,11 @@ public:
     [[nodiscard]] std::vector<std::byte> bytes(const std::string& name,
                                                std::uint64_t cost = 1) const;
 
-    /// Returns how many bytes a section has. Fails where there is none.
-    [[nodiscard]] std::uint64_t size(const std::string& name) const { return entry(name, 1).size; }
+    /// Returns how many bytes a section unpacks to. Fails where there is none. `cost` as in
+    /// bytes().
+    [[nodiscard]] std::uint64_t size(const std::string& name, std::uint64_t cost = 1) const {
+        return entry(name, cost).size;
+    }
     /// Unpacks a section into the room that the caller makes for so many bytes. `cost` as in
     /// bytes().
     void unpack(const std::string& name, std::uint64_t cost,

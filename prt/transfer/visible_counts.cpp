@@ -7,7 +7,6 @@
 
 #include "files/large_vector.h"
 #include "files/parallel.h"
-#include "prt/clusters/lattice.h"
 
 namespace relumine::prt {
 
@@ -70,7 +69,7 @@ void VisibleCounts::index() {
                             std::uint8_t largest = 0;
                             for (std::size_t i = part.begin(); i < part.end(); ++i)
                                 largest = std::max(largest, counts[i]);
-                            if (largest > FullCount)
+                            if (largest > 16)
                                 is_in_range = false;
                         });
     if (!is_in_range)

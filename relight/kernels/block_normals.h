@@ -8,6 +8,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "files/large_vector.h"
 #include "prt/transfer/visible_counts.h"
 
 namespace relumine::relight {
@@ -21,7 +22,8 @@ struct alignas(64) BlockNormals {
 ///
 /// Shape:   [ceil(normals.size() / 16)].
 [[nodiscard]] inline std::vector<BlockNormals> block_normals(std::span<const glm::vec3> normals) {
-    std::vector<BlockNormals> blocks((normals.size() + prt::BlockSize - 1) / prt::BlockSize);
+    auto blocks =
+        files::large_vector<BlockNormals>((normals.size() + prt::BlockSize - 1) / prt::BlockSize);
     for (std::size_t i = 0; i < normals.size(); ++i)
         for (int axis = 0; axis < 3; ++axis)
             blocks[i / prt::BlockSize].axes[static_cast<std::size_t>(axis)][i % prt::BlockSize] =

@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "files/large_vector.h"
 #include "files/parallel.h"
 #include "relight/sharp/light_packets.h"
 #include "relight/sharp/traced_kernel.h"
@@ -19,7 +20,7 @@ TracedLight::TracedLight(const prt::Transfer& transfer, const ShadowRays& rays)
         return;
     if (rays.positions.size() != transfer.num_receivers())
         throw std::invalid_argument("expected one position per receiver");
-    diffuse_.resize(transfer.counts.num_blocks());
+    diffuse_ = files::large_vector<TracedRadiance>(transfer.counts.num_blocks());
     if (transfer.glossy)
         highlights_.resize(transfer.num_receivers());
 }
