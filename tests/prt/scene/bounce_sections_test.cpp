@@ -1,8 +1,12 @@
 #include "prt/scene/bounce_sections.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <functional>
+#include <random>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -49,6 +53,29 @@ TEST(BounceSections, KeepEveryRow) {
     add_bounce_sections(sections, matrix);
     const SectionReader reader("scene.prt", packed_sections(sections));
     EXPECT_EQ(read_bounces(reader, receivers()), matrix);
+}
+
+TEST(BounceSections, KeepListsOfManyMegabytes) {
+    // They are read in pieces of a megabyte on all threads; the longest list spans several.
+    std::mt19937 random(1);
+    BounceMatrix matrix{.weights = std::vector(NumReceivers, 0.125f),
+                        .emitters = {},
+                        .averaged = {},
+                        .spectral_radius = 0.25f};
+    for (std::size_t place = 0; place < NumReceivers; ++place) {
+        std::vector<std::uint32_t> list(place == 40'000 ? 3'000'000
+                                                        : random() % 3 * (random() % 60));
+        for (std::uint32_t& emitter : list)
+            emitter = static_cast<std::uint32_t>(random() % NumReceivers);
+        std::sort(list.begin(), list.end());
+        matrix.emitters.append(list);
+        matrix.averaged.append({});
+    }
+    NewSections sections;
+    add_bounce_sections(sections, matrix);
+    const SectionReader reader("scene.prt", packed_sections(sections));
+    ASSERT_GT(reader.size("bounce_hits"), std::size_t{6} << 20);
+    EXPECT_TRUE(read_bounces(reader, receivers()) == matrix);
 }
 
 TEST(BounceSections, MayBeAbsent) {

@@ -1,8 +1,12 @@
 #include "prt/transfer/visible_counts.h"
 
+#include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <random>
 #include <stdexcept>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -134,6 +138,35 @@ TEST(VisibleCounts, IndexRestoresWhatIsNotStored) {
     again.mixed_before.clear();
     again.index();
     EXPECT_EQ(again.mixed_before, counts.mixed_before);
+}
+
+TEST(VisibleCounts, IndexAddsUpAcrossItsParts) {
+    // More words than one thread adds up at once.
+    std::mt19937_64 random(5);
+    VisibleCounts counts{.num_receivers = 50'000 * BlockSize, .num_leaves = 64};
+    counts.visible.resize(50'000);
+    std::vector<std::uint64_t> expected;
+    std::uint64_t num_pairs = 0;
+    for (std::size_t word = 0; word < counts.visible.size(); ++word) {
+        expected.push_back(num_pairs);
+        counts.mixed.push_back(random() & random() & random());
+        counts.visible[word] = random() & ~counts.mixed[word];
+        num_pairs += static_cast<std::uint64_t>(std::popcount(counts.mixed[word]));
+    }
+    counts.counts.assign(num_pairs * BlockSize, 3);
+    counts.index();
+    EXPECT_EQ(counts.mixed_before, expected);
+    for (const std::size_t at :
+         {std::size_t{0}, counts.counts.size() / 2, counts.counts.size() - 1}) {
+        VisibleCounts bad = counts;
+        bad.counts[at] = 17;
+        EXPECT_THROW(bad.index(), std::invalid_argument);
+    }
+    for (const std::size_t word : {std::size_t{0}, std::size_t{49'999}}) {
+        VisibleCounts bad = counts;
+        bad.visible[word] |= bad.mixed[word];
+        EXPECT_THROW(bad.index(), std::invalid_argument);
+    }
 }
 
 TEST(VisibleCounts, IndexRefusesContradictions) {
