@@ -149,7 +149,8 @@ TEST(VisibleCounts, IndexAddsUpAcrossItsParts) {
     std::uint64_t num_pairs = 0;
     for (std::size_t word = 0; word < counts.visible.size(); ++word) {
         expected.push_back(num_pairs);
-        counts.mixed.push_back(random() & random() & random());
+        const std::uint64_t some = random(), others = random();
+        counts.mixed.push_back(some & others);
         counts.visible[word] = random() & ~counts.mixed[word];
         num_pairs += static_cast<std::uint64_t>(std::popcount(counts.mixed[word]));
     }
