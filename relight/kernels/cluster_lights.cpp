@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
+#include <cstring>
 
 #include <glm/geometric.hpp>
 
@@ -187,8 +187,9 @@ std::vector<VectorIrradiance> LightBinning::sums(const cubemap::CubeMap& environ
                                                  const BandSums& bands, Texels texels) const {
     const std::span<const prt::Cell> cells = bands.cells();
     const BandSums::Result whole = bands.sums(environment, weights_);
-    const bool is_good =
-        bands.reads_all() && whole.largest_bits <= std::bit_cast<std::uint32_t>(MaxRadiance);
+    std::uint32_t most_bits = 0; // Emscripten's library has no std::bit_cast
+    std::memcpy(&most_bits, &MaxRadiance, sizeof most_bits);
+    const bool is_good = bands.reads_all() && whole.largest_bits <= most_bits;
     if (texels == Texels::Unchecked && !is_good)
         require_radiance(environment.texels);
     std::vector<VectorIrradiance> result(cells.size());
