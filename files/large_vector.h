@@ -7,9 +7,9 @@
 
 namespace relumine::files {
 
-/// Asks the system for the pages of memory that is to be written, on all threads at once. One by
-/// one, as they are written first, they take 0.5 ms for each MB. Does nothing for less than some
-/// MB, and where the system cannot.
+/// Asks the system for the pages of memory that is to be written, on all threads at once. Else each
+/// page is a fault of its own when it is written first, which takes longer than what is written.
+/// Does nothing for less than some MB, and where the system cannot.
 void take_pages(void* memory, std::size_t size);
 
 /// Returns std::vector(size, value).
