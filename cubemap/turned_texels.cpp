@@ -18,7 +18,7 @@ std::uint32_t num_parts(std::uint32_t size, std::uint32_t most) {
     return (size + most - 1) / most;
 }
 
-/// Of so many rows and columns of tiles that make up a rectangle whose first texel is (0, 0).
+/// Returns a tile of a rectangle whose first texel is (0, 0), cut into rows and columns of tiles.
 TexelRectangle tile_of(const TexelRectangle& whole, std::uint32_t num_rows, std::uint32_t row,
                        std::uint32_t num_columns, std::uint32_t column) {
     return {.face = whole.face,

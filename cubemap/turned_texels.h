@@ -57,7 +57,7 @@ private:
     std::uint32_t num_rows_, num_columns_;
     /// Of the first texel of each face of the turned map, on each of the map's.
     std::array<std::array<TilePlace, NumFaces>, NumFaces> places_;
-    /// Turns, of which the first changes nothing. Each of them times -1 is a symmetry, too.
+    /// Turns, the identity first. Each turn times -1 is a symmetry, too.
     std::vector<Symmetry> symmetries_;
     /// Rectangles of the turned map. Of texels that symmetries carry to each other, one lies here.
     std::vector<TexelRectangle> parts_;

@@ -42,71 +42,6 @@ void add_lists(NewSections& sections, const std::string& size_name, const std::s
     sections[name] = bytes_of(bytes);
 }
 
-/// The small numbers of a section that begin in pieces of its bytes. A number ends at a byte below
-/// 2^7.
-class NumberPieces {
-public:
-    struct Start {
-        std::size_t byte = 0;
-        /// Numbers before it.
-        std::uint64_t number = 0;
-    };
-
-    explicit NumberPieces(std::span<const std::byte> bytes) : bytes_(bytes) {
-        const std::size_t num_pieces = (bytes.size() + PieceBytes - 1) / PieceBytes;
-        std::vector<std::uint64_t> ends(num_pieces);
-        files::parallel_for(std::size_t{0}, num_pieces, [&](std::size_t piece) {
-            const auto own = bytes.subspan(piece * PieceBytes)
-                                 .first(std::min(PieceBytes, bytes.size() - piece * PieceBytes));
-            ends[piece] = static_cast<std::uint64_t>(std::count_if(own.begin(), own.end(), is_end));
-        });
-        std::uint64_t before = 0;
-        for (std::size_t piece = 0; piece < num_pieces; ++piece) {
-            Start start{.byte = piece * PieceBytes, .number = before};
-            if (start.byte != 0 && !is_end(bytes[start.byte - 1]))
-                skip(1, start);
-            starts_.push_back(start);
-            before += ends[piece];
-        }
-        starts_.push_back({.byte = bytes.size(), .number = before});
-    }
-
-    [[nodiscard]] std::size_t size() const { return starts_.size() - 1; }
-    [[nodiscard]] const Start& start(std::size_t piece) const { return starts_[piece]; }
-    [[nodiscard]] std::uint64_t num_numbers() const { return starts_.back().number; }
-    /// Whether the last number has its end.
-    [[nodiscard]] bool are_whole() const { return bytes_.empty() || is_end(bytes_.back()); }
-
-    /// Goes on by so many numbers, or to the end.
-    void skip(std::uint64_t count, Start& at) const {
-        for (; count != 0 && at.byte < bytes_.size(); ++at.byte)
-            if (is_end(bytes_[at.byte])) {
-                --count;
-                ++at.number;
-            }
-    }
-    /// Returns the number here, which has its end, and goes on to the next.
-    [[nodiscard]] std::uint64_t next(Start& at) const {
-        std::uint64_t number = 0;
-        for (std::uint32_t shift = 0;; shift += 7) {
-            const auto byte = std::to_integer<std::uint64_t>(bytes_[at.byte++]);
-            number |= shift < 63 ? (byte & 0x7fu) << shift : ~std::uint64_t{0};
-            if (byte < 0x80u)
-                break;
-        }
-        ++at.number;
-        return number;
-    }
-
-private:
-    static constexpr std::size_t PieceBytes = std::size_t{1} << 20;
-    static bool is_end(std::byte byte) { return (byte & std::byte{0x80}) == std::byte{0}; }
-
-    std::span<const std::byte> bytes_;
-    /// Where the first number of each piece begins, and the end of all.
-    std::vector<Start> starts_;
-};
-
 PlaceLists read_lists(const SectionReader& reader, const std::string& size_name,
                       const std::string& name, std::size_t num_lists, std::size_t num_receivers) {
     PlaceLists lists;
@@ -130,18 +65,18 @@ PlaceLists read_lists(const SectionReader& reader, const std::string& size_name,
             lists.begin.begin());
     };
     files::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t piece) {
-        NumberPieces::Start at = pieces.start(piece);
-        const std::size_t end = first_list(pieces.start(piece + 1).number);
+        NumberPieces::Place at = pieces.begin(piece);
+        const std::size_t end = first_list(pieces.begin(piece + 1).number);
         std::size_t list = first_list(at.number);
         if (list < end)
             pieces.skip(lists.begin[list] - at.number, at);
         for (; list < end; ++list)
             for (std::uint32_t place = 0; at.number < lists.begin[list + 1];) {
                 std::uint32_t& read = lists.places[at.number];
-                const std::uint64_t step = pieces.next(at);
-                if (step >= num_receivers - place)
+                const std::optional<std::uint64_t> step = pieces.next(at);
+                if (!step || *step >= num_receivers - place)
                     reader.fail(name, "numbers of receivers");
-                read = place += static_cast<std::uint32_t>(step);
+                read = place += static_cast<std::uint32_t>(*step);
             }
     });
     return lists;

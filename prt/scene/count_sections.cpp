@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "files/large_vector.h"
+#include "files/parallel.h"
 #include "prt/clusters/lattice.h"
 #include "prt/scene/section_group.h"
 #include "prt/scene/section_picker.h"
@@ -57,12 +58,14 @@ std::vector<std::byte> rare_entries(const std::vector<std::uint8_t>& counts) {
     return bytes_of(bytes);
 }
 
+constexpr std::size_t CountsPerCode = 2;
+
 /// Writes two counts for each byte of codes.
 void expand(std::span<const std::byte> codes, std::uint8_t* counts) {
     static constexpr std::array<std::uint16_t, 256> Table = counts_by_code();
     for (const std::byte code : codes) {
-        std::memcpy(counts, &Table[std::to_integer<std::size_t>(code)], 2);
-        counts += 2;
+        std::memcpy(counts, &Table[std::to_integer<std::size_t>(code)], CountsPerCode);
+        counts += CountsPerCode;
     }
 }
 
@@ -103,7 +106,6 @@ void add_counts(NewSections& sections, const VisibleCounts& counts) {
 void read_counts(const SectionReader& reader, VisibleCounts& counts) {
     counts.visible = reader.elements<std::uint64_t>(Visible);
     counts.mixed = reader.elements<std::uint64_t>(Mixed);
-    constexpr std::uint64_t CountsPerCode = 2;
     const EntryRange all{0, CountsPerCode * reader.size(Codes, CountsPerCode)};
     counts.counts = files::large_vector<std::uint8_t>(all.end);
     reader.unpack_pieces(Codes, CountsPerCode,
@@ -164,8 +166,12 @@ VisibleCounts read_counts_of_tiles(const SectionReader& reader, const VisibleCou
     SectionPicker codes(bytes);
     reader.stream(Codes, num_entries / 2, [&](auto piece) { codes.take(piece); });
     const std::vector<std::byte> own_codes = codes.elements<std::byte>();
-    counts.counts = files::large_vector<std::uint8_t>(2 * own_codes.size());
-    expand(own_codes, counts.counts.data());
+    counts.counts = files::large_vector<std::uint8_t>(CountsPerCode * own_codes.size());
+    files::parallel_for(files::IndexRange<std::size_t>(0, own_codes.size(), SectionPiece),
+                        [&](const files::IndexRange<std::size_t>& piece) {
+                            expand(std::span(own_codes).subspan(piece.begin(), piece.size()),
+                                   counts.counts.data() + CountsPerCode * piece.begin());
+                        });
     set_rare_counts(reader, entries, num_entries, counts.counts);
     try {
         counts.index();

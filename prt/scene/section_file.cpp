@@ -400,7 +400,7 @@ void PackedSections::unpack(
     const std::vector<Frame> frames = take(name, cost);
     const std::span<std::byte> room = make_room(entries_.at(name).size);
     files::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
-        unpack(name, frames[i], room.subspan(frames[i].begin, frames[i].size));
+        unpack_frame(name, frames[i], room.subspan(frames[i].begin, frames[i].size));
     });
 }
 
@@ -414,15 +414,15 @@ void PackedSections::unpack_pieces(
             for (std::size_t i = of_thread.begin(); i < of_thread.end(); ++i) {
                 room.resize(std::max<std::size_t>(room.size(), frames[i].size));
                 const std::span<std::byte> piece = std::span(room).first(frames[i].size);
-                unpack(name, frames[i], piece);
+                unpack_frame(name, frames[i], piece);
                 on_piece(frames[i].begin, piece);
             }
         });
 }
 
 /// Finds a section's frames, whose sizes add up to `size`. All but the last have at least
-/// LeastFrame bytes, so that a file cannot have millions of them. Returns no frames for a section
-/// that breaks these rules.
+/// LeastFrame bytes, so that a file cannot have millions of frames. Returns none for a section
+/// that breaks one of these rules.
 std::vector<PackedSections::Frame>
 PackedSections::frames_of(std::span<const std::byte> stored_bytes, std::uint64_t size) {
     std::vector<Frame> frames;
@@ -455,8 +455,8 @@ std::vector<PackedSections::Frame> PackedSections::take(const std::string& name,
 }
 
 /// Unpacks a frame into bytes of its size.
-void PackedSections::unpack(const std::string& name, const Frame& frame,
-                            std::span<std::byte> bytes) const {
+void PackedSections::unpack_frame(const std::string& name, const Frame& frame,
+                                  std::span<std::byte> bytes) const {
     const std::size_t size =
         ZSTD_decompress(bytes.data(), bytes.size(), frame.stored.data(), frame.stored.size());
     if (ZSTD_isError(size) != 0 || size != bytes.size())

@@ -174,7 +174,8 @@ private:
     [[nodiscard]] static std::vector<Frame> frames_of(std::span<const std::byte> stored_bytes,
                                                       std::uint64_t size);
     [[nodiscard]] std::vector<Frame> take(const std::string& name, std::uint64_t cost) const;
-    void unpack(const std::string& name, const Frame& frame, std::span<std::byte> bytes) const;
+    void unpack_frame(const std::string& name, const Frame& frame,
+                      std::span<std::byte> bytes) const;
     /// Returns a section. Fails where the ones before left fewer than `cost` bytes for each of its.
     [[nodiscard]] const Entry& entry(const std::string& name, std::uint64_t cost) const;
     [[noreturn]] void fail(std::string_view expected, std::string_view got) const;
