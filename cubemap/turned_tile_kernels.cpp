@@ -137,7 +137,7 @@ void fill_row(std::int32_t row, std::int32_t begin, std::int32_t end, const Dens
         const auto store = [&](std::size_t i, const auto& light) {
             Cell& cell = cells[i];
             hn::Store(sum, ds, cell.left.data() + j);
-            hn::Store(change_sum, ds, cell.change_left.data() + j);
+            hn::Store(hn::DemoteTo(narrow, change_sum), narrow, cell.change_left.data() + j);
             hn::Store(hn::DemoteTo(narrow, light), narrow, cell.density.data() + j);
         };
         if (end == work.num_cells)
@@ -265,8 +265,10 @@ void sum_lines(const Work::Pieces& pieces, std::size_t first, std::size_t end, s
             for (std::size_t j = 0; j < NumVectors; ++j) {
                 sum[j] = hn::MulAdd(hn::Set(ds, of_left[k]),
                                     hn::Load(ds, cell.left.data() + j * Step), sum[j]);
-                sum[j] = hn::MulAdd(hn::Set(ds, of_change[k]),
-                                    hn::Load(ds, cell.change_left.data() + j * Step), sum[j]);
+                const auto change_left =
+                    hn::PromoteTo(ds, hn::Load(hn::Rebind<float, SumLanes>(),
+                                               cell.change_left.data() + j * Step));
+                sum[j] = hn::MulAdd(hn::Set(ds, of_change[k]), change_left, sum[j]);
             }
             for (std::size_t j = 0; j < NumNarrow; ++j)
                 of_texels[j] = hn::MulAdd(hn::Set(narrow, of_density[k]),

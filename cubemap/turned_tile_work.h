@@ -78,7 +78,8 @@ struct TileWork {
     struct alignas(64) Cell {
         /// What lies to the left of the cell in its row; and how that changes over the row's height
         /// where it does not as at the middle of the part.
-        Sum left, change_left;
+        Sum left;
+        std::array<float, NumSums> change_left;
         /// What lies in the cell, for each unit of its area.
         std::array<float, NumSums> density;
     };

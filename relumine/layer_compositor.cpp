@@ -127,7 +127,18 @@ LayerCompositor::LayerCompositor(const LightState& state,
 }
 
 cubemap::CubeMap LayerCompositor::take_turned() {
-    return turned_base_ ? std::exchange(*turned_base_, {}) : cubemap::CubeMap();
+    // turned_base_ and now_.base
+    if (!turned_base_ || turned_base_.use_count() > 2)
+        return {};
+    return std::exchange(*turned_base_, {});
+}
+
+std::shared_ptr<const cubemap::CubeMap> LayerCompositor::base_alone() {
+    if (std::any_of(now_.layers.begin(), now_.layers.end(),
+                    [](const cubemap::LightLayer& layer) { return layer.on; }))
+        return nullptr;
+    changed_ = cubemap::all_texels(now_.base->resolution);
+    return now_.base;
 }
 
 cubemap::CubeMap LayerCompositor::whole(cubemap::CubeMap memory) {

@@ -29,8 +29,12 @@ public:
 
     [[nodiscard]] bool is_set() const { return now_.base != nullptr; }
 
-    /// Gives away the turned base, if it made one; nothing else may be asked of it then.
+    /// Gives away the turned base, if it made one that nobody else holds; nothing else may be asked
+    /// of it then.
     [[nodiscard]] cubemap::CubeMap take_turned();
+
+    /// Returns the base, turned, where no layer lies over it; otherwise null.
+    [[nodiscard]] std::shared_ptr<const cubemap::CubeMap> base_alone();
 
     /// Returns base and layers together, turned. `memory` may be written over, as
     /// cubemap::written_over() says.

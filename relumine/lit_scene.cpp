@@ -218,16 +218,20 @@ UpdateReport LitScene::relight_all(const LightState& next) {
 }
 
 UpdateReport LitScene::relight_all(LayerCompositor compositor) {
-    // The map that the layers were composited in is composited anew.
-    const bool has_memory = is_edited() && compositor_.is_set();
     UpdateReport report;
-    try {
-        report = relighter_->set_environment(
-            compositor.whole(has_memory ? relighter_->lend_environment() : cubemap::CubeMap()));
-    } catch (...) {
-        if (has_memory)
-            relighter_->return_environment(compositor_.whole());
-        throw;
+    if (std::shared_ptr<const cubemap::CubeMap> base = compositor.base_alone()) {
+        report = relighter_->set_environment(std::move(base));
+    } else {
+        // The map that the layers were composited in is composited anew.
+        const bool has_memory = is_edited() && compositor_.is_set();
+        try {
+            report = relighter_->set_environment(
+                compositor.whole(has_memory ? relighter_->lend_environment() : cubemap::CubeMap()));
+        } catch (...) {
+            if (has_memory)
+                relighter_->return_environment(compositor_.whole());
+            throw;
+        }
     }
     turning_memory_ = compositor_.take_turned();
     compositor_ = std::move(compositor);
