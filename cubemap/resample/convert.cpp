@@ -228,10 +228,12 @@ void fill_zeros(Pixels& grown, const std::function<Pixels()>& means_of_image) {
     if (std::none_of(grown.begin(), grown.end(), has_zero))
         return;
     const Pixels means = means_of_image();
-    for (std::size_t i = 0; i < grown.size(); ++i)
-        for (int channel = 0; channel < 3; ++channel)
-            if (grown[i][channel] <= 0.0f)
-                grown[i][channel] = means[i][channel];
+    for_each_chunk(grown.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            for (int channel = 0; channel < 3; ++channel)
+                if (grown[i][channel] <= 0.0f)
+                    grown[i][channel] = means[i][channel];
+    });
 }
 
 struct Sums {
@@ -270,21 +272,24 @@ Sums take_ratio(Pixels& ratio, const Pixels& image) {
 /// (Nesterov 1983; Biggs and Andrews 1997 for this iteration). This takes a fraction of the rounds.
 /// The result is the end of a round, so the power is still exact.
 ///
-/// `forth` and `back` average their first argument into their second.
+/// `forth` and `back` average their first argument into their second. They may borrow its memory.
 template<typename Forth, typename Back>
 void correct(const Pixels& image, const Forth& forth, const Back& back, int num_rounds,
              Pixels& grown) {
-    Pixels ratio, factor;
     fill_zeros(grown, [&] {
-        forth(image, factor);
-        return factor;
+        Pixels from = image, means;
+        forth(from, means);
+        return means;
     });
-    Pixels start = grown;
+    Pixels ratio, factor;
+    // Where the round starts: the first one at `grown`.
+    Pixels later_start;
     double last_difference = std::numeric_limits<double>::infinity(),
            earlier_difference = last_difference;
     // Rounds since the last restart.
     int run = 0;
     for (int round = 0; round < num_rounds; ++round) {
+        Pixels& start = round == 0 ? grown : later_start;
         back(start, ratio);
         const auto [difference, sum] = take_ratio(ratio, image);
         forth(ratio, factor);
@@ -303,6 +308,9 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
             is_last = is_last || difference > Falling * earlier_difference;
             earlier_difference = difference;
         }
+        is_last = is_last || round + 1 == num_rounds;
+        if (!is_last)
+            later_start.resize(grown.size());
         const float further =
             run > 0 ? static_cast<float>(run - 1) / static_cast<float>(run + 2) : 0.0f;
         // Least value relative to the pixel. The next round multiplies, so a value must not come
@@ -311,7 +319,8 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
         for_each_chunk(grown.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const glm::vec3 after = start[i] * factor[i];
-                start[i] = glm::max(after + further * (after - grown[i]), Least * after);
+                if (!is_last)
+                    later_start[i] = glm::max(after + further * (after - grown[i]), Least * after);
                 grown[i] = after;
             }
         });
@@ -341,10 +350,22 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
     if (std::max(image.pixels.size(), result.pixels.size()) > Large) {
         Path path(source, target, target_from_source, 1);
         path.keep_shares();
+        const auto average = [](const ImageShape& shape, Pixels& from, const auto& along) {
+            EnvironmentImage borrowed = image_of(shape, std::move(from));
+            Pixels means = along(borrowed).pixels;
+            from = std::move(borrowed.pixels);
+            return means;
+        };
         correct(
             image.pixels,
-            [&](const Pixels& from, Pixels& to) { to = path.forth(image_of(source, from)).pixels; },
-            [&](const Pixels& from, Pixels& to) { to = path.back(image_of(target, from)).pixels; },
+            [&](Pixels& from, Pixels& to) {
+                to = average(source, from,
+                             [&](const auto& borrowed) { return path.forth(borrowed); });
+            },
+            [&](Pixels& from, Pixels& to) {
+                to = average(target, from,
+                             [&](const auto& borrowed) { return path.back(borrowed); });
+            },
             1, result.pixels);
         return result;
     }
