@@ -1,5 +1,6 @@
 #include "cubemap/doctor/upside_down.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -16,31 +17,36 @@ double light_from_below(const CubeMap& map) {
     struct Sums {
         double all = 0.0, below = 0.0;
     };
-    std::vector<Sums> rows(std::size_t{NumFaces} * resolution);
-    files::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
-        const auto face = static_cast<Face>(i / resolution);
-        const auto y = static_cast<std::uint32_t>(i % resolution);
-        const glm::vec3* texels = &map.at(face, 0, y);
+    // The sums of each face's rows, whose texels have the same solid angles on all faces.
+    std::vector<std::array<Sums, NumFaces>> rows(resolution);
+    files::parallel_for(std::uint32_t{0}, resolution, [&](std::uint32_t y) {
         const double v = (2.0 * y + 1.0) / resolution - 1.0;
-        double sum = 0.0;
+        std::array<const glm::vec3*, NumFaces> texels{};
+        for (std::size_t face = 0; face < NumFaces; ++face)
+            texels[face] = &map.at(AllFaces[face], 0, y);
+        std::array<double, NumFaces> sums{};
         for (std::uint32_t x = 0; x < resolution; ++x) {
             const double u = (2.0 * x + 1.0) / resolution - 1.0;
             const double inverse = 1.0 / (1.0 + u * u + v * v);
-            sum += luminance(glm::dvec3(texels[x])) * inverse * std::sqrt(inverse);
+            const double density = inverse * std::sqrt(inverse);
+            for (std::size_t face = 0; face < NumFaces; ++face)
+                sums[face] += luminance(glm::dvec3(texels[face][x])) * density;
         }
-        const bool is_side = face != Face::PositiveY && face != Face::NegativeY;
         // A row of texels on the horizon is half below.
-        const double part = is_side ? (v > 0.0   ? 1.0
-                                       : v < 0.0 ? 0.0
-                                                 : 0.5)
-                                    : (face == Face::NegativeY ? 1.0 : 0.0);
-        rows[i] = {sum, part * sum};
+        const double part_of_side = v > 0.0 ? 1.0 : v < 0.0 ? 0.0 : 0.5;
+        for (std::size_t face = 0; face < NumFaces; ++face) {
+            const double part = AllFaces[face] == Face::PositiveY   ? 0.0
+                                : AllFaces[face] == Face::NegativeY ? 1.0
+                                                                    : part_of_side;
+            rows[y][face] = {sums[face], part * sums[face]};
+        }
     });
     Sums total;
-    for (const Sums& row : rows) {
-        total.all += row.all;
-        total.below += row.below;
-    }
+    for (const auto& faces : rows)
+        for (const Sums& row : faces) {
+            total.all += row.all;
+            total.below += row.below;
+        }
     return total.all > 0.0 ? total.below / total.all : 0.0;
 }
 
