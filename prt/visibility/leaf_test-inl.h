@@ -253,7 +253,7 @@ HWY_INLINE RayVerdicts test_rays(D d, const TriangleView<D>& view, const PatchPl
                 of_triangle.moment[k][a] = hn::Set(d, rows[3 * k + a][triangle]);
         const auto certain = hn::Set(d, rows[9][triangle]);
         const auto possible = hn::Neg(certain);
-        for (std::size_t j = 0; j < DirectionPatch::Size; j += hn::Lanes(d)) {
+        for (std::size_t j = 0; j < patch.num_directions; j += hn::Lanes(d)) {
             const auto s = hn::Load(d, patch.s.data() + j);
             const auto t = hn::Load(d, patch.t.data() + j);
             const auto least = hn::Min(

@@ -69,6 +69,7 @@ PatchPlane::Bins bins_of(const std::array<float, DirectionPatch::Size>& places, 
 
 PatchPlane patch_plane(const DirectionPatch& patch) {
     PatchPlane plane;
+    plane.num_directions = patch.num_directions;
     const glm::vec3 first = patch.direction(0);
     const glm::vec3 size = glm::abs(first);
     plane.axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;

@@ -29,6 +29,7 @@ struct PatchPlane : PatchRectangle {
     /// All directions have a positive component along the axis, and lie in a small rectangle.
     bool narrow = false;
     alignas(64) std::array<float, DirectionPatch::Size> s{}, t{};
+    std::size_t num_directions = 0;
 
     /// The rectangle is cut into columns along s and rows along t. Directions lie in all but the
     /// first and the last, which stand for what is beside the rectangle.

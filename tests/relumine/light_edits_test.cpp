@@ -470,6 +470,35 @@ TEST(LightEdits, RotationTurnsBaseAndLayersTogether) {
     }
 }
 
+TEST(LightEdits, TurnsWithAndWithoutLayersWriteOverNothingThatIsShown) {
+    const cubemap::CubeMap base = scenes::random_environment(32, 9);
+    const cubemap::LightLayer lamp = named_disc("lamp", {0.2, 0.5, 1.0}, 12.0, glm::vec3(3.0f));
+    cubemap::LightLayer off = lamp;
+    off.on = false;
+    struct Step {
+        double degrees;
+        std::vector<cubemap::LightLayer> layers;
+    };
+    LitScene editor = scenes::relit_clusters();
+    editor.light(base);
+    for (const Step& step :
+         {Step{30.0, {}}, Step{50.0, {}}, Step{50.0, {lamp}}, Step{70.0, {lamp}}, Step{80.0, {}},
+          Step{95.0, {off}}, Step{95.0, {lamp}}, Step{20.0, {off}}, Step{0.0, {}}}) {
+        set_layers(editor, step.layers);
+        set_rotation(editor, step.degrees);
+        LitScene afresh = scenes::relit_clusters();
+        afresh.light(base);
+        set_rotation(afresh, step.degrees);
+        EXPECT_EQ(environment_of(afresh).texels, cubemap::rotated(base, step.degrees).texels);
+        set_layers(afresh, step.layers);
+        EXPECT_EQ(environment_of(editor).texels, environment_of(afresh).texels) << step.degrees;
+        mark(editor);
+        mark(afresh);
+        EXPECT_EQ(copy(editor.radiance()), copy(afresh.radiance())) << step.degrees;
+        EXPECT_EQ(editor.state().base->map()->texels, base.texels) << step.degrees;
+    }
+}
+
 TEST(LightEdits, UpdateBaseTouchesOnlyWhatDiffers) {
     cubemap::CubeMap base = scenes::random_environment(64, 2);
     LitScene editor = scenes::relit_clusters();
