@@ -221,13 +221,13 @@ void for_each_chunk(std::size_t size, const Work& work) {
 
 /// Pixels of zero become the means: a product never leaves zero, and the interpolation may have
 /// missed a part of a wide pixel.
-void fill_zeros(Pixels& grown, const std::function<Pixels()>& means_of_image) {
+void fill_zeros(Pixels& grown, const std::function<const Pixels&()>& means_of_image) {
     const auto has_zero = [](const glm::vec3& pixel) {
         return pixel.x <= 0.0f || pixel.y <= 0.0f || pixel.z <= 0.0f;
     };
     if (std::none_of(grown.begin(), grown.end(), has_zero))
         return;
-    const Pixels means = means_of_image();
+    const Pixels& means = means_of_image();
     for_each_chunk(grown.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             for (int channel = 0; channel < 3; ++channel)
@@ -276,12 +276,12 @@ Sums take_ratio(Pixels& ratio, const Pixels& image) {
 template<typename Forth, typename Back>
 void correct(const Pixels& image, const Forth& forth, const Back& back, int num_rounds,
              Pixels& grown) {
-    fill_zeros(grown, [&] {
-        Pixels from = image, means;
-        forth(from, means);
-        return means;
-    });
     Pixels ratio, factor;
+    fill_zeros(grown, [&]() -> const Pixels& {
+        Pixels from = image;
+        forth(from, factor);
+        return factor;
+    });
     // Where the round starts: the first one at `grown`.
     Pixels later_start;
     double last_difference = std::numeric_limits<double>::infinity(),
@@ -359,6 +359,7 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
         correct(
             image.pixels,
             [&](Pixels& from, Pixels& to) {
+                to = Pixels(); // its memory would only be a second picture's
                 to = average(source, from,
                              [&](const auto& borrowed) { return path.forth(borrowed); });
             },
