@@ -13,7 +13,7 @@
 #include "files/hash.h"
 #include "prt/arithmetic.h"
 #include "prt/glossy/surface_sampling.h"
-#include "prt/scene/section_file.h"
+#include "prt/scene/section_format.h"
 #include "relumine/precompute_table.h"
 #include "relumine/scene.h"
 #include "relumine/stages.h"

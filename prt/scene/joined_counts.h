@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "prt/scene/packed_sections.h"
 #include "prt/scene/section_file.h"
 #include "prt/scene/section_reader.h"
 #include "prt/team.h"

@@ -15,6 +15,7 @@
 
 #include "files/json.h"
 #include "files/large_vector.h"
+#include "prt/scene/packed_sections.h"
 #include "prt/scene/section_file.h"
 
 namespace relumine::prt {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "prt/scene/section_file.h"
+#include "prt/scene/packed_sections.h"
 
 namespace relumine::prt {
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "files/output_file.h"
+#include "prt/scene/packed_sections.h"
 #include "prt/scene/section_file.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/prt_file.h"

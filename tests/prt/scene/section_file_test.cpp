@@ -17,6 +17,8 @@
 #include <zstd.h>
 
 #include "files/output_file.h"
+#include "prt/scene/packed_sections.h"
+#include "prt/scene/section_format.h"
 #include "tests/prt/damaged_file.h"
 
 namespace relumine::prt {
