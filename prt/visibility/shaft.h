@@ -24,7 +24,8 @@ struct PatchRectangle {
     float s0 = 0.0f, s1 = 0.0f, t0 = 0.0f, t1 = 0.0f;
 };
 
-/// The directions of a patch in their rectangle. Direction j is at s[j], t[j].
+/// The directions of a patch in their rectangle. Direction j is at s[j], t[j]; from num_directions
+/// on, the first one again.
 struct PatchPlane : PatchRectangle {
     /// All directions have a positive component along the axis, and lie in a small rectangle.
     bool narrow = false;
