@@ -188,13 +188,15 @@ LitScene::Added LitScene::light_of_list(std::span<const lights::DistantLight> li
 UpdateReport LitScene::light_by_environment(Light& light) {
     auto* map = std::get_if<cubemap::CubeMap>(&light.environment);
     auto* shared = std::get_if<std::shared_ptr<const cubemap::CubeMap>>(&light.environment);
-    auto* binned = std::get_if<BinnedEnvironment>(&light.environment);
+    const auto binned = [&]() -> BinnedEnvironment& {
+        return std::get<BinnedEnvironment>(light.environment);
+    };
     if (is_edited()) {
         LightState next = state_;
         next.base = std::make_shared<const LightBase>(
             map != nullptr      ? std::make_shared<const cubemap::CubeMap>(std::move(*map))
             : shared != nullptr ? *shared
-                                : binned->map,
+                                : binned().map,
             std::move(light.file), std::move(light.path));
         const UpdateReport report = relight_all(next);
         state_ = std::move(next);
@@ -203,7 +205,7 @@ UpdateReport LitScene::light_by_environment(Light& light) {
     const UpdateReport report = map != nullptr ? relighter_->set_environment(std::move(*map))
                                 : shared != nullptr
                                     ? relighter_->set_environment(*shared)
-                                    : relighter_->set_frame(std::move(*binned), light.bound);
+                                    : relighter_->set_frame(std::move(binned()), light.bound);
     state_ = {.base = std::make_shared<const LightBase>(nullptr, std::move(light.file),
                                                         std::move(light.path))};
     return report;

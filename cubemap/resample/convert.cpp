@@ -278,8 +278,8 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
              Pixels& grown) {
     Pixels ratio, factor;
     fill_zeros(grown, [&]() -> const Pixels& {
-        Pixels from = image;
-        forth(from, factor);
+        ratio = image;
+        forth(ratio, factor);
         return factor;
     });
     // Where the round starts: the first one at `grown`.

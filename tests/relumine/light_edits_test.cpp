@@ -97,9 +97,9 @@ TEST(LightEdits, FollowsRandomEditsOfAllKinds) {
 TEST(LightEdits, RegionsThatComeBackAreFoundInBasesOfAnySize) {
     // The editor keeps the texels of the last regions.
     std::mt19937 random(17);
-    std::vector<cubemap::LightLayer> kinds;
-    for (int i = 0; i < 12; ++i)
-        kinds.push_back(random_layer(random));
+    std::vector<cubemap::LightLayer> kinds(12);
+    for (cubemap::LightLayer& kind : kinds)
+        kind = random_layer(random);
     LitScene editor = scenes::relit_clusters();
     editor.light(scenes::random_environment(32, 5));
     set_layers(editor, {kinds[0], kinds[1]});
@@ -228,7 +228,8 @@ TEST(LightEdits, UndoBringsBackRotationAndBaseBitwise) {
 TEST(LightEdits, TheHistoryKeepsNoMoreBasesThanItMay) {
     LitScene editor = scenes::relit_clusters();
     constexpr std::uint32_t Resolution = 8;
-    constexpr std::size_t BytesOfBase = 6 * Resolution * Resolution * sizeof(glm::vec3);
+    constexpr std::size_t BytesOfBase =
+        std::size_t{6} * Resolution * Resolution * sizeof(glm::vec3);
     editor.history().limit(2 * BytesOfBase);
     std::vector<std::weak_ptr<const cubemap::CubeMap>> bases;
     for (unsigned i = 0; i < 6; ++i) {
