@@ -1,4 +1,4 @@
-// Reading a file of sections.
+// Reading a file of sections, as prt/scene/section_file.h writes it.
 #pragma once
 
 #include <cstddef>
