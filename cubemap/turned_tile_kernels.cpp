@@ -253,6 +253,9 @@ void sum_lines(const Work::Pieces& pieces, std::size_t first, std::size_t end, s
     const std::int32_t* indices = pieces.cells.data();
     const double *of_left = pieces.of_left.data(), *of_change = pieces.of_change.data();
     const float* of_density = pieces.of_density.data();
+    const auto wide = [&](const std::array<float, NumSums>& values, std::size_t j) {
+        return hn::PromoteTo(ds, hn::Load(hn::Rebind<float, SumLanes>(), values.data() + j * Step));
+    };
     for (std::size_t i = 0; i < count; ++i) {
         hn::Vec<SumLanes> sum[NumVectors];
         hn::Vec<NarrowLanes> of_texels[NumNarrow];
@@ -265,10 +268,7 @@ void sum_lines(const Work::Pieces& pieces, std::size_t first, std::size_t end, s
             for (std::size_t j = 0; j < NumVectors; ++j) {
                 sum[j] = hn::MulAdd(hn::Set(ds, of_left[k]),
                                     hn::Load(ds, cell.left.data() + j * Step), sum[j]);
-                const auto change_left =
-                    hn::PromoteTo(ds, hn::Load(hn::Rebind<float, SumLanes>(),
-                                               cell.change_left.data() + j * Step));
-                sum[j] = hn::MulAdd(hn::Set(ds, of_change[k]), change_left, sum[j]);
+                sum[j] = hn::MulAdd(hn::Set(ds, of_change[k]), wide(cell.change_left, j), sum[j]);
             }
             for (std::size_t j = 0; j < NumNarrow; ++j)
                 of_texels[j] = hn::MulAdd(hn::Set(narrow, of_density[k]),
@@ -278,11 +278,8 @@ void sum_lines(const Work::Pieces& pieces, std::size_t first, std::size_t end, s
         HWY_ALIGN std::array<float, NumSums> in_texels;
         for (std::size_t j = 0; j < NumNarrow; ++j)
             hn::Store(of_texels[j], narrow, in_texels.data() + j * NarrowStep);
-        for (std::size_t j = 0; j < NumVectors; ++j) {
-            const auto wide = hn::PromoteTo(
-                ds, hn::Load(hn::Rebind<float, SumLanes>(), in_texels.data() + j * Step));
-            hn::Store(hn::Add(sum[j], wide), ds, sums[i].data() + j * Step);
-        }
+        for (std::size_t j = 0; j < NumVectors; ++j)
+            hn::Store(hn::Add(sum[j], wide(in_texels, j)), ds, sums[i].data() + j * Step);
     }
 }
 

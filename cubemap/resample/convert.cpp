@@ -350,9 +350,9 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
     if (std::max(image.pixels.size(), result.pixels.size()) > Large) {
         Path path(source, target, target_from_source, 1);
         path.keep_shares();
-        const auto average = [](const ImageShape& shape, Pixels& from, const auto& along) {
+        const auto average = [&](const ImageShape& shape, Pixels& from, auto along) {
             EnvironmentImage borrowed = image_of(shape, std::move(from));
-            Pixels means = along(borrowed).pixels;
+            Pixels means = (path.*along)(borrowed).pixels;
             from = std::move(borrowed.pixels);
             return means;
         };
@@ -360,14 +360,10 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
             image.pixels,
             [&](Pixels& from, Pixels& to) {
                 to = Pixels(); // its memory would only be a second picture's
-                to = average(source, from,
-                             [&](const auto& borrowed) { return path.forth(borrowed); });
+                to = average(source, from, &Path::forth);
             },
-            [&](Pixels& from, Pixels& to) {
-                to = average(target, from,
-                             [&](const auto& borrowed) { return path.back(borrowed); });
-            },
-            1, result.pixels);
+            [&](Pixels& from, Pixels& to) { to = average(target, from, &Path::back); }, 1,
+            result.pixels);
         return result;
     }
     const PixelLinks links(source, target, target_from_source, resolution_between(source, target),
