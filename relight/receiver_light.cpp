@@ -13,6 +13,7 @@
 
 #include "files/large_vector.h"
 #include "files/parallel.h"
+#include "relight/kernels/update_kernel.h"
 
 namespace relumine::relight {
 

@@ -29,7 +29,7 @@ constexpr double UnitTolerance = 1e-3;
 /// update looks at each word of 64 clusters that holds a changed one, and at each changed cluster.
 /// The weights are relative to the time of the full sum, and measured: `./dev bench frames`.
 bool is_cheaper_to_sum_all(std::span<const std::uint32_t> changed, std::size_t num_clusters) {
-    constexpr double CostOfWords = 0.2, CostOfClusters = 4.8;
+    constexpr double CostOfWords = 0.3, CostOfClusters = 4.2;
     constexpr std::size_t ClustersPerWord = 64;
     std::size_t num_words = 0;
     for (std::size_t i = 0; i < changed.size(); ++i)

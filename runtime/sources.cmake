@@ -15,5 +15,5 @@ set(runtime_sources
     relight/binned_environment.cpp relight/radiance.cpp relight/bounces/bounce_adjoint.cpp relight/bounces/bounce_kernel.cpp relight/bounces/bounce_light.cpp relight/bounces/bounce_product.cpp relight/bounces/coarse_bounces.cpp relight/bounces/point_gather.cpp
     relight/harmonics/cluster_harmonics.cpp relight/harmonics/harmonic_kernels.cpp relight/harmonics/harmonic_light.cpp relight/harmonics/harmonics.cpp
     relight/kernels/band_sums.cpp relight/kernels/block_kernels.cpp relight/kernels/cluster_lights.cpp relight/kernels/glossy_kernels.cpp relight/kernels/kernel_lights.cpp
-    relight/kernels/texel_kernel.cpp relight/kernels/tile_words.cpp relight/light_pyramid.cpp relight/receiver_light.cpp relight/relighter.cpp relight/visible_parts.cpp
+    relight/kernels/texel_kernel.cpp relight/kernels/tile_words.cpp relight/kernels/update_kernel.cpp relight/light_pyramid.cpp relight/receiver_light.cpp relight/relighter.cpp relight/visible_parts.cpp
     relight/sharp/cluster_sums.cpp relight/sharp/light_packets.cpp relight/sharp/sharp_lights.cpp relight/sharp/traced_kernel.cpp relight/sharp/traced_light.cpp)

@@ -9,7 +9,6 @@
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "relight/kernels/block_kernels.cpp"
-#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -20,11 +19,6 @@ namespace relumine::relight::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Returns how many counts of the word come before the counts of a cluster. `cluster` is its bit.
-std::size_t counts_before(std::uint64_t mixed, std::uint64_t cluster) {
-    return num_counts(mixed & (cluster - 1));
-}
-
 /// The clusters of a block and word that add up per receiver.
 struct PairWord {
     /// Seen in part.
@@ -34,13 +28,6 @@ struct PairWord {
     /// Begins at the first entry of `mixed`.
     const std::uint8_t* counts;
     const BlockNormals& normals;
-};
-
-/// Receivers of a block that are summed side by side, so that each cluster is read and decided
-/// about once for them: two vectors of them where one does not hold the block.
-struct SideBySide {
-    static constexpr std::size_t NumVectors = hn::MaxLanes(Floats()) < prt::BlockSize ? 2 : 1;
-    static constexpr std::size_t Size = NumVectors * hn::MaxLanes(Floats());
 };
 
 /// Adds max(n.E, 0) of clusters.
@@ -235,185 +222,6 @@ void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& 
     add_per_receiver(scene, tile, lights, chosen, light + begin);
 }
 
-/// A channel's sums of some receivers in double: two vectors for one of Floats. (Where vectors have
-/// one lane, both are the same.)
-class DoubleSum {
-    using D = hn::CappedTag<double, prt::BlockSize>;
-
-public:
-    explicit DoubleSum(const double* sum)
-        : lower_(hn::LoadU(D(), sum)), upper_(hn::LoadU(D(), sum + begin_of_upper())) {}
-    void store(double* sum) const {
-        hn::StoreU(lower_, D(), sum);
-        hn::StoreU(upper_, D(), sum + begin_of_upper());
-    }
-
-    /// Floats turned to double.
-    struct Part {
-        hn::Vec<D> lower, upper;
-
-        explicit Part(hn::Vec<Floats> part) : lower(hn::Zero(D())), upper(lower) {
-            const hn::Rebind<float, D> half;
-            std::array<float, prt::BlockSize> values;
-            hn::StoreU(part, Floats(), values.data());
-            lower = hn::PromoteTo(D(), hn::LoadU(half, values.data()));
-            upper = hn::PromoteTo(D(), hn::LoadU(half, values.data() + begin_of_upper()));
-        }
-    };
-    void add(const Part& part, double factor) {
-        const auto f = hn::Set(D(), factor);
-        lower_ = hn::MulAdd(part.lower, f, lower_);
-        upper_ = hn::MulAdd(part.upper, f, upper_);
-    }
-
-private:
-    static std::size_t begin_of_upper() { return hn::Lanes(Floats()) - hn::Lanes(D()); }
-
-    hn::Vec<D> lower_, upper_;
-};
-
-/// A changed cluster that a block sees in part or across a horizon.
-struct ChangedPair {
-    /// Null: the block sees it whole.
-    const std::uint8_t* counts;
-    /// Among the changed clusters.
-    std::size_t cluster;
-};
-
-/// Adds the changes of a block's pairs to what adds up per receiver.
-void change_pairs(std::span<const ChangedPair> pairs, const BlockNormals& normals,
-                  const LightChanges& changes, BlockLight& light) {
-    const Floats d;
-    const auto zero = hn::Zero(d);
-    const auto full = hn::Set(d, static_cast<float>(prt::FullCount));
-    for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
-        const Normals<Floats> n(normals, lane);
-        DoubleSum red(light.mixed[0].data() + lane);
-        DoubleSum green(light.mixed[1].data() + lane);
-        DoubleSum blue(light.mixed[2].data() + lane);
-        for (const ChangedPair& pair : pairs) {
-            const auto count = pair.counts != nullptr ? load_counts(d, pair.counts + lane) : full;
-            for (std::size_t i = changes.directionals_before[pair.cluster];
-                 i < changes.directionals_before[pair.cluster + 1]; ++i) {
-                const DirectionalChange& directional = changes.directionals[i];
-                const auto cosine = n.dot(directional.direction.data());
-                const DoubleSum::Part part(hn::Mul(count, hn::Max(cosine, zero)));
-                red.add(part, directional.colour[0]);
-                green.add(part, directional.colour[1]);
-                blue.add(part, directional.colour[2]);
-            }
-        }
-        red.store(light.mixed[0].data() + lane);
-        green.store(light.mixed[1].data() + lane);
-        blue.store(light.mixed[2].data() + lane);
-    }
-}
-
-/// Changed pairs of a tile's blocks. They are kept for a while, so that their counts, which lie far
-/// apart, can come from memory, and a block's light is read and written once for many.
-class ChangedPairs {
-public:
-    ChangedPairs(const BlockNormals* normals, const LightChanges& changes, BlockLight* of_block)
-        : normals_(normals), changes_(changes), of_block_(of_block) {}
-
-    void add(std::size_t block, const ChangedPair& pair) {
-        if (pair.counts != nullptr)
-            hwy::Prefetch(pair.counts);
-        pairs_[block][sizes_[block]++] = pair;
-        if (sizes_[block] == MostPairs)
-            finish(block);
-    }
-    void finish(std::size_t block) {
-        change_pairs({pairs_[block].data(), sizes_[block]}, normals_[block], changes_,
-                     of_block_[block]);
-        sizes_[block] = 0;
-    }
-
-private:
-    static constexpr std::size_t MostPairs = 32;
-
-    const BlockNormals* normals_;
-    const LightChanges& changes_;
-    BlockLight* of_block_;
-    std::array<std::array<ChangedPair, MostPairs>, prt::VisibleCounts::TileBlocks> pairs_;
-    std::array<std::uint8_t, prt::VisibleCounts::TileBlocks> sizes_{};
-};
-
-void add(const std::array<double, ClusterLights::Stride>& vector,
-         std::array<double, ClusterLights::Stride>& sum) {
-    constexpr std::size_t Last = ClusterLights::Stride - 1;
-    const hn::CappedTag<double, Last> d;
-    for (std::size_t lane = 0; lane < Last; lane += hn::Lanes(d))
-        hn::StoreU(hn::Add(hn::LoadU(d, sum.data() + lane), hn::LoadU(d, vector.data() + lane)), d,
-                   sum.data() + lane);
-    sum[Last] += vector[Last];
-}
-
-/// Calls `visit` with each bit.
-template<typename Visit>
-HWY_INLINE void for_clusters(std::uint64_t bits, const Visit& visit) {
-    for (; bits != 0; bits &= bits - 1)
-        visit(bits & (~bits + 1));
-}
-
-std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, const LightChanges& changes,
-                          BlockLight* light) {
-    const prt::VisibleCounts& counts = scene.counts;
-    const std::size_t begin = counts.tile_begin(tile);
-    BlockLight* of_block = light + begin;
-    // Side by side, as in add_visible().
-    using Vector = std::array<double, ClusterLights::Stride>;
-    std::array<Vector, prt::VisibleCounts::TileBlocks> sums{};
-    std::uint64_t summed = 0, paired = 0;
-    ChangedPairs pairs(scene.normals.data() + begin, changes, of_block);
-    for (const ChangedWord& change : changes.words) {
-        const TileWord& blocks = scene.words.words[tile * counts.words_per_block() + change.word];
-        const std::size_t first_word = counts.word(begin, change.word);
-        const std::uint64_t* const visible = counts.visible.data() + first_word;
-        const std::uint64_t* const mixed = counts.mixed.data() + first_word;
-        const auto index_of = [&](std::uint64_t bit) {
-            return change.first +
-                   static_cast<std::size_t>(std::popcount(change.clusters & (bit - 1)));
-        };
-        for_blocks(blocks.full, [&](std::size_t block) { add(change.vector, sums[block]); });
-        summed |= blocks.full;
-        for_blocks((blocks.visible | blocks.across) & ~blocks.full, [&](std::size_t block) {
-            const std::uint64_t bit = std::uint64_t{1} << block;
-            const std::uint64_t seen = visible[block] & change.clusters;
-            if (seen == 0)
-                return;
-            const std::uint64_t across = scene.words.across_of(blocks, block) & seen;
-            paired |= across != 0 ? bit : 0;
-            for_clusters(across, [&](std::uint64_t cluster) {
-                pairs.add(block, {.counts = nullptr, .cluster = index_of(cluster)});
-            });
-            // Most blocks that see one changed cluster whole see all of them, because these are
-            // neighbours in the sky.
-            const std::uint64_t whole = seen & ~across;
-            summed |= whole != 0 ? bit : 0;
-            if (whole == change.clusters)
-                add(change.vector, sums[block]);
-            else
-                for_clusters(whole, [&](std::uint64_t cluster) {
-                    add(changes.vectors[index_of(cluster)], sums[block]);
-                });
-        });
-        const std::uint8_t* of_pairs = counts.counts.data() + blocks.mixed_before * prt::BlockSize;
-        for_blocks(blocks.mixed, [&](std::size_t block) {
-            const std::uint64_t hit = mixed[block] & change.clusters;
-            paired |= std::uint64_t{hit != 0} << block;
-            for_clusters(hit, [&](std::uint64_t cluster) {
-                pairs.add(block, {.counts = of_pairs + counts_before(mixed[block], cluster),
-                                  .cluster = index_of(cluster)});
-            });
-            of_pairs += num_counts(mixed[block]);
-        });
-    }
-    for_blocks(paired, [&](std::size_t block) { pairs.finish(block); });
-    for_blocks(summed, [&](std::size_t block) { add(sums[block], of_block[block].visible); });
-    return paired | summed;
-}
-
 } // namespace relumine::relight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -423,7 +231,6 @@ namespace relumine::relight {
 namespace {
 HWY_EXPORT(block_radiance);
 HWY_EXPORT(light_tile);
-HWY_EXPORT(update_tile);
 } // namespace
 
 double block_radiance(const BlockNormals& normals, const BlockLight& light,
@@ -434,18 +241,6 @@ double block_radiance(const BlockNormals& normals, const BlockLight& light,
 void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
                 std::span<BlockLight> light, std::uint64_t blocks) {
     HWY_DYNAMIC_DISPATCH(light_tile)(scene, tile, lights, light.data(), blocks);
-}
-
-/// Calls `visit` with each bit.
-template<typename Visit>
-HWY_INLINE void for_clusters(std::uint64_t bits, const Visit& visit) {
-    for (; bits != 0; bits &= bits - 1)
-        visit(bits & (~bits + 1));
-}
-
-std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, const LightChanges& changes,
-                          std::span<BlockLight> light) {
-    return HWY_DYNAMIC_DISPATCH(update_tile)(scene, tile, changes, light.data());
 }
 
 } // namespace relumine::relight

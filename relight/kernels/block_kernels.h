@@ -85,9 +85,4 @@ struct BlockScene {
 void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
                 std::span<BlockLight> light, std::uint64_t blocks = ~std::uint64_t{0});
 
-/// Adds the effect of changed clusters to the light of a tile [JN, Eq. 15]. Returns the blocks that
-/// see a changed cluster: bit b for the tile's block b.
-std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, const LightChanges& changes,
-                          std::span<BlockLight> light);
-
 } // namespace relumine::relight

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -53,6 +54,11 @@ struct ChangedWord {
     std::uint64_t clusters = 0;
     /// Sum of the changes of all vectors.
     std::array<double, ClusterLights::Stride> vector{};
+
+    /// Returns the place of a changed cluster, given its bit, among all of them.
+    [[nodiscard]] std::size_t index_of(std::uint64_t cluster) const {
+        return first + static_cast<std::size_t>(std::popcount(clusters & (cluster - 1)));
+    }
 };
 
 /// A directional light that a change adds.

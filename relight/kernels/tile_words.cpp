@@ -169,11 +169,14 @@ TileWords tile_words(const prt::Transfer& transfer, std::span<const BlockNormals
             TileWord& of_tile = result.words[tile * num_words + w];
             of_tile.across_before = all_across.size();
             of_tile.mixed_before = counts.mixed_before[counts.word(begin, w)];
+            of_tile.whole_for_all = ~std::uint64_t{0};
             const float* corners = &cells.corners[w * 64].front().x;
             for (std::size_t block = begin; block < end; ++block) {
                 const std::size_t word = counts.word(block, w);
                 const std::uint64_t bit = std::uint64_t{1} << (block - begin);
                 std::uint64_t visible = counts.visible[word];
+                of_tile.mixed_for_some |= counts.mixed[word];
+                of_tile.seen_by_some |= visible;
                 if (counts.mixed[word] != 0)
                     of_tile.mixed |= bit;
                 if (visible != 0) {
@@ -189,6 +192,7 @@ TileWords tile_words(const prt::Transfer& transfer, std::span<const BlockNormals
                         visible &= ~across;
                     }
                 }
+                of_tile.whole_for_all &= visible;
                 if (visible != 0)
                     of_tile.visible |= bit;
                 if (visible == ~std::uint64_t{0})

@@ -32,6 +32,14 @@ struct TileWord {
     std::uint64_t across = 0;
     /// Entries in TileWords::across before the first block's.
     std::uint64_t across_before = 0;
+
+    // Clusters of the word, bit c for its cluster c.
+    /// All of the tile's blocks see them whole, above their receivers' horizons.
+    std::uint64_t whole_for_all = 0;
+    /// Some block sees them whole, across a horizon or not.
+    std::uint64_t seen_by_some = 0;
+    /// Some block sees them in part.
+    std::uint64_t mixed_for_some = 0;
 };
 
 /// The words of all tiles.
