@@ -91,8 +91,8 @@ TracedLight::Key TracedLight::key_of(const SharpLight& light) {
 
 /// Lights of neighbouring clusters follow each other.
 void TracedLight::add(std::vector<FreshPatch>& patches, const SharpLight& light, Reached* reached) {
-    // So wide a patch makes a shaft that few triangles lie in: 3 degrees around its first light.
-    constexpr float CosineOfPatch = 0.9986f;
+    // So wide a patch makes a shaft that few triangles lie in: 8 degrees around its first light.
+    constexpr float CosineOfPatch = 0.9903f;
     const glm::vec3 direction(light.direction);
     if (patches.empty() || patches.back().directions.full() ||
         glm::dot(patches.back().directions.direction(0), direction) < CosineOfPatch)
