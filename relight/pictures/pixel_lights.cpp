@@ -19,8 +19,8 @@ constexpr std::uint32_t GroupSize = 8;
 } // namespace
 
 LightBeams::LightBeams(std::span<const SharpLight> lights) : num_lights_(lights.size()) {
-    // So wide a beam makes a shaft that few triangles lie in: 3 degrees around its first light.
-    constexpr float CosineOfBeam = 0.9986f;
+    // So wide a beam makes a shaft that few triangles lie in: 8 degrees around its first light.
+    constexpr float CosineOfBeam = 0.9903f;
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const glm::vec3 direction(lights[i].direction);
         if (beams_.empty() || beams_.back().directions.full() ||
