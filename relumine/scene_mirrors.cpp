@@ -115,7 +115,7 @@ void SceneMirrors::add(const relight::Relighter& light, const Surfaces& surfaces
     const relight::Reflections reflections(rays_->of_mesh(), scene_->settings.bias, rays_per_pixel_,
                                            light.environment(), light.sharp_lights());
     const MirroredSurfaces mirrored(*scene_, surfaces);
-    const auto seen = [&](const prt::Hit& hit, const glm::vec3& direction, const glm::vec3&) {
+    const auto seen = [&](const prt::Hit& hit, const glm::vec3& direction, float) {
         return mirrored.radiance(hit, direction);
     };
     files::parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t i) {

@@ -239,6 +239,17 @@ Hit hit_of(const Nearest& nearest) {
             .distance = static_cast<float>(nearest.meeting.distance)};
 }
 
+/// Whether rays from one point lie so close together that tracing them as a packet is fastest.
+/// Measured.
+bool are_coherent(const DirectionPacket& directions) {
+    constexpr float CosineOfSpread = 0.8f;
+    const glm::vec3 first = directions.direction(0);
+    for (std::size_t i = 1; i < PacketSize; ++i)
+        if (glm::dot(first, directions.direction(i)) < CosineOfSpread)
+            return false;
+    return true;
+}
+
 } // namespace
 
 struct RayScene::Impl {
@@ -476,7 +487,8 @@ std::uint32_t RayScene::closest_hits(const glm::vec3& origin, const DirectionPac
     Query query(true, of);
     std::array<Nearest, PacketSize> nearest;
     query.nearest = nearest.data();
-    query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    query.context.flags = are_coherent(directions) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                                                   : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcIntersect16(valid.data(), impl_->scene.get(), &query.context, &rays);
     std::uint32_t found = 0;
     for (std::size_t i = 0; i < PacketSize; ++i) {

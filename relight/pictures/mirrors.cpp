@@ -187,8 +187,8 @@ MirroredLight Mirrors::light(const Mirror& mirror, const prt::MeshPoint& point) 
 MirroredLight Mirrors::trace(const Mirror& mirror, const prt::MeshPoint& point,
                              std::uint32_t num_rays) const {
     const auto surfaces = [this](const prt::Hit& hit, const glm::vec3& direction,
-                                 const glm::vec3& sky) {
-        return seen(hit, direction, sky);
+                                 float solid_angle) {
+        return seen(hit, direction, solid_angle);
     };
     return light_.reflections->light(
         mirror.surface,
@@ -199,8 +199,7 @@ MirroredLight Mirrors::trace(const Mirror& mirror, const prt::MeshPoint& point,
         num_rays, surfaces);
 }
 
-glm::vec3 Mirrors::seen(const prt::Hit& hit, const glm::vec3& direction,
-                        const glm::vec3& sky) const {
+glm::vec3 Mirrors::seen(const prt::Hit& hit, const glm::vec3& direction, float solid_angle) const {
     const prt::Hit facing = twins_.facing(hit, direction);
     const prt::MeshPoint at{.triangle = facing.triangle, .barycentric = facing.barycentric};
     const SurfaceColors& colors = *light_.textures;
@@ -213,13 +212,16 @@ glm::vec3 Mirrors::seen(const prt::Hit& hit, const glm::vec3& direction,
         return colors.light(light_.mirrored, at) * surface.albedo +
                light_.emission_gain(at.triangle) * surface.emission;
     }
+    const auto sky = [&] {
+        return light_.reflections->sky(direction, solid_angle);
+    };
     const glm::vec3 position = prt::value_at(mesh_, mesh_.positions, at);
     const float opacity = floor_.opacity(position);
     const glm::vec3 radiance = prt::value_at(mesh_, light_.mirrored, at);
     if (!light_.open_floor)
-        return glm::mix(sky, radiance, opacity);
+        return glm::mix(sky(), radiance, opacity);
     const glm::vec3 behind =
-        backdrop_ != nullptr ? (*backdrop_)(glm::normalize(position - *light_.eye)) : sky;
+        backdrop_ != nullptr ? (*backdrop_)(glm::normalize(position - *light_.eye)) : sky();
     return caught(radiance, *light_.open_floor, opacity) * behind;
 }
 

@@ -51,10 +51,11 @@ public:
     [[nodiscard]] glm::vec3 soft(const Mirror& mirror, const prt::MeshPoint& point,
                                  const glm::vec3& diffuse);
 
-    /// Returns the radiance of a surface that a ray meets, before `sky`. A floor that catches
-    /// shadows shows what is behind it, as in the picture.
+    /// Returns the radiance of a surface that a ray meets. A floor that catches shadows shows what
+    /// is behind it, as in the picture; without a picture's backdrop, the mean of the sky over a
+    /// solid angle.
     [[nodiscard]] glm::vec3 seen(const prt::Hit& hit, const glm::vec3& direction,
-                                 const glm::vec3& sky) const;
+                                 float solid_angle) const;
 
     /// How the rays of this pixel are shifted: MirrorPoint::shift.
     [[nodiscard]] const glm::vec2& shift() const { return shift_; }

@@ -2,20 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
 
-#include "cubemap/frame.h"
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/ggx_energy.h"
 #include "prt/glossy/ggx_lobe.h"
 #include "prt/glossy/sheen_lobe.h"
 #include "relight/kernels/cluster_lights.h"
-#include "relight/pictures/visible_normals.h"
+#include "relight/pictures/ray_fan.h"
 
 namespace relumine::relight {
 
@@ -121,60 +120,21 @@ glm::vec3 Reflections::sky(const glm::vec3& direction, float solid_angle) const 
                            direction);
 }
 
-/// Rays from a point, spread as a lobe is.
-struct Reflections::Fan {
-    glm::vec3 origin, normal, to_eye;
-    /// Of a GGX lobe; 0: rays are as dense everywhere above the surface.
-    float alpha;
-    std::uint32_t num_rays;
-    glm::vec2 shift;
-
-    struct Ray {
-        /// In the frame of the normal
-        glm::vec3 direction;
-        float density;
-    };
-    [[nodiscard]] Ray ray(std::uint32_t i, const glm::vec3& local_eye) const {
-        constexpr float Turn = 2.0f * std::numbers::pi_v<float>;
-        const glm::vec2 u = hammersley(i, num_rays, shift);
-        if (alpha > 0.0f) {
-            const glm::vec3 half = visible_half(local_eye, alpha, u);
-            return {2.0f * glm::dot(local_eye, half) * half - local_eye,
-                    mirrored_density(half, local_eye.z, alpha)};
-        }
-        const float across = std::sqrt(std::max(1.0f - u.x * u.x, 0.0f));
-        return {{across * std::cos(Turn * u.y), across * std::sin(Turn * u.y), u.x}, 1.0f / Turn};
-    }
-};
-
 template<typename Add>
-void Reflections::send(const Fan& fan, const Surfaces& surfaces, const Add& add) const {
-    const glm::mat3 frame = cubemap::frame_of(fan.normal);
-    const glm::vec3 to_eye = fan.to_eye * frame;
+void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surfaces& surfaces,
+                       const Add& add) const {
     for (std::uint32_t first = 0; first < fan.num_rays; first += prt::PacketSize) {
-        const std::uint32_t count =
-            std::min(fan.num_rays - first, static_cast<std::uint32_t>(prt::PacketSize));
-        prt::DirectionPacket packet{.num_directions = count};
-        std::array<float, prt::PacketSize> densities{};
-        std::uint32_t above = 0;
-        for (std::uint32_t lane = 0; lane < prt::PacketSize; ++lane) {
-            const Fan::Ray ray = fan.ray(first + lane % count, to_eye);
-            packet.set(lane, glm::normalize(frame * ray.direction));
-            densities[lane] = ray.density;
-            above |= (lane < count && ray.direction.z > 0.0f ? 1u : 0u) << lane;
-        }
+        const FanRays rays = fan_rays(fan, first);
+        if (rays.above == 0)
+            continue;
         std::array<prt::Hit, prt::PacketSize> hits;
-        const std::uint32_t met =
-            above != 0 ? rays_.closest_hits(fan.origin, packet, above, hits) : 0;
-        for (std::uint32_t lane = 0; lane < count; ++lane) {
-            if ((above >> lane & 1u) == 0)
-                continue;
-            const glm::vec3 w = packet.direction(lane);
-            const float share = 1.0f / (static_cast<float>(fan.num_rays) * densities[lane]);
-            glm::vec3 radiance = sky(w, SeenPart * share);
-            if ((met >> lane & 1u) != 0)
-                radiance = surfaces(hits[lane], w, radiance);
-            add(w, densities[lane], radiance);
+        const std::uint32_t met = rays_.closest_hits(origin, rays.directions, rays.above, hits);
+        for (std::uint32_t bits = rays.above; bits != 0; bits &= bits - 1) {
+            const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+            const glm::vec3 w = rays.directions.direction(lane);
+            const float dense = rays.densities[lane];
+            const float seen = SeenPart / (static_cast<float>(fan.num_rays) * dense);
+            add(w, dense, (met >> lane & 1u) != 0 ? surfaces(hits[lane], w, seen) : sky(w, seen));
         }
     }
 }
@@ -188,14 +148,14 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
         return prt::evaluate_lobes(surface, point.normal, point.to_eye, w);
     };
     const std::uint32_t num_all = lobe_alpha(surface) > WideAlpha ? 2 * num_rays : num_rays;
-    Fan fan{.origin = point.position + bias_ * point.normal,
-            .normal = point.normal,
-            .to_eye = point.to_eye,
-            .alpha = lobe_alpha(surface),
-            .num_rays = num_all,
-            .shift = point.shift};
+    const glm::vec3 origin = point.position + bias_ * point.normal;
+    RayFan fan{.normal = point.normal,
+               .to_eye = point.to_eye,
+               .alpha = lobe_alpha(surface),
+               .num_rays = num_all,
+               .shift = point.shift};
     Weighted all, grazing, coat, sheen;
-    send(fan, surfaces, [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
+    send(origin, fan, surfaces, [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
         const prt::Lobes<float> lobe = lobes(w);
         all.add(highlight_of(surface, lobe) / dense, radiance);
         grazing.add(glm::vec3(lobe.specular_grazing / dense), radiance);
@@ -205,17 +165,19 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
         fan.alpha = prt::ggx_alpha(surface.coat_roughness);
         if (surface.coat_normal != glm::vec3(0.0f))
             fan.normal = surface.coat_normal;
-        send(fan, surfaces, [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
-            coat.add(glm::vec3(lobes(w).coat / dense), radiance);
-        });
+        send(origin, fan, surfaces,
+             [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
+                 coat.add(glm::vec3(lobes(w).coat / dense), radiance);
+             });
     }
     if (prt::has_sheen(surface)) {
         fan.num_rays = 2 * num_rays; // which are as dense everywhere
         fan.alpha = 0.0f;
         fan.normal = point.normal;
-        send(fan, surfaces, [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
-            sheen.add(glm::vec3(lobes(w).sheen / dense), radiance);
-        });
+        send(origin, fan, surfaces,
+             [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
+                 sheen.add(glm::vec3(lobes(w).sheen / dense), radiance);
+             });
     }
     return {.all = all.mean(),
             .grazing = grazing.mean(),

@@ -22,6 +22,8 @@
 
 namespace relumine::relight {
 
+struct RayFan;
+
 /// A point that mirrors.
 struct MirrorPoint {
     glm::vec3 position;
@@ -54,9 +56,10 @@ lobes_of(const prt::Surface& surface, const MirroredLight& light, const prt::Eye
 
 class Reflections {
 public:
-    /// Returns the radiance of a surface that a ray meets; `sky` is what lies behind it.
+    /// Returns the radiance of a surface that a ray meets. A ray that passes sees the mean of sky()
+    /// over a solid angle.
     using Surfaces = std::function<glm::vec3(const prt::Hit& hit, const glm::vec3& direction,
-                                             const glm::vec3& sky)>;
+                                             float solid_angle)>;
 
     /// `without` are lights of the environment that are lit in another way: they are not mirrored.
     /// `environment` may have no texels, which is black. `bias` is that of prt::PrecomputeOptions.
@@ -86,10 +89,10 @@ public:
     [[nodiscard]] float least_roughness() const { return least_roughness_; }
 
 private:
-    struct Fan;
     /// Calls add(direction, density of rays there, radiance) for each ray of a fan.
     template<typename Add>
-    void send(const Fan& fan, const Surfaces& surfaces, const Add& add) const;
+    void send(const glm::vec3& origin, const RayFan& fan, const Surfaces& surfaces,
+              const Add& add) const;
 
     const prt::RayScene& rays_;
     float bias_;

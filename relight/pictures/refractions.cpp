@@ -133,19 +133,21 @@ glm::vec3 Refractions::followed(Ray ray, const glm::vec2& u) const {
         const auto hit =
             rays_.closest_hit(ray.origin, ray.direction,
                               ray.body != nullptr ? prt::RayOf::EyeInGlass : prt::RayOf::Eye);
-        const glm::vec3 sky = light_.reflections->sky(ray.direction, ray.spread);
+        const auto sky = [&] {
+            return ray.throughput * light_.reflections->sky(ray.direction, ray.spread);
+        };
         if (!hit)
-            return ray.throughput * sky;
+            return sky();
         if (ray.body != nullptr)
             ray.throughput *= glm::pow(ray.body->attenuation_color,
                                        glm::vec3(hit->distance / ray.body->attenuation_distance));
         const bool is_last = ray.num_surfaces >= MostSurfaces;
         if (!rays_.is_thin(hit->triangle))
-            return ray.throughput * mirrors_.seen(*hit, ray.direction, sky);
+            return ray.throughput * mirrors_.seen(*hit, ray.direction, ray.spread);
         if (is_last)
-            return ray.throughput * sky;
+            return sky();
         if (!meet(ray, *hit, u))
-            return ray.throughput * mirrors_.seen(*hit, ray.direction, sky);
+            return ray.throughput * mirrors_.seen(*hit, ray.direction, ray.spread);
     }
 }
 

@@ -1,0 +1,187 @@
+#include "relight/pictures/ray_fan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+#include "cubemap/frame.h"
+
+// Highway compiles the block below once per instruction set and picks one at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "relight/pictures/ray_fan.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <hwy/contrib/math/math-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace relumine::relight::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using FanTag = hn::CappedTag<float, prt::PacketSize>;
+using FanVector = hn::Vec<FanTag>;
+
+/// Coordinates of some rays.
+struct FanDirections {
+    FanVector x, y, z;
+};
+
+FanVector constant(float value) {
+    return hn::Set(FanTag(), value);
+}
+
+FanVector dot(const FanDirections& a, const FanDirections& b) {
+    return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+
+FanDirections normalised(const FanDirections& v) {
+    const FanVector scale = hn::Div(constant(1.0f), hn::Sqrt(dot(v, v)));
+    return {hn::Mul(v.x, scale), hn::Mul(v.y, scale), hn::Mul(v.z, scale)};
+}
+
+/// x a + y b + z c.
+FanDirections combined(const FanDirections& of, const glm::vec3& a, const glm::vec3& b,
+                       const glm::vec3& c) {
+    const auto axis = [&](int i) {
+        return hn::MulAdd(of.x, constant(a[i]),
+                          hn::MulAdd(of.y, constant(b[i]), hn::Mul(of.z, constant(c[i]))));
+    };
+    return {axis(0), axis(1), axis(2)};
+}
+
+/// Square root of what may be below 0 by a rounding.
+FanVector root(FanVector value) {
+    return hn::Sqrt(hn::Max(value, hn::Zero(FanTag())));
+}
+
+/// The half of the sphere that an eye sees, stretched until the lobe's facets are spread evenly.
+struct Stretched {
+    glm::vec3 eye, t1, t2;
+
+    Stretched(const glm::vec3& to_eye, float alpha)
+        : eye(glm::normalize(glm::vec3(alpha * to_eye.x, alpha * to_eye.y, to_eye.z))),
+          t1(1.0f, 0.0f, 0.0f) {
+        const float length = std::hypot(eye.x, eye.y);
+        if (length > 0.0f)
+            t1 = glm::vec3(-eye.y, eye.x, 0.0f) / length;
+        t2 = glm::cross(eye, t1);
+    }
+};
+
+/// As hammersley(), x and y of points i of n.
+void hammersley_points(const RayFan& fan, hn::Vec<hn::RebindToUnsigned<FanTag>> i, FanVector& x,
+                       FanVector& y) {
+    const FanTag d;
+    const hn::RebindToUnsigned<FanTag> du;
+    const hn::RebindToSigned<FanTag> di;
+    const auto fraction = [&](FanVector v) {
+        return hn::Sub(v, hn::Floor(v));
+    };
+    const auto to_float = [&](auto v) {
+        return hn::ConvertTo(d, hn::BitCast(di, v));
+    };
+    // Numbers below 2^24 in reverse: single bits, pairs, fours and eights change places.
+    const auto swapped = [&](auto v, auto shift, std::uint32_t mask) {
+        return hn::Or(hn::And(hn::ShiftRight<decltype(shift)::value>(v), hn::Set(du, mask)),
+                      hn::ShiftLeft<decltype(shift)::value>(hn::And(v, hn::Set(du, mask))));
+    };
+    auto bits = swapped(i, std::integral_constant<int, 1>(), 0x55555555u);
+    bits = swapped(bits, std::integral_constant<int, 2>(), 0x33333333u);
+    bits = swapped(bits, std::integral_constant<int, 4>(), 0x0f0f0f0fu);
+    bits = swapped(bits, std::integral_constant<int, 8>(), 0x00ff00ffu);
+    bits = hn::Or(hn::ShiftRight<16>(bits), hn::ShiftLeft<16>(bits));
+    const FanVector inverse = hn::Mul(to_float(hn::ShiftRight<8>(bits)), constant(0x1p-24f));
+    const FanVector along =
+        hn::Div(hn::Add(to_float(i), constant(0.5f)), constant(static_cast<float>(fan.num_rays)));
+    x = fraction(hn::Add(along, constant(fan.shift.x)));
+    y = fraction(hn::Add(inverse, constant(fan.shift.y)));
+}
+
+/// Returns directions in the frame of the normal, mirrored at half vectors of visible_half().
+FanDirections mirrored(const Stretched& stretched, const glm::vec3& to_eye, float alpha,
+                       FanVector u_x, FanVector cosine, FanVector sine, FanVector& density) {
+    const FanVector one = constant(1.0f);
+    const FanVector r = hn::Sqrt(u_x);
+    const FanVector x = hn::Mul(r, cosine);
+    const FanVector x2 = hn::Mul(x, x);
+    const float s = 0.5f * (1.0f + stretched.eye.z);
+    const FanVector y = hn::MulAdd(constant(1.0f - s), root(hn::Sub(one, x2)),
+                                   hn::Mul(constant(s), hn::Mul(r, sine)));
+    const FanVector z = root(hn::NegMulAdd(y, y, hn::Sub(one, x2)));
+    const FanDirections h = combined({x, y, z}, stretched.t1, stretched.t2, stretched.eye);
+    const FanDirections half =
+        normalised({hn::Mul(constant(alpha), h.x), hn::Mul(constant(alpha), h.y),
+                    hn::Max(h.z, constant(1e-6f))});
+
+    const float a2 = alpha * alpha;
+    const FanVector facing = hn::MulAdd(
+        half.x, half.x, hn::MulAdd(half.y, half.y, hn::Mul(constant(a2), hn::Mul(half.z, half.z))));
+    const float n_v = to_eye.z;
+    const float mask = n_v + std::sqrt(n_v * n_v * (1.0f - a2) + a2);
+    density =
+        hn::Div(constant(a2 * 0.5f / (std::numbers::pi_v<float> * mask)), hn::Mul(facing, facing));
+
+    const FanDirections eye{constant(to_eye.x), constant(to_eye.y), constant(to_eye.z)};
+    const FanVector along = hn::Mul(constant(2.0f), dot(eye, half));
+    return {hn::MulSub(along, half.x, eye.x), hn::MulSub(along, half.y, eye.y),
+            hn::MulSub(along, half.z, eye.z)};
+}
+
+void fan_rays(const RayFan& fan, std::uint32_t first, FanRays& rays) {
+    constexpr float Turn = 2.0f * std::numbers::pi_v<float>;
+    const FanTag d;
+    const hn::RebindToUnsigned<FanTag> du;
+    const glm::mat3 frame = cubemap::frame_of(fan.normal);
+    const glm::vec3 to_eye = fan.to_eye * frame;
+    const Stretched stretched(to_eye, fan.alpha);
+    for (std::size_t lane = 0; lane < prt::PacketSize; lane += hn::Lanes(d)) {
+        const auto i = hn::Min(hn::Iota(du, first + static_cast<std::uint32_t>(lane)),
+                               hn::Set(du, fan.num_rays - 1));
+        FanVector u_x = hn::Zero(d), u_y = u_x;
+        hammersley_points(fan, i, u_x, u_y);
+        const FanVector angle = hn::Mul(constant(Turn), u_y);
+        const FanVector cosine = hn::Cos(d, angle), sine = hn::Sin(d, angle);
+        FanVector density = constant(1.0f / Turn);
+        FanDirections local{u_x, u_x, u_x};
+        if (fan.alpha > 0.0f) {
+            local = mirrored(stretched, to_eye, fan.alpha, u_x, cosine, sine, density);
+        } else {
+            const FanVector across = root(hn::NegMulAdd(u_x, u_x, constant(1.0f)));
+            local = {hn::Mul(across, cosine), hn::Mul(across, sine), u_x};
+        }
+        const FanDirections world = normalised(combined(local, frame[0], frame[1], frame[2]));
+        hn::Store(world.x, d, rays.directions.x.data() + lane);
+        hn::Store(world.y, d, rays.directions.y.data() + lane);
+        hn::Store(world.z, d, rays.directions.z.data() + lane);
+        hn::Store(density, d, rays.densities.data() + lane);
+        std::array<std::uint8_t, 8> bits{};
+        hn::StoreMaskBits(d, hn::Gt(local.z, hn::Zero(d)), bits.data());
+        rays.above |= (bits[0] | std::uint32_t{bits[1]} << 8u) << lane;
+    }
+    const std::uint32_t count = std::min<std::uint32_t>(fan.num_rays - first, prt::PacketSize);
+    rays.above &= (1u << count) - 1;
+    rays.directions.num_directions = count;
+}
+
+} // namespace relumine::relight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace relumine::relight {
+
+namespace {
+HWY_EXPORT(fan_rays);
+} // namespace
+
+FanRays fan_rays(const RayFan& fan, std::uint32_t first) {
+    FanRays rays;
+    HWY_DYNAMIC_DISPATCH(fan_rays)(fan, first, rays);
+    return rays;
+}
+
+} // namespace relumine::relight
+#endif // HWY_ONCE
