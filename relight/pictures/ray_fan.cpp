@@ -58,20 +58,6 @@ FanVector root(FanVector value) {
     return hn::Sqrt(hn::Max(value, hn::Zero(FanTag())));
 }
 
-/// The half of the sphere that an eye sees, stretched until the lobe's facets are spread evenly.
-struct Stretched {
-    glm::vec3 eye, t1, t2;
-
-    Stretched(const glm::vec3& to_eye, float alpha)
-        : eye(glm::normalize(glm::vec3(alpha * to_eye.x, alpha * to_eye.y, to_eye.z))),
-          t1(1.0f, 0.0f, 0.0f) {
-        const float length = std::hypot(eye.x, eye.y);
-        if (length > 0.0f)
-            t1 = glm::vec3(-eye.y, eye.x, 0.0f) / length;
-        t2 = glm::cross(eye, t1);
-    }
-};
-
 /// As hammersley(), x and y of points i of n.
 void hammersley_points(const RayFan& fan, hn::Vec<hn::RebindToUnsigned<FanTag>> i, FanVector& x,
                        FanVector& y) {
@@ -102,17 +88,17 @@ void hammersley_points(const RayFan& fan, hn::Vec<hn::RebindToUnsigned<FanTag>> 
 }
 
 /// Returns directions in the frame of the normal, mirrored at half vectors of visible_half().
-FanDirections mirrored(const Stretched& stretched, const glm::vec3& to_eye, float alpha,
-                       FanVector u_x, FanVector cosine, FanVector sine, FanVector& density) {
+FanDirections mirrored(const FanFrame& frame, float alpha, FanVector u_x, FanVector cosine,
+                       FanVector sine, FanVector& density) {
     const FanVector one = constant(1.0f);
     const FanVector r = hn::Sqrt(u_x);
     const FanVector x = hn::Mul(r, cosine);
     const FanVector x2 = hn::Mul(x, x);
-    const float s = 0.5f * (1.0f + stretched.eye.z);
+    const float s = 0.5f * (1.0f + frame.stretched_eye.z);
     const FanVector y = hn::MulAdd(constant(1.0f - s), root(hn::Sub(one, x2)),
                                    hn::Mul(constant(s), hn::Mul(r, sine)));
     const FanVector z = root(hn::NegMulAdd(y, y, hn::Sub(one, x2)));
-    const FanDirections h = combined({x, y, z}, stretched.t1, stretched.t2, stretched.eye);
+    const FanDirections h = combined({x, y, z}, frame.t1, frame.t2, frame.stretched_eye);
     const FanDirections half =
         normalised({hn::Mul(constant(alpha), h.x), hn::Mul(constant(alpha), h.y),
                     hn::Max(h.z, constant(1e-6f))});
@@ -120,24 +106,22 @@ FanDirections mirrored(const Stretched& stretched, const glm::vec3& to_eye, floa
     const float a2 = alpha * alpha;
     const FanVector facing = hn::MulAdd(
         half.x, half.x, hn::MulAdd(half.y, half.y, hn::Mul(constant(a2), hn::Mul(half.z, half.z))));
-    const float n_v = to_eye.z;
+    const float n_v = frame.to_eye.z;
     const float mask = n_v + std::sqrt(n_v * n_v * (1.0f - a2) + a2);
     density =
         hn::Div(constant(a2 * 0.5f / (std::numbers::pi_v<float> * mask)), hn::Mul(facing, facing));
 
-    const FanDirections eye{constant(to_eye.x), constant(to_eye.y), constant(to_eye.z)};
+    const FanDirections eye{constant(frame.to_eye.x), constant(frame.to_eye.y),
+                            constant(frame.to_eye.z)};
     const FanVector along = hn::Mul(constant(2.0f), dot(eye, half));
     return {hn::MulSub(along, half.x, eye.x), hn::MulSub(along, half.y, eye.y),
             hn::MulSub(along, half.z, eye.z)};
 }
 
-void fan_rays(const RayFan& fan, std::uint32_t first, FanRays& rays) {
+void fan_rays(const RayFan& fan, const FanFrame& frame, std::uint32_t first, FanRays& rays) {
     constexpr float Turn = 2.0f * std::numbers::pi_v<float>;
     const FanTag d;
     const hn::RebindToUnsigned<FanTag> du;
-    const glm::mat3 frame = cubemap::frame_of(fan.normal);
-    const glm::vec3 to_eye = fan.to_eye * frame;
-    const Stretched stretched(to_eye, fan.alpha);
     for (std::size_t lane = 0; lane < prt::PacketSize; lane += hn::Lanes(d)) {
         const auto i = hn::Min(hn::Iota(du, first + static_cast<std::uint32_t>(lane)),
                                hn::Set(du, fan.num_rays - 1));
@@ -148,12 +132,13 @@ void fan_rays(const RayFan& fan, std::uint32_t first, FanRays& rays) {
         FanVector density = constant(1.0f / Turn);
         FanDirections local{u_x, u_x, u_x};
         if (fan.alpha > 0.0f) {
-            local = mirrored(stretched, to_eye, fan.alpha, u_x, cosine, sine, density);
+            local = mirrored(frame, fan.alpha, u_x, cosine, sine, density);
         } else {
             const FanVector across = root(hn::NegMulAdd(u_x, u_x, constant(1.0f)));
             local = {hn::Mul(across, cosine), hn::Mul(across, sine), u_x};
         }
-        const FanDirections world = normalised(combined(local, frame[0], frame[1], frame[2]));
+        const FanDirections world =
+            normalised(combined(local, frame.axes[0], frame.axes[1], frame.axes[2]));
         hn::Store(world.x, d, rays.directions.x.data() + lane);
         hn::Store(world.y, d, rays.directions.y.data() + lane);
         hn::Store(world.z, d, rays.directions.z.data() + lane);
@@ -177,9 +162,19 @@ namespace {
 HWY_EXPORT(fan_rays);
 } // namespace
 
-FanRays fan_rays(const RayFan& fan, std::uint32_t first) {
+FanFrame::FanFrame(const RayFan& fan)
+    : axes(cubemap::frame_of(fan.normal)), to_eye(fan.to_eye * axes),
+      stretched_eye(
+          glm::normalize(glm::vec3(fan.alpha * to_eye.x, fan.alpha * to_eye.y, to_eye.z))) {
+    const glm::vec3 across(-stretched_eye.y, stretched_eye.x, 0.0f);
+    if (const float length2 = glm::dot(across, across); length2 > 0.0f)
+        t1 = across / std::sqrt(length2);
+    t2 = glm::cross(stretched_eye, t1);
+}
+
+FanRays fan_rays(const RayFan& fan, const FanFrame& frame, std::uint32_t first) {
     FanRays rays;
-    HWY_DYNAMIC_DISPATCH(fan_rays)(fan, first, rays);
+    HWY_DYNAMIC_DISPATCH(fan_rays)(fan, frame, first, rays);
     return rays;
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -24,6 +25,16 @@ struct RayFan {
     glm::vec2 shift;
 };
 
+/// What all rays of a fan share. Coordinates are along two axes across the normal, and along it.
+struct FanFrame {
+    glm::mat3 axes;
+    glm::vec3 to_eye;
+    /// The eye where the lobe is stretched until its facets are spread evenly, and two axes across.
+    glm::vec3 stretched_eye, t1{1.0f, 0.0f, 0.0f}, t2;
+
+    explicit FanFrame(const RayFan& fan);
+};
+
 /// Some rays of a fan.
 struct FanRays {
     prt::DirectionPacket directions;
@@ -35,6 +46,6 @@ struct FanRays {
 };
 
 /// Returns up to 16 rays of a fan, from ray `first` on. Lanes behind the last ray repeat it.
-[[nodiscard]] FanRays fan_rays(const RayFan& fan, std::uint32_t first);
+[[nodiscard]] FanRays fan_rays(const RayFan& fan, const FanFrame& frame, std::uint32_t first);
 
 } // namespace relumine::relight

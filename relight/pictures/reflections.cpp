@@ -123,8 +123,9 @@ glm::vec3 Reflections::sky(const glm::vec3& direction, float solid_angle) const 
 template<typename Add>
 void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surfaces& surfaces,
                        const Add& add) const {
+    const FanFrame frame(fan);
     for (std::uint32_t first = 0; first < fan.num_rays; first += prt::PacketSize) {
-        const FanRays rays = fan_rays(fan, first);
+        const FanRays rays = fan_rays(fan, frame, first);
         if (rays.above == 0)
             continue;
         std::array<prt::Hit, prt::PacketSize> hits;

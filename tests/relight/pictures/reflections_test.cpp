@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t R = 64;
 
-const Reflections::Surfaces NoSurface = [](const prt::Hit&, const glm::vec3&, const glm::vec3&) {
+const Reflections::Surfaces NoSurface = [](const prt::Hit&, const glm::vec3&, float) {
     ADD_FAILURE() << "nothing stands around the point";
     return glm::vec3(0.0f);
 };
@@ -146,9 +146,9 @@ TEST(Reflections, AMirrorShowsWhatItLooksAt) {
     // A wall of radiance 3 stands where the mirror looks, and hides the sky.
     const prt::RayScene wall(scenes::box({-2.0f, -1.0f, 0.5f}, {-1.0f, 1.0f, 2.0f}));
     const Reflections reflections(wall, 1e-4f, 16, cubemap::CubeMap(16, glm::vec3(0.25f)), {});
-    const auto bright = [](const prt::Hit&, const glm::vec3& direction, const glm::vec3& sky) {
+    const auto bright = [&](const prt::Hit&, const glm::vec3& direction, float solid_angle) {
         EXPECT_LT(direction.x, 0.0f);
-        EXPECT_NEAR(sky.r, 0.25f, 1e-4f);
+        EXPECT_NEAR(reflections.sky(direction, solid_angle).r, 0.25f, 1e-4f);
         return glm::vec3(3.0f);
     };
     const prt::Surface mirror = metal(0.0f);

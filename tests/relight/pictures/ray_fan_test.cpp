@@ -1,0 +1,89 @@
+#include "relight/pictures/ray_fan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <gtest/gtest.h>
+
+#include "cubemap/frame.h"
+#include "relight/pictures/visible_normals.h"
+#include "tests/prt/every_target.h"
+
+namespace relumine::relight {
+namespace {
+
+struct PlainRay {
+    glm::vec3 direction;
+    float density;
+    bool is_above;
+};
+
+/// Ray i, as the papers write it.
+PlainRay plain_ray(const RayFan& fan, std::uint32_t i) {
+    const glm::mat3 frame = cubemap::frame_of(fan.normal);
+    const glm::vec2 u = hammersley(i, fan.num_rays, fan.shift);
+    const float turn = 2.0f * std::numbers::pi_v<float>;
+    if (fan.alpha == 0.0f) {
+        const float across = std::sqrt(std::max(1.0f - u.x * u.x, 0.0f));
+        const glm::vec3 local(across * std::cos(turn * u.y), across * std::sin(turn * u.y), u.x);
+        return {frame * local, 1.0f / turn, local.z > 0.0f};
+    }
+    const glm::vec3 to_eye = fan.to_eye * frame;
+    const glm::vec3 half = visible_half(to_eye, fan.alpha, u);
+    const glm::vec3 local = 2.0f * glm::dot(to_eye, half) * half - to_eye;
+    return {glm::normalize(frame * local), mirrored_density(half, to_eye.z, fan.alpha),
+            local.z > 0.0f};
+}
+
+/// Returns how many rays are below the surface.
+std::uint32_t expect_plain_rays(const RayFan& fan) {
+    // Of directions: the root of what is nearly 0 keeps half of the digits. Of densities as a part
+    // of them, which grow with 1 / alpha^2 where the half vector turns.
+    constexpr float OfDirections = 2e-4f;
+    const float of_densities = 1e-5f / std::max(fan.alpha * fan.alpha, 1e-3f);
+    std::uint32_t num_below = 0;
+    for (std::uint32_t first = 0; first < fan.num_rays; first += prt::PacketSize) {
+        const FanRays rays = fan_rays(fan, FanFrame(fan), first);
+        const std::uint32_t count = std::min<std::uint32_t>(fan.num_rays - first, prt::PacketSize);
+        EXPECT_EQ(rays.directions.num_directions, count);
+        EXPECT_EQ(rays.above >> count, 0u);
+        for (std::uint32_t lane = 0; lane < prt::PacketSize; ++lane) {
+            const PlainRay expected = plain_ray(fan, first + std::min(lane, count - 1));
+            EXPECT_LT(glm::distance(rays.directions.direction(lane), expected.direction),
+                      OfDirections);
+            EXPECT_NEAR(rays.densities[lane], expected.density, of_densities * expected.density);
+            if (lane >= count)
+                continue;
+            const float height = glm::dot(expected.direction, fan.normal);
+            if (std::abs(height) > 1e-6f) {
+                EXPECT_EQ((rays.above >> lane & 1u) != 0, expected.is_above) << height;
+            }
+            num_below += expected.is_above ? 0 : 1;
+        }
+    }
+    return num_below;
+}
+
+TEST(RayFan, IsThePlainOneOnEveryTarget) {
+    scenes::on_every_target([] {
+        const glm::vec3 normal = glm::normalize(glm::vec3(0.3f, -0.8f, 0.5f));
+        const glm::vec3 across = glm::normalize(glm::cross(normal, glm::vec3(0.0f, 0.0f, 1.0f)));
+        std::uint32_t num_below = 0;
+        for (const float alpha : {0.0f, 1e-3f, 0.04f, 0.25f, 0.5f, 1.0f})
+            for (const float cosine : {1.0f, 0.7f, 0.1f, 0.01f})
+                for (const std::uint32_t num_rays : {1u, 5u, 16u, 33u, 128u})
+                    num_below += expect_plain_rays(
+                        {.normal = normal,
+                         .to_eye = cosine * normal + std::sqrt(1.0f - cosine * cosine) * across,
+                         .alpha = alpha,
+                         .num_rays = num_rays,
+                         .shift = {0.3f, 0.9f}});
+        EXPECT_GT(num_below, 100u) << "of a few thousand";
+    });
+}
+
+} // namespace
+} // namespace relumine::relight
