@@ -30,6 +30,13 @@ struct PairWord {
     const BlockNormals& normals;
 };
 
+/// Receivers of a block that are summed side by side, so that each cluster is read and decided
+/// about once for them: two vectors of them where one does not hold the block.
+struct SideBySide {
+    static constexpr std::size_t NumVectors = hn::MaxLanes(Floats()) < prt::BlockSize ? 2 : 1;
+    static constexpr std::size_t Size = NumVectors * hn::MaxLanes(Floats());
+};
+
 /// Adds max(n.E, 0) of clusters.
 template<bool AnySpread>
 HWY_INLINE void add_whole(std::uint64_t bits, const Normals<Floats>* normals,

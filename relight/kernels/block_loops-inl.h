@@ -27,13 +27,6 @@ using FloatSum = std::array<std::array<float, prt::BlockSize>, 3>;
 
 using Floats = hn::CappedTag<float, prt::BlockSize>;
 
-/// Receivers of a block that are summed side by side, so that each cluster is read and decided
-/// about once for them: two vectors of them where one does not hold the block.
-struct SideBySide {
-    static constexpr std::size_t NumVectors = hn::MaxLanes(Floats()) < prt::BlockSize ? 2 : 1;
-    static constexpr std::size_t Size = NumVectors * hn::MaxLanes(Floats());
-};
-
 /// Normals of some of a block's receivers.
 template<class D>
 struct Normals {

@@ -1,7 +1,7 @@
 #include "relight/kernels/update_kernel.h"
 
 #include <array>
-#include <bit>
+#include <vector>
 
 #include "prt/clusters/lattice.h"
 

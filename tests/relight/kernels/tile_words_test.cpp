@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <random>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -47,12 +48,15 @@ TEST(TileWords, SayWhichBlocksHaveWhatToDo) {
         const TileWords words = tile_words(transfer, block_normals(transfer.normals));
         ASSERT_EQ(words.words.size(), counts.num_tiles() * counts.words_per_block());
         std::size_t num_visible = 0, num_mixed = 0, num_across = 0, num_edges = 0;
+        std::vector<TileWord> of_all_blocks(words.words.size(),
+                                            {.whole_for_all = ~std::uint64_t{0}});
         for (std::size_t block = 0; block < counts.num_blocks(); ++block) {
             bool inside = false; // a run of visible clusters
             for (std::size_t w = 0; w < counts.words_per_block(); ++w) {
                 const std::size_t tile = block / prt::VisibleCounts::TileBlocks;
                 const std::size_t bit = block % prt::VisibleCounts::TileBlocks;
-                const TileWord& of_tile = words.words[tile * counts.words_per_block() + w];
+                const std::size_t word = tile * counts.words_per_block() + w;
+                const TileWord& of_tile = words.words[word];
                 const std::uint64_t visible = counts.visible[counts.word(block, w)];
                 const std::uint64_t mixed = counts.mixed[counts.word(block, w)];
                 const std::uint64_t visible_across = across(transfer, block, w, visible);
@@ -62,6 +66,9 @@ TEST(TileWords, SayWhichBlocksHaveWhatToDo) {
                     any_edge |= inside != ((above >> i & 1u) != 0);
                     inside = (above >> i & 1u) != 0;
                 }
+                of_all_blocks[word].whole_for_all &= above;
+                of_all_blocks[word].seen_by_some |= visible;
+                of_all_blocks[word].mixed_for_some |= mixed;
                 EXPECT_EQ(words.across_of(of_tile, bit), visible_across);
                 EXPECT_EQ(of_tile.across >> bit & 1u, visible_across != 0 ? 1u : 0u);
                 EXPECT_EQ(of_tile.visible >> bit & 1u, above != 0 ? 1u : 0u);
@@ -73,7 +80,15 @@ TEST(TileWords, SayWhichBlocksHaveWhatToDo) {
                 num_edges += of_tile.edges >> bit & 1u;
             }
         }
+        std::size_t num_for_all = 0;
+        for (std::size_t word = 0; word < words.words.size(); ++word) {
+            EXPECT_EQ(words.words[word].whole_for_all, of_all_blocks[word].whole_for_all);
+            EXPECT_EQ(words.words[word].seen_by_some, of_all_blocks[word].seen_by_some);
+            EXPECT_EQ(words.words[word].mixed_for_some, of_all_blocks[word].mixed_for_some);
+            num_for_all += words.words[word].whole_for_all != 0 ? 1 : 0;
+        }
         // The scene has all kinds, or the test would say little.
+        EXPECT_GT(num_for_all, 0u);
         EXPECT_GT(num_visible, num_edges);
         EXPECT_GT(num_mixed, 100u);
         EXPECT_GT(num_across, 100u);
