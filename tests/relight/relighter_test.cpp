@@ -270,8 +270,8 @@ void restore(Relighter& relighter, const cubemap::CubeMap& environment) {
                       std::span(&environment.at(face, 0, 0), std::size_t{r} * r));
 }
 
-void expect_a_thousand_edits_without_drift(const ShadowRays& rays, std::uint32_t r) {
-    const prt::Transfer& transfer = relit_scene().transfer;
+void expect_a_thousand_edits_without_drift(const prt::Transfer& transfer, const ShadowRays& rays,
+                                           std::uint32_t r) {
     const cubemap::CubeMap original = scenes::random_environment(r, 8);
     cubemap::CubeMap environment = original;
     Relighter relighter(transfer, rays);
@@ -294,15 +294,19 @@ void expect_a_thousand_edits_without_drift(const ShadowRays& rays, std::uint32_t
 }
 
 TEST(RelighterUpdate, AThousandEditsEqualRecomputingAndLeaveNoDrift) {
-    expect_a_thousand_edits_without_drift({}, 32);
+    expect_a_thousand_edits_without_drift(relit_scene().transfer, {}, 32);
 }
 
 TEST(RelighterUpdate, AThousandEditsOfAResolutionThatFitsNoCluster) {
-    expect_a_thousand_edits_without_drift({}, 20);
+    expect_a_thousand_edits_without_drift(relit_scene().transfer, {}, 20);
 }
 
 TEST(RelighterUpdate, AThousandEditsWithShadowRays) {
-    expect_a_thousand_edits_without_drift(relit_scene().shadow_rays(), 32);
+    expect_a_thousand_edits_without_drift(relit_scene().transfer, relit_scene().shadow_rays(), 32);
+}
+
+TEST(RelighterUpdate, AThousandEditsOfASkyThatLightsWholeTiles) {
+    expect_a_thousand_edits_without_drift(scenes::relit_floor().transfer, {}, 32);
 }
 
 TEST(RelighterUpdate, OnEveryTarget) {

@@ -1,6 +1,7 @@
 // A scene with hard and soft shadows, precomputed, for the tests of relighting.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -15,14 +16,15 @@
 namespace relumine::scenes {
 
 struct RelitScene {
-    mesh::TriangleMesh mesh = sphere_and_box_on_floor();
+    mesh::TriangleMesh mesh;
     prt::Receivers receivers = prt::vertex_receivers(mesh);
     prt::RayScene rays{mesh};
     prt::PrecomputeOptions options;
     prt::Transfer transfer;
 
-    explicit RelitScene(float tolerance = 0.02f, std::uint32_t face_resolution = 64)
-        : options{.tolerance = tolerance,
+    explicit RelitScene(float tolerance = 0.02f, std::uint32_t face_resolution = 64,
+                        mesh::TriangleMesh of = sphere_and_box_on_floor())
+        : mesh(std::move(of)), options{.tolerance = tolerance,
                   .face_resolution = face_resolution,
                   .bias = prt::automatic_bias(mesh)},
           transfer(prt::precompute(receivers, rays, options)) {}
@@ -38,6 +40,13 @@ struct RelitScene {
 /// One for all tests that only read it.
 [[nodiscard]] inline const RelitScene& relit_scene() {
     static const RelitScene scene;
+    return scene;
+}
+
+/// A floor of several tiles with a box on it: the whole sky lights many tiles alike.
+[[nodiscard]] inline const RelitScene& relit_floor() {
+    static const RelitScene scene(
+        0.05f, 32, joined(floor_grid(70, 8.0f), box({0.5f, 0.0f, 0.5f}, {1.0f, 1.0f, 1.5f})));
     return scene;
 }
 
