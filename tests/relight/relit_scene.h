@@ -25,8 +25,8 @@ struct RelitScene {
     explicit RelitScene(float tolerance = 0.02f, std::uint32_t face_resolution = 64,
                         mesh::TriangleMesh of = sphere_and_box_on_floor())
         : mesh(std::move(of)), options{.tolerance = tolerance,
-                  .face_resolution = face_resolution,
-                  .bias = prt::automatic_bias(mesh)},
+                                       .face_resolution = face_resolution,
+                                       .bias = prt::automatic_bias(mesh)},
           transfer(prt::precompute(receivers, rays, options)) {}
 
     [[nodiscard]] relight::ShadowRays shadow_rays() const {
