@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
 #include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
 
 #include "cubemap/frame.h"
 
