@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
 
 #include <glm/geometric.hpp>
 
@@ -14,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include "files/parallel.h"
+#include "prt/visibility/mask_bits-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::relight::HWY_NAMESPACE {
@@ -61,11 +61,8 @@ std::uint64_t near_horizon(const float* bounds, std::size_t stride, const glm::v
         const auto cosine = hn::MulAdd(hn::Set(d, normal.x), hn::LoadU(d, bounds + i), along_yz);
         const auto lowest =
             hn::NegMulAdd(hn::Set(d, normal_length), hn::LoadU(d, bounds + 3 * stride + i), cosine);
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, hn::Lt(lowest, hn::Set(d, normal_radius + Slack)), bits);
-        std::uint64_t word = 0;
-        std::memcpy(&word, bits, sizeof word);
-        near |= word << i;
+        const auto mask = hn::Lt(lowest, hn::Set(d, normal_radius + Slack));
+        near |= std::uint64_t{prt::HWY_NAMESPACE::bits_of(d, mask)} << i;
     }
     return near;
 }

@@ -130,7 +130,7 @@ public:
     TileUpdate(const BlockScene& scene, std::size_t tile, const LightChanges& changes,
                BlockLight* light)
         : scene_(scene), changes_(changes), begin_(scene.counts.tile_begin(tile)),
-          num_blocks_(scene.counts.tile_begin(tile + 1) - begin_),
+          all_blocks_(scene.counts.tile_blocks(tile)),
           tile_words_(scene.words.words.data() + tile * scene.counts.words_per_block()),
           of_block_(light + begin_), normals_(scene.normals.data() + begin_) {
         whole_sums_.fill({});
@@ -146,8 +146,10 @@ public:
                 hwy::Prefetch(tile_words_ + changes_.words[i + 2].word);
             const TileWord& blocks = tile_words_[change.word];
             const std::uint64_t for_all = change.clusters & blocks.whole_for_all;
-            add_whole(change, for_all, sum_of_all_);
-            is_whole_for_all_ = is_whole_for_all_ || for_all != 0;
+            if (for_all != 0) {
+                add_whole(change, for_all, sum_of_all_);
+                summed_ = all_blocks_;
+            }
             const std::uint64_t rest = change.clusters & ~for_all;
             if ((rest & blocks.seen_by_some) != 0)
                 add_seen(change, blocks, rest);
@@ -156,12 +158,10 @@ public:
         }
         for (Pending& word : pending_)
             finish(word);
-        if (is_whole_for_all_) {
-            summed_ = ~std::uint64_t{0} >> (prt::VisibleCounts::TileBlocks - num_blocks_);
-            for_blocks(summed_, [&](std::size_t block) { add(sum_of_all_, whole_sums_[block]); });
-        }
-        for_blocks(summed_,
-                   [&](std::size_t block) { add(whole_sums_[block], of_block_[block].visible); });
+        for_blocks(summed_, [&](std::size_t block) {
+            add(sum_of_all_, whole_sums_[block]);
+            add(whole_sums_[block], of_block_[block].visible);
+        });
         return paired_ | summed_;
     }
 
@@ -181,8 +181,10 @@ private:
         const std::size_t word = scene_.counts.word(begin_, change.word);
         constexpr std::size_t WordsPerLine = 64 / sizeof(std::uint64_t);
         const auto ask = [&](const std::vector<std::uint64_t>& words) {
-            for (std::size_t block = 0; block < num_blocks_; block += WordsPerLine)
-                hwy::Prefetch(words.data() + word + block);
+            const std::uint64_t* line = words.data() + word;
+            for (std::uint64_t left = all_blocks_; left != 0;
+                 left >>= WordsPerLine, line += WordsPerLine)
+                hwy::Prefetch(line);
         };
         if ((rest & blocks.seen_by_some) != 0)
             ask(scene_.counts.visible);
@@ -266,7 +268,8 @@ private:
 
     const BlockScene& scene_;
     const LightChanges& changes_;
-    std::size_t begin_, num_blocks_;
+    std::size_t begin_;
+    std::uint64_t all_blocks_;
     const TileWord* tile_words_;
     // The tile's first:
     BlockLight* of_block_;
@@ -275,7 +278,6 @@ private:
     std::array<VectorChange, prt::VisibleCounts::TileBlocks> whole_sums_;
     /// Of clusters that all blocks see whole.
     VectorChange sum_of_all_{};
-    bool is_whole_for_all_ = false;
     /// Blocks that have such sums, and pairs.
     std::uint64_t summed_ = 0, paired_ = 0;
     std::array<Pending, 2> pending_;

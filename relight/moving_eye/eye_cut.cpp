@@ -19,6 +19,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "prt/visibility/mask_bits-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace relumine::relight::HWY_NAMESPACE {
 
@@ -154,9 +156,7 @@ private:
         const auto allowed = hn::Mul(below, width2);
         const auto weak = hn::Le(above, below);
         const auto bits_of = [&](auto mask) {
-            std::array<std::uint8_t, 8> stored{};
-            hn::StoreMaskBits(d, mask, stored.data());
-            return std::uint32_t{stored[0]} << first;
+            return prt::HWY_NAMESPACE::bits_of(d, mask) << first;
         };
         bits.lit |= bits_of(lit);
         bits.fine_alike |= bits_of(hn::Or(weak, hn::Le(hn::Mul(above, off), allowed)));

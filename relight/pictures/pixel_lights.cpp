@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "prt/receivers/lit_position.h"
+#include "relight/sharp/light_packets.h"
 
 namespace relumine::relight {
 
@@ -19,14 +20,10 @@ constexpr std::uint32_t GroupSize = 8;
 } // namespace
 
 LightBeams::LightBeams(std::span<const SharpLight> lights) : num_lights_(lights.size()) {
-    // So wide a beam makes a shaft that few triangles lie in: 8 degrees around its first light.
-    constexpr float CosineOfBeam = 0.9903f;
     for (std::size_t i = 0; i < lights.size(); ++i) {
-        const glm::vec3 direction(lights[i].direction);
-        if (beams_.empty() || beams_.back().directions.full() ||
-            glm::dot(beams_.back().directions.direction(0), direction) < CosineOfBeam)
+        if (beams_.empty() || !fits(beams_.back().directions, lights[i]))
             beams_.push_back({.directions = {}, .first_light = i});
-        beams_.back().directions.add(direction);
+        beams_.back().directions.add(glm::vec3(lights[i].direction));
     }
 }
 

@@ -17,6 +17,8 @@
 
 #include <hwy/contrib/math/math-inl.h>
 
+#include "prt/visibility/mask_bits-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace relumine::relight::HWY_NAMESPACE {
 
@@ -143,9 +145,7 @@ void fan_rays(const RayFan& fan, const FanFrame& frame, std::uint32_t first, Fan
         hn::Store(world.y, d, rays.directions.y.data() + lane);
         hn::Store(world.z, d, rays.directions.z.data() + lane);
         hn::Store(density, d, rays.densities.data() + lane);
-        std::array<std::uint8_t, 8> bits{};
-        hn::StoreMaskBits(d, hn::Gt(local.z, hn::Zero(d)), bits.data());
-        rays.above |= (bits[0] | std::uint32_t{bits[1]} << 8u) << lane;
+        rays.above |= prt::HWY_NAMESPACE::bits_of(d, hn::Gt(local.z, hn::Zero(d))) << lane;
     }
     const std::uint32_t count = std::min<std::uint32_t>(fan.num_rays - first, prt::PacketSize);
     rays.above &= (1u << count) - 1;

@@ -19,6 +19,12 @@ constexpr std::size_t ReceiversPerPart = 64;
 
 } // namespace
 
+bool fits(const prt::DirectionPatch& patch, const SharpLight& light) {
+    constexpr float CosineOfPatch = 0.9903f;
+    return !patch.full() &&
+           glm::dot(patch.direction(0), glm::vec3(light.direction)) >= CosineOfPatch;
+}
+
 LightPackets::LightPackets(std::span<const SharpLight> lights) {
     for (const SharpLight& light : lights)
         add(light.direction, light.irradiance);

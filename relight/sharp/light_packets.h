@@ -18,6 +18,10 @@
 
 namespace relumine::relight {
 
+/// Whether a light is traced with those of a patch: there is room, and it lies within 8 degrees of
+/// the first one. So wide a patch makes a shaft that few triangles lie in.
+[[nodiscard]] bool fits(const prt::DirectionPatch& patch, const SharpLight& light);
+
 /// Lights ready to be traced. Fastest when neighbours in the list lie close together.
 class LightPackets {
 public:

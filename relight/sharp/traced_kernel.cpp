@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "prt/visibility/mask_bits-inl.h"
 #include "relight/kernels/block_loops-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -35,9 +36,7 @@ std::uint32_t lanes_above(const BlockNormals& normals, const glm::vec3& directio
     std::uint32_t above = 0;
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
         const auto cosine = Normals<Floats>(normals, lane).dot(&direction.x);
-        std::array<std::uint8_t, 8> stored{};
-        hn::StoreMaskBits(d, hn::Gt(cosine, hn::Zero(d)), stored.data());
-        above |= (std::uint32_t{stored[0]} | std::uint32_t{stored[1]} << 8u) << lane;
+        above |= prt::HWY_NAMESPACE::bits_of(d, hn::Gt(cosine, hn::Zero(d))) << lane;
     }
     return above;
 }

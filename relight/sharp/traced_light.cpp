@@ -91,17 +91,13 @@ TracedLight::Key TracedLight::key_of(const SharpLight& light) {
 
 /// Lights of neighbouring clusters follow each other.
 void TracedLight::add(std::vector<FreshPatch>& patches, const SharpLight& light, Reached* reached) {
-    // So wide a patch makes a shaft that few triangles lie in: 8 degrees around its first light.
-    constexpr float CosineOfPatch = 0.9903f;
-    const glm::vec3 direction(light.direction);
-    if (patches.empty() || patches.back().directions.full() ||
-        glm::dot(patches.back().directions.direction(0), direction) < CosineOfPatch)
+    if (patches.empty() || !fits(patches.back().directions, light))
         patches.emplace_back();
     FreshPatch& patch = patches.back();
     patch.reached[patch.directions.num_directions] = reached;
     if (!light.is_of_list)
         patch.cluster[patch.directions.num_directions] = light.cluster;
-    patch.directions.add(direction);
+    patch.directions.add(glm::vec3(light.direction));
 }
 
 void TracedLight::choose_rays(const FreshPatch& patch, std::size_t direction, std::size_t first,
