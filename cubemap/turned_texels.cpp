@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
@@ -129,18 +131,23 @@ TexelRectangle TurnedTexels::tile(Face face, std::uint32_t row, std::uint32_t co
 void TurnedTexels::fill(const TexelRectangle& tile, std::size_t num_pairs, TurnedTile& sums,
                         CubeMap& turned) const {
     const std::uint32_t width = tile.x1 - tile.x0, height = tile.y1 - tile.y0;
-    sums.begin(width, height, num_pairs);
-    for (std::size_t from = 0; from < NumFaces; ++from) {
-        TilePlace place = places_[static_cast<std::size_t>(tile.face)][from];
-        place.origin = place.corner(tile.x0, tile.y0);
-        if (meets_face(place, width, height))
-            sums.add(place, std::span(faces_[from]).first(num_pairs), map_.resolution);
-    }
     std::vector<TexelPair<glm::vec3>> tiles;
     for (std::size_t i = 0; i < num_pairs; ++i)
         tiles.push_back(
             pair_at<glm::vec3>(turned, symmetries_[i].turned, tile.face, tile.x0, tile.y0));
-    sums.store(tiles);
+    std::vector<std::pair<std::size_t, TilePlace>> met;
+    for (std::size_t from = 0; from < NumFaces; ++from) {
+        TilePlace place = places_[static_cast<std::size_t>(tile.face)][from];
+        place.origin = place.corner(tile.x0, tile.y0);
+        if (meets_face(place, width, height))
+            met.emplace_back(from, place);
+    }
+    sums.begin(width, height, num_pairs);
+    for (std::size_t i = 0; i < met.size(); ++i) {
+        const auto& [from, place] = met[i];
+        sums.add(place, std::span(faces_[from]).first(num_pairs), map_.resolution,
+                 i + 1 == met.size() ? std::span(tiles) : std::span<TexelPair<glm::vec3>>());
+    }
 }
 
 void TurnedTexels::fill_all(CubeMap& turned) const {

@@ -107,7 +107,7 @@ void TurnedTile::begin(std::uint32_t width, std::uint32_t height, std::size_t nu
 }
 
 void TurnedTile::add(const TilePlace& place, std::span<const TexelPair<const glm::vec3>> faces,
-                     std::uint32_t resolution) {
+                     std::uint32_t resolution, std::span<const TexelPair<glm::vec3>> tiles) {
     Work& work = *work_;
     work.shift = resolution < LeastCells ? 1 : 0;
     work.num_cells = static_cast<std::int32_t>(resolution) << work.shift;
@@ -128,14 +128,12 @@ void TurnedTile::add(const TilePlace& place, std::span<const TexelPair<const glm
             sum_edges(width, height + 1, work.across, work, work.of_across);
             sum_edges(width + 1, height, work.down, work, work.of_down);
         }
-        add_texels(work, work.pairs[i]);
+        if (tiles.empty())
+            add_texels(work, work.pairs[i]);
+        else
+            store_means(work, work.pairs[i], tiles[i]);
     }
     work.is_first = false;
-}
-
-void TurnedTile::store(std::span<const TexelPair<glm::vec3>> tiles) const {
-    for (std::size_t i = 0; i < tiles.size(); ++i)
-        store_means(*work_, work_->pairs[i], tiles[i]);
 }
 
 } // namespace relumine::cubemap

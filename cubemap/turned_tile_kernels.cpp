@@ -30,6 +30,8 @@ constexpr std::size_t Stride = Work::Stride;
 
 using SumLanes = hn::CappedTag<double, Work::NumSums>;
 constexpr std::size_t NumSums = Work::NumSums;
+/// Vectors of sums, and the numbers of each.
+constexpr std::size_t Step = hn::MaxLanes(SumLanes()), NumVectors = NumSums / Step;
 
 void place_corners(const TilePlace& place, Work& work) {
     const Doubles d;
@@ -123,39 +125,41 @@ void fill_row(std::int32_t row, std::int32_t begin, std::int32_t end, const Dens
     const SumLanes ds;
     const hn::Rebind<float, SumLanes> narrow;
     const auto across = hn::Set(ds, double{density.across_middle()});
-    for (std::size_t j = 0; j < NumSums; j += hn::Lanes(ds)) {
-        auto sum = hn::Zero(ds), change_sum = hn::Zero(ds);
-        auto least = hn::Load(narrow, pair.least.data() + j);
-        const auto light_of = [&](std::size_t i) {
-            const auto values = hn::Load(narrow, colors[i].values.data() + j);
-            least = hn::Min(least, values);
-            return hn::Mul(hn::PromoteTo(ds, values), hn::Set(ds, middles[i]));
-        };
-        const auto change_of = [&](std::size_t i) {
-            return hn::Set(ds, changes[i]);
-        };
-        const auto store = [&](std::size_t i, const auto& light) {
-            Cell& cell = cells[i];
-            hn::Store(sum, ds, cell.left.data() + j);
-            hn::Store(hn::DemoteTo(narrow, change_sum), narrow, cell.change_left.data() + j);
-            hn::Store(hn::DemoteTo(narrow, light), narrow, cell.density.data() + j);
-        };
-        if (end == work.num_cells)
-            for (std::size_t i = count; i-- > 0;) {
-                const auto light = light_of(i);
-                sum = hn::NegMulAdd(light, across, sum);
-                change_sum = hn::NegMulAdd(light, change_of(i), change_sum);
-                store(i, light);
-            }
-        else
-            for (std::size_t i = 0; i < count; ++i) {
-                const auto light = light_of(i);
-                store(i, light);
-                sum = hn::MulAdd(light, across, sum);
-                change_sum = hn::MulAdd(light, change_of(i), change_sum);
-            }
-        hn::Store(least, narrow, pair.least.data() + j);
+    hn::Vec<SumLanes> sums[NumVectors], change_sums[NumVectors];
+    hn::Vec<decltype(narrow)> least[NumVectors];
+    for (std::size_t j = 0; j < NumVectors; ++j) {
+        sums[j] = change_sums[j] = hn::Zero(ds);
+        least[j] = hn::Load(narrow, pair.least.data() + j * Step);
     }
+    const auto light_of = [&](std::size_t i, std::size_t j) {
+        const auto values = hn::Load(narrow, colors[i].values.data() + j * Step);
+        least[j] = hn::Min(least[j], values);
+        return hn::Mul(hn::PromoteTo(ds, values), hn::Set(ds, middles[i]));
+    };
+    const auto store = [&](std::size_t i, std::size_t j, const auto& light) {
+        Cell& cell = cells[i];
+        hn::Store(sums[j], ds, cell.left.data() + j * Step);
+        hn::Store(hn::DemoteTo(narrow, change_sums[j]), narrow, cell.change_left.data() + j * Step);
+        hn::Store(hn::DemoteTo(narrow, light), narrow, cell.density.data() + j * Step);
+    };
+    if (end == work.num_cells)
+        for (std::size_t i = count; i-- > 0;)
+            for (std::size_t j = 0; j < NumVectors; ++j) {
+                const auto light = light_of(i, j);
+                sums[j] = hn::NegMulAdd(light, across, sums[j]);
+                change_sums[j] = hn::NegMulAdd(light, hn::Set(ds, changes[i]), change_sums[j]);
+                store(i, j, light);
+            }
+    else
+        for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t j = 0; j < NumVectors; ++j) {
+                const auto light = light_of(i, j);
+                store(i, j, light);
+                sums[j] = hn::MulAdd(light, across, sums[j]);
+                change_sums[j] = hn::MulAdd(light, hn::Set(ds, changes[i]), change_sums[j]);
+            }
+    for (std::size_t j = 0; j < NumVectors; ++j)
+        hn::Store(least[j], narrow, pair.least.data() + j * Step);
 }
 
 /// That at the middle of the tile's part.
@@ -243,8 +247,7 @@ void reserve_lines(std::size_t count, Work::Pieces& pieces) {
 void sum_lines(const Work::Pieces& pieces, std::size_t first, std::size_t end, std::size_t count,
                const Work& work, Work::Sum* sums) {
     using NarrowLanes = hn::CappedTag<float, NumSums>;
-    constexpr std::size_t Step = hn::MaxLanes(SumLanes()), NumVectors = NumSums / Step,
-                          NarrowStep = hn::MaxLanes(NarrowLanes()),
+    constexpr std::size_t NarrowStep = hn::MaxLanes(NarrowLanes()),
                           NumNarrow = NumSums / NarrowStep;
     const SumLanes ds;
     const NarrowLanes narrow;
@@ -321,26 +324,31 @@ void sum_edges(std::size_t width, std::size_t height, const Work::Pieces& pieces
         }
 }
 
-void add_texels(const Work& work, Work::Pair& pair) {
+/// What the faces so far give to a texel of a pair, some of the sums.
+HWY_INLINE hn::Vec<SumLanes> texel_sum(const Work& work, const Work::Pair& pair, std::size_t at,
+                                       std::size_t lane) {
     // What rounding leaves of sums that cancel.
     constexpr double Rounding = 4e-15;
     const SumLanes ds;
+    const auto top = hn::Load(ds, work.of_across[at].data() + lane);
+    const auto right = hn::Load(ds, work.of_down[at + 1].data() + lane);
+    const auto bottom = hn::Load(ds, work.of_across[at + Stride].data() + lane);
+    const auto left = hn::Load(ds, work.of_down[at].data() + lane);
+    const auto sum = hn::Sub(hn::Add(top, right), hn::Add(bottom, left));
+    const auto size =
+        hn::Add(hn::Add(hn::Abs(top), hn::Abs(right)), hn::Add(hn::Abs(bottom), hn::Abs(left)));
+    const auto is_sum = hn::Gt(hn::Abs(sum), hn::Mul(size, hn::Set(ds, Rounding)));
+    const auto kept = hn::IfThenElseZero(is_sum, sum);
+    return work.is_first ? kept : hn::Add(hn::Load(ds, pair.texels[at].data() + lane), kept);
+}
+
+void add_texels(const Work& work, Work::Pair& pair) {
     for (std::size_t y = 0; y < work.height; ++y)
         for (std::size_t x = 0; x < work.width; ++x) {
             const std::size_t at = y * Stride + x;
-            for (std::size_t j = 0; j < NumSums; j += hn::Lanes(ds)) {
-                const auto top = hn::Load(ds, work.of_across[at].data() + j);
-                const auto right = hn::Load(ds, work.of_down[at + 1].data() + j);
-                const auto bottom = hn::Load(ds, work.of_across[at + Stride].data() + j);
-                const auto left = hn::Load(ds, work.of_down[at].data() + j);
-                const auto sum = hn::Sub(hn::Add(top, right), hn::Add(bottom, left));
-                const auto size = hn::Add(hn::Add(hn::Abs(top), hn::Abs(right)),
-                                          hn::Add(hn::Abs(bottom), hn::Abs(left)));
-                const auto is_sum = hn::Gt(hn::Abs(sum), hn::Mul(size, hn::Set(ds, Rounding)));
-                double* texel = pair.texels[at].data() + j;
-                const auto kept = hn::IfThenElseZero(is_sum, sum);
-                hn::Store(work.is_first ? kept : hn::Add(hn::Load(ds, texel), kept), ds, texel);
-            }
+            for (std::size_t lane = 0; lane < NumSums; lane += Step)
+                hn::Store(texel_sum(work, pair, at, lane), SumLanes(),
+                          pair.texels[at].data() + lane);
         }
 }
 
@@ -349,14 +357,18 @@ void store_means(const Work& work, const Work::Pair& pair, const TexelPair<glm::
     const hn::Rebind<float, SumLanes> narrow;
     for (std::size_t y = 0; y < work.height; ++y)
         for (std::size_t x = 0; x < work.width; ++x) {
-            const Work::Sum& sum = pair.texels[y * Stride + x];
+            hn::Vec<SumLanes> sums[NumVectors];
+            HWY_ALIGN Work::Sum sum;
+            for (std::size_t j = 0; j < NumVectors; ++j) {
+                sums[j] = texel_sum(work, pair, y * Stride + x, j * Step);
+                hn::Store(sums[j], ds, sum.data() + j * Step);
+            }
             const auto scale = hn::Set(ds, 1.0 / sum[3]); // both sides have the same solid angle
             HWY_ALIGN std::array<float, NumSums> means;
-            for (std::size_t j = 0; j < NumSums; j += hn::Lanes(ds)) {
-                const auto exact = hn::Mul(scale, hn::Load(ds, sum.data() + j));
-                hn::Store(
-                    hn::Max(hn::DemoteTo(narrow, exact), hn::Load(narrow, pair.least.data() + j)),
-                    narrow, means.data() + j);
+            for (std::size_t j = 0; j < NumVectors; ++j) {
+                const auto least = hn::Load(narrow, pair.least.data() + j * Step);
+                hn::Store(hn::Max(hn::DemoteTo(narrow, hn::Mul(scale, sums[j])), least), narrow,
+                          means.data() + j * Step);
             }
             for (std::size_t side = 0; side < Work::NumSides; ++side) {
                 const float* mean = means.data() + side * Work::NumValues;
