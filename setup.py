@@ -1,5 +1,5 @@
-"""Builds the compiled part of the Python package with CMake. The packages of packages.txt and
-packages-python.txt must be there. The environment variable CMAKE_ARGS may hold more options."""
+"""Builds the compiled part of the Python package with CMake. The packages of packages/build.txt and
+packages/python.txt must be there. The environment variable CMAKE_ARGS may hold more options."""
 
 import os
 import shlex

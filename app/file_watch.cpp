@@ -19,7 +19,7 @@ namespace {
 /// When a file was last written or got its name; now for one that is gone again.
 std::chrono::system_clock::time_point change_time(const std::filesystem::path& path) {
     using Clock = std::chrono::system_clock;
-    struct stat status {};
+    struct stat status{};
     if (::stat(path.c_str(), &status) != 0)
         return Clock::now();
     return Clock::time_point(std::chrono::duration_cast<Clock::duration>(
@@ -45,7 +45,7 @@ FileWatch::FileWatch(const std::filesystem::path& path)
 }
 
 std::string FileWatch::state() const {
-    struct stat status {};
+    struct stat status{};
     if (::stat(path_.c_str(), &status) != 0)
         return {};
     return fmt::format("{} {} {} {}.{}", status.st_dev, status.st_ino, status.st_size,

@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
     app::CommandLine program("relumine",
                              "Relights meshes under measured environment light. Exit code 0: done, "
                              "1: the work failed, 2: wrong usage.",
-                             std::string(version()));
+                             long_version);
     app::add_commands(program, session);
 
     std::optional<files::ThreadLimit> thread_limit;

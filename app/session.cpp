@@ -43,7 +43,7 @@ sigset_t signals_to_stop() {
     sigemptyset(&signals);
     sigaddset(&signals, SIGINT);
     sigaddset(&signals, SIGTERM);
-    struct sigaction on_hangup {};
+    struct sigaction on_hangup{};
     if (::sigaction(SIGHUP, nullptr, &on_hangup) == 0 && on_hangup.sa_handler != SIG_IGN)
         sigaddset(&signals, SIGHUP);
     return signals;
@@ -320,7 +320,7 @@ double Stopwatch::total() const {
 }
 
 std::uint64_t peak_bytes() {
-    struct rusage usage {};
+    struct rusage usage{};
     ::getrusage(RUSAGE_SELF, &usage);
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }

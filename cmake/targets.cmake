@@ -9,7 +9,9 @@ endif()
 #   relumine_library(NAME [INTERNAL]
 #       HEADERS ...           what users of the library include: installed, each verified to compile alone
 #       PRIVATE_HEADERS ...   kernels, scratch, readers of files: for this project's own sources and tests
-#       SOURCES ...)
+#       SOURCES ...
+#       KERNELS ...           sources that are inner loops (cmake/unity.cmake)
+#       LEVEL -O1)            of optimisation; -O2 where none is given
 #
 # makes relumine::NAME with the warnings, the language level and the include spelling ("NAME/file.h") that all
 # folders share. A public header includes public headers, GLM and std only (tests/headers checks it). The library
@@ -71,12 +73,12 @@ function(relumine_copy_public_headers)
 endfunction()
 
 function(relumine_library name)
-    cmake_parse_arguments(arg "INTERNAL" "" "HEADERS;PRIVATE_HEADERS;SOURCES" ${ARGN})
+    cmake_parse_arguments(arg "INTERNAL" "LEVEL" "HEADERS;PRIVATE_HEADERS;SOURCES;KERNELS" ${ARGN})
     set(kind "")
     if(arg_INTERNAL)
         set(kind STATIC)
     endif()
-    add_library(relumine_${name} ${kind} ${arg_SOURCES} ${arg_PRIVATE_HEADERS})
+    add_library(relumine_${name} ${kind} ${arg_SOURCES} ${arg_KERNELS} ${arg_PRIVATE_HEADERS})
     add_library(relumine::${name} ALIAS relumine_${name})
     target_include_directories(relumine_${name} PUBLIC
         "$<BUILD_INTERFACE:${relumine_includes}>" $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
@@ -91,7 +93,6 @@ function(relumine_library name)
     # Nobody replaces their functions, so calls are as direct, and as often inlined, as in a program.
     target_compile_options(relumine_${name} PRIVATE -fno-semantic-interposition)
     target_link_libraries(relumine_${name} PRIVATE $<BUILD_INTERFACE:relumine_warnings>)
-    relumine_optimise(relumine_${name} -O2)
     # A shared library depends on no more than it uses.
     target_link_options(relumine_${name} PRIVATE LINKER:--as-needed)
 
@@ -115,16 +116,8 @@ function(relumine_library name)
             LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development
             ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
     endif()
-    relumine_compile_together(relumine_${name})
-    relumine_use_precompiled(relumine_${name} relumine_headers)
-endfunction()
-
-# Release compiles with -O2. Kernels, the inner loops over all receivers or rays, gain from -O3; code that parses, calls
-# and writes gains nothing from what is costly to compile.
-function(relumine_optimise target level)
-    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${level}>)
-endfunction()
-
-function(relumine_kernels)
-    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O3>)
+    if(NOT arg_LEVEL)
+        set(arg_LEVEL -O2)
+    endif()
+    relumine_compile(relumine_${name} ${arg_LEVEL} KERNELS ${arg_KERNELS})
 endfunction()

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
 
 #include "mesh/triangle_mesh.h"
@@ -12,6 +13,13 @@ inline constexpr double FullTurn = 2.0 * std::numbers::pi;
 
 /// Throws:  std::invalid_argument outside [MinSceneVertices, MaxSceneVertices].
 void check_num_vertices(std::size_t num_vertices);
+
+/// Returns the knot's surface about the origin, its vertices about `spacing` apart, without
+/// normals.
+[[nodiscard]] mesh::TriangleMesh knot_surface(double spacing);
+
+/// Returns the boulder's surface, made of icosphere(frequency), without normals.
+[[nodiscard]] mesh::TriangleMesh boulder_surface(std::uint32_t frequency);
 
 /// Adds normals and a floor to the objects. The floor gets the remaining vertices.
 [[nodiscard]] mesh::TriangleMesh on_ground(mesh::TriangleMesh objects, double floor_side,

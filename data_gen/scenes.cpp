@@ -87,16 +87,13 @@ mesh::TriangleMesh on_ground(mesh::TriangleMesh objects, double floor_side,
     return objects;
 }
 
-mesh::TriangleMesh knot(std::size_t num_vertices) {
-    check_num_vertices(num_vertices);
-    // Length of knot_line. It only sets how even the spacing is.
-    constexpr double LineLength = 15.0;
-    constexpr double TubeRadius = 0.27;
-    const double wish = 0.5 * static_cast<double>(num_vertices);
-    const auto num_across = static_cast<std::uint32_t>(
-        std::lround(std::sqrt(wish * FullTurn * TubeRadius / LineLength)));
-    const auto num_along = static_cast<std::uint32_t>(std::lround(wish / num_across));
+namespace {
 
+// Length of knot_line. It only sets how even the spacing is.
+constexpr double LineLength = 15.0;
+constexpr double TubeRadius = 0.27;
+
+mesh::TriangleMesh knot_of(std::uint32_t num_across, std::uint32_t num_along) {
     mesh::TriangleMesh mesh;
     std::vector<glm::dvec3> centers;
     std::vector<std::array<glm::dvec3, 2>> axes;
@@ -109,6 +106,23 @@ mesh::TriangleMesh knot(std::size_t num_vertices) {
         return centers[j] +
                TubeRadius * (std::cos(angle) * axes[j][0] + std::sin(angle) * axes[j][1]);
     });
+    return mesh;
+}
+
+} // namespace
+
+mesh::TriangleMesh knot_surface(double spacing) {
+    return knot_of(num_intervals(FullTurn * TubeRadius, spacing, 3),
+                   num_intervals(LineLength, spacing, 24));
+}
+
+mesh::TriangleMesh knot(std::size_t num_vertices) {
+    check_num_vertices(num_vertices);
+    const double wish = 0.5 * static_cast<double>(num_vertices);
+    const auto num_across = static_cast<std::uint32_t>(
+        std::lround(std::sqrt(wish * FullTurn * TubeRadius / LineLength)));
+    mesh::TriangleMesh mesh =
+        knot_of(num_across, static_cast<std::uint32_t>(std::lround(wish / num_across)));
     constexpr float Gap = 0.05f;
     const float lift = Gap - mesh::bounds(mesh).min.y;
     for (glm::vec3& p : mesh.positions) {
@@ -117,9 +131,8 @@ mesh::TriangleMesh knot(std::size_t num_vertices) {
     return on_ground(std::move(mesh), 10.0, num_vertices);
 }
 
-mesh::TriangleMesh blob(std::size_t num_vertices) {
-    check_num_vertices(num_vertices);
-    mesh::TriangleMesh mesh = icosphere(icosphere_frequency(num_vertices / 2));
+mesh::TriangleMesh boulder_surface(std::uint32_t frequency) {
+    mesh::TriangleMesh mesh = icosphere(frequency);
     float lowest = 0.0f;
     for (glm::vec3& p : mesh.positions) {
         const glm::dvec3 direction(p);
@@ -144,7 +157,12 @@ mesh::TriangleMesh blob(std::size_t num_vertices) {
     for (glm::vec3& p : mesh.positions) {
         p.y -= lowest;
     }
-    return on_ground(std::move(mesh), 7.0, num_vertices);
+    return mesh;
+}
+
+mesh::TriangleMesh blob(std::size_t num_vertices) {
+    check_num_vertices(num_vertices);
+    return on_ground(boulder_surface(icosphere_frequency(num_vertices / 2)), 7.0, num_vertices);
 }
 
 mesh::TriangleMesh sphere(std::size_t num_vertices) {
@@ -157,7 +175,7 @@ mesh::TriangleMesh sphere(std::size_t num_vertices) {
 }
 
 std::span<const Scene> scenes() {
-    static constexpr std::array<Scene, 6> Scenes = {{
+    static constexpr std::array<Scene, 7> Scenes = {{
         {"colonnade", "a round temple of fluted columns: long hard and soft shadows", colonnade},
         {"knot", "a torus knot just above the floor: soft shadows on itself and on the floor",
          knot},
@@ -166,6 +184,7 @@ std::span<const Scene> scenes() {
         {"room", "a closed room with one window: sun that bounces", room},
         {"painted_room", "an open room with a red and a green wall: colours that bounce",
          painted_room},
+        {"still_life", "gold, glass, lacquer, stone and a lamp on a plinth: materials", still_life},
     }};
     return Scenes;
 }

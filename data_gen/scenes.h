@@ -17,7 +17,7 @@ inline constexpr std::size_t MaxSceneVertices = 5'000'000;
 // Every scene stands on a flat floor at y = 0 that faces +Y. Outside of rooms it holds about half
 // of the vertices, and the rest are closed surfaces. Vertices are evenly spaced, shared where the
 // shape is smooth and doubled along sharp edges. Normals are set, texture coordinates are not; only
-// rooms have colours.
+// rooms have colours, only the still life has materials.
 //
 // Unit:    metre.
 // Result:  `num_vertices` is met within 4 % (1 % from 20,000 on). The same argument gives the same
@@ -60,6 +60,10 @@ inline constexpr glm::vec3 SphereCenter{0.0f, 1.5f, 0.0f};
 /// Returns a room without a front wall, 4 x 3.2 x 4 m: its left wall is red, its right wall green.
 /// A box and a ball on the floor show the colours that bounce.
 [[nodiscard]] mesh::TriangleMesh painted_room(std::size_t num_vertices = 100'000);
+
+/// Returns a gold knot, a glass ball, a lacquered ball, a stone and a small glowing ball on a
+/// plinth of plaster, 2.6 m across. All but glass, gold and lacquer is matt.
+[[nodiscard]] mesh::TriangleMesh still_life(std::size_t num_vertices = 100'000);
 
 /// One row of the list of scenes.
 struct Scene {

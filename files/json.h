@@ -48,7 +48,8 @@ public:
     /// A truth value, a number, text, a vector of three numbers, a list of any of these, Array,
     /// Object or null.
     template<typename T>
-    requires(!std::same_as<T, Json>) Json(T value) : value_(content_of(std::move(value))) {}
+        requires(!std::same_as<T, Json>)
+    Json(T value) : value_(content_of(std::move(value))) {}
     /// An object if each value is a pair that begins with a text: {{"vertices", 6}, {"name", "a"}}.
     /// A list otherwise. Json::Array{...} is a list whatever the values look like.
     Json(std::initializer_list<Json> values);

@@ -13,8 +13,7 @@ template<typename Variant>
 [[nodiscard]] auto one_of_each() {
     return []<std::size_t... I>(std::index_sequence<I...>) {
         return std::array{Variant(std::in_place_index<I>)...};
-    }
-    (std::make_index_sequence<std::variant_size_v<Variant>>{});
+    }(std::make_index_sequence<std::variant_size_v<Variant>>{});
 }
 
 } // namespace relumine::files

@@ -28,7 +28,7 @@ std::pair<Descriptor, std::size_t> open_for_reading(const std::filesystem::path&
     Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!file.is_open())
         fail(path, "read", errno);
-    struct stat status {};
+    struct stat status{};
     if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode))
         throw std::runtime_error(fmt::format("{}: cannot read: not a regular file", path.string()));
     return {std::move(file), static_cast<std::size_t>(status.st_size)};
@@ -52,8 +52,8 @@ std::filesystem::path followed(const std::filesystem::path& path) {
 /// Returns true if an open and locked file may be written by this process: the file is still there
 /// under its name and belongs to no one else.
 bool is_own(int file, const std::filesystem::path& name) {
-    struct stat opened {};
-    struct stat named {};
+    struct stat opened{};
+    struct stat named{};
     return ::fstat(file, &opened) == 0 && ::lstat(name.c_str(), &named) == 0 &&
            S_ISREG(opened.st_mode) && opened.st_nlink == 1 && opened.st_uid == ::geteuid() &&
            opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
@@ -73,7 +73,7 @@ Temporaries& temporaries() {
 
 OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)) {
     // Renaming over a pipe or a device would replace it by a file.
-    struct stat status {};
+    struct stat status{};
     if (::stat(target_.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
         if (S_ISDIR(status.st_mode))
             fail(target_, "write", EISDIR);
@@ -147,7 +147,7 @@ void OutputFile::open_temporary() {
 
 /// A file that its owner made private stays private.
 void OutputFile::keep_permissions() {
-    struct stat status {};
+    struct stat status{};
     if (::stat(place_.c_str(), &status) != 0)
         return;
     constexpr mode_t Permissions = 0777;
@@ -213,7 +213,7 @@ void save_text(const std::filesystem::path& path, std::string_view text) {
 
 void append_text(const std::filesystem::path& path, std::string_view text) {
     const Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
-    struct stat status {};
+    struct stat status{};
     if (!file.is_open() || ::fstat(file.get(), &status) != 0)
         fail(path, "write", errno);
     const auto size = static_cast<std::uint64_t>(status.st_size);

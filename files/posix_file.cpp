@@ -42,8 +42,8 @@ void fail_to_write(const std::filesystem::path& path, int error, std::uint64_t b
     std::string figures;
     if (error == ENOSPC || error == EDQUOT || error == EFBIG)
         figures = fmt::format(": {} bytes needed", bytes_needed);
-    struct statvfs disk {};
-    struct rlimit limit {};
+    struct statvfs disk{};
+    struct rlimit limit{};
     // There is no portable way to ask how much a quota leaves.
     if (error == ENOSPC && ::fstatvfs(file, &disk) == 0)
         figures +=

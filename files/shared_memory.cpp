@@ -19,7 +19,7 @@ void write_shared_memory(const std::string& name, std::span<const std::byte> byt
         throw std::runtime_error(
             fmt::format("expected the name of shared memory like /radiance, got '{}'", name));
     const Descriptor object(::shm_open(("/" + bare).c_str(), O_RDWR | O_CLOEXEC, 0));
-    struct stat status {};
+    struct stat status{};
     if (!object.is_open() || ::fstat(object.get(), &status) != 0)
         fail(name, "write shared memory", errno);
     const auto size = static_cast<std::uint64_t>(status.st_size);

@@ -67,6 +67,7 @@ DisjointSets smooth_corners(const TriangleMesh& mesh, std::span<const Triangle> 
 } // namespace
 
 std::vector<glm::vec3> smooth_normals(const TriangleMesh& mesh) {
+    require_triangles(mesh);
     std::vector<glm::dvec3> sums(mesh.num_vertices(), glm::dvec3(0.0));
     for_each_corner_normal(mesh, [&](std::size_t corner, const glm::dvec3& normal) {
         sums[mesh.triangles[corner / 3][corner % 3]] += normal;
@@ -77,6 +78,7 @@ std::vector<glm::vec3> smooth_normals(const TriangleMesh& mesh) {
 }
 
 TriangleMesh with_creases(const TriangleMesh& mesh, float degrees) {
+    require_triangles(mesh);
     const std::vector<Triangle> welded = renamed(mesh.triangles, first_at_place(mesh.positions));
     DisjointSets sets = smooth_corners(mesh, welded, degrees);
     std::vector<glm::dvec3> sums(3 * mesh.num_triangles(), glm::dvec3(0.0));

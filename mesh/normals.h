@@ -19,6 +19,7 @@ enum class NormalSource {
 /// without a face of positive area gets zero.
 ///
 /// Shape:   [num_vertices].
+/// Throws:  as require_triangles().
 /// Cost:    O(num_triangles).
 [[nodiscard]] std::vector<glm::vec3> smooth_normals(const TriangleMesh& mesh);
 
@@ -29,6 +30,7 @@ enum class NormalSource {
 /// breaks: the first keeps its place, the others follow all vertices of the mesh, with its
 /// attributes.
 ///
+/// Throws:  as require_triangles().
 /// Cost:    O(n log n).
 [[nodiscard]] TriangleMesh with_creases(const TriangleMesh& mesh, float degrees);
 

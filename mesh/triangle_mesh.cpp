@@ -72,6 +72,15 @@ void require_vertices(const TriangleMesh& mesh) {
 
 } // namespace
 
+void require_triangles(const TriangleMesh& mesh) {
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+        for (const std::uint32_t vertex : mesh.triangles[i])
+            if (vertex >= mesh.num_vertices())
+                throw std::invalid_argument(
+                    fmt::format("expected vertices below {}, got {} of triangle {}",
+                                mesh.num_vertices(), vertex, i));
+}
+
 void require_consistent(const TriangleMesh& mesh) {
     require_vertices(mesh);
     const std::size_t num_vertices = mesh.num_vertices(), num_triangles = mesh.num_triangles();
@@ -83,11 +92,7 @@ void require_consistent(const TriangleMesh& mesh) {
     require_size(mesh.corner_tangents.size(), num_triangles, "tangents of triangles");
     require_size(mesh.triangle_materials.size(), num_triangles, "materials of triangles");
     require_size(mesh.triangle_groups.size(), num_triangles, "groups of triangles");
-    for (std::size_t i = 0; i < num_triangles; ++i)
-        for (const std::uint32_t vertex : mesh.triangles[i])
-            if (vertex >= num_vertices)
-                throw std::invalid_argument(fmt::format(
-                    "expected vertices below {}, got {} of triangle {}", num_vertices, vertex, i));
+    require_triangles(mesh);
     require_indices(mesh.triangle_materials, mesh.materials.size(), "materials");
     require_indices(mesh.triangle_groups, mesh.groups.size(), "groups");
 }

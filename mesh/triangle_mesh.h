@@ -84,6 +84,11 @@ void for_each_vertex_array(Mesh& mesh, const Use& use) {
 /// Returns all that a mesh's file holds or names and the mesh does not have, a line each.
 [[nodiscard]] std::vector<std::string> left_out(const TriangleMesh& mesh);
 
+/// Throws std::invalid_argument for triangles of vertices that are not there.
+///
+/// Cost:    O(triangles).
+void require_triangles(const TriangleMesh& mesh);
+
 /// Throws std::invalid_argument for arrays of the wrong size, indices of vertices, materials or
 /// groups that are not there, positions that are not finite, and normals whose length is neither 1
 /// nor 0: for meshes made in code. Readers of files make none of these.

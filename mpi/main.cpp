@@ -120,7 +120,7 @@ int run(const std::vector<std::string>& arguments, app::Session& session, Commun
                              "Shares the work of one command out to the processes that mpirun or "
                              "srun starts. `relumine` has the other commands. Exit code 0: done, "
                              "1: the work failed, 2: wrong usage.",
-                             std::string(relumine::version()));
+                             relumine::long_version);
     double timeout = 3600.0;
     app::Command root = program.root();
     app::add_precompute(root, session);

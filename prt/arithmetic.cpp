@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include <fmt/format.h>
 #include <hwy/targets.h>
 
 namespace relumine::prt {
@@ -12,9 +13,9 @@ std::string arithmetic() {
     const std::int64_t best = targets & -targets;
 #if HWY_ARCH_X86
     if (best <= HWY_AVX2)
-        return "AVX2";
+        return fmt::format("AVX2, Embree {}", RELUMINE_EMBREE);
 #endif
-    return hwy::TargetName(best);
+    return fmt::format("{}, Embree {}", hwy::TargetName(best), RELUMINE_EMBREE);
 }
 
 } // namespace relumine::prt

@@ -1,13 +1,13 @@
-// Which processors give the same results.
+// Which processors, with which library of rays, give the same results.
 #pragma once
 
 #include <string>
 
 namespace relumine::prt {
 
-/// Returns a word for how this processor computes: "AVX2" on x86 from AVX2 on, which rounds
-/// products and sums in one step, else its best instruction set. Processors with the same word give
-/// the same results (docs/robustness.md).
+/// Returns how this processor computes, and the version of Embree: "AVX2, Embree 4". AVX2 stands
+/// for all x86 processors from AVX2 on, which round products and sums in one step; others name
+/// their best instruction set. Where the text is the same, so are the results (docs/robustness.md).
 [[nodiscard]] std::string arithmetic();
 
 } // namespace relumine::prt

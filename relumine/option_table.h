@@ -163,7 +163,7 @@ struct ValueText<bool> {
 };
 
 template<typename T>
-requires std::is_unsigned_v<T>
+    requires std::is_unsigned_v<T>
 struct ValueText<T> {
     static constexpr const char* Type = "UINT";
     static T read(const std::string& text) {
@@ -173,7 +173,7 @@ struct ValueText<T> {
 };
 
 template<typename T>
-requires std::is_floating_point_v<T>
+    requires std::is_floating_point_v<T>
 struct ValueText<T> {
     static constexpr const char* Type = "FLOAT";
     static T read(const std::string& text) {
@@ -183,7 +183,7 @@ struct ValueText<T> {
 };
 
 template<typename T>
-requires std::is_enum_v<T>
+    requires std::is_enum_v<T>
 struct ValueText<T> {
     static constexpr const char* Type = "TEXT";
     static std::span<const std::string_view> choices() { return WordsOf<T>; }

@@ -1,6 +1,7 @@
 // The version of the library: 0.1.x keeps what 0.1.0 promises.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #define RELUMINE_VERSION_MAJOR 0
@@ -15,5 +16,9 @@ namespace relumine {
 /// Returns the version of the library that was linked, such as "0.1.0". The macros are those of the
 /// headers that were compiled.
 [[nodiscard]] std::string_view version();
+
+/// Returns the version and the library that traces rays: "0.1.0 (Embree 4.3.3)", or in its place
+/// why it cannot start here. Cost: some milliseconds.
+[[nodiscard]] std::string long_version();
 
 } // namespace relumine

@@ -132,7 +132,7 @@ bool aim_by_pointer(ViewState& state, const PixelRectangle& place) {
     return true;
 }
 
-void point_and_drag(ViewState& state, const PixelRectangle& place) {
+void point_and_drag_in_scene(ViewState& state, const PixelRectangle& place) {
     const ImGuiIO& io = ImGui::GetIO();
     constexpr float ClickReach = 4.0f; // pixels
     if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f)
@@ -212,7 +212,7 @@ void scene_panel(ViewState& state, const PanelLayout& layout) {
     ImGui::InvisibleButton("scene picture", ImGui::GetContentRegionAvail(),
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                                ImGuiButtonFlags_MouseButtonMiddle);
-    point_and_drag(state, layout.scene);
+    point_and_drag_in_scene(state, layout.scene);
     draw_receiver(state, layout.scene);
     ImGui::End();
 }

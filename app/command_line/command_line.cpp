@@ -315,11 +315,14 @@ Command Command::command(const std::string& name) const {
 }
 
 CommandLine::CommandLine(const std::string& name, const std::string& description,
-                         const std::string& version)
+                         std::function<std::string()> version)
     : data_(std::make_unique<Command::Data>()) {
     data_->owned = std::make_unique<CLI::App>(description, name);
     data_->app = data_->owned.get();
-    data_->app->set_version_flag("--version", fmt::format("{} {}", name, version));
+    if (version)
+        data_->app->set_version_flag("--version", [name, version = std::move(version)] {
+            return fmt::format("{} {}", name, version());
+        });
 }
 
 CommandLine::~CommandLine() = default;

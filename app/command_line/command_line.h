@@ -75,8 +75,9 @@ private:
 /// The whole program's command line.
 class CommandLine {
 public:
+    /// `version` is asked for --version alone.
     CommandLine(const std::string& name, const std::string& description,
-                const std::string& version);
+                std::function<std::string()> version = {});
     ~CommandLine();
     CommandLine(const CommandLine&) = delete;
     CommandLine& operator=(const CommandLine&) = delete;

@@ -33,12 +33,17 @@ void write_scene(const data_gen::Scene& scene, const GenerateArguments& options,
     const mesh::TriangleMesh mesh = scene.make(options.num_vertices);
     session.poll();
     files::make_folder(options.folder);
+    const bool has_materials = !mesh.materials.empty();
     const std::filesystem::path path =
-        std::filesystem::path(options.folder) / fmt::format("{}.ply", scene.name);
+        std::filesystem::path(options.folder) /
+        fmt::format("{}.{}", scene.name, has_materials ? "glb" : "ply");
     constexpr float Plaster = 0.5f; // white would keep all light that bounces
-    mesh::save(path, mesh,
-               mesh.colors.empty() ? std::vector(mesh.num_vertices(), glm::vec3(Plaster))
-                                   : mesh.colors);
+    if (has_materials)
+        mesh::save(path, mesh);
+    else
+        mesh::save(path, mesh,
+                   mesh.colors.empty() ? std::vector(mesh.num_vertices(), glm::vec3(Plaster))
+                                       : mesh.colors);
     session.say(fmt::format("{}: {} vertices, {} triangles", path.string(), mesh.num_vertices(),
                             mesh.num_triangles()));
     files.push_back({{"file", path.string()},
@@ -87,7 +92,8 @@ void run(const GenerateArguments& options, bool resolution_given, Session& sessi
 
 void add_generate(Command& program, Session& session) {
     Command command = program.add_command(
-        "generate", "make scenes (.ply), environments and sequences of them (.exr) from nothing");
+        "generate",
+        "make scenes (.ply, .glb), environments and sequences of them (.exr) from nothing");
     auto options = std::make_shared<GenerateArguments>();
     std::vector<std::string> names = {"all", "sequence"};
     std::string list = "\n\nNAME is `all`, `sequence` or one of:\n";

@@ -76,7 +76,7 @@ Mesh RefineOptionGroup::refined(Mesh mesh, std::optional<float> bias, Session& s
     if (is_command_ && !options.error && !options.max_edge)
         options.error = RefineOptions{}.error;
     if (!light_.empty())
-        options.light = load_environment(light_).map;
+        options.light = relumine::load_environment(light_).map;
     const std::size_t num_before = mesh.geometry.num_vertices();
     RefineReport found;
     Mesh result = relumine::refined(

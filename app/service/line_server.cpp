@@ -196,7 +196,7 @@ files::Descriptor new_socket() {
 /// leaves no file behind; nobody listens there.
 files::Descriptor name_lock(const fs::path& path) {
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    struct stat status {};
+    struct stat status{};
     if (::stat(folder.c_str(), &status) != 0)
         fail_to_serve(path, errno);
     const std::string name = fmt::format("relumine {:x} {:x} {:x}", status.st_dev, status.st_ino,
@@ -214,7 +214,7 @@ files::Descriptor name_lock(const fs::path& path) {
 
 /// Refuses a name that is not free. A socket that nobody serves is.
 void require_free(const fs::path& path) {
-    struct stat status {};
+    struct stat status{};
     if (::lstat(path.c_str(), &status) != 0)
         return;
     if (!S_ISSOCK(status.st_mode))
@@ -263,7 +263,7 @@ LineSocket::LineSocket(const fs::path& path) : path_(path) {
     if (bound != 0)
         fail_to_serve(path, bind_error);
     constexpr int QueueLength = static_cast<int>(MaxPeers);
-    struct stat status {};
+    struct stat status{};
     if (::listen(listener_.get(), QueueLength) != 0 || ::lstat(hidden.c_str(), &status) != 0 ||
         ::rename(hidden.c_str(), path.c_str()) != 0) {
         const int error = errno;
@@ -275,7 +275,7 @@ LineSocket::LineSocket(const fs::path& path) : path_(path) {
 }
 
 LineSocket::~LineSocket() {
-    struct stat status {};
+    struct stat status{};
     if (::lstat(path_.c_str(), &status) == 0 && status.st_dev == device_ && status.st_ino == inode_)
         ::unlink(path_.c_str());
 }

@@ -321,7 +321,7 @@ void Service::Impl::declare_help(Command& command) {
     command.on_run([this] {
         std::vector<Report> all;
         for (const Request& request : requests()) {
-            CommandLine line("relumine", "", "");
+            CommandLine line("relumine", "");
             Command below = line.root().add_command(request.name, request.description);
             (this->*request.declare)(below);
             Report members;
@@ -352,7 +352,7 @@ void Service::Impl::perform(const JsonReader& reader, const Report& root) {
     const Report::Object& members = reader.object(root, "a request");
     const std::string& name = reader.string(reader.required(root, "do"), "\"do\"");
     const Request& request = request_named(name);
-    CommandLine line("relumine", "", "");
+    CommandLine line("relumine", "");
     Command command = line.root().add_command(request.name, request.description);
     (this->*request.declare)(command);
 

@@ -165,7 +165,9 @@ std::vector<std::byte> head_of(const EnvironmentImage& image, std::span<const Ch
     for (const Channel& channel : channels)
         header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
     MemoryOutput stream;
-    { const Imf::OutputFile file(stream, header, 0); }
+    {
+        const Imf::OutputFile file(stream, header, 0);
+    }
     return std::move(stream.bytes);
 }
 

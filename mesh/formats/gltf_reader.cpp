@@ -236,8 +236,7 @@ void GltfReader::append_skinned(const Primitive& primitive, const gltf::Skin& sk
                                 std::uint32_t group) {
     if (primitive.influences.empty()) {
         ++num_without_joints_;
-        append(
-            primitive, [](std::size_t) { return gltf::Frame(); }, group);
+        append(primitive, [](std::size_t) { return gltf::Frame(); }, group);
         return;
     }
     num_odd_weights_ += skin.check(primitive.influences);

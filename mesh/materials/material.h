@@ -156,7 +156,7 @@ struct Material {
 
 /// A texture of a material and its name in files.
 struct SlotName {
-    std::optional<TextureSlot> Material::*slot;
+    std::optional<TextureSlot> Material::* slot;
     const char* name;
 };
 

@@ -56,7 +56,7 @@ void check_processor(const SectionReader& reader, const files::Json& json) {
     }
     if (planned != arithmetic())
         throw std::runtime_error(fmt::format(
-            "{}: expected the plan of a processor that computes as this one ({}), got {}",
+            "{}: expected the plan of a processor and an Embree that compute as here ({}), got {}",
             reader.path().string(), arithmetic(), planned));
 }
 

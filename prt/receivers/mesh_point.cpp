@@ -69,8 +69,8 @@ namespace {
 
 /// A map of a material, and the factor on its tilt.
 struct NormalMap {
-    std::optional<mesh::TextureSlot> mesh::Material::*texture;
-    float mesh::Material::*scale;
+    std::optional<mesh::TextureSlot> mesh::Material::* texture;
+    float mesh::Material::* scale;
 };
 
 glm::vec3 normal_of(const mesh::TriangleMesh& mesh, const MeshPoint& point, const NormalMap& map) {

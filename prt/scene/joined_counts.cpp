@@ -78,7 +78,7 @@ std::vector<std::uint64_t> JoinedCounts::bits_per_tile() const {
     return bytes;
 }
 
-SectionContent JoinedCounts::woven(StoredSection Stored::*section,
+SectionContent JoinedCounts::woven(StoredSection Stored::* section,
                                    std::vector<std::uint64_t> bytes_per_tile) const {
     const std::uint64_t size =
         std::accumulate(bytes_per_tile.begin(), bytes_per_tile.end(), std::uint64_t{0});

@@ -36,7 +36,7 @@ private:
     };
 
     [[nodiscard]] std::vector<std::uint64_t> bits_per_tile() const;
-    [[nodiscard]] SectionContent woven(StoredSection Stored::*section,
+    [[nodiscard]] SectionContent woven(StoredSection Stored::* section,
                                        std::vector<std::uint64_t> bytes_per_tile) const;
 
     /// Without counts

@@ -61,15 +61,7 @@ std::vector<std::optional<TextureSlot> Material::*> color_slots(const Material& 
     return slots;
 }
 
-/// Whether the images of its colours can be stored; textures that were made in code have no file.
-bool has_files(const Material& material, const std::vector<mesh::Texture>& textures) {
-    for (const auto slot : color_slots(material))
-        if (const auto& used = material.*slot; used && textures[used->texture].file.empty())
-            return false;
-    return true;
-}
-
-const char* name_of(std::optional<TextureSlot> Material::*slot) {
+const char* name_of(std::optional<TextureSlot> Material::* slot) {
     return std::find_if(mesh::TextureSlots.begin(), mesh::TextureSlots.end(),
                         [&](const mesh::SlotName& entry) { return entry.slot == slot; })
         ->name;
@@ -106,7 +98,7 @@ float fraction(const Json& json) {
 /// A number that a material has where it is not the usual one.
 struct Scalar {
     const char* name;
-    float Material::*member;
+    float Material::* member;
     float most;
 };
 constexpr std::array<Scalar, 5> Scalars = {
@@ -259,10 +251,8 @@ bool shows_textures(const Scene& scene) {
         return true;
     return on_vertices(scene.layout) && !scene.receivers.surfaces.empty() &&
            std::any_of(mesh.materials.begin(), mesh.materials.end(), [&](const Material& material) {
-               return ((material.base_color_texture || material.emission_texture ||
-                        material.normal_texture) &&
-                       has_files(material, mesh.textures)) ||
-                      mirrors(scene, material);
+               return material.base_color_texture || material.emission_texture ||
+                      material.normal_texture || mirrors(scene, material);
            });
 }
 
@@ -274,40 +264,49 @@ bool rays_ask(const Scene& scene) {
             std::any_of(materials.begin(), materials.end(), mesh::lets_eye_pass));
 }
 
-/// The textures that are stored: image files as they were, and after them the texels of alpha.
+/// The textures that are stored: image files as they were, and behind them the texels of textures
+/// that have no file: of alpha, and of textures made in code.
 class StoredTextures {
 public:
     explicit StoredTextures(const mesh::TriangleMesh& mesh) : mesh_(mesh) {}
 
     void add_image(const TextureSlot& slot) {
-        if (!stored.try_emplace(slot.texture, images_.size()).second)
-            return;
         const mesh::Texture& texture = mesh_.textures[slot.texture];
+        if (texture.file.empty() || !stored.try_emplace(slot.texture, images_.size()).second)
+            return;
         images_.push_back(
             {{"bytes", texture.file.size()}, {"v_from_top", texture.origin == mesh::VOrigin::Top}});
         bytes.insert(bytes.end(), texture.file.begin(), texture.file.end());
     }
-    /// Behind all images.
-    void add_alpha(const TextureSlot& slot) {
-        if (!stored.try_emplace(slot.texture, images_.size() + alphas_.size()).second)
+    /// Behind all images. A grey texel takes a byte.
+    void add_texels(const TextureSlot& slot) {
+        if (!stored.try_emplace(slot.texture, images_.size() + texels_.size()).second)
             return;
         const mesh::Texture& texture = mesh_.textures[slot.texture];
-        alphas_.push_back({{"width", texture.width}, {"height", texture.height}});
+        Json json = {{"width", texture.width}, {"height", texture.height}};
+        const bool is_grey =
+            std::all_of(texture.texels.begin(), texture.texels.end(), [](const auto& texel) {
+                return texel[0] == texel[1] && texel[0] == texel[2];
+            });
+        if (!is_grey)
+            json.set("channels", 3);
+        texels_.push_back(std::move(json));
         for (const auto& texel : texture.texels)
-            alpha_bytes.push_back(std::byte{texel[0]});
+            for (std::size_t channel = 0; channel < (is_grey ? 1 : 3); ++channel)
+                texel_bytes.push_back(std::byte{texel[channel]});
     }
     void describe(Json& json) const {
         json.set("images", images_);
-        if (alphas_.size() != 0)
-            json.set("alphas", alphas_);
+        if (texels_.size() != 0)
+            json.set("alphas", texels_);
     }
 
     Stored stored;
-    std::vector<std::byte> bytes, alpha_bytes;
+    std::vector<std::byte> bytes, texel_bytes;
 
 private:
     const mesh::TriangleMesh& mesh_;
-    Json images_ = Json::Array{}, alphas_ = Json::Array{};
+    Json images_ = Json::Array{}, texels_ = Json::Array{};
 };
 
 Json json_of(const Material& material, bool is_kept, bool has_shape, const Stored& stored) {
@@ -361,17 +360,20 @@ void add_materials(NewSections& sections, const Scene& scene) {
     if (mesh.triangle_materials.empty() || !(shows || rays_ask(scene)))
         return;
     StoredTextures textures(mesh);
-    // A picture takes a material without its textures from the vertices.
     const auto is_kept = [&](const Material& material) {
-        return (shows || material.transmission > 0.0f) && has_files(material, mesh.textures);
+        return shows || material.transmission > 0.0f;
     };
-    for (const Material& material : mesh.materials)
-        for (const auto slot : color_slots(material))
-            if (const auto& used = material.*slot; used && is_kept(material))
-                textures.add_image(*used);
+    const auto for_each_kept = [&](auto add) {
+        for (const Material& material : mesh.materials)
+            for (const auto slot : color_slots(material))
+                if (const auto& used = material.*slot; used && is_kept(material))
+                    (textures.*add)(*used);
+    };
+    for_each_kept(&StoredTextures::add_image);
+    for_each_kept(&StoredTextures::add_texels);
     for (const Material& material : mesh.materials)
         if (material.alpha_texture)
-            textures.add_alpha(*material.alpha_texture);
+            textures.add_texels(*material.alpha_texture);
     Json materials = Json::Array{};
     for (const Material& material : mesh.materials)
         materials.push_back(json_of(material, is_kept(material), shows && mirrors(scene, material),
@@ -382,8 +384,8 @@ void add_materials(NewSections& sections, const Scene& scene) {
     json.set("materials", std::move(materials));
     sections["materials"] = bytes_of(json.text(2));
     sections["images"] = std::move(textures.bytes);
-    if (!textures.alpha_bytes.empty())
-        sections["alphas"] = std::move(textures.alpha_bytes);
+    if (!textures.texel_bytes.empty())
+        sections["alphas"] = std::move(textures.texel_bytes);
     sections["t_materials"] = SectionContent::view(mesh.triangle_materials);
     if (!mesh.corner_uvs.empty())
         sections["corner_uvs"] = SectionContent::view(mesh.corner_uvs);
@@ -400,21 +402,26 @@ void add_materials(NewSections& sections, const Scene& scene) {
         sections["block_corner_uvs"] = SectionContent::view(scene.blockers->corner_uvs);
 }
 
-/// Reads the texels of an alpha, from `offset` on, which goes behind them.
-mesh::Texture alpha_of(const Json& json, const std::vector<std::byte>& bytes, std::size_t& offset) {
-    mesh::Texture texture{.name = "alpha",
+/// Reads the texels of a texture without a file, from `offset` on, which goes behind them.
+mesh::Texture texels_of(const Json& json, const std::vector<std::byte>& bytes,
+                        std::size_t& offset) {
+    mesh::Texture texture{.name = "texels",
                           .width = natural(json.at("width")),
                           .height = natural(json.at("height")),
                           .texels = {}};
+    const Json* channels = json.find("channels");
+    const std::size_t num_channels = channels == nullptr ? 1 : natural(*channels);
     const std::size_t size = std::size_t{texture.width} * texture.height;
-    if (size == 0 || size > bytes.size() - offset)
-        throw std::out_of_range("expected alpha in the section");
+    if (size == 0 || !(num_channels == 1 || num_channels == 3) ||
+        size > (bytes.size() - offset) / num_channels)
+        throw std::out_of_range("expected texels in the section");
     texture.texels.reserve(size);
-    for (const std::byte byte : std::span(bytes).subspan(offset, size)) {
-        const auto alpha = std::to_integer<std::uint8_t>(byte);
-        texture.texels.push_back({alpha, alpha, alpha});
+    for (std::size_t i = 0; i < size; ++i, offset += num_channels) {
+        const auto channel = [&](std::size_t k) {
+            return std::to_integer<std::uint8_t>(bytes[offset + (num_channels == 1 ? 0 : k)]);
+        };
+        texture.texels.push_back({channel(0), channel(1), channel(2)});
     }
-    offset += size;
     return texture;
 }
 
@@ -433,9 +440,9 @@ void read_textures(const SectionReader& reader, const Json& json, mesh::Triangle
     const std::vector<std::byte> bytes = reader.bytes("alphas");
     offset = 0;
     for (const Json& texture : alphas->values())
-        mesh.textures.push_back(alpha_of(texture, bytes, offset));
+        mesh.textures.push_back(texels_of(texture, bytes, offset));
     if (offset != bytes.size())
-        throw std::out_of_range("expected as many bytes as alphas have");
+        throw std::out_of_range("expected as many bytes as texels have");
 }
 
 /// Reads which of the mesh's materials each triangle has.

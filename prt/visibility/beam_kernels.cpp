@@ -22,8 +22,6 @@ namespace relumine::prt::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::size_t Width = TriangleTree::Width;
-constexpr std::size_t MaxReceivers = ReceiverGroup::MaxSize;
 
 /// Rounding errors and their bounds: docs/error-bounds.md, rows B5 and B6.
 constexpr float LostRoundings = 192.0f;
@@ -236,10 +234,10 @@ private:
     float lost_, too_near_;
     std::size_t num_open_ = 0;
     /// The first and the last 32 directions of `rays_`.
-    alignas(64) std::array<std::uint32_t, MaxReceivers> low_, high_;
+    alignas(64) std::array<std::uint32_t, ReceiverGroup::MaxSize> low_, high_;
     /// What cover() found.
-    alignas(64) std::array<std::uint32_t, Width> s_first_, s_last_, t_first_, t_last_;
-    alignas(64) std::array<std::uint32_t, Width> covered_low_, covered_high_;
+    alignas(64) std::array<std::uint32_t, TriangleTree::Width> s_first_, s_last_, t_first_, t_last_;
+    alignas(64) std::array<std::uint32_t, TriangleTree::Width> covered_low_, covered_high_;
 };
 
 /// Calls meet(triangle, ray, is_certain) where an asked ray may meet a triangle of the leaf.
@@ -286,7 +284,7 @@ RayVerdicts test_blocking_leaf(D d, const TriangleTree::Leaf& leaf, const Placed
 /// The same for triangles that rays may pass, given their numbers in the mesh.
 template<class D>
 RayVerdicts test_passed_leaf(D d, const TriangleTree::Leaf& leaf,
-                             const std::array<std::uint32_t, Width>& numbers,
+                             const std::array<std::uint32_t, TriangleTree::Width>& numbers,
                              const PlacedLeaf& placed, const BeamPatch& patch,
                              const PassedTriangles& passed, const AskedRays& asked,
                              const glm::vec3& origin) {
@@ -321,8 +319,8 @@ void clear_certain(const TriangleTree& tree, const PassedTriangles* passed, cons
                    const ShaftLeaves& leaves, const GroupOrigins& origins,
                    const ReceiverCones& cones, std::span<std::uint64_t> rays,
                    std::span<std::uint64_t> doubts) {
-    const hn::CappedTag<float, Width> d;
-    OpenRays<hn::CappedTag<float, Width>> open(patch.plane, origins, cones, rays);
+    const hn::CappedTag<float, TriangleTree::Width> d;
+    OpenRays<hn::CappedTag<float, TriangleTree::Width>> open(patch.plane, origins, cones, rays);
     PlacedLeaf placed;
     std::fill(doubts.begin(), doubts.end(), 0);
     for (const std::uint32_t i : leaves.order) {

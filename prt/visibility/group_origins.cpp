@@ -15,14 +15,13 @@ namespace relumine::prt::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::size_t MaxReceivers = ReceiverGroup::MaxSize;
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 
 /// Writes row - from to `relative` and returns its largest absolute value.
 float subtract(const ReceiverRow& row, float from, ReceiverRow& relative) {
     const hn::CappedTag<float, TriangleTree::Width> d;
     auto farthest = hn::Zero(d);
-    for (std::size_t i = 0; i < MaxReceivers; i += hn::Lanes(d)) {
+    for (std::size_t i = 0; i < ReceiverGroup::MaxSize; i += hn::Lanes(d)) {
         const auto difference = hn::Sub(hn::Load(d, row.data() + i), hn::Set(d, from));
         hn::Store(difference, d, relative.data() + i);
         farthest = hn::Max(farthest, hn::Abs(difference));
@@ -32,7 +31,7 @@ float subtract(const ReceiverRow& row, float from, ReceiverRow& relative) {
 
 void fill(const glm::vec3& centre, GroupOrigins& origins) {
     const hn::CappedTag<float, TriangleTree::Width> d;
-    for (std::size_t i = 0; i < MaxReceivers; ++i) {
+    for (std::size_t i = 0; i < ReceiverGroup::MaxSize; ++i) {
         const glm::vec3& origin = origins.all[i < origins.all.size() ? i : 0];
         for (std::size_t axis = 0; axis < 3; ++axis)
             origins.rows[axis][i] = origin[static_cast<int>(axis)];
@@ -42,7 +41,7 @@ void fill(const glm::vec3& centre, GroupOrigins& origins) {
         const ReceiverRow& row = origins.rows[axis];
         auto low = hn::Load(d, row.data());
         auto high = low;
-        for (std::size_t i = hn::Lanes(d); i < MaxReceivers; i += hn::Lanes(d)) {
+        for (std::size_t i = hn::Lanes(d); i < ReceiverGroup::MaxSize; i += hn::Lanes(d)) {
             low = hn::Min(low, hn::Load(d, row.data() + i));
             high = hn::Max(high, hn::Load(d, row.data() + i));
         }
@@ -66,7 +65,7 @@ ReceiverCones place_shaft(const GroupOrigins& origins, std::span<const std::uint
     ReceiverCones cones;
     for (std::size_t k = 0; k < Shaft::NumPlanes; ++k) {
         const auto margin = hn::Set(d, shaft.margins[k]);
-        for (std::size_t i = 0; i < MaxReceivers; i += hn::Lanes(d)) {
+        for (std::size_t i = 0; i < ReceiverGroup::MaxSize; i += hn::Lanes(d)) {
             auto along = hn::Load(d, absent.data() + i);
             for (std::size_t axis = 0; axis < 3; ++axis)
                 along = hn::MulAdd(hn::Set(d, shaft.normals[k][static_cast<int>(axis)]),

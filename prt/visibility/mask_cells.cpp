@@ -20,8 +20,8 @@ std::array<std::uint32_t, 3> beside(std::uint32_t i, std::uint32_t size, mesh::W
 } // namespace
 
 MaskCells::MaskCells(const mesh::Material& material, const mesh::Texture& texture)
-    : slot_(*material.alpha_texture), alpha_(material.alpha),
-      cutoff_(material.alpha_cutoff), size_{texture.width, texture.height} {
+    : slot_(*material.alpha_texture), alpha_(material.alpha), cutoff_(material.alpha_cutoff),
+      size_{texture.width, texture.height} {
     constexpr float OfMean = 1e-5f; // of the bilinear mean
     const auto [width, height] = size_;
     const auto kind = [&](std::uint8_t value) {

@@ -25,16 +25,14 @@ namespace relumine::prt::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::size_t Width = TriangleTree::Width;
-constexpr std::size_t MaxReceivers = ReceiverGroup::MaxSize;
 
 /// Beyond so many leaves in one direction the exact tracer is faster. Measured.
 constexpr std::size_t MostLeaves = 1024;
 
 /// Rounding errors and their bounds: docs/error-bounds.md, rows P1 to P5.
-constexpr float EdgeTolerance = 520.0f * Rounding;
-constexpr float SideTolerance = 180.0f * Rounding;
-constexpr float Smallest = 1e-35f; // products below are lost
+constexpr float ParallelEdgeTolerance = 520.0f * Rounding;
+constexpr float ParallelSideTolerance = 180.0f * Rounding;
+constexpr float ParallelSmallest = 1e-35f; // products below are lost
 constexpr float OutlineRoundings = 128.0f;
 constexpr float DirectionSlack = 8.0f * Rounding; // of s and t
 
@@ -44,7 +42,7 @@ constexpr float DirectionSlack = 8.0f * Rounding; // of s and t
 /// to the plane where its coordinate `axis` is 0; its other two coordinates stay, and triple
 /// products with w become products of two edges in that plane.
 struct ProjectedLeaf {
-    using Row = std::array<float, Width>;
+    using Row = std::array<float, TriangleTree::Width>;
     /// Around each triangle
     alignas(64) Row s_low, s_high, t_low, t_high;
     /// Edge function k of an origin o is constant - edge_t * o_s + edge_s * o_t; beyond `certain`
@@ -83,7 +81,7 @@ void project(D d, const TriangleTree::Leaf& leaf, const Direction& direction,
     const Vector along_s = hn::Set(d, direction.sign * direction.s);
     const Vector along_t = hn::Set(d, direction.sign * direction.t);
     const Vector sign = hn::Set(d, direction.sign);
-    for (std::size_t lane = 0; lane < Width; lane += hn::Lanes(d)) {
+    for (std::size_t lane = 0; lane < TriangleTree::Width; lane += hn::Lanes(d)) {
         Vector corner[3][3], from_middle[3][3], edge[3][3];
         Vector reach = hn::Zero(d);
         for (std::size_t k = 0; k < 3; ++k)
@@ -114,10 +112,10 @@ void project(D d, const TriangleTree::Leaf& leaf, const Direction& direction,
             store(hn::MulSub(moved_s[k], edge_t, hn::Mul(moved_t[k], edge_s)),
                   projected.constant[k]);
         }
-        store(hn::MulAdd(product, hn::Set(d, EdgeTolerance), hn::Set(d, Smallest)),
+        store(hn::MulAdd(product, hn::Set(d, ParallelEdgeTolerance), hn::Set(d, ParallelSmallest)),
               projected.certain);
         const Vector lost =
-            hn::MulAdd(reach, hn::Set(d, OutlineRoundings * Rounding), hn::Set(d, Smallest));
+            hn::MulAdd(reach, hn::Set(d, OutlineRoundings * Rounding), hn::Set(d, ParallelSmallest));
         store_range(d, moved_s, lost, lane, projected.s_low, projected.s_high);
         store_range(d, moved_t, lost, lane, projected.t_low, projected.t_high);
 
@@ -131,7 +129,7 @@ void project(D d, const TriangleTree::Leaf& leaf, const Direction& direction,
         }
         store(height, projected.height);
         store(
-            hn::MulAdd(hn::Mul(product, longest), hn::Set(d, SideTolerance), hn::Set(d, Smallest)),
+            hn::MulAdd(hn::Mul(product, longest), hn::Set(d, ParallelSideTolerance), hn::Set(d, ParallelSmallest)),
             projected.side_certain);
     }
 }
@@ -169,7 +167,7 @@ void project(D d, const Direction& direction, const GroupOrigins& origins,
         projected.origin[a] = origins.from_middle[direction.axes[a]].data();
     for (auto& row : projected.offsets)
         row.fill(std::numeric_limits<float>::infinity());
-    for (std::size_t first = 0; first < MaxReceivers; first += hn::Lanes(d)) {
+    for (std::size_t first = 0; first < ReceiverGroup::MaxSize; first += hn::Lanes(d)) {
         const auto mask = mask_of(d, active, first);
         if (hn::AllFalse(d, mask))
             continue;
@@ -202,7 +200,7 @@ template<class D>
 HWY_INLINE std::uint32_t triangles_near(D d, const ProjectedLeaf& projected,
                                         const ProjectedReceivers& receivers, std::size_t bundle) {
     std::uint32_t near = 0;
-    for (std::size_t lane = 0; lane < Width; lane += hn::Lanes(d)) {
+    for (std::size_t lane = 0; lane < TriangleTree::Width; lane += hn::Lanes(d)) {
         const auto row = [&](const ProjectedLeaf::Row& values) {
             return hn::Load(d, values.data() + lane);
         };
@@ -281,7 +279,7 @@ void test_bundles(D d, const TriangleTree::Leaf& leaf, const ShaftLeaves::Found&
                   const Direction& direction, const GroupOrigins& origins,
                   ProjectedReceivers& receivers, ReceiverBits& lit, ReceiverBits& doubtful) {
     const std::size_t num_lanes = hn::Lanes(d);
-    const std::size_t num_bundles = MaxReceivers / num_lanes;
+    const std::size_t num_bundles = ReceiverGroup::MaxSize / num_lanes;
     const std::uint64_t lanes = (std::uint64_t{1} << num_lanes) - 1;
     bool is_projected = false;
     ProjectedLeaf projected;
@@ -313,7 +311,7 @@ void test_bundles(D d, const TriangleTree::Leaf& leaf, const ShaftLeaves::Found&
 
 /// The rays of a group in one direction.
 struct ParallelRays {
-    static constexpr hn::CappedTag<float, Width> Floats{};
+    static constexpr hn::CappedTag<float, TriangleTree::Width> Floats{};
 
     Direction direction;
     Shaft shaft;

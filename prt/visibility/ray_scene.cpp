@@ -12,10 +12,10 @@
 #include <tuple>
 #include <utility>
 
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "prt/visibility/embree.h"
 #include "prt/visibility/half_line.h"
 #include "prt/visibility/triangle_verdict.h"
 
@@ -34,15 +34,47 @@ struct SceneDeleter {
 using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceDeleter>;
 using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneDeleter>;
 
+std::string version_of(RTCDevice device) {
+    const auto version = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION);
+    return fmt::format("Embree {}.{}.{}", version / 10000, version / 100 % 100, version % 100);
+}
+
 void throw_on_error(RTCDevice device, const char* action) {
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_OUT_OF_MEMORY)
         throw std::bad_alloc();
     if (error == RTC_ERROR_UNSUPPORTED_CPU)
-        throw std::runtime_error("Embree could not start on this processor");
+        throw std::runtime_error("expected an Embree that is built for this processor's "
+                                 "instruction sets, got " RTC_VERSION_STRING " without them");
     if (error != RTC_ERROR_NONE)
         throw std::runtime_error(
             fmt::format("Embree could not {} (error {})", action, static_cast<int>(error)));
+}
+
+/// Starts Embree. What a system's Embree is built without, queries would miss in silence.
+DeviceHandle new_device() {
+    DeviceHandle device(rtcNewDevice(nullptr));
+    if (!device) {
+        throw_on_error(nullptr, "start");
+        throw std::runtime_error("Embree could not start");
+    }
+    const auto has = [&](RTCDeviceProperty property) {
+        return rtcGetDeviceProperty(device.get(), property) != 0;
+    };
+    const auto require = [&](bool is_good, const char* what) {
+        if (!is_good)
+            throw std::runtime_error(fmt::format("expected an Embree built {}, got another {}",
+                                                 what, version_of(device.get())));
+    };
+    require(has(RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED) ||
+                has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ||
+                has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED),
+            "with packets of rays (EMBREE_RAY_PACKETS)");
+    require(has(RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED),
+            "with filter functions (EMBREE_FILTER_FUNCTION)");
+    require(!has(RTC_DEVICE_PROPERTY_BACKFACE_CULLING_ENABLED),
+            "without culling of back faces (EMBREE_BACKFACE_CULLING)");
+    return device;
 }
 
 /// Whether the corners lie on one line. Exact unless coordinates differ by more than a factor of
@@ -83,7 +115,7 @@ struct Nearest {
 
 /// Rays that Embree traces. Starts with what Embree hands on to the filters below.
 struct Query {
-    RTCIntersectContext context;
+    embree::Context context;
     /// Rays of a packet that must be traced one by one.
     ///
     /// The other rays of a packet decide which boxes of Embree's tree are opened for a ray. So they
@@ -97,7 +129,7 @@ struct Query {
     const Nearest* behind = nullptr;
 
     explicit Query(bool packet, RayOf whose = RayOf::Light) : is_packet(packet), of(whose) {
-        rtcInitIntersectContext(&context);
+        embree::begin(context);
     }
 };
 
@@ -252,12 +284,16 @@ bool are_coherent(const DirectionPacket& directions) {
 
 } // namespace
 
+std::string ray_engine() {
+    return version_of(new_device().get());
+}
+
 struct RayScene::Impl {
     /// Embree holds its address.
     Buffers buffers;
     DeviceHandle device;
     SceneHandle scene;
-    RTCIntersectContextFlags packets = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    embree::Flags packets = embree::Coherent;
     std::unique_ptr<const Blockers> settled;
 
     std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
@@ -284,7 +320,7 @@ private:
 RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
     : impl_(std::make_unique<Impl>()) {
     if (packets == Packets::Wide)
-        impl_->packets = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+        impl_->packets = embree::Incoherent;
     for (const mesh::Triangle& triangle : mesh.triangles)
         for (const std::uint32_t vertex : triangle)
             for (int axis = 0; axis < 3; ++axis)
@@ -292,11 +328,7 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
                     !(std::abs(x) < LargestCoordinate))
                     throw std::runtime_error(fmt::format("expected coordinates within {}, got {}",
                                                          LargestCoordinate, x));
-    impl_->device.reset(rtcNewDevice(nullptr));
-    if (!impl_->device) {
-        throw_on_error(nullptr, "start");
-        throw std::runtime_error("Embree could not start");
-    }
+    impl_->device = new_device();
     RTCDevice device = impl_->device.get();
     impl_->scene.reset(rtcNewScene(device));
     rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);
@@ -379,8 +411,7 @@ std::uint32_t RayScene::Impl::occluded(const glm::vec3& origin, const DirectionP
     fill_rays(origin, directions, active, valid, rays);
     std::copy(distances.begin(), distances.end(), rays.tfar);
     Query query(true, of);
-    query.context.flags = packets;
-    rtcOccluded16(valid.data(), scene.get(), &query.context, &rays);
+    embree::occluded(scene.get(), query.context, packets, valid.data(), rays);
 
     // Embree marks a blocked ray by tfar = -infinity.
     std::uint32_t blocked = 0;
@@ -400,7 +431,7 @@ bool RayScene::Impl::occluded(const glm::vec3& origin, const glm::vec3& directio
     RTCRay ray = ray_of(origin, direction);
     ray.tfar = distance;
     Query query(false, of);
-    rtcOccluded1(scene.get(), &query.context, &ray);
+    embree::occluded(scene.get(), query.context, ray);
     return ray.tfar < 0.0f;
 }
 
@@ -410,7 +441,7 @@ bool RayScene::Impl::trace(const glm::vec3& origin, const glm::vec3& direction,
     RTCRayHit ray{};
     ray.ray = ray_of(origin, direction);
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene.get(), &query.context, &ray);
+    embree::intersect(scene.get(), query.context, ray);
     return ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
@@ -487,9 +518,9 @@ std::uint32_t RayScene::closest_hits(const glm::vec3& origin, const DirectionPac
     Query query(true, of);
     std::array<Nearest, PacketSize> nearest;
     query.nearest = nearest.data();
-    query.context.flags = are_coherent(directions) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                                                   : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    rtcIntersect16(valid.data(), impl_->scene.get(), &query.context, &rays);
+    embree::intersect(impl_->scene.get(), query.context,
+                      are_coherent(directions) ? embree::Coherent : embree::Incoherent,
+                      valid.data(), rays);
     std::uint32_t found = 0;
     for (std::size_t i = 0; i < PacketSize; ++i) {
         if ((active >> i & 1u) == 0)

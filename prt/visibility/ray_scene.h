@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -21,6 +22,10 @@ namespace relumine::prt {
 /// Triangles lie within this distance from the origin along each axis, and rays start within it.
 /// Embree silently drops triangles beyond it, and aborts for rays from there (its FLT_LARGE).
 inline constexpr float LargestCoordinate = 1.844e18f;
+
+/// Returns what traces rays, and its version: "Embree 4.3.3".
+/// Throws:  std::runtime_error when it cannot start here.
+[[nodiscard]] std::string ray_engine();
 
 /// The point where a ray first meets the mesh.
 struct Hit {
@@ -47,8 +52,8 @@ public:
     /// Builds the accelerator. The mesh need not outlive this object.
     ///
     /// Cost:    O(n log n), about 100 bytes per triangle.
-    /// Throws:  std::runtime_error when Embree fails (out of memory, for example), or a triangle
-    ///          lies beyond LargestCoordinate.
+    /// Throws:  std::runtime_error when Embree fails (out of memory, for example), is built without
+    ///          packets or filters, or a triangle lies beyond LargestCoordinate.
     explicit RayScene(const mesh::TriangleMesh& mesh, Packets packets = Packets::Narrow);
     ~RayScene() override;
     RayScene(RayScene&&) noexcept;

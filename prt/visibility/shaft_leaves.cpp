@@ -18,18 +18,17 @@ namespace relumine::prt::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::size_t Width = TriangleTree::Width;
 
-using Supports = std::array<std::array<float, Width>, Shaft::NumPlanes>;
+using Supports = std::array<std::array<float, TriangleTree::Width>, Shaft::NumPlanes>;
 
 /// Children of a node that are not outside of the shaft, and the supports of all. The corner of a
 /// box that lies farthest along a normal has the high coordinates where the normal's are positive.
 std::uint32_t children_inside(const TriangleTree::Node& node, const Shaft& shaft,
                               Supports& supports) {
-    const hn::CappedTag<float, Width> d;
+    const hn::CappedTag<float, TriangleTree::Width> d;
     std::uint32_t inside = 0;
-    for (std::size_t lane = 0; lane < Width; lane += hn::Lanes(d)) {
-        auto mask = hn::FirstN(d, Width);
+    for (std::size_t lane = 0; lane < TriangleTree::Width; lane += hn::Lanes(d)) {
+        auto mask = hn::FirstN(d, TriangleTree::Width);
         for (std::size_t k = 0; k < Shaft::NumPlanes; ++k) {
             const glm::vec3& n = shaft.normals[k];
             const auto farthest = [&](std::size_t axis, float component) {

@@ -361,12 +361,12 @@ void bind_environments(py::module_& module) {
                                        static_cast<py::ssize_t>(own->made.map.resolution);
                                    return view(own, own->made.map.texels, {6, r, r});
                                })
-        .def_property_readonly(
-            "pixels",
-            [](const EnvironmentPointer& own) {
-                const cubemap::EnvironmentImage& image = *own->made.file.image;
-                return view(own->made.file.image, image.pixels, {image.height, image.width});
-            })
+        .def_property_readonly("pixels",
+                               [](const EnvironmentPointer& own) {
+                                   const cubemap::EnvironmentImage& image = *own->made.file.image;
+                                   return view(own->made.file.image, image.pixels,
+                                               {image.height, image.width});
+                               })
         .def_property_readonly(
             "layout",
             [](const Handle& own) { return cubemap::option_name(own.made.file.image->layout); })

@@ -317,15 +317,13 @@ void bind_mesh_arrays(Class& type, Geometry geometry) {
 
 void bind_scenes(py::module_& module) {
     py::class_<Mesh, std::shared_ptr<Mesh>> mesh_type(module, "Mesh");
-    bind_mesh_arrays(
-        mesh_type, [](const Mesh& mesh) -> const auto& { return mesh.geometry; });
+    bind_mesh_arrays(mesh_type, [](const Mesh& mesh) -> const auto& { return mesh.geometry; });
     mesh_type.def_readonly("source", &Mesh::source)
         .def_readonly("floor", &Mesh::floor_vertices)
         .def_property_readonly("warnings", [](const Mesh& mesh) { return mesh.geometry.warnings; });
 
     py::class_<Scene, std::shared_ptr<Scene>> scene_type(module, "Scene");
-    bind_mesh_arrays(
-        scene_type, [](const Scene& scene) -> const auto& { return scene.mesh; });
+    bind_mesh_arrays(scene_type, [](const Scene& scene) -> const auto& { return scene.mesh; });
     scene_type
         .def_property_readonly("num_receivers",
                                [](const Scene& scene) { return scene.receivers.size(); })

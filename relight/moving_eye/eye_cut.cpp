@@ -79,7 +79,7 @@ private:
         std::size_t first;
 
         template<typename T, std::size_t N, typename D>
-        [[nodiscard]] auto load(D d, const std::array<T, N> SisterCells::*member,
+        [[nodiscard]] auto load(D d, const std::array<T, N> SisterCells::* member,
                                 std::size_t row) const {
             constexpr std::size_t Half = SisterCells::Stride;
 #if HWY_TARGET != HWY_SCALAR
@@ -99,9 +99,7 @@ private:
         }
     };
 
-    static Vector all(float value) {
-        return hn::Set(Sisters(), value);
-    }
+    static Vector all(float value) { return hn::Set(Sisters(), value); }
     static Vector dot(const glm::vec3& a, Vector x, Vector y, Vector z) {
         return hn::MulAdd(all(a.x), x, hn::MulAdd(all(a.y), y, hn::Mul(all(a.z), z)));
     }

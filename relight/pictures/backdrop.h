@@ -48,9 +48,8 @@ public:
     Backdrop() = default;
     Backdrop(std::nullptr_t) {}
     template<typename Callable>
-    requires(!std::is_same_v<Callable, Backdrop> && std::is_constructible_v<Seen, Callable>)
-        Backdrop(Callable seen)
-        : seen_(std::move(seen)) {}
+        requires(!std::is_same_v<Callable, Backdrop> && std::is_constructible_v<Seen, Callable>)
+    Backdrop(Callable seen) : seen_(std::move(seen)) {}
     explicit Backdrop(Chart chart);
 
     [[nodiscard]] glm::vec3 operator()(const glm::vec3& direction) const {

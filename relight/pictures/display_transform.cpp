@@ -20,7 +20,7 @@ struct DisplayTransform::Impl {};
 
 DisplayTransform::DisplayTransform(const DisplayView& view) {
     throw std::runtime_error(fmt::format(
-        "{}: this build has no OpenColorIO (packages-ocio.txt, -DRELUMINE_OCIO=ON)", view.config));
+        "{}: this build has no OpenColorIO (packages/ocio.txt, -DRELUMINE_OCIO=ON)", view.config));
 }
 void DisplayTransform::apply(std::span<glm::vec3>) const {}
 

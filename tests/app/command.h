@@ -21,6 +21,10 @@ inline constexpr int SanitizerFactor = 20;
 inline constexpr int SanitizerFactor = 1;
 #endif
 
+/// Processor seconds for what ends at once, many times what it takes. Other programs do not make
+/// it more, as they do a clock's.
+inline constexpr double AtOnce = 10.0 * SanitizerFactor;
+
 /// What a command did.
 struct Result {
     /// -1 when a signal ended it
@@ -29,7 +33,9 @@ struct Result {
     int signal = 0;
     std::string out;
     std::string err;
+    /// On the clock
     double seconds = 0.0;
+    double processor_seconds = 0.0;
     /// Largest resident set
     std::uint64_t peak_bytes = 0;
 
@@ -64,9 +70,12 @@ public:
     void send(int signal) const;
     /// False when it ended.
     [[nodiscard]] bool is_running();
+    /// Processor seconds until now
+    [[nodiscard]] double processor_seconds();
     /// Waits until the program has come so far that it takes signals (its threads block those that
     /// one of them waits for).
     void wait_until_it_takes(int signal);
+    /// Fails, and ends the program, where it takes too much processor time, or none for long.
     [[nodiscard]] Result wait();
 
 private:
@@ -95,8 +104,7 @@ protected:
     /// The same, expected to succeed.
     Result succeed(const std::vector<std::string>& arguments) const;
     /// Expected to end with exit code 1 and one line that begins "relumine: " and holds all of
-    /// `parts`, within `max_seconds`, and to leave every file of the folder as it was and no new
-    /// one.
+    /// `parts`, and to leave every file of the folder as it was and no new one.
     Result fail(const std::vector<std::string>& arguments,
                 const std::vector<std::string>& parts = {}, const RunOptions& options = {}) const;
     /// Expected to end with exit code 2, one line on stderr and nothing done.

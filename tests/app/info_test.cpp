@@ -178,9 +178,8 @@ TEST_F(Info, BrightestDirectionAndRangeOfAnEnvironment) {
 }
 
 TEST_F(Info, LayoutOnRequest) {
-    write("odd.hdr", hdr_file(30, 30, [](std::uint32_t, std::uint32_t) {
-              return Rgb{1.0f, 1.0f, 1.0f};
-          }));
+    write("odd.hdr",
+          hdr_file(30, 30, [](std::uint32_t, std::uint32_t) { return Rgb{1.0f, 1.0f, 1.0f}; }));
     fail({"info", "odd.hdr"}, {"30x30"});
     EXPECT_EQ(succeed({"info", "odd.hdr", "--layout", "latlong", "--json"}).json()["layout"],
               "lat-long");

@@ -87,7 +87,7 @@ Cost measure(const mesh::TriangleMesh& blockers, const prt::Receivers& receivers
 }
 
 /// The exponent p of the power law y = a x^p that is nearest in logarithms.
-double exponent(const std::vector<Cost>& costs, double Cost::*y) {
+double exponent(const std::vector<Cost>& costs, double Cost::* y) {
     double mean_x = 0.0, mean_y = 0.0;
     const auto n = static_cast<double>(costs.size());
     for (const Cost& cost : costs) {
@@ -104,7 +104,7 @@ double exponent(const std::vector<Cost>& costs, double Cost::*y) {
 }
 
 relight::Plot::Series series(const std::string& name, const std::vector<Cost>& costs,
-                             double Cost::*y) {
+                             double Cost::* y) {
     relight::Plot::Series result;
     result.name = fmt::format("{}, exponent {:.2f}", name, exponent(costs, y));
     for (const Cost& cost : costs) {

@@ -39,11 +39,11 @@ class Comparison {
 public:
     Comparison(const Settings& settings, const Scene& scene, const prt::RayScene& rays,
                cubemap::CubeMap map)
-        : settings_(settings), scene_(scene),
-          map_(std::move(map)), shadow_rays_{.blockers = &rays,
-                                             .positions = scene.receivers.positions,
-                                             .bias = scene.settings.bias,
-                                             .tolerance = rms_tolerance(scene)},
+        : settings_(settings), scene_(scene), map_(std::move(map)),
+          shadow_rays_{.blockers = &rays,
+                       .positions = scene.receivers.positions,
+                       .bias = scene.settings.bias,
+                       .tolerance = rms_tolerance(scene)},
           relighter_(scene.transfer, shadow_rays_),
           sample_(relight::random_receivers(scene.transfer, settings.num_samples, settings.seed)),
           exact_(relight::exact_radiance(scene.receivers, sample_, rays, map_,

@@ -56,7 +56,7 @@ TEST_F(OutputFileTest, AppearsOnlyWithCommit) {
 TEST_F(OutputFileTest, ATargetKeepsItsPermissions) {
     const fs::path target = folder_ / "out.txt";
     const auto mode = [&] {
-        struct stat status {};
+        struct stat status{};
         EXPECT_EQ(::stat(target.c_str(), &status), 0);
         return status.st_mode & 07777;
     };

@@ -113,7 +113,7 @@ const fs::path& working_folder() {
                       const auto value = static_cast<float>(x == 0 ? 64 << frame : 1);
                       return app::Rgb{value, value, value};
                   }));
-        app::CommandLine program("relumine", "", "");
+        app::CommandLine program("relumine", "");
         app::add_commands(program, fresh_session());
         static_cast<void>(program.run({"precompute", "mesh.obj", "-o", "scene.prt",
                                        "--face-resolution", "8", "--no-refine", "-q"}));
@@ -132,7 +132,7 @@ const std::array<const char*, 12> Places = {
 
 /// Options of a line with a value that is no file.
 OptionTable find_numeric_options(const Words& line) {
-    app::CommandLine program("relumine", "", "");
+    app::CommandLine program("relumine", "");
     app::add_commands(program, fresh_session());
     app::CommandTable table = program.table();
     for (std::size_t i = 0; i < line.size() && !table.commands.empty(); ++i)
@@ -186,7 +186,7 @@ void run_at_edges(std::span<const std::uint8_t> draws) {
     if (draws.size() < 4)
         return;
     fs::current_path(working_folder());
-    app::CommandLine program("relumine", "", "");
+    app::CommandLine program("relumine", "");
     app::add_commands(program, fresh_session());
     const std::size_t number = draws[0] % working_lines().size();
     Words line = working_lines()[number];
@@ -231,7 +231,7 @@ std::size_t run_all_edges(std::size_t command) {
 
 } // namespace relumine::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+RELUMINE_FUZZ_TARGET(command_line) {
     if (size > 0 && data[0] == 0) {
         run_at_edges(std::span(data, size).subspan(1));
         return 0;
@@ -242,7 +242,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     // Arguments hold no zeros. A slash would lead out of the folder.
     if (text.find('\0') != std::string_view::npos || text.find('/') != std::string_view::npos)
         return 0;
-    app::CommandLine program("relumine", "", "");
+    app::CommandLine program("relumine", "");
     app::add_commands(program, fresh_session());
     for (const char* name : {"generate", "view", "completion", "man", "help", "serve"})
         program.root().command(name).on_run([] {});

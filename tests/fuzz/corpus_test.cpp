@@ -14,7 +14,7 @@
 #include "tests/fuzz/command_edges.h"
 #include "tests/fuzz/fuzz.h"
 
-// As CMakeLists.txt lists them; each is compiled with an entry point of its own name.
+// As CMakeLists.txt lists them.
 #define RELUMINE_FUZZ_TARGETS(X)                                                                   \
     X(command_line)                                                                                \
     X(exr)                                                                                         \

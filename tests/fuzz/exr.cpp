@@ -1,6 +1,6 @@
 #include "tests/fuzz/environment_target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+RELUMINE_FUZZ_TARGET(exr) {
     relumine::fuzz::read_environment(relumine::fuzz::bytes(data, size));
     return 0;
 }

@@ -2,7 +2,7 @@
 #include "cubemap/layers/layer_file.h"
 #include "tests/fuzz/fuzz.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+RELUMINE_FUZZ_TARGET(layers) {
     using namespace relumine;
     const std::filesystem::path path = fuzz::file("layers.json", fuzz::bytes(data, size));
     const auto layers = fuzz::accepted([&] { return cubemap::load_layers(path); });

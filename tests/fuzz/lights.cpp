@@ -2,7 +2,7 @@
 #include "lights/light_file.h"
 #include "tests/fuzz/fuzz.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+RELUMINE_FUZZ_TARGET(lights) {
     using namespace relumine;
     const std::filesystem::path path = fuzz::file("lights.json", fuzz::bytes(data, size));
     const auto list = fuzz::accepted([&] { return lights::load_lights(path); });

@@ -1,7 +1,7 @@
 // A material library, through an OBJ that names it and two of its materials.
 #include "tests/fuzz/mesh_target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+RELUMINE_FUZZ_TARGET(mtl) {
     using namespace relumine;
     static constexpr std::string_view Obj =
         "mtllib input.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt "

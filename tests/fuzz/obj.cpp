@@ -1,6 +1,6 @@
 #include "tests/fuzz/mesh_target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+RELUMINE_FUZZ_TARGET(obj) {
     using namespace relumine;
     fuzz::read_mesh([&] { return mesh::read_obj(fuzz::bytes(data, size), fuzz::folder()); });
     return 0;

@@ -5,7 +5,7 @@
 #include "tests/fuzz/prt_file.h"
 #include "tests/fuzz/scene_target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+RELUMINE_FUZZ_TARGET(prt) {
     using namespace relumine;
     const std::span<const std::byte> input = fuzz::bytes(data, size);
     for (const std::vector<std::byte>& content :

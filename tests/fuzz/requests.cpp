@@ -23,9 +23,8 @@ const fs::path& request_folder() {
         fs::create_directory(path);
         fs::current_path(path);
         std::ofstream("mesh.obj", std::ios::binary) << app::octahedron_obj();
-        std::ofstream("env.hdr", std::ios::binary) << app::hdr_file(16, 8, [](auto x, auto) {
-            return app::Rgb{static_cast<float>(x), 1.0f, 1.0f};
-        });
+        std::ofstream("env.hdr", std::ios::binary) << app::hdr_file(
+            16, 8, [](auto x, auto) { return app::Rgb{static_cast<float>(x), 1.0f, 1.0f}; });
         std::ofstream("layers.json", std::ios::binary) << R"({"version": 1, "layers": []})";
         static_cast<void>(
             precompute(load_mesh("mesh.obj"), {.face_resolution = 8, .output = "scene.prt"}));
@@ -43,7 +42,7 @@ bool is_input(const fs::path& path) {
 
 } // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+RELUMINE_FUZZ_TARGET(requests) {
     std::string_view text(reinterpret_cast<const char*>(data), size);
     // A slash would lead out of the folder; sizes may ask for gigabytes, and get them.
     for (const std::string_view word : {"/", "\\u", "resolution", "size"})

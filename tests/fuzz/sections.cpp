@@ -31,7 +31,7 @@ void try_plan(prt::Sections&& sections) {
 
 } // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+RELUMINE_FUZZ_TARGET(sections) {
     std::span<const std::byte> rest = fuzz::bytes(data, size);
     prt::Sections sections;
     while (rest.size() >= 3) {

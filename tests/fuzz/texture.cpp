@@ -3,7 +3,7 @@
 #include "mesh/materials/texture.h"
 #include "tests/fuzz/fuzz.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+RELUMINE_FUZZ_TARGET(texture) {
     using namespace relumine;
     const auto decoded = [&](const auto& decode) {
         mesh::ImageBudget budget;

@@ -9,7 +9,7 @@
 #include "tests/fuzz/fuzz.h"
 #include "web/wasm/zstd_frames.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+RELUMINE_FUZZ_TARGET(zstd) {
     using namespace relumine;
     constexpr std::size_t Room = std::size_t{1} << 18;
     std::vector<std::uint8_t> own(Room), expected(Room);

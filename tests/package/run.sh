@@ -54,10 +54,10 @@ deb)
         # The program needs libraries to run, and nothing to compile with; compiling with ours needs GLM.
         case $name in
         python3-relumine)
-            [[ "$depends" != *-dev* && "$depends" == *python3-numpy* && "$depends" == *libembree3* ]] ||
+            [[ "$depends" != *-dev* && "$depends" == *python3-numpy* && "$depends" == *libembree* ]] ||
                 fail "$package: wrong dependencies"
             ;;
-        relumine) [[ "$depends" != *-dev* && "$depends" == *libembree3* ]] || fail "$package: wrong dependencies" ;;
+        relumine) [[ "$depends" != *-dev* && "$depends" == *libembree* ]] || fail "$package: wrong dependencies" ;;
         relumine-dev) [[ ", $depends," == *", libglm-dev,"* ]] || fail "$package: no libglm-dev" ;;
         *) fail "$package: unknown" ;;
         esac

@@ -6,8 +6,9 @@
 #include <string_view>
 
 #include <dlfcn.h>
-#include <embree3/rtcore.h>
 #include <hwy/highway.h>
+
+#include "prt/visibility/embree.h"
 
 namespace {
 

@@ -34,7 +34,7 @@ if command -v parallel >/dev/null; then
     relumine join parallel.part.* -o parallel.prt -q
     compare "GNU parallel, 5 parts" parallel.prt
 else
-    echo "GNU parallel: not installed (packages-scale.txt)"
+    echo "GNU parallel: not installed (packages/scale.txt)"
 fi
 
 if command -v mpirun >/dev/null; then
@@ -47,7 +47,7 @@ if command -v mpirun >/dev/null; then
     relumine join mpi.part.* -o mpi.prt -q
     compare "mpirun, 3 ranks" mpi.prt
 else
-    echo "MPI: not installed (packages-scale.txt)"
+    echo "MPI: not installed (packages/scale.txt)"
 fi
 
 # A task that was killed is done again by its command; nothing half written is left.
@@ -103,7 +103,7 @@ CONF
 }
 
 if ! command -v slurmctld >/dev/null || ! command -v munged >/dev/null; then
-    echo "Slurm: not installed (packages-scale.txt)"
+    echo "Slurm: not installed (packages/scale.txt)"
 elif [ "$(id -u)" -ne 0 ]; then
     echo "Slurm: its daemons need root"
 elif ! start_slurm; then

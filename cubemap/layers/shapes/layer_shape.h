@@ -65,16 +65,16 @@ concept PreparedShape = requires(const T shape, const glm::dvec3 w, double chord
 /// says.
 template<typename T>
 concept LayerShape = std::equality_comparable<T> && PreparedShape<typename T::Prepared> &&
-    std::constructible_from<typename T::Prepared, const T&> &&
-    requires(T shape, const T constant, const glm::dvec3 w, double degrees) {
-    { T::Words } -> std::convertible_to<ShapeWords>;
-    { shape.fields() } -> std::same_as<std::vector<LayerField>>;
-    constant.check();
-    { T::as_added() } -> std::same_as<T>;
-    { constant.outline() } -> std::same_as<std::vector<glm::dvec3>>;
-    shape.resize(w, w);
-    shape.turn_upright(degrees);
-};
+                     std::constructible_from<typename T::Prepared, const T&> &&
+                     requires(T shape, const T constant, const glm::dvec3 w, double degrees) {
+                         { T::Words } -> std::convertible_to<ShapeWords>;
+                         { shape.fields() } -> std::same_as<std::vector<LayerField>>;
+                         constant.check();
+                         { T::as_added() } -> std::same_as<T>;
+                         { constant.outline() } -> std::same_as<std::vector<glm::dvec3>>;
+                         shape.resize(w, w);
+                         shape.turn_upright(degrees);
+                     };
 
 /// Width of a hard edge's ramp relative to the size: far below a texel, far above rounding.
 inline constexpr double HardEdge = 1e-9;

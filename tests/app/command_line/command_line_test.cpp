@@ -286,9 +286,8 @@ TEST_F(CommandLineTest, NumbersThatOverflowAreRefused) {
         misuse(
             {"relight", "scene.prt", "env.hdr", "-o", output, "--size", "8x8", "--albedo", "3e38"},
             "--albedo: expected numbers of 0 to 1000000, got '3e38'");
-    write("bright.hdr", hdr_file(64, 32, [](auto, auto) {
-              return Rgb{0x1p90f, 0x1p90f, 0x1p90f};
-          }));
+    write("bright.hdr",
+          hdr_file(64, 32, [](auto, auto) { return Rgb{0x1p90f, 0x1p90f, 0x1p90f}; }));
     for (const char* output : {"new.npy", "new.exr", "new.ply"})
         fail({"relight", "scene.prt", "bright.hdr", "-o", output, "--size", "8x8", "--exposure",
               "100"},

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 
 class CommandParser : public testing::Test {
 protected:
-    CommandParser() : line_("tool", "Does things.", "1.2") {
+    CommandParser() : line_("tool", "Does things.", [] { return "1.2"; }) {
         Command root = line_.root();
         Command run = root.add_command("run", "do it");
         run.add(row("IN", text_, "what to read", {.file = true, .required = true}));

@@ -122,9 +122,8 @@ TEST_F(EnvConvert, SplitsTheSunOff) {
 
 TEST_F(EnvConvert, SaysWhatIsWrong) {
     write("env.hdr", white_hdr());
-    write("square.hdr", hdr_file(32, 32, [](std::uint32_t, std::uint32_t) {
-              return Rgb{1, 1, 1};
-          }));
+    write("square.hdr",
+          hdr_file(32, 32, [](std::uint32_t, std::uint32_t) { return Rgb{1, 1, 1}; }));
     fail({"env", "convert", "square.hdr", "-o", "out.exr"}, {"square.hdr", "--layout", "32x32"});
     succeed({"env", "convert", "square.hdr", "-o", "ok.exr", "--from", "pbrt", "--to-layout",
              "latlong", "--size", "32"});

@@ -31,7 +31,7 @@ protected:
               {"relight", "scene.prt", name, "-o", "new.npy"},
               {"verify", "scene.prt", name}}) {
             const Result result = fail(arguments, all);
-            EXPECT_LT(result.seconds, 1.0 * SanitizerFactor) << name;
+            EXPECT_LT(result.processor_seconds, AtOnce) << name;
             EXPECT_LT(result.peak_bytes, 200'000'000u * SanitizerFactor) << name;
         }
     }
@@ -113,9 +113,8 @@ TEST_F(EnvironmentFiles, BadPixelsAreCountedRefusedAndFixedOnRequest) {
 
 TEST_F(EnvironmentFiles, NothingButBadPixels) {
     for (const float bad : {NaN, Infinity, -Infinity, -1.0f}) {
-        write("bad.exr", exr_file(32, 16, [bad](std::uint32_t, std::uint32_t) {
-                  return Rgb{bad, bad, bad};
-              }));
+        write("bad.exr",
+              exr_file(32, 16, [bad](std::uint32_t, std::uint32_t) { return Rgb{bad, bad, bad}; }));
         fail({"relight", "scene.prt", "bad.exr", "-o", "new.npy"}, {"bad.exr", "--fix-env", "512"});
         succeed({"info", "bad.exr"});
         const nlohmann::json info = succeed({"info", "bad.exr", "--json"}).json();
@@ -135,9 +134,8 @@ TEST_F(EnvironmentFiles, NothingButBadPixels) {
 }
 
 TEST_F(EnvironmentFiles, BlackIsAnEnvironment) {
-    write("black.hdr", hdr_file(32, 16, [](std::uint32_t, std::uint32_t) {
-              return Rgb{0.0f, 0.0f, 0.0f};
-          }));
+    write("black.hdr",
+          hdr_file(32, 16, [](std::uint32_t, std::uint32_t) { return Rgb{0.0f, 0.0f, 0.0f}; }));
     succeed({"info", "black.hdr"});
     succeed({"info", "black.hdr", "--json"});
     succeed({"relight", "scene.prt", "black.hdr", "-o", "black.npy"});

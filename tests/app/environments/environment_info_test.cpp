@@ -120,9 +120,8 @@ TEST_F(EnvironmentInfo, Picture) {
     succeed({"info", "sky.exr", "--picture", "sky.png"});
     EXPECT_NE(read("sun.png"), read("sky.png"));
     // Maps of any size and none too dark.
-    write("dot.exr", exr_file(2, 1, [](std::uint32_t, std::uint32_t) {
-              return Rgb{0.0f, 0.0f, 0.0f};
-          }));
+    write("dot.exr",
+          exr_file(2, 1, [](std::uint32_t, std::uint32_t) { return Rgb{0.0f, 0.0f, 0.0f}; }));
     succeed({"info", "dot.exr", "--picture", "dot.png"});
     EXPECT_EQ(png_size(read("dot.png")), (Size{1024, 512}));
 }

@@ -121,9 +121,8 @@ TEST_F(Lights, RefusesWhatItCannotDo) {
 }
 
 TEST_F(Lights, ABlackMapGivesBlackLights) {
-    write("black.hdr", hdr_file(16, 8, [](std::uint32_t, std::uint32_t) {
-              return Rgb{0.0f, 0.0f, 0.0f};
-          }));
+    write("black.hdr",
+          hdr_file(16, 8, [](std::uint32_t, std::uint32_t) { return Rgb{0.0f, 0.0f, 0.0f}; }));
     const auto report = succeed({"lights", "black.hdr", "-n", "128", "-o", "l.json", "--picture",
                                  "l.png", "--json"})
                             .json();

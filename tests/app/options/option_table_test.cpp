@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 class OptionTables : public AppTest {
 protected:
-    OptionTables() : line_("relumine", "", "") {
+    OptionTables() : line_("relumine", "") {
         add_commands(line_, session_);
         table_ = options_of(options_);
     }
@@ -85,7 +85,7 @@ TEST_F(OptionTables, RequestsTakeEach) {
 }
 
 TEST_F(OptionTables, TheRecordOfFramesHasEach) {
-    CommandLine line("tool", "", "");
+    CommandLine line("tool", "");
     Command command = line.root().add_command("run", "");
     command.add_all(table_);
     const std::string before = command.settings();

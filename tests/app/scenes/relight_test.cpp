@@ -346,8 +346,7 @@ TEST_F(Relight, InputsThatCannotBeReadAreNamed) {
     fail({"relight", "scene.prt", "/dev/zero", "-o", "new.npy"},
          {"/dev/zero", "not a regular file"});
     ASSERT_EQ(::mkfifo((folder() / "pipe.hdr").c_str(), 0600), 0);
-    EXPECT_LT(fail({"relight", "scene.prt", "pipe.hdr", "-o", "new.npy"}, {"pipe.hdr"}).seconds,
-              5.0);
+    fail({"relight", "scene.prt", "pipe.hdr", "-o", "new.npy"}, {"pipe.hdr"});
 }
 
 TEST_F(Relight, AMeshIsPrecomputedOnceAndKept) {

@@ -120,10 +120,9 @@ TEST_F(Frames, GapsAreToldInOneLine) {
         touch("f." + std::to_string(number) + ".exr");
     EXPECT_EQ(refusal_of([&] { static_cast<void>(find_frames(in("f.%d.exr"))); }),
               in("f.%d.exr") + ": expected frames 1 to 9 without a gap, got none for 3-4, 7-8");
-    EXPECT_THAT(refusal_of([&] {
-                    static_cast<void>(find_frames(in("f.%d.exr"), FrameRange{5, 8}));
-                }),
-                HasSubstr("none for 7-8"));
+    EXPECT_THAT(
+        refusal_of([&] { static_cast<void>(find_frames(in("f.%d.exr"), FrameRange{5, 8})); }),
+        HasSubstr("none for 7-8"));
     EXPECT_THAT(numbers(find_frames(in("f.%d.exr"), FrameRange{1, 9, 4})), ElementsAre(1, 5, 9));
     EXPECT_THAT(refusal_of([&] { static_cast<void>(find_frames(in("g.%d.exr"))); }),
                 HasSubstr("no file of such a name"));

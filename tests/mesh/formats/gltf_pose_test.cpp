@@ -61,11 +61,8 @@ TEST_F(GltfPoseTest, SkinsThatAreBroken) {
     refused([](Model& m) { m.json["skins"][0]["joints"] = {1, 7}; }, "\"nodes\" below 3, got 7");
     refused([](Model& m) { m.json["skins"][0]["joints"] = {1}; },
             "joints of vertices below 1, as many as the skin has, got 1");
-    refused(
-        [](Model& m) {
-            m.json["skins"][0]["joints"] = {1, 2, 1};
-        },
-        "3 inverse bind matrices of skin 0, one for each joint, got 2");
+    refused([](Model& m) { m.json["skins"][0]["joints"] = {1, 2, 1}; },
+            "3 inverse bind matrices of skin 0, one for each joint, got 2");
     refused([](Model& m) { m.json["nodes"][0]["skin"] = 3; }, "\"skins\" below 1, got 3");
     refused([](Model& m) { m.json["skins"][0]["joints"] = Json::array(); }, "joints of skin 0");
     const auto with_weights = [](const std::vector<glm::vec4>& weights) {
@@ -74,16 +71,10 @@ TEST_F(GltfPoseTest, SkinsThatAreBroken) {
         model.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = place;
         return model.embedded();
     };
-    expect_refusal(
-        [&] {
-            return gltf(with_weights(std::vector<glm::vec4>(4, {-1, 2, 0, 0})));
-        },
-        "weights of joints of 0 or more, got -1");
-    expect_refusal(
-        [&] {
-            return gltf(with_weights(std::vector<glm::vec4>(4, {NAN, 0, 0, 0})));
-        },
-        "weights of joints of 0 or more, got nan");
+    expect_refusal([&] { return gltf(with_weights(std::vector<glm::vec4>(4, {-1, 2, 0, 0}))); },
+                   "weights of joints of 0 or more, got -1");
+    expect_refusal([&] { return gltf(with_weights(std::vector<glm::vec4>(4, {NAN, 0, 0, 0}))); },
+                   "weights of joints of 0 or more, got nan");
     // Half of the weights: scaled, with a line.
     const TriangleMesh half = gltf(with_weights(std::vector<glm::vec4>(4, {0.5f, 0, 0, 0})));
     EXPECT_EQ(half.positions[2], glm::vec3(2, 1, 5));

@@ -705,11 +705,8 @@ TEST_F(GltfTest, RefusesWhatItWouldMisread) {
     refused([](Json& j) { j["accessors"][2]["componentType"] = 5126; }, "accessor 2");
     refused([](Json& j) { j["accessors"][2]["componentType"] = 5122; }, "unsigned integers");
     refused([](Json& j) { j["accessors"][2]["count"] = 5; }, "a multiple of 3");
-    refused(
-        [](Json& j) {
-            j["accessors"][2].update({{"bufferView", 0}, {"byteOffset", 12}});
-        },
-        "vertex indices below 4, got 16256");
+    refused([](Json& j) { j["accessors"][2].update({{"bufferView", 0}, {"byteOffset", 12}}); },
+            "vertex indices below 4, got 16256");
     refused([](Json& j) { j["bufferViews"][0]["byteLength"] = 4096; }, "buffer view 0 inside");
     refused([](Json& j) { j["bufferViews"][0]["byteOffset"] = 1e12; }, "buffer view 0 inside");
     refused([](Json& j) { j["bufferViews"][0]["byteStride"] = 4; }, "byteStride of 12");

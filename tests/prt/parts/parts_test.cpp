@@ -368,14 +368,10 @@ TEST_F(PartFiles, NameWhatIsWrong) {
     expect_refusal([&] { (void)join_parts(std::vector{first}, folder_ / "joined.prt"); },
                    "got none that is part 2 of 2");
     expect_refusal(
-        [&] {
-            (void)join_parts(std::vector{first, second, first}, folder_ / "joined.prt");
-        },
+        [&] { (void)join_parts(std::vector{first, second, first}, folder_ / "joined.prt"); },
         "expected every part once, got part 1 of 2 again");
     expect_refusal(
-        [&] {
-            (void)join_parts(std::vector{first, part(2, 3, "third")}, folder_ / "joined.prt");
-        },
+        [&] { (void)join_parts(std::vector{first, part(2, 3, "third")}, folder_ / "joined.prt"); },
         "third: expected one of 2 parts");
     expect_refusal(
         [&] {
@@ -390,21 +386,15 @@ TEST_F(PartFiles, NameWhatIsWrong) {
     scene_.settings.source = "other";
     save_plan(folder_ / "other.plan", {.scene = scene_, .has_clusters = true});
     const fs::path foreign = part(1, 2, "foreign", "other.plan");
-    expect_refusal(
-        [&] {
-            (void)join_parts(std::vector{first, foreign}, folder_ / "joined.prt");
-        },
-        "foreign: expected a part of the same plan as");
+    expect_refusal([&] { (void)join_parts(std::vector{first, foreign}, folder_ / "joined.prt"); },
+                   "foreign: expected a part of the same plan as");
 
     std::vector<std::byte> bytes = files::read(second);
     bytes[bytes.size() / 2] ^= std::byte{1};
     files::save_text(second,
                      std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-    expect_refusal(
-        [&] {
-            (void)join_parts(std::vector{first, second}, folder_ / "joined.prt");
-        },
-        "second: expected");
+    expect_refusal([&] { (void)join_parts(std::vector{first, second}, folder_ / "joined.prt"); },
+                   "second: expected");
     EXPECT_FALSE(fs::exists(folder_ / "joined.prt"));
 }
 

@@ -173,17 +173,29 @@ TEST(MaterialSections, KeepWhatRaysPass) {
                  std::runtime_error);
 }
 
-TEST(MaterialSections, TexturesThatWereMadeInCodeAreLeftOut) {
+TEST(MaterialSections, KeepTexturesThatWereMadeInCode) {
     mesh::TriangleMesh mesh = scenes::textured_square();
-    mesh.textures.push_back({.name = "made", .width = 1, .height = 1, .texels = {{9, 9, 9}}});
-    mesh.materials.push_back({.base_color_texture = mesh::TextureSlot{.texture = 1}});
+    mesh.textures.push_back({.name = "grey", .width = 1, .height = 1, .texels = {{9, 9, 9}}});
+    mesh.textures.push_back(
+        {.name = "colours", .width = 2, .height = 1, .texels = {{9, 8, 7}, {1, 2, 3}}});
+    for (const std::uint32_t texture : {1u, 2u})
+        mesh.materials.push_back({.base_color_texture = mesh::TextureSlot{.texture = texture}});
     mesh.triangle_materials = {1, 2};
-    const mesh::TriangleMesh same = read(written(mesh), mesh);
-    EXPECT_TRUE(same.materials[1].base_color_texture);
-    EXPECT_FALSE(same.materials[2].base_color_texture);
-    mesh.triangle_materials = {2, 2};
+    const Sections good = written(mesh);
+    const mesh::TriangleMesh same = read(good, mesh);
+    expect_same_colors(same, mesh);
+    ASSERT_EQ(same.textures.size(), 3u);
+    for (std::size_t i = 1; i < 3; ++i)
+        EXPECT_EQ(same.textures[i].texels, mesh.textures[i].texels);
+    mesh.triangle_materials = {3, 3};
     mesh.materials[1].base_color_texture.reset();
-    EXPECT_TRUE(written(mesh).empty());
+    expect_same_colors(read(written(mesh), mesh), mesh);
+
+    Sections bad = good;
+    bad["alphas"].pop_back();
+    EXPECT_THROW(static_cast<void>(read(bad, mesh)), std::runtime_error);
+    bad["alphas"].resize(9);
+    EXPECT_THROW(static_cast<void>(read(bad, mesh)), std::runtime_error);
 }
 
 TEST(MaterialSections, BrokenOnesAreRefused) {

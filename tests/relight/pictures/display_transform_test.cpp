@@ -40,7 +40,7 @@ protected:
             const DisplayTransform transform({.config = path_});
             is_built_ = true;
         } catch (const std::runtime_error& error) {
-            EXPECT_EQ(error.what(), path_ + ": this build has no OpenColorIO (packages-ocio.txt, "
+            EXPECT_EQ(error.what(), path_ + ": this build has no OpenColorIO (packages/ocio.txt, "
                                             "-DRELUMINE_OCIO=ON)");
         }
     }
