@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -11,6 +11,7 @@
 #include "data_gen/scene_parts.h"
 #include "data_gen/scenes.h"
 #include "data_gen/shapes.h"
+#include "mesh/normals.h"
 
 namespace relumine::data_gen {
 namespace {
@@ -30,7 +31,7 @@ Material physical(const char* name, const glm::vec3& color, float metallic, floa
 std::vector<Material> materials() {
     std::vector<Material> all = {physical("ground", glm::vec3(0.42f), 0.0f, 1.0f),
                                  physical("plaster", {0.74f, 0.72f, 0.68f}, 0.0f, 1.0f),
-                                 physical("gold", {1.0f, 0.71f, 0.29f}, 1.0f, 0.25f),
+                                 physical("gold", {1.0f, 0.71f, 0.29f}, 1.0f, 0.15f),
                                  physical("glass", glm::vec3(1.0f), 0.0f, 0.0f),
                                  physical("lacquer", {0.55f, 0.02f, 0.02f}, 0.0f, 0.5f),
                                  physical("stone", {0.30f, 0.31f, 0.33f}, 0.0f, 1.0f),
@@ -41,8 +42,6 @@ std::vector<Material> materials() {
             material.specular_strength = 0.0f;
     all[3].transmission = 1.0f;
     all[3].thickness = 0.6f;
-    all[3].attenuation_color = {0.80f, 0.95f, 0.92f};
-    all[3].attenuation_distance = 0.8f;
     all[4].coat = 1.0f;
     all[4].coat_roughness = 0.05f;
     all[6].emission = {30.0f, 17.0f, 7.0f};
@@ -51,82 +50,113 @@ std::vector<Material> materials() {
 
 enum Kind : std::uint32_t { Ground, Plaster, Gold, Glass, Lacquer, Stone, Glow };
 
-/// Objects whose parts have vertices of one spacing.
-class Plinth {
+constexpr double PlinthRadius = 1.3, PlinthHeight = 0.14, GroundRadius = 6.0;
+
+/// The still life, whose objects have vertices of one spacing.
+class StillLife {
 public:
-    explicit Plinth(double spacing) : spacing_(spacing) {}
+    explicit StillLife(double spacing)
+        : spacing_(spacing),
+          around_(6 * std::max(2u, num_intervals(FullTurn * PlinthRadius, 6.0 * spacing))) {}
 
     /// A round plinth with a rounded edge.
-    void add_plinth(double radius, double height) {
-        constexpr double Edge = 0.04;
-        const std::uint32_t around =
-            6 * std::max(2u, num_intervals(FullTurn * radius, 6.0 * spacing_));
-        append_lathe(
-            mesh_,
-            {line({radius, 0.0}, {radius, height - Edge}, spacing_),
-             arc({.center = {radius - Edge, height - Edge}, .radii = glm::dvec2(Edge)}, spacing_)},
-            around);
+    void add_plinth() {
+        constexpr double Edge = 0.04, Inside = PlinthRadius - Edge, Below = PlinthHeight - Edge;
+        append_lathe(mesh_,
+                     {line({PlinthRadius, 0.0}, {PlinthRadius, Below}, spacing_),
+                      arc({.center = {Inside, Below}, .radii = glm::dvec2(Edge)}, spacing_)},
+                     around_);
         append_disc(
             mesh_,
-            {.radius = radius - Edge, .height = height, .num_around = around, .fill = Fill::Even});
+            {.radius = Inside, .height = PlinthHeight, .num_around = around_, .fill = Fill::Even});
         of(Plaster);
     }
 
-    /// A part of the unit's size that stands at `foot`.
-    void add(const mesh::TriangleMesh& part, double size, const glm::dvec3& foot, Kind kind) {
+    /// A part of the unit's size that stands on the plinth.
+    void add(const mesh::TriangleMesh& part, double size, const glm::dvec2& foot, Kind kind) {
         mesh::TriangleMesh scaled = part;
         for (glm::vec3& p : scaled.positions)
             p *= static_cast<float>(size);
         const double lowest = mesh::bounds(scaled.positions).min.y;
-        append_copy(mesh_, scaled, 0.0, foot - glm::dvec3(0.0, lowest, 0.0));
+        append_copy(mesh_, scaled, 0.0, {foot.x, PlinthHeight - lowest, foot.y});
         of(kind);
     }
 
-    void add_ball(double radius, const glm::dvec3& foot, Kind kind) {
+    void add_ball(double radius, const glm::dvec2& foot, Kind kind) {
         // An icosahedron's edge is 1.05 long on the unit sphere.
-        add(icosphere(num_intervals(1.05 * radius, spacing_)), radius, foot, kind);
+        add(icosphere(num_intervals(1.05 * radius, spacing_, 2)), radius, foot, kind);
     }
 
-    [[nodiscard]] mesh::TriangleMesh take() { return std::move(mesh_); }
+    /// The ground about the plinth, whose outer rim has so many vertices.
+    void add_ground(std::uint32_t around) {
+        append_disc(mesh_, {.radius = PlinthRadius, .num_around = around_, .facing = Facing::Down});
+        append_disc(mesh_, {.radius = GroundRadius,
+                            .num_around = std::max(around, around_ + 6),
+                            .fill = Fill::Even,
+                            .inner_radius = PlinthRadius,
+                            .inner_num_around = around_});
+        of(Ground);
+    }
+
+    [[nodiscard]] std::size_t num_vertices() const { return mesh_.num_vertices(); }
+    [[nodiscard]] mesh::TriangleMesh take() {
+        mesh_.normals = mesh::smooth_normals(mesh_);
+        mesh_.materials = materials();
+        return std::move(mesh_);
+    }
 
 private:
     void of(Kind kind) { mesh_.triangle_materials.resize(mesh_.num_triangles(), kind); }
 
     double spacing_;
+    std::uint32_t around_;
     mesh::TriangleMesh mesh_;
 };
 
-mesh::TriangleMesh objects_of(double spacing) {
-    constexpr double Top = 0.14;
-    Plinth objects(spacing);
-    objects.add_plinth(1.3, Top);
-    constexpr double KnotSize = 0.42;
-    objects.add(knot_surface(spacing / KnotSize), KnotSize, {-0.12, Top, -0.3}, Gold);
-    constexpr double StoneSize = 0.32;
-    objects.add(boulder_surface(num_intervals(1.05 * StoneSize, spacing)), StoneSize,
-                {-0.82, Top, 0.32}, Stone);
-    objects.add_ball(0.3, {0.68, Top, 0.22}, Glass);
-    objects.add_ball(0.2, {0.16, Top, 0.72}, Lacquer);
-    objects.add_ball(0.07, {-0.3, Top, 0.62}, Glow);
-    return objects.take();
+StillLife objects(double spacing) {
+    StillLife all(spacing);
+    all.add_plinth();
+    constexpr double KnotSize = 0.42, StoneSize = 0.32;
+    all.add(knot_surface(spacing / KnotSize), KnotSize, {-0.12, -0.3}, Gold);
+    // The boulder's fine grain takes more vertices.
+    all.add(boulder_surface(num_intervals(2.0 * StoneSize, spacing, 2)), StoneSize, {-0.82, 0.32},
+            Stone);
+    all.add_ball(0.3, {0.68, 0.22}, Glass);
+    all.add_ball(0.2, {0.16, 0.72}, Lacquer);
+    all.add_ball(0.07, {-0.3, 0.62}, Glow);
+    return all;
 }
 
 } // namespace
 
 mesh::TriangleMesh still_life(std::size_t num_vertices) {
     check_num_vertices(num_vertices);
-    // The objects take about half of the vertices. Their count falls as the spacing grows.
-    double fine = 1e-3, coarse = 1.0;
-    mesh::TriangleMesh objects;
-    for (int step = 0; step < 12; ++step) {
-        const double middle = std::sqrt(fine * coarse);
-        objects = objects_of(middle);
-        (objects.num_vertices() > num_vertices / 2 ? fine : coarse) = middle;
+    const auto miss = [&](const StillLife& scene) {
+        return std::abs(static_cast<double>(scene.num_vertices()) -
+                        static_cast<double>(num_vertices));
+    };
+    // The objects' count falls as the spacing grows, in steps; the ground's grows with its rim's.
+    // Objects have some 18 m^2. A vertex of triangles of one edge takes 0.87 of the edge's square.
+    const auto half = static_cast<double>(num_vertices) / 2.0;
+    double spacing = std::sqrt(18.0 / (0.87 * half));
+    for (int step = 0; step < 4; ++step)
+        spacing *= std::sqrt(static_cast<double>(objects(spacing).num_vertices()) / half);
+    std::optional<StillLife> best;
+    for (int coarser = 0; coarser < 6; ++coarser) {
+        const StillLife standing = objects(spacing * (1.0 + 0.01 * coarser));
+        std::uint32_t low = 1, high = static_cast<std::uint32_t>(std::sqrt(num_vertices)) + 8;
+        while (low + 1 < high) {
+            const std::uint32_t middle = (low + high) / 2;
+            StillLife scene = standing;
+            scene.add_ground(6 * middle);
+            (scene.num_vertices() > num_vertices ? high : low) = middle;
+            if (!best || miss(scene) < miss(*best))
+                best = std::move(scene);
+        }
+        if (miss(*best) < 0.002 * static_cast<double>(num_vertices))
+            break;
     }
-    mesh::TriangleMesh mesh = on_ground(std::move(objects), 9.0, num_vertices);
-    mesh.triangle_materials.resize(mesh.num_triangles(), Ground);
-    mesh.materials = materials();
-    return mesh;
+    return best->take();
 }
 
 } // namespace relumine::data_gen

@@ -208,6 +208,26 @@ std::optional<Primitive> PrimitiveReader::read(const Json& description) {
     return result;
 }
 
+bool joined(Primitive& before, const Primitive& next) {
+    const auto text = [](const Primitive& primitive, const char* key) {
+        const Json* member = primitive.description->find(key);
+        return member == nullptr ? std::string() : member->text();
+    };
+    const auto is_compressed = [](const Primitive& primitive) {
+        return child(child(*primitive.description, "extensions"), "KHR_draco_mesh_compression")
+                   .size() != 0;
+    };
+    // What materials ask for may differ: which uvs, and tangents. Computed normals are the faces'.
+    if (!before.has_normals || !next.has_normals || is_compressed(before) || is_compressed(next) ||
+        text(before, "attributes") != text(next, "attributes") ||
+        text(before, "targets") != text(next, "targets") || before.uvs != next.uvs ||
+        before.second_uvs != next.second_uvs || before.tangents != next.tangents)
+        return false;
+    before.later_materials.push_back({before.triangles.size(), next.material});
+    before.triangles.insert(before.triangles.end(), next.triangles.begin(), next.triangles.end());
+    return true;
+}
+
 std::optional<Primitive> morphed(Document& document, const Primitive& primitive,
                                  std::span<const double> weights) {
     const std::size_t num_targets = items(*primitive.description, "targets").size();

@@ -31,6 +31,12 @@ struct Primitive {
     std::vector<glm::vec4> tangents;
     std::vector<Triangle> triangles;
     std::uint32_t material = 0;
+    /// Materials of the triangles from some on, ascending: of primitives that came to this one.
+    struct LaterMaterial {
+        std::size_t first_triangle;
+        std::uint32_t material;
+    };
+    std::vector<LaterMaterial> later_materials;
     std::vector<Influences> influences;
     /// False: the normals are the faces'.
     bool has_normals = false;
@@ -58,6 +64,11 @@ private:
     Materials& materials_;
     std::optional<std::uint32_t> default_material_;
 };
+
+/// Adds the triangles of a primitive to the one before it where both have the same vertices: the
+/// same accessors, looked at in the same way. Exporters share the arrays of a mesh among the
+/// primitives of its materials. Returns whether it did.
+[[nodiscard]] bool joined(Primitive& before, const Primitive& next);
 
 /// Returns the primitive with its morph targets, each times its weight; nothing where they are at
 /// rest.

@@ -127,7 +127,8 @@ const std::vector<Primitive>& GltfReader::mesh(std::uint64_t index) {
         for (const Json& item : gltf::items(description, "primitives")) {
             if (std::optional<Primitive> read = primitives_.read(item)) {
                 gltf::take_memory(document_, *read, 1);
-                mesh->push_back(std::move(*read));
+                if (mesh->empty() || !gltf::joined(mesh->back(), *read))
+                    mesh->push_back(std::move(*read));
             }
         }
     }
@@ -223,11 +224,16 @@ void GltfReader::append(const Primitive& primitive, const FrameOf& frame_of, std
     for (std::size_t i = 0; i < primitive.tangents.size(); ++i)
         tangents.push_back(frame_of(i).tangent(primitive.tangents[i]));
     add(tangents, soup_.tangents);
-    for (const auto& [a, b, c] : primitive.triangles) {
+    std::uint32_t material = primitive.material;
+    auto later = primitive.later_materials.begin();
+    for (std::size_t i = 0; i < primitive.triangles.size(); ++i) {
+        if (later != primitive.later_materials.end() && later->first_triangle == i)
+            material = (later++)->material;
+        const auto& [a, b, c] = primitive.triangles[i];
         for (const std::uint32_t corner : {a, is_mirrored ? c : b, is_mirrored ? b : c})
             soup_.corners.push_back(static_cast<std::uint32_t>(first) + corner);
         soup_.end_face();
-        soup_.face_materials.push_back(primitive.material);
+        soup_.face_materials.push_back(material);
         soup_.face_groups.push_back(group);
     }
 }
