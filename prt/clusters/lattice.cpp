@@ -11,15 +11,15 @@ namespace {
 // Cube coordinates [-1, 1] in steps of 2^-15 are exact integers for all samples down to MaxLevel.
 constexpr double Scale = 1u << (MaxLevel + 1);
 constexpr std::uint32_t BitsPerCoordinate = 20;
-constexpr std::uint64_t Mask = (1u << BitsPerCoordinate) - 1;
+constexpr std::uint64_t CoordinateMask = (1u << BitsPerCoordinate) - 1;
 constexpr std::int64_t Offset = 1 << (BitsPerCoordinate - 1);
 
-std::uint64_t packed(double coordinate) {
+std::uint64_t packed_key(double coordinate) {
     return static_cast<std::uint64_t>(std::llround(coordinate * Scale) + Offset);
 }
 
-double unpacked(std::uint64_t bits) {
-    return static_cast<double>(static_cast<std::int64_t>(bits & Mask) - Offset) / Scale;
+double unpacked_key(std::uint64_t bits) {
+    return static_cast<double>(static_cast<std::int64_t>(bits & CoordinateMask) - Offset) / Scale;
 }
 
 } // namespace
@@ -32,15 +32,15 @@ std::array<LatticePoint, SamplesPerCell> lattice_points(const Cell& cell) {
         const std::uint32_t row = i / 3;
         const glm::dvec3 point =
             cubemap::cube_point(cell.face, (2 * cell.x + column) * half, (2 * cell.y + row) * half);
-        points[i] = packed(point.x) | packed(point.y) << BitsPerCoordinate |
-                    packed(point.z) << 2 * BitsPerCoordinate;
+        points[i] = packed_key(point.x) | packed_key(point.y) << BitsPerCoordinate |
+                    packed_key(point.z) << 2 * BitsPerCoordinate;
     }
     return points;
 }
 
 glm::dvec3 place_on_cube(LatticePoint point) {
-    return {unpacked(point), unpacked(point >> BitsPerCoordinate),
-            unpacked(point >> 2 * BitsPerCoordinate)};
+    return {unpacked_key(point), unpacked_key(point >> BitsPerCoordinate),
+            unpacked_key(point >> 2 * BitsPerCoordinate)};
 }
 
 glm::vec3 direction(LatticePoint point) {
