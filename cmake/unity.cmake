@@ -43,9 +43,9 @@ function(relumine_compile target level)
     if(arg_OWN_HEADERS)
         target_precompile_headers(${target} PRIVATE ${relumine_common_headers} ${arg_OWN_HEADERS})
     else()
-        # Parsed for code of libraries, which may come into shared ones.
+        # Parsed for code that may come into shared libraries, also where a program takes it.
         if(arg_PRECOMPILED STREQUAL relumine_headers)
-            set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+            target_compile_options(${target} PRIVATE -fPIC)
         endif()
         # Every target links what the headers' target links, because libraries define macros.
         target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:fmt::fmt>)

@@ -22,7 +22,6 @@ namespace relumine::prt::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-
 /// Rounding errors and their bounds: docs/error-bounds.md, rows B5 and B6.
 constexpr float LostRoundings = 192.0f;
 constexpr float TooNearRoundings = 4096.0f;

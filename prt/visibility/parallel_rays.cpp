@@ -25,7 +25,6 @@ namespace relumine::prt::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-
 /// Beyond so many leaves in one direction the exact tracer is faster. Measured.
 constexpr std::size_t MostLeaves = 1024;
 
@@ -114,8 +113,8 @@ void project(D d, const TriangleTree::Leaf& leaf, const Direction& direction,
         }
         store(hn::MulAdd(product, hn::Set(d, ParallelEdgeTolerance), hn::Set(d, ParallelSmallest)),
               projected.certain);
-        const Vector lost =
-            hn::MulAdd(reach, hn::Set(d, OutlineRoundings * Rounding), hn::Set(d, ParallelSmallest));
+        const Vector lost = hn::MulAdd(reach, hn::Set(d, OutlineRoundings * Rounding),
+                                       hn::Set(d, ParallelSmallest));
         store_range(d, moved_s, lost, lane, projected.s_low, projected.s_high);
         store_range(d, moved_t, lost, lane, projected.t_low, projected.t_high);
 
@@ -128,9 +127,9 @@ void project(D d, const TriangleTree::Leaf& leaf, const Direction& direction,
             height = hn::MulAdd(normal, from_middle[0][a], height);
         }
         store(height, projected.height);
-        store(
-            hn::MulAdd(hn::Mul(product, longest), hn::Set(d, ParallelSideTolerance), hn::Set(d, ParallelSmallest)),
-            projected.side_certain);
+        store(hn::MulAdd(hn::Mul(product, longest), hn::Set(d, ParallelSideTolerance),
+                         hn::Set(d, ParallelSmallest)),
+              projected.side_certain);
     }
 }
 

@@ -18,7 +18,6 @@ namespace relumine::prt::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-
 using Supports = std::array<std::array<float, TriangleTree::Width>, Shaft::NumPlanes>;
 
 /// Children of a node that are not outside of the shaft, and the supports of all. The corner of a

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 
 #include "app/command_line/command_line.h"
 #include "app/command_table.h"
+#include "app/commands.h"
 #include "app/program.h"
 #include "relight/pictures/array_file.h"
 #include "tests/app/small_files.h"
@@ -182,14 +184,31 @@ void clean() {
     }
 }
 
+/// Adds the command of a working line alone: the tables of the others take longer than its work.
+void add_command(app::CommandLine& program, const std::string& name) {
+    static const std::map<std::string, void (*)(app::Command&, app::Session&)> All = {
+        {"precompute", app::add_precompute},
+        {"relight", app::add_relight},
+        {"edit", app::add_edit},
+        {"animate", app::add_animate},
+        {"verify", app::add_verify},
+        {"lights", app::add_lights},
+        {"info", app::add_info},
+        {"mesh", app::add_mesh},
+        {"env", app::add_env},
+        {"generate", app::add_generate}};
+    app::Command root = program.root();
+    All.at(name)(root, fresh_session());
+}
+
 void run_at_edges(std::span<const std::uint8_t> draws) {
     if (draws.size() < 4)
         return;
     fs::current_path(working_folder());
-    app::CommandLine program("relumine", "");
-    app::add_commands(program, fresh_session());
     const std::size_t number = draws[0] % working_lines().size();
     Words line = working_lines()[number];
+    app::CommandLine program("relumine", "");
+    add_command(program, line[0]);
     const OptionTable& options = numeric_options(number);
     for (std::size_t i = 1; i + 3 <= draws.size() && i < 7; i += 3)
         set(line, options[draws[i] % options.size()],

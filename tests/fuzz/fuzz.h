@@ -13,8 +13,8 @@
 #include <string_view>
 #include <type_traits>
 
-/// Begins the function of a target: the one that libFuzzer calls, or one of the target's own name where
-/// all targets are one program.
+/// Begins the function of a target: the one that libFuzzer calls, or one of the target's own name
+/// where all targets are one program.
 #ifdef RELUMINE_FUZZ
 #define RELUMINE_FUZZ_TARGET(name)                                                                 \
     extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
