@@ -79,7 +79,7 @@ TEST_F(ProcessorsTest, OfOtherKindsShareNoWork) {
         succeed(part);
     }
     const Limit limit("sse4");
-    fail(part, {"scene.plan: expected the plan of a processor that computes as this one"});
+    fail(part, {"scene.plan: expected the plan of a processor and an Embree that compute as here"});
 }
 
 } // namespace

@@ -46,7 +46,7 @@ mesh::TriangleMesh square(bool is_grey) {
 
 std::vector<glm::vec3> drawn(Scene scene) {
     LitScene lit(std::move(scene));
-    lit.light(data_gen::two_soft_boxes(16));
+    lit.light(data_gen::sun_and_sky(16)); // nowhere even
     return Painter(lit, {.width = 12, .height = 12, .samples_per_axis = 1})
         .draw(lit.lighting())
         .pixels;
@@ -55,7 +55,6 @@ std::vector<glm::vec3> drawn(Scene scene) {
 Scene made(const mesh::TriangleMesh& mesh) {
     PrecomputeOptions options{.tolerance = 0.1f};
     options.no_refine = true;
-    options.view = View{.camera = Camera{.eye = {1, 1, 4}, .target = {0, 0, 0}, .fov_degrees = 30}};
     return precompute(mesh, options);
 }
 
