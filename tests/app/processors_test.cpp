@@ -82,5 +82,22 @@ TEST_F(ProcessorsTest, OfOtherKindsShareNoWork) {
     fail(part, {"scene.plan: expected the plan of a processor and an Embree that compute as here"});
 }
 
+TEST_F(ProcessorsTest, AnEmbreeThatLacksSomethingIsRefused) {
+    for (const auto& [lack, sentence] :
+         {std::pair{"packets",
+                    "expected an Embree built with packets of rays (EMBREE_RAY_PACKETS)"},
+          {"filters", "expected an Embree built with filter functions (EMBREE_FILTER_FUNCTION)"},
+          {"backs", "expected an Embree built without culling of back faces"}}) {
+        ::setenv("RELUMINE_EMBREE_LACKS", lack, 1);
+        {
+            const Limit limit("avx2");
+            fail({"precompute", "colonnade.ply", "-o", "scene.prt", "-q"},
+                 {sentence, "got another"});
+            EXPECT_EQ(succeed({"--version"}).out.rfind("relumine ", 0), 0u);
+        }
+        ::unsetenv("RELUMINE_EMBREE_LACKS");
+    }
+}
+
 } // namespace
 } // namespace relumine::app

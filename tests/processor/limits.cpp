@@ -1,5 +1,6 @@
 // Makes a program compute as on a processor without this one's best instruction sets. Loaded before
 // a program (LD_PRELOAD), or linked into a test program. RELUMINE_PROCESSOR is avx2 or sse4.
+// RELUMINE_EMBREE_LACKS is packets, filters or backs: what Embree says it is built without.
 #include "tests/processor/limits.h"
 
 #include <cstdlib>
@@ -49,4 +50,21 @@ RTC_API RTCDevice rtcNewDevice(const char* config) {
     return start(is_limited_to("avx2")   ? "isa=avx2"
                  : is_limited_to("sse4") ? "isa=sse4.2"
                                          : config);
+}
+
+/// Stands before Embree's own function, too.
+RTC_API ssize_t rtcGetDeviceProperty(RTCDevice device, RTCDeviceProperty property) {
+    const char* lack = std::getenv("RELUMINE_EMBREE_LACKS");
+    const std::string_view lacking = lack == nullptr ? "" : lack;
+    if (lacking == "packets" && (property == RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED ||
+                                 property == RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED ||
+                                 property == RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED))
+        return 0;
+    if (lacking == "filters" && property == RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED)
+        return 0;
+    if (lacking == "backs" && property == RTC_DEVICE_PROPERTY_BACKFACE_CULLING_ENABLED)
+        return 1;
+    using Ask = ssize_t (*)(RTCDevice, RTCDeviceProperty);
+    static const auto ask = reinterpret_cast<Ask>(::dlsym(RTLD_NEXT, "rtcGetDeviceProperty"));
+    return ask(device, property);
 }
