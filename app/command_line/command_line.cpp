@@ -314,11 +314,28 @@ Command Command::command(const std::string& name) const {
     throw std::out_of_range(fmt::format("no command {}", name));
 }
 
+namespace {
+
+/// Writes defaults as `=7` with all versions of CLI11: newer ones write ` [7] `.
+class HelpFormatter : public CLI::Formatter {
+public:
+    std::string make_option_opts(const CLI::Option* option) const override {
+        std::string text = CLI::Formatter::make_option_opts(option);
+        const std::string newer = " [" + option->get_default_str() + "] ";
+        if (const std::size_t at = text.find(newer); at != std::string::npos)
+            text.replace(at, newer.size(), "=" + option->get_default_str());
+        return text;
+    }
+};
+
+} // namespace
+
 CommandLine::CommandLine(const std::string& name, const std::string& description,
                          std::function<std::string()> version)
     : data_(std::make_unique<Command::Data>()) {
     data_->owned = std::make_unique<CLI::App>(description, name);
     data_->app = data_->owned.get();
+    data_->app->formatter(std::make_shared<HelpFormatter>());
     if (version)
         data_->app->set_version_flag("--version", [name, version = std::move(version)] {
             return fmt::format("{} {}", name, version());

@@ -18,7 +18,7 @@ fail() {
 # The packages of the headers that the consumer in a folder read, beside Relumine's, which lie in another one. Each is known.
 check_headers() {
     local headers others packages wrong
-    headers=$(cd "$1" && ninja -t deps | sed -n 's/^    //p' | xargs realpath | sort -u)
+    headers=$(cd "$1" && ninja -t deps CMakeFiles/consumer.dir/main.cpp.o | sed -n 's/^    //p' | xargs realpath | sort -u)
     grep -q "^$2/relumine/" <<<"$headers" || fail "no header of Relumine was read"
     others=$(grep -v -e "^$2/relumine/" -e "^$source/" <<<"$headers")
     packages=$(xargs dpkg-query -S <<<"$others" | sed 's/:.*//' | sort -u)
