@@ -94,6 +94,9 @@ public:
                 reason = reason.substr(0, at);
             }
         }
+        // Newer versions of the library have a sentence of their own, with a hint for programmers.
+        if (text.find("empty input") != std::string_view::npos)
+            reason = "end of input";
         // The library has no type of its own for a number that a double does not hold.
         constexpr int OutOfRange = 406;
         fail(error.id == OutOfRange ? "a number out of range"
