@@ -115,5 +115,13 @@ TEST(Creases, OnlyTheVerticesOfTheEdgeAreDoubled) {
         EXPECT_NEAR(std::abs(normal.x), std::sqrt(0.5f), 1e-6f);
 }
 
+TEST(Normals, OfTrianglesWithVerticesThatAreNotThereAreRefused) {
+    TriangleMesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3'000'000'000}};
+    EXPECT_THROW(static_cast<void>(smooth_normals(mesh)), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(with_creases(mesh, 30.0f)), std::invalid_argument);
+}
+
 } // namespace
 } // namespace relumine::mesh

@@ -185,5 +185,38 @@ TEST_F(SaveTest, AMeshAsItIsLoadsAgainFromGlb) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "none.glb"));
 }
 
+TEST_F(SaveTest, GlbKeepsLayersAndGlassAndPrimitivesShareVertices) {
+    TriangleMesh mesh = box_;
+    Material glass{.name = "glass",
+                   .model = MaterialModel::MetallicRoughness,
+                   .roughness = 0.25f,
+                   .transmission = 0.5f,
+                   .thickness = 0.75f,
+                   .attenuation_color = {0.5f, 1.0f, 0.25f},
+                   .attenuation_distance = 2.0f,
+                   .is_double_sided = false,
+                   .ior = 1.25f};
+    Material layered{.name = "layered",
+                     .model = MaterialModel::MetallicRoughness,
+                     .is_double_sided = false,
+                     .specular_strength = 0.5f,
+                     .specular_tint = {1.0f, 0.5f, 2.0f},
+                     .coat = 0.75f,
+                     .coat_roughness = 0.125f,
+                     .sheen = {0.5f, 0.25f, 1.0f},
+                     .sheen_roughness = 0.5f};
+    mesh.materials = {glass, layered};
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+        mesh.triangle_materials.push_back(i < 4 ? 0 : 1);
+    EXPECT_TRUE(save(folder_ / "box.glb", mesh).empty());
+    const TriangleMesh loaded = load(folder_ / "box.glb");
+    EXPECT_EQ(loaded.positions, mesh.positions) << "one array for all primitives";
+    EXPECT_EQ(loaded.triangles, mesh.triangles);
+    EXPECT_EQ(loaded.triangle_materials, mesh.triangle_materials);
+    for (Material& material : mesh.materials)
+        material.times_vertex_color = true; // as glTF says
+    EXPECT_EQ(loaded.materials, mesh.materials);
+}
+
 } // namespace
 } // namespace relumine::mesh

@@ -330,5 +330,17 @@ TEST(RefinedByItself, AnAutomaticFloorGetsVerticesWhereShadowsFall) {
     EXPECT_EQ(first_floor_vertex(scene), first);
 }
 
+TEST(MeshInCode, WithoutNormalsAndWithAWrongIndexIsRefused) {
+    mesh::TriangleMesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 3'000'000'000}};
+    try {
+        static_cast<void>(sound(Mesh(mesh)));
+        ADD_FAILURE() << "it is sound";
+    } catch (const std::invalid_argument& error) {
+        EXPECT_STREQ(error.what(), "expected vertices below 3, got 3000000000 of triangle 0");
+    }
+}
+
 } // namespace
 } // namespace relumine
