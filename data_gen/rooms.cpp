@@ -46,8 +46,7 @@ public:
 
     /// Adds a sphere that stands on the floor.
     void add_ball(const glm::dvec3& foot, double radius, const glm::vec3& color) {
-        // An icosahedron's edge is 1.05 long on the unit sphere.
-        mesh::TriangleMesh ball = icosphere(num_intervals(1.05 * radius, spacing_));
+        mesh::TriangleMesh ball = icosphere(ball_frequency(radius, spacing_));
         for (glm::vec3& p : ball.positions) {
             p *= static_cast<float>(radius);
         }

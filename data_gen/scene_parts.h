@@ -21,6 +21,10 @@ void check_num_vertices(std::size_t num_vertices);
 /// Returns the boulder's surface, made of icosphere(frequency), without normals.
 [[nodiscard]] mesh::TriangleMesh boulder_surface(std::uint32_t frequency);
 
+/// Returns the frequency of an icosphere() whose vertices lie about `spacing` apart at this radius.
+[[nodiscard]] std::uint32_t ball_frequency(double radius, double spacing,
+                                           std::uint32_t minimum = 1);
+
 /// Adds normals and a floor to the objects. The floor gets the remaining vertices.
 [[nodiscard]] mesh::TriangleMesh on_ground(mesh::TriangleMesh objects, double floor_side,
                                            std::size_t num_vertices);

@@ -79,6 +79,11 @@ void check_num_vertices(std::size_t num_vertices) {
     }
 }
 
+std::uint32_t ball_frequency(double radius, double spacing, std::uint32_t minimum) {
+    // An icosahedron's edge is 1.05 long on the unit sphere.
+    return num_intervals(1.05 * radius, spacing, minimum);
+}
+
 mesh::TriangleMesh on_ground(mesh::TriangleMesh objects, double floor_side,
                              std::size_t num_vertices) {
     append_ground(objects, floor_side,

@@ -66,6 +66,7 @@ public:
                      {line({PlinthRadius, 0.0}, {PlinthRadius, Below}, spacing_),
                       arc({.center = {Inside, Below}, .radii = glm::dvec2(Edge)}, spacing_)},
                      around_);
+        append_disc(mesh_, {.radius = PlinthRadius, .num_around = around_, .facing = Facing::Down});
         append_disc(
             mesh_,
             {.radius = Inside, .height = PlinthHeight, .num_around = around_, .fill = Fill::Even});
@@ -83,13 +84,11 @@ public:
     }
 
     void add_ball(double radius, const glm::dvec2& foot, Kind kind) {
-        // An icosahedron's edge is 1.05 long on the unit sphere.
-        add(icosphere(num_intervals(1.05 * radius, spacing_, 2)), radius, foot, kind);
+        add(icosphere(ball_frequency(radius, spacing_, 2)), radius, foot, kind);
     }
 
     /// The ground about the plinth, whose outer rim has so many vertices.
     void add_ground(std::uint32_t around) {
-        append_disc(mesh_, {.radius = PlinthRadius, .num_around = around_, .facing = Facing::Down});
         append_disc(mesh_, {.radius = GroundRadius,
                             .num_around = std::max(around, around_ + 6),
                             .fill = Fill::Even,

@@ -95,7 +95,7 @@ public:
             }
         }
         // Newer versions of the library have a sentence of their own, with a hint for programmers.
-        if (text.find("empty input") != std::string_view::npos)
+        if (dash == std::string_view::npos && text.find("an empty input") != std::string_view::npos)
             reason = "end of input";
         // The library has no type of its own for a number that a double does not hold.
         constexpr int OutOfRange = 406;

@@ -11,11 +11,12 @@ std::string arithmetic() {
     // The lowest bit is the best target.
     const auto targets = static_cast<std::int64_t>(hwy::SupportedTargets());
     const std::int64_t best = targets & -targets;
+    const char* name = hwy::TargetName(best);
 #if HWY_ARCH_X86
     if (best <= HWY_AVX2)
-        return fmt::format("AVX2, Embree {}", RELUMINE_EMBREE);
+        name = "AVX2";
 #endif
-    return fmt::format("{}, Embree {}", hwy::TargetName(best), RELUMINE_EMBREE);
+    return fmt::format("{}, Embree {}", name, RELUMINE_EMBREE);
 }
 
 } // namespace relumine::prt

@@ -187,10 +187,8 @@ files::Json material_of(const Material& material, std::set<std::string>& used) {
         extensions.set("KHR_materials_transmission",
                        {{"transmissionFactor", double{material.transmission}}});
     if (material.thickness > 0.0f) {
-        const glm::vec3& color = material.attenuation_color;
-        Json volume = {
-            {"thicknessFactor", double{material.thickness}},
-            {"attenuationColor", Json::Array{double{color.r}, double{color.g}, double{color.b}}}};
+        Json volume = {{"thicknessFactor", double{material.thickness}},
+                       {"attenuationColor", material.attenuation_color}};
         if (std::isfinite(material.attenuation_distance)) // its default is infinite
             volume.set("attenuationDistance", double{material.attenuation_distance});
         extensions.set("KHR_materials_volume", std::move(volume));
@@ -199,19 +197,16 @@ files::Json material_of(const Material& material, std::set<std::string>& used) {
         extensions.set("KHR_materials_clearcoat",
                        {{"clearcoatFactor", double{material.coat}},
                         {"clearcoatRoughnessFactor", double{material.coat_roughness}}});
-    if (const glm::vec3& sheen = material.sheen; sheen != glm::vec3(0.0f))
-        extensions.set(
-            "KHR_materials_sheen",
-            {{"sheenColorFactor", Json::Array{double{sheen.r}, double{sheen.g}, double{sheen.b}}},
-             {"sheenRoughnessFactor", double{material.sheen_roughness}}});
+    if (material.sheen != glm::vec3(0.0f))
+        extensions.set("KHR_materials_sheen",
+                       {{"sheenColorFactor", material.sheen},
+                        {"sheenRoughnessFactor", double{material.sheen_roughness}}});
     if (material.ior != 1.5f)
         extensions.set("KHR_materials_ior", {{"ior", double{material.ior}}});
-    if (const glm::vec3& tint = material.specular_tint;
-        material.specular_strength != 1.0f || tint != glm::vec3(1.0f))
-        extensions.set(
-            "KHR_materials_specular",
-            {{"specularFactor", double{material.specular_strength}},
-             {"specularColorFactor", Json::Array{double{tint.r}, double{tint.g}, double{tint.b}}}});
+    if (material.specular_strength != 1.0f || material.specular_tint != glm::vec3(1.0f))
+        extensions.set("KHR_materials_specular",
+                       {{"specularFactor", double{material.specular_strength}},
+                        {"specularColorFactor", material.specular_tint}});
     if (material.model == MaterialModel::Unlit)
         extensions.set("KHR_materials_unlit", Json::Object{});
     for (const auto& [name, value] : extensions.members())

@@ -8,7 +8,27 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <memory>
+#include <string>
+#include <type_traits>
+
 namespace relumine::prt::embree {
+
+struct DeviceDeleter {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceDeleter>;
+
+/// Starts Embree. What a system's Embree is built without, queries would miss in silence.
+///
+/// Throws:  std::runtime_error where it cannot start here, or lacks packets or filters.
+[[nodiscard]] DeviceHandle new_device();
+
+/// Throws what the device's last error means; `action` is what it was asked to do.
+void throw_on_error(RTCDevice device, const char* action);
+
+/// Returns "Embree 4.3.3".
+[[nodiscard]] std::string version_of(RTCDevice device);
 
 #if RELUMINE_EMBREE >= 4
 
@@ -22,42 +42,37 @@ inline void begin(Context& context) {
     rtcInitRayQueryContext(&context);
 }
 
-inline RTCOccludedArguments occluded_arguments(Context& context, Flags flags) {
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    arguments.context = &context;
-    arguments.flags = flags;
-    return arguments;
-}
-
-inline RTCIntersectArguments intersect_arguments(Context& context, Flags flags) {
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
-    arguments.context = &context;
-    arguments.flags = flags;
-    return arguments;
+/// Returns Embree's usual arguments, which rtcInitOccludedArguments() or
+/// rtcInitIntersectArguments() sets, with these two.
+template<class Arguments>
+Arguments arguments(void (*set_usual)(Arguments*), Context& context, Flags flags = Incoherent) {
+    Arguments result;
+    set_usual(&result);
+    result.context = &context;
+    result.flags = flags;
+    return result;
 }
 
 inline void occluded(RTCScene scene, Context& context, RTCRay& ray) {
-    RTCOccludedArguments arguments = occluded_arguments(context, Incoherent);
-    rtcOccluded1(scene, &ray, &arguments);
+    RTCOccludedArguments asked = arguments(rtcInitOccludedArguments, context);
+    rtcOccluded1(scene, &ray, &asked);
 }
 
 inline void occluded(RTCScene scene, Context& context, Flags flags, const int* valid,
                      RTCRay16& rays) {
-    RTCOccludedArguments arguments = occluded_arguments(context, flags);
-    rtcOccluded16(valid, scene, &rays, &arguments);
+    RTCOccludedArguments asked = arguments(rtcInitOccludedArguments, context, flags);
+    rtcOccluded16(valid, scene, &rays, &asked);
 }
 
 inline void intersect(RTCScene scene, Context& context, RTCRayHit& ray) {
-    RTCIntersectArguments arguments = intersect_arguments(context, Incoherent);
-    rtcIntersect1(scene, &ray, &arguments);
+    RTCIntersectArguments asked = arguments(rtcInitIntersectArguments, context);
+    rtcIntersect1(scene, &ray, &asked);
 }
 
 inline void intersect(RTCScene scene, Context& context, Flags flags, const int* valid,
                       RTCRayHit16& rays) {
-    RTCIntersectArguments arguments = intersect_arguments(context, flags);
-    rtcIntersect16(valid, scene, &rays, &arguments);
+    RTCIntersectArguments asked = arguments(rtcInitIntersectArguments, context, flags);
+    rtcIntersect16(valid, scene, &rays, &asked);
 }
 
 #else

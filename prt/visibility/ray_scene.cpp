@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <new>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -25,57 +24,10 @@ namespace {
 
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 
-struct DeviceDeleter {
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
 struct SceneDeleter {
     void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
 };
-using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceDeleter>;
 using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneDeleter>;
-
-std::string version_of(RTCDevice device) {
-    const auto version = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION);
-    return fmt::format("Embree {}.{}.{}", version / 10000, version / 100 % 100, version % 100);
-}
-
-void throw_on_error(RTCDevice device, const char* action) {
-    const RTCError error = rtcGetDeviceError(device);
-    if (error == RTC_ERROR_OUT_OF_MEMORY)
-        throw std::bad_alloc();
-    if (error == RTC_ERROR_UNSUPPORTED_CPU)
-        throw std::runtime_error("expected an Embree that is built for this processor's "
-                                 "instruction sets, got " RTC_VERSION_STRING " without them");
-    if (error != RTC_ERROR_NONE)
-        throw std::runtime_error(
-            fmt::format("Embree could not {} (error {})", action, static_cast<int>(error)));
-}
-
-/// Starts Embree. What a system's Embree is built without, queries would miss in silence.
-DeviceHandle new_device() {
-    DeviceHandle device(rtcNewDevice(nullptr));
-    if (!device) {
-        throw_on_error(nullptr, "start");
-        throw std::runtime_error("Embree could not start");
-    }
-    const auto has = [&](RTCDeviceProperty property) {
-        return rtcGetDeviceProperty(device.get(), property) != 0;
-    };
-    const auto require = [&](bool is_good, const char* what) {
-        if (!is_good)
-            throw std::runtime_error(fmt::format("expected an Embree built {}, got another {}",
-                                                 what, version_of(device.get())));
-    };
-    require(has(RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED) ||
-                has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ||
-                has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED),
-            "with packets of rays (EMBREE_RAY_PACKETS)");
-    require(has(RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED),
-            "with filter functions (EMBREE_FILTER_FUNCTION)");
-    require(!has(RTC_DEVICE_PROPERTY_BACKFACE_CULLING_ENABLED),
-            "without culling of back faces (EMBREE_BACKFACE_CULLING)");
-    return device;
-}
 
 /// Whether the corners lie on one line. Exact unless coordinates differ by more than a factor of
 /// 2^28.
@@ -285,13 +237,13 @@ bool are_coherent(const DirectionPacket& directions) {
 } // namespace
 
 std::string ray_engine() {
-    return version_of(new_device().get());
+    return embree::version_of(embree::new_device().get());
 }
 
 struct RayScene::Impl {
     /// Embree holds its address.
     Buffers buffers;
-    DeviceHandle device;
+    embree::DeviceHandle device;
     SceneHandle scene;
     embree::Flags packets = embree::Coherent;
     std::unique_ptr<const Blockers> settled;
@@ -328,7 +280,7 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
                     !(std::abs(x) < LargestCoordinate))
                     throw std::runtime_error(fmt::format("expected coordinates within {}, got {}",
                                                          LargestCoordinate, x));
-    impl_->device = new_device();
+    impl_->device = embree::new_device();
     RTCDevice device = impl_->device.get();
     impl_->scene.reset(rtcNewScene(device));
     rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);
@@ -356,7 +308,7 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
     rtcAttachGeometry(impl_->scene.get(), geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(impl_->scene.get());
-    throw_on_error(device, "build the ray accelerator");
+    embree::throw_on_error(device, "build the ray accelerator");
     if (impl_->buffers.see_through->has_thin())
         impl_->settled = std::make_unique<const Settled>(*impl_);
 }

@@ -182,8 +182,12 @@ void Process::wait_until_it_takes(int signal) {
 }
 
 Result Process::wait() {
-    double busy = 0.0, busy_since = now();
+    double busy = 0.0, busy_since = now(), next_look = now();
     while (!poll(false)) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        if (now() < next_look)
+            continue;
+        next_look = now() + 0.1;
         if (const double seconds = processor_seconds(); seconds != busy) {
             busy = seconds;
             busy_since = now();
@@ -194,7 +198,6 @@ Result Process::wait() {
             ::kill(pid_, SIGKILL);
             poll(true);
         }
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     if (fs::is_regular_file(out_))
         result_.out = content(out_);

@@ -13,7 +13,7 @@
 namespace relumine {
 namespace {
 
-/// A material that every texture but those of other models tells something.
+/// A material that shows each texture of its model.
 mesh::Material layered() {
     return {.model = mesh::MaterialModel::MetallicRoughness,
             .base_color = glm::vec3(0.7f),
