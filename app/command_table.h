@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "relumine/option_table.h"
+#include "relumine/options/option_table.h"
 
 namespace relumine::app {
 

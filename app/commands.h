@@ -6,7 +6,7 @@
 
 #include "app/command_line/command_line.h"
 #include "app/session.h"
-#include "relumine/mesh.h"
+#include "relumine/in/mesh.h"
 
 namespace relumine::app {
 

@@ -20,7 +20,7 @@
 #include "mesh/load.h"
 #include "prt/parts/part_facts.h"
 #include "prt/scene/scene_file.h"
-#include "relumine/mesh.h"
+#include "relumine/in/mesh.h"
 
 namespace relumine::app {
 

@@ -12,8 +12,8 @@
 
 #include "cubemap/layers/light_layer.h"
 #include "cubemap/texel_rectangle.h"
-#include "relumine/light_edits.h"
-#include "relumine/lit_scene.h"
+#include "relumine/light/edits.h"
+#include "relumine/light/lit_scene.h"
 
 namespace relumine::viewer {
 

@@ -3,7 +3,7 @@
 
 #include "relight/pictures/ground.h"
 #include "relight/pictures/tone_curve.h"
-#include "relumine/output_options.h"
+#include "relumine/out/output_options.h"
 
 namespace relumine::viewer {
 

@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "relumine/output_options.h"
+#include "relumine/out/output_options.h"
 
 namespace relumine::viewer {
 

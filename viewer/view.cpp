@@ -9,8 +9,8 @@
 
 #include <imgui.h>
 
-#include "relumine/layer_compositor.h"
-#include "relumine/questions.h"
+#include "relumine/ask/questions.h"
+#include "relumine/light/layer_compositor.h"
 #include "viewer/cube_texture.h"
 #include "viewer/environment_renderer.h"
 #include "viewer/multisample_target.h"

@@ -15,7 +15,7 @@
 #include "cubemap/layers/image_pyramid.h"
 #include "cubemap/resample/save_environment.h"
 #include "relight/pictures/framing.h"
-#include "relumine/layer_compositor.h"
+#include "relumine/light/layer_compositor.h"
 
 namespace relumine::viewer {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "relumine/option_table.h"
+#include "relumine/options/option_table.h"
 
 namespace relumine::app {
 

@@ -13,7 +13,7 @@
 #include "mesh/load.h"
 #include "prt/lamps/lamps.h"
 #include "relight/pictures/mesh_picture.h"
-#include "relumine/material_report.h"
+#include "relumine/in/material_report.h"
 
 namespace relumine::app {
 

@@ -12,7 +12,7 @@
 #include "app/options/output_options.h"
 #include "cubemap/image/frame_pattern.h"
 #include "cubemap/image/frame_sequence.h"
-#include "relumine/camera_path.h"
+#include "relumine/out/camera_path.h"
 
 namespace relumine::app {
 

@@ -19,7 +19,7 @@
 #include "files/descriptor.h"
 #include "files/output_file.h"
 #include "prt/precompute.h"
-#include "relumine/option_table.h"
+#include "relumine/options/option_table.h"
 
 namespace relumine::app {
 

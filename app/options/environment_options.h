@@ -4,7 +4,7 @@
 #include <string>
 
 #include "app/session.h"
-#include "relumine/environment.h"
+#include "relumine/in/environment.h"
 
 namespace relumine::app {
 

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "relumine/questions.h"
+#include "relumine/ask/questions.h"
 
 namespace relumine::app {
 

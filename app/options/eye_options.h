@@ -8,8 +8,8 @@
 #include <glm/vec3.hpp>
 
 #include "app/session.h"
-#include "relumine/live_eye.h"
-#include "relumine/option_table.h"
+#include "relumine/light/live_eye.h"
+#include "relumine/options/option_table.h"
 
 namespace relumine::app {
 

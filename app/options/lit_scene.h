@@ -6,8 +6,8 @@
 #include <string>
 
 #include "app/command_line/command_line.h"
-#include "relumine/lit_scene.h"
-#include "relumine/mesh.h"
+#include "relumine/in/mesh.h"
+#include "relumine/light/lit_scene.h"
 
 namespace relumine::app {
 

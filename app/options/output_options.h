@@ -9,7 +9,7 @@
 #include "app/session.h"
 #include "cubemap/image/frame_pattern.h"
 #include "files/extension.h"
-#include "relumine/output.h"
+#include "relumine/out/output.h"
 
 namespace relumine::app {
 

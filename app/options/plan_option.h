@@ -5,7 +5,7 @@
 
 #include "app/session.h"
 #include "prt/team.h"
-#include "relumine/precompute.h"
+#include "relumine/in/precompute.h"
 
 namespace relumine::app {
 

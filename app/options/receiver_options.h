@@ -5,7 +5,7 @@
 #include <string>
 
 #include "app/session.h"
-#include "relumine/precompute.h"
+#include "relumine/in/precompute.h"
 
 namespace relumine::app {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "relumine/environment.h"
+#include "relumine/in/environment.h"
 
 namespace relumine::app {
 

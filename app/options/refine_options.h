@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/session.h"
-#include "relumine/mesh.h"
+#include "relumine/in/mesh.h"
 
 namespace relumine::app {
 

@@ -8,7 +8,7 @@
 
 #include "app/commands.h"
 #include "app/options/output_options.h"
-#include "relumine/coarsen.h"
+#include "relumine/in/coarsen.h"
 
 namespace relumine::app {
 

@@ -23,7 +23,7 @@
 #include "cubemap/layers/layer_file.h"
 #include "cubemap/resample/save_environment.h"
 #include "files/counted.h"
-#include "relumine/light_mix.h"
+#include "relumine/out/light_mix.h"
 
 namespace relumine::app {
 

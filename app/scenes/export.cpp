@@ -11,9 +11,9 @@
 #include "app/web/export_web.h"
 #include "files/counted.h"
 #include "prt/scene/relighting_file.h"
-#include "relumine/output.h"
-#include "relumine/scene.h"
-#include "relumine/scene_bounces.h"
+#include "relumine/in/scene.h"
+#include "relumine/light/bounces.h"
+#include "relumine/out/output.h"
 
 namespace relumine::app {
 

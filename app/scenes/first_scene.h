@@ -5,8 +5,8 @@
 #include <string>
 
 #include "app/session.h"
-#include "relumine/mesh.h"
-#include "relumine/scene.h"
+#include "relumine/in/mesh.h"
+#include "relumine/in/scene.h"
 
 namespace relumine::app {
 

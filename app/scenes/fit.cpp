@@ -25,7 +25,7 @@
 #include "lights/light_file.h"
 #include "mesh/load.h"
 #include "relight/pictures/array_file.h"
-#include "relumine/fit.h"
+#include "relumine/ask/fit.h"
 
 namespace relumine::app {
 

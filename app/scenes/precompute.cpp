@@ -1,4 +1,4 @@
-#include "relumine/precompute.h"
+#include "relumine/in/precompute.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -24,8 +24,8 @@
 #include "mesh/customs.h"
 #include "mesh/floor.h"
 #include "mesh/half_edge/winding.h"
-#include "relumine/precompute_table.h"
-#include "relumine/scene_cache.h"
+#include "relumine/in/precompute_table.h"
+#include "relumine/in/scene_cache.h"
 
 namespace relumine::app {
 

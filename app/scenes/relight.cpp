@@ -24,8 +24,8 @@
 #include "lights/light_file.h"
 #include "mesh/load.h"
 #include "prt/team.h"
-#include "relumine/harmonics_file.h"
-#include "relumine/lit_part.h"
+#include "relumine/light/harmonics_file.h"
+#include "relumine/light/lit_part.h"
 
 namespace relumine::app {
 

@@ -29,7 +29,7 @@
 #include "files/shared_memory.h"
 #include "prt/precompute.h"
 #include "relight/pictures/array_file.h"
-#include "relumine/lit_scene.h"
+#include "relumine/light/lit_scene.h"
 
 namespace relumine::app {
 

@@ -31,10 +31,10 @@
 #include "relight/pictures/framing.h"
 #include "relight/pictures/tone_curve.h"
 #include "relight/relighter.h"
-#include "relumine/coarsen.h"
-#include "relumine/live_eye.h"
-#include "relumine/receiver_colors.h"
-#include "relumine/scene_bounces.h"
+#include "relumine/in/coarsen.h"
+#include "relumine/light/bounces.h"
+#include "relumine/light/live_eye.h"
+#include "relumine/out/receiver_colors.h"
 #include "relumine/version.h"
 
 namespace relumine::app {

@@ -15,8 +15,8 @@
 #include "mesh/materials/srgb.h"
 #include "relight/pictures/png_file.h"
 #include "relight/pictures/tone_curve.h"
-#include "relumine/environment.h"
-#include "relumine/questions.h"
+#include "relumine/ask/questions.h"
+#include "relumine/in/environment.h"
 
 namespace relumine::app {
 

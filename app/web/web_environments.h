@@ -8,7 +8,7 @@
 #include "app/session.h"
 #include "app/web/web_files.h"
 #include "files/json.h"
-#include "relumine/scene.h"
+#include "relumine/in/scene.h"
 
 namespace relumine::app {
 

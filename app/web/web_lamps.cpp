@@ -11,11 +11,11 @@
 
 #include "app/web/web_look.h"
 #include "files/gzip.h"
-#include "relumine/emission.h"
-#include "relumine/lit_scene.h"
-#include "relumine/live_eye.h"
-#include "relumine/receiver_colors.h"
-#include "relumine/scene_bounces.h"
+#include "relumine/in/emission.h"
+#include "relumine/light/bounces.h"
+#include "relumine/light/lit_scene.h"
+#include "relumine/light/live_eye.h"
+#include "relumine/out/receiver_colors.h"
 
 namespace relumine::app {
 

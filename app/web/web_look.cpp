@@ -20,8 +20,8 @@
 #include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/visibility/twin_triangles.h"
-#include "relumine/live_eye.h"
-#include "relumine/receiver_colors.h"
+#include "relumine/light/live_eye.h"
+#include "relumine/out/receiver_colors.h"
 
 namespace relumine::app {
 

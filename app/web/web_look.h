@@ -9,7 +9,7 @@
 
 #include "app/web/web_files.h"
 #include "files/json.h"
-#include "relumine/scene.h"
+#include "relumine/in/scene.h"
 
 namespace relumine::app {
 
@@ -24,8 +24,8 @@ struct WebLook {
 /// that what glows can be divided by it.
 [[nodiscard]] std::vector<glm::vec3> web_albedo(const Scene& scene);
 
-/// Surfaces with live highlights (relumine/live_eye.h) have what the page draws these with. Others
-/// are matte: what they mirror counts as colour.
+/// Surfaces with live highlights (relumine/light/live_eye.h) have what the page draws these with.
+/// Others are matte: what they mirror counts as colour.
 [[nodiscard]] WebLook web_look(const Scene& scene);
 
 /// Returns a scene with live highlights whose vertices glow as the page's do, which multiplies with

@@ -42,7 +42,7 @@ def run_doxygen():
         INPUT = {ROOT}/relumine {ROOT}/mesh {ROOT}/cubemap {ROOT}/lights {ROOT}/prt {ROOT}/relight {ROOT}/files
         RECURSIVE = YES
         FILE_PATTERNS = *.h
-        EXCLUDE = {ROOT}/relumine/stages.h
+        EXCLUDE = {ROOT}/relumine/in/stages.h
         OUTPUT_DIRECTORY = {BUILD}
         GENERATE_HTML = NO
         GENERATE_LATEX = NO

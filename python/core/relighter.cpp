@@ -21,8 +21,8 @@
 #include "relight/harmonics/harmonics.h"
 #include "relight/light_fit/transfer_lights.h"
 #include "relight/pictures/picture.h"
-#include "relumine/harmonics_file.h"
-#include "relumine/live_eye.h"
+#include "relumine/light/harmonics_file.h"
+#include "relumine/light/live_eye.h"
 #include "run.h"
 #include "scene.h"
 

@@ -12,7 +12,7 @@
 #include "brdf.h"
 #include "mesh/normals.h"
 #include "options.h"
-#include "relumine/material_report.h"
+#include "relumine/in/material_report.h"
 #include "run.h"
 
 namespace relumine::python {

@@ -4,8 +4,8 @@
 
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
-#include "relumine/environment.h"
-#include "relumine/precompute.h"
+#include "relumine/in/environment.h"
+#include "relumine/in/precompute.h"
 #include "tests/real_data.h"
 
 namespace relumine::bench {

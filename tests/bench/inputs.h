@@ -8,8 +8,8 @@
 
 #include "cubemap/cube_map.h"
 #include "cubemap/layers/light_layer.h"
-#include "relumine/mesh.h"
-#include "relumine/scene.h"
+#include "relumine/in/mesh.h"
+#include "relumine/in/scene.h"
 #include "tests/bench/program.h"
 
 namespace relumine::bench {

@@ -15,9 +15,9 @@
 #include "lights/light_clusters.h"
 #include "lights/place_lights.h"
 #include "relight/relighter.h"
-#include "relumine/light_edits.h"
-#include "relumine/lit_scene.h"
-#include "relumine/precompute.h"
+#include "relumine/in/precompute.h"
+#include "relumine/light/edits.h"
+#include "relumine/light/lit_scene.h"
 
 namespace {
 

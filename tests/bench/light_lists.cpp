@@ -15,7 +15,7 @@
 #include "relight/light_fit/transfer_lights.h"
 #include "relight/reference/exact.h"
 #include "relight/relighter.h"
-#include "relumine/scene.h"
+#include "relumine/in/scene.h"
 #include "tests/bench/inputs.h"
 #include "tests/bench/times.h"
 

@@ -6,7 +6,7 @@
 
 #include "prt/parts/part_file.h"
 #include "prt/scene/section_group.h"
-#include "relumine/precompute.h"
+#include "relumine/in/precompute.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/scene_target.h"
 #include "tests/fuzz/section_names.h"

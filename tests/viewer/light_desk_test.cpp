@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "relumine/precompute.h"
-#include "tests/relumine/bouncing_lit_scene.h"
-#include "tests/relumine/relit_lit_scene.h"
+#include "relumine/in/precompute.h"
+#include "tests/relumine/light/bouncing_lit_scene.h"
+#include "tests/relumine/light/relit_lit_scene.h"
 #include "viewer/gestures.h"
 
 namespace relumine::viewer {

@@ -22,7 +22,7 @@
 #include "prt/receivers/receivers.h"
 #include "prt/scene/scene_file.h"
 #include "prt/visibility/ray_scene.h"
-#include "relumine/precompute.h"
+#include "relumine/in/precompute.h"
 #include "viewer/view_state.h"
 
 namespace relumine::viewer {

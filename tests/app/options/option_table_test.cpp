@@ -12,7 +12,7 @@
 #include "app/session.h"
 #include "relumine/relumine.h"
 #include "tests/app/command.h"
-#include "tests/relumine/other_value.h"
+#include "tests/relumine/options/other_value.h"
 
 namespace relumine::app {
 namespace {

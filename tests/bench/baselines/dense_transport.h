@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "relumine/precompute.h"
+#include "relumine/in/precompute.h"
 #include "tests/bench/baselines/packed_matrix.h"
 
 namespace relumine::bench {

@@ -1,0 +1,417 @@
+#include "relumine/in/mesh.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "mesh/customs.h"
+#include "mesh/floor.h"
+#include "mesh/half_edge/simplify.h"
+#include "mesh/normals.h"
+#include "mesh/opacity.h"
+#include "prt/memory_estimate.h"
+#include "prt/refinement/lit_backs.h"
+#include "prt/visibility/beam_scene.h"
+#include "prt/visibility/ray_scene.h"
+#include "relight/pictures/framing.h"
+#include "relumine/in/stages.h"
+
+namespace relumine {
+
+namespace {
+
+/// Moves the floor's vertices to the end, those of `num_old` first. Returns how many of the floor
+/// are new.
+std::uint32_t move_floor_last(mesh::TriangleMesh& mesh, std::size_t first_of_floor,
+                              std::size_t num_old) {
+    std::vector<bool> is_floor(mesh.num_vertices());
+    std::fill(is_floor.begin() + static_cast<std::ptrdiff_t>(first_of_floor),
+              is_floor.begin() + static_cast<std::ptrdiff_t>(num_old), true);
+    // The floor is a group of its own.
+    const std::uint32_t group = mesh.triangle_groups[static_cast<std::size_t>(
+        std::find_if(mesh.triangles.begin(), mesh.triangles.end(),
+                     [&](const mesh::Triangle& triangle) { return is_floor[triangle[0]]; }) -
+        mesh.triangles.begin())];
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+        for (const std::uint32_t vertex : mesh.triangles[i])
+            is_floor[vertex] =
+                is_floor[vertex] || (mesh.triangle_groups[i] == group && vertex >= num_old);
+    std::vector<std::uint32_t> order(mesh.num_vertices());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_partition(order.begin(), order.end(),
+                          [&](std::uint32_t vertex) { return !is_floor[vertex]; });
+    std::vector<std::uint32_t> places(order.size());
+    for (std::uint32_t place = 0; place < order.size(); ++place)
+        places[order[place]] = place;
+    const auto sort = [&](auto& values) {
+        if (values.empty())
+            return;
+        auto sorted = values;
+        for (std::size_t place = 0; place < order.size(); ++place)
+            sorted[place] = values[order[place]];
+        values = std::move(sorted);
+    };
+    mesh::for_each_vertex_array(mesh, sort);
+    for (mesh::Triangle& triangle : mesh.triangles)
+        for (std::uint32_t& vertex : triangle)
+            vertex = places[vertex];
+    const auto num_floor =
+        static_cast<std::size_t>(std::count(is_floor.begin(), is_floor.end(), true));
+    return static_cast<std::uint32_t>(num_floor - (num_old - first_of_floor));
+}
+
+/// Returns the vertices [begin, end) and the triangles between them.
+mesh::TriangleMesh part_of(const mesh::TriangleMesh& mesh, std::size_t begin, std::size_t end) {
+    mesh::TriangleMesh part = mesh;
+    const auto keep_vertices = [&](auto& values) {
+        if (!values.empty())
+            values = {values.begin() + static_cast<std::ptrdiff_t>(begin),
+                      values.begin() + static_cast<std::ptrdiff_t>(end)};
+    };
+    mesh::for_each_vertex_array(part, keep_vertices);
+    const auto keep_triangles = [&](auto& values) {
+        if (values.empty())
+            return;
+        std::size_t place = 0;
+        for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+            if (mesh.triangles[i][0] >= begin && mesh.triangles[i][0] < end)
+                values[place++] = values[i];
+        values.resize(place);
+    };
+    keep_triangles(part.triangles);
+    keep_triangles(part.corner_uvs);
+    keep_triangles(part.corner_tangents);
+    keep_triangles(part.triangle_materials);
+    keep_triangles(part.triangle_groups);
+    for (mesh::Triangle& triangle : part.triangles)
+        for (std::uint32_t& vertex : triangle)
+            vertex -= static_cast<std::uint32_t>(begin);
+    return part;
+}
+
+/// Appends a part of the same mesh: materials and groups are the same.
+void append(mesh::TriangleMesh& mesh, const mesh::TriangleMesh& part) {
+    const auto first = static_cast<std::uint32_t>(mesh.num_vertices());
+    const auto add = [](auto& values, const auto& others) {
+        values.insert(values.end(), others.begin(), others.end());
+    };
+    add(mesh.positions, part.positions);
+    add(mesh.normals, part.normals);
+    add(mesh.colors, part.colors);
+    add(mesh.uvs, part.uvs);
+    add(mesh.second_uvs, part.second_uvs);
+    if (!mesh.lifts.empty() || !part.lifts.empty()) {
+        mesh.lifts.resize(first, glm::vec3(0.0f));
+        add(mesh.lifts, part.lifts);
+        mesh.lifts.resize(mesh.num_vertices(), glm::vec3(0.0f));
+    }
+    add(mesh.corner_uvs, part.corner_uvs);
+    add(mesh.corner_tangents, part.corner_tangents);
+    add(mesh.triangle_materials, part.triangle_materials);
+    add(mesh.triangle_groups, part.triangle_groups);
+    for (const auto& [a, b, c] : part.triangles)
+        mesh.triangles.push_back({a + first, b + first, c + first});
+}
+
+std::string prefix_of(const Mesh& mesh) {
+    return mesh.source.empty() ? "" : mesh.source + ": ";
+}
+
+} // namespace
+
+OptionRow crease_row(std::optional<float>& degrees) {
+    return row("--crease", degrees,
+               "normals from the faces: smooth over edges up to so many degrees, broken beyond",
+               {.min = 0, .max = 180, .type = "DEGREES"});
+}
+
+OptionRow pose_row(std::optional<mesh::Pose>& pose) {
+    return row<PoseText>(
+        "--pose", pose,
+        "glTF: the moment of an animation in which skins, morph targets and nodes stand: its name "
+        "or number, and seconds (they stand as the nodes say)",
+        {.type = "ANIMATION@SECONDS", .example = "0@0.5"});
+}
+
+OptionTable options_of(MeshOptions& o) {
+    return {
+        row<FloorText>(
+            "--floor", o.floor_vertices,
+            "add a floor under the mesh: a grid of N x N vertices, or auto, when no N is "
+            "given: as many vertices as its shadows need",
+            {.type = "[N]", .bare = "auto", .example = "193"}),
+        row("--floor-scale", o.floor_scale,
+            "side of the floor over the mesh's width, or half its height if that is more",
+            {.min = 1e-6, .max = 1e6, .needs = "--floor"}),
+        row("--up", o.up, "the mesh's axis that points up (y; z for .stl, which comes from CAD)"),
+        row("--normals", o.normals,
+            "vertex normals: the file's where it has them, or always smooth"),
+        crease_row(o.crease),
+        pose_row(o.pose)};
+}
+
+OptionTable options_of(RefineOptions& o) {
+    return {row("--error", o.error,
+                "split edges while the light at their middle may differ so much from the mean of "
+                "their ends: RMS of the transfer, 1/sr",
+                {.min = 0, .max = 1}),
+            row("--max-vertices", o.max_vertices,
+                "let the mesh grow to so many vertices; the edges that matter most come first",
+                {.min = 1, .max = 4294967294.0, .type = "N", .shows_default = false}),
+            row("--min-edge", o.min_edge,
+                "leave no edges shorter than this, in the mesh's unit (1/1000 of its diagonal)",
+                {.min = 0, .max = LargestPosition, .type = "LENGTH"}),
+            row("--max-edge", o.max_edge, "split all edges that are longer than this",
+                {.min = 0, .max = LargestPosition, .type = "LENGTH"}),
+            row("--curved", o.curved,
+                "put new vertices on the smooth surface that the normals pretend")};
+}
+
+Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
+    Mesh mesh;
+    mesh.geometry =
+        mesh::load(path, options.normals, &mesh.source_hash, &mesh.camera, options.pose);
+    mesh.source = path.string();
+    const std::optional<float> crease =
+        options.crease || options.normals == mesh::NormalSource::Smooth
+            ? options.crease
+            : mesh::customary_crease(path);
+    if (crease)
+        mesh.geometry = mesh::with_creases(mesh.geometry, *crease);
+    const mesh::UpAxis up = options.up.value_or(mesh::customary_up(path));
+    mesh::turn_up(mesh.geometry, up);
+    if (mesh.camera)
+        mesh::turn_up(*mesh.camera, up);
+    add_floor(mesh, options);
+    return mesh;
+}
+
+std::uint32_t FloorText::read(const std::string& text) {
+    if (text == "auto")
+        return AutomaticFloor;
+    const std::optional<std::uint32_t> n = parse_count(text);
+    if (!n || *n < 2 || *n > 65535)
+        refuse_text("auto or a number from 2 to 65535", text);
+    return *n;
+}
+
+std::string FloorText::show(std::uint32_t n) {
+    return n == AutomaticFloor ? "auto" : fmt::format("{}", n);
+}
+
+mesh::Pose PoseText::read(const std::string& text) {
+    const std::size_t at = text.rfind('@');
+    const std::optional<double> seconds =
+        at == std::string::npos ? std::nullopt : parse_number(text.substr(at + 1));
+    constexpr double Longest = 1e6;
+    if (at == 0 || !seconds || !(*seconds >= 0.0 && *seconds <= Longest))
+        refuse_text("ANIMATION@SECONDS, such as Walk@1.5", text);
+    return {.animation = text.substr(0, at), .seconds = *seconds};
+}
+
+std::string PoseText::show(const mesh::Pose& pose) {
+    return fmt::format("{}@{}", pose.animation, pose.seconds);
+}
+
+void add_floor(Mesh& mesh, const MeshOptions& options) {
+    // Coarse, but fine enough to begin with: half of a row is narrower than what stands on it.
+    constexpr std::uint32_t NumToBegin = 25;
+    if (!options.floor_vertices)
+        return;
+    mesh.is_floor_open = *options.floor_vertices == AutomaticFloor;
+    mesh.floor_vertices = mesh.is_floor_open ? NumToBegin : *options.floor_vertices;
+    const std::size_t n = mesh.floor_vertices;
+    const std::uint64_t bytes =
+        prt::scene_bytes({.num_vertices = mesh.geometry.num_vertices() + n * n,
+                          .num_triangles = mesh.geometry.num_triangles() + 2 * (n - 1) * (n - 1),
+                          .has_beams = false});
+    if (options.max_memory && bytes > *options.max_memory)
+        throw MemoryLimitExceeded(
+            MemoryLimitExceeded::Part::Scene,
+            fmt::format("{}: expected work within {}, got a floor with which the scene takes {} of "
+                        "memory alone",
+                        mesh.source, megabytes(*options.max_memory), megabytes(bytes)));
+    mesh::append_floor(mesh.geometry, mesh.floor_vertices, options.floor_scale);
+}
+
+namespace {
+
+float lowest(std::span<const glm::vec3> positions) {
+    float result = std::numeric_limits<float>::infinity();
+    for (const glm::vec3& position : positions)
+        result = std::min(result, position.y);
+    return result;
+}
+
+} // namespace
+
+Mesh sound(Mesh mesh) {
+    if (mesh.geometry.normals.empty())
+        mesh.geometry.normals = mesh::smooth_normals(mesh.geometry);
+    mesh::require_consistent(mesh.geometry);
+    return mesh;
+}
+
+Mesh refined(Mesh given, const RefineOptions& options, const prt::Work& work,
+             RefineReport* report) {
+    Mesh mesh = sound(std::move(given));
+    const mesh::TriangleMesh& before = mesh.blockers ? *mesh.blockers : mesh.geometry;
+    const std::size_t num_old = mesh.geometry.num_vertices();
+    const std::size_t n = mesh.floor_vertices;
+    const std::size_t first_of_floor = num_old - (n == 0 ? 0 : n * n + mesh.floor_added);
+    const float lowest_before = lowest(std::span(mesh.geometry.positions).first(first_of_floor));
+    mesh::TriangleMesh after;
+    try {
+        const prt::RayScene rays(before, prt::RayScene::Packets::Wide);
+        const prt::BeamScene beams(before, rays);
+        after = prt::refine(mesh.geometry, beams, options, work, report);
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(prefix_of(mesh) + error.what());
+    }
+    mesh.is_open = mesh.is_floor_open = false;
+    if (options.curved)
+        mesh.blockers.reset();
+    else if (!mesh.blockers)
+        mesh.blockers = mesh::blockers_of(mesh.geometry);
+    mesh.geometry = std::move(after);
+    if (n == 0)
+        return mesh;
+    mesh.floor_added += move_floor_last(mesh.geometry, first_of_floor, num_old);
+    // Curved surfaces may bulge downwards. The floor goes down with the lowest point.
+    const std::span<glm::vec3> positions(mesh.geometry.positions);
+    const std::size_t num_of_mesh = positions.size() - n * n - mesh.floor_added;
+    const float sunk = lowest_before - lowest(positions.first(num_of_mesh));
+    if (sunk > 0.0f)
+        for (glm::vec3& position : positions.subspan(num_of_mesh))
+            position.y -= sunk;
+    return mesh;
+}
+
+namespace {
+
+/// Parts of the diagonal of the mesh without its floor. A mesh with longer sides is coarse: they
+/// are wider than some twenty pixels of a picture that the mesh fills. Then triangles are refined
+/// that are wider than eight. Edges of twice the least length are split.
+constexpr float CoarseEdge = 1.0f / 40.0f, RefinedEdge = 1.0f / 100.0f, LeastEdge = 1.0f / 320.0f,
+                LeastEdgeOfFloor = 1.0f / 160.0f;
+
+/// RefineOptions::error. A few vertices are added wherever light shows; more only where it changes
+/// more than --refine allows. Shadows on an even floor show every triangle, and its light hardly
+/// changes elsewhere.
+constexpr float ErrorOfFew = 0.006f, ErrorOfMesh = 0.012f, ErrorOfFloor = 0.005f;
+constexpr std::size_t FewOfMesh = 9000;
+
+/// Where refined_by_itself() finds things: the scene, and what it adds to.
+struct Refining {
+    const prt::Blockers& blockers;
+    float bias;
+    const prt::Work& work;
+    RefineReport& report;
+};
+
+mesh::TriangleMesh refined_part(const mesh::TriangleMesh& part, RefineOptions options,
+                                std::size_t budget, const Refining& with) {
+    options.bias = with.bias;
+    options.max_vertices =
+        std::min<std::size_t>(part.num_vertices() + budget, RefineOptions{}.max_vertices);
+    RefineReport found;
+    mesh::TriangleMesh result = prt::refine(part, with.blockers, options, with.work, &found);
+    RefineReport& sum = with.report;
+    sum.num_rounds = std::max(sum.num_rounds, found.num_rounds);
+    sum.num_points += found.num_points;
+    sum.num_added += found.num_added;
+    sum.largest_error = std::max(sum.largest_error, found.largest_error);
+    sum.is_at_limit = sum.is_at_limit || found.is_at_limit;
+    sum.seconds += found.seconds;
+    return result;
+}
+
+} // namespace
+
+Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& work,
+                       RefineReport* report) {
+    if (!mesh.is_open && !mesh.is_floor_open)
+        return mesh;
+    const std::size_t n = mesh.floor_vertices;
+    const std::size_t first_of_floor =
+        mesh.geometry.num_vertices() - (n == 0 ? 0 : n * n + mesh.floor_added);
+    const mesh::TriangleMesh own = part_of(mesh.geometry, 0, first_of_floor);
+    const float size = mesh::bounds(own).diagonal();
+    const bool is_coarse =
+        mesh.is_open && size > 0.0f && prt::has_coarse_triangles(own, CoarseEdge * size);
+    if (!is_coarse && !mesh.is_floor_open)
+        return mesh;
+    mesh::TriangleMesh before =
+        mesh.blockers ? std::move(*mesh.blockers) : mesh::blockers_of(mesh.geometry);
+    const bool has_blockers = std::exchange(mesh.blockers, {}).has_value();
+    mesh::TriangleMesh floor = part_of(mesh.geometry, first_of_floor, mesh.geometry.num_vertices());
+    RefineReport local;
+    try {
+        const prt::RayScene rays(before, prt::RayScene::Packets::Wide);
+        const prt::BeamScene beams(before, rays);
+        const Refining with{beams, bias.value_or(prt::automatic_bias(mesh.geometry)), work,
+                            report != nullptr ? *report : local};
+        mesh.geometry = own;
+        if (is_coarse) {
+            mesh.geometry = prt::with_lit_backs(own, beams, with.bias, work);
+            const std::size_t num_of_backs = mesh.geometry.num_vertices() - first_of_floor;
+            with.report.num_added += num_of_backs;
+            mesh.geometry = refined_part(mesh.geometry,
+                                         {.error = ErrorOfMesh,
+                                          .error_of_few = ErrorOfFew,
+                                          .few = FewOfMesh,
+                                          .coarse_edge = RefinedEdge * size,
+                                          .min_edge = LeastEdge * size},
+                                         BudgetOfMesh, with);
+        }
+        if (mesh.is_floor_open)
+            floor =
+                refined_part(floor, {.error = ErrorOfFloor, .min_edge = LeastEdgeOfFloor * size},
+                             BudgetOfFloor, with);
+        append(mesh.geometry, floor);
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(prefix_of(mesh) + error.what());
+    }
+    mesh.floor_added = static_cast<std::uint32_t>(floor.num_vertices() - n * n);
+    mesh.is_open = mesh.is_floor_open = false;
+    if (has_blockers || mesh.geometry.num_vertices() != before.num_vertices())
+        mesh.blockers = std::move(before);
+    return mesh;
+}
+
+Mesh simplified(Mesh given, std::size_t num_vertices) {
+    Mesh mesh = sound(std::move(given));
+    mesh.is_open = false;
+    if (!mesh.blockers)
+        mesh.blockers = mesh::blockers_of(mesh.geometry);
+    const std::size_t n = mesh.floor_vertices;
+    const std::size_t first_of_floor =
+        mesh.geometry.num_vertices() - (n == 0 ? 0 : n * n + mesh.floor_added);
+    const mesh::TriangleMesh floor =
+        part_of(mesh.geometry, first_of_floor, mesh.geometry.num_vertices());
+    try {
+        mesh.geometry = mesh::simplified(part_of(mesh.geometry, 0, first_of_floor), num_vertices);
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(prefix_of(mesh) + error.what());
+    }
+    append(mesh.geometry, floor);
+    return mesh;
+}
+
+void stand_on_floor(Mesh& mesh) {
+    constexpr float WiderThanSubject = 1.5f;
+    if (mesh.floor_vertices != 0 || relight::inside_room(mesh.geometry))
+        return;
+    const auto width = [](const mesh::Bounds& box) {
+        return std::max(box.max.x - box.min.x, box.max.z - box.min.z);
+    };
+    if (width(mesh::bounds(mesh.geometry)) <=
+        WiderThanSubject * width(relight::subject_bounds(mesh.geometry)))
+        add_floor(mesh, {.floor_vertices = AutomaticFloor});
+}
+
+} // namespace relumine

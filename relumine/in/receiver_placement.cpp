@@ -1,0 +1,187 @@
+#include "relumine/in/receiver_placement.h"
+
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/vec3.hpp>
+
+#include "files/extension.h"
+#include "mesh/load.h"
+#include "mesh/triangle_mesh.h"
+#include "prt/receivers/lit_position.h"
+#include "prt/receivers/pixel_receivers.h"
+#include "prt/receivers/point_receivers.h"
+#include "relight/pictures/array_file.h"
+#include "relumine/in/precompute_table.h"
+#include "relumine/in/stages.h"
+
+namespace relumine {
+
+namespace {
+
+std::vector<glm::vec3> load_points(const std::filesystem::path& path) {
+    if (files::extension_of(path) == ".ply")
+        return mesh::load_points(path);
+    relight::VectorArray array = relight::load_npy(path);
+    if (array.shape.size() != 1)
+        throw std::runtime_error(fmt::format("{}: expected an array of [count, 3], got {} axes",
+                                             path.string(), array.shape.size() + 1));
+    return std::move(array.values);
+}
+
+class Placement {
+public:
+    Placement(Scene& scene, const PrecomputeOptions& options, const PrecomputeWork& work,
+              const prt::RayScene& rays, const std::string& prefix, PrecomputeReport& report)
+        : scene_(scene), options_(options), work_(work), rays_(rays), prefix_(prefix),
+          report_(report) {}
+
+    void place() {
+        try {
+            if (const auto* pixels = std::get_if<Pixels>(&options_.receivers)) {
+                place_pixels(*pixels);
+            } else if (const auto* texels = std::get_if<Texels>(&options_.receivers)) {
+                place_texels(*texels);
+            } else if (const auto* points = std::get_if<Points>(&options_.receivers)) {
+                place_points(*points);
+            } else if (const auto* grid = std::get_if<Grid>(&options_.receivers)) {
+                place_grid(*grid);
+            } else {
+                scene_.receivers = prt::vertex_receivers(scene_.mesh);
+            }
+            // Receivers that are no pixels of the view but seen from it.
+            if (options_.view && !std::holds_alternative<Pixels>(options_.receivers)) {
+                const std::optional<prt::Camera>& own = options_.view->camera;
+                scene_.settings.view = own ? *own : camera_of(scene_);
+                prt::look_from(scene_.receivers, scene_.settings.view->eye);
+            }
+            if (options_.bounce_tolerance.value_or(0.0f) > 0.0f &&
+                !std::holds_alternative<Vertices>(options_.receivers)) {
+                prt::add_vertices(scene_.receivers, scene_.mesh);
+                note(work_, fmt::format("and {} vertices, from which light bounces",
+                                        scene_.receivers.num_added));
+            }
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error(prefix_ + error.what());
+        }
+    }
+
+private:
+    /// What is seen from an eye or from a point: the mesh, also where others block its light.
+    const prt::RayScene& mesh_rays() {
+        if (!scene_.blockers)
+            return rays_;
+        return own_rays_.emplace(ray_scene(scene_.mesh, prefix_));
+    }
+
+    void leave_obstacles() {
+        prt::leave_obstacles(scene_.mesh, rays_, scene_.settings.bias, scene_.receivers);
+    }
+
+    void place_points(const Points& points) {
+        const std::string name = points.file.empty() ? "" : points.file.string() + ": ";
+        std::vector<glm::vec3> of_file;
+        if (!points.file.empty())
+            of_file = load_points(points.file);
+        try {
+            add_points(points.file.empty() ? points.positions : of_file);
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error(name + error.what());
+        }
+        prt::PointLayout layout{.count = static_cast<std::uint32_t>(scene_.receivers.size())};
+        layout.indices.resize(layout.count);
+        std::iota(layout.indices.begin(), layout.indices.end(), 0u);
+        scene_.layout = std::move(layout);
+    }
+
+    void place_grid(const Grid& grid) {
+        check(grid);
+        const std::size_t num_own = first_floor_vertex(scene_).value_or(scene_.mesh.num_vertices());
+        const mesh::Bounds box =
+            options_.box.value_or(mesh::bounds(std::span(scene_.mesh.positions).first(num_own)));
+        prt::GridLayout layout{
+            .nx = grid.nx, .ny = grid.ny, .nz = grid.nz, .low = box.min, .high = box.max};
+        add_points(prt::grid_points(layout));
+        layout.indices.resize(scene_.receivers.size());
+        std::iota(layout.indices.begin(), layout.indices.end(), 0u);
+        scene_.layout = std::move(layout);
+    }
+
+    void add_points(std::span<const glm::vec3> points) {
+        const prt::Work work{.stop = work_.stop};
+        scene_.receivers = prt::point_receivers(points, scene_.mesh, mesh_rays(), work);
+        if (const std::size_t inside = prt::num_inside(scene_.receivers); inside != 0)
+            note(work_,
+                 fmt::format("{} of {} points lie inside of objects: they take the light of the "
+                             "nearest point outside",
+                             inside, points.size()));
+    }
+
+    void place_pixels(const Pixels& size) {
+        const bool has_camera = options_.view && options_.view->camera;
+        const prt::Camera camera = has_camera
+                                       ? *options_.view->camera
+                                       : camera_of(scene_, static_cast<float>(size.width) /
+                                                               static_cast<float>(size.height));
+        prt::PixelReceivers pixels = prt::pixel_receivers(
+            scene_.mesh, mesh_rays(),
+            {.camera = camera,
+             .width = size.width,
+             .height = size.height,
+             .samples_per_axis = size.samples_per_axis},
+            {.stop = work_.stop, .on_progress = progress_of(work_, Stage::Receivers)});
+        scene_.receivers = std::move(pixels.receivers);
+        leave_obstacles();
+        scene_.layout = std::move(pixels.layout);
+        note(work_, fmt::format("{}: {} samples hit the mesh", prt::description(scene_.layout),
+                                scene_.receivers.size()));
+    }
+
+    void place_texels(const Texels& size) {
+        prt::TexelReceivers texels =
+            prt::texel_receivers(scene_.mesh, {.width = size.width, .height = size.height});
+        const prt::AtlasReport& atlas = texels.report;
+        if (atlas.num_overlapping > 0)
+            warn(work_, Warning::ChartsOverlap,
+                 fmt::format("{} texels lie in several triangles, the first at column {}, row {}: "
+                             "charts overlap, the first triangle of the mesh wins",
+                             atlas.num_overlapping, atlas.first_overlap % size.width,
+                             atlas.first_overlap / size.width));
+        if (atlas.num_outside > 0)
+            warn(work_, Warning::UvsOutside,
+                 fmt::format("{} triangles have uvs outside of 0 to 1: cut off there",
+                             atlas.num_outside));
+        if (atlas.num_flat > 0)
+            note(work_,
+                 fmt::format("{} triangles have no area in uv and get no texels", atlas.num_flat));
+        report_.atlas = atlas;
+        scene_.receivers = std::move(texels.receivers);
+        leave_obstacles();
+        scene_.layout = std::move(texels.layout);
+    }
+
+    Scene& scene_;
+    const PrecomputeOptions& options_;
+    const PrecomputeWork& work_;
+    const prt::RayScene& rays_;
+    const std::string& prefix_;
+    PrecomputeReport& report_;
+    std::optional<prt::RayScene> own_rays_;
+};
+
+} // namespace
+
+void place_receivers(Scene& scene, const PrecomputeOptions& options, const PrecomputeWork& work,
+                     const prt::RayScene& rays, const std::string& prefix,
+                     PrecomputeReport& report) {
+    Placement(scene, options, work, rays, prefix, report).place();
+}
+
+} // namespace relumine

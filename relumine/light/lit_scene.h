@@ -1,0 +1,301 @@
+// A scene under light: what a program that relights keeps in memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "cubemap/cube_map.h"
+#include "cubemap/layers/light_layer.h"
+#include "cubemap/quick_turns.h"
+#include "cubemap/texel_rectangle.h"
+#include "prt/parts/scene_part.h"
+#include "prt/team.h"
+#include "prt/visibility/blockers.h"
+#include "relight/relighter.h"
+#include "relumine/in/scene.h"
+#include "relumine/light/bounces.h"
+#include "relumine/light/lamps.h"
+#include "relumine/light/layer_compositor.h"
+#include "relumine/light/light.h"
+#include "relumine/light/lighting.h"
+#include "relumine/light/mirrors.h"
+#include "relumine/light/rays.h"
+
+namespace relumine {
+
+using relight::UpdateReport;
+
+struct LightOptions {
+    /// Lights the sun through its cluster too, without shadow rays of its own: faster, softer
+    bool clusters_only = false;
+    /// Order of the spherical harmonics that LitScene::harmonics() returns: 2 or 3. 0: none.
+    std::uint32_t harmonics = 0;
+    /// Of a pixel whose highlights are not stored: rays that find them. 0: none.
+    std::uint32_t highlight_rays = DefaultHighlightRays;
+    /// What keeps sharp lights and distant lights from the receivers, as
+    /// PrecomputeOptions::blockers. Null: the scene's triangles. Pictures trace the mesh all the
+    /// same, and so do questions: verify(), sees().
+    std::shared_ptr<const prt::Blockers> blockers = {};
+    /// Of a part: the processes that share the light, each with its own. It must outlive the
+    /// LitScene. Null: this one has no others.
+    prt::Team* team = nullptr;
+    /// The scene's file, for what is said where processes have different ones
+    std::filesystem::path path = {};
+};
+
+/// How an edit ends.
+enum class Ending {
+    /// As Quick, but a turn is near, as cubemap::QuickTurns, and that of a map of at most
+    /// MovingResolution: for a slider while it moves. Any other edit brings the whole map back.
+    Moving,
+    /// With what changed. The last bits may depend on the way to the state.
+    Quick,
+    /// All clusters are summed anew, and all bounces are found: the radiance is that of the state,
+    /// bit by bit, whichever edits led to it.
+    Exact,
+};
+
+/// Texels along a face's edge of maps that turn while a slider moves. Measured: their light differs
+/// by at most 0.1 % (relative L2) from the whole map's, by 0.8 % under a sun.
+inline constexpr std::uint32_t MovingResolution = 128;
+
+/// What LitScene::bounce() does.
+struct Bouncing {
+    /// [num_receivers] what pictures multiply the radiance with, as bounce_albedo(). Empty: albedo
+    /// and limits of the call before.
+    std::span<const glm::vec3> albedo = {};
+    BounceLimits limits = {};
+    /// Goes one bounce on from the bounces of the light before, for light that changes while it is
+    /// looked at.
+    bool is_step = false;
+};
+
+/// Owns a scene, its ray accelerators and its light, so that nothing can dangle. Movable;
+/// references to its parts stay valid when it is moved.
+///
+///     relumine::LitScene lit(relumine::load_scene("bunny.prt"));
+///     lit.light(relumine::load_environment("grace.exr"));
+///     save(lit, "bunny.png");
+///
+/// Where processes share the light, all call the same functions in the same order, from one thread
+/// each. The light is that of one process, bit by bit, and the first process has it.
+///
+/// Threads: one thread at a time may call what is not const. Every result is the same bit by bit
+///          for any number of threads.
+/// Memory:  the scene, about 100 bytes per triangle for its rays, and about 1 KB for 16 receivers.
+///          Of a part: the mesh, all receivers, the part's share of the counts and of the rows of
+///          bounces, and the light of all receivers.
+class LitScene {
+public:
+    /// Builds the ray accelerators, O(n log n); nothing is lit yet.
+    ///
+    /// Throws:  std::invalid_argument for a transfer of other receivers, and for clusters_only with
+    ///          a scene that has no clusters.
+    explicit LitScene(Scene scene, const LightOptions& options = {});
+    /// Shares the scene with others, each in a light of its own.
+    explicit LitScene(std::shared_ptr<const Scene> scene, const LightOptions& options = {});
+    /// Has a part of the receivers: those of this process of a team, or of one that has no others.
+    ///
+    /// Throws:  also std::runtime_error where the first process has another scene.
+    explicit LitScene(prt::ScenePart part, const LightOptions& options = {});
+
+    [[nodiscard]] const Scene& scene() const { return *scene_; }
+    [[nodiscard]] const SceneRays& rays() const { return *rays_; }
+    /// The direct light of this process's receivers, without added lights.
+    ///
+    /// Throws:  std::invalid_argument for a scene without clusters.
+    [[nodiscard]] const relight::Relighter& relighter() const;
+    /// The environment with its layers and its turn.
+    [[nodiscard]] const LightState& state() const { return state_; }
+    /// Marks of states; see mark().
+    [[nodiscard]] LightHistory& history() { return history_; }
+    [[nodiscard]] const SceneBounces& bounces() const { return bounces_; }
+    [[nodiscard]] const SceneLamps& lamps() const { return lamps_; }
+    [[nodiscard]] const SceneMirrors& mirrors() const { return mirrors_; }
+
+    /// Lights the scene [JN, Eq. 8]. Layers and the turn of set_rotation() stay: a new environment
+    /// is turned as well. A list without one takes the layers away, with the history. Bounces go
+    /// until the next call of bounce().
+    ///
+    /// Throws:  std::invalid_argument for a map without texels, radiance that is not finite or
+    ///          negative, a direction that is not of unit length, an environment binned for another
+    ///          scene or for a scene without clusters; std::runtime_error where the first process
+    ///          has other light.
+    /// Cost:    milliseconds, see docs/measurements.md.
+    UpdateReport light(Light light);
+
+    /// Changes the environment's base, layers or turn, and updates what depends on it [JN, Section
+    /// 5.2]. With another turn or resolution everything is relit. Bounces stay those of the light
+    /// before, until the next call of bounce(). The functions of light/edits.h are made of it. A
+    /// base without a map is the present one.
+    ///
+    /// Throws:  std::invalid_argument for a layer that is not valid, a turn that is not finite,
+    ///          radiance that is too large, or no environment; nothing has changed then.
+    /// Cost:    proportional to what the changed layers cover. The first call relights everything
+    ///          once more.
+    UpdateReport edit(LightState next, Ending ending = Ending::Quick);
+
+    /// Replaces a rectangle of the environment's texels, row by row [(x1 - x0) * (y1 - y0)], and
+    /// updates what depends on it. Under layers, the environment is the base, and finding what
+    /// changed costs a comparison of the whole map.
+    ///
+    /// Throws:  std::invalid_argument for a rectangle outside of the face, a wrong size, radiance
+    ///          that is not finite or negative, or no environment; nothing has changed then.
+    UpdateReport update_region(const cubemap::TexelRectangle& rectangle,
+                               std::span<const glm::vec3> radiance);
+
+    /// Adds the light that surfaces send to each other to radiance() and lighting(), all of its
+    /// bounces or so many. Radiance stays that of the receivers' own surfaces, or for albedo 1.
+    ///
+    /// Throws:  std::invalid_argument for a scene without bounces, and as
+    ///          relight::BounceLight::set_albedo(); std::logic_error before the first light() and
+    ///          without an albedo.
+    /// Cost:    milliseconds, see docs/measurements.md.
+    BounceReport bounce(const Bouncing& how = {});
+
+    /// Dims and colours the scene's own lamps, whose light is added to that of light(): factors on
+    /// what they give, in place of those before.
+    ///
+    /// Throws:  std::invalid_argument for a name that no lamp of the scene has; nothing has changed
+    ///          then.
+    /// Cost:    O(receivers) once the lamp's light is there. A name that the call before had not
+    ///          costs some 20 rays a receiver, and a solution of bounces.
+    void dim(std::vector<EmissionGain> gains);
+
+    /// Sets the roughness of highlights that follow the eye (relumine/in/scene.h). The light stays
+    /// as it is; a LiveEye must take the surfaces.
+    ///
+    /// Throws:  as relumine::set_roughness(); std::logic_error where the scene is shared.
+    void set_roughness(float roughness);
+
+    /// Outgoing radiance of this process's receivers, in their order and the unit of the
+    /// environment's; without materials for albedo 1. Empty before the first light().
+    [[nodiscard]] std::span<const glm::vec3> radiance() const;
+
+    /// Returns the light that arrives at the receivers as spherical harmonics (docs/harmonics.md),
+    /// [num_receivers][order^2] in the receivers' order, for any normal. At a surface's own normal
+    /// their irradiance is that of all light, bounces included; away from it the bounces count as
+    /// if they came from around the normal. Of processes that share the light, all call it; the
+    /// first gets the light of all, the others get none.
+    ///
+    /// Throws:  std::logic_error before the first light() and without LightOptions::harmonics.
+    [[nodiscard]] std::vector<glm::vec3> harmonics() const;
+    /// LightOptions::harmonics
+    [[nodiscard]] std::uint32_t harmonic_order() const { return harmonics_; }
+
+    /// Returns what a picture is drawn of, or its radiance alone. It points into this object, and
+    /// is good until the light changes. Of processes that share the light, all call it; the first
+    /// gets the light of all, the others get none.
+    ///
+    /// Throws:  std::logic_error before the first light().
+    [[nodiscard]] Lighting lighting(bool is_drawn = true) const;
+
+private:
+    LitScene(const std::shared_ptr<Scene>& own, const LightOptions& options);
+    /// Light of a list that comes on top, [receivers of this process] each.
+    struct Added {
+        std::vector<glm::vec3> radiance = {};
+        std::vector<glm::vec3> diffuse = {};
+        /// [receivers of this process][order^2]
+        std::vector<glm::vec3> harmonics = {};
+        /// Of a level floor that nothing shades, for albedo 1.
+        glm::dvec3 open_floor{0.0};
+        /// As those of Lighting.
+        std::vector<relight::SharpLight> lights = {};
+        std::vector<glm::vec3> soft = {};
+    };
+    LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::ScenePart> part,
+             const LightOptions& options);
+    void gather(Lighting& lighting) const;
+    [[nodiscard]] bool is_edited() const { return state_.base && state_.base->map(); }
+    void require_same_light(const Light& light) const;
+    [[nodiscard]] Added light_of_list(std::span<const lights::DistantLight> lights);
+    UpdateReport light_by_environment(Light& light);
+    UpdateReport relight_all(const LightState& next);
+    UpdateReport relight_all(LayerCompositor compositor);
+    UpdateReport relight_coarse(const LightState& next);
+    UpdateReport update(const LightState& next);
+    void begin_edits();
+    BounceReport find_bounces(bool is_step);
+    void add_of_all(std::span<const glm::vec3> of_all, std::span<glm::vec3> own) const;
+    void add_surfaces(std::span<glm::vec3> own) const;
+    void add_to_points(std::span<glm::vec3> harmonics) const;
+    [[nodiscard]] std::vector<glm::vec3> of_all(std::span<const glm::vec3> own) const;
+    void add_mirrored();
+    /// Where a time went.
+    struct FinishTimes {
+        double seconds_lamps = 0.0;
+        double seconds_highlights = 0.0;
+    };
+    FinishTimes finish();
+
+    std::shared_ptr<const Scene> scene_;
+    /// The same, where nobody else has it.
+    Scene* own_scene_ = nullptr;
+    std::unique_ptr<const SceneRays> rays_;
+    /// LightOptions::blockers
+    std::shared_ptr<const prt::Blockers> own_blockers_;
+    /// Without its scene. Null: this process has all receivers.
+    std::unique_ptr<const prt::ScenePart> part_;
+    /// Never null.
+    prt::Team* team_;
+    std::filesystem::path path_;
+    std::uint32_t harmonics_;
+    relight::ShadowRays shadow_rays_;
+    /// Null without clusters.
+    std::unique_ptr<relight::Relighter> relighter_;
+    bool is_lit_ = false;
+    Added added_;
+    LightState state_;
+    /// Of state_, once it was edited.
+    LayerCompositor compositor_;
+    /// For the next turn's map.
+    cubemap::CubeMap turning_memory_;
+    /// What turns while a slider moves: the map of `of`, with fewer texels where it has many.
+    struct Coarse {
+        std::shared_ptr<const LightBase> of = {};
+        std::optional<cubemap::QuickTurns> turns = {};
+        /// Whether its light is the present one.
+        bool is_shown = false;
+    };
+    Coarse coarse_;
+    LightHistory history_;
+    SceneBounces bounces_;
+    SceneLamps lamps_;
+    SceneMirrors mirrors_;
+    /// [receivers of this process] of all light; empty where the relighter's is all.
+    std::vector<glm::vec3> total_;
+};
+
+/// Throws where processes light another scene, or by another environment, than the first. Without
+/// an environment it looks at the scene alone. `path` is the scene's.
+///
+/// Throws:  std::runtime_error "path: expected X, got Y".
+void require_same(prt::Team& team, const std::filesystem::path& path,
+                  const cubemap::CubeMap* environment = nullptr);
+
+/// What lights the scene, layers included; black under a light list, without texels before the
+/// first light().
+[[nodiscard]] const cubemap::CubeMap& environment_of(const LitScene& lit);
+/// Whether an environment lights the scene.
+[[nodiscard]] bool has_environment(const LitScene& lit);
+
+/// What surfaces send to all receivers, as a part of the radiance: [num_receivers]; empty before
+/// LitScene::bounce().
+[[nodiscard]] std::vector<glm::vec3> bounced(const LitScene& lit);
+
+/// Sums an environment into the scene's clusters, for LitScene::light(). An environment that comes
+/// again need not be summed again.
+///
+/// Throws:  std::invalid_argument as LitScene::light().
+/// Cost:    O(6 R^2). What is returned holds the map; copies of it share the map.
+[[nodiscard]] BinnedEnvironment bin(const LitScene& lit, cubemap::CubeMap environment);
+
+} // namespace relumine

@@ -1,0 +1,139 @@
+#include "relumine/light/mirrors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "files/parallel.h"
+#include "prt/glossy/brdf.h"
+#include "prt/glossy/sheen_lobe.h"
+#include "prt/glossy/surface_sampling.h"
+#include "prt/receivers/mesh_point.h"
+#include "prt/visibility/twin_triangles.h"
+#include "relight/pictures/reflections.h"
+
+namespace relumine {
+
+namespace {
+
+/// What rays see of the surfaces that they meet.
+class MirroredSurfaces {
+public:
+    MirroredSurfaces(const Scene& scene, const SceneMirrors::Surfaces& surfaces)
+        : mesh_(scene.mesh), twins_(scene.mesh),
+          gains_(scene.lamps.empty() ? std::vector<glm::vec3>()
+                                     : triangle_gains(scene, surfaces.emission)) {
+        for (const mesh::Material& material : mesh_.materials)
+            has_own_color_.push_back(material.base_color_texture || material.emission_texture ||
+                                     prt::has_highlight(material));
+        const prt::Receivers& receivers = scene.receivers;
+        if (surfaces.radiance.empty() || receivers.num_added == 0)
+            return;
+        light_.resize(mesh_.num_vertices(), glm::vec3(0.0f));
+        sent_.resize(mesh_.num_vertices(), glm::vec3(0.0f));
+        emission_.resize(mesh_.num_vertices(), glm::vec3(0.0f));
+        for (std::size_t i = receivers.num_own(); i < receivers.size(); ++i) {
+            const prt::Surface& surface = receivers.surfaces[i];
+            const glm::vec3 albedo = glm::max(surface.albedo, 1e-4f);
+            const std::uint32_t vertex = prt::vertex_at(mesh_, receivers.points[i]);
+            light_[vertex] = surfaces.radiance[i] / albedo;
+            sent_[vertex] = surfaces.albedo.empty() ? surfaces.radiance[i]
+                                                    : light_[vertex] * surfaces.albedo[i];
+            emission_[vertex] = surface.emission;
+        }
+    }
+
+    /// As relight::Reflections asks for them.
+    [[nodiscard]] glm::vec3 radiance(const prt::Hit& hit, const glm::vec3& direction) const {
+        const prt::Hit facing = twins_.facing(hit, direction);
+        const prt::MeshPoint at{.triangle = facing.triangle, .barycentric = facing.barycentric};
+        const glm::vec3 gain = gains_.empty() ? glm::vec3(1.0f) : gains_[at.triangle];
+        if (mesh_.triangle_materials.empty() ||
+            !has_own_color_[mesh_.triangle_materials[at.triangle]])
+            return light_.empty() ? glm::vec3(0.0f)
+                                  : prt::value_at(mesh_, sent_, at) +
+                                        gain * prt::value_at(mesh_, emission_, at);
+        const prt::Surface surface = prt::without_highlight(
+            prt::surface_at(mesh_, at.triangle, at.barycentric, prt::GgxForm::Published));
+        const glm::vec3 reflected =
+            light_.empty() ? glm::vec3(0.0f) : surface.albedo * prt::value_at(mesh_, light_, at);
+        return reflected + gain * surface.emission;
+    }
+
+private:
+    const mesh::TriangleMesh& mesh_;
+    prt::TwinTriangles twins_;
+    std::vector<glm::vec3> gains_;
+    /// Whether the materials know their colours; others have those of the vertices.
+    std::vector<bool> has_own_color_;
+    /// [num_vertices] what arrives, as radiance of albedo 1, what is sent of it, and what glows;
+    /// empty: unknown.
+    std::vector<glm::vec3> light_, sent_, emission_;
+};
+
+/// Returns the rays of a surface, as a factor: those of a narrow lobe go one way, of sheen all, and
+/// a rough metal shows nothing but its rays.
+float part_of_rays(const prt::Surface& surface) {
+    constexpr float WideFrom = 0.1f, LeastOfMetals = 0.25f, WideAlpha = 0.1f;
+    if (prt::has_sheen(surface))
+        return 2.0f;
+    if (std::max({surface.specular.r, surface.specular.g, surface.specular.b}) > LeastOfMetals &&
+        relight::lobe_alpha(surface) > WideAlpha)
+        return 4.0f;
+    if (!prt::facts_of(surface.highlight).is_roughness || prt::has_coat(surface))
+        return 1.0f;
+    return std::min(surface.roughness_or_exponent / WideFrom, 1.0f);
+}
+
+} // namespace
+
+SceneMirrors::SceneMirrors(const Scene& scene, const SceneRays& rays, std::uint32_t num_rays)
+    : scene_(&scene), rays_(&rays) {
+    if (!has_traced_highlights(scene))
+        return;
+    rays_per_pixel_ = num_rays;
+}
+
+std::uint32_t SceneMirrors::rays_of(std::size_t receiver) const {
+    constexpr std::uint32_t Least = 4;
+    if (rays_per_pixel_ == 0)
+        return 0;
+    float rays =
+        static_cast<float>(rays_per_pixel_) * part_of_rays(scene_->receivers.surfaces[receiver]);
+    if (const auto* pixels = std::get_if<prt::PixelLayout>(&scene_->layout))
+        rays *= static_cast<float>(pixels->num_shown(receiver)) /
+                static_cast<float>(pixels->samples_per_pixel());
+    return std::max(static_cast<std::uint32_t>(std::ceil(rays)), Least);
+}
+
+void SceneMirrors::add(const relight::Relighter& light, const Surfaces& surfaces,
+                       std::span<const std::uint32_t> receivers,
+                       std::span<glm::vec3> radiance) const {
+    const prt::Receivers& all = scene_->receivers;
+    const relight::Reflections reflections(rays_->of_mesh(), scene_->settings.bias, rays_per_pixel_,
+                                           light.environment(), light.sharp_lights());
+    const MirroredSurfaces mirrored(*scene_, surfaces);
+    const auto seen = [&](const prt::Hit& hit, const glm::vec3& direction, float) {
+        return mirrored.radiance(hit, direction);
+    };
+    files::parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t i) {
+        const std::uint32_t receiver = receivers[i];
+        const prt::Surface& surface = all.surfaces[receiver];
+        if (receiver >= all.num_own() || surface.highlight == prt::Highlight::None)
+            return;
+        const glm::vec3& normal = all.normals[receiver];
+        const glm::vec3& to_eye = all.to_eye[receiver];
+        const relight::MirrorPoint point{.position = all.positions[receiver],
+                                         .normal = normal,
+                                         .to_eye = to_eye,
+                                         .shift = relight::ray_shift(receiver)};
+        const prt::EyeCosines n_v(surface, normal, to_eye);
+        const prt::Lobes<glm::vec3> lobes = relight::lobes_of(
+            surface, reflections.light(surface, point, rays_of(receiver), seen), n_v);
+        radiance[i] += prt::reflect(surface, lobes, n_v);
+    });
+}
+
+} // namespace relumine

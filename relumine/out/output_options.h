@@ -1,0 +1,239 @@
+// What pictures, coloured meshes and numbers of a lit scene are made with. An option is a field and
+// its row in options_of(), both here.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <variant>
+
+#include <glm/vec3.hpp>
+
+#include "relight/pictures/display_transform.h"
+#include "relight/pictures/framing.h"
+#include "relight/pictures/tone_curve.h"
+#include "relumine/in/emission.h"
+#include "relumine/in/scene.h"
+#include "relumine/options/option_table.h"
+
+namespace relumine {
+
+using relight::ToneCurve;
+
+/// What the mesh says: its materials, or its vertex colours. Where it says nothing, and so that
+/// pictures have no white plaster, 0.5 in pictures and colours; 1 in data (.npy, lightmaps).
+struct AutomaticAlbedo {};
+
+/// The mesh's own vertex colours as albedo.
+struct MeshColors {};
+
+/// Colours are no part of the transfer: one reflectance for all, or the mesh's colours. Scenes with
+/// materials have theirs in the radiance already; the factor comes on top. A floor that was added
+/// to the mesh has an albedo of its own.
+using Albedo = std::variant<AutomaticAlbedo, glm::vec3, MeshColors>;
+
+/// Where the shadows of lights smaller than their cluster, the sun above all, are traced.
+enum class SunShadows {
+    /// At every point that a picture of vertices shows.
+    Pixels,
+    /// At the receivers, as in meshes and numbers.
+    Receivers,
+};
+inline constexpr std::array<std::string_view, 2> SunShadowsNames = {"pixel", "vertex"};
+template<>
+inline constexpr std::span<const std::string_view> WordsOf<SunShadows> = SunShadowsNames;
+template<>
+inline constexpr std::span<const std::string_view> WordsOf<ToneCurve> = relight::ToneCurveNames;
+
+/// What a picture shows behind the mesh.
+struct EnvironmentBehind {
+    /// Width at half height of the blur; 0: sharp.
+    double blur_degrees = 0.0;
+};
+/// Nothing: the picture has alpha.
+struct NothingBehind {};
+using Background = std::variant<EnvironmentBehind, NothingBehind, glm::vec3>;
+
+/// How a picture shows the floor that was added to the mesh.
+enum class FloorLook {
+    /// Photo where the environment shows a ground (relight::has_ground()) or the background is
+    /// plain, Studio where it does not, Grey without an environment.
+    Automatic,
+    /// What is behind, on the ground: the environment as if the mesh stood in it, darkened and
+    /// tinted by what the mesh takes and sends.
+    Photo,
+    /// A plain floor that ends far away.
+    Studio,
+    /// A plain disc that fades out at the floor's edge.
+    Grey,
+};
+inline constexpr std::array<std::string_view, 4> FloorLookNames = {"auto", "photo", "studio",
+                                                                   "grey"};
+template<>
+inline constexpr std::span<const std::string_view> WordsOf<FloorLook> = FloorLookNames;
+
+/// The side that a mesh shows a camera of azimuth 0.
+enum class Front { PositiveZ, NegativeZ, PositiveX, NegativeX };
+inline constexpr std::array<std::string_view, 4> FrontNames = {"+z", "-z", "+x", "-x"};
+template<>
+inline constexpr std::span<const std::string_view> WordsOf<Front> = FrontNames;
+
+/// Where a camera stands that looks at a mesh, and its field of view.
+struct CameraPlace {
+    relight::CameraAngles angles = {};
+    /// Vertical
+    std::optional<float> fov_degrees = {};
+};
+
+struct OutputOptions {
+    Albedo albedo = AutomaticAlbedo{};
+    FloorLook floor = FloorLook::Automatic;
+    /// Of the camera that photographed the environment, above the floor, in the mesh's unit. Empty:
+    /// the longest side of what stands on the floor.
+    std::optional<float> photo_height = {};
+    /// Of an added floor, where it has no surface of its own. Empty: 0.3 in pictures and colours, 1
+    /// in data.
+    std::optional<glm::vec3> floor_albedo = {};
+    /// Factors on the light that the scene gives of its own. Pictures show them on what glows;
+    /// LitScene::dim() lets the light follow.
+    std::vector<EmissionGain> emission = {};
+    /// The outer part of an added floor's radius over which it fades into the background; 0: none.
+    float floor_fade = 0.6f;
+    /// Exposure in stops. Empty: what suits the lit surfaces that are seen, for .png, .ply and
+    /// .glb; 0 for .exr and .npy. save() applies it, draw() does not.
+    std::optional<double> exposure_ev = {};
+    /// Of .png; all else stays linear.
+    ToneCurve tone = ToneCurve::Neutral;
+    /// Of .png, in place of the tone curve, where it has a config.
+    relight::DisplayView display = {};
+
+    /// Size of the picture. Only for scenes of vertices, as are the camera and the rays below.
+    std::uint32_t width = 1024;
+    std::uint32_t height = 768;
+    /// n x n rays a pixel
+    std::uint32_t samples_per_axis = 3;
+    /// In place of all that is said of the camera below
+    std::optional<Camera> camera = {};
+    /// Empty: camera_of() the scene, moved as `eye` and `target` say.
+    std::optional<CameraPlace> camera_place = {};
+    Front front = Front::PositiveZ;
+    std::optional<glm::vec3> eye = {};
+    std::optional<glm::vec3> target = {};
+    std::optional<float> fov_degrees = {};
+    SunShadows sun = SunShadows::Pixels;
+    /// Rays that find what a pixel mirrors, where the scene has no highlights of its own; 0:
+    /// surfaces are matte. Receivers on pixels take LightOptions::highlight_rays.
+    std::uint32_t highlight_rays = 32;
+
+    /// Not for scenes of texels.
+    Background background = EnvironmentBehind{};
+    /// How many texels are filled around the charts. Only for scenes of texels.
+    std::uint32_t gutter = 16;
+};
+
+/// Throws OptionError for options that contradict each other.
+void check(const OutputOptions& options);
+
+/// Returns the camera of a picture. Throws as check() does.
+[[nodiscard]] Camera camera_of(const Scene& scene, const OutputOptions& options);
+
+/// Whether a picture looks from elsewhere than the eye that the highlights of a scene of vertices
+/// are for. Highlights then stay where that eye sees them.
+[[nodiscard]] bool is_other_eye(const Scene& scene, const OutputOptions& options);
+
+// How the values are written
+
+struct AlbedoText {
+    static constexpr const char* Type = "TEXT";
+    static Albedo read(const std::string& text);
+    static std::string show(const Albedo& albedo);
+};
+struct BackgroundText {
+    static constexpr const char* Type = "TEXT";
+    static Background read(const std::string& text);
+    static std::string show(const Background& background);
+};
+struct ExposureText {
+    static constexpr const char* Type = "TEXT";
+    static std::optional<double> read(const std::string& text);
+    static std::string show(const std::optional<double>& stops);
+};
+struct CameraText {
+    static constexpr const char* Type = "TEXT";
+    static CameraPlace read(const std::string& text);
+    static std::string show(const CameraPlace& place);
+};
+/// --size WIDTHxHEIGHT, each side from `min` (1) to prt::MaxPictureSize.
+[[nodiscard]] OptionRow size_row(std::uint32_t& width, std::uint32_t& height, std::string help,
+                                 OptionFacts facts = {});
+/// --transparent, another word for a background of none.
+[[nodiscard]] OptionRow transparent_row(Background& background, OptionFacts facts);
+
+/// All options of a picture.
+inline OptionTable options_of(OutputOptions& o) {
+    constexpr unsigned OnVertices = OptionFacts::OnVertices;
+    constexpr unsigned NoTexels = OptionFacts::OnVertices | OptionFacts::OnPixels;
+    return {
+        row<AlbedoText>("--albedo", o.albedo,
+                        "reflectance: a number, R,G,B, `mesh` for the mesh's vertex colours, or "
+                        "auto: the mesh's own, else 0.5 in pictures and 1 in .npy",
+                        {.example = "0.25"}),
+        row("--floor", o.floor,
+            "what an added floor looks like: the photographed ground with shadows, a studio's "
+            "plain floor, a grey disc; auto: as the environment suggests",
+            {.receivers = NoTexels, .part = "floor"}),
+        row("--photo-height", o.photo_height,
+            "height above the floor from which the environment was photographed, in the mesh's "
+            "unit (the mesh's longest side)",
+            {.min = 1e-6,
+             .max = LargestPosition,
+             .type = "LENGTH",
+             .receivers = NoTexels,
+             .part = "floor"}),
+        row<ColorText>("--floor-albedo", o.floor_albedo,
+                       "reflectance of the floor of --floor: a number or R,G,B (0.3; 1 in .npy)",
+                       {.example = "0.7,0.6,0.5"}),
+        row<EmissionText>("--emission", o.emission,
+                          "factor on the light that lamps, screens and unlit surfaces give of "
+                          "their own: a number or R,G,B; NAME=GAIN[,R,G,B] for one group that "
+                          "glows or one light of the mesh's file",
+                          {.example = "0.5"}),
+        row("--floor-fade", o.floor_fade,
+            "outer part of the floor's radius over which it fades into the background",
+            {.min = 0, .max = 1}),
+        row<ExposureText>("--exposure", o.exposure_ev,
+                          "stops that brighten pictures and colours, or auto: what suits what is "
+                          "seen; 0 for .exr and .npy",
+                          {.example = "1.5"}),
+        row("--tone-map", o.tone,
+            "how a screen shows what is brighter than white, in .png and the window"),
+        row<CameraText>("--camera", o.camera_place,
+                        "AZIMUTH,ELEVATION[,DISTANCE][,FOV]: degrees to the right of the "
+                        "front and above the horizon (24,20), distance (fills two thirds)",
+                        {.example = "30,40", .receivers = OnVertices, .part = "camera"}),
+        row("--front", o.front, "the side that the mesh shows a camera of azimuth 0",
+            {.receivers = OnVertices, .part = "camera"}),
+        row<PointText>("--eye", o.eye, "camera position X,Y,Z in place of --camera",
+                       {.example = "1,2,3", .receivers = OnVertices, .part = "camera"}),
+        row<PointText>("--target", o.target, "point that the camera looks at, X,Y,Z (automatic)",
+                       {.example = "0,0.1,0", .receivers = OnVertices, .part = "camera"}),
+        row("--fov", o.fov_degrees, "vertical field of view in degrees (35)",
+            {.min = 0.01, .max = 179, .receivers = OnVertices, .part = "camera"}),
+        size_row(o.width, o.height, "picture size WIDTHxHEIGHT",
+                 {.receivers = OnVertices, .part = "camera"}),
+        row<BackgroundText>("--background", o.background,
+                            "behind the mesh: sharp or blur=DEG (the environment), none (alpha; "
+                            "premultiplied in .exr), a number or R,G,B",
+                            {.example = "blur=5", .receivers = NoTexels, .part = "background"}),
+        transparent_row(o.background, {.receivers = NoTexels, .part = "background"}),
+        row("--sun", o.sun, "pictures of vertices: where shadows of the sun are traced"),
+        row("--highlight-rays", o.highlight_rays,
+            "rays a pixel that find what glossy surfaces mirror, where the scene stores no "
+            "highlights; 0: none, all is matte (of pixels: relight, edit and animate)",
+            {.min = 0, .max = 4096, .receivers = NoTexels, .part = "highlights"}),
+        row("--gutter", o.gutter, "lightmaps: texels filled around the charts",
+            {.min = 0, .max = 16384})};
+}
+
+} // namespace relumine

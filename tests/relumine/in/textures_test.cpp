@@ -1,0 +1,83 @@
+// A scene shows the same from its file as from memory, whatever textures its materials have.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "data_gen/environments.h"
+#include "mesh/materials/material.h"
+#include "relumine/in/precompute.h"
+#include "relumine/light/lit_scene.h"
+#include "relumine/out/output.h"
+#include "tests/prt/textured_square.h"
+#include "tests/relumine/small_scenes.h"
+
+namespace relumine {
+namespace {
+
+/// A material that shows each texture of its model.
+mesh::Material layered() {
+    return {.model = mesh::MaterialModel::MetallicRoughness,
+            .base_color = glm::vec3(0.7f),
+            .metallic = 0.5f,
+            .roughness = 0.5f,
+            .specular = glm::vec3(0.3f),
+            .emission = glm::vec3(0.4f),
+            .alpha_mode = mesh::AlphaMode::Blend,
+            .alpha = 0.8f,
+            .transmission = 0.3f,
+            .coat = 0.75f,
+            .coat_roughness = 0.4f,
+            .sheen = glm::vec3(0.6f),
+            .sheen_roughness = 0.5f};
+}
+
+/// A mapped square of that material, and a texture without a file, of colours or of grey.
+mesh::TriangleMesh square(bool is_grey) {
+    mesh::TriangleMesh mesh = scenes::mapped_square({200, 90, 240});
+    mesh.textures = {
+        {.name = "made",
+         .width = 2,
+         .height = 1,
+         .texels = is_grey
+                       ? std::vector<std::array<std::uint8_t, 3>>{{150, 150, 150}, {30, 30, 30}}
+                       : std::vector<std::array<std::uint8_t, 3>>{{200, 90, 240}, {20, 160, 60}}}};
+    mesh.materials = {layered()};
+    return mesh;
+}
+
+std::vector<glm::vec3> drawn(Scene scene) {
+    LitScene lit(std::move(scene));
+    lit.light(data_gen::sun_and_sky(16)); // nowhere even
+    return Painter(lit, {.width = 12, .height = 12, .samples_per_axis = 1})
+        .draw(lit.lighting())
+        .pixels;
+}
+
+Scene made(const mesh::TriangleMesh& mesh) {
+    PrecomputeOptions options{.tolerance = 0.1f};
+    options.no_refine = true;
+    return precompute(mesh, options);
+}
+
+class Textures : public scenes::InFolder {};
+
+TEST_F(Textures, APictureFromTheFileIsThatFromMemory) {
+    for (const bool is_grey : {false, true})
+        for (const mesh::SlotName& slot : mesh::TextureSlots) {
+            SCOPED_TRACE(slot.name);
+            mesh::TriangleMesh mesh = square(is_grey);
+            mesh::Material& material = mesh.materials[0];
+            if (slot.slot == &mesh::Material::specular_texture)
+                material.model = mesh::MaterialModel::SpecularGlossiness;
+            material.normal_texture.reset();
+            const std::vector<glm::vec3> without = drawn(made(mesh));
+            material.*slot.slot = mesh::TextureSlot{.texture = 0};
+            const Scene scene = made(mesh);
+            const std::vector<glm::vec3> from_memory = drawn(scene);
+            EXPECT_NE(from_memory, without) << "the texture shows";
+            save_scene(file("scene.prt"), scene);
+            EXPECT_EQ(drawn(load_scene(file("scene.prt"))), from_memory);
+        }
+}
+
+} // namespace
+} // namespace relumine
