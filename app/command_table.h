@@ -1,4 +1,4 @@
-// Commands and options as plain data: what documentation and completion are made from.
+// Commands and options as plain data: what completion and the tests of docs are made from.
 #pragma once
 
 #include <string>
@@ -12,8 +12,6 @@ namespace relumine::app {
 struct CommandTable {
     std::string name = {};
     std::string description = {};
-    /// Text below the options in the help
-    std::string footer = {};
     /// In their order, --help included
     OptionTable options = {};
     std::vector<CommandTable> commands = {};

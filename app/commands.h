@@ -26,7 +26,6 @@ void add_env(Command& program, Session& session);
 void add_coarsen(Command& program, Session& session);
 void add_export(Command& program, Session& session);
 void add_view(Command& program, Session& session);
-void add_serve(Command& program, Session& session);
 
 /// Keeps so many vertices of a mesh, its floor not counted, and says how many it became.
 [[nodiscard]] Mesh simplified_to(Mesh mesh, std::uint32_t num_vertices, const Session& session);

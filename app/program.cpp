@@ -29,10 +29,8 @@ void add_commands(CommandLine& line, Session& session) {
     add_coarsen(program, session);
     add_export(program, session);
     add_view(program, session);
-    add_serve(program, session);
     add_help(line);
     add_completion(line);
-    add_man(line);
 }
 
 int exit_code_of(const CommandLine& line, const std::function<void()>& work,

@@ -283,17 +283,14 @@ void Session::add_to_report(const std::string& name, const Report& value) const 
     more_fields_.set(name, value);
 }
 
-Report Session::take_notes() const {
-    const std::scoped_lock lock(mutex_);
-    Report notes = std::exchange(more_fields_, Report());
-    notes.set("warnings", std::exchange(warnings_, {}));
-    return notes;
-}
-
 void Session::report(Report result) const {
     if (!json)
         return;
-    files::update(result, take_notes());
+    {
+        const std::scoped_lock lock(mutex_);
+        files::update(result, more_fields_);
+        result.set("warnings", warnings_);
+    }
     fmt::print("{}\n", result.text(2));
     std::fflush(stdout);
 }

@@ -64,9 +64,8 @@ public:
     void complain(const std::string& message, const char* program = "relumine") const;
     /// Adds a field to the report of this run.
     void add_to_report(const std::string& name, const Report& value) const;
-    /// What add_to_report() and warn() have gathered since the start or the last call.
-    [[nodiscard]] Report take_notes() const;
-    /// The result: with --json the object on stdout, with all warnings as the list "warnings".
+    /// The result: with --json the object on stdout, with what add_to_report() gathered, and all
+    /// warnings as the list "warnings".
     void report(Report result) const;
 
 private:

@@ -200,9 +200,7 @@ std::string complaint(const CLI::App& command, const CLI::ParseError& error) {
 } // namespace
 
 CommandTable Command::Data::table() const {
-    CommandTable table{.name = app->get_name(),
-                       .description = app->get_description(),
-                       .footer = app->get_footer()};
+    CommandTable table{.name = app->get_name(), .description = app->get_description()};
     for (const CLI::Option* option : std::as_const(*app).get_options()) {
         const auto own = std::find_if(options.begin(), options.end(), [option](const auto& each) {
             return each->option == option;

@@ -1,5 +1,5 @@
-// Shell scripts that complete the program's commands, options and values; made from the tables of
-// its command line.
+// The script that completes the program's commands, options and values in bash, made from the
+// tables of its command line.
 #pragma once
 
 #include <string>
@@ -8,10 +8,7 @@
 
 namespace relumine::app {
 
-/// For bash, without the package bash-completion.
+/// Returns it. It needs bash alone, not the package bash-completion.
 [[nodiscard]] std::string bash_completion(const CommandTable& program);
-/// For zsh: a file _relumine of its function path.
-[[nodiscard]] std::string zsh_completion(const CommandTable& program);
-[[nodiscard]] std::string fish_completion(const CommandTable& program);
 
 } // namespace relumine::app

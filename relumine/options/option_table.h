@@ -1,6 +1,6 @@
 // Options as data. Each is declared once, in options_of() beside the struct that it fills: name,
-// variable, help, range, and where it counts. The command line, `relumine serve`, Python, manual
-// pages, completion, docs/command-line.md and the record of `animate --resume` read these rows.
+// variable, help, range, and where it counts. The command line, its completion, Python,
+// docs/command-line.md and the record of `animate --resume` read these rows.
 #pragma once
 
 #include <cstdint>
@@ -87,7 +87,7 @@ struct OptionRow : OptionFacts {
     [[nodiscard]] std::vector<std::string> names() const;
     /// "--output"; "MESH" for an argument
     [[nodiscard]] std::string long_name() const;
-    /// "floor_fade" of --floor-fade: as Python and requests spell it
+    /// "floor_fade" of --floor-fade: as Python spells it
     [[nodiscard]] std::string key() const;
     /// "0.01 to 179"; empty: all numbers
     [[nodiscard]] std::string range() const;

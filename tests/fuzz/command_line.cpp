@@ -1,8 +1,8 @@
 // The command line. Two kinds of input:
 //
 // Text has one argument per line. The commands run as far as they come in an empty folder: none of
-// their files exist. `generate`, `completion`, `man` and `help`, which need none, `view`, which
-// opens a window, and `serve`, which reads stdin, are parsed only.
+// their files exist. `generate`, `completion` and `help`, which need none, and `view`, which opens
+// a window, are parsed only.
 //
 // Bytes after a zero draw command lines that do work on small files, with one or two options at the
 // edges of numbers: four bytes each choose the line, the option, the number and how it is written.
@@ -263,7 +263,7 @@ RELUMINE_FUZZ_TARGET(command_line) {
         return 0;
     app::CommandLine program("relumine", "");
     app::add_commands(program, fresh_session());
-    for (const char* name : {"generate", "view", "completion", "man", "help", "serve"})
+    for (const char* name : {"generate", "view", "completion", "help"})
         program.root().command(name).on_run([] {});
     run(program, lines(text));
     fuzz::require(fs::is_empty(Empty), "a failed command leaves no file");

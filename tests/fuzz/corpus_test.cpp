@@ -21,7 +21,7 @@
     X(gltf)                                                                                        \
     X(hdr)                                                                                         \
     X(layers)                                                                                      \
-    X(lights) X(mtl) X(obj) X(off) X(ply) X(prt) X(requests) X(sections) X(stl) X(texture) X(zstd)
+    X(lights) X(mtl) X(obj) X(off) X(ply) X(prt) X(sections) X(stl) X(texture) X(zstd)
 
 #define RELUMINE_DECLARE(name)                                                                     \
     extern "C" int relumine_fuzz_##name(const std::uint8_t* data, std::size_t size);
@@ -77,8 +77,8 @@ TEST_P(Corpus, IsReadOrRefused) {
 INSTANTIATE_TEST_SUITE_P(Fuzz, Corpus, testing::ValuesIn(targets()),
                          [](const auto& each) { return each.param.name; });
 
-/// Readers share nothing: as a program reads files that loads several at once. Arguments and
-/// requests belong to one session of a process.
+/// Readers share nothing: as a program reads files that loads several at once. Arguments
+/// belong to one session of a process.
 TEST(Fuzz, ReadersOfAllKindsWorkInSeveralThreads) {
     std::vector<std::thread> threads;
     for (std::size_t first = 0; first < 3; ++first)
@@ -86,7 +86,7 @@ TEST(Fuzz, ReadersOfAllKindsWorkInSeveralThreads) {
             const std::vector<Target> all = targets();
             for (std::size_t i = 0; i < all.size(); ++i) {
                 const Target& target = all[(first * 5 + i) % all.size()];
-                if (target.name == "command_line" || target.name == "requests")
+                if (target.name == "command_line")
                     continue;
                 const auto files = files_below(fs::path(RELUMINE_FUZZ_CORPUS) / target.name);
                 // Every third is enough to meet the others, in another place of each thread.

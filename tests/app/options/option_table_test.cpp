@@ -1,4 +1,4 @@
-// Every option of a picture at every face of the program: the command line, requests, the record of
+// Every option of a picture at every face of the program: the command line and the record of
 // frames.
 #include <algorithm>
 #include <fstream>
@@ -8,7 +8,6 @@
 
 #include "app/command_table.h"
 #include "app/program.h"
-#include "app/service/service.h"
 #include "app/session.h"
 #include "relumine/relumine.h"
 #include "tests/app/command.h"
@@ -75,13 +74,6 @@ TEST_F(OptionTables, ACommandTakesEachAndRefusesWhatIsOutOfRange) {
                 {"relight", "missing.prt", "missing.exr", "-o", "new.png", option.name + "=1e30"},
                 option.name + ": expected");
     }
-}
-
-TEST_F(OptionTables, RequestsTakeEach) {
-    Service service(session_);
-    const std::string help = service.answer(R"({"do": "help"})");
-    for (const OptionRow& option : table_)
-        EXPECT_THAT(help, HasSubstr(fmt::format("\"{}\":", option.name.substr(2))));
 }
 
 TEST_F(OptionTables, TheRecordOfFramesHasEach) {

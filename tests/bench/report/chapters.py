@@ -125,11 +125,11 @@ def moving_eye(text):
         return f"At roughness {head} highlights follow a moving eye at {1000 / max(looks):.0f} to {1000 / min(looks):.0f} looks a second."
 
 
-def service(text):
-    drift = first(r"at the end \(([^)]*)\)", text)
+def drift(text):
+    growth = first(r"at the end \(([^)]*)\)", text)
     rows = data_rows(text)
-    if rows and drift:
-        return f"After {rows[0][0]} and {rows[1][0]} memory has grown by {drift.lstrip('+')}, and the worst edit took {rows[0][3]}."
+    if rows and growth:
+        return f"After {rows[0][0]} and {rows[1][0]} memory has grown by {growth.lstrip('+')}, and the worst edit took {rows[0][3]}."
 
 
 def scale(text):
@@ -185,6 +185,6 @@ CHAPTERS = [
     Chapter("layouts", "Layouts of environments", [], ["--tiny"], layouts),
     Chapter("harmonics", "Points and harmonics", BUNNY, BUNNY + ["--points", "300", "--parts", "grid,normals"], harmonics),
     Chapter("adjoint", "Backwards and in batches", BUNNY, BUNNY, adjoint),
-    Chapter("service", "A day of edits", [], ["--edits", "2000", "--environments", "200"], service),
+    Chapter("drift", "A day of edits", [], ["--edits", "2000", "--environments", "200"], drift),
     Chapter("scale", "Many machines", [], ["--tiny"], scale),
 ]

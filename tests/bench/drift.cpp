@@ -1,37 +1,24 @@
-// A day of a lighting service in minutes: many edits and many environments in one process. Says
-// whether its memory stays flat, whether radiance drifts, and how long the slowest edits take. With
-// --requests it asks a server of `relumine serve` over its socket instead, and says how long the
-// answers take. See `./dev bench service --help`.
+// A day of edits in minutes: many edits and many environments in one process. Says whether its
+// memory stays flat, whether radiance drifts, and how long the slowest edits take. See `./dev bench
+// drift --help`.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "app/service/line_server.h"
-#include "app/service/service.h"
-#include "app/session.h"
-#include "cubemap/resample/save_environment.h"
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
-#include "files/descriptor.h"
 #include "relumine/relumine.h"
-#include "tests/bench/inputs.h"
 #include "tests/bench/program.h"
 #include "tests/bench/times.h"
 
@@ -45,8 +32,7 @@ struct Settings {
     std::size_t num_environments = 10'000;
     std::size_t num_vertices = 20'000;
     std::uint32_t resolution = 256;
-    fs::path json = "service.json";
-    std::size_t num_requests = 0;
+    fs::path json = "drift.json";
 };
 
 /// Memory that the process holds now, in MB.
@@ -191,101 +177,17 @@ void run(const Settings& settings) {
     std::ofstream(settings.json) << result.dump(2) << '\n';
 }
 
-/// The other end of a server's socket.
-class Client {
-public:
-    explicit Client(const fs::path& path) : socket_(::socket(AF_UNIX, SOCK_STREAM, 0)) {
-        sockaddr_un address{};
-        address.sun_family = AF_UNIX;
-        path.native().copy(address.sun_path, sizeof address.sun_path - 1);
-        if (::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) !=
-            0)
-            throw std::runtime_error("cannot connect to the server");
-    }
-    /// Sends lines and waits for as many answers.
-    void ask(const std::string& lines) {
-        if (::send(socket_.get(), lines.data(), lines.size(), MSG_NOSIGNAL) < 0)
-            throw std::runtime_error("cannot send a request");
-        auto missing = std::count(lines.begin(), lines.end(), '\n');
-        std::string answers;
-        while (missing > 0) {
-            std::array<char, 4096> buffer;
-            const ssize_t size = ::recv(socket_.get(), buffer.data(), buffer.size(), 0);
-            if (size <= 0)
-                throw std::runtime_error("the server is gone");
-            answers.append(buffer.data(), static_cast<std::size_t>(size));
-            missing -= std::count(buffer.data(), buffer.data() + size, '\n');
-        }
-        if (answers.find("\"ok\":false") != std::string::npos)
-            throw std::runtime_error(answers);
-    }
-
-private:
-    files::Descriptor socket_;
-};
-
-/// From request to radiance: the environments are kept ready, and the radiance goes to shared
-/// memory.
-void measure_requests(const Settings& settings, const bench::Inputs& inputs) {
-    const fs::path folder = fs::temp_directory_path() / fmt::format("relumine_{}", ::getpid());
-    fs::create_directory(folder);
-    const Scene scene = inputs.bunny();
-    static_cast<void>(save_scene(folder / "scene.prt", scene));
-    for (const char* name : {"beach_cross.hdr", "stpeters_cross.hdr"})
-        cubemap::save_environment(folder / fmt::format("{}.exr", name),
-                                  inputs.environment(name, settings.resolution));
-    const std::string memory = fmt::format("/relumine_bench_{}", ::getpid());
-    const files::Descriptor object(::shm_open(memory.c_str(), O_CREAT | O_RDWR, 0600));
-    if (::ftruncate(object.get(), static_cast<off_t>(12 * scene.receivers.size())) != 0)
-        throw std::runtime_error("cannot make shared memory");
-
-    app::Session session;
-    session.json = true;
-    app::Service service(session);
-    app::LineSocket socket(folder / "socket");
-    const std::jthread server([&](const std::stop_token& stop) {
-        socket.serve({.answer = [&](std::string_view line) { return service.answer(line); },
-                      .refuse = app::Service::refusal},
-                     stop);
-    });
-    Client client(folder / "socket");
-    client.ask(nlohmann::json{{"do", "scene"}, {"scene", folder / "scene.prt"}}.dump() + "\n");
-    const auto request = [&](const char* name) {
-        return nlohmann::json{{"do", "environment"}, {"env", folder / fmt::format("{}.exr", name)}}
-                   .dump() +
-               "\n" + nlohmann::json{{"do", "radiance"}, {"shared-memory", memory}}.dump() + "\n";
-    };
-    const std::array<std::string, 2> requests = {request("beach_cross.hdr"),
-                                                 request("stpeters_cross.hdr")};
-    for (const std::string& each : requests)
-        client.ask(each);
-    std::vector<double> seconds(settings.num_requests);
-    for (std::size_t i = 0; i < seconds.size(); ++i)
-        seconds[i] = bench::seconds_of([&] { client.ask(requests[i % 2]); });
-    const Times times = times_of(seconds);
-    fmt::print("{} receivers, {} clusters, R = {}: from the request to the radiance {:.1f} ms "
-               "(median of {}), worst {:.1f} ms\n",
-               scene.receivers.size(), scene.transfer.num_clusters(), settings.resolution,
-               1e3 * times.median, seconds.size(), 1e3 * times.worst);
-    ::shm_unlink(memory.c_str());
-    fs::remove_all(folder);
-}
-
 } // namespace
 
 int main(int argc, char** argv) {
     Settings settings;
-    bench::Program program("bench_service", "memory, drift and times over many edits and "
-                                            "environments; Markdown on stdout, JSON in a file");
+    bench::Program program("bench_drift", "memory, drift and times over many edits and "
+                                          "environments; Markdown on stdout, JSON in a file");
     program.add("--edits", settings.num_edits, "1 or more");
     program.add("--environments", settings.num_environments, "1 or more");
     program.add("--vertices", settings.num_vertices, "of the generated boulder");
     program.add("--face-resolution", settings.resolution, "R");
     program.add("--json", settings.json, "JSON file to write");
-    program.add("--requests", settings.num_requests,
-                "instead: so many requests to a server of the bunny");
-    bench::Inputs inputs(program);
-    inputs.add_scene();
     return program.run(argc, argv, [&] {
         if (program.is_tiny()) {
             settings.num_edits = 40;
@@ -295,11 +197,6 @@ int main(int argc, char** argv) {
         }
         if (settings.num_edits == 0 || settings.num_environments == 0)
             throw std::invalid_argument("expected at least one edit and one environment");
-        if (settings.num_requests != 0 || program.is_tiny()) {
-            settings.num_requests = std::max<std::size_t>(settings.num_requests, 4);
-            measure_requests(settings, inputs);
-        }
-        if (settings.num_requests == 0 || program.is_tiny())
-            run(settings);
+        run(settings);
     });
 }
