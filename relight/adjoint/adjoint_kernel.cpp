@@ -13,34 +13,21 @@
 #include <hwy/highway.h>
 
 #include "files/parallel.h"
+#include "relight/kernels/block_loops-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::relight::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Floats = hn::CappedTag<float, prt::BlockSize>;
-
 /// The lanes of a cluster's sums, [channel x axis][lane].
 using LaneSums = std::array<std::array<float, prt::BlockSize>, NumWeightSums>;
-
-/// Calls `visit` with the index of each set bit.
-template<typename Visit>
-HWY_INLINE void for_bits(std::uint64_t bits, const Visit& visit) {
-    for (; bits != 0; bits &= bits - 1)
-        visit(static_cast<std::size_t>(std::countr_zero(bits)));
-}
 
 /// n . gate > 0, with the roundings of the kernel that lights blocks.
 HWY_INLINE hn::Mask<Floats> is_above(const BlockNormals& normals, std::size_t lane,
                                      const float* gate) {
     const Floats d;
-    const auto along_z = hn::Mul(hn::LoadU(d, normals.axes[2].data() + lane), hn::Set(d, gate[2]));
-    const auto along_yz =
-        hn::MulAdd(hn::LoadU(d, normals.axes[1].data() + lane), hn::Set(d, gate[1]), along_z);
-    const auto cosine =
-        hn::MulAdd(hn::LoadU(d, normals.axes[0].data() + lane), hn::Set(d, gate[0]), along_yz);
-    return hn::Gt(cosine, hn::Zero(d));
+    return hn::Gt(Normals<Floats>(normals, lane).dot(gate), hn::Zero(d));
 }
 
 /// Returns the sum of 16 lanes, in the same order for vectors of any width.
@@ -68,33 +55,25 @@ struct TilePairs {
     std::uint64_t set(const BlockScene& scene, std::size_t tile, std::size_t w,
                       const BlockWeights& of_all) {
         const std::size_t begin = scene.counts.tile_begin(tile);
-        const TileWord& blocks = scene.words.words[tile * scene.counts.words_per_block() + w];
-        const std::uint64_t* words = scene.counts.mixed.data() + scene.counts.word(begin, w);
-        const std::uint8_t* next =
-            scene.counts.counts.data() + blocks.mixed_before * prt::BlockSize;
         normals = scene.normals.data() + begin;
         weights = of_all.blocks.data() + begin;
         mixed = {};
         across = {};
         std::uint64_t any = 0;
-        for_bits(blocks.mixed, [&](std::size_t block) {
+        const auto add = [](std::uint64_t clusters, std::size_t block, auto& blocks_of) {
+            for_bits(clusters,
+                     [&](std::size_t cluster) { blocks_of[cluster] |= std::uint64_t{1} << block; });
+        };
+        for_pairs(scene, tile, w, ~std::uint64_t{0}, [&](std::size_t block, const Pairs& pairs) {
             // Clusters go through these counts across the order in which they lie in memory.
             constexpr std::size_t CacheLine = 64;
-            const std::uint8_t* const end =
-                next + static_cast<std::size_t>(std::popcount(words[block])) * prt::BlockSize;
-            counts[block] = next;
-            for (; next < end; next += CacheLine)
-                hwy::Prefetch(next);
-            next = end;
-            any |= words[block];
-            for_bits(words[block],
-                     [&](std::size_t cluster) { mixed[cluster] |= std::uint64_t{1} << block; });
-        });
-        for_bits(blocks.across, [&](std::size_t block) {
-            const std::uint64_t clusters = scene.words.across_of(blocks, block);
-            any |= clusters;
-            for_bits(clusters,
-                     [&](std::size_t cluster) { across[cluster] |= std::uint64_t{1} << block; });
+            counts[block] = pairs.counts;
+            const std::size_t size = num_counts(pairs.mixed);
+            for (std::size_t at = 0; at < size; at += CacheLine)
+                hwy::Prefetch(pairs.counts + at);
+            any |= pairs.mixed | pairs.across;
+            add(pairs.mixed, block, mixed);
+            add(pairs.across, block, across);
         });
         return any;
     }
@@ -163,15 +142,12 @@ template<bool ChannelsDiffer>
 void add_cluster(std::span<TilePairs> tiles, std::size_t cluster, const float* gates,
                  WeightSums& result) {
     const Floats d;
-    const hn::Rebind<std::uint8_t, Floats> bytes;
-    const hn::Rebind<std::int32_t, Floats> integers;
     LaneSums lanes;
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
         Sums sums;
         for (const TilePairs& tile : tiles) {
             for_bits(tile.mixed[cluster], [&](std::size_t block) HWY_ATTR {
-                const auto count = hn::ConvertTo(
-                    d, hn::PromoteTo(integers, hn::LoadU(bytes, tile.counts[block] + lane)));
+                const auto count = load_counts(d, tile.counts[block] + lane);
                 add_inside<ChannelsDiffer>(count, tile, block, lane, gates, sums);
             });
             for_bits(tile.across[cluster], [&](std::size_t block) HWY_ATTR {
@@ -189,35 +165,18 @@ void add_cluster(std::span<TilePairs> tiles, std::size_t cluster, const float* g
 }
 
 /// Adds the runs of clusters that blocks see whole: where one begins, and where it has ended.
-/// `inside` has the blocks that see the word before up to its end.
-void add_runs(const BlockScene& scene, const TileWord& blocks, const std::uint64_t* visible_words,
-              const WeightSums* wholes, std::uint64_t& inside, WeightSums* steps,
-              std::size_t num_clusters) {
-    for_bits(blocks.edges, [&](std::size_t block) {
-        const std::uint64_t visible = visible_words[block] & ~scene.words.across_of(blocks, block);
+void add_runs(const BlockScene& scene, std::size_t tile, std::size_t w, const WeightSums* wholes,
+              OpenRuns& open, std::span<WeightSums> steps) {
+    for_runs(scene, tile, w, ~std::uint64_t{0}, open, [&](std::size_t block, const Runs& runs) {
         const WeightSums& whole = wholes[block];
-        const std::uint64_t edges = visible ^ (visible << 1 | (inside >> block & 1u));
-        for_bits(edges, [&](std::size_t cluster) {
-            if (cluster >= num_clusters)
+        for_bits(runs.edges, [&](std::size_t cluster) {
+            if (cluster >= steps.size())
                 return;
-            const double sign = (visible >> cluster & 1u) != 0 ? 1.0 : -1.0;
+            const double sign = (runs.visible >> cluster & 1u) != 0 ? 1.0 : -1.0;
             for (std::size_t i = 0; i < whole.size(); ++i)
                 steps[cluster][i] += sign * whole[i];
         });
-        inside = (inside & ~(std::uint64_t{1} << block)) | visible >> 63 << block;
     });
-}
-
-/// The blocks of a tile that see the clusters of a word up to the last one, whole.
-std::uint64_t inside_after(const BlockScene& scene, std::size_t tile, std::size_t w) {
-    const TileWord& blocks = scene.words.words[tile * scene.counts.words_per_block() + w];
-    const std::uint64_t* words =
-        scene.counts.visible.data() + scene.counts.word(scene.counts.tile_begin(tile), w);
-    std::uint64_t inside = 0;
-    for_bits(blocks.visible, [&](std::size_t block) {
-        inside |= (words[block] & ~scene.words.across_of(blocks, block)) >> 63 << block;
-    });
-    return inside;
 }
 
 /// Adds a group of tiles to the clusters of words [first_word, last_word).
@@ -225,19 +184,17 @@ void add_tiles(const BlockScene& scene, std::size_t first_tile, std::size_t last
                std::size_t first_word, std::size_t last_word, const Gates& gates,
                const BlockWeights& weights, ClusterWeights& sums) {
     const prt::VisibleCounts& counts = scene.counts;
-    std::array<std::uint64_t, TilesPerGroup> inside{};
+    std::array<OpenRuns, TilesPerGroup> open;
     std::array<TilePairs, TilesPerGroup> pairs;
     const std::span<TilePairs> of_group(pairs.data(), last_tile - first_tile);
     for (std::size_t tile = first_tile; first_word > 0 && tile < last_tile; ++tile)
-        inside[tile - first_tile] = inside_after(scene, tile, first_word - 1);
+        open[tile - first_tile] = open_after(scene, tile, first_word - 1);
     for (std::size_t w = first_word; w < last_word; ++w) {
         std::uint64_t any = 0;
         for (std::size_t tile = first_tile; tile < last_tile; ++tile) {
             const std::size_t begin = counts.tile_begin(tile);
-            add_runs(scene, scene.words.words[tile * counts.words_per_block() + w],
-                     counts.visible.data() + counts.word(begin, w), weights.whole.data() + begin,
-                     inside[tile - first_tile], sums.whole_steps.data() + w * 64,
-                     counts.num_leaves - w * 64);
+            add_runs(scene, tile, w, weights.whole.data() + begin, open[tile - first_tile],
+                     std::span(sums.whole_steps).subspan(w * 64));
             any |= pairs[tile - first_tile].set(scene, tile, w, weights);
         }
         for_bits(any, [&](std::size_t cluster) {

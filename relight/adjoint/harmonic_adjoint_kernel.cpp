@@ -1,7 +1,7 @@
 #include "relight/adjoint/harmonic_adjoint_kernel.h"
 
 #include <algorithm>
-#include <bit>
+#include <span>
 
 #include "files/parallel.h"
 #include "prt/clusters/lattice.h"
@@ -11,6 +11,8 @@
 #define HWY_TARGET_INCLUDE "relight/adjoint/harmonic_adjoint_kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "relight/kernels/block_loops-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::relight::HWY_NAMESPACE {
@@ -45,28 +47,9 @@ struct alignas(64) LaneSum {
     }
 };
 
-template<class Visit>
-HWY_INLINE void visit_bits(std::uint64_t bits, const Visit& visit) {
-    for (; bits != 0; bits &= bits - 1)
-        visit(static_cast<std::size_t>(std::countr_zero(bits)));
-}
-
-/// What one block has of the clusters of a word that add up per receiver.
-struct BlockPairs {
-    std::uint64_t mixed = 0, across = 0;
-    /// Counts of the word's first mixed cluster.
-    const std::uint8_t* counts = nullptr;
-
-    [[nodiscard]] const std::uint8_t* counts_of(std::size_t cluster) const {
-        return counts + static_cast<std::size_t>(
-                            std::popcount(mixed & ((std::uint64_t{1} << cluster) - 1))) *
-                            prt::BlockSize;
-    }
-};
-
 /// The pairs of a tile and a word.
 struct TilePairs {
-    std::array<BlockPairs, prt::VisibleCounts::TileBlocks> blocks;
+    std::array<Pairs, prt::VisibleCounts::TileBlocks> blocks;
     /// Blocks that have any, and clusters that have any.
     std::uint64_t has_pairs = 0, clusters = 0;
 };
@@ -78,7 +61,7 @@ struct GroupSums {
     std::array<LaneSum, 3 * Count> bases;
 
     void clear(std::uint64_t clusters) {
-        visit_bits(clusters, [&](std::size_t cluster) { fluxes[cluster] = {}; });
+        for_bits(clusters, [&](std::size_t cluster) { fluxes[cluster] = {}; });
         bases = {};
     }
 };
@@ -101,12 +84,10 @@ HWY_INLINE Floats part_above(const HarmonicGroup& group, const BlockNormals& nor
 /// Adds a block to the clusters of a group. `basis` is the group's, `flux` the word's first
 /// cluster's.
 template<std::size_t Count>
-HWY_INLINE void add_block(const BlockPairs& pairs, std::uint64_t of_group, Floats above,
+HWY_INLINE void add_block(const Pairs& pairs, std::uint64_t of_group, Floats above,
                           std::size_t lane, const float* weights, const float* basis,
                           const float* flux, GroupSums<Count>& sums) {
     const Lane d;
-    const hn::Rebind<std::uint8_t, Lane> bytes;
-    const hn::Rebind<std::int32_t, Lane> integers;
     std::array<LaneSum, 3> counted; // the weights of a flux
     std::array<LaneSum, 3> flows;   // counts times fluxes
     for (std::size_t channel = 0; channel < 3; ++channel) {
@@ -123,12 +104,10 @@ HWY_INLINE void add_block(const BlockPairs& pairs, std::uint64_t of_group, Float
             flows[channel].multiply_add(lane, count, hn::Set(d, flux[cluster * 3 + channel]));
         }
     };
-    visit_bits(of_group & pairs.mixed, [&](std::size_t cluster) HWY_ATTR {
-        add(cluster,
-            hn::ConvertTo(
-                d, hn::PromoteTo(integers, hn::LoadU(bytes, pairs.counts_of(cluster) + lane))));
+    for_bits(of_group & pairs.mixed, [&](std::size_t cluster) HWY_ATTR {
+        add(cluster, load_counts(d, pairs.counts_of(cluster) + lane));
     });
-    visit_bits(of_group & pairs.across, [&](std::size_t cluster) HWY_ATTR {
+    for_bits(of_group & pairs.across, [&](std::size_t cluster) HWY_ATTR {
         add(cluster, hn::Set(d, static_cast<float>(prt::FullCount)));
     });
     for (std::size_t channel = 0; channel < 3; ++channel) {
@@ -146,16 +125,15 @@ void add_pairs(const BlockScene& scene, std::size_t begin, std::size_t w, const 
                GroupSums<Count>& scratch, HarmonicSums& sums) {
     const std::size_t cluster = w * WordClusters;
     for (std::uint64_t rest = tile.clusters; rest != 0;) {
-        const std::size_t index =
-            lights.group_of()[cluster + static_cast<std::size_t>(std::countr_zero(rest))];
+        const std::size_t index = lights.group_of()[cluster + first_bit(rest)];
         const HarmonicGroup& group = lights.groups()[index];
         const std::size_t end = group.end - cluster;
         const std::uint64_t of_group =
             end < WordClusters ? rest & ((std::uint64_t{1} << end) - 1) : rest;
         rest &= ~of_group;
         scratch.clear(of_group);
-        visit_bits(tile.has_pairs, [&](std::size_t block) {
-            const BlockPairs& pairs = tile.blocks[block];
+        for_bits(tile.has_pairs, [&](std::size_t block) {
+            const Pairs& pairs = tile.blocks[block];
             if ((of_group & (pairs.mixed | pairs.across)) == 0)
                 return;
             for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Lane()))
@@ -165,7 +143,7 @@ void add_pairs(const BlockScene& scene, std::size_t begin, std::size_t w, const 
                     lights.bases().data() + index * 3 * Count, lights.fluxes().data() + cluster * 3,
                     scratch);
         });
-        visit_bits(of_group, [&](std::size_t bit) {
+        for_bits(of_group, [&](std::size_t bit) {
             for (std::size_t channel = 0; channel < 3; ++channel)
                 sums.fluxes[(cluster + bit) * 3 + channel] += scratch.fluxes[bit][channel].sum();
         });
@@ -176,54 +154,38 @@ void add_pairs(const BlockScene& scene, std::size_t begin, std::size_t w, const 
 }
 
 /// Adds the runs of clusters that a block sees whole: where one begins, and where it has ended.
-void add_runs(std::uint64_t edges, std::uint64_t visible, const double* whole, std::size_t stride,
-              double* steps, std::size_t num_clusters) {
-    visit_bits(edges, [&](std::size_t cluster) {
-        if (cluster >= num_clusters)
+void add_runs(const Runs& runs, std::span<const double> whole, std::span<double> steps) {
+    for_bits(runs.edges, [&](std::size_t cluster) {
+        if (cluster >= steps.size() / whole.size())
             return;
-        const double sign = (visible >> cluster & 1u) != 0 ? 1.0 : -1.0;
-        for (std::size_t i = 0; i < stride; ++i)
-            steps[cluster * stride + i] += sign * whole[i];
+        const double sign = (runs.visible >> cluster & 1u) != 0 ? 1.0 : -1.0;
+        for (std::size_t i = 0; i < whole.size(); ++i)
+            steps[cluster * whole.size() + i] += sign * whole[i];
     });
 }
 
 /// Adds a tile to the clusters of words [first_word, last_word).
 template<std::size_t Count>
-void add_tile(const BlockScene& scene, std::size_t tile_index, std::size_t first_word,
+void add_tile(const BlockScene& scene, std::size_t tile, std::size_t first_word,
               std::size_t last_word, const ClusterHarmonics& lights, const HarmonicWeights& weights,
               GroupSums<Count>& scratch, HarmonicSums& sums) {
-    const prt::VisibleCounts& counts = scene.counts;
-    const std::size_t begin = counts.tile_begin(tile_index);
-    const TileWord* words = scene.words.words.data() + tile_index * counts.words_per_block();
-    const std::uint64_t all = counts.tile_blocks(tile_index);
-    const auto whole_of = [&](std::size_t block, std::size_t w) {
-        return counts.visible[counts.word(begin + block, w)] &
-               ~scene.words.across_of(words[w], block);
-    };
-    std::uint64_t inside = 0; // blocks in the middle of a run
-    visit_bits(first_word > 0 ? all : 0, [&](std::size_t block) {
-        inside |= whole_of(block, first_word - 1) >> 63 << block;
-    });
+    constexpr std::size_t Stride = 3 * Count;
+    constexpr std::uint64_t All = ~std::uint64_t{0};
+    const std::size_t begin = scene.counts.tile_begin(tile);
+    OpenRuns open = first_word > 0 ? open_after(scene, tile, first_word - 1) : OpenRuns();
     for (std::size_t w = first_word; w < last_word; ++w) {
-        TilePairs pairs;
-        visit_bits(all, [&](std::size_t block) {
-            const std::uint64_t visible = whole_of(block, w);
-            add_runs(visible ^ (visible << 1 | (inside >> block & 1u)), visible,
-                     weights.whole.data() + (begin + block) * 3 * Count, 3 * Count,
-                     sums.whole_steps.data() + w * WordClusters * 3 * Count,
-                     counts.num_leaves - w * WordClusters);
-            inside = (inside & ~(std::uint64_t{1} << block)) | visible >> 63 << block;
-            const std::size_t word = counts.word(begin + block, w);
-            const BlockPairs of_block{.mixed = counts.mixed[word],
-                                      .across = scene.words.across_of(words[w], block),
-                                      .counts = counts.counts.data() +
-                                                counts.mixed_before[word] * prt::BlockSize};
-            if ((of_block.mixed | of_block.across) == 0)
-                return;
-            pairs.blocks[block] = of_block;
-            pairs.has_pairs |= std::uint64_t{1} << block;
-            pairs.clusters |= of_block.mixed | of_block.across;
+        const std::span<double> steps =
+            std::span(sums.whole_steps).subspan(w * WordClusters * Stride);
+        for_runs(scene, tile, w, All, open, [&](std::size_t block, const Runs& runs) {
+            add_runs(runs, std::span(weights.whole).subspan((begin + block) * Stride, Stride),
+                     steps);
         });
+        TilePairs pairs;
+        pairs.has_pairs =
+            for_pairs(scene, tile, w, All, [&](std::size_t block, const Pairs& of_block) {
+                pairs.blocks[block] = of_block;
+                pairs.clusters |= of_block.mixed | of_block.across;
+            });
         add_pairs<Count>(scene, begin, w, pairs, lights, weights, scratch, sums);
     }
 }

@@ -12,7 +12,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "files/wasm_doubles-inl.h"
+#include "relight/kernels/block_loops-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::relight::HWY_NAMESPACE {
@@ -27,32 +27,6 @@ constexpr std::size_t WordsPerStep = 16;
 
 template<typename T>
 using Tag = hn::CappedTag<T, prt::BlockSize>;
-
-std::size_t first_bit(std::uint64_t bits) {
-    return static_cast<std::size_t>(std::countr_zero(bits));
-}
-
-/// Calls visit(block) for the set bits.
-template<class Visit>
-void for_bits(std::uint64_t bits, const Visit& visit) {
-    for (; bits != 0; bits &= bits - 1)
-        visit(first_bit(bits));
-}
-
-/// Returns 16 counts as numbers of type T, from `lane` on.
-template<typename T>
-hn::Vec<Tag<T>> load_counts(const std::uint8_t* counts) {
-    const Tag<T> d;
-    if constexpr (sizeof(T) == sizeof(float)) {
-        const hn::Rebind<std::uint8_t, Tag<T>> bytes;
-        const hn::Rebind<std::int32_t, Tag<T>> integers;
-        return hn::ConvertTo(d, hn::PromoteTo(integers, hn::LoadU(bytes, counts)));
-    } else {
-        const hn::Rebind<std::uint8_t, Tag<T>> bytes;
-        const hn::Rebind<std::int32_t, Tag<T>> integers;
-        return hn::PromoteTo(d, hn::PromoteTo(integers, hn::LoadU(bytes, counts)));
-    }
-}
 
 /// Groups that one block sees in part: their fluxes, until these meet the groups' bases.
 template<typename T, std::size_t Count>
@@ -162,14 +136,6 @@ private:
     alignas(64) std::array<std::array<std::array<T, prt::BlockSize>, 3>, Most> fluxes_;
 };
 
-/// The clusters of a block and word that add up per receiver.
-struct Pairs {
-    /// Bits of those that the block sees in part, and whole across a horizon.
-    std::uint64_t mixed, across;
-    /// Counts of the word's first mixed cluster.
-    const std::uint8_t* counts;
-};
-
 /// Adds the clusters of a word, group by group, to what one block sees in part. `cluster` is the
 /// word's first.
 template<std::size_t Count>
@@ -192,13 +158,13 @@ HWY_INLINE void add_pairs(const Pairs& pairs, const ClusterHarmonics& lights, st
             const std::uint8_t* count = counts + lane;
             for (std::uint64_t bits = of_group & pairs.mixed; bits != 0;
                  bits &= bits - 1, count += prt::BlockSize)
-                sum.add(load_counts<float>(count), flux + first_bit(bits) * 3);
+                sum.add(load_counts(d, count), flux + first_bit(bits) * 3);
             for_bits(of_group & pairs.across, [&](std::size_t i) {
                 sum.add(hn::Set(d, static_cast<float>(prt::FullCount)), flux + i * 3);
             });
             fluxes.set(fluxes.size(), lane, group, normals, sum);
         }
-        counts += static_cast<std::size_t>(std::popcount(of_group & pairs.mixed)) * prt::BlockSize;
+        counts += num_counts(of_group & pairs.mixed);
         fluxes.push(bases + index * lights.stride());
     }
 }
@@ -215,18 +181,16 @@ void add_scaled(const double* values, double sign, std::size_t stride, double* s
 }
 
 /// Sums the clusters of runs: a sum of all clusters before each run's end, minus a sum of those
-/// before its beginning. `edges` are the bits where a run begins, which is `visible` there, or
-/// ends. `prefix` begins at the word's first cluster.
+/// before its beginning. `prefix` begins at the word's first cluster.
 template<std::size_t Eights>
-HWY_INLINE void add_runs(std::uint64_t edges, std::uint64_t visible, const EightDoubles* prefix,
-                         double* sum) {
+HWY_INLINE void add_runs(const Runs& runs, const EightDoubles* prefix, double* sum) {
     const hn::CappedTag<double, 8> d;
     constexpr std::size_t Lanes = hn::MaxLanes(d), NumVectors = Eights * 8 / Lanes;
     hn::Vec<decltype(d)> sums[NumVectors];
     for (std::size_t i = 0; i < NumVectors; ++i)
         sums[i] = hn::Load(d, sum + i * Lanes);
-    for_bits(edges, [&](std::size_t bit) {
-        const auto sign = hn::Set(d, (visible >> bit & 1u) != 0 ? -1.0 : 1.0);
+    for_bits(runs.edges, [&](std::size_t bit) {
+        const auto sign = hn::Set(d, (runs.visible >> bit & 1u) != 0 ? -1.0 : 1.0);
         const double* before = prefix[bit * Eights].numbers.data();
         for (std::size_t i = 0; i < NumVectors; ++i)
             sums[i] = hn::MulAdd(sign, hn::Load(d, before + i * Lanes), sums[i]);
@@ -256,7 +220,7 @@ void light_harmonics(const BlockScene& scene, std::size_t tile, const ClusterHar
                     Stride * prt::BlockSize, 0.0);
     });
     GroupFluxes<float, Count> fluxes;
-    std::uint64_t inside = 0; // blocks in the middle of a run
+    OpenRuns open;
     for (std::size_t first = 0; first < num_words; first += WordsPerStep) {
         const TileWord* of_tile = scene.words.words.data() + tile * num_words + first;
         // The words of the step that a block has work for.
@@ -271,11 +235,9 @@ void light_harmonics(const BlockScene& scene, std::size_t tile, const ClusterHar
                 const std::size_t cluster = (first + w) * 64;
                 const std::size_t word = counts.word(begin + block, first + w);
                 const std::uint64_t across = scene.words.across_of(of_tile[w], block);
-                const std::uint64_t visible = counts.visible[word] & ~across;
-                if (const std::uint64_t edges = visible ^ (visible << 1 | (inside >> block & 1u));
-                    edges != 0)
-                    add_runs<Eights>(edges, visible, prefix + cluster * Eights, visible_sum);
-                inside = (inside & ~(std::uint64_t{1} << block)) | visible >> 63 << block;
+                if (const Runs runs = open.next(block, counts.visible[word] & ~across);
+                    runs.edges != 0)
+                    add_runs<Eights>(runs, prefix + cluster * Eights, visible_sum);
                 const std::uint64_t mixed = counts.mixed[word];
                 if ((mixed | across) == 0)
                     return;
@@ -289,8 +251,7 @@ void light_harmonics(const BlockScene& scene, std::size_t tile, const ClusterHar
     }
     for_bits(chosen, [&](std::size_t block) {
         double* visible_sum = visible_sums[block].front().numbers.data();
-        // A run up to the last bit of the last word ends behind it.
-        add_runs<Eights>(inside >> block & 1u, 0, prefix + num_words * 64 * Eights, visible_sum);
+        add_runs<Eights>(open.last(block), prefix + num_words * 64 * Eights, visible_sum);
         std::copy_n(visible_sum, Stride, of_blocks.visible + (begin + block) * Stride);
     });
 }
@@ -305,7 +266,7 @@ void add_member(const HarmonicChanges& changes, const HarmonicChanges::Member& m
     const auto add = [&](const std::array<double, 3>& flux, const std::vector<float>& bases) {
         for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
             typename GroupFluxes<double, Count>::Sum sum;
-            sum.add(counts != nullptr ? load_counts<double>(counts + lane)
+            sum.add(counts != nullptr ? load_counts(d, counts + lane)
                                       : hn::Set(d, static_cast<double>(prt::FullCount)),
                     flux.data());
             fluxes.set(fluxes.size(), lane, group, normals, sum);

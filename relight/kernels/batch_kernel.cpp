@@ -35,16 +35,14 @@ class WordPairs {
 public:
     void clear() { num_common_ = num_own_ = 0; }
 
-    /// Adds those of `clusters`. `counts` has those of `mixed`; clusters outside of it are seen
-    /// whole.
-    void add(std::uint64_t clusters, std::uint64_t mixed, const std::uint8_t* counts,
-             const BlockNormals& normals, const BatchLights& lights, std::size_t w) {
-        const std::uint64_t common = lights.common[w];
+    void add(const Pairs& pairs, const BlockNormals& normals, const BatchLights& lights,
+             std::size_t w) {
+        const std::uint64_t clusters = pairs.mixed | pairs.across, common = lights.common[w];
         if ((clusters & common) != 0)
-            add_weights(clusters & common, mixed, counts, normals,
-                        lights.directions.data() + w * 64 * 3, lights.leaders.data() + w * 64);
+            add_weights(clusters & common, pairs, normals, lights.directions.data() + w * 64 * 3,
+                        lights.leaders.data() + w * 64);
         if ((clusters & ~common) != 0)
-            add_normals(clusters & ~common, mixed, counts, normals);
+            add_normals(clusters & ~common, pairs, normals);
     }
 
     /// Adds all of them for environments side by side.
@@ -76,20 +74,17 @@ public:
 
 private:
     /// Where a cluster's counts are; 16 for those that are seen whole.
-    static HWY_INLINE const std::uint8_t* counts_of(std::size_t cluster, std::uint64_t mixed,
-                                                    const std::uint8_t* counts) {
+    static HWY_INLINE const std::uint8_t* counts_of(std::size_t cluster, const Pairs& pairs) {
         static constexpr auto Whole = [] {
             std::array<std::uint8_t, prt::BlockSize> all{};
             all.fill(prt::FullCount);
             return all;
         }();
-        const std::uint64_t bit = std::uint64_t{1} << cluster;
-        return (mixed & bit) != 0 ? counts + num_counts(mixed & (bit - 1)) : Whole.data();
+        return (pairs.mixed >> cluster & 1u) != 0 ? pairs.counts_of(cluster) : Whole.data();
     }
     /// Without branches, which nobody could foresee.
-    HWY_INLINE void add_weights(std::uint64_t bits, std::uint64_t mixed, const std::uint8_t* counts,
-                                const BlockNormals& normals, const float* directions,
-                                const std::uint8_t* leaders) {
+    HWY_INLINE void add_weights(std::uint64_t bits, const Pairs& pairs, const BlockNormals& normals,
+                                const float* directions, const std::uint8_t* leaders) {
         const Floats d;
         for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
             const Normals<Floats> n(normals, lane);
@@ -98,7 +93,7 @@ private:
             std::uint8_t last = 64; // no cluster's bit
             for (std::uint64_t rest = bits; rest != 0; rest &= rest - 1) {
                 const std::size_t i = first_bit(rest);
-                const auto count = load_counts(d, counts_of(i, mixed, counts) + lane);
+                const auto count = load_counts(d, counts_of(i, pairs) + lane);
                 const auto cosine = hn::Max(n.dot(directions + i * 3), hn::Zero(d));
                 const bool goes_on = leaders[i] == last;
                 last = leaders[i];
@@ -109,7 +104,7 @@ private:
             }
         }
     }
-    HWY_INLINE void add_normals(std::uint64_t bits, std::uint64_t mixed, const std::uint8_t* counts,
+    HWY_INLINE void add_normals(std::uint64_t bits, const Pairs& pairs,
                                 const BlockNormals& normals) {
         const Floats d;
         for (; bits != 0; bits &= bits - 1) {
@@ -118,7 +113,7 @@ private:
             BlockNormals& result = normals_[num_own_++];
             for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
                 const Normals<Floats> n(normals, lane);
-                const auto count = load_counts(d, counts_of(i, mixed, counts) + lane);
+                const auto count = load_counts(d, counts_of(i, pairs) + lane);
                 hn::Store(hn::Mul(count, n.x), d, result.axes[0].data() + lane);
                 hn::Store(hn::Mul(count, n.y), d, result.axes[1].data() + lane);
                 hn::Store(hn::Mul(count, n.z), d, result.axes[2].data() + lane);
@@ -144,48 +139,36 @@ private:
 /// Adds up the clusters that the blocks of a tile see in part or across a horizon.
 void add_per_receiver(const BlockScene& scene, std::size_t tile, const BatchLights& lights,
                       BlockLight* light) {
-    // So many words add up in float.
-    constexpr std::size_t FloatWords = 16;
     constexpr std::size_t Most = BatchLights::Most;
-    const prt::VisibleCounts& counts = scene.counts;
-    const std::size_t begin = counts.tile_begin(tile);
-    const std::size_t num_words = counts.words_per_block();
+    const BlockNormals* normals = scene.normals.data() + scene.counts.tile_begin(tile);
+    const std::size_t num_words = scene.counts.words_per_block();
     std::array<std::array<FloatSum, Most>, TileBlocks> sums{};
-    WordPairs pairs;
-    std::uint64_t summed = 0;
+    FloatWords<16> in_float;
+    WordPairs decoded;
     for (std::size_t w = 0; w < num_words; ++w) {
-        const TileWord& blocks = scene.words.words[tile * num_words + w];
-        const std::uint8_t* of_pairs = counts.counts.data() + blocks.mixed_before * prt::BlockSize;
         std::array<WordLights, Most> of_word;
         for (std::size_t k = 0; k < Most; ++k)
             of_word[k] = WordLights(lights.each[k], w);
-        for_blocks(blocks.mixed | blocks.across, [&](std::size_t block) {
-            const std::uint64_t mixed = counts.mixed[counts.word(begin, w) + block];
-            pairs.clear();
-            pairs.add(mixed | scene.words.across_of(blocks, block), mixed, of_pairs,
-                      scene.normals[begin + block], lights, w);
-            of_pairs += num_counts(mixed);
-            for (std::size_t k = 0; k < lights.size; k += Side)
-                pairs.light({of_word[k], of_word[k + 1], of_word[k + 2], of_word[k + 3]},
-                            sums[block].data() + k);
-        });
-        summed |= blocks.mixed | blocks.across;
-        if (w % FloatWords == FloatWords - 1 || w == num_words - 1) {
-            for_blocks(summed, [&](std::size_t block) {
-                for (std::size_t k = 0; k < lights.size; ++k)
-                    add(sums[block][k], light[k * TileBlocks + block]);
-                sums[block] = {};
+        const std::uint64_t lit = for_pairs(
+            scene, tile, w, ~std::uint64_t{0}, [&](std::size_t block, const Pairs& pairs) {
+                decoded.clear();
+                decoded.add(pairs, normals[block], lights, w);
+                for (std::size_t k = 0; k < lights.size; k += Side)
+                    decoded.light({of_word[k], of_word[k + 1], of_word[k + 2], of_word[k + 3]},
+                                  sums[block].data() + k);
             });
-            summed = 0;
-        }
+        in_float.after(w, num_words, lit, [&](std::size_t block) {
+            for (std::size_t k = 0; k < lights.size; ++k)
+                add(sums[block][k], light[k * TileBlocks + block]);
+            sums[block] = {};
+        });
     }
 }
 
 using Vectors = std::array<BatchLights::Numbers, ClusterLights::Stride>;
 
 /// Sums the clusters of runs, as with one environment.
-void add_runs(std::uint64_t edges, std::uint64_t visible, const BatchLights::Numbers* prefix,
-              Vectors& result) {
+void add_runs(const Runs& runs, const BatchLights::Numbers* prefix, Vectors& result) {
     const hn::CappedTag<double, 8> d;
     for (std::size_t lane = 0; lane < BatchLights::Most; lane += hn::Lanes(d)) {
         const auto load = [&](const BatchLights::Numbers& numbers) HWY_ATTR {
@@ -194,9 +177,9 @@ void add_runs(std::uint64_t edges, std::uint64_t visible, const BatchLights::Num
         auto xr = load(result[0]), yr = load(result[1]), zr = load(result[2]);
         auto xg = load(result[3]), yg = load(result[4]), zg = load(result[5]);
         auto xb = load(result[6]), yb = load(result[7]), zb = load(result[8]);
-        for (std::uint64_t bits = edges; bits != 0; bits &= bits - 1) {
+        for (std::uint64_t bits = runs.edges; bits != 0; bits &= bits - 1) {
             const std::size_t i = first_bit(bits);
-            const auto sign = hn::Set(d, (visible >> i & 1u) != 0 ? -1.0 : 1.0);
+            const auto sign = hn::Set(d, (runs.visible >> i & 1u) != 0 ? -1.0 : 1.0);
             const BatchLights::Numbers* before = prefix + i * ClusterLights::Stride;
             xr = hn::MulAdd(sign, load(before[0]), xr);
             yr = hn::MulAdd(sign, load(before[1]), yr);
@@ -220,25 +203,17 @@ void add_runs(std::uint64_t edges, std::uint64_t visible, const BatchLights::Num
 /// Adds up the clusters that the blocks of a tile see whole.
 void add_visible(const BlockScene& scene, std::size_t tile, const BatchLights& lights,
                  BlockLight* light) {
-    const prt::VisibleCounts& counts = scene.counts;
-    const std::size_t begin = counts.tile_begin(tile);
-    const std::size_t num_words = counts.words_per_block();
     std::array<Vectors, TileBlocks> sums{};
     const BatchLights::Numbers* prefix = lights.prefix.data();
-    std::uint64_t inside = 0; // blocks in the middle of a run
-    for (std::size_t w = 0; w < num_words; ++w, prefix += 64 * ClusterLights::Stride) {
-        const TileWord& blocks = scene.words.words[tile * num_words + w];
-        const std::uint64_t* words = counts.visible.data() + counts.word(begin, w);
-        for_blocks(blocks.edges, [&](std::size_t block) {
-            const std::uint64_t visible = words[block] & ~scene.words.across_of(blocks, block);
-            add_runs(visible ^ (visible << 1 | (inside >> block & 1u)), visible, prefix,
-                     sums[block]);
-            inside = (inside & ~(std::uint64_t{1} << block)) | visible >> 63 << block;
-        });
+    const std::uint64_t all = scene.counts.tile_blocks(tile);
+    OpenRuns open;
+    for (std::size_t w = 0; w < scene.counts.words_per_block(); ++w) {
+        for_runs(scene, tile, w, all, open,
+                 [&](std::size_t block, const Runs& runs) { add_runs(runs, prefix, sums[block]); });
+        prefix += 64 * ClusterLights::Stride;
     }
-    for_blocks(counts.tile_blocks(tile), [&](std::size_t block) {
-        // A run up to the last bit of the last word ends behind it.
-        add_runs(inside >> block & 1u, 0, prefix, sums[block]);
+    for_bits(all, [&](std::size_t block) {
+        add_runs(open.last(block), prefix, sums[block]);
         for (std::size_t k = 0; k < lights.size; ++k)
             for (std::size_t i = 0; i < ClusterLights::Stride; ++i)
                 light[k * TileBlocks + block].visible[i] = sums[block][i].of[k];

@@ -19,17 +19,6 @@ namespace relumine::relight::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The clusters of a block and word that add up per receiver.
-struct PairWord {
-    /// Seen in part.
-    std::uint64_t mixed;
-    /// Seen whole, across a horizon.
-    std::uint64_t across;
-    /// Begins at the first entry of `mixed`.
-    const std::uint8_t* counts;
-    const BlockNormals& normals;
-};
-
 /// Receivers of a block that are summed side by side, so that each cluster is read and decided
 /// about once for them: two vectors of them where one does not hold the block.
 struct SideBySide {
@@ -74,16 +63,17 @@ HWY_INLINE void add_counted(std::uint64_t bits, const std::uint8_t* counts,
 
 /// Adds the clusters of a block and word that add up per receiver.
 template<bool AnySpread>
-void add_pairs(const PairWord& word, const WordLights& lights, FloatSum& result) {
+void add_pairs(const Pairs& pairs, const BlockNormals& normals, const WordLights& lights,
+               FloatSum& result) {
     const Floats d;
     constexpr std::size_t Last = SideBySide::NumVectors - 1;
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += SideBySide::Size) {
         const std::size_t last = lane + Last * hn::Lanes(d);
-        const Normals<Floats> n[] = {{word.normals, lane}, {word.normals, last}};
+        const Normals<Floats> n[] = {{normals, lane}, {normals, last}};
         Sum sums[] = {{result, lane}, {result, last}};
-        if (word.across != 0) {
+        if (pairs.across != 0) {
             Sum whole[2];
-            add_whole<AnySpread>(word.across, n, lights, whole);
+            add_whole<AnySpread>(pairs.across, n, lights, whole);
             const auto full = hn::Set(d, static_cast<float>(prt::FullCount));
             for (std::size_t v = 0; v < SideBySide::NumVectors; ++v) {
                 sums[v].red = hn::MulAdd(full, whole[v].red, sums[v].red);
@@ -91,25 +81,24 @@ void add_pairs(const PairWord& word, const WordLights& lights, FloatSum& result)
                 sums[v].blue = hn::MulAdd(full, whole[v].blue, sums[v].blue);
             }
         }
-        add_counted<AnySpread>(word.mixed, word.counts + lane, n, lights, sums);
+        add_counted<AnySpread>(pairs.mixed, pairs.counts + lane, n, lights, sums);
         for (std::size_t v = 0; v < SideBySide::NumVectors; ++v)
             sums[v].store(result, lane + v * hn::Lanes(d));
     }
 }
 
 /// Sums the clusters of runs: a sum of all clusters before each run's end, minus a sum of those
-/// before its beginning. `edges` are the bits where a run begins, which is `visible` there, or
-/// ends. `prefix` begins at the word's first cluster.
-void add_runs(std::uint64_t edges, std::uint64_t visible, const double* prefix, double* sum) {
+/// before its beginning. `prefix` begins at the word's first cluster.
+void add_runs(const Runs& runs, const double* prefix, double* sum) {
     constexpr std::size_t Last = ClusterLights::Stride - 1;
     constexpr std::array<double, 2> Signs = {1.0, -1.0};
     const hn::CappedTag<double, Last> d;
     double last = sum[Last];
     for (std::size_t lane = 0; lane < Last; lane += hn::Lanes(d)) {
         auto lanes = hn::LoadU(d, sum + lane);
-        for (std::uint64_t bits = edges; bits != 0; bits &= bits - 1) {
+        for (std::uint64_t bits = runs.edges; bits != 0; bits &= bits - 1) {
             const std::size_t i = first_bit(bits);
-            const double sign = Signs[visible >> i & 1u];
+            const double sign = Signs[runs.visible >> i & 1u];
             const double* before = prefix + i * ClusterLights::Stride;
             lanes = hn::MulAdd(hn::Set(d, sign), hn::LoadU(d, before + lane), lanes);
             if (lane == 0)
@@ -156,27 +145,19 @@ double block_radiance(const BlockNormals& normals, const BlockLight& light,
 /// Adds up the clusters that the chosen blocks of a tile see whole.
 void add_visible(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
                  std::uint64_t chosen, BlockLight* of_block) {
-    const prt::VisibleCounts& counts = scene.counts;
-    const std::size_t begin = counts.tile_begin(tile);
-    const std::size_t num_words = counts.words_per_block();
     // Side by side, because BlockLights are too far apart for the nearest cache.
     using Vector = std::array<double, ClusterLights::Stride>;
     std::array<Vector, prt::VisibleCounts::TileBlocks> sums{};
     const double* prefix = lights.prefix.data();
-    std::uint64_t inside = 0; // blocks in the middle of a run
-    for (std::size_t w = 0; w < num_words; ++w, prefix += 64 * ClusterLights::Stride) {
-        const TileWord& blocks = scene.words.words[tile * num_words + w];
-        const std::uint64_t* words = counts.visible.data() + counts.word(begin, w);
-        for_blocks(blocks.edges & chosen, [&](std::size_t block) {
-            const std::uint64_t visible = words[block] & ~scene.words.across_of(blocks, block);
-            add_runs(visible ^ (visible << 1 | (inside >> block & 1u)), visible, prefix,
-                     sums[block].data());
-            inside = (inside & ~(std::uint64_t{1} << block)) | visible >> 63 << block;
+    OpenRuns open;
+    for (std::size_t w = 0; w < scene.counts.words_per_block(); ++w) {
+        for_runs(scene, tile, w, chosen, open, [&](std::size_t block, const Runs& runs) {
+            add_runs(runs, prefix, sums[block].data());
         });
+        prefix += 64 * ClusterLights::Stride;
     }
-    for_blocks(chosen, [&](std::size_t block) {
-        // A run up to the last bit of the last word ends behind it.
-        add_runs(inside >> block & 1u, 0, prefix, sums[block].data());
+    for_bits(chosen, [&](std::size_t block) {
+        add_runs(open.last(block), prefix, sums[block].data());
         of_block[block].visible = sums[block];
     });
 }
@@ -184,39 +165,23 @@ void add_visible(const BlockScene& scene, std::size_t tile, const ClusterLights&
 /// Adds up the clusters that the chosen blocks of a tile see in part or across a horizon.
 void add_per_receiver(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
                       std::uint64_t chosen, BlockLight* of_block) {
-    // So many words add up in float.
-    constexpr std::size_t FloatWords = 8;
-    const prt::VisibleCounts& counts = scene.counts;
-    const std::size_t begin = counts.tile_begin(tile);
-    const std::size_t num_words = counts.words_per_block();
+    const BlockNormals* normals = scene.normals.data() + scene.counts.tile_begin(tile);
+    const std::size_t num_words = scene.counts.words_per_block();
     std::array<FloatSum, prt::VisibleCounts::TileBlocks> sums{};
-    std::uint64_t summed = 0;
+    FloatWords<8> in_float;
     for (std::size_t w = 0; w < num_words; ++w) {
-        const TileWord& blocks = scene.words.words[tile * num_words + w];
-        const std::size_t first_word = counts.word(begin, w);
         const WordLights of_word(lights, w);
-        const std::uint64_t pairs = (blocks.mixed | blocks.across) & chosen;
-        const std::uint8_t* of_pairs = counts.counts.data() + blocks.mixed_before * prt::BlockSize;
-        for_blocks(blocks.mixed | pairs, [&](std::size_t block) {
-            const PairWord word{counts.mixed[first_word + block],
-                                scene.words.across_of(blocks, block), of_pairs,
-                                scene.normals[begin + block]};
-            of_pairs += num_counts(word.mixed);
-            if ((chosen >> block & 1u) == 0)
-                return;
-            if (((word.mixed | word.across) & of_word.spread) != 0)
-                add_pairs<true>(word, of_word, sums[block]);
-            else
-                add_pairs<false>(word, of_word, sums[block]);
-        });
-        summed |= pairs;
-        if (w % FloatWords == FloatWords - 1 || w == num_words - 1) {
-            for_blocks(summed, [&](std::size_t block) {
-                add(sums[block], of_block[block]);
-                sums[block] = {};
+        const std::uint64_t lit =
+            for_pairs(scene, tile, w, chosen, [&](std::size_t block, const Pairs& pairs) {
+                if (((pairs.mixed | pairs.across) & of_word.spread) != 0)
+                    add_pairs<true>(pairs, normals[block], of_word, sums[block]);
+                else
+                    add_pairs<false>(pairs, normals[block], of_word, sums[block]);
             });
-            summed = 0;
-        }
+        in_float.after(w, num_words, lit, [&](std::size_t block) {
+            add(sums[block], of_block[block]);
+            sums[block] = {};
+        });
     }
 }
 
@@ -224,7 +189,7 @@ void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& 
                 BlockLight* light, std::uint64_t chosen) {
     const std::size_t begin = scene.counts.tile_begin(tile);
     chosen &= scene.counts.tile_blocks(tile);
-    for_blocks(chosen, [&](std::size_t block) { light[begin + block] = {}; });
+    for_bits(chosen, [&](std::size_t block) { light[begin + block] = {}; });
     add_visible(scene, tile, lights, chosen, light + begin);
     add_per_receiver(scene, tile, lights, chosen, light + begin);
 }

@@ -158,7 +158,7 @@ public:
         }
         for (Pending& word : pending_)
             finish(word);
-        for_blocks(summed_, [&](std::size_t block) {
+        for_bits(summed_, [&](std::size_t block) {
             add(sum_of_all_, whole_sums_[block]);
             add(whole_sums_[block], of_block_[block].visible);
         });
@@ -209,12 +209,11 @@ private:
         // neighbours in the sky.
         VectorChange of_all_clusters{};
         add_whole(change, clusters, of_all_clusters);
-        for_blocks(blocks.full,
-                   [&](std::size_t block) { add(of_all_clusters, whole_sums_[block]); });
+        for_bits(blocks.full, [&](std::size_t block) { add(of_all_clusters, whole_sums_[block]); });
         summed_ |= blocks.full;
         const std::uint64_t* visible =
             scene_.counts.visible.data() + scene_.counts.word(begin_, change.word);
-        for_blocks((blocks.visible | blocks.across) & ~blocks.full, [&](std::size_t block) {
+        for_bits((blocks.visible | blocks.across) & ~blocks.full, [&](std::size_t block) {
             const std::uint64_t seen = visible[block] & clusters;
             if (seen == 0)
                 return;
@@ -241,7 +240,7 @@ private:
             scene_.counts.mixed.data() + scene_.counts.word(begin_, change.word);
         const std::uint8_t* counts =
             scene_.counts.counts.data() + blocks.mixed_before * prt::BlockSize;
-        for_blocks(blocks.mixed, [&](std::size_t block) {
+        for_bits(blocks.mixed, [&](std::size_t block) {
             const ChangedPairs pairs{.block = block,
                                      .mixed = mixed[block] & clusters,
                                      .all_mixed = mixed[block],

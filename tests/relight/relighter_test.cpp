@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 #include <stdexcept>
 #include <tuple>
@@ -15,6 +14,7 @@
 
 #include "files/parallel.h"
 #include "relight/kernels/block_kernels.h"
+#include "relight/reference/plain_relight.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"
 #include "tests/relight/arrays.h"
@@ -56,37 +56,23 @@ glm::dvec3 of_directional(const VectorIrradiance& light, const glm::dvec3& n) {
     return off > all / 128.0 / 128.0 ? light.on(n) : result;
 }
 
-/// [JN, Eq. 8] as it is written: B(x) = sum over C of c/16 max(n.E_C, 0)/pi. Where
-/// `with_directional`, clusters that a block does not see whole above its horizons are directional
-/// lights.
+/// plain_relight(), where clusters that a block does not see whole above its horizons are
+/// directional lights.
 std::vector<glm::vec3> plainly_relit(const prt::Transfer& transfer,
-                                     const cubemap::CubeMap& environment,
-                                     bool with_directional = true) {
+                                     const cubemap::CubeMap& environment) {
+    constexpr std::size_t TileBlocks = prt::VisibleCounts::TileBlocks;
     const prt::VisibleCounts& counts = transfer.counts;
-    const auto sums =
-        LightBinning(environment.resolution).sums(environment, transfer.quadtree.leaves());
     const TileWords words = tile_words(transfer, block_normals(transfer.normals));
-    std::vector<glm::vec3> radiance(transfer.num_receivers());
-    for (std::size_t place = 0; place < transfer.num_receivers(); ++place) {
-        const glm::dvec3 n = transfer.normals[place];
-        const std::size_t block = place / prt::BlockSize;
-        glm::dvec3 b(0.0);
-        for (std::size_t leaf = 0; leaf < transfer.num_clusters(); ++leaf) {
-            const std::uint64_t bit = std::uint64_t{1} << (leaf % 64);
-            const bool is_visible = (counts.visible[counts.word(block, leaf / 64)] & bit) != 0;
-            const std::size_t tile = block / prt::VisibleCounts::TileBlocks;
-            const bool is_across =
-                (words.across_of(words.words[tile * counts.words_per_block() + leaf / 64],
-                                 block % prt::VisibleCounts::TileBlocks) &
-                 bit) != 0;
-            glm::dvec3 part = sums[leaf].on(n);
-            if (with_directional && (is_across || !is_visible))
-                part = of_directional(sums[leaf], n);
-            b += counts.count(place, leaf) / 16.0 * part / std::numbers::pi;
-        }
-        radiance[transfer.order[place]] = glm::max(b, 0.0);
-    }
-    return radiance;
+    return plain_relight(
+        transfer, environment,
+        [&](std::size_t place, std::size_t cluster, const VectorIrradiance& light) {
+            const std::size_t block = place / prt::BlockSize, w = cluster / 64;
+            const TileWord& word = words.words[block / TileBlocks * counts.words_per_block() + w];
+            const std::uint64_t whole =
+                counts.visible[counts.word(block, w)] & ~words.across_of(word, block % TileBlocks);
+            const glm::vec3& n = transfer.normals[place];
+            return (whole >> cluster % 64 & 1u) != 0 ? light.on(n) : of_directional(light, n);
+        });
 }
 
 prt::Receivers random_receivers(std::size_t n, std::uint32_t seed) {
@@ -135,7 +121,7 @@ TEST(Relighter, DirectionalLightsAreNearTheirLight) {
     const prt::Transfer& transfer = relit_scene().transfer;
     for (const std::uint32_t r : {16u, 64u, 200u}) {
         const cubemap::CubeMap environment = scenes::random_environment(r, r);
-        const std::vector<glm::vec3> exact = plainly_relit(transfer, environment, false);
+        const std::vector<glm::vec3> exact = plain_relight(transfer, environment);
         const std::vector<glm::vec3> with_directional = plainly_relit(transfer, environment);
         EXPECT_NE(with_directional, exact);
         expect_close(with_directional, exact, ClusterLights::DirectionalTolerance);
