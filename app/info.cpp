@@ -142,9 +142,11 @@ void add_info(Command& program, Session& session) {
     Command command = program.add_command(
         "info", "what a file is: a scene, a plan or a part of one, an environment or a mesh");
     auto options = std::make_shared<InfoArguments>();
-    command.add(row("FILE", options->path,
-                    ".prt, .exr, .hdr, .obj, .gltf, .glb, .ply, .off or .stl, a plan or a part",
-                    {.file = true, .required = true}));
+    command.add(
+        row("FILE", options->path,
+            "a scene or a part of one (.prt), a plan, an environment (.exr, .hdr) or a mesh: " +
+                mesh::mesh_extensions(),
+            {.file = true, .required = true}));
     command.add(row<LayoutText>("--layout", options->layout,
                                 "layout of an environment, where the file does not tell"));
     command.add(row("--picture", options->picture,

@@ -5,16 +5,18 @@
 
 #include <glm/geometric.hpp>
 
-#include "files/extension.h"
+#include "mesh/formats/mesh_format.h"
 
 namespace relumine::mesh {
 
 UpAxis customary_up(const std::filesystem::path& path) {
-    return files::extension_of(path) == ".stl" ? UpAxis::Z : UpAxis::Y;
+    const MeshFormat* format = format_of(path);
+    return format != nullptr ? format->up : UpAxis::Y;
 }
 
 std::optional<float> customary_crease(const std::filesystem::path& path) {
-    return files::extension_of(path) == ".stl" ? std::optional(40.0f) : std::nullopt;
+    const MeshFormat* format = format_of(path);
+    return format != nullptr ? format->crease : std::nullopt;
 }
 
 bool stands_on_z(const TriangleMesh& mesh, std::size_t num_vertices) {

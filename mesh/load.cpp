@@ -1,66 +1,52 @@
 #include "mesh/load.h"
 
-#include <algorithm>
-#include <array>
 #include <new>
 #include <stdexcept>
-#include <system_error>
-
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "files/extension.h"
 #include "files/hash.h"
+#include "files/joined.h"
 #include "files/output_file.h"
-#include "mesh/formats/polygon_soup.h"
+#include "mesh/formats/mesh_format.h"
 
 namespace relumine::mesh {
 
-namespace {
-
-PolygonSoup read_soup(const std::filesystem::path& path, const std::string& extension,
-                      std::span<const std::byte> bytes, const std::optional<Pose>& pose) {
-    if (extension == ".gltf" || extension == ".glb")
-        return read_gltf(bytes, path.parent_path(), pose);
-    if (pose)
-        throw std::runtime_error(
-            fmt::format("expected .glb or .gltf for a pose, got '{}'", extension));
-    if (extension == ".obj")
-        return read_obj(bytes, path.parent_path());
-    if (extension == ".off")
-        return read_off(bytes);
-    if (extension == ".ply")
-        return read_ply(bytes);
-    return read_stl(bytes);
+std::string mesh_extensions() {
+    std::vector<std::string_view> names;
+    for (const MeshFormat& format : mesh_formats())
+        names.push_back(format.extension);
+    const std::string_view last = names.back();
+    names.pop_back();
+    return fmt::format("{} or {}", files::joined(names, ", "), last);
 }
-
-} // namespace
 
 bool has_mesh_extension(const std::filesystem::path& path) {
-    constexpr std::array<std::string_view, 6> Extensions = {".glb", ".gltf", ".obj",
-                                                            ".off", ".ply",  ".stl"};
-    return std::find(Extensions.begin(), Extensions.end(), files::extension_of(path)) !=
-           Extensions.end();
+    return format_of(path) != nullptr;
 }
 
-TriangleMesh load(const std::filesystem::path& path, NormalSource normals, std::uint64_t* hash,
-                  std::optional<Camera>* camera, const std::optional<Pose>& pose) {
-    const std::string extension = files::extension_of(path);
+LoadedMesh load(const std::filesystem::path& path, const LoadOptions& options) {
     // A name that is not there says so first.
     static_cast<void>(files::size(path));
-    if (!has_mesh_extension(path))
-        throw std::runtime_error(fmt::format(
-            "{}: expected a mesh file (.glb, .gltf, .obj, .off, .ply or .stl), got '{}'",
-            path.string(), extension));
+    const MeshFormat* format = format_of(path);
+    if (format == nullptr)
+        throw std::runtime_error(fmt::format("{}: expected a mesh file ({}), got '{}'",
+                                             path.string(), mesh_extensions(),
+                                             files::extension_of(path)));
     const std::vector<std::byte> bytes = files::read(path);
-    if (hash != nullptr)
-        *hash = files::hash_of(bytes);
     try {
-        PolygonSoup soup = read_soup(path, extension, bytes, pose);
-        if (camera != nullptr)
-            *camera = soup.camera;
-        return to_mesh(std::move(soup), normals);
+        if (options.pose && !format->has_animations)
+            throw std::runtime_error(
+                fmt::format("expected .glb or .gltf for a pose, got '{}'", format->extension));
+        PolygonSoup soup = format->read({bytes, path.parent_path(), options.pose});
+        LoadedMesh result;
+        result.hash = files::hash_of(bytes);
+        result.camera = soup.camera;
+        static_cast<TriangleMesh&>(result) = to_mesh(std::move(soup), options.normals);
+        return result;
     } catch (const std::bad_alloc&) {
         throw std::runtime_error(
             fmt::format("{}: expected a mesh that fits into memory, got {} bytes", path.string(),

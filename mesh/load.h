@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -15,7 +16,21 @@
 
 namespace relumine::mesh {
 
-/// Reads a mesh. The extension tells the format (.obj .gltf .glb .ply .off .stl, any case).
+struct LoadOptions {
+    NormalSource normals = NormalSource::File;
+    /// A moment of an animation, in place of the pose that the nodes of a glTF file say
+    std::optional<Pose> pose = {};
+};
+
+/// A mesh, with what else its file says.
+struct LoadedMesh : TriangleMesh {
+    /// xxHash64 of the file's bytes
+    std::uint64_t hash = 0;
+    /// The first perspective camera of a glTF scene
+    std::optional<Camera> camera = {};
+};
+
+/// Reads a mesh. The extension tells the format (mesh_extensions(), any case).
 ///
 /// Vertices keep the file's count and order. STL has no shared vertices, so equal points are welded
 /// exactly. Polygons are triangulated, also concave and degenerate ones: n corners give n - 2
@@ -32,24 +47,21 @@ namespace relumine::mesh {
 /// does not stop it either, nor a material that cannot be read: TriangleMesh::warnings says so, and
 /// the surface is grey or without its texture.
 ///
-/// The skins and morph targets of a glTF file are as its nodes say, or as `pose` does.
+/// The skins and morph targets of a glTF file are as its nodes say, or as the pose does.
 ///
-/// `hash` receives the xxHash64 of the file's bytes, `camera` the first perspective camera of a
-/// glTF scene, if there is one.
 /// Throws:  std::runtime_error "path: expected X, got Y" if the file cannot be read, has no face of
 ///          three corners, has an index out of range or a position that is not finite, or declares
 ///          more or less than it holds; for a pose of a file that is no glTF, or does not have
 ///          the animation.
-[[nodiscard]] TriangleMesh load(const std::filesystem::path& path,
-                                NormalSource normals = NormalSource::File,
-                                std::uint64_t* hash = nullptr,
-                                std::optional<Camera>* camera = nullptr,
-                                const std::optional<Pose>& pose = {});
+[[nodiscard]] LoadedMesh load(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// Reads the vertices of a .ply file, which need not have faces or be finite.
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y".
 [[nodiscard]] std::vector<glm::vec3> load_points(const std::filesystem::path& path);
+
+/// Returns ".glb, .gltf, .obj, .off, .ply or .stl".
+[[nodiscard]] std::string mesh_extensions();
 
 /// Returns true if load() knows the path's extension, in capitals or not.
 [[nodiscard]] bool has_mesh_extension(const std::filesystem::path& path);

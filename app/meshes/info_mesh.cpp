@@ -102,8 +102,7 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
         require_extension("--picture", options.picture, {".png"});
         check_output(options.picture, {options.path});
     }
-    const mesh::TriangleMesh mesh =
-        mesh::load(options.path, mesh::NormalSource::File, nullptr, nullptr, options.pose);
+    const mesh::TriangleMesh mesh = mesh::load(options.path, {.pose = options.pose});
     const mesh::Bounds box = mesh::bounds(mesh);
     const mesh::Diagnosis diagnosis = mesh::diagnose(mesh);
     session.say(fmt::format("mesh                {} vertices, {}", mesh.num_vertices(),

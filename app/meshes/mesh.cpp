@@ -27,7 +27,7 @@ struct MeshFiles {
     std::optional<float> crease;
 
     void add_to(Command& command) {
-        command.add(row("MESH", input, "mesh: .obj, .gltf, .glb, .ply, .off or .stl",
+        command.add(row("MESH", input, "mesh: " + mesh::mesh_extensions(),
                         {.file = true, .required = true}));
         command.add(row("-o,--output", output, "the mesh file to write, .ply, .glb or .obj",
                         {.file = true, .required = true}));

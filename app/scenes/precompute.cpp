@@ -21,6 +21,7 @@
 #include "app/scenes/checkpoint_words.h"
 #include "app/scenes/first_scene.h"
 #include "files/counted.h"
+#include "files/extension.h"
 #include "mesh/customs.h"
 #include "mesh/floor.h"
 #include "mesh/half_edge/winding.h"
@@ -311,8 +312,8 @@ Mesh made_mesh(const PrecomputeArguments& options, Session& session) {
     mesh_options.max_memory = options.precompute.max_memory;
     Mesh mesh = load_mesh(options.mesh, mesh_options);
     if (turns_by_custom(options))
-        session.say(fmt::format("{}: +Z is up, by the custom of .stl; --up y where it is not",
-                                options.mesh));
+        session.say(fmt::format("{}: +Z is up, by the custom of {}; --up y where it is not",
+                                options.mesh, files::extension_of(options.mesh)));
     else if (!options.mesh_options.up &&
              mesh::stands_on_z(mesh.geometry,
                                mesh.geometry.num_vertices() -
@@ -323,9 +324,9 @@ Mesh made_mesh(const PrecomputeArguments& options, Session& session) {
     if (const auto crease = mesh::customary_crease(options.mesh);
         crease && !options.mesh_options.crease &&
         options.mesh_options.normals == mesh::NormalSource::File)
-        session.say(fmt::format("{}: edges over {} degrees are sharp, by the custom of .stl; "
+        session.say(fmt::format("{}: edges over {} degrees are sharp, by the custom of {}; "
                                 "--normals smooth where they are not",
-                                options.mesh, *crease));
+                                options.mesh, *crease, files::extension_of(options.mesh)));
     for (const std::string& line : mesh::left_out(mesh.geometry))
         session.warn(fmt::format("{}: {}", options.mesh, line));
     warn_of_winding(mesh.geometry, options.mesh, session);
@@ -457,8 +458,7 @@ void add_precompute(Command& program, Session& session) {
     Command command =
         program.add_command("precompute", "compute a mesh's light transfer: MESH -> SCENE.prt");
     auto options = std::make_shared<PrecomputeArguments>();
-    command.add(
-        row("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl", {.file = true}));
+    command.add(row("MESH", options->mesh, "mesh: " + mesh::mesh_extensions(), {.file = true}));
     command.add(row("-o,--output", options->output,
                     "the scene file to write, .prt; with --plan the part",
                     {.file = true, .required = true}));
@@ -474,7 +474,7 @@ void add_plan(Command& program, Session& session) {
     auto options = std::make_shared<PrecomputeArguments>();
     options->is_plan = true;
     options->precompute.checkpoint_seconds = 0.0;
-    command.add(row("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl",
+    command.add(row("MESH", options->mesh, "mesh: " + mesh::mesh_extensions(),
                     {.file = true, .required = true}));
     command.add(row("-o,--output", options->output, "the plan to write, .plan",
                     {.file = true, .required = true}));

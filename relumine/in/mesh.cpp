@@ -172,9 +172,11 @@ OptionTable options_of(RefineOptions& o) {
 }
 
 Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
+    mesh::LoadedMesh loaded = mesh::load(path, {.normals = options.normals, .pose = options.pose});
     Mesh mesh;
-    mesh.geometry =
-        mesh::load(path, options.normals, &mesh.source_hash, &mesh.camera, options.pose);
+    mesh.source_hash = loaded.hash;
+    mesh.camera = loaded.camera;
+    mesh.geometry = std::move(loaded);
     mesh.source = path.string();
     const std::optional<float> crease =
         options.crease || options.normals == mesh::NormalSource::Smooth

@@ -130,8 +130,7 @@ TEST_F(GltfPoseTest, PosesOfAnimations) {
     const Model model = turning_square();
     const auto path = write("turn.gltf", model.embedded());
     const auto corner = [&](const std::string& animation, double seconds) {
-        return load(path, NormalSource::File, nullptr, nullptr, Pose{animation, seconds})
-            .positions[1];
+        return load(path, {.pose = Pose{animation, seconds}}).positions[1];
     };
     EXPECT_EQ(load(path).positions[1], glm::vec3(1, 0, 0)) << "the node's own place";
     EXPECT_EQ(corner("Turn", 0.0), glm::vec3(1, 0, 1)) << "before the first key";
@@ -148,18 +147,11 @@ TEST_F(GltfPoseTest, PosesOfAnimations) {
                    "expected an animation of the file ('Turn') for its pose, got 'Jump'");
     expect_refusal([&] { static_cast<void>(corner("1", 0.0)); }, "got '1'");
     const auto still = write("still.gltf", square().embedded());
-    expect_refusal(
-        [&] {
-            static_cast<void>(load(still, NormalSource::File, nullptr, nullptr, Pose{"Turn", 0.0}));
-        },
-        "which has none");
+    expect_refusal([&] { static_cast<void>(load(still, {.pose = Pose{"Turn", 0.0}})); },
+                   "which has none");
     const auto ply_file = write("box.ply", box_ply());
-    expect_refusal(
-        [&] {
-            static_cast<void>(
-                load(ply_file, NormalSource::File, nullptr, nullptr, Pose{"Turn", 0.0}));
-        },
-        "expected .glb or .gltf for a pose, got '.ply'");
+    expect_refusal([&] { static_cast<void>(load(ply_file, {.pose = Pose{"Turn", 0.0}})); },
+                   "expected .glb or .gltf for a pose, got '.ply'");
 }
 
 TEST_F(GltfPoseTest, AnimationsThatAreBroken) {
@@ -167,12 +159,7 @@ TEST_F(GltfPoseTest, AnimationsThatAreBroken) {
         Model model = turning_square();
         change(model.json["animations"][0]);
         const auto path = write("broken.gltf", model.embedded());
-        expect_refusal(
-            [&] {
-                static_cast<void>(
-                    load(path, NormalSource::File, nullptr, nullptr, Pose{"Turn", 0.0}));
-            },
-            part);
+        expect_refusal([&] { static_cast<void>(load(path, {.pose = Pose{"Turn", 0.0}})); }, part);
     };
     refused([](Json& a) { a["samplers"][0]["interpolation"] = "SMOOTH"; }, "got 'SMOOTH'");
     refused([](Json& a) { a["channels"][0]["sampler"] = 5; }, "samplers below 3, got 5");

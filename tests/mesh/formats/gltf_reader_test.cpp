@@ -779,18 +779,14 @@ TEST_F(GltfTest, TheFirstPerspectiveCameraIsKept) {
                             {"rotation", {0, h, 0, h}},
                             {"scale", {3, 3, 3}}}};
     model.json["scenes"] = {{{"nodes", {0}}}};
-    std::optional<Camera> camera;
-    static_cast<void>(
-        load(write("a.gltf", model.embedded()), NormalSource::File, nullptr, &camera));
+    const std::optional<Camera> camera = load(write("a.gltf", model.embedded())).camera;
     ASSERT_TRUE(camera);
     EXPECT_LT(glm::distance(camera->eye, {7, 2, 0}), 1e-5f);
     // As far ahead as the middle of the square, at x = 0.5, is.
     EXPECT_LT(glm::distance(camera->target, {0.5f, 2, 0}), 1e-5f);
     EXPECT_NEAR(camera->fov_degrees, 28.64789f, 1e-4f);
     model.json["cameras"][1]["perspective"]["yfov"] = 0;
-    static_cast<void>(
-        load(write("b.gltf", model.embedded()), NormalSource::File, nullptr, &camera));
-    EXPECT_FALSE(camera);
+    EXPECT_FALSE(load(write("b.gltf", model.embedded())).camera);
 }
 
 /// A square with a node that has a light.

@@ -353,7 +353,7 @@ TEST(BeamScene, ChangesNoTransfer) {
     for (const auto& entry : std::filesystem::directory_iterator(ugly)) {
         mesh::TriangleMesh mesh;
         try {
-            mesh = mesh::load(entry.path(), mesh::NormalSource::Smooth);
+            mesh = mesh::load(entry.path(), {.normals = mesh::NormalSource::Smooth});
         } catch (const std::exception&) {
             continue; // the reader's business
         }
