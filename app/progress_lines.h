@@ -3,7 +3,7 @@
 
 namespace relumine::app {
 
-/// Of one piece of work.
+/// Says when a line of progress is due, for one piece of work.
 class ProgressLines {
 public:
     /// Whether to write a line now, which then counts as written. A line comes with every tenth,

@@ -80,7 +80,7 @@ struct CubeMap {
 /// Any other mixes them, and energy is kept as in resample(); texels must be finite. `memory`
 /// may be written_over().
 [[nodiscard]] CubeMap turned(const CubeMap& map, const glm::dmat3& turn, CubeMap memory = {});
-/// The same of a map that nobody needs any more, which is not copied where nothing turns.
+/// Turns a map that nobody needs any more. It is not copied where nothing turns.
 [[nodiscard]] CubeMap turned(CubeMap&& map, const glm::dmat3& turn);
 
 /// Returns true if a matrix carries axes to axes.

@@ -12,7 +12,7 @@ struct LuminanceWeights {
 
 /// The weights of ITU-R BT.709.
 inline constexpr LuminanceWeights Rec709Weights{0.2126, 0.7152, 0.0722};
-/// The same weights as [D05] prints them. Light lists use these, like that paper and its
+/// The weights of ITU-R BT.709 as [D05] prints them. Light lists use these, like that paper and its
 /// successors.
 inline constexpr LuminanceWeights MedianCutWeights{0.2125, 0.7154, 0.0721};
 

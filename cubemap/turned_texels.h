@@ -55,7 +55,7 @@ private:
 
     const CubeMap& map_;
     std::uint32_t num_rows_, num_columns_;
-    /// Of the first texel of each face of the turned map, on each of the map's.
+    /// [face of the turned map][face of the map] the former's first texel on the latter.
     std::array<std::array<TilePlace, NumFaces>, NumFaces> places_;
     /// Turns, the identity first. Each turn times -1 is a symmetry, too.
     std::vector<Symmetry> symmetries_;

@@ -32,8 +32,8 @@ bool cut(glm::dvec2& a, glm::dvec2& b, int axis, double n) {
     return true;
 }
 
-/// Of the edges of width x height corners, each to the corner `next` further on, sets the ends of
-/// what lies on the face. Edges beside it become points.
+/// Sets the ends of the parts of edges that lie on the face. Edges run from width x height corners,
+/// each to the corner `next` further on. Edges beside the face become points.
 void cut_edges(std::size_t width, std::size_t height, std::size_t next, Work& work) {
     const double n = work.num_cells;
     const auto is_inside = [&](const glm::dvec2& p) {

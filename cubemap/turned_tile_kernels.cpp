@@ -76,7 +76,7 @@ void find_cells(std::size_t num_rows, const Work& work, Points& points) {
     }
 }
 
-/// Of a cell of the part.
+/// Returns the index of a cell of the part.
 std::size_t index_of(std::int32_t column, std::int32_t row, const Work& work) {
     return static_cast<std::size_t>((row - work.first.y) * work.size.x + column - work.first.x);
 }

@@ -29,7 +29,7 @@ void sum_edges(std::size_t width, std::size_t height, const TileWork::Pieces& pi
                const TileWork& work, TileWork::Sums& sums);
 /// Adds to the texels what their edges say.
 void add_texels(const TileWork& work, TileWork::Pair& pair);
-/// The same, and writes the mean radiance of the texels.
+/// Writes the mean radiance of the texels, with what their edges say added.
 void store_means(const TileWork& work, const TileWork::Pair& pair,
                  const TexelPair<glm::vec3>& tiles);
 

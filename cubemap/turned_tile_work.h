@@ -44,7 +44,7 @@ struct TileWork {
     static constexpr std::uint32_t MaxWidth = 31, MaxHeight = 16;
     static constexpr std::size_t Stride = MaxWidth + 1;
     static constexpr std::size_t NumCorners = (MaxHeight + 1) * Stride;
-    /// Of what the outermost corners bound, rounding may set others so far outside.
+    /// How far rounding may put corners outside of what the outermost corners bound, in cells.
     static constexpr double Margin = 1e-6;
 
     /// Points on the face, in cells; and for each the cell, and the place in it, in [0, 1].
@@ -96,10 +96,10 @@ struct TileWork {
     };
 
     Points corners;
-    /// Of edges, where the tile reaches over the face's sides.
+    /// The ends of edges on the face, where the tile reaches over the face's sides.
     Points starts, ends;
 
-    /// Of the edges to the right of each corner and down from it.
+    /// [corners] the sums along the edges to the right of each and down from it.
     alignas(64) Sums of_across, of_down;
     Pieces across, down;
 
@@ -109,11 +109,11 @@ struct TileWork {
     /// from and to.
     std::vector<Cell> cells;
     std::vector<glm::ivec2> columns;
-    /// Of each cell the density at its middle, and of that change_left.
+    /// [cells] the density at each cell's middle, and that of change_left.
     std::vector<double> middles, changes;
-    /// Of a row's cells, the colours of both sides, and 1 for solid angle.
+    /// [cells of a row] the colours of both sides, and 1 for solid angle.
     std::vector<Colors> colors;
-    /// Of the part, the first cell and the numbers of columns and rows.
+    /// The part's first cell, and its numbers of columns and rows.
     glm::ivec2 first = {}, size = {};
 
     /// A texel of the face has 2^shift x 2^shift cells. Cells along a side, and how far these reach

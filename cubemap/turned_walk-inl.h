@@ -40,7 +40,7 @@ inline void store_wide(Vec values, double* to) {
 /// Edges, as many as there are lanes, that go from cell to cell.
 class Walk {
 public:
-    /// Of the lanes, only the first `count` go anywhere.
+    /// Begins the edges of the first `count` lanes. The others go nowhere.
     Walk(const TileWork::Points& from, std::size_t start, const TileWork::Points& to,
          std::size_t end, std::size_t count, const TileWork& work, const Density& density)
         : density_(density), scale_(work.scale), first_column_(static_cast<float>(work.first.x)),

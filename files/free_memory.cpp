@@ -16,7 +16,8 @@ namespace relumine::files {
 
 namespace {
 
-/// Of /proc/meminfo. By C's functions: streams of C++ are a fourth of the runtime's library.
+/// Returns MemAvailable of /proc/meminfo. Reads by C's functions: streams of C++ are a fourth of
+/// the runtime's library.
 std::optional<std::uint64_t> available_kilobytes() {
     constexpr std::string_view Name = "MemAvailable:";
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen("/proc/meminfo", "r"),

@@ -60,8 +60,8 @@ struct LightClusters {
 
 /// The strength of a light over the frames of its span.
 enum class Strength {
-    /// The same in all frames [S, Eq. 8]. Where the spans of two lights overlap, both shine in
-    /// full.
+    /// A constant strength in all frames [S, Eq. 8]. Where the spans of two lights overlap, both
+    /// shine in full.
     Even,
     /// In each frame the strength of the light's samples there. Each frame has the power of its
     /// environment.

@@ -19,9 +19,9 @@ namespace relumine::mesh {
 
 /// What a surface leaves of the light behind it.
 struct Veil {
-    /// Of the surface's own light
+    /// The factor on the surface's own light
     float weight = 1.0f;
-    /// Of what is behind it
+    /// The factor on the light of what is behind the surface
     glm::vec3 through{0.0f};
     bool operator==(const Veil&) const = default;
 };

@@ -96,7 +96,7 @@ void Communicator::meet() {
         throw OtherFailed();
 }
 
-/// Of several that fail at once the first one complains.
+/// Returns whether this process complains: the first one of several that fail at once.
 bool Communicator::fail() {
     const std::int64_t own = part_.count - part_.index;
     return largest(own) == own;

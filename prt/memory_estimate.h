@@ -42,7 +42,8 @@ struct SceneSizes {
 [[nodiscard]] std::uint64_t max_glossy_bytes(const SceneSizes& sizes, std::uint64_t column_bytes,
                                              std::uint64_t max_bytes);
 
-/// The same for BounceOptions::max_bytes. Bounces come after the highlights.
+/// Returns the largest BounceOptions::max_bytes for which the bounces' part stays within
+/// `max_bytes`; 0 where there is none. Bounces come after the highlights.
 [[nodiscard]] std::uint64_t max_bounce_bytes(const SceneSizes& sizes, std::uint64_t column_bytes,
                                              std::uint64_t max_bytes);
 

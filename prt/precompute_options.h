@@ -48,7 +48,7 @@ struct PrecomputeStatistics {
     std::uint64_t num_own_rays = 0;
     /// Bytes of all clusters' columns before they were joined, of this process.
     std::uint64_t column_bytes = 0;
-    /// Of the planes of visibility, at most at once
+    /// Most bytes of the planes of visibility at once
     std::uint64_t plane_bytes = 0;
     std::uint32_t deepest_level = 0;
     /// That the clusters were chosen with, where it grew; else 0

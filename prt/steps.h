@@ -93,7 +93,7 @@ private:
 struct BlockWork {
     /// Its name in a checkpoint
     std::string part = {};
-    /// Of this process
+    /// Blocks of this process
     std::size_t num_blocks = 0;
     /// A checkpoint has so many together, as processes share them out.
     std::size_t blocks_per_tile = 1;

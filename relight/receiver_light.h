@@ -31,7 +31,8 @@ public:
     /// Arguments and errors as Relighter.
     ReceiverLight(const prt::Transfer& transfer, const ShadowRays& rays, std::uint32_t harmonics);
 
-    /// As TracedLight::trace(). sum() or update() put the result into the radiance.
+    /// Traces these lights in place of all before (TracedLight::trace()). sum() or update() put the
+    /// result into the radiance.
     std::size_t trace(std::span<const SharpLight> lights);
     /// The light of highlights; null where there are none.
     [[nodiscard]] LightPyramid* pyramid() { return pyramid_ ? &*pyramid_ : nullptr; }
@@ -92,7 +93,8 @@ private:
     void write_means(bool with_sharp_lights, std::span<glm::vec3> radiance) const;
     /// Returns the block's brightness.
     double write_radiance(std::size_t block);
-    /// Of radiance for albedo 1 in `diffuse`, too, unless that is empty.
+    /// Writes the block's radiance, and that for albedo 1 into `diffuse` unless that is empty.
+    /// Returns its brightness.
     double write_radiance(std::size_t block, bool with_sharp_lights, std::span<glm::vec3> radiance,
                           std::span<glm::vec3> diffuse) const;
     [[nodiscard]] prt::Lobes<glm::vec3> lobes_at(std::size_t place, const glm::vec3& diffuse,

@@ -40,13 +40,13 @@ struct UpdateReport {
     double seconds_trace = 0.0;
     /// Summing the clusters into radiance [JN, Eq. 8].
     double seconds_relight = 0.0;
-    /// Of a whole scene: finding the light of its lamps, and what highlights of receivers mirror by
-    /// rays (LitScene).
+    /// Finding the light of a whole scene's lamps, and what highlights of receivers mirror by rays
+    /// (LitScene).
     double seconds_lamps = 0.0;
     double seconds_highlights = 0.0;
     /// All clusters were summed, because that was less work.
     bool resummed = false;
-    /// Of an edited scene: rectangles without overlaps that hold every texel that changed; good
+    /// Rectangles of an edited scene, without overlaps, that hold every texel that changed; good
     /// until the next edit.
     std::span<const TexelRectangle> texels = {};
 };

@@ -68,12 +68,12 @@ private:
     bool has_harmonics_;
     /// The environment before its first turn; without texels where there was none.
     cubemap::CubeMap unturned_;
-    /// The same, halved for the last turn that asked for a coarser one.
+    /// The environment before its turns, halved for the last turn that asked for a coarser one.
     cubemap::CubeMap coarse_;
     bool is_lit_ = false;
     /// Set where the scene has bounces and they have an albedo.
     std::optional<relight::BounceLight> bounces_;
-    /// Of bounces_, and how light bounced last.
+    /// The matrix and albedo of bounces_, and how light bounced last.
     relight::SurfaceBounces surface_bounces_;
     bool has_bounced_ = false;
 };

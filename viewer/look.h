@@ -13,7 +13,7 @@ struct FloorScene {
     relight::Ground ground = {};
     /// The radiance of a floor that nothing shades.
     glm::vec3 open{1.0f};
-    /// Of a studio's floor.
+    /// The radiance of a studio's floor.
     glm::vec3 color{0.0f};
 };
 

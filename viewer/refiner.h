@@ -43,13 +43,13 @@ struct Moment {
     /// [num_vertices] without the lights, albedo 1.
     std::vector<glm::vec3> radiance;
     std::vector<relight::SharpLight> lights;
-    /// As Lighting has them.
+    /// [num_vertices] lobes, and harmonics of the light that arrives (Lighting).
     std::vector<prt::Lobes<glm::vec3>> lobes = {};
     std::vector<glm::vec3> harmonics = {};
-    /// As relight::MeshLight has it.
+    /// The radiance of a floor that nothing shades; empty: floors catch no shadows (MeshLight).
     std::optional<glm::vec3> open_floor = {};
-    /// Of surfaces that mirror: as Lighting has them, radiance of all light for albedo 1. Null: the
-    /// picture has no highlights by rays.
+    /// What surfaces that mirror see: the environment, and the radiance of all light for albedo 1
+    /// (Lighting). Null: the picture has no highlights by rays.
     std::shared_ptr<const cubemap::CubeMap> environment = {};
     std::vector<glm::vec3> mirrored = {};
     std::size_t num_environment_lights = 0;

@@ -29,7 +29,7 @@ void main() {
 }
 )";
 
-/// As relight::grounded_backdrop() and relight::sweep_backdrop().
+/// Shows what is behind, as relight::grounded_backdrop() and relight::sweep_backdrop() do.
 constexpr const char* BehindSource = R"(
 uniform samplerCube environment;
 uniform int use_environment;

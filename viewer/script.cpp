@@ -31,10 +31,10 @@ constexpr std::size_t DragFrames = DragEvents + 2;
 struct Step {
     const ScriptCommand& command;
     ViewState& state;
-    /// Of the scene's picture.
+    /// The rectangle of the scene's picture.
     const PixelRectangle& viewport;
     ScriptPlayer::Frame& wishes;
-    /// Of `count` frames.
+    /// The number of this frame of the command, and of all its frames.
     std::size_t index, count;
     /// Kept from frame to frame.
     glm::dvec3& from;

@@ -216,7 +216,7 @@ private:
     float roughness_ = 0.0f;
     /// Those of the shading.
     std::vector<EmissionGain> gains_;
-    /// Of the picture that the colours are for.
+    /// The sides of the picture that the colours are for.
     std::array<glm::vec4, 4> sides_{};
     Scenery seen_;
     Clock::time_point since_ = Clock::now();

@@ -66,7 +66,7 @@ struct ViewState {
 
     /// Where keys steer the eye: right, up and forward.
     glm::vec3 steering{0.0f};
-    /// Of all surfaces that highlights follow the eye on, as it shall be.
+    /// The roughness of all surfaces that highlights follow the eye on, as it shall be.
     float roughness = 0.0f;
 
     /// The vertex that was clicked.

@@ -25,7 +25,7 @@ struct Option::Data {
 
 struct Command::Data {
     CLI::App* app = nullptr;
-    /// Of the program itself
+    /// The app that `app` points to, of the program itself; null for its commands
     std::unique_ptr<CLI::App> owned = {};
     std::vector<std::unique_ptr<Option::Data>> options = {};
     std::vector<std::unique_ptr<Command::Data>> commands = {};

@@ -14,7 +14,7 @@ struct MeshInfoOptions {
     std::string path;
     /// The .png to draw. Empty: none.
     std::string picture;
-    /// Of glTF
+    /// The moment of a glTF animation that the mesh is posed at (MeshOptions::pose)
     std::optional<mesh::Pose> pose = {};
 };
 

@@ -425,7 +425,7 @@ private:
     LitScene lit_;
     relight::EnvironmentBinner binner_;
     Painter writer_;
-    /// Of --turntable at its first frame. Its field of view also serves a path without one.
+    /// Camera of --turntable at its first frame. Its field of view also serves a path without one.
     std::optional<Camera> camera_;
     /// The environment that lights all frames.
     std::optional<PreparedFrame> still_;

@@ -15,17 +15,17 @@ namespace relumine::app {
 struct SceneOptions {
     std::string path = {};
     bool clusters_only = false;
-    /// As LightOptions::harmonics
+    /// Order of the spherical harmonics: 2 or 3; 0: none (LightOptions::harmonics)
     std::uint32_t harmonics = 0;
-    /// The same, if the receivers are points in space
+    /// Order of the spherical harmonics of receivers that are points in space; 0: `harmonics`
     std::uint32_t harmonics_of_points = 0;
-    /// As LightOptions::highlight_rays
+    /// Rays that find a pixel's highlights; 0: none (LightOptions::highlight_rays)
     std::uint32_t highlight_rays = DefaultHighlightRays;
     /// The argument may also be a mesh, which is lit without clusters.
     bool mesh_too = false;
-    /// Of a mesh: MeshOptions::pose
+    /// The moment of a mesh's animation (MeshOptions::pose)
     std::optional<mesh::Pose> pose = {};
-    /// Of all surfaces, in place of those of the precompute
+    /// Colours of all surfaces, in place of those of the precompute
     SurfaceColors colors = {};
 
     void add_to(Command& command);
@@ -36,7 +36,7 @@ struct SceneOptions {
 /// UsageError for their wrong text.
 [[nodiscard]] LitScene lit_scene(const SceneOptions& options, prt::Team* team = nullptr);
 
-/// The same for a scene that is there; its path is for messages.
+/// A scene that is there, ready to be lit; its path is for messages.
 [[nodiscard]] LitScene lit_scene(Scene scene, const SceneOptions& options);
 
 } // namespace relumine::app

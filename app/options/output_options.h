@@ -51,7 +51,7 @@ using files::extension_of;
 void require_extension(const std::string& option, const std::string& path,
                        const std::vector<std::string>& extensions);
 
-/// The same for environments: .exr or .hdr.
+/// Throws UsageError unless an environment's path ends in .exr or .hdr.
 void require_environment_name(const std::string& option, const std::string& path);
 
 /// Throws UsageError for a part's name that a whole scene, picture or array would have.

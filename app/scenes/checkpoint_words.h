@@ -11,8 +11,8 @@ namespace relumine::app {
 /// The first one names the checkpoint, or where it is gone, the second one: one of them is left.
 void say_how_to_go_on(const std::filesystem::path& output, const Session& session);
 
-/// Of work with --resume. Whoever asks to go on should know that nothing was kept, as after a wrong
-/// --output.
+/// Says that work with --resume begins anew where it has no checkpoint. Whoever asks to go on
+/// should know that nothing was kept, as after a wrong --output.
 void say_new_beginning(const std::filesystem::path& output, const Session& session);
 
 } // namespace relumine::app

@@ -40,7 +40,7 @@ struct FitArguments {
     /// A light list or light layers; empty: none are given
     std::string given;
     EnvironmentFit environment;
-    /// Of what the target shows: albedo, exposure and camera
+    /// What the target shows: albedo, exposure and camera
     relumine::OutputOptions shown;
     BounceOption bounces;
 };

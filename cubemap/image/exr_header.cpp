@@ -23,7 +23,7 @@ struct Part {
     std::int64_t tile_width = 0, tile_height = 0;
     std::int64_t rows_per_block = 1;
     std::int64_t bytes_per_pixel = 0;
-    /// As declared. Empty: not declared.
+    /// The declared number of chunks. Empty: not declared.
     std::optional<std::int64_t> num_chunks = {};
 };
 

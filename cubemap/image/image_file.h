@@ -48,7 +48,7 @@ inline constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 29;
 struct ExrLayer {
     /// Without a dot, and different from all others.
     std::string name;
-    /// As many as the picture has.
+    /// [number of the picture's pixels] in the picture's order.
     std::span<const glm::vec3> pixels;
 };
 

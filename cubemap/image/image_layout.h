@@ -29,7 +29,7 @@ struct ImageShape {
     return {image.layout, image.sampling, image.width, image.height};
 }
 
-/// As natural_resolution() of an image.
+/// Returns natural_resolution() of an image of this shape.
 [[nodiscard]] std::uint32_t natural_resolution(const ImageShape& shape);
 
 /// Returns the borders of n cells side by side over [0, 1]. With TexelCentres all cells are equally

@@ -237,7 +237,7 @@ void fill_zeros(Pixels& grown, const std::function<const Pixels&()>& means_of_im
 }
 
 struct Sums {
-    /// Of |have - want|, and of `want`.
+    /// The sums of |have - want| and of `want`.
     double difference = 0.0, all = 0.0;
 };
 

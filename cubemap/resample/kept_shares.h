@@ -50,7 +50,7 @@ private:
     struct Row {
         std::vector<Pixel> pixels;
         std::vector<Texel> texels;
-        /// Of the overlap with each texel.
+        /// [texels] solid angle of the pixel's overlap with each.
         std::vector<double> solid_angles;
     };
 

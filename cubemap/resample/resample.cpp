@@ -38,7 +38,7 @@ std::vector<std::vector<Overlap>> overlaps(const std::vector<double>& source,
     return found;
 }
 
-/// As solid_angle(), but faster for small rectangles. There are millions of them.
+/// Returns the solid_angle() of a rectangle, faster for small ones. There are millions of them.
 double small_solid_angle(const Overlap& x, const Overlap& y) {
     const double width = 2.0 * (x.end - x.begin), height = 2.0 * (y.end - y.begin);
     // The midpoint rule with its second-order term has a relative error of 0.023 h^4: 3e-8 here.

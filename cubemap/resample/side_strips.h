@@ -48,7 +48,7 @@ struct Strips {
 
     /// The strips of texel column x are [starts[x], starts[x + 1]).
     std::vector<std::size_t> starts;
-    /// Of the image, and width in turns, per strip.
+    /// The image's column under each strip, and the strip's width in turns.
     std::vector<std::uint32_t> columns;
     std::vector<double> widths;
     /// Cosines of the angle from the middle of the face: at the left end of strip i [2 i], in its

@@ -73,7 +73,7 @@ private:
     ImageBudget budget_;
     /// Keywords that are not read.
     std::vector<std::string> warnings_, unread_;
-    /// Of the last texture: -bm.
+    /// The bump multiplier of the last texture: -bm.
     float bump_ = 1.0f;
     bool has_library_ = false, is_broken_ = false;
 };

@@ -51,7 +51,7 @@ struct PolygonSoup {
     std::vector<Texture> textures;
     std::vector<PunctualLight> lights;
     std::optional<Camera> camera = {};
-    /// As in TriangleMesh.
+    /// Files that do not exist, and what the soup does not hold (TriangleMesh::missing, warnings).
     std::vector<std::string> missing, warnings;
 
     /// Closes the face whose corners were appended to `corners` since the last call.

@@ -131,7 +131,7 @@ private:
     std::vector<Origin> origins_;
     std::vector<std::uint32_t> marked_;
     std::size_t num_marked_ = 0;
-    /// Of the edges that are being split, or were the last time.
+    /// The middles of the edges that are being split, or were the last time.
     std::vector<Middle> middles_;
     std::vector<std::uint32_t> changed_;
 };

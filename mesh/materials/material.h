@@ -137,7 +137,7 @@ struct Material {
     float coat_roughness = 0.0f;
     /// Its G multiplies coat_roughness.
     std::optional<TextureSlot> coat_roughness_texture = {};
-    /// As normal_texture, of the coat alone. Without it the coat has the mesh's normals.
+    /// Normals of the coat alone (normal_texture). Without it the coat has the mesh's normals.
     std::optional<TextureSlot> coat_normal_texture = {};
     float coat_normal_scale = 1.0f;
     /// In [0, 1]. MetallicRoughness: the colour of fibres that stand out of a cloth.

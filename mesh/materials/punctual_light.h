@@ -18,13 +18,13 @@ struct PunctualLight {
     /// Radiant intensity of points and spots, irradiance of directional ones across their beam: in
     /// the unit of an environment's radiance, times sr.
     glm::vec3 intensity{1.0f};
-    /// Of points and spots.
+    /// The place of points and spots.
     glm::vec3 position{0.0f};
     /// The way that the light of spots and directional ones goes, of unit length.
     glm::vec3 direction{0.0f, 0.0f, -1.0f};
-    /// Of points and spots: no light goes farther.
+    /// The distance beyond which points and spots give no light.
     float range = std::numeric_limits<float>::infinity();
-    /// Of spots: half angles in radians. Light falls off between them.
+    /// Half angles of a spot's cones in radians. Light falls off between them.
     float inner_cone = 0.0f;
     float outer_cone = 0.785398163f;
 

@@ -47,7 +47,7 @@ struct BounceMatrix {
     /// The largest eigenvalue: how much of the light a further bounce keeps at albedo 1. Light
     /// grows for ever at albedos of 1/spectral_radius and more.
     float spectral_radius = 0.0f;
-    /// Of points in space, whose own rows are empty.
+    /// Rows of the points in space, whose lists above are empty.
     PointRows points = {};
 
     [[nodiscard]] std::size_t num_rows() const { return weights.size(); }
@@ -71,7 +71,8 @@ void require_rows(const BounceMatrix& matrix, std::span<const std::uint32_t> num
 /// light from each other only: where added vertices begin, or 0.
 [[nodiscard]] std::size_t first_emitter(const BounceMatrix& matrix);
 
-/// The same, from the lowest place that any row has, and the lists of those who share samples.
+/// Returns first_emitter(), given the lowest place that any row has and the lists of those who
+/// share samples.
 [[nodiscard]] std::size_t first_emitter(std::size_t lowest_place, const PlaceLists& averaged);
 
 /// Processes that share the rows of a matrix have so many neighbouring ones in turn.

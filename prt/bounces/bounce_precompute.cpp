@@ -236,7 +236,7 @@ private:
     /// [receivers of the part]
     std::vector<std::uint32_t> places_;
     std::vector<RayHits> hits_;
-    /// Of the part, by their order in it.
+    /// [blocks of the part]
     std::vector<Block> blocks_;
 };
 

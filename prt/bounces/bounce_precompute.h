@@ -20,7 +20,7 @@ namespace relumine::prt {
 struct BounceProbes {
     /// [receivers of the part] ProbeRadiance[0] of each.
     std::span<const float> open_parts;
-    /// Of all receivers by place, or of a sample of them.
+    /// ProbeRadiance of all receivers by place, or of a sample of them.
     std::span<const ProbeRadiance> values;
     /// [num_receivers] by place: which of `values` stands for each receiver. Empty: all are there.
     /// Otherwise the part knows nothing of others: how many rays a receiver needs follows from the

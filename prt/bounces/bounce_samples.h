@@ -31,7 +31,7 @@ struct BounceStatistics {
     std::uint64_t num_emitters = 0;
     /// Mean number of receivers that share their samples.
     double mean_averaged = 0.0;
-    /// Of all receivers: the part of the hemisphere that surfaces close.
+    /// Mean part of the hemisphere that surfaces close, over all receivers.
     double mean_closure = 0.0;
     /// Estimated standard error of one bounce, RMS over all receivers, worst of the probe lights.
     double rms_error = 0.0;
@@ -52,7 +52,7 @@ struct BounceSamples {
     /// Who shares samples. Empty for parts that know nothing of each other: join_bounces() finds
     /// it.
     std::optional<PlaceLists> averaged = {};
-    /// Of the points in space among the part's receivers.
+    /// Rows of the points in space among the part's receivers.
     PointRows points = {};
     std::uint64_t num_rays = 0;
     /// Sum of the squared standard errors over the receivers.

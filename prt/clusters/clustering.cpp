@@ -34,8 +34,9 @@ constexpr std::size_t MinBatchPoints = 128;
 /// second.
 constexpr std::uint64_t SamplesPerThreadAndStep = std::uint64_t{1} << 26;
 
-/// The same where processes share the work and wait for each other at the end of a step. A patch
-/// costs one process more than another; over many patches the differences even out.
+/// Work between two looks at the checkpoint where processes share it and wait for each other at the
+/// end of a step. A patch costs one process more than another; over many patches the differences
+/// even out.
 constexpr std::uint64_t SharedSamplesPerThreadAndStep = std::uint64_t{1} << 28;
 
 /// Returns the limit on ||T_C - T_l||^2 for a cluster, T times pi [JN, Eq. 11].

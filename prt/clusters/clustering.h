@@ -70,10 +70,10 @@ private:
     const PrecomputeContext context_;
     const Work& work_;
     std::size_t num_points_;
-    /// Of all receivers, as are the normals
+    /// [num_receivers] all receivers in spatial order, and their normals in that order
     std::vector<std::uint32_t> order_;
     std::vector<glm::vec3> ordered_normals_;
-    /// Of this process's receivers, as are the normals in arrays
+    /// [receivers of this process] starts of their rays, and their normals in arrays
     std::vector<glm::vec3> origins_;
     NormalArrays normals_;
     Progress progress_;

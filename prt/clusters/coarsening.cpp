@@ -42,7 +42,8 @@ struct CellTest {
     std::array<bool, 4> is_leaf{};
 };
 
-/// As in squared_distances(): float sums run over 1,024 receivers, then become whole numbers.
+/// Blocks of a float sum, which then becomes a whole number: 1,024 receivers, as in
+/// squared_distances().
 constexpr std::size_t BlocksPerSum = VisibleCounts::TileBlocks;
 
 /// Columns in memory beside the store.
@@ -149,7 +150,7 @@ private:
     const CoarsenOptions& options_;
     NormalArrays normals_;
     std::uint32_t texel_level_;
-    /// As in the clustering: the limit on ||T_C - T_l||^2, T times pi.
+    /// The limit on ||T_C - T_l||^2 for a cluster, T times pi, as in Clustering.
     double allowed_ = 0.0;
     ShadowEdges edges_;
     /// [num_clusters]

@@ -12,11 +12,12 @@
 namespace relumine::prt {
 
 struct CoarsenOptions {
-    /// As PrecomputeOptions::tolerance, 1/sr. No smaller than what the transfer was made with.
+    /// RMS error of T allowed within a cluster, 1/sr (PrecomputeOptions::tolerance). No smaller
+    /// than what the transfer was made with.
     float tolerance = 0.03f;
-    /// As the precompute had them: no cluster gets larger than this level ...
+    /// No cluster gets larger than this level. The precompute's.
     std::uint32_t min_level = 3;
-    /// ... and cells of the finest level have one sample.
+    /// R: cells of the finest level, single texels, have one sample. The precompute's.
     std::uint32_t face_resolution = 1024;
     std::stop_token stop = {};
     /// Receives the fraction done, in [0, 1]; one call at a time.

@@ -8,9 +8,9 @@ namespace relumine::prt {
 
 /// Integrals of the lobes S and Sc (prt/glossy/brdf.h) over all lights: a furnace of radiance 1.
 struct GgxAlbedo {
-    /// Of S, in (0, 1]. What is missing to 1 is the light that meets a second facet.
+    /// The integral of S, in (0, 1]. What is missing to 1 is the light that meets a second facet.
     float all = 1.0f;
-    /// Of Sc, at most `all`.
+    /// The integral of Sc, at most `all`.
     float grazing = 0.0f;
 };
 

@@ -23,9 +23,9 @@ struct GlossyOptions {
     /// specular lobe is measured against the specular lobe. The grazing part of the diffuse lobe is
     /// measured against the whole diffuse lobe.
     float tolerance = 0.07f;
-    /// As in PrecomputeOptions.
+    /// R: cells are no finer than texels of a 6 x R x R environment (PrecomputeOptions).
     std::uint32_t face_resolution = 1024;
-    /// As in PrecomputeOptions.
+    /// Lift of the rays' origins along the normal, in the mesh's unit (PrecomputeOptions).
     float bias = 0.0f;
     /// The limit on all blocks' entries, BytesPerEntry each. Beyond it TooLarge is thrown. For
     /// each of the processes that share the work.
@@ -35,7 +35,7 @@ struct GlossyOptions {
 /// A cell's index, its scale and 16 values.
 inline constexpr std::uint64_t BytesPerEntry = 24;
 
-/// Of all processes that share the work.
+/// What all processes that share the work counted, and how long this one took.
 struct GlossyStatistics {
     /// (block, cell) pairs of all lobes.
     std::uint64_t num_entries = 0;

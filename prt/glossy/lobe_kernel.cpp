@@ -82,7 +82,7 @@ struct LobeTerms {
     }
 
     [[nodiscard]] Vector n_v() const { return hn::Load(Tag(), normals.dot_eye.data() + lane); }
-    /// Of a lobe's parameters().
+    /// Returns number i of the lobe's parameters().
     [[nodiscard]] Vector parameter(std::size_t i) const {
         return hn::Load(Tag(), normals.parameters[i].data() + lane);
     }

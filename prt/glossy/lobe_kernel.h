@@ -19,19 +19,19 @@ struct alignas(64) BlockSurfaces {
     std::array<Floats, 3> normal{};
     std::array<Floats, 3> to_eye{};
     Floats normal_dot_eye{};
-    /// Of each receiver's own lobe.
+    /// Parameters of each receiver's own lobe.
     std::array<Floats, 2> parameters{};
     /// By Highlight: bit i is set where receiver i has it and its eye is above the horizon.
     std::array<std::uint32_t, NumHighlights> lanes{};
-    /// Of measured receivers.
+    /// Tables of measured receivers.
     std::array<const mesh::BrdfTable*, BlockSize> tables{};
     /// Receivers with a clear coat, and with sheen.
     std::uint32_t coat_lanes = 0, sheen_lanes = 0;
-    /// Of the coat, as above.
+    /// Normals of the coat, their cosines to the eye, and parameters of the coat's lobe.
     alignas(64) std::array<Floats, 3> coat_normal{};
     Floats coat_dot_eye{};
     std::array<Floats, 2> coat_parameters{};
-    /// Of sheen: alpha, 1 + lambda of the eye, and the factor on the lobe.
+    /// Sheen's alpha, 1 + lambda of the eye, and the factor on the lobe.
     std::array<Floats, 3> sheen_parameters{};
 
     void set(std::size_t lane, const Surface& surface, const glm::vec3& normal_of_lane,

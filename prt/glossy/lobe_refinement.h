@@ -30,7 +30,7 @@ struct BlockToRefine {
     std::span<const glm::vec3> origins = {};
     Mirrors of_base = {}, of_coat = {};
 
-    /// Of a lobe. Sheen has no narrow highlight.
+    /// Returns where a lobe's highlights are. Sheen has no narrow highlight.
     [[nodiscard]] Mirrors mirrors(GlossyLobe lobe) const {
         return lobe == GlossyLobe::Coat ? of_coat
                : lobe == GlossyLobe::Sheen ||
@@ -61,7 +61,7 @@ struct LobeCut {
 };
 
 struct RefinementLimits {
-    /// As GlossyOptions::tolerance.
+    /// The error that is allowed, relative to the lobe without blockers (GlossyOptions::tolerance).
     float tolerance = 0.02f;
     /// The level of single texels.
     std::uint32_t max_level = 10;

@@ -189,7 +189,7 @@ mesh::Material material_of(const Surface& surface) {
     return material;
 }
 
-/// Of the directions from which a surface is seen.
+/// The mean cosine of the directions from which a surface is seen.
 constexpr float MeanCosine = 0.5f;
 
 Surface without_highlight(Surface surface) {

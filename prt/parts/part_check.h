@@ -11,7 +11,7 @@
 namespace relumine::prt {
 
 struct PartCheck {
-    /// Of the whole that the first sound file is a part of; 0 where no file is sound.
+    /// Parts of the whole that the first sound file belongs to; 0 where no file is sound.
     std::size_t num_parts = 0;
     /// Indices, from 0 on.
     std::vector<std::uint32_t> missing = {};

@@ -28,7 +28,7 @@ enum class SceneFileKind {
 
 struct PartFacts {
     Part part = {};
-    /// Of the part
+    /// Receivers of the part
     std::size_t num_receivers = 0;
     /// What all parts that belong together have: the hash of their plan, or what names their scene
     /// and light.

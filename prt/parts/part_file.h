@@ -21,8 +21,8 @@ struct PlannedBounces {
     float tolerance = 0.0f;
     /// Nobody asked for them: they are left out where there is too little memory.
     bool is_automatic = false;
-    /// Of the sample: sampled_receivers() says which of them stands for a receiver. Empty where
-    /// processes choose the clusters together.
+    /// Radiance of the sample under the probe lights: sampled_receivers() says which of them stands
+    /// for a receiver. Empty where processes choose the clusters together.
     std::vector<ProbeRadiance> probes = {};
 };
 

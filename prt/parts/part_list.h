@@ -22,7 +22,7 @@ namespace relumine::prt {
 /// What the file of a part says of itself.
 struct PartHead {
     Part part = {};
-    /// The same in all parts that belong together.
+    /// Text that names the whole: one for all parts that belong together.
     std::string whole = {};
     std::uint32_t num_receivers = 0;
 };

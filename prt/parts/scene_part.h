@@ -27,7 +27,7 @@ struct SharedBounces {
 struct ScenePart {
     /// The whole scene without its counts. Its bounces have the rows of the part alone (has_row()).
     Scene scene;
-    /// Of the part's receivers by themselves, in spatial order.
+    /// The transfer of the part's receivers by themselves, in spatial order.
     Transfer transfer = {};
     /// [receivers of the part]
     std::vector<glm::vec3> positions = {};
@@ -47,7 +47,7 @@ struct ScenePart {
 /// The light of a part's receivers.
 struct LitPart {
     Part part;
-    /// Of the whole scene
+    /// Receivers of the whole scene
     std::uint32_t num_receivers = 0;
     /// The scene and its light: the same text in all parts that belong together.
     std::string light;

@@ -72,7 +72,7 @@ private:
         sort(middle + 1, end, (axis + 1) % 3);
     }
 
-    /// Of equally near points the one with the lowest index is taken.
+    /// Finds the nearest point; of equally near ones the one with the lowest index.
     void find(std::size_t begin, std::size_t end, int axis, const glm::vec3& to, Best& best) const {
         if (begin == end)
             return;

@@ -19,7 +19,7 @@ namespace relumine::prt {
 
 /// What holds for all layouts of a kind.
 struct ReceiverKind {
-    /// Of its receivers, in files and options.
+    /// The name of its receivers, in files and options.
     std::string_view name;
     /// One receiver.
     std::string_view one;
@@ -134,7 +134,7 @@ struct PointLayout {
                                        .whole = "the points",
                                        .are_seen = false,
                                        .have_surface = false};
-    /// Of a picture.
+    /// Points in a row of a picture.
     static constexpr std::uint32_t PointsPerRow = 1024;
     std::uint32_t count = 0;
     /// [count] 0, 1, 2, ...

@@ -19,7 +19,7 @@ struct TextureView {
     glm::vec3 eye{0.0f};
     glm::vec3 right{0.0f}, down{0.0f}, forward{0.0f, 0.0f, -1.0f};
 
-    /// Of a picture's rays.
+    /// Takes a picture's rays.
     TextureView(const mesh::MipMaps& of, const glm::vec3& from, const PictureRays& rays)
         : maps(&of), eye(from), right(rays.right()), down(rays.down()), forward(rays.forward()) {}
     TextureView() = default;

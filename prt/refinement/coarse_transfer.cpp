@@ -21,9 +21,10 @@ namespace relumine::prt {
 
 namespace {
 
-/// Of the squares of three errors: under a small light anywhere, under even light from everywhere,
-/// under the environment that is named. Under even light errors are smaller, so they would count
-/// for little. Measured: these lower the relative errors under all of them about alike.
+/// Weights of two squared errors beside the squared error under a small light anywhere: under even
+/// light from everywhere, and under the environment that is named. Under even light errors are
+/// smaller, so they would count for little. Measured: these lower the relative errors under all of
+/// them about alike.
 constexpr double WeightOfEvenLight = 20.0, WeightOfLight = 4.0;
 
 } // namespace

@@ -19,7 +19,7 @@ using Neighbours = CoarseDirections::Neighbours;
 /// Middles that are traced together: 50 MB.
 constexpr std::size_t PointsPerStep = std::size_t{1} << 18;
 
-/// Of the mesh's diagonal.
+/// The shortest edge, in parts of the mesh's diagonal.
 constexpr float ShortestEdge = 1e-3f;
 
 /// Bounds of edges give way to errors until so small a part of the first edges has bounds only.

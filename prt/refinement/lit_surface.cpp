@@ -21,7 +21,8 @@ using mesh::SplitMesh;
 constexpr float FineEdge = 1.0f / 256.0f;
 constexpr float LeastCosineOfAlike = 0.97f;
 
-/// As vertex_receivers() does it: a part of the way to the triangle's centre, or the bias.
+/// The largest part of the way to the triangle's centre that a point on a rim moves inside. It
+/// moves by automatic_bias() where that is less, as in vertex_receivers().
 constexpr float LargestPartOfWay = 0.25f;
 
 /// Parts of automatic_bias(). Smaller lifts are none.

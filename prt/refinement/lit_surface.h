@@ -51,7 +51,7 @@ public:
     /// Adds a point with the weighted mean of vertices' positions and normals.
     void add_mean(std::span<const std::uint32_t> vertices, std::span<const float> weights,
                   Receivers& receivers) const;
-    /// The same on a triangle's smooth surface.
+    /// Adds the point with these weights of a triangle's corners on its smooth surface.
     void add_inside(std::uint32_t triangle, const std::array<float, 3>& weights,
                     Receivers& receivers) const;
     /// The middle of an edge, on a rim a little inside of it.

@@ -21,7 +21,7 @@ namespace relumine::prt {
 
 namespace {
 
-/// Of all frames but a section's last one.
+/// The least size of a section's frames but its last one, in bytes.
 constexpr std::size_t LeastFrame = std::size_t{1} << 16;
 
 // What the sections of a file may take in all. Positions alone, which every scene has, pack much

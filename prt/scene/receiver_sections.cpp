@@ -85,7 +85,7 @@ std::vector<mesh::Veil> read_veils(const SectionReader& reader,
     return veils;
 }
 
-/// Of all but vertices.
+/// Adds the layout and the places of receivers that are not vertices.
 void add_places(NewSections& sections, ReceiverLayout layout, const Receivers& receivers) {
     check_fit(layout, receivers);
     JsonMembers members;

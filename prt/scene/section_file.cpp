@@ -21,7 +21,7 @@ namespace {
 // cores. Level 10 saves 1 % more and takes half as long again.
 constexpr int CompressionLevel = 8;
 
-/// Of sections that are sent to a process beside, and to a browser far away.
+/// Levels for sections that are sent to a process beside, and to a browser far away.
 constexpr int FastCompressionLevel = 1, BestCompressionLevel = 19;
 
 // A section is cut into frames of this many bytes, the last one shorter, so that all processors

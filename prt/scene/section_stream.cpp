@@ -15,7 +15,7 @@ namespace relumine::prt {
 
 namespace {
 
-/// Of the file, at a time.
+/// Most bytes of the file that are read at a time.
 constexpr std::uint64_t BytesPerRead = std::uint64_t{1} << 16;
 
 } // namespace

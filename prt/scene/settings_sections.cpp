@@ -65,7 +65,7 @@ void read_settings(const SectionReader& reader, Scene& scene) {
     }
 }
 
-/// As a precompute accepts them.
+/// Checks that a precompute accepts the settings.
 void check_settings(const SceneCheck& check, const Scene& scene) {
     const SceneSettings& settings = scene.settings;
     const auto is_number = [&](const std::string& what, float value) {

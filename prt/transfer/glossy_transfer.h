@@ -52,8 +52,7 @@ struct GlossyTransfer {
     std::vector<glm::vec3> to_eye;
     /// By GlossyLobe.
     std::array<LobeCuts, NumGlossyLobes> lobes{};
-    /// Of a part of a scene: the deepest level of the whole scene, whose light is summed from
-    /// there.
+    /// The whole scene's deepest level, from where its light is summed. Only of a part of a scene.
     std::uint32_t whole_depth = 0;
 
     /// Whether highlights are stored. Where they are not, rays find them, and closed forms those of

@@ -280,7 +280,8 @@ RayVerdicts test_blocking_leaf(D d, const TriangleTree::Leaf& leaf, const Placed
     return verdicts;
 }
 
-/// The same for triangles that rays may pass, given their numbers in the mesh.
+/// Finds the rays that a leaf blocks whose triangles let some rays pass. `numbers` are the
+/// triangles' in the mesh. Maybes are rays that only the exact tracer knows.
 template<class D>
 RayVerdicts test_passed_leaf(D d, const TriangleTree::Leaf& leaf,
                              const std::array<std::uint32_t, TriangleTree::Width>& numbers,

@@ -199,7 +199,7 @@ struct BeamScene::Trees {
     }
     std::shared_ptr<const SeeThrough> see_through;
     RayOf of;
-    /// Of triangles that stop all rays, and of those that stop some of them.
+    /// Trees of the triangles that stop all rays, and of those that stop some of them.
     TriangleTree opaque, some_pass;
 };
 

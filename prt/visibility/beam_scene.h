@@ -53,7 +53,7 @@ public:
     /// Memory:  about 250 bytes per triangle.
     BeamScene(const mesh::TriangleMesh& mesh, const RayScene& exact,
               std::size_t crowded_shaft = CrowdedShaft);
-    /// The same with any tracer of the mesh, of which `see_through` says what its rays pass.
+    /// Takes any tracer of the mesh, of which `see_through` says what its rays pass.
     BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact,
               std::shared_ptr<const SeeThrough> see_through,
               std::size_t crowded_shaft = CrowdedShaft);

@@ -31,7 +31,7 @@ struct GroupOrigins {
     alignas(64) std::array<ReceiverRow, 3> from_middle;
     /// In the mesh's coordinates.
     std::span<const glm::vec3> all;
-    /// As in the group.
+    /// A hint where the receivers face, of any length (ReceiverGroup::mean_normal).
     glm::vec3 mean_normal{0.0f};
     /// A box around all, in the mesh's coordinates, and its middle.
     glm::vec3 low{0.0f}, high{0.0f}, middle{0.0f};

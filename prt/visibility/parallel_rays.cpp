@@ -59,7 +59,7 @@ struct Direction {
     /// Axis, axis_s, axis_t
     std::size_t axes[3];
     float sign, s, t;
-    /// As the exact tracer has it
+    /// The direction as the exact tracer has it
     glm::vec3 unit;
 };
 
@@ -140,9 +140,9 @@ struct ProjectedReceivers {
     std::array<const float*, 3> origin;
     /// Moved along the rays
     alignas(64) Row s, t;
-    /// Of each bundle that has rays: what holds its s and t, and the planes of its own shaft.
+    /// [bundles that have rays] bounds of the bundle's s and t
     Row s_low, s_high, t_low, t_high;
-    /// Infinite where a bundle has no rays left
+    /// [plane][bundle] offsets of the bundle's own shaft; infinite where it has no rays left
     std::array<Row, Shaft::NumPlanes> offsets;
 };
 
@@ -335,7 +335,8 @@ struct ParallelRays {
                          origins.mean_normal, origins.reach);
         project(Floats, direction, origins, active, shaft, receivers);
     }
-    /// As prt::find_leaves(); among too many triangles all rays are in doubt.
+    /// Collects the leaves in the shaft (prt::find_leaves()). False: there are too many, and all
+    /// rays are in doubt.
     [[nodiscard]] bool find_leaves(const TriangleTree& tree, ShaftLeaves& leaves) const {
         return prt::find_leaves(tree, shaft, MostLeaves, leaves);
     }

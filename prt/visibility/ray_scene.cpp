@@ -256,7 +256,7 @@ struct RayScene::Impl {
     bool trace(const glm::vec3& origin, const glm::vec3& direction, Query& query) const;
 };
 
-/// The same rays, which pass no surface by chance.
+/// Blocks the rays of the scene that pass no surface by chance: RayOf::SettledLight.
 class RayScene::Settled final : public Blockers {
 public:
     explicit Settled(const Impl& impl) : impl_(impl) {}

@@ -62,7 +62,8 @@ public:
     [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
                                          std::uint32_t active) const override;
 
-    /// The same for rays that end at these distances, in units of the directions' lengths.
+    /// Returns the rays of `active` that are blocked before these distances, in units of the
+    /// directions' lengths.
     [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
                                          std::span<const float, PacketSize> distances,
                                          std::uint32_t active) const;

@@ -28,7 +28,8 @@ enum class RayOf : std::uint8_t {
     SettledLight,
     /// What is not drawn: points of no weight, and backs of single-sided triangles.
     Eye,
-    /// The same, but for the backs of what is thin: of an eye that looks through a body of glass.
+    /// What Eye passes, but for the backs of what is thin. For an eye that looks through a body of
+    /// glass.
     EyeInGlass,
 };
 
@@ -81,7 +82,7 @@ public:
     };
     /// Whether the ray goes on behind it. The same ray and triangle have the same answer.
     [[nodiscard]] bool passes(const Meeting& meeting, RayOf of) const;
-    /// The same for a ray of light, given the triangle's corners as seen from the ray's start.
+    /// Whether a ray of light passes a triangle, given the corners as seen from the ray's start.
     [[nodiscard]] bool light_passes(std::uint32_t triangle,
                                     const std::array<glm::dvec3, 3>& corners,
                                     const glm::vec3& origin, const glm::vec3& direction,
@@ -96,8 +97,8 @@ private:
     struct Mapped {
         std::uint32_t cells = 0;
         bool is_veil = false;
-        /// Of glass without alpha: the mean part that passes the triangle. Settled light takes it
-        /// for all of the triangle; alpha has outlines, which clusters must follow.
+        /// The mean part that passes a triangle of glass without alpha. Settled light takes it for
+        /// all of the triangle; alpha has outlines, which clusters must follow.
         std::optional<float> mean;
         std::array<glm::vec2, 3> uvs = {};
 
@@ -130,7 +131,7 @@ private:
     std::vector<float> even_;
     /// mesh::blockers_of() without its positions; empty where no light passes.
     mesh::TriangleMesh mesh_;
-    /// Of masks that are no glass, and of all that is thin.
+    /// Cells of masks that are no glass, and of what is thin and has textures that lie alike.
     std::vector<MaskCells> masks_;
     std::vector<VeilCells> veils_;
     std::vector<Mapped> mapped_;

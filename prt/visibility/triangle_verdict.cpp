@@ -51,9 +51,9 @@ Verdict judge(const TriangleTree::Leaf& leaf, std::size_t lane, const glm::vec3&
     return (side > 0.0 ? num_positive : num_negative) == 3 ? Verdict::Hit : Verdict::Doubt;
 }
 
-/// As judge(), without roots. Where a ray hits, each corner is at most l from its line, and l <= 2
-/// d. So rows V1 to V3 are 28 l d together, V4 and V5 are 30 l d^2. Squares of sums are at most
-/// twice the sums of squares.
+/// Whether a ray hits for certain: judge() without roots. Where a ray hits, each corner is at most
+/// l from its line, and l <= 2 d. So rows V1 to V3 are 28 l d together, V4 and V5 are 30 l d^2.
+/// Squares of sums are at most twice the sums of squares.
 bool hits_for_certain(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& w) {
     const auto& [a, b, c] = corners;
     const glm::dvec3 ab = b - a, bc = c - b, ca = a - c;

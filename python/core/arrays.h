@@ -27,7 +27,7 @@ using Shape = std::vector<py::ssize_t>;
 struct Array {
     std::shared_ptr<const void> owner;
     const void* data = nullptr;
-    /// As in Python's struct module: "f", "d", "I" or "B".
+    /// The type of an item in Python's struct module: "f", "d", "I" or "B".
     std::string format;
     std::size_t item_size = 0;
     Shape shape;
@@ -39,7 +39,7 @@ struct Array {
 [[nodiscard]] Array view(std::shared_ptr<const void> owner, std::span<const glm::vec2> values);
 [[nodiscard]] Array view(std::shared_ptr<const void> owner, std::span<const mesh::Triangle> values);
 
-/// The same for values that nobody else owns.
+/// Arrays of values that nobody else owns.
 [[nodiscard]] Array owned(std::vector<glm::vec3> values, Shape outer = {});
 [[nodiscard]] Array owned(std::vector<glm::dvec3> values);
 [[nodiscard]] Array owned(std::vector<double> values);

@@ -101,7 +101,7 @@ EnvironmentPointer from_state(const py::buffer& pixels, const py::tuple& state) 
                      options](const Reins&) { return made_of(image, options); });
 }
 
-/// The same image, turned by other angles.
+/// Returns the environment of the same image, turned by other angles.
 EnvironmentPointer turned_anew(const EnvironmentHandle& own, const py::dict& given,
                                const std::array<std::array<double, 3>, 3>& turn) {
     auto options = options_from<EnvironmentOptions>(given);

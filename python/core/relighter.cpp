@@ -57,7 +57,8 @@ public:
         const std::span<const glm::vec3> radiance = eye_->look(eye, options);
         return {radiance.begin(), radiance.end()};
     }
-    /// The same for work that changes the light.
+    /// Returns `work(LitScene&)` that changes the light, and copies the radiance; other threads
+    /// wait. Called without Python's lock.
     template<typename Work>
     auto change(const Work& work) {
         const std::lock_guard lock(mutex_);
@@ -142,7 +143,7 @@ std::vector<cubemap::LightLayer> layers_of(const std::string& json) {
     return cubemap::read_layers(reader, list, {});
 }
 
-/// The same, with the error that belongs to arguments.
+/// Returns layers_of(), with the error that belongs to arguments.
 std::vector<cubemap::LightLayer> checked_layers(const std::string& json) {
     try {
         return layers_of(json);

@@ -121,7 +121,7 @@ std::vector<std::size_t> weighted_places(std::span<const std::uint32_t> order,
     return places;
 }
 
-/// Of points in space, whose radiance is the mean over the sphere.
+/// Returns what is given to points in space, whose radiance is the mean over the sphere.
 Given given_to_points(const Relighter& relighter, std::span<const glm::vec3> weights) {
     const ReceiverLight& light = relighter.receiver_light();
     const std::span<const std::uint32_t> order = relighter.transfer().order;

@@ -84,7 +84,7 @@ private:
     bool is_spread_;
     Vectors channels_;
     glm::dvec3 direction_;
-    /// Of the directional light, over the length of the vector.
+    /// The colour of the directional light, over the length of the vector.
     glm::dvec3 colour_{1.0};
 };
 

@@ -360,7 +360,8 @@ private:
     bool sends_ = false;
     /// Upper bound of the factor from one bounce to the next, after many.
     double contraction_ = 0.0;
-    /// Of the albedo, once it is needed: a number of bounces asks for none.
+    /// The bounces between groups of receivers for the albedo, once they are needed: a number of
+    /// bounces asks for none.
     std::optional<CoarseBounces> coarse_;
     std::vector<PaddedRgb> of_groups_;
     /// All by place.
@@ -372,9 +373,9 @@ private:
     /// Made as they are needed; those of this iteration come first.
     std::vector<Step> steps_;
     std::size_t newest_ = 0;
-    /// Of this iteration, also those that are no longer kept.
+    /// Steps of this iteration, also those that are no longer kept.
     std::size_t num_steps_ = 0;
-    /// Of the changes of two steps.
+    /// Products of the changes of two steps, by their places in steps_.
     std::array<std::array<ColorSums, AndersonDepth + 1>, AndersonDepth + 1> products_{};
     /// The sum of squares.
     double all_light_ = 0.0;

@@ -96,7 +96,7 @@ struct HarmonicChanges {
         std::uint32_t first_changed = 0, first_member = 0;
         /// Bit cluster % 64 is set for each changed cluster.
         std::uint64_t changed = 0;
-        /// The same for each cluster of a changed group.
+        /// Bit cluster % 64 is set for each cluster of a changed group.
         std::uint64_t members = 0;
     };
     /// A cluster of a changed group.

@@ -56,7 +56,7 @@ private:
 
     const prt::Transfer& transfer_;
     ClusterHarmonics lights_;
-    /// As HarmonicBlocks.
+    /// The sums that HarmonicBlocks points to: [num_blocks * stride], and 16 times as many.
     std::vector<double> visible_, mixed_;
     /// [num_blocks * stride * 16] of sharp lights; empty: there are none.
     std::vector<double> traced_;

@@ -50,7 +50,7 @@ private:
     static constexpr std::uint32_t NoCell = ~std::uint32_t{0};
 
     std::span<const prt::Cell> cells_;
-    /// Of a face
+    /// TexelColumns side by side on a face
     std::size_t num_columns_;
     /// A step is as many rows as a column is wide.
     std::size_t steps_per_band_;

@@ -72,7 +72,7 @@ public:
     [[nodiscard]] std::vector<VectorIrradiance> sums(const cubemap::CubeMap& environment,
                                                      std::span<const prt::Cell> cells,
                                                      Texels texels = Texels::Checked) const;
-    /// The same for cells that are arranged already, for this resolution.
+    /// Returns sum() of every cell that `bands` has arranged for this resolution; parallel.
     [[nodiscard]] std::vector<VectorIrradiance> sums(const cubemap::CubeMap& environment,
                                                      const BandSums& bands,
                                                      Texels texels = Texels::Checked) const;

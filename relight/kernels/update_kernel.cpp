@@ -275,7 +275,7 @@ private:
     const BlockNormals* normals_;
     // Side by side, because BlockLights are too far apart for the nearest cache.
     std::array<VectorChange, prt::VisibleCounts::TileBlocks> whole_sums_;
-    /// Of clusters that all blocks see whole.
+    /// The change by clusters that all blocks see whole.
     VectorChange sum_of_all_{};
     /// Blocks that have such sums, and pairs.
     std::uint64_t summed_ = 0, paired_ = 0;

@@ -15,7 +15,7 @@ constexpr double Pi = std::numbers::pi;
 
 /// A node this wide, over its distance, counts as one point: what is left out is the square of it.
 constexpr double LargestWidth = 0.12;
-/// The same for one that the horizon cuts.
+/// The limit of width over distance of a node that the horizon cuts.
 constexpr double LargestCutWidth = 0.04;
 /// Radians; so even a node's fronts must be.
 constexpr double LargestTurn = 0.4;

@@ -62,11 +62,11 @@ public:
 private:
     struct Node {
         std::size_t begin = 0, end = 0;
-        /// Of the two halves; 0: a leaf.
+        /// Index of the first of the two halves; 0: a leaf.
         std::size_t first_child = 0;
         glm::dvec3 center{0.0};
         double radius = 0.0;
-        /// Of a box around them
+        /// Middle and half the size of a box around the emitters
         glm::dvec3 middle{0.0}, half{0.0};
         /// All lie in one plane and look to one side of it.
         bool is_flat = false;

@@ -133,7 +133,7 @@ private:
     std::vector<Seen> seen_;
     /// [seen_]
     std::vector<Part> parts_;
-    /// Of those that had rays: their light, and what of it arrives.
+    /// The light of the emitters that had rays, and what of it arrives.
     double sent_ = 0.0;
     double reached_ = 0.0;
 };

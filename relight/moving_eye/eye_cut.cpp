@@ -38,7 +38,7 @@ constexpr float LargestWidth2 = 0.25f;
 /// How much the visible part of a cell may go with its light.
 constexpr float ShareOfContrast = 0.3f;
 
-/// Of the children of two cells, a bit each.
+/// Bits of the children of two cells, one for each child.
 struct SisterBits {
     /// Those with light above the horizons.
     std::uint32_t lit = 0;
@@ -195,7 +195,7 @@ public:
         }
     }
 
-    /// As EyeCut::update().
+    /// Takes the sky's last change to a cut, as EyeCut::update() says.
     bool update(const Judge& judge, std::span<EyeCut::Item> items, LitCells& cells) const {
         for (EyeCut::Item& at : items) {
             const std::uint32_t changed = sky_.changed_children(at.cell);

@@ -24,7 +24,7 @@ struct BlockLobe {
     /// Means, unit length.
     glm::vec3 normal, to_eye;
     float n_v = 0.0f;
-    /// Of the narrowest lobe.
+    /// The square of the narrowest lobe's alpha.
     float alpha2 = 1.0f;
     /// How far the receivers' half vectors are from the mean's, seen from their normals.
     float spread = 0.0f;

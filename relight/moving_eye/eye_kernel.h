@@ -20,7 +20,7 @@ using CellLight = const float*;
 /// A light that receivers see in part.
 struct PartlyCell {
     CellLight light = nullptr;
-    /// Of `parts`; negative for light that goes away.
+    /// The unit of `parts`; negative for light that goes away.
     float unit = 0.0f;
     /// What each receiver sees.
     std::array<std::uint8_t, prt::BlockSize> parts{};

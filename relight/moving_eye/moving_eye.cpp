@@ -80,7 +80,7 @@ struct Worker {
 struct Kept {
     EyeLight light;
     std::vector<EyeCut::Item> divided;
-    /// Of the sky and of the eye that the light is for.
+    /// Version of the sky and generation of the eye that the light is for.
     std::uint64_t version = 0, generation = 0;
     std::size_t num_cells = 0;
     std::uint32_t num_updates = 0;
@@ -279,7 +279,7 @@ struct MovingEye::Impl {
     std::optional<SeenBlocks> seen;
     std::optional<TracedLight> traced;
     std::vector<SharpLight> lights;
-    /// The same, as the kernel takes them.
+    /// `lights` as the kernel takes them.
     std::vector<SisterCells> traced_lights;
     bool is_lit = false;
     /// [num_blocks] once an eye has stood still.

@@ -90,7 +90,7 @@ public:
                                                   const EyeOptions& options = {},
                                                   std::span<const glm::vec4> sides = {});
 
-    /// Of the last look.
+    /// What the last look did.
     [[nodiscard]] const EyeReport& report() const;
 
     /// Small lights that have a shadow ray for each receiver.

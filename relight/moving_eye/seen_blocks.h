@@ -56,7 +56,7 @@ private:
     std::vector<Sphere> spheres_;
     /// Planes that all receivers are behind.
     std::vector<glm::vec4> hull_;
-    /// Of block b: neighbours_[first_[b], first_[b + 1]).
+    /// The neighbours of block b are neighbours_[first_[b], first_[b + 1]).
     std::vector<std::uint32_t> first_, neighbours_;
     /// [num_blocks]
     std::vector<std::uint8_t> seen_, needed_;

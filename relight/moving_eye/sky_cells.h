@@ -65,7 +65,7 @@ public:
     [[nodiscard]] std::uint32_t deepest_level() const { return deepest_level_; }
     /// Returns the children of a cell by prt::cell_index().
     [[nodiscard]] const SisterCells& children(std::uint32_t cell) const { return sisters_[cell]; }
-    /// The same before the last set().
+    /// Returns the children of a cell as they were before the last set().
     [[nodiscard]] const SisterCells& children_before(std::uint32_t cell) const {
         return before_[cell];
     }

@@ -56,7 +56,7 @@ public:
         std::uint64_t word_ = 0;
     };
 
-    /// Of the four children of a cell, a bit each.
+    /// How a block sees the four children of a cell, a bit each.
     struct Sights {
         std::uint32_t visible = 0, mixed = 0;
         /// Mixed ones with clusters below.
@@ -177,7 +177,8 @@ private:
         std::uint32_t first_quad = 0;
     };
 
-    /// Of four bits. Most processors' own instruction is not known at compile time.
+    /// Returns how many of four bits are set. Most processors' own instruction is not known at
+    /// compile time.
     static constexpr std::uint32_t num_bits(std::uint32_t bits) {
         return static_cast<std::uint32_t>(0x4332322132212110u >> 4u * bits & 7u);
     }

@@ -43,7 +43,7 @@ private:
 /// Vectors in rows. The shape is the array's shape without its last axis, which is x, y, z.
 struct VectorArray {
     std::vector<std::size_t> shape;
-    /// As many as the product of the shape, C order.
+    /// [product of the shape] in C order.
     std::vector<glm::vec3> values;
 };
 

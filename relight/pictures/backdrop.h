@@ -76,7 +76,7 @@ private:
 [[nodiscard]] Backdrop image_backdrop(std::shared_ptr<const cubemap::EnvironmentImage> image,
                                       const glm::dmat3& turn = glm::dmat3(1.0));
 
-/// The same for an environment's file; empty where there is none.
+/// Shows the pixels of an environment's file, bilinear; empty where it has no image.
 [[nodiscard]] Backdrop backdrop_of(const cubemap::EnvironmentFile& file);
 
 /// Shows what an edit made of a sharp backdrop: darker in proportion where the edited map is darker

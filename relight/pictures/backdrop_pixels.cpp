@@ -97,7 +97,8 @@ struct CellPixels {
         down = pixel(below + left) - first;
         both = pixel(below + other) - first - right - down;
     }
-    /// Of one place, or the mean over places with these means of their parts and their product.
+    /// Returns the colour at one place, or the mean over places with these means of their parts and
+    /// their product.
     [[nodiscard]] glm::vec3 at(const glm::vec2& part, float product) const {
         return first + part.x * right + part.y * down + product * both;
     }

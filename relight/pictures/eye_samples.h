@@ -27,7 +27,7 @@ public:
     SampleRectangle(const PixelRectangle& pixels, std::size_t per_pixel,
                     std::span<const EyeSample> samples, std::size_t stride)
         : pixels_(pixels), per_pixel_(per_pixel), stride_(stride), samples_(samples) {}
-    /// The same with samples of its own, row by row.
+    /// Keeps samples of its own, row by row.
     SampleRectangle(const PixelRectangle& pixels, std::size_t per_pixel,
                     std::vector<EyeSample> samples)
         : pixels_(pixels), per_pixel_(per_pixel), stride_(pixels.width() * per_pixel),

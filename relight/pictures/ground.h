@@ -14,7 +14,7 @@ namespace relumine::relight {
 struct Ground {
     /// Where the environment was photographed.
     glm::dvec3 camera{0.0};
-    /// Of the camera above the ground, above 0.
+    /// Height of the camera above the ground, above 0.
     double height = 1.0;
     /// Radius of the sphere, above `height`.
     double reach = 20.0;

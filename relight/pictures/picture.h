@@ -17,9 +17,9 @@ using cubemap::Picture;
 struct Development {
     /// In stops.
     double exposure_ev = 0.0;
-    /// Of .png; .exr is linear.
+    /// The tone curve of .png; .exr is linear.
     ToneCurve tone = ToneCurve::None;
-    /// Of .png, in place of `tone`; null: none.
+    /// The display transform of .png, in place of `tone`; null: none.
     const DisplayTransform* display = nullptr;
 };
 

@@ -104,7 +104,7 @@ private:
     /// Scratch of layers()
     std::vector<Layer> layers_;
     std::vector<prt::RayScene::Layer> found_;
-    /// Of a pixel
+    /// The parts of a pixel
     std::vector<Part> parts_;
     /// [samples of a pixel] their parts.
     std::vector<std::size_t> part_of_;

@@ -20,7 +20,8 @@ namespace relumine::relight {
 /// all three are positive where the sample's ray meets the triangle; their sum is then 1 over its
 /// depth, and w_k over the sum the weight of corner k.
 struct Raster::Planes {
-    /// Of w_k: at the first sample of the picture, and its change per sample to the right and down.
+    /// The values of w_k at the first sample of the picture, and their change per sample to the
+    /// right and down.
     std::array<double, 3> first{}, right{}, down{};
     bool is_front = false;
     /// Whether any ray may meet the triangle.

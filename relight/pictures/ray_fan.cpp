@@ -60,7 +60,7 @@ FanVector root(FanVector value) {
     return hn::Sqrt(hn::Max(value, hn::Zero(FanTag())));
 }
 
-/// As hammersley(), x and y of points i of n.
+/// Sets x and y of points i of the fan's hammersley().
 void hammersley_points(const RayFan& fan, hn::Vec<hn::RebindToUnsigned<FanTag>> i, FanVector& x,
                        FanVector& y) {
     const FanTag d;

@@ -18,10 +18,10 @@ namespace relumine::relight {
 struct RayFan {
     /// Unit length. The eye is above the normal.
     glm::vec3 normal, to_eye;
-    /// Of a GGX lobe; 0: rays are as dense everywhere above the surface.
+    /// Alpha of a GGX lobe; 0: rays are as dense everywhere above the surface.
     float alpha;
     std::uint32_t num_rays;
-    /// Of hammersley()
+    /// The shift of hammersley()
     glm::vec2 shift;
 };
 
@@ -38,7 +38,7 @@ struct FanFrame {
 /// Some rays of a fan.
 struct FanRays {
     prt::DirectionPacket directions;
-    /// Of rays around each: mirrored_density(), or 1 / 2 pi.
+    /// Density of the fan's rays around each, 1/sr: mirrored_density(), or 1 / 2 pi.
     alignas(64) std::array<float, prt::PacketSize> densities;
     /// Bit i is set where ray i is above the surface. Rays are mirrored at visible_half() and may
     /// be below it.

@@ -147,7 +147,7 @@ private:
         return double{emitter.radiance.r} + double{emitter.radiance.g} + double{emitter.radiance.b};
     }
 
-    /// Of a point of the triangle's plane.
+    /// Whether a triangle contains a point of its plane.
     static bool contains(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& place) {
         const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
         for (std::size_t i = 0; i < 3; ++i)

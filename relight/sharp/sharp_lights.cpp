@@ -208,9 +208,9 @@ private:
     bool even_too_;
     /// The level where a cell is no larger than a texel.
     std::uint32_t texel_level_;
-    /// Of one cluster.
+    /// Cells of one cluster that have enough power.
     std::vector<Candidate> candidates_;
-    /// Of all clusters.
+    /// The sharp cells of all clusters.
     std::vector<SharpCell> sharp_;
     std::vector<SharpLight>& lights_;
 };

@@ -91,7 +91,7 @@ private:
 
     const prt::Transfer& transfer_;
     ShadowRays rays_;
-    /// Of the present lights.
+    /// What each of the present lights reaches.
     ReachedBlocks reached_;
     /// By light.
     std::vector<const Reached*> of_light_;

@@ -254,7 +254,7 @@ private:
     const EnvironmentFit& options_;
     cubemap::CubeMap map_;
     std::vector<std::pair<std::size_t, std::size_t>> pairs_;
-    /// Of a face's texels
+    /// Solid angles of a face's texels
     std::vector<double> solid_angles_;
     /// The target's squared length
     double size_ = 0.0;

@@ -63,8 +63,8 @@ struct Verification {
         relight::ErrorReport error;
     };
     std::optional<Surface> surface = {};
-    /// The same at points that a picture of the whole mesh shows, and as it shows them: lights that
-    /// it traces pixel by pixel are traced. At most num_surface_points. Only for vertices.
+    /// The light at points that a picture of the whole mesh shows, as it shows them: lights that it
+    /// traces pixel by pixel are traced. At most num_surface_points. Only for vertices.
     std::optional<Surface> picture = {};
     /// Standard error of the paths that bounces were compared with, relative to the radiance, L2
     /// over the receivers; it is a part of error.relative_l2. 0 without bounces.
@@ -94,7 +94,7 @@ struct Share {
     cubemap::CubeMap environment;
     /// The part of the scene's reflected light that comes from the region, 0 to 1.
     double share = 0.0;
-    /// As those of Lighting.
+    /// The lights that are traced one by one, and [num_receivers] radiance without them (Lighting).
     std::vector<relight::SharpLight> lights = {};
     std::vector<glm::vec3> soft = {};
 
@@ -131,8 +131,9 @@ struct Share {
 ///          receivers with highlights; std::logic_error unless an environment lights the scene.
 [[nodiscard]] cubemap::CubeMap adjoint(const LitScene& lit, std::span<const glm::vec3> weights);
 
-/// The same, given the derivative by the pixels of a scene of pixels: of draw() before nothing, as
-/// linear radiance. The radiance of the receivers and the albedo of the options make the picture.
+/// Returns adjoint(), given the derivative by the pixels of a scene of pixels: of draw() before
+/// nothing, as linear radiance. The radiance of the receivers and the albedo of the options make
+/// the picture.
 ///
 /// Shape:   weights is [height * width] of the picture.
 /// Throws:  as adjoint(), and std::invalid_argument for receivers that are no pixels and for a
@@ -141,7 +142,7 @@ struct Share {
                                                std::span<const glm::vec3> weights,
                                                const OutputOptions& options = {});
 
-/// The same, given the derivative by harmonics().
+/// Returns adjoint(), given the derivative by harmonics().
 ///
 /// Shape:   weights is [num_receivers][order^2] in the receivers' order.
 /// Throws:  as adjoint(), and std::logic_error for a scene without LightOptions::harmonics.

@@ -81,7 +81,7 @@ struct Environment {
     double seconds_load = 0.0;
     /// With the turn
     double seconds_resample = 0.0;
-    /// Of the file
+    /// The file that was read; empty without one
     std::filesystem::path path = {};
 };
 
@@ -127,7 +127,8 @@ load_environment_image(const std::filesystem::path& path, const EnvironmentOptio
 environment_of(const std::shared_ptr<const cubemap::EnvironmentImage>& image,
                const EnvironmentOptions& options = {});
 
-/// The same for a picture that turns: `resampled` is the image as a cube map that was not turned.
+/// Turns an image that was resampled: `resampled` is its cube map before any turn. For a picture
+/// that turns.
 [[nodiscard]] Environment
 environment_of(const std::shared_ptr<const cubemap::EnvironmentImage>& image,
                const cubemap::CubeMap& resampled, const EnvironmentOptions& options = {});

@@ -19,7 +19,7 @@ struct SurfaceMaterial {
     /// The group of the mesh that it is for. Empty: the whole mesh.
     std::string group = {};
     prt::Highlight highlight = prt::Highlight::None;
-    /// As Surface::roughness_or_exponent.
+    /// Roughness of GGX, exponent of Blinn-Phong (prt::Surface::roughness_or_exponent).
     float roughness_or_exponent = 1.0f;
     /// Diffuse reflectance.
     std::optional<glm::vec3> albedo = {};

@@ -72,7 +72,7 @@ struct MeshOptions {
     std::optional<mesh::UpAxis> up = {};
     /// Where normals come from: the file if it has them, or always the faces.
     mesh::NormalSource normals = mesh::NormalSource::File;
-    /// Of a glTF file: a moment of one of its animations. Empty: as its nodes say.
+    /// The moment of one of a glTF file's animations. Empty: as its nodes say.
     std::optional<mesh::Pose> pose = {};
     /// Replaces them by mesh::with_creases() of so many degrees.
     std::optional<float> crease = {};
@@ -108,7 +108,8 @@ struct MeshOptions {
 using prt::RefineOptions;
 using prt::RefineReport;
 
-/// Of what shapes the mesh; `light` is a file to the command line, and `bias` that of the scene.
+/// The options of what shapes the mesh; `light` is a file to the command line, and `bias` that of
+/// the scene.
 [[nodiscard]] OptionTable options_of(RefineOptions& options);
 
 /// Returns the mesh with more vertices where its light changes between two of them, or where edges

@@ -116,11 +116,12 @@ inline constexpr float ToleranceOfRefined = 0.025f;
 /// Where no tolerance is given, it grows until pixels have at most so many clusters: what a still
 /// is worth.
 inline constexpr std::uint32_t MostClustersOfPixels = 2048;
-/// The same where light passes surfaces by chance (blended, glass), each ray of which costs ten
-/// times as much: of other receivers, and of pixels.
+/// The most clusters where light passes surfaces by chance (blended, glass), each ray of which
+/// costs ten times as much: of other receivers, and of pixels.
 inline constexpr std::uint32_t MostClustersOfThin = 4096, MostClustersOfThinPixels = 512;
 
-/// The same of points: with cells of prt::MinLevelOfPoints, nothing more is split as a rule.
+/// PrecomputeOptions::tolerance of points where none is given: with cells of prt::MinLevelOfPoints,
+/// nothing more is split as a rule.
 inline constexpr float ToleranceOfPoints = 0.1f;
 
 /// Where highlights come from, for receivers with an eye.
@@ -152,7 +153,7 @@ struct PrecomputeOptions {
 
     /// What is lit
     ReceiverChoice receivers = Vertices{};
-    /// Of a Grid; empty: the box around the mesh, without a floor that was added to it.
+    /// The box of a Grid. Empty: the box around the mesh, without a floor that was added to it.
     std::optional<mesh::Bounds> box = {};
     /// The mesh keeps its vertices. Otherwise vertices, those behind bounces included, become more
     /// where the mesh is coarse: refined_by_itself().
@@ -169,8 +170,8 @@ struct PrecomputeOptions {
     /// The added floor's own surface; `surface` is not asked for it. A white Lambert one takes its
     /// albedo from the options of each picture.
     prt::Surface floor_surface = {};
-    /// Of pixels only they may be traced. Empty: pixels trace them, unless surfaces have coats or
-    /// sheen; vertices and texels store them.
+    /// Where highlights come from. Rays may find those of pixels only. Empty: rays find those of
+    /// pixels; vertices and texels store them.
     std::optional<Highlights> highlights = {};
     /// Relative error of a stored highlight under a small light anywhere
     float glossy_tolerance = prt::GlossyOptions{}.tolerance;
@@ -217,7 +218,7 @@ struct ProcessFigures {
     std::uint64_t num_rays = 0;
     /// From the moment when it got the work to its result
     double seconds = 0.0;
-    /// Of these, waiting for the others and sending
+    /// The part of `seconds` that went into waiting for the others and sending
     double seconds_waiting = 0.0;
     /// Processor time of all threads
     double seconds_of_processors = 0.0;
@@ -234,7 +235,7 @@ struct PrecomputeReport {
     std::size_t num_receivers = 0;
     /// Only of a mesh that was refined by itself; num_vertices counts the new ones.
     std::optional<prt::RefineReport> refined = {};
-    /// As used, in the mesh's unit
+    /// The bias that was used, in the mesh's unit
     float bias = 0.0f;
     prt::PrecomputeStatistics clusters = {};
     /// Only of texels: how the uvs fit the atlas
@@ -257,7 +258,7 @@ struct PrecomputeReport {
     /// By index
     std::vector<ProcessFigures> processes = {};
 
-    /// Of the scene file, 0 without one
+    /// Size of the scene file, or of the plan, 0 without one
     std::uint64_t file_bytes = 0;
     /// The checkpoint folder if an exception left one, for `resume`; or empty.
     std::filesystem::path checkpoint = {};

@@ -72,7 +72,7 @@ struct MaterialText {
 
 /// Throws OptionError for options that contradict each other.
 void check(const PrecomputeOptions& options);
-/// The same for points and grids alone.
+/// Throws OptionError for a box without a grid, and for a view with points or a grid.
 void check_points(const PrecomputeOptions& options);
 /// Throws std::invalid_argument for a grid of no cell or of too many.
 void check(const Grid& grid);

@@ -58,7 +58,7 @@ struct SurfaceColors {
     std::optional<glm::vec3> albedo = {};
     /// F0, or Ks of Blinn-Phong
     std::optional<glm::vec3> specular = {};
-    /// Of GGX highlights that follow the eye; a texture of roughness multiplies it.
+    /// The roughness of GGX highlights that follow the eye; a texture of roughness multiplies it.
     std::optional<float> roughness = {};
 };
 

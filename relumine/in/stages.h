@@ -29,9 +29,9 @@ class Stages {
 public:
     struct Options {
         Engine engine = Engine::Beams;
-        /// As PrecomputeOptions::blockers
+        /// What blocks light; null: the mesh's triangles (PrecomputeOptions::blockers)
         const prt::Blockers* blockers = nullptr;
-        /// As PrecomputeOptions::max_memory
+        /// Most bytes that the work may take; empty: no limit (PrecomputeOptions::max_memory)
         std::optional<std::uint64_t> max_memory = {};
         /// Begins all messages: "bunny.ply: " or nothing
         std::string prefix = {};

@@ -52,7 +52,8 @@ public:
 
     /// [num_receivers] in the receivers' order; empty without bounces.
     [[nodiscard]] std::span<const glm::vec3> bounced() const { return bounced_; }
-    /// As relight::BounceLight::point_harmonics(); nothing without bounced().
+    /// Returns the light that points in space get from surfaces (relight::BounceLight). Only where
+    /// bounced() is not empty.
     [[nodiscard]] std::vector<glm::vec3> point_harmonics(std::uint32_t order) const {
         return light_->point_harmonics(order);
     }

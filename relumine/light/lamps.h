@@ -36,7 +36,7 @@ public:
     /// Cost:    some 20 rays a receiver and a solution of bounces for each new name; otherwise
     ///          O(receivers) for each name.
     void find();
-    /// Of the bounces that the last find() had to find, of all names: the most products, and all
+    /// The bounces that the last find() had to find, of all names: the most products, and all
     /// seconds.
     [[nodiscard]] const BounceReport& report() const { return report_; }
     /// Lets the light of lamps bounce as that of an environment does. The next find() finds it.

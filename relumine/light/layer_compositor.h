@@ -79,7 +79,8 @@ private:
     std::vector<cubemap::TexelRectangle> changed_;
     /// Scratch: the rectangles that changed layers cover.
     std::vector<cubemap::TexelRectangle> touched_;
-    /// Of regions asked for last, oldest first: an edit often has the region of the edit before.
+    /// The texels of the regions that were asked for last, oldest first: an edit often has the
+    /// region of the edit before.
     std::vector<TouchedTexels> known_;
 };
 

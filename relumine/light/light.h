@@ -48,8 +48,8 @@ struct Light {
     std::filesystem::path path = {};
     /// Each has shadow rays of its own or, with LightOptions::clusters_only, its cluster's.
     std::vector<lights::DistantLight> lights = {};
-    /// Of a binned environment: changes up to this part of a cluster's light are left out, as in
-    /// relight::Relighter::set_frame().
+    /// The part of a cluster's light up to which changes of a binned environment are left out
+    /// (relight::Relighter::set_frame()).
     double bound = 0.0;
 };
 

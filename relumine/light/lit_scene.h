@@ -37,13 +37,13 @@ struct LightOptions {
     bool clusters_only = false;
     /// Order of the spherical harmonics that LitScene::harmonics() returns: 2 or 3. 0: none.
     std::uint32_t harmonics = 0;
-    /// Of a pixel whose highlights are not stored: rays that find them. 0: none.
+    /// Rays that find the highlights of a pixel that are not stored. 0: none.
     std::uint32_t highlight_rays = DefaultHighlightRays;
     /// What keeps sharp lights and distant lights from the receivers, as
     /// PrecomputeOptions::blockers. Null: the scene's triangles. Pictures trace the mesh all the
     /// same, and so do questions: verify(), sees().
     std::shared_ptr<const prt::Blockers> blockers = {};
-    /// Of a part: the processes that share the light, each with its own. It must outlive the
+    /// The processes that share the light of a part, each with its own. It must outlive the
     /// LitScene. Null: this one has no others.
     prt::Team* team = nullptr;
     /// The scene's file, for what is said where processes have different ones
@@ -52,7 +52,7 @@ struct LightOptions {
 
 /// How an edit ends.
 enum class Ending {
-    /// As Quick, but a turn is near, as cubemap::QuickTurns, and that of a map of at most
+    /// With what changed. A turn is approximate (cubemap::QuickTurns), and of a map of at most
     /// MovingResolution: for a slider while it moves. Any other edit brings the whole map back.
     Moving,
     /// With what changed. The last bits may depend on the way to the state.
@@ -90,7 +90,7 @@ struct Bouncing {
 /// Threads: one thread at a time may call what is not const. Every result is the same bit by bit
 ///          for any number of threads.
 /// Memory:  the scene, about 100 bytes per triangle for its rays, and about 1 KB for 16 receivers.
-///          Of a part: the mesh, all receivers, the part's share of the counts and of the rows of
+///          A part: the mesh, all receivers, the part's share of the counts and of the rows of
 ///          bounces, and the light of all receivers.
 class LitScene {
 public:
@@ -205,9 +205,9 @@ private:
         std::vector<glm::vec3> diffuse = {};
         /// [receivers of this process][order^2]
         std::vector<glm::vec3> harmonics = {};
-        /// Of a level floor that nothing shades, for albedo 1.
+        /// Radiance of a level floor that nothing shades, for albedo 1.
         glm::dvec3 open_floor{0.0};
-        /// As those of Lighting.
+        /// The lights that are traced one by one, and radiance without them (Lighting).
         std::vector<relight::SharpLight> lights = {};
         std::vector<glm::vec3> soft = {};
     };
@@ -237,7 +237,7 @@ private:
     FinishTimes finish();
 
     std::shared_ptr<const Scene> scene_;
-    /// The same, where nobody else has it.
+    /// What scene_ points to, where nobody else has it; else null.
     Scene* own_scene_ = nullptr;
     std::unique_ptr<const SceneRays> rays_;
     /// LightOptions::blockers
@@ -254,7 +254,7 @@ private:
     bool is_lit_ = false;
     Added added_;
     LightState state_;
-    /// Of state_, once it was edited.
+    /// Composites state_, once it was edited.
     LayerCompositor compositor_;
     /// For the next turn's map.
     cubemap::CubeMap turning_memory_;

@@ -49,7 +49,7 @@ public:
     [[nodiscard]] const EyeReport& report() const { return eye_.report(); }
     /// [num_receivers] the receivers' surfaces with their highlights.
     [[nodiscard]] std::span<const prt::Surface> surfaces() const { return surfaces_; }
-    /// Of receivers with highlights.
+    /// The mean roughness of the receivers with highlights.
     [[nodiscard]] float mean_roughness() const;
     /// How many receivers are smoother than relight::NarrowestLiveRoughness: their highlights come
     /// out wider.

@@ -45,7 +45,7 @@ public:
         }
     }
 
-    /// As relight::Reflections asks for them.
+    /// Returns the radiance of a surface that a ray meets, as relight::Reflections asks for it.
     [[nodiscard]] glm::vec3 radiance(const prt::Hit& hit, const glm::vec3& direction) const {
         const prt::Hit facing = twins_.facing(hit, direction);
         const prt::MeshPoint at{.triangle = facing.triangle, .barycentric = facing.barycentric};

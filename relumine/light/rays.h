@@ -25,7 +25,7 @@ public:
     [[nodiscard]] const prt::RayScene& of_mesh() const { return of_mesh_; }
     /// What blocks the light: the mesh, or Scene::blockers.
     [[nodiscard]] const prt::RayScene& blockers() const { return others_ ? *others_ : of_mesh_; }
-    /// The same for sharp lights, which may move with every frame.
+    /// What blocks sharp lights, which may move with every frame: the mesh, or Scene::blockers.
     [[nodiscard]] const prt::Blockers& for_moving_lights() const { return moving_; }
 
 private:

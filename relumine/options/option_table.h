@@ -217,7 +217,8 @@ struct PointText {
 template<typename Text = void, typename T>
 [[nodiscard]] OptionRow row(std::string name, T& value, std::string help, OptionFacts facts = {});
 
-/// The same for a value of its own kind: `read` throws std::invalid_argument for wrong text.
+/// Declares an option with a value of its own kind: `read` throws std::invalid_argument for wrong
+/// text.
 [[nodiscard]] OptionRow row(std::string name, std::function<void(const std::string&)> read,
                             std::string help, OptionFacts facts = {});
 

@@ -89,11 +89,11 @@ struct CameraPlace {
 struct OutputOptions {
     Albedo albedo = AutomaticAlbedo{};
     FloorLook floor = FloorLook::Automatic;
-    /// Of the camera that photographed the environment, above the floor, in the mesh's unit. Empty:
-    /// the longest side of what stands on the floor.
+    /// Height of the camera that photographed the environment, above the floor, in the mesh's unit.
+    /// Empty: the longest side of what stands on the floor.
     std::optional<float> photo_height = {};
-    /// Of an added floor, where it has no surface of its own. Empty: 0.3 in pictures and colours, 1
-    /// in data.
+    /// Albedo of an added floor that has no surface of its own. Empty: 0.3 in pictures and colours,
+    /// 1 in data.
     std::optional<glm::vec3> floor_albedo = {};
     /// Factors on the light that the scene gives of its own. Pictures show them on what glows;
     /// LitScene::dim() lets the light follow.
@@ -103,9 +103,9 @@ struct OutputOptions {
     /// Exposure in stops. Empty: what suits the lit surfaces that are seen, for .png, .ply and
     /// .glb; 0 for .exr and .npy. save() applies it, draw() does not.
     std::optional<double> exposure_ev = {};
-    /// Of .png; all else stays linear.
+    /// The tone curve of .png; all else stays linear.
     ToneCurve tone = ToneCurve::Neutral;
-    /// Of .png, in place of the tone curve, where it has a config.
+    /// The display transform of .png, in place of the tone curve, where it has a config.
     relight::DisplayView display = {};
 
     /// Size of the picture. Only for scenes of vertices, as are the camera and the rays below.

@@ -129,7 +129,7 @@ struct Painter::Impl {
         return colors;
     }
 
-    /// Of vertices with textures and highlights; their radiance is given.
+    /// Returns the lobes of vertices with textures and highlights, given their radiance; else none.
     std::vector<prt::Lobes<glm::vec3>> shown_lobes(const Lighting& lighting,
                                                    std::span<const glm::vec3> radiance) {
         std::vector<prt::Lobes<glm::vec3>> lobes = lighting.lobes;
@@ -176,7 +176,7 @@ struct Painter::Impl {
         return lighting.sharp ? lighting.sharp : relight::map_backdrop(lighting.behind());
     }
 
-    /// Of pixels, without added vertices; empty where all are opaque.
+    /// Returns the opacity of pixels, without added vertices; empty where all are opaque.
     [[nodiscard]] std::vector<glm::vec3> opacity(const Lighting& lighting) {
         std::vector<glm::vec3> result;
         const std::optional<glm::vec3> open = open_floor(scene, lighting, look(lighting), eye());
@@ -255,7 +255,8 @@ struct Painter::Impl {
     void meter(const Lighting& lighting);
     /// Returns the share of the picture that the mesh covers.
     double meter_picture(const Lighting& lighting);
-    /// The same. Of the floor, what pixels see of its opaque part counts.
+    /// Meters pixels or texels, and returns the share of the picture that the mesh covers. Of the
+    /// floor, what pixels see of its opaque part counts.
     double meter_receivers(const Lighting& lighting);
     /// Adds a point of the floor that is seen in a direction. Of a floor that shows what is behind
     /// it, `color` is what it makes of white: only where lamps brighten it is it more than a
@@ -284,7 +285,7 @@ struct Painter::Impl {
     OutputOptions options;
     /// [num_receivers] or empty: none.
     std::vector<glm::vec3> emission;
-    /// Of vertices with textures: [num_triangles] factors on it.
+    /// [num_triangles] factors on the emission of vertices with textures.
     std::vector<glm::vec3> emission_gains;
     /// Null: the tone curve.
     std::unique_ptr<const relight::DisplayTransform> display =
@@ -292,7 +293,7 @@ struct Painter::Impl {
             ? nullptr
             : std::make_unique<const relight::DisplayTransform>(options.display);
     relight::FadingFloor floor;
-    /// Of vertices.
+    /// What the textures show, where receivers are vertices.
     relight::SurfaceColors textures;
     std::vector<glm::vec3> shown;
     std::function<void(double)> on_progress;
@@ -305,7 +306,7 @@ struct Painter::Impl {
         std::vector<glm::vec3> colors, behind, floor;
         /// [colors]
         std::vector<float> weights;
-        /// Of all pictures.
+        /// The pixels of all pictures.
         double num_pixels = 0.0;
     } metered;
     std::optional<double> chosen_ev;

@@ -19,7 +19,7 @@ namespace relumine {
 /// own triangles. A ball is white and smooth: each of its vertices has the irradiance of its normal
 /// over pi, which nine coefficients tell.
 ///
-/// Of more than MostBalls points every n-th has a ball.
+/// With more than MostBalls points, every n-th has a ball.
 class ProbeBalls {
 public:
     static constexpr std::size_t MostBalls = 4096;

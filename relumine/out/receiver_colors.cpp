@@ -26,7 +26,7 @@ std::vector<glm::vec3> factors(const Scene& scene, const Albedo& albedo) {
     return prt::colors_at(scene.mesh, scene.receivers);
 }
 
-/// The same with what the options leave open.
+/// Returns factors on each receiver's radiance, with what the options leave open.
 std::vector<glm::vec3> factors(const Scene& scene, const OutputOptions& options, Purpose purpose) {
     const bool is_shown = purpose == Purpose::Bounce ||
                           (purpose == Purpose::Show && prt::kind_of(scene.layout).are_seen);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t Magic = 0xFD2FB528;
 constexpr std::size_t BlockHeaderSize = 3;
-/// Of the content of a block.
+/// Most bytes of the content of a block.
 constexpr std::size_t LargestBlock = std::size_t{1} << 17;
 
 void require(bool is_right) {

@@ -86,12 +86,12 @@ public:
     /// Chord from the ball's centre to the nearest arc, of a ball.
     [[nodiscard]] double distance() const { return distance_; }
 
-    /// As ArcTree::squared_distance(), for directions in the ball.
+    /// Returns ArcTree::squared_distance() of a direction in the ball.
     [[nodiscard]] double squared_distance(const glm::dvec3& w,
                                           double limit = std::numeric_limits<double>::max()) const;
-    /// As ArcTree::several_within(), for directions in the ball and chords up to its radius.
+    /// Returns ArcTree::several_within() of a direction in the ball, for chords up to its radius.
     [[nodiscard]] bool several_within(const glm::dvec3& w, double chord) const;
-    /// As ArcTree::encloses(). The tree answers this question.
+    /// Returns ArcTree::encloses(). The tree answers this question.
     [[nodiscard]] bool encloses(const glm::dvec2& point) const { return tree_->encloses(point); }
 
 private:

@@ -63,7 +63,7 @@ private:
     glm::dvec3 mean_, first_, second_;
     /// Chords.
     double band_, extent_ = 0.0;
-    /// Of the whole lasso alone.
+    /// The tree of the whole lasso's outline; null in a narrowed shape.
     std::shared_ptr<ArcTree> tree_ = nullptr;
     NearArcs outline_;
     /// True or false if all directions in the ball are inside or outside. Empty: the outline may

@@ -31,12 +31,12 @@ struct LayerField {
     FieldRange range = {};
     /// The end of the range is excluded.
     bool below_end = false;
-    /// Of a range from 0: what is greater than 0 is at least this.
+    /// The least number above 0, where the range begins at 0.
     double least_but_zero = 0.0;
     /// What a slider offers, where it is not the range.
     std::optional<FieldRange> slider = {};
     bool logarithmic_slider = false;
-    /// Of `points`.
+    /// The least number of `points`.
     std::size_t at_least = 1;
     bool* flag = nullptr;
     double* number = nullptr;

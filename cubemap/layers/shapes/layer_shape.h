@@ -21,7 +21,7 @@ struct ShapeWords {
     std::string_view label;
     /// In the window, for the button that adds one.
     std::string_view hint;
-    /// Of Python's class.
+    /// The docstring of Python's class.
     std::string_view about;
 };
 

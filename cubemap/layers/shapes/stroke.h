@@ -63,7 +63,7 @@ private:
     /// Chords.
     double outer_, inner_;
     double squared_outer_, inverse_band_;
-    /// Of the whole stroke alone.
+    /// The tree of the whole stroke's line; null in a narrowed shape.
     std::shared_ptr<ArcTree> tree_ = nullptr;
     NearArcs line_;
 };
