@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t MiB = std::uint64_t{1} << 20;
 
-// Measured (docs/performance.md, "Memory"). Per triangle: Embree's tree, the tree of beams and the
+// Measured (docs/measurements.md, "Memory"). Per triangle: Embree's tree, the tree of beams and the
 // mesh's indices. Per vertex: positions, normals and the remains of loading. Per receiver: two
 // copies of positions and normals, one in each order, and the order itself.
 constexpr std::uint64_t ProgramBytes = 40 * MiB;

@@ -162,7 +162,7 @@ std::string size_text(double bytes) {
 }
 
 void print_row(const Costs& costs, double receivers, double cores, double network_speed) {
-    // What a receiver and a triangle take in memory (docs/performance.md, "Memory"); a triangle of
+    // What a receiver and a triangle take in memory (docs/measurements.md, "Memory"); a triangle of
     // a lightmap has a hundred texels.
     constexpr double BytesPerReceiver = 80.0;
     constexpr double BytesPerTriangle = 410.0;
