@@ -11,7 +11,7 @@ namespace relumine::app {
 namespace {
 
 /// The text as one word of bash.
-std::string quoted(std::string_view text) {
+std::string shell_quoted(std::string_view text) {
     std::string result = "'";
     for (const char c : text)
         if (c == '\'')
@@ -32,7 +32,7 @@ std::vector<std::string> names_of(const std::vector<CommandTable>& commands) {
 /// What bash offers for a value: an assignment to `kind` and `words`.
 std::string bash_value(const OptionRow& option) {
     if (!option.choices.empty())
-        return fmt::format("kind=words words={}", quoted(files::joined(option.choices, " ")));
+        return fmt::format("kind=words words={}", shell_quoted(files::joined(option.choices, " ")));
     return option.file ? "kind=files" : option.folder ? "kind=folders" : "kind=none";
 }
 
@@ -40,7 +40,7 @@ std::string bash_value(const OptionRow& option) {
 void bash_commands(const CommandTable& command, const std::string& words, std::string& patterns) {
     for (const CommandTable& below : command.commands) {
         patterns += fmt::format("{}{}", patterns.empty() ? "" : " | ",
-                                quoted(fmt::format("{} {}", words, below.name)));
+                                shell_quoted(fmt::format("{} {}", words, below.name)));
         bash_commands(below, words.empty() ? below.name : words + " " + below.name, patterns);
     }
 }
@@ -63,9 +63,9 @@ void bash_branch(const CommandTable& command, const std::string& words, std::str
     }
     if (!command.commands.empty())
         argument = fmt::format("kind=words words={}",
-                               quoted(files::joined(names_of(command.commands), " ")));
-    script += fmt::format("    {})\n        options={}\n", quoted(words),
-                          quoted(files::joined(options, " ")));
+                               shell_quoted(files::joined(names_of(command.commands), " ")));
+    script += fmt::format("    {})\n        options={}\n", shell_quoted(words),
+                          shell_quoted(files::joined(options, " ")));
     script += fmt::format("        case $before in\n{}        *) {} ;;\n        esac ;;\n", values,
                           argument);
     for (const CommandTable& below : command.commands)

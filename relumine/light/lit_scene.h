@@ -12,8 +12,6 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "cubemap/layers/light_layer.h"
-#include "cubemap/quick_turns.h"
 #include "cubemap/texel_rectangle.h"
 #include "prt/parts/scene_part.h"
 #include "prt/team.h"
@@ -21,16 +19,16 @@
 #include "relight/relighter.h"
 #include "relumine/in/scene.h"
 #include "relumine/light/bounces.h"
+#include "relumine/light/edited_environment.h"
 #include "relumine/light/lamps.h"
-#include "relumine/light/layer_compositor.h"
 #include "relumine/light/light.h"
 #include "relumine/light/lighting.h"
+#include "relumine/light/listed_light.h"
 #include "relumine/light/mirrors.h"
 #include "relumine/light/rays.h"
+#include "relumine/light/shared_receivers.h"
 
 namespace relumine {
-
-using relight::UpdateReport;
 
 struct LightOptions {
     /// Lights the sun through its cluster too, without shadow rays of its own: faster, softer
@@ -49,22 +47,6 @@ struct LightOptions {
     /// The scene's file, for what is said where processes have different ones
     std::filesystem::path path = {};
 };
-
-/// How an edit ends.
-enum class Ending {
-    /// With what changed. A turn is approximate (cubemap::QuickTurns), and of a map of at most
-    /// MovingResolution: for a slider while it moves. Any other edit brings the whole map back.
-    Moving,
-    /// With what changed. The last bits may depend on the way to the state.
-    Quick,
-    /// All clusters are summed anew, and all bounces are found: the radiance is that of the state,
-    /// bit by bit, whichever edits led to it.
-    Exact,
-};
-
-/// Texels along a face's edge of maps that turn while a slider moves. Measured: their light differs
-/// by at most 0.1 % (relative L2) from the whole map's, by 0.8 % under a sun.
-inline constexpr std::uint32_t MovingResolution = 128;
 
 /// What LitScene::bounce() does.
 struct Bouncing {
@@ -113,9 +95,9 @@ public:
     /// Throws:  std::invalid_argument for a scene without clusters.
     [[nodiscard]] const relight::Relighter& relighter() const;
     /// The environment with its layers and its turn.
-    [[nodiscard]] const LightState& state() const { return state_; }
+    [[nodiscard]] const LightState& state() const { return environment_.state(); }
     /// Marks of states; see mark().
-    [[nodiscard]] LightHistory& history() { return history_; }
+    [[nodiscard]] LightHistory& history() { return environment_.history(); }
     [[nodiscard]] const SceneBounces& bounces() const { return bounces_; }
     [[nodiscard]] const SceneLamps& lamps() const { return lamps_; }
     [[nodiscard]] const SceneMirrors& mirrors() const { return mirrors_; }
@@ -199,35 +181,15 @@ public:
 
 private:
     LitScene(const std::shared_ptr<Scene>& own, const LightOptions& options);
-    /// Light of a list that comes on top, [receivers of this process] each.
-    struct Added {
-        std::vector<glm::vec3> radiance = {};
-        std::vector<glm::vec3> diffuse = {};
-        /// [receivers of this process][order^2]
-        std::vector<glm::vec3> harmonics = {};
-        /// Radiance of a level floor that nothing shades, for albedo 1.
-        glm::dvec3 open_floor{0.0};
-        /// The lights that are traced one by one, and radiance without them (Lighting).
-        std::vector<relight::SharpLight> lights = {};
-        std::vector<glm::vec3> soft = {};
-    };
     LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::ScenePart> part,
              const LightOptions& options);
+    void require_same(const Light& light) const;
+    void take_apart(Lighting& lighting) const;
     void gather(Lighting& lighting) const;
-    [[nodiscard]] bool is_edited() const { return state_.base && state_.base->map(); }
-    void require_same_light(const Light& light) const;
-    [[nodiscard]] Added light_of_list(std::span<const lights::DistantLight> lights);
-    UpdateReport light_by_environment(Light& light);
-    UpdateReport relight_all(const LightState& next);
-    UpdateReport relight_all(LayerCompositor compositor);
-    UpdateReport relight_coarse(const LightState& next);
-    UpdateReport update(const LightState& next);
-    void begin_edits();
+    void show_environment(Lighting& lighting) const;
     BounceReport find_bounces(bool is_step);
-    void add_of_all(std::span<const glm::vec3> of_all, std::span<glm::vec3> own) const;
     void add_surfaces(std::span<glm::vec3> own) const;
     void add_to_points(std::span<glm::vec3> harmonics) const;
-    [[nodiscard]] std::vector<glm::vec3> of_all(std::span<const glm::vec3> own) const;
     void add_mirrored();
     /// Where a time went.
     struct FinishTimes {
@@ -237,49 +199,27 @@ private:
     FinishTimes finish();
 
     std::shared_ptr<const Scene> scene_;
-    /// What scene_ points to, where nobody else has it; else null.
+    /// The same, where nobody else has it.
     Scene* own_scene_ = nullptr;
     std::unique_ptr<const SceneRays> rays_;
+    SharedReceivers receivers_;
+    std::uint32_t harmonics_;
     /// LightOptions::blockers
     std::shared_ptr<const prt::Blockers> own_blockers_;
-    /// Without its scene. Null: this process has all receivers.
-    std::unique_ptr<const prt::ScenePart> part_;
-    /// Never null.
-    prt::Team* team_;
-    std::filesystem::path path_;
-    std::uint32_t harmonics_;
     relight::ShadowRays shadow_rays_;
     /// Null without clusters.
     std::unique_ptr<relight::Relighter> relighter_;
     bool is_lit_ = false;
-    Added added_;
-    LightState state_;
-    /// Composites state_, once it was edited.
-    LayerCompositor compositor_;
-    /// For the next turn's map.
-    cubemap::CubeMap turning_memory_;
-    /// What turns while a slider moves: the map of `of`, with fewer texels where it has many.
-    struct Coarse {
-        std::shared_ptr<const LightBase> of = {};
-        std::optional<cubemap::QuickTurns> turns = {};
-        /// Whether its light is the present one.
-        bool is_shown = false;
-    };
-    Coarse coarse_;
-    LightHistory history_;
+    // The terms of the light: the relighter's, which is that of the environment, or of a list
+    // alone;
+    EditedEnvironment environment_;
+    ListedLight listed_;
     SceneBounces bounces_;
     SceneLamps lamps_;
     SceneMirrors mirrors_;
-    /// [receivers of this process] of all light; empty where the relighter's is all.
+    /// [receivers of this process] their sum; empty where the relighter's is all.
     std::vector<glm::vec3> total_;
 };
-
-/// Throws where processes light another scene, or by another environment, than the first. Without
-/// an environment it looks at the scene alone. `path` is the scene's.
-///
-/// Throws:  std::runtime_error "path: expected X, got Y".
-void require_same(prt::Team& team, const std::filesystem::path& path,
-                  const cubemap::CubeMap* environment = nullptr);
 
 /// What lights the scene, layers included; black under a light list, without texels before the
 /// first light().

@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "relumine/light/edits.h"
+
 namespace relumine {
 
 namespace {

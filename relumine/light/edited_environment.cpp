@@ -1,0 +1,178 @@
+#include "relumine/light/edited_environment.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+namespace relumine {
+
+namespace {
+
+using SharedMap = std::shared_ptr<const cubemap::CubeMap>;
+
+/// Returns the map of a light with an environment.
+SharedMap shared_map_of(Light& light) {
+    if (auto* map = std::get_if<cubemap::CubeMap>(&light.environment))
+        return std::make_shared<const cubemap::CubeMap>(std::move(*map));
+    if (const auto* shared = std::get_if<SharedMap>(&light.environment))
+        return *shared;
+    return std::get<BinnedEnvironment>(light.environment).map;
+}
+
+UpdateReport set_environment(Light& light, relight::Relighter& relighter) {
+    if (auto* map = std::get_if<cubemap::CubeMap>(&light.environment))
+        return relighter.set_environment(std::move(*map));
+    if (const auto* shared = std::get_if<SharedMap>(&light.environment))
+        return relighter.set_environment(*shared);
+    return relighter.set_frame(std::move(std::get<BinnedEnvironment>(light.environment)),
+                               light.bound);
+}
+
+} // namespace
+
+void require_valid(const LightState& state) {
+    if (!std::isfinite(state.rotation_degrees))
+        throw std::invalid_argument("expected a finite rotation");
+    for (const cubemap::LightLayer& layer : state.layers)
+        cubemap::validate(layer);
+}
+
+UpdateReport EditedEnvironment::light(Light light, relight::Relighter& relighter) {
+    if (is_edited()) {
+        LightState next = state_;
+        next.base = std::make_shared<const LightBase>(shared_map_of(light), std::move(light.file),
+                                                      std::move(light.path));
+        const UpdateReport report = relight_all(next, relighter);
+        state_ = std::move(next);
+        return report;
+    }
+    const UpdateReport report = set_environment(light, relighter);
+    state_ = {.base = std::make_shared<const LightBase>(nullptr, std::move(light.file),
+                                                        std::move(light.path))};
+    return report;
+}
+
+void EditedEnvironment::clear() {
+    state_ = {};
+    history_.restart({});
+}
+
+bool EditedEnvironment::begin(relight::Relighter& relighter) {
+    if (is_edited() || relighter.environment().resolution == 0)
+        return false;
+    const LightState first{.base = std::make_shared<const LightBase>(
+                               std::make_shared<const cubemap::CubeMap>(relighter.environment()),
+                               state_.base ? state_.base->file() : cubemap::EnvironmentFile(),
+                               state_.base ? state_.base->path() : std::filesystem::path())};
+    compositor_ = LayerCompositor(first);
+    state_ = first;
+    history_.restart(first);
+    relighter.resum();
+    return true;
+}
+
+EditedEnvironment::Change EditedEnvironment::change(LightState next, Ending ending,
+                                                    relight::Relighter& relighter) {
+    const bool is_dark = relighter.environment().resolution == 0;
+    if (!next.base || !next.base->map())
+        next.base = state_.base;
+    if (is_dark && (!next.base || !next.base->map()))
+        throw std::invalid_argument("expected an environment before its layers");
+    const bool is_moving = ending == Ending::Moving && !is_dark && next.rotation_degrees != 0.0 &&
+                           next.base->map()->resolution >= cubemap::QuickTurns::MinResolution;
+    const bool is_whole = is_dark || coarse_.is_shown ||
+                          next.rotation_degrees != state_.rotation_degrees ||
+                          (next.base != state_.base &&
+                           (next.rotation_degrees != 0.0 ||
+                            next.base->map()->resolution != state_.base->map()->resolution));
+    Change change;
+    if (is_whole)
+        change = {.report =
+                      is_moving ? relight_coarse(next, relighter) : relight_all(next, relighter),
+                  .is_whole = true,
+                  .is_other = true};
+    else if (ending != Ending::Exact || next != state_)
+        change = update(next, relighter);
+    if (is_dark)
+        history_.restart({.base = next.base});
+    state_ = std::move(next);
+    return change;
+}
+
+LightState EditedEnvironment::with_region(const cubemap::TexelRectangle& rectangle,
+                                          std::span<const glm::vec3> radiance) const {
+    relight::require_texels(rectangle, radiance, *state_.base->map());
+    auto map = std::make_shared<cubemap::CubeMap>(*state_.base->map());
+    relight::put_texels(rectangle, radiance, *map);
+    LightState next = state_;
+    next.base = std::make_shared<const LightBase>(std::move(map));
+    return next;
+}
+
+UpdateReport EditedEnvironment::relight_all(const LightState& next, relight::Relighter& relighter) {
+    if (!next.base->map() || next.base->map()->resolution == 0)
+        throw std::invalid_argument("expected a base with texels");
+    return relight_all(LayerCompositor(next, std::exchange(turning_memory_, {})), relighter);
+}
+
+UpdateReport EditedEnvironment::relight_all(LayerCompositor compositor,
+                                            relight::Relighter& relighter) {
+    UpdateReport report;
+    if (SharedMap base = compositor.base_alone()) {
+        report = relighter.set_environment(std::move(base));
+    } else {
+        // The map that the layers were composited in is composited anew.
+        const bool has_memory = is_edited() && compositor_.is_set();
+        try {
+            report = relighter.set_environment(
+                compositor.whole(has_memory ? relighter.lend_environment() : cubemap::CubeMap()));
+        } catch (...) {
+            if (has_memory)
+                relighter.return_environment(compositor_.whole());
+            throw;
+        }
+    }
+    turning_memory_ = compositor_.take_turned();
+    compositor_ = std::move(compositor);
+    coarse_.is_shown = false;
+    report.texels = compositor_.changed();
+    return report;
+}
+
+/// Relights by a map that is quick to turn.
+UpdateReport EditedEnvironment::relight_coarse(const LightState& next,
+                                               relight::Relighter& relighter) {
+    if (coarse_.of != next.base || !coarse_.turns) {
+        const SharedMap& map = next.base->map();
+        coarse_.of = next.base;
+        coarse_.turns.emplace(map->resolution <= MovingResolution
+                                  ? map
+                                  : std::make_shared<const cubemap::CubeMap>(
+                                        cubemap::halved_to(*map, MovingResolution)));
+    }
+    const UpdateReport report = relight_all(
+        LayerCompositor(next, std::make_shared<const cubemap::CubeMap>(coarse_.turns->turned(
+                                  cubemap::turn_about_y(next.rotation_degrees)))),
+        relighter);
+    coarse_.is_shown = true;
+    return report;
+}
+
+EditedEnvironment::Change EditedEnvironment::update(const LightState& next,
+                                                    relight::Relighter& relighter) {
+    compositor_.find_changes(next);
+    Change change;
+    if (!compositor_.changed().empty()) {
+        change.report =
+            relighter.update_regions(compositor_.changed(), [this](cubemap::CubeMap& environment) {
+                compositor_.composite(environment);
+            });
+        change.is_other = true;
+    }
+    compositor_.accept();
+    change.report.texels = compositor_.changed();
+    return change;
+}
+
+} // namespace relumine
