@@ -15,12 +15,11 @@
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
 #include "app/scenes/info_part.h"
-#include "cubemap/image/environment.h"
 #include "files/output_file.h"
-#include "mesh/load.h"
-#include "prt/parts/part_facts.h"
-#include "prt/scene/scene_file.h"
+#include "relumine/in/environment_files.h"
 #include "relumine/in/mesh.h"
+#include "relumine/in/mesh_files.h"
+#include "relumine/in/shared_work.h"
 
 namespace relumine::app {
 

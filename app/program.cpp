@@ -7,7 +7,7 @@
 
 #include "app/command_line/documentation.h"
 #include "app/commands.h"
-#include "prt/precompute.h"
+#include "relumine/in/shared_work.h"
 
 namespace relumine::app {
 

@@ -24,8 +24,7 @@
 #include "app/progress_lines.h"
 #include "files/output_file.h"
 #include "files/printable.h"
-#include "prt/precompute.h"
-#include "prt/team.h"
+#include "relumine/in/shared_work.h"
 
 namespace relumine::app {
 

@@ -16,7 +16,7 @@
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
-#include "relight/harmonics/harmonics.h"
+#include "relumine/light/light_parts.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
 #include "viewer/view.h"

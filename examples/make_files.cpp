@@ -1,11 +1,10 @@
 // The mesh and the environment that the tests give to the examples: boulder.ply and sky.exr.
 #include <vector>
 
-#include "cubemap/image/environment.h"
-#include "cubemap/resample/save_environment.h"
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
-#include "mesh/save.h"
+#include "relumine/in/environment_files.h"
+#include "relumine/in/mesh_files.h"
 
 int main() {
     using namespace relumine;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "prt/team.h"
+#include "relumine/in/shared_work.h"
 
 namespace relumine::mpi {
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "files/joined.h"
-#include "prt/arithmetic.h"
+#include "relumine/in/shared_work.h"
 #include "relumine/version.h"
 
 namespace relumine::mpi {

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "cubemap/cube_map.h"
-#include "cubemap/texel_rectangle.h"
+#include "relumine/in/environment_files.h"
+#include "relumine/light/layers.h"
 #include "viewer/gl_objects.h"
 
 namespace relumine::viewer {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "cubemap/layers/layer_composite.h"
+#include "relumine/light/layers.h"
 #include "viewer/quadtree_lines.h"
 
 namespace relumine::viewer {

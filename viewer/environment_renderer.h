@@ -4,8 +4,8 @@
 
 #include <glm/vec2.hpp>
 
-#include "cubemap/cube_map.h"
-#include "prt/transfer/quadtree.h"
+#include "relumine/in/environment_files.h"
+#include "relumine/light/light_parts.h"
 #include "viewer/cube_texture.h"
 #include "viewer/gl_objects.h"
 #include "viewer/lat_long_view.h"

@@ -9,7 +9,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "cubemap/layers/light_layer.h"
+#include "relumine/light/layers.h"
 #include "viewer/light_desk.h"
 #include "viewer/region_edit.h"
 

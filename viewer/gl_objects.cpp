@@ -4,7 +4,7 @@
 
 #include <glm/gtc/type_ptr.hpp>
 
-#include "relight/pictures/tone_curve.h"
+#include "relumine/out/pictures.h"
 
 namespace relumine::viewer {
 

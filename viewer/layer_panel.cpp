@@ -13,9 +13,9 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include "cubemap/layers/presets.h"
-#include "cubemap/resample/save_environment.h"
 #include "files/one_of_each.h"
+#include "relumine/in/environment_files.h"
+#include "relumine/light/layers.h"
 #include "viewer/panels.h"
 
 namespace relumine::viewer {

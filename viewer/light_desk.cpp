@@ -6,8 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "cubemap/layers/layer_composite.h"
-#include "cubemap/layers/shapes/sphere_lines.h"
+#include "relumine/light/layers.h"
 
 namespace relumine::viewer {
 

@@ -10,9 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "cubemap/layers/light_layer.h"
-#include "cubemap/texel_rectangle.h"
 #include "relumine/light/edits.h"
+#include "relumine/light/layers.h"
 #include "relumine/light/lit_scene.h"
 
 namespace relumine::viewer {

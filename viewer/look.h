@@ -1,9 +1,8 @@
 // How the two pictures of the window look.
 #pragma once
 
-#include "relight/pictures/ground.h"
-#include "relight/pictures/tone_curve.h"
 #include "relumine/out/output_options.h"
+#include "relumine/out/pictures.h"
 
 namespace relumine::viewer {
 

@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "relight/pictures/framing.h"
+#include "relumine/out/pictures.h"
 #include "viewer/panel_layout.h"
 
 namespace relumine::viewer {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "cubemap/face.h"
+#include "relumine/in/environment_files.h"
 #include "viewer/lat_long_view.h"
 
 namespace relumine::viewer {

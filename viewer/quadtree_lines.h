@@ -5,7 +5,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "prt/transfer/quadtree.h"
+#include "relumine/light/light_parts.h"
 
 namespace relumine::viewer {
 

@@ -10,9 +10,9 @@
 
 #include <glm/vec3.hpp>
 
-#include "mesh/triangle_mesh.h"
-#include "prt/visibility/ray_scene.h"
-#include "relight/pictures/picture_view.h"
+#include "relumine/in/mesh_files.h"
+#include "relumine/light/rays.h"
+#include "relumine/out/pictures.h"
 
 namespace relumine::viewer {
 

@@ -3,8 +3,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "cubemap/layers/light_layer.h"
-#include "cubemap/layers/shapes/sphere_lines.h"
+#include "relumine/light/layers.h"
 
 namespace relumine::viewer {
 

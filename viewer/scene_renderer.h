@@ -6,8 +6,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "mesh/triangle_mesh.h"
-#include "relight/pictures/picture_view.h"
+#include "relumine/in/mesh_files.h"
+#include "relumine/out/pictures.h"
 #include "viewer/cube_texture.h"
 #include "viewer/gl_objects.h"
 #include "viewer/look.h"

@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "cubemap/layers/presets.h"
 #include "files/output_file.h"
+#include "relumine/light/layers.h"
 
 namespace relumine::viewer {
 

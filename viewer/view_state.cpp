@@ -11,11 +11,10 @@
 
 #include <fmt/format.h>
 
-#include "cubemap/image/environment.h"
-#include "cubemap/layers/image_pyramid.h"
-#include "cubemap/resample/save_environment.h"
-#include "relight/pictures/framing.h"
+#include "relumine/in/environment_files.h"
 #include "relumine/light/layer_compositor.h"
+#include "relumine/light/layers.h"
+#include "relumine/out/pictures.h"
 
 namespace relumine::viewer {
 

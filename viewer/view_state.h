@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "cubemap/cube_map.h"
-#include "cubemap/layers/layer_file.h"
-#include "mesh/triangle_mesh.h"
-#include "prt/visibility/ray_scene.h"
-#include "relight/pictures/picture_view.h"
 #include "relumine/ask/questions.h"
+#include "relumine/in/environment_files.h"
+#include "relumine/in/mesh_files.h"
+#include "relumine/light/layers.h"
 #include "relumine/light/live_eye.h"
+#include "relumine/light/rays.h"
 #include "relumine/out/output.h"
+#include "relumine/out/pictures.h"
 #include "relumine/out/probe_balls.h"
 #include "viewer/gestures.h"
 #include "viewer/lat_long_view.h"

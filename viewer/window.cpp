@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "mesh/materials/srgb.h"
+#include "relumine/in/mesh_files.h"
 
 namespace relumine::viewer {
 

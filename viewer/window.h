@@ -10,7 +10,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "relight/pictures/picture.h"
+#include "relumine/out/pictures.h"
 #include "viewer/panel_layout.h"
 
 namespace relumine::viewer {

@@ -10,11 +10,9 @@
 #include "app/environments/split_sun.h"
 #include "app/options/environment_options.h"
 #include "app/options/output_options.h"
-#include "cubemap/doctor/statistics.h"
-#include "cubemap/image/convention.h"
-#include "cubemap/image/image_layout.h"
-#include "cubemap/resample/convert.h"
-#include "lights/sun_split.h"
+#include "relumine/ask/environment_doctor.h"
+#include "relumine/in/environment_files.h"
+#include "relumine/light/light_lists.h"
 
 namespace relumine::app {
 

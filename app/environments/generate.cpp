@@ -8,13 +8,12 @@
 
 #include "app/commands.h"
 #include "app/environments/generate_sequence.h"
-#include "cubemap/image/environment.h"
-#include "cubemap/resample/save_environment.h"
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
 #include "data_gen/sequences.h"
 #include "files/output_file.h"
-#include "mesh/save.h"
+#include "relumine/in/environment_files.h"
+#include "relumine/in/mesh_files.h"
 
 namespace relumine::app {
 

@@ -10,11 +10,9 @@
 #include <fmt/format.h>
 
 #include "app/options/environment_options.h"
-#include "cubemap/image/environment.h"
-#include "cubemap/image/frame_pattern.h"
-#include "cubemap/resample/save_environment.h"
 #include "data_gen/sequences.h"
 #include "files/output_file.h"
+#include "relumine/in/environment_files.h"
 
 namespace relumine::app {
 

@@ -10,16 +10,11 @@
 
 #include "app/options/environment_options.h"
 #include "app/options/output_options.h"
-#include "cubemap/doctor/clipped_sun.h"
-#include "cubemap/doctor/seams.h"
-#include "cubemap/doctor/sky_angles.h"
-#include "cubemap/doctor/statistics.h"
-#include "cubemap/doctor/sun.h"
-#include "cubemap/doctor/upside_down.h"
-#include "cubemap/image/environment.h"
 #include "files/joined.h"
-#include "lights/sun_split.h"
-#include "relight/pictures/environment_picture.h"
+#include "relumine/ask/environment_doctor.h"
+#include "relumine/in/environment_files.h"
+#include "relumine/light/light_lists.h"
+#include "relumine/out/pictures.h"
 
 namespace relumine::app {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "app/session.h"
-#include "cubemap/image/environment.h"
+#include "relumine/in/environment_files.h"
 
 namespace relumine::app {
 

@@ -15,18 +15,12 @@
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
-#include "cubemap/doctor/statistics.h"
-#include "cubemap/doctor/upside_down.h"
 #include "files/counted.h"
-#include "lights/light_export.h"
-#include "lights/luminance.h"
-#include "lights/place_lights.h"
-#include "relight/light_fit/transfer_lights.h"
-#include "relight/pictures/picture.h"
-#include "relight/pictures/region_picture.h"
-#include "relight/reference/exact.h"
-#include "relight/relighter.h"
-#include "relight/sharp/shadow_rays.h"
+#include "relumine/ask/environment_doctor.h"
+#include "relumine/ask/reference.h"
+#include "relumine/light/light_lists.h"
+#include "relumine/light/light_parts.h"
+#include "relumine/out/pictures.h"
 
 namespace relumine::app {
 

@@ -6,10 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "cubemap/doctor/sky_angles.h"
-#include "cubemap/doctor/sun.h"
-#include "lights/light_file.h"
-#include "lights/sun_split.h"
+#include "relumine/ask/environment_doctor.h"
+#include "relumine/light/light_lists.h"
 
 namespace relumine::app {
 

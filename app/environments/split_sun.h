@@ -7,8 +7,8 @@
 #include <glm/mat3x3.hpp>
 
 #include "app/report.h"
-#include "cubemap/image/environment.h"
 #include "files/output_file.h"
+#include "relumine/in/environment_files.h"
 
 namespace relumine::app {
 

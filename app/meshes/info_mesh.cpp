@@ -9,11 +9,9 @@
 #include "app/meshes/material_table.h"
 #include "app/options/output_options.h"
 #include "files/counted.h"
-#include "mesh/half_edge/diagnosis.h"
-#include "mesh/load.h"
-#include "prt/lamps/lamps.h"
-#include "relight/pictures/mesh_picture.h"
 #include "relumine/in/material_report.h"
+#include "relumine/in/mesh_files.h"
+#include "relumine/out/pictures.h"
 
 namespace relumine::app {
 

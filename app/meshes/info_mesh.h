@@ -6,7 +6,7 @@
 #include <string>
 
 #include "app/session.h"
-#include "mesh/pose.h"
+#include "relumine/in/mesh_files.h"
 
 namespace relumine::app {
 

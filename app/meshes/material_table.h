@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/triangle_mesh.h"
+#include "relumine/in/mesh_files.h"
 
 namespace relumine::app {
 

@@ -11,10 +11,7 @@
 #include "app/options/output_options.h"
 #include "app/options/refine_options.h"
 #include "files/counted.h"
-#include "mesh/half_edge/repair.h"
-#include "mesh/load.h"
-#include "mesh/normals.h"
-#include "mesh/save.h"
+#include "relumine/in/mesh_files.h"
 
 namespace relumine::app {
 

@@ -10,8 +10,7 @@
 #include "app/options/environment_options.h"
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
-#include "cubemap/image/frame_pattern.h"
-#include "cubemap/image/frame_sequence.h"
+#include "relumine/in/environment_files.h"
 #include "relumine/out/camera_path.h"
 
 namespace relumine::app {

@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 
 #include "app/command_line/command_line.h"
-#include "cubemap/image/environment.h"
 #include "files/output_file.h"
+#include "relumine/in/environment_files.h"
 
 namespace relumine::app {
 

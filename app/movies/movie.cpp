@@ -18,7 +18,7 @@
 
 #include "files/descriptor.h"
 #include "files/output_file.h"
-#include "prt/precompute.h"
+#include "relumine/in/shared_work.h"
 #include "relumine/options/option_table.h"
 
 namespace relumine::app {

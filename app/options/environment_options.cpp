@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "lights/sun_split.h"
+#include "relumine/light/light_lists.h"
 
 namespace relumine::app {
 

@@ -7,7 +7,7 @@
 
 #include "app/session.h"
 #include "files/extension.h"
-#include "mesh/load.h"
+#include "relumine/in/mesh_files.h"
 
 namespace relumine::app {
 

@@ -7,8 +7,8 @@
 #include "app/command_line/command_line.h"
 #include "app/options/lit_scene.h"
 #include "app/session.h"
-#include "cubemap/image/frame_pattern.h"
 #include "files/extension.h"
+#include "relumine/in/environment_files.h"
 #include "relumine/out/output.h"
 
 namespace relumine::app {

@@ -13,7 +13,7 @@
 
 #include "app/commands.h"
 #include "app/options/output_options.h"
-#include "prt/parts/part_check.h"
+#include "relumine/in/shared_work.h"
 #include "relumine/light/lit_part.h"
 
 namespace relumine::app {

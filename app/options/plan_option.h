@@ -4,8 +4,8 @@
 #include <string>
 
 #include "app/session.h"
-#include "prt/team.h"
 #include "relumine/in/precompute.h"
+#include "relumine/in/shared_work.h"
 
 namespace relumine::app {
 

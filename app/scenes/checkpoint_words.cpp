@@ -5,8 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "prt/scene/checkpoint_file.h"
-#include "prt/team.h"
+#include "relumine/in/shared_work.h"
 
 namespace relumine::app {
 

@@ -19,10 +19,9 @@
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/scenes/lit_by.h"
-#include "cubemap/image/environment.h"
-#include "cubemap/layers/layer_file.h"
-#include "cubemap/resample/save_environment.h"
 #include "files/counted.h"
+#include "relumine/in/environment_files.h"
+#include "relumine/light/layers.h"
 #include "relumine/out/light_mix.h"
 
 namespace relumine::app {

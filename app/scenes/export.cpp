@@ -10,8 +10,8 @@
 #include "app/options/output_options.h"
 #include "app/web/export_web.h"
 #include "files/counted.h"
-#include "prt/scene/relighting_file.h"
 #include "relumine/in/scene.h"
+#include "relumine/in/shared_work.h"
 #include "relumine/light/bounces.h"
 #include "relumine/out/output.h"
 

@@ -15,17 +15,16 @@
 #include "app/options/bounce_option.h"
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
-#include "cubemap/layers/image_pyramid.h"
-#include "cubemap/layers/layer_file.h"
-#include "cubemap/resample/save_environment.h"
 #include "files/counted.h"
 #include "files/extension.h"
 #include "files/json_reader.h"
 #include "files/output_file.h"
-#include "lights/light_file.h"
-#include "mesh/load.h"
-#include "relight/pictures/array_file.h"
 #include "relumine/ask/fit.h"
+#include "relumine/in/environment_files.h"
+#include "relumine/in/mesh_files.h"
+#include "relumine/light/layers.h"
+#include "relumine/light/light_lists.h"
+#include "relumine/out/pictures.h"
 
 namespace relumine::app {
 

@@ -5,8 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/options/receiver_options.h"
-#include "prt/parts/part_facts.h"
-#include "prt/parts/part_file.h"
+#include "relumine/in/shared_work.h"
 
 namespace relumine::app {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "cubemap/layers/light_layer.h"
+#include "relumine/light/layers.h"
 
 namespace relumine::app {
 

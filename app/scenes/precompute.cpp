@@ -22,9 +22,7 @@
 #include "app/scenes/first_scene.h"
 #include "files/counted.h"
 #include "files/extension.h"
-#include "mesh/customs.h"
-#include "mesh/floor.h"
-#include "mesh/half_edge/winding.h"
+#include "relumine/in/mesh_files.h"
 #include "relumine/in/precompute_table.h"
 #include "relumine/in/scene_cache.h"
 

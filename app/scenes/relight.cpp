@@ -21,10 +21,10 @@
 #include "app/options/plan_option.h"
 #include "app/scenes/first_scene.h"
 #include "files/counted.h"
-#include "lights/light_file.h"
-#include "mesh/load.h"
-#include "prt/team.h"
+#include "relumine/in/mesh_files.h"
+#include "relumine/in/shared_work.h"
 #include "relumine/light/harmonics_file.h"
+#include "relumine/light/light_lists.h"
 #include "relumine/light/lit_part.h"
 
 namespace relumine::app {

@@ -8,7 +8,7 @@
 #include "app/options/environment_options.h"
 #include "app/options/eye_options.h"
 #include "app/options/lit_scene.h"
-#include "prt/team.h"
+#include "relumine/in/shared_work.h"
 
 namespace relumine::app {
 

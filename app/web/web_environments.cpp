@@ -9,14 +9,12 @@
 
 #include <fmt/format.h>
 
-#include "cubemap/luminance.h"
-#include "cubemap/resample/save_environment.h"
 #include "data_gen/environments.h"
-#include "mesh/materials/srgb.h"
-#include "relight/pictures/png_file.h"
-#include "relight/pictures/tone_curve.h"
 #include "relumine/ask/questions.h"
 #include "relumine/in/environment.h"
+#include "relumine/in/environment_files.h"
+#include "relumine/in/mesh_files.h"
+#include "relumine/out/pictures.h"
 
 namespace relumine::app {
 

@@ -17,9 +17,9 @@
 #include <glm/geometric.hpp>
 
 #include "files/gzip.h"
-#include "prt/glossy/surface_sampling.h"
-#include "prt/receivers/mesh_point.h"
-#include "prt/visibility/twin_triangles.h"
+#include "relumine/ask/questions.h"
+#include "relumine/in/material.h"
+#include "relumine/in/mesh_files.h"
 #include "relumine/light/live_eye.h"
 #include "relumine/out/receiver_colors.h"
 

@@ -15,8 +15,8 @@
 #include <glm/vec3.hpp>
 #include <pybind11/pybind11.h>
 
-#include "cubemap/cube_map.h"
-#include "mesh/triangle_mesh.h"
+#include "relumine/in/environment_files.h"
+#include "relumine/in/mesh_files.h"
 
 namespace relumine::python {
 

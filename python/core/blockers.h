@@ -5,7 +5,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "prt/visibility/blockers.h"
+#include "relumine/light/lit_scene.h"
 
 namespace relumine::python {
 

@@ -5,7 +5,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "mesh/materials/brdf_table.h"
+#include "relumine/in/mesh_files.h"
 
 namespace relumine::python {
 

@@ -10,17 +10,10 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "arrays.h"
-#include "cubemap/doctor/clipped_sun.h"
-#include "cubemap/doctor/seams.h"
-#include "cubemap/doctor/sky_angles.h"
-#include "cubemap/doctor/statistics.h"
-#include "cubemap/doctor/upside_down.h"
-#include "cubemap/image/convention.h"
-#include "cubemap/image/frame_sequence.h"
-#include "cubemap/image/image_layout.h"
-#include "cubemap/resample/convert.h"
-#include "lights/sun_split.h"
 #include "options.h"
+#include "relumine/ask/environment_doctor.h"
+#include "relumine/in/environment_files.h"
+#include "relumine/light/light_lists.h"
 #include "run.h"
 #include "scene.h"
 

@@ -3,9 +3,8 @@
 
 #include "arrays.h"
 #include "lights.h"
-#include "lights/light_export.h"
-#include "lights/place_lights.h"
 #include "options.h"
+#include "relumine/light/light_lists.h"
 #include "run.h"
 #include "scene.h"
 

@@ -7,7 +7,7 @@
 #include <pybind11/pybind11.h>
 
 #include "arrays.h"
-#include "lights/light_list.h"
+#include "relumine/light/light_lists.h"
 
 namespace relumine::python {
 

@@ -10,9 +10,9 @@
 #include "arrays.h"
 #include "blockers.h"
 #include "brdf.h"
-#include "mesh/normals.h"
 #include "options.h"
 #include "relumine/in/material_report.h"
+#include "relumine/in/mesh_files.h"
 #include "run.h"
 
 namespace relumine::python {

@@ -1,10 +1,12 @@
 # Checks which headers the public headers and the programs include:
-#   cmake -DROOT=FOLDER -DPUBLIC_HEADERS=LIST_FILE -DUSERS=FOLDERS -P check.cmake
+#   cmake -DROOT=FOLDER -DPUBLIC_HEADERS=LIST_FILE -DUSERS=FOLDERS -DDOOR=FOLDERS [-DINSIDE=FOLDERS] -P check.cmake
 # ROOT:           the folder that include paths start at.
 # PUBLIC_HEADERS: a file that names one public header per line, from ROOT.
 # USERS:          folders under ROOT, separated by commas, whose sources are users of the library.
+# DOOR:           the library's folders that users include headers of.
+# INSIDE:         users that include public headers of all folders.
 # A public header includes public headers, GLM and the standard library. A user includes public headers of the
-# library, and whatever else it likes.
+# library's door, and whatever else it likes.
 cmake_minimum_required(VERSION 3.24)
 
 file(REAL_PATH "${ROOT}" ROOT)
@@ -44,6 +46,8 @@ foreach(header IN LISTS public)
 endforeach()
 
 string(REPLACE "," ";" users "${USERS}")
+string(REPLACE "," ";" door "${DOOR}")
+string(REPLACE "," ";" inside "${INSIDE}")
 foreach(user IN LISTS users)
     file(GLOB_RECURSE sources RELATIVE "${ROOT}" "${ROOT}/${user}/*.h" "${ROOT}/${user}/*.cpp")
     if(NOT sources)
@@ -58,8 +62,13 @@ foreach(user IN LISTS users)
                 set(path "${CMAKE_MATCH_1}")
             endif()
             string(REGEX REPLACE "/.*" "" folder "${path}")
-            if(include MATCHES "^\"" AND folder IN_LIST folders AND NOT path IN_LIST public)
+            if(NOT include MATCHES "^\"" OR NOT folder IN_LIST folders)
+                continue()
+            endif()
+            if(NOT path IN_LIST public)
                 wrong("${source} includes the private ${path}")
+            elseif(NOT folder IN_LIST door AND NOT user IN_LIST inside)
+                wrong("${source} passes the door by: ${path}")
             endif()
         endforeach()
     endforeach()
