@@ -3,18 +3,21 @@
 run_cases.py PROGRAM NAME SHARE OF TIMEOUT RESULTS
 
 SHARE of OF: suites are dealt to so many shares, so that several processors have work.
-A case that crashes, or is silent for TIMEOUT seconds, fails; the remaining cases run in a new process.
+A case that crashes fails; so does one that is silent while its processes work for TIMEOUT seconds of a processor, or
+while they do nothing for as long. The remaining cases run in a new process. A busy machine fails no case.
 RELUMINE_CASES: a regular expression; only cases whose NAME/Suite.Case has it run.
 RESULTS: a file to write, with a line for each case: passed, failed or skipped, milliseconds, and its name.
 Prints the output of cases that fail, why cases are skipped, and the sums. Exit code 1 when a case fails.
 """
 
 import os
+import pathlib
 import re
 import selectors
 import signal
 import subprocess
 import sys
+import time
 
 STEP = re.compile(r"\[( RUN      |       OK |  FAILED  |  SKIPPED )\] ([\w/]+\.[\w/]+)(?:.* \((\d+) ms\))?")
 
@@ -33,15 +36,37 @@ def cases_of(program):
     return suites
 
 
+def work_of(session):
+    """Returns the processor seconds of a session's processes, those that have ended included."""
+    ticks = 0
+    for path in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = path.read_text().rpartition(")")[2].split()
+        except OSError:  # it has ended
+            continue
+        if int(fields[3]) == session:
+            ticks += sum(map(int, fields[11:15]))
+    return ticks / os.sysconf("SC_CLK_TCK")
+
+
 def lines_of(process, timeout):
-    """Yields lines, and None once when none comes for so long."""
+    """Yields lines, and None once when work or rest without a line has taken too long."""
     selector = selectors.DefaultSelector()
     selector.register(process.stdout, selectors.EVENT_READ)
     rest = b""
+    at_line = work = work_of(process.pid)
+    rests_since = time.monotonic()
     while True:
-        if not selector.select(timeout):
-            yield None
-            return
+        if not selector.select(timeout / 10):
+            before, work = work, work_of(process.pid)
+            if work != before:
+                rests_since = time.monotonic()
+            if work - at_line >= timeout or time.monotonic() - rests_since >= timeout:
+                yield None
+                return
+            continue
+        at_line = work = work_of(process.pid)
+        rests_since = time.monotonic()
         chunk = os.read(process.stdout.fileno(), 1 << 16)
         if not chunk:
             if rest:

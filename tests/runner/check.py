@@ -24,9 +24,9 @@ code, output, lines = run()
 assert code == 1, code
 assert lines == ["passed fake/First.Passes", "failed fake/First.Fails", "failed fake/First.Crashes",
                  "passed fake/First.PassesBehindACrash", "skipped fake/Second.IsSkipped", "failed fake/Second.Hangs",
-                 "passed fake/Kinds/Third.Passes/one"], lines
-assert output.endswith("3 passed, 3 failed, 1 skipped\n"), output
-for part in ["what was expected", "First.Crashes (the process ended with -11)", "Second.Hangs (silent for 1 s)",
+                 "failed fake/Second.Spins", "passed fake/Kinds/Third.Passes/one"], lines
+assert output.endswith("3 passed, 4 failed, 1 skipped\n"), output
+for part in ["what was expected", "First.Crashes (the process ended with -11)", "Second.Hangs (silent for 1 s)", "Second.Spins (silent for 1 s)",
              "skipped: Second.IsSkipped: what is absent"]:
     assert part in output, (part, output)
 code, output, lines = run("fake/First.Pass|Third")

@@ -7,10 +7,11 @@ import sys
 import time
 
 CASES = ["First.Passes", "First.Fails", "First.Crashes", "First.PassesBehindACrash", "Second.IsSkipped",
-         "Second.Hangs", "Kinds/Third.Passes/one"]
+         "Second.Hangs", "Second.Spins", "Kinds/Third.Passes/one"]
 
 if "--gtest_list_tests" in sys.argv:
     print("First.\n  Passes\n  Fails\n  Crashes\n  PassesBehindACrash\n  DISABLED_Never\nSecond.\n  IsSkipped\n  Hangs\n"
+          "  Spins\n"
           "Kinds/Third.\n  Passes/one  # GetParam() = one")
     sys.exit(0)
 wanted = os.environ["GTEST_FILTER"].split(":")
@@ -24,6 +25,9 @@ for case in [each for each in CASES if each in wanted]:
         os.kill(os.getpid(), signal.SIGSEGV)
     elif case.endswith("Hangs"):
         time.sleep(60)
+    elif case.endswith("Spins"):
+        while True:
+            pass
     elif case.endswith("IsSkipped"):
         print("file.cpp:1: Skipped\nwhat is absent")
         result = " SKIPPED"
