@@ -417,6 +417,7 @@ class Relighter:
         self,
         samples: int = 2000,
         *,
+        surface: int = 500,
         seed: int = 1,
         paths: int = 256,
         progress: Optional[Progress] = None,
@@ -424,13 +425,15 @@ class Relighter:
         """Compares the radiance with exact integration, every shadow ray traced.
 
         samples  receivers chosen at random; 0: all
+        surface  points between the vertices, and as many of a picture, for `worst`; 0: none
 
-        >>> relighter.verify(20).relative_l2 < 0.2
+        >>> relighter.verify(20, surface=20).relative_l2 < 0.2
         True
         """
         self._require_triangles()
         found = self._core.verify(
             whole("samples", samples),
+            whole("surface", surface),
             whole("seed", seed, most=2**64 - 1),
             whole("paths", paths),
             progress,

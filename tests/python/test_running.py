@@ -98,7 +98,7 @@ def test_progress_that_calls_back_is_refused(relighter, sky):
         except RuntimeError as error:
             caught.append(str(error))
 
-    relighter.verify(60, progress=progress)
+    relighter.verify(60, surface=60, progress=progress)
     assert caught and "its own progress" in caught[0]
     relighter.set_environment(sky)
 
