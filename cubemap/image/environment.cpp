@@ -145,29 +145,9 @@ void fix_bad_pixels(EnvironmentImage& image) {
 /// In a path of six files, `{face}` stands for px, nx, ...
 constexpr std::string_view FacePlace = "{face}";
 
-/// Says what a file is that is no environment.
-std::string_view kind_of_other(const std::filesystem::path& path,
-                               std::span<const std::byte> bytes) {
-    const std::string_view head(reinterpret_cast<const char*>(bytes.data()),
-                                std::min<std::size_t>(bytes.size(), 12));
-    const std::string extension = files::extension_of(path);
-    const bool is_webp = head.starts_with("RIFF") && head.ends_with("WEBP");
-    if (bytes.empty())
-        return "an empty file";
-    if (head.starts_with("\xff\xd8\xff") || head.starts_with("\x89PNG") || is_webp)
-        return "a JPEG, PNG or WebP picture, which holds no light above white: use the .hdr or "
-               ".exr that it was made from";
-    return extension == ".prt" ? "a scene: the scene stands first, the environment behind it"
-                               : "something else";
-}
-
 ImageFile decode(const std::filesystem::path& path) {
     const std::vector<std::byte> bytes = files::read(path);
-    if (!is_exr(bytes) && !is_hdr(bytes))
-        throw std::runtime_error(
-            fmt::format("{}: expected an OpenEXR or Radiance .hdr file, got {}", path.string(),
-                        kind_of_other(path, bytes)));
-    return is_exr(bytes) ? decode_exr(bytes, path.string()) : decode_hdr(bytes, path.string());
+    return format_of(bytes, path).decode(bytes, path.string());
 }
 
 /// Reads six square files, one below the other.
@@ -302,15 +282,14 @@ ImageSize natural_size(Layout layout, std::uint32_t face_resolution) {
 }
 
 bool is_environment_name(const std::filesystem::path& path) {
-    const std::string extension = files::extension_of(path);
-    return extension == ".exr" || extension == ".hdr";
+    return format_of_name(path) != nullptr;
 }
 
 void check_environment_name(const std::filesystem::path& path) {
     if (!is_environment_name(path))
-        throw std::invalid_argument(
-            fmt::format("{}: expected a name that ends in .exr or .hdr, got '{}'", path.string(),
-                        files::extension_of(path)));
+        throw std::invalid_argument(fmt::format("{}: expected a name that ends in {}, got '{}'",
+                                                path.string(), image_extensions(),
+                                                files::extension_of(path)));
 }
 
 void save_image(const std::filesystem::path& path, const EnvironmentImage& image) {
@@ -320,10 +299,7 @@ void save_image(const std::filesystem::path& path, const EnvironmentImage& image
         throw std::invalid_argument(fmt::format("{}: expected layout cube for six files, got {}",
                                                 path.string(), name(image.layout)));
     const auto write = [&](files::OutputFile& file, const EnvironmentImage& part) {
-        if (files::extension_of(path) == ".exr")
-            write_exr(file, part);
-        else
-            file.write(encode_hdr(part));
+        format_of_name(path)->write(file, part);
     };
     std::vector<std::unique_ptr<files::OutputFile>> outputs;
     outputs.reserve(paths.size());
@@ -354,7 +330,8 @@ void save_image(const std::filesystem::path& path, const EnvironmentImage& image
 Sampling default_sampling(const std::filesystem::path& path, Layout layout) {
     // The specification of the `envmap` attribute puts samples on the borders. It knows two
     // layouts; .hdr has no attribute.
-    const bool has_attribute = files::extension_of(path) == ".exr" &&
+    const ImageFormat* format = format_of_name(path);
+    const bool has_attribute = format != nullptr && format->has_envmap &&
                                environment_files(path).size() == 1 &&
                                (layout == Layout::LatLong || layout == Layout::Cube);
     return has_attribute ? Sampling::Borders : Sampling::TexelCentres;

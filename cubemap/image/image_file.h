@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -64,5 +65,41 @@ void write_exr(files::OutputFile& file, const EnvironmentImage& image,
 /// Returns an .hdr file: RGBE, run-length encoded, rounded to nearest.
 /// Throws:  std::invalid_argument for radiance that RGBE cannot hold.
 [[nodiscard]] std::vector<std::byte> encode_hdr(const EnvironmentImage& image);
+
+/// The beginning of a file.
+struct FileHead {
+    std::filesystem::path path;
+    /// At most MaxHeadBytes
+    std::vector<std::byte> bytes;
+    /// The whole file's
+    std::size_t num_bytes = 0;
+};
+inline constexpr std::size_t MaxHeadBytes = 1 << 16;
+
+/// A format of environments and pictures: a row in image_file.cpp.
+struct ImageFormat {
+    /// ".exr"
+    std::string_view extension;
+    /// "OpenEXR", for messages
+    std::string_view name;
+    /// Whether a file's first bytes mark it. The extension of a file that is read does not count.
+    bool (*marks)(std::span<const std::byte> bytes);
+    ImageFile (*decode)(std::span<const std::byte> bytes, const std::string& name);
+    ImageSize (*size)(const FileHead& head);
+    void (*write)(files::OutputFile& file, const EnvironmentImage& image);
+    /// Files state by an attribute that samples lie on the borders
+    bool has_envmap = false;
+};
+
+/// Returns ".exr or .hdr".
+[[nodiscard]] std::string image_extensions();
+/// Returns the format of a file's first bytes.
+///
+/// Throws:  std::runtime_error "path: expected X, got Y", which tells what it is where that is
+/// seen.
+[[nodiscard]] const ImageFormat& format_of(std::span<const std::byte> bytes,
+                                           const std::filesystem::path& path);
+/// Returns the format that a name's extension tells, in capitals or not; null for another.
+[[nodiscard]] const ImageFormat* format_of_name(const std::filesystem::path& path);
 
 } // namespace relumine::cubemap

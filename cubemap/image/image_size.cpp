@@ -15,21 +15,16 @@ namespace relumine::cubemap {
 namespace {
 
 ImageSize size_of_file(const std::filesystem::path& path) {
-    // A .hdr header is a few hundred bytes of text.
-    constexpr std::size_t MaxHeaderBytes = 1 << 16;
-    const std::size_t num_bytes = files::size(path); // refuses a missing file and a folder
-    std::vector<std::byte> head(std::min(num_bytes, MaxHeaderBytes));
+    FileHead head{.path = path,
+                  .bytes = {},
+                  .num_bytes = files::size(path)}; // refuses a missing file and a folder
+    head.bytes.resize(std::min(head.num_bytes, MaxHeadBytes));
     std::ifstream file(path, std::ios::binary);
-    file.read(reinterpret_cast<char*>(head.data()), static_cast<std::streamsize>(head.size()));
+    file.read(reinterpret_cast<char*>(head.bytes.data()),
+              static_cast<std::streamsize>(head.bytes.size()));
     if (!file)
         throw std::runtime_error(fmt::format("{}: cannot read", path.string()));
-    if (is_exr(head))
-        return exr_size(path);
-    if (is_hdr(head))
-        return hdr_size(head, num_bytes, path.string());
-    throw std::runtime_error(fmt::format("{}: expected an OpenEXR or Radiance .hdr file, got {}",
-                                         path.string(),
-                                         head.empty() ? "an empty file" : "something else"));
+    return format_of(head.bytes, path).size(head);
 }
 
 } // namespace

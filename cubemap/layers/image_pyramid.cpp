@@ -91,11 +91,7 @@ glm::dvec3 ImagePyramid::sample(std::size_t level, const glm::dvec2& position) c
 
 Picture load_picture(const std::filesystem::path& path) {
     const std::vector<std::byte> bytes = files::read(path);
-    const std::string name = path.string();
-    if (!is_exr(bytes) && !is_hdr(bytes))
-        throw std::runtime_error(
-            fmt::format("{}: expected an OpenEXR or Radiance .hdr file, got neither", name));
-    return is_exr(bytes) ? decode_exr(bytes, name) : decode_hdr(bytes, name);
+    return format_of(bytes, path).decode(bytes, path.string());
 }
 
 std::shared_ptr<const ImagePyramid> load_image_pyramid(const std::filesystem::path& path) {
