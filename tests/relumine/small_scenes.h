@@ -34,6 +34,13 @@ inline constexpr float Tolerance = 0.06f;
     return mesh;
 }
 
+/// A blue sky with a sun of one texel.
+[[nodiscard]] inline cubemap::CubeMap sun_and_sky() {
+    cubemap::CubeMap map(16, glm::vec3(0.2f, 0.3f, 0.5f));
+    map.at(cubemap::Face::PositiveZ, 8, 3) = glm::vec3(60.0f);
+    return map;
+}
+
 /// Two squares of n x n vertices that meet at a right angle and face each other: a floor and a red
 /// wall. The floor has the left half of the atlas.
 [[nodiscard]] inline mesh::TriangleMesh corner(std::uint32_t n) {

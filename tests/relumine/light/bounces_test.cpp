@@ -13,6 +13,7 @@ namespace {
 class BouncesFile : public scenes::InFolder {};
 
 using scenes::corner;
+using scenes::sun_and_sky;
 
 constexpr Camera View45{.eye = {0.5f, 1.2f, 2.5f}, .target = {0.5f, 0.3f, 0.3f}, .fov_degrees = 30};
 
@@ -22,12 +23,6 @@ PrecomputeOptions options(const ReceiverChoice& receivers) {
     if (std::holds_alternative<Pixels>(receivers))
         result.view = View{View45};
     return result;
-}
-
-cubemap::CubeMap sun_and_sky() {
-    cubemap::CubeMap map(16, glm::vec3(0.2f, 0.3f, 0.5f));
-    map.at(cubemap::Face::PositiveZ, 8, 3) = glm::vec3(60.0f);
-    return map;
 }
 
 std::vector<glm::vec3> bounced(LitScene& lit) {

@@ -25,10 +25,11 @@ using relight::num_harmonics;
 using scenes::inner;
 using scenes::random_weights;
 using scenes::relative_difference;
+using scenes::sun_and_sky;
 
 const LightOptions NineCoefficients{.harmonics = 3};
 
-PrecomputeOptions options(const ReceiverChoice& receivers) {
+PrecomputeOptions point_options(const ReceiverChoice& receivers) {
     return {.receivers = receivers, .no_refine = true, .bounce_tolerance = 0.01f};
 }
 
@@ -43,14 +44,8 @@ Points points_of_corner() {
 }
 
 const Scene& corner_scene() {
-    static const Scene scene = precompute(scenes::corner(33), options(points_of_corner()));
+    static const Scene scene = precompute(scenes::corner(33), point_options(points_of_corner()));
     return scene;
-}
-
-cubemap::CubeMap sun_and_sky() {
-    cubemap::CubeMap map(16, glm::vec3(0.2f, 0.3f, 0.5f));
-    map.at(cubemap::Face::PositiveZ, 8, 3) = glm::vec3(60.0f);
-    return map;
 }
 
 LitScene lit_corner(const BounceLimits& limits = {}) {
@@ -88,7 +83,7 @@ TEST(PointBounces, OfASquareAreItsSolidAngle) {
     const std::vector<float> heights = {0.3f, 1.0f, 2.5f};
     for (const float height : heights)
         points.positions.emplace_back(0.0f, height, 0.0f);
-    LitScene lit(precompute(square, options(points)), NineCoefficients);
+    LitScene lit(precompute(square, point_options(points)), NineCoefficients);
     lit.light(cubemap::CubeMap(8, glm::vec3(1.0f)));
     const Colors direct = copy(lit.radiance());
     const Colors direct_harmonics = lit.harmonics();
@@ -196,7 +191,7 @@ TEST(ProbeBalls, ShowEachPointBeforeTheLitMesh) {
     const auto balls_of = [](const Scene& scene) {
         return ProbeBalls(scene);
     };
-    PrecomputeOptions high = options(Points{.positions = {{0.5f, 300.0f, 0.5f}}});
+    PrecomputeOptions high = point_options(Points{.positions = {{0.5f, 300.0f, 0.5f}}});
     high.bounce_tolerance = 0.0f;
     LitScene open(precompute(scenes::corner(3), high), NineCoefficients);
     open.light(cubemap::CubeMap(8, glm::vec3(1.0f)));
