@@ -17,7 +17,7 @@ namespace relumine::prt {
 /// Takes the counts of each part once, and reads them again from the parts' files, tile by tile,
 /// when the scene is written.
 ///
-/// Memory:  8 bytes a tile, and what SectionStream takes for each part.
+/// Memory:  8 bytes a tile, and for each part what zstd needs for a frame of a section.
 class JoinedCounts {
 public:
     JoinedCounts(std::size_t num_receivers, std::size_t num_leaves, std::size_t num_parts);
