@@ -15,7 +15,6 @@
 #include "cubemap/image/footprint.h"
 #include "cubemap/image/image_layout.h"
 #include "cubemap/image/projection.h"
-#include "cubemap/resample/lat_long_footprint.h"
 #include "cubemap/resample/pixel_symmetry.h"
 #include "cubemap/spherical_overlap.h"
 #include "files/parallel.h"

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "cubemap/image/image_layout.h"
 #include "cubemap/resample/pixel_shares.h"
 #include "cubemap/resample/resample_lat_long.h"
-#include "cubemap/resample/resample_projection.h"
 #include "files/large_vector.h"
 #include "files/parallel.h"
 
@@ -86,6 +87,25 @@ void resample_faces(const std::vector<double>& source_borders,
     });
 }
 
+/// Returns a picture of a Projection as a cube map: means over exact overlaps, added in the order
+/// of the shares.
+CubeMap cube_from_projection(const EnvironmentImage& image, std::uint32_t resolution) {
+    CubeMap map(resolution);
+    std::vector<glm::dvec3> sums(map.texels.size(), glm::dvec3(0.0));
+    std::vector<double> weights(map.texels.size(), 0.0);
+    const auto add = [&](const detail::PixelShare& share) {
+        sums[share.texel] += glm::dvec3(image.pixels[share.pixel]) * share.solid_angle;
+        weights[share.texel] += share.solid_angle;
+    };
+    detail::for_each_row_of_shares(shape_of(image), glm::dmat3(1.0), resolution,
+                                   [&](std::span<const detail::PixelShare> shares) {
+                                       std::for_each(shares.begin(), shares.end(), add);
+                                   });
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        map.texels[i] = weights[i] > 0.0 ? glm::vec3(sums[i] / weights[i]) : glm::vec3(0.0f);
+    return map;
+}
+
 void check(const EnvironmentImage& image) {
     if (image.pixels.size() != static_cast<std::size_t>(image.width) * image.height ||
         !fits(image.layout, image.width, image.height))
@@ -101,7 +121,7 @@ CubeMap resample(const EnvironmentImage& image, std::uint32_t resolution) {
     if (image.layout == Layout::LatLong)
         return detail::cube_from_lat_long(image, resolution);
     if (!has_faces(image.layout))
-        return detail::cube_from_projection(image, resolution);
+        return cube_from_projection(image, resolution);
     CubeMap map(resolution);
     const FaceSquares squares(image.layout, image.width, image.height);
     resample_faces(
