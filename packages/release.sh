@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Makes dist/: a source distribution and a wheel for each Python that is named, with checksums. `./dev release [PYTHON...]`.
+# Wheels hold the program and all libraries that they need, but for what every Linux of their age has.
+#
+# release.sh --try: installs each wheel of dist/ in an empty environment of its Python and lights a scene there.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+here=$PWD
+
+# environment PYTHON FOLDER: an empty virtual environment.
+environment() {
+    rm -rf "$2"
+    "$1" -m venv "$2"
+}
+
+# python_of WHEEL: the first Python here that the wheel is for, of those on the PATH.
+python_of() {
+    local version
+    version=$(sed -E 's/.*-cp3([0-9]+)-cp3.*/3.\1/' <<<"$1")
+    command -v "python$version" || { echo "release: expected python$version on the PATH for $1" >&2; return 1; }
+}
+
+if [ "${1:-}" = --try ]; then
+    for wheel in dist/*.whl; do
+        python=$(python_of "$wheel")
+        environment "$python" build/wheels/try
+        build/wheels/try/bin/pip install -q "$wheel"
+        (cd build/wheels/try
+            bin/relumine --version
+            bin/python -m relumine generate knot -o . --vertices 4000 -q
+            bin/relumine generate soft_boxes -o . -q
+            bin/relumine relight knot.ply soft_boxes_latlong.exr -o program.npy --no-cache -q
+            bin/python "$here/packages/try_wheel.py")
+        echo "$(basename "$wheel"): works in an empty environment of $("$python" --version), $(stat -c %s "$wheel" | awk '{ printf "%.1f MB", $1 / 1e6 }')"
+    done
+    exit
+fi
+
+[ $# -gt 0 ] || set -- python3
+environment "$1" build/wheels/tools
+build/wheels/tools/bin/pip install -q -r packages/release-tools.txt
+rm -rf dist build/wheels/made
+mkdir -p dist build/wheels/made
+build/wheels/tools/bin/python -m build -q --sdist -o dist .
+for python in "$@"; do
+    environment "$python" build/wheels/maker
+    build/wheels/maker/bin/pip wheel -q --no-deps -w build/wheels/made -C "build-dir=build/wheels/{wheel_tag}" .
+done
+PATH="$PWD/build/wheels/tools/bin:$PATH" auditwheel repair --strip -w dist build/wheels/made/*.whl
+(cd dist && sha256sum -- * >SHA256SUMS)
+ls -l dist
