@@ -12,7 +12,7 @@ include(GNUInstallDirs)
 set(relumine_find_TBB_tbb "find_dependency(TBB)" -ltbb libtbb-dev)
 set(relumine_find_fmt_fmt "find_dependency(fmt)" -lfmt libfmt-dev)
 set(relumine_find_embree "find_dependency(embree ${RELUMINE_EMBREE})" -lembree${RELUMINE_EMBREE} libembree-dev)
-# The level hides what Debian's Imath says (cubemap/CMakeLists.txt).
+# The level hides what Debian's Imath says (cmake/needs.cmake).
 set(relumine_find_OpenEXR_OpenEXR "set(CMAKE_MESSAGE_LOG_LEVEL WARNING)\nfind_dependency(OpenEXR)\nunset(CMAKE_MESSAGE_LOG_LEVEL)" "-lOpenEXR -lIex -lImath" libopenexr-dev)
 set(relumine_find_draco_draco "find_dependency(draco)" -ldraco libdraco-dev)
 set(relumine_find_OpenMeshCore "find_dependency(OpenMesh)" -lOpenMeshCore libopenmesh-dev)
