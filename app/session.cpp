@@ -287,8 +287,8 @@ void Session::report(Report result) const {
         return;
     {
         const std::scoped_lock lock(mutex_);
-        files::update(result, more_fields_);
-        result.set("warnings", warnings_);
+        files::update(result, std::exchange(more_fields_, Report()));
+        result.set("warnings", std::exchange(warnings_, {}));
     }
     fmt::print("{}\n", result.text(2));
     std::fflush(stdout);

@@ -47,7 +47,6 @@ app::Session& fresh_session() {
     session.json = session.verbose = false;
     session.quiet = true;
     session.num_threads = 0;
-    static_cast<void>(session.take_notes());
     return session;
 }
 
