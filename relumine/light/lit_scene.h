@@ -210,8 +210,7 @@ private:
     /// Null without clusters.
     std::unique_ptr<relight::Relighter> relighter_;
     bool is_lit_ = false;
-    // The terms of the light: the relighter's, which is that of the environment, or of a list
-    // alone;
+    // The terms of the light, beside the relighter's, which has the environment or a list alone.
     EditedEnvironment environment_;
     ListedLight listed_;
     SceneBounces bounces_;

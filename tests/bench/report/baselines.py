@@ -98,12 +98,12 @@ def finding(rows):
             continue
         good = sum(factor >= 3 for factor in factors.values())
         sentences.append(
-            f"{scene}: {statistics.median(factors.values()):.1f} times (median; at least 3 times on {good} of {len(factors)} maps)"
+            f"For {scene}: {statistics.median(factors.values()):.1f} times (median; at least 3 times on {good} of {len(factors)} maps)"
         )
         lost += [f"{scene} under {name}" for name, factor in factors.items() if factor < 1]
     text = (
-        "At the bytes of Relumine's default tolerance, the best other method that stores as little has a larger error: "
-        + "; ".join(sentences)
+        "At the bytes of Relumine's default tolerance, the best other method that stores as little has a larger error. "
+        + ". ".join(sentences)
         + "."
     )
     if lost:
@@ -113,9 +113,9 @@ def finding(rows):
         own = own_default(of_scene)
         other = best_baseline(of_scene, own)
         if other and other["milliseconds_relight"] < own["milliseconds_relight"]:
-            faster.append(f"{scene}: {other['milliseconds_relight']:.1f} against {own['milliseconds_relight']:.1f} ms")
+            faster.append(f"for {scene} {other['milliseconds_relight']:.1f} against {own['milliseconds_relight']:.1f} ms")
     if faster:
-        text += " That method relights faster: " + "; ".join(faster) + "."
+        text += " That method relights faster: " + ", ".join(faster) + "."
     return text + path_tracing(rows)
 
 
@@ -127,8 +127,8 @@ def path_tracing(rows):
         if traced:
             best = min(traced, key=mean_error)
             factor = mean_error(best) / max(mean_error(own_default(of_scene)), 1e-9)
-            reached.append(f"{scene}: {best['setting']} a vertex, {best['milliseconds_relight'] / 1e3:.1f} s, {factor:.0f} times the error")
-    return " Cycles stores nothing and traces each light anew: " + "; ".join(reached) + "." if reached else ""
+            reached.append(f"For {scene}: {best['setting']} a vertex, {best['milliseconds_relight'] / 1e3:.1f} s, {factor:.0f} times the error")
+    return " Cycles stores nothing and traces each light anew. " + ". ".join(reached) + "." if reached else ""
 
 
 def curves(rows, x):

@@ -8,6 +8,7 @@ FIGURES is the figures.json of a report, which becomes docs/figures.json."""
 import argparse
 import json
 import sys
+import textwrap
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -20,30 +21,35 @@ QUOTED = ("baselines", "khronos")
 
 INTRODUCTION = """# Beside other methods
 
-Methods that relight with precomputed transport, or with few lights, at the same bytes and on the same
-data, and Relumine's pictures beside those of Khronos' reference renderers. The whole comparison, with
-plots and pictures, is one page that one command makes:
+This page has methods that relight with precomputed transport, or with few lights, at the same bytes
+and on the same data. It has Relumine's pictures beside those of Khronos' reference renderers. The
+whole comparison, with plots and pictures, is one page that one command makes:
 
 ```
 ./dev bench report -o report/          # 85 minutes on two cores; --quick leaves much out
 ```
 
-This page is written from `docs/figures.json`, which such a run wrote. `tests/bench/baselines/` has the
-other methods, with tests of their own.
+This page is written from `docs/figures.json`, which such a run wrote. `tests/bench/baselines/` has
+the other methods, with tests of their own.
 """
 
 METHODS = """Errors are relative L2 of radiance at receivers drawn at random, against exact integration of maps of
-256 x 256 texels a face: the mean over five probes, sun and sky, and a studio. "Stored" is a file, through
-zstd. "Relight" goes from an environment in the method's own basis to all radiance, on all cores. Ours
-holds the shadow rays of small lights; "without shadow rays" has none. Traced lights and Cycles store
-nothing: Blender bakes direct light to the same vertices with the same normals, and its time is that of the
-bake alone. All others compress the same transport, traced for every texel of a cube map. A row is the best
-setting of each method that stores no more than Relumine's default, or 5 % more.
+256 x 256 texels a face. They are the mean over five probes, sun and sky, and a studio. "Stored" is a
+file, through zstd. "Relight" goes from an environment in the method's own basis to all radiance, on all
+cores. Ours holds the shadow rays of small lights. "Without shadow rays" has none. Traced lights and Cycles
+store nothing. Blender bakes direct light to the same vertices with the same normals, and its time is that of
+the bake alone. All others compress the same transport, traced for every texel of a cube map. A row is the
+best setting of each method that stores no more than Relumine's default, or 5 % more.
 """
 
 
+def wrapped(text):
+    """The text in lines of a document's width."""
+    return textwrap.fill(" ".join(text.split()), 100, break_long_words=False, break_on_hyphens=False)
+
+
 def baselines_markdown(chapter):
-    parts = ["## At equal bytes", baselines.finding(chapter["figures"]), METHODS.rstrip()]
+    parts = ["## At equal bytes", wrapped(baselines.finding(chapter["figures"])), wrapped(METHODS)]
     for scene, rows in baselines.by_scene(chapter["figures"]).items():
         lines = [
             f"{scene}, {rows[0]['receivers']} receivers:",
@@ -66,7 +72,7 @@ def khronos_markdown(chapter):
     lines = ["| asset | " + " | ".join(names) + " |", "|---" * (len(names) + 1) + "|"]
     for asset, row in rows.items():
         lines.append(f"| {asset} | " + " | ".join(f"{row[name]:.1f}" if name in row else "-" for name in names) + " |")
-    return ["## Beside reference renderers", chapter["finding"], "\n".join(lines)]
+    return ["## Beside reference renderers", wrapped(chapter["finding"]), "\n".join(lines)]
 
 
 def document(figures):
@@ -76,7 +82,7 @@ def document(figures):
         if name in chapters:
             chapter = chapters[name]
             parts += markdown(chapter)
-            parts.append(f"`{chapter['command']}`, {chapter['seconds'] / 60:.0f} minutes, load {chapter['load']:.1f} when it began.")
+            parts.append(wrapped(f"`{chapter['command']}`, {chapter['seconds'] / 60:.0f} minutes, load {chapter['load']:.1f} when it began."))
     machine = figures["machine"]
     parts.append("The machine: " + "; ".join(f"{key} {machine[key]}" for key in ("processor", "memory", "date")) + ".")
     return "\n\n".join(parts) + "\n"
