@@ -41,7 +41,7 @@ environment "$1" build/wheels/tools
 build/wheels/tools/bin/pip install -q -r packages/release-tools.txt
 rm -rf dist build/wheels/made
 mkdir -p dist build/wheels/made
-build/wheels/tools/bin/python -m build -q --sdist -o dist .
+build/wheels/tools/bin/python -m build --sdist -o dist . >build/wheels/sdist.log
 for python in "$@"; do
     environment "$python" build/wheels/maker
     build/wheels/maker/bin/pip wheel -q --no-deps -w build/wheels/made -C "build-dir=build/wheels/{wheel_tag}" .

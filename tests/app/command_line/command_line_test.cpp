@@ -211,7 +211,6 @@ TEST_F(CommandLineTest, AMisspeltNameIsToldTheNearest) {
     misuse({"precompute", "a.obj", "-o", "b.prt", "--engine", "embre"},
            "--engine: expected beam or embree, got 'embre'; did you mean embree?");
     misuse({"lights", "env.hdr", "--zzz"}, "--zzz: no option of `relumine lights` (see");
-    misuse({"man", "edti"}, "did you mean edit?");
     misuse({"generate", "knto", "-o", "x"}, "did you mean knot?");
     precompute();
     write("layers.json", R"({"version": 1, "layers": [{"name": "key light", "type": "disc",
