@@ -29,7 +29,8 @@ if [ "${1:-}" = --try ]; then
             bin/relumine --version
             bin/python -m relumine generate knot -o . --vertices 4000 -q
             bin/relumine generate soft_boxes -o . -q
-            bin/relumine relight knot.ply soft_boxes_latlong.exr -o program.npy --no-cache -q
+            bin/relumine precompute knot.ply -o knot.prt -q
+            bin/relumine relight knot.prt soft_boxes_latlong.exr -o program.npy --bounces 0 -q
             bin/python "$here/packages/try_wheel.py")
         echo "$(basename "$wheel"): works in an empty environment of $("$python" --version), $(stat -c %s "$wheel" | awk '{ printf "%.1f MB", $1 / 1e6 }')"
     done
@@ -46,6 +47,6 @@ for python in "$@"; do
     environment "$python" build/wheels/maker
     build/wheels/maker/bin/pip wheel -q --no-deps -w build/wheels/made -C "build-dir=build/wheels/{wheel_tag}" .
 done
-PATH="$PWD/build/wheels/tools/bin:$PATH" auditwheel repair --strip -w dist build/wheels/made/*.whl
+PATH="$PWD/build/wheels/tools/bin:$PATH" auditwheel repair --strip -z 9 -w dist build/wheels/made/*.whl
 (cd dist && sha256sum -- * >SHA256SUMS)
 ls -l dist

@@ -70,6 +70,18 @@ def prepare(job):
     return scene
 
 
+def curves_of(animation):
+    """The collections of curves that animate a thing."""
+    action = animation.action
+    if action is None:
+        return []
+    if hasattr(action, "fcurves"):
+        return [action.fcurves]
+    # Blender 5 knows curves by layer, strip and slot alone.
+    bags = [strip.channelbag(animation.action_slot) for layer in action.layers for strip in layer.strips]
+    return [bag.fcurves for bag in bags if bag is not None]
+
+
 def still(world, socket, value):
     """Sets a socket that may be animated."""
     animation = world.node_tree.animation_data
@@ -77,8 +89,7 @@ def still(world, socket, value):
     if animation is not None:
         for driver in [each for each in animation.drivers if each.data_path == path]:
             animation.drivers.remove(driver)
-        if animation.action is not None:
-            curves = animation.action.fcurves
+        for curves in curves_of(animation):
             for curve in [each for each in curves if each.data_path == path]:
                 curves.remove(curve)
     socket.default_value = value

@@ -23,7 +23,7 @@ class Lamp:
         data = thing.data
         self.name, self.type = thing.original.name, data.type
         self.matrix = np.array(matrix, dtype=np.float64)
-        self.power = data.energy * np.array(data.color, dtype=np.float64)
+        self.power = data.energy * color_of(data)
         self.size = {"SUN": lambda: (data.angle,), "POINT": lambda: (data.shadow_soft_size,),
                      "SPOT": lambda: (data.shadow_soft_size, data.spot_size, data.spot_blend),
                      "AREA": lambda: (data.shape, data.size, data.size_y, spread_of(data)),
@@ -41,6 +41,26 @@ class Lamp:
             yield f"{self.name}: its shadow stays"
         if self.type == "AREA" and self.size[3] < np.pi - 1e-3:
             yield f"{self.name}: the spread of area lamps is not followed"
+
+
+def color_of(data):
+    """A lamp's colour, with the temperature and the exposure that Blender 4.5 gave it."""
+    color = np.array(data.color, dtype=np.float64)
+    if getattr(data, "use_temperature", False):
+        color *= np.array(data.temperature_color)
+    gain = 2.0 ** getattr(data, "exposure", 0.0)
+    return color * (gain if getattr(data, "normalize", True) else gain * area_of(data))
+
+
+def area_of(data):
+    """What Cycles 4.5 multiplies a lamp's strength with where it is not normalized."""
+    if data.type == "SUN":
+        return np.pi * np.sin(data.angle / 2) ** 2
+    if data.type == "AREA":
+        size_y = data.size if data.shape in ("SQUARE", "DISK") else data.size_y
+        return data.size * size_y * (np.pi / 4 if data.shape in ("DISK", "ELLIPSE") else 1.0)
+    # A point without a size counts as a disc of its own.
+    return 4.0 * np.pi * data.shadow_soft_size**2 if data.shadow_soft_size > 0.0 else 4.0
 
 
 def spread_of(data):
