@@ -53,13 +53,12 @@ def color_of(data):
 
 
 def area_of(data):
-    """What Cycles 4.5 multiplies a lamp's strength with where it is not normalized."""
+    """What Cycles 4.5 multiplies a lamp's strength with where it is not normalized (measured)."""
     if data.type == "SUN":
-        return np.pi * np.sin(data.angle / 2) ** 2
+        return np.pi * np.sin(data.angle / 2) ** 2 if data.angle > 0.0 else 1.0
     if data.type == "AREA":
         size_y = data.size if data.shape in ("SQUARE", "DISK") else data.size_y
         return data.size * size_y * (np.pi / 4 if data.shape in ("DISK", "ELLIPSE") else 1.0)
-    # A point without a size counts as a disc of its own.
     return 4.0 * np.pi * data.shadow_soft_size**2 if data.shadow_soft_size > 0.0 else 4.0
 
 
