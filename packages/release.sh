@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Makes dist/: a source distribution and a wheel for each Python that is named, with checksums. `./dev release [PYTHON...]`.
+# Makes dist/: a source distribution, a wheel for each Python that is named, Blender's extension with these wheels, and
+# checksums. `./dev release [PYTHON...]`.
 # Wheels hold the program and all libraries that they need, but for what every Linux of their age has.
 #
 # release.sh --try: installs each wheel of dist/ in an empty environment of its Python and lights a scene there.
@@ -48,5 +49,20 @@ for python in "$@"; do
     build/wheels/maker/bin/pip wheel -q --no-deps -w build/wheels/made -C "build-dir=build/wheels/{wheel_tag}" .
 done
 PATH="$PWD/build/wheels/tools/bin:$PATH" auditwheel repair --strip -z 9 -w dist build/wheels/made/*.whl
+
+# Blender's extension has the wheels of all Pythons inside.
+extension=build/wheels/extension
+rm -rf "$extension"
+mkdir -p "$extension/wheels"
+cp integrations/blender/relumine_lights/{*.py,blender_manifest.toml} LICENSE "$extension"
+cp dist/*.whl "$extension/wheels"
+{
+    echo 'wheels = ['
+    for wheel in dist/*.whl; do echo "    \"./wheels/$(basename "$wheel")\","; done
+    echo ']'
+} >build/wheels/list
+sed -i '/^platforms = /r build/wheels/list' "$extension/blender_manifest.toml"
+version=$(sed -n 's/^version = "\(.*\)"/\1/p' "$extension/blender_manifest.toml")
+(cd "$extension" && "$OLDPWD/build/wheels/tools/bin/python" -m zipfile -c "$OLDPWD/dist/relumine_lights-$version.zip" .)
 (cd dist && sha256sum -- * >SHA256SUMS)
 ls -l dist

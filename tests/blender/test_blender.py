@@ -1,4 +1,6 @@
-"""The Blender add-on, in `blender -b`; skipped where there is no Blender."""
+"""The Blender add-on, in `blender -b`; skipped where there is no Blender.
+
+RELUMINE_BPY: a Python that has the module bpy, to be tried instead (pip install bpy)."""
 
 import os
 import shutil
@@ -13,14 +15,18 @@ sys.path.insert(0, os.path.join(HERE, "../python"))
 
 def in_blender(script, *arguments):
     """Runs a script, which says in the end that all is well. Returns what it printed."""
+    script, module = os.path.join(HERE, script), os.environ.get("RELUMINE_BPY")
     blender = shutil.which("blender")
-    if blender is None:
+    if module:
+        command = [module, script]
+    elif blender is None:
         pytest.skip("there is no Blender: apt install blender")
+    else:
+        command = [blender, "-b", "--factory-startup", "--python-use-system-env",
+                   "--python-exit-code", "1", "--python", script]  # fmt: skip
     done = subprocess.run(
-        [blender, "-b", "--factory-startup", "--python-use-system-env", "--python-exit-code", "1",
-         "--python", os.path.join(HERE, script), "--", *map(str, arguments)],
-        capture_output=True, text=True,
-    )  # fmt: skip
+        [*command, "--", *map(str, arguments)], capture_output=True, text=True
+    )
     assert done.returncode == 0 and "all is well" in done.stdout, done.stdout + done.stderr
     return done.stdout
 

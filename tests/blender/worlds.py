@@ -300,7 +300,7 @@ def follows_changes(scene, thing):
     hue()
     bpy.context.view_layer.update()
     before = colors_of(thing, "Relumine")
-    node = scene.world.node_tree.nodes["Hue Saturation Value"]
+    node = next(each for each in scene.world.node_tree.nodes if each.type == "HUE_SAT")
     node.inputs["Value"].default_value = 2.0
     bpy.context.view_layer.update()
     assert difference(colors_of(thing, "Relumine"), 2.0 * before) < 1e-3

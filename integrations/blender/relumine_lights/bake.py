@@ -5,6 +5,7 @@ import json
 import os
 import queue
 import subprocess
+import sys
 import tempfile
 import threading
 
@@ -89,14 +90,15 @@ class Baker:
     def _start(self):
         if self._process is not None and self._process.poll() is None:
             return
-        if not bpy.app.binary_path:
-            raise RuntimeError("world: expected Blender's own program to bake it, got a module")
         self.close()
         self._folder = tempfile.TemporaryDirectory(prefix="relumine-")
         worker = os.path.join(os.path.dirname(os.path.abspath(__file__)), "bake_worker.py")
+        if bpy.app.binary_path:
+            blender = [bpy.app.binary_path, "-b", "--factory-startup", "-noaudio", "--python", worker]
+        else:  # Blender is Python's module
+            blender = [sys.executable, worker]
         self._process = subprocess.Popen(
-            [bpy.app.binary_path, "-b", "--factory-startup", "-noaudio", "--python", worker],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+            blender, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
         )  # fmt: skip
         threading.Thread(target=self._read, args=(self._process,), daemon=True).start()
 

@@ -14,6 +14,9 @@ PULLED = "relumine_pulled"
 #: Suns wider than this, in radians, are several directions, and so are wide lamps.
 SHARP = np.radians(1.0)
 POINTS = 16
+#: An area lamp of P watts has the intensity P / pi towards its axis; before Blender 4 it was P / 4.
+#: Times 4 pi / P. Measured with 3.4, 4.2, 4.5 and 5.0.
+AREA_GAIN = 4.0 if bpy.app.version >= (4, 0, 0) else np.pi
 
 
 class Lamp:
@@ -171,11 +174,11 @@ def radiance_of(lamp, relighter):
         way /= np.sqrt(square)[:, None]
         part = np.maximum((way * normals).sum(axis=1), 0.0) / square * is_seen
         if lamp.type == "AREA":
-            part *= np.maximum(-(way @ axis), 0.0) * np.pi
+            part *= np.maximum(-(way @ axis), 0.0) * AREA_GAIN
         elif lamp.type == "SPOT":
             part *= spot_factor(lamp, -(way @ axis))
         gain += part
-    # A lamp of P watts has the intensity P / 4 pi; an area lamp P / 4 towards its axis.
+    # A lamp of P watts has the intensity P / 4 pi.
     gain *= 1.0 / (4.0 * np.pi * np.pi * len(points))
     return (gain[:, None] * lamp.power).astype(np.float32)
 
