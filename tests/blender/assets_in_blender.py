@@ -30,14 +30,25 @@ def update():
     bpy.context.view_layer.update()
 
 
+def shine(world, color):
+    """Makes a world even."""
+    if bpy.app.version < (5, 0, 0):
+        world.use_nodes = False
+        world.color = color
+        return
+    # Worlds always have nodes.
+    background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
+    background.inputs["Color"].default_value = (*color, 1.0)
+    background.inputs["Strength"].default_value = 1.0
+
+
 def clear(color=(1.0, 1.0, 1.0)):
     """An empty scene under an even world."""
     for each in (*bpy.data.objects, *bpy.data.meshes):
         (bpy.data.objects if isinstance(each, bpy.types.Object) else bpy.data.meshes).remove(each)
     scene = bpy.context.scene
     scene.world = scene.world or bpy.data.worlds.new("world")
-    scene.world.use_nodes = False
-    scene.world.color = color
+    shine(scene.world, color)
     settings = scene.relumine
     settings.tolerance, settings.face_resolution, settings.bounces = 0.03, 16, False
     settings.receivers = "VERTICES"
@@ -97,7 +108,7 @@ def test_each_asset_has_a_file():
     os.replace("floor.prt", "kept.prt")
     os.replace("ball.prt", "floor.prt")
     before = colors(floor)
-    scene.world.color = (0.25, 0.5, 0.5)
+    shine(scene.world, (0.25, 0.5, 0.5))
     update()
     assert "expected the light of floor, got another mesh's" in scene.relumine.error
     assert "ball.prt: cannot read" in scene.relumine.error and (colors(floor) == before).all()
@@ -181,7 +192,7 @@ def test_copies():
     bpy.ops.object.duplicate()
     copy = bpy.context.object
     copy.location.x = 5.0
-    scene.world.color = (0.5, 0.5, 0.5)
+    shine(scene.world, (0.5, 0.5, 0.5))
     update()
     assert states()[copy.name] == "a copy of floor: precompute it"
     assert "Relumine" not in copy.data.color_attributes and "relumine_prt" not in copy
@@ -209,7 +220,7 @@ def test_edit_mode_loses_nothing():
     precompute(other)
     select(floor)
     bpy.ops.object.mode_set(mode="EDIT")
-    scene.world.color = (0.5, 0.25, 0.125)
+    shine(scene.world, (0.5, 0.25, 0.125))
     update()
     assert scene.relumine.error == "" and np.allclose(colors(other)[:, 1], 0.25, atol=0.01)
     bpy.ops.object.mode_set(mode="OBJECT")
@@ -315,7 +326,7 @@ def test_materials_show_light_times_color():
     select(floor)
     assert bpy.ops.relumine.material() == {"FINISHED"}
     assert floor.active_material != material
-    scene.world.color = (0.0, 0.0, 1.0)
+    shine(scene.world, (0.0, 0.0, 1.0))
     update()
     assert np.allclose(drawn(samples=1)[10:20, 10:20], [0.0, 0.0, 0.2], atol=0.005)
     bpy.ops.relumine.material(hide=True)
@@ -331,7 +342,7 @@ def test_lightmaps():
     precompute(floor)
     select(floor)
     bpy.ops.relumine.material()
-    scene.world.color = (0.25, 0.25, 1.0)
+    shine(scene.world, (0.25, 0.25, 1.0))
     update()
     image = floor["relumine_lightmap"]
     pixels = np.array(image.pixels[:]).reshape(64, 64, 4)
@@ -476,7 +487,8 @@ def test_pulled_lights_do_not_light_twice():
     assert collection.hide_render and len(collection.objects) == 16
     assert np.isclose(drawn(size=9).mean(), alone, rtol=0.01)
     # In place of the world.
-    collection.hide_render, scene.world.color = False, (0.0, 0.0, 0.0)
+    collection.hide_render = False
+    shine(scene.world, (0.0, 0.0, 0.0))
     assert np.isclose(drawn(size=9).mean(), alone, rtol=0.1)
     bpy.data.collections.remove(collection)
 
@@ -504,8 +516,12 @@ def test_animations_render_in_the_light_of_each_frame():
     select(floor)
     bpy.ops.relumine.material()
     for frame, value in ((1, 0.25), (2, 0.75)):
-        scene.world.color = (value, value, value)
-        scene.world.keyframe_insert("color", frame=frame)
+        shine(scene.world, (value, value, value))
+        if bpy.app.version < (5, 0, 0):
+            scene.world.keyframe_insert("color", frame=frame)
+        else:
+            color = scene.world.node_tree.nodes["Background"].inputs["Color"]
+            color.keyframe_insert("default_value", frame=frame)
     scene.frame_start, scene.frame_end = 1, 2
     drawn(samples=1)
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
@@ -518,7 +534,9 @@ def test_animations_render_in_the_light_of_each_frame():
         image = bpy.data.images.load(os.path.join(folder, f"frame_{frame:04d}.exr"))
         mean = np.array(image.pixels[:]).reshape(-1, 4)[:, :3].mean()
         assert np.isclose(mean, 0.8 * value, atol=0.01), (frame, mean)
-    scene.world.animation_data_clear()
+    for animated in (scene.world, scene.world.node_tree):
+        if animated is not None:
+            animated.animation_data_clear()
 
 
 def main():

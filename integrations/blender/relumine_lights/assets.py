@@ -26,6 +26,9 @@ NOTES = "relumine_notes"
 TIES = (PATH, FIRST, COUNT, IN_FILE, SHAPE, PLACE, AROUND, OWNER, TOLERANCE, BOUNCES, TEXELS,
         NOTES)  # fmt: skip
 
+#: Since Blender 4.5 a property of a path says that it may begin at the .blend.
+RELATIVE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
+
 
 class LiveScene:
     """A scene file in the light of the world and of the lamps."""

@@ -49,7 +49,7 @@ class RELUMINE_OT_precompute(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     filepath: bpy.props.StringProperty(
-        subtype="FILE_PATH",
+        subtype="FILE_PATH", options={"ANIMATABLE", *assets.RELATIVE},
         description="Empty: the file of the panel, or one named after the object",
     )
     again: bpy.props.BoolProperty(

@@ -37,7 +37,7 @@ class RelumineScene(bpy.types.PropertyGroup):
 
 class RelumineObject(bpy.types.PropertyGroup):
     file: bpy.props.StringProperty(
-        name="File", subtype="FILE_PATH",
+        name="File", subtype="FILE_PATH", options={"ANIMATABLE", *assets.RELATIVE},
         description="Where the precompute goes; empty: beside the .blend, named after the object",
     )  # fmt: skip
 
