@@ -23,6 +23,8 @@ from relumine_lights import assets, worlds
 folder = os.path.abspath(sys.argv[sys.argv.index("--") + 1])
 #: Relative L2, of bakes and of Cycles.
 LIMIT = 0.01
+#: A sky with a sun, by the name that this Blender has for it.
+SKY = "NISHITA" if bpy.app.version < (5, 0, 0) else "SINGLE_SCATTERING"
 
 
 def picture(name, *, seed=1, width=256, float_buffer=True, path=None, image_format="OPEN_EXR"):
@@ -93,7 +95,7 @@ def hdri():
 
 def sky():
     nodes = Nodes(0.3)
-    nodes.shine(nodes.add("TexSky", sky_type="NISHITA", sun_elevation=0.6, sun_rotation=1.0))
+    nodes.shine(nodes.add("TexSky", sky_type=SKY, sun_elevation=0.6, sun_rotation=1.0))
 
 
 def mix():
