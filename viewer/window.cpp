@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -124,6 +125,12 @@ Window::Window(int width, int height, const std::string& title, bool scripted)
     : impl_(std::make_unique<Impl>()) {
     impl_->scripted = scripted;
     glfwSetErrorCallback([](int, const char* text) { last_error() = text; });
+#ifdef GLFW_PLATFORM
+    // GLFW 3.4 asks Wayland first, whose library complains on stderr where there is none.
+    const char* wayland = std::getenv("WAYLAND_DISPLAY");
+    if (wayland == nullptr || *wayland == '\0')
+        glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
     if (glfwInit() == GLFW_FALSE)
         throw std::runtime_error("cannot open a window: " + last_error());
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
@@ -190,10 +197,13 @@ void Window::begin_frame(double wait_seconds, const std::optional<Pointer>& poin
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     if (impl_->scripted) {
+        // Behind what the real pointer did, and all in this frame.
         ImGuiIO& io = ImGui::GetIO();
-        io.MousePos = pointer ? ImVec2(pointer->pixel.x, pointer->pixel.y) : ImVec2(-1.0f, -1.0f);
-        io.MouseDown[0] = pointer && pointer->down;
-        io.MouseDown[1] = io.MouseDown[2] = false;
+        io.ConfigInputTrickleEventQueue = false;
+        io.AddMousePosEvent(pointer ? pointer->pixel.x : -1.0f, pointer ? pointer->pixel.y : -1.0f);
+        io.AddMouseButtonEvent(0, pointer && pointer->down);
+        io.AddMouseButtonEvent(1, false);
+        io.AddMouseButtonEvent(2, false);
     }
     ImGui::NewFrame();
     int width = 0;

@@ -32,7 +32,8 @@ std::string text_of(const OptionRow& option, const py::handle& value) {
     if (PyIndex_Check(value.ptr()) != 0)
         return py::str(py::int_(py::reinterpret_borrow<py::object>(value)));
     if (PyNumber_Check(value.ptr()) != 0)
-        return py::repr(py::float_(py::reinterpret_borrow<py::object>(value)));
+        return py::repr(
+            py::float_(value.cast<double>())); // numpy's own numbers have a repr of theirs
     throw OptionError(option.long_name(), "expected text, a number or a list of numbers, got " +
                                               py::repr(value).cast<std::string>());
 }

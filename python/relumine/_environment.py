@@ -121,7 +121,7 @@ class Environment:
             raise ValueError("turn: expected the matrix of a rotation, which keeps lengths")
         resolution = self.face_resolution if face_resolution is None else face_resolution
         options = {"flip": flip, "tilt": tilt, "rotate": rotate, "face_resolution": resolution}
-        return Environment._of(self._core.turned(options, matrix.tolist()))
+        return Environment._of(self._core.turned(options, [[float(x) for x in row] for row in matrix]))
 
     @property
     def cube(self) -> Floats:

@@ -320,7 +320,7 @@ class Relighter:
         Raises ValueError for a scene without such highlights.
         """
         self._require_light()
-        x, y, z = floats("eye", eye, 3).tolist()
+        x, y, z = (float(each) for each in floats("eye", eye, 3))
         tolerance = real("tolerance", tolerance)
         if not 1e-5 <= tolerance <= 1.0:
             raise ValueError(f"tolerance: expected 1e-5 to 1, got {tolerance}")

@@ -181,12 +181,15 @@ def video():
         picture("frame", seed=frame, float_buffer=False, image_format="PNG",
                 path=os.path.join(folder, f"frame{frame}.png"))  # fmt: skip
     editor = scene.sequence_editor_create()
-    strip = editor.sequences.new_image("frames", os.path.join(folder, "frame1.png"), 1, 1)
+    strips = editor.strips if hasattr(editor, "strips") else editor.sequences  # until Blender 4.3
+    strip = strips.new_image("frames", os.path.join(folder, "frame1.png"), 1, 1)
     for frame in (2, 3):
         strip.elements.append(f"frame{frame}.png")
     strip.frame_final_duration = 3
     render = scene.render
     render.filepath = os.path.join(folder, "video_")
+    if hasattr(render.image_settings, "media_type"):  # since Blender 5
+        render.image_settings.media_type = "VIDEO"
     render.image_settings.file_format = "FFMPEG"
     render.ffmpeg.format, render.ffmpeg.codec = "AVI", "FFV1"
     render.resolution_x, render.resolution_y, render.resolution_percentage = 256, 128, 100
@@ -231,6 +234,8 @@ def by_cycles(thing):
     scene.cycles.pixel_filter_type, scene.cycles.film_exposure = "BOX", 1.0
     render.resolution_x = render.resolution_y = size = 24
     render.resolution_percentage = 100
+    if hasattr(render.image_settings, "media_type"):
+        render.image_settings.media_type = "IMAGE"
     render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
     render.filepath = os.path.join(folder, "ball.exr")
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))

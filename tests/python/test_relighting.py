@@ -248,6 +248,8 @@ def test_a_camera_has_a_field_of_view(relighter):
     both = relighter.picture(size=(40, 30), camera=(30, 25, None, 60))
     assert (both == relighter.picture(size=(40, 30), camera=(30, 25), fov=60)).all()
     assert (both == relighter.picture(size=(40, 30), camera="30,25,,60")).all()
+    numbers = (np.float64(30), np.int64(25), None, np.float32(60))
+    assert (both == relighter.picture(size=(40, 30), camera=numbers)).all()
     with pytest.raises(ValueError, match="^camera: expected either a field of view here or fov"):
         relighter.picture(camera=(30, 25, 5, 60), fov=50)
 

@@ -14,6 +14,8 @@ from .bake_worker import all_trees
 
 #: Relumine's (x, y, z) from Blender's: (x, z, -y).
 AXES = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+#: Skies with a sun of their own, which no mapping turns: Blender 5 has two in place of Nishita's.
+SUNNY_SKIES = {"NISHITA", "SINGLE_SCATTERING", "MULTIPLE_SCATTERING"}
 #: Names of linear colour spaces with Rec.709 primaries in Blender 3 and 4.
 LINEAR = {"Linear", "Linear Rec.709", "Non-Color", "Raw"}
 #: Coordinates that only a camera has.
@@ -70,7 +72,7 @@ def turning_node(tree):
             targets = [link.to_node for output in node.outputs for link in output.links]
             if any(target != mappings[0] for target in targets):
                 return None
-        if node.type == "TEX_SKY" and node.sky_type == "NISHITA":
+        if node.type == "TEX_SKY" and node.sky_type in SUNNY_SKIES:
             return None
         if node.type.startswith("TEX_") and node.type != "TEX_COORD":
             if "Vector" not in node.inputs or source_of(node.inputs["Vector"]) is None:
