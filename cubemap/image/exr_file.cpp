@@ -16,9 +16,11 @@
 #include <ImfRgbaFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
+#include <ImfStringAttribute.h>
 #include <ImfTileDescription.h>
 #include <fmt/format.h>
 
+#include "cubemap/image/color_space.h"
 #include "cubemap/image/exr_header.h"
 #include "cubemap/image/image_file.h"
 #include "cubemap/image/image_layout.h"
@@ -56,15 +58,15 @@ private:
 
 /// The channels of a part that hold its colours.
 struct Channels {
-    enum class Kind { Rgb, LuminanceChroma, Luminance } kind = Kind::Rgb;
-    /// Names of red, green and blue, or three times the name of luminance.
+    enum class Kind { Rgb, Xyz, LuminanceChroma, Luminance } kind = Kind::Rgb;
+    /// Names of red, green and blue, of X, Y and Z, or three times the name of luminance.
     std::array<std::string, 3> names;
     /// Common prefix of the names with its dot, or empty.
     std::string layer;
 };
 
 /// Returns the channels R, G and B without a layer, else the channels of the only layer that has
-/// all three, else luminance.
+/// all three, else X, Y and Z, else luminance.
 std::optional<Channels> find_channels(const Imf::ChannelList& list) {
     const auto has = [&](const std::string& channel) {
         return list.findChannel(channel.c_str()) != nullptr;
@@ -80,6 +82,8 @@ std::optional<Channels> find_channels(const Imf::ChannelList& list) {
         const std::string layer = layers.contains("") ? "" : *layers.begin();
         return Channels{Channels::Kind::Rgb, {layer + "R", layer + "G", layer + "B"}, layer};
     }
+    if (has("X") && has("Y") && has("Z"))
+        return Channels{Channels::Kind::Xyz, {"X", "Y", "Z"}, ""};
     if (!has("Y"))
         return std::nullopt;
     return Channels{has("RY") && has("BY") ? Channels::Kind::LuminanceChroma
@@ -267,9 +271,40 @@ private:
             image.remarks.emplace_back("luminance only");
         if (channels_.kind == Channels::Kind::LuminanceChroma)
             image.remarks.emplace_back("luminance and chroma");
-        if (Imf::hasChromaticities(header))
-            image.remarks.emplace_back("chromaticities not converted");
+        convert_colors(header, image);
         fill_display_window(header, image);
+    }
+
+    /// What the header says of colours holds: its chromaticities, and the `colorInteropID` that
+    /// Blender writes since version 5.
+    void convert_colors(const Imf::Header& header, ImageFile& image) const {
+        if (channels_.kind == Channels::Kind::Xyz) {
+            image.remarks.push_back(convert_from_xyz(image));
+            return;
+        }
+        if (channels_.kind == Channels::Kind::Luminance)
+            return;
+        const auto* id = header.findTypedAttribute<Imf::StringAttribute>("colorInteropID");
+        std::optional<ColorSpace> space = id != nullptr ? space_of_id(id->value()) : std::nullopt;
+        if (Imf::hasChromaticities(header)) {
+            const Imf::Chromaticities& c = Imf::chromaticities(header);
+            const auto xy = [](const Imath::V2f& v) {
+                return glm::dvec2(v.x, v.y);
+            };
+            const std::optional<ColorSpace> stated =
+                space_of({xy(c.red), xy(c.green), xy(c.blue), xy(c.white)});
+            if (stated && space)
+                space->primaries = stated->primaries;
+            else if (stated)
+                space = stated;
+        }
+        if (!space)
+            return;
+        try {
+            image.remarks.push_back(convert_to_rec709(*space, image));
+        } catch (const std::invalid_argument&) {
+            fail("chromaticities that span colours", "others");
+        }
     }
 
     /// A data window smaller than an environment's display window is the part that is not black.

@@ -7,11 +7,13 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "cubemap/image/color_space.h"
 #include "cubemap/image/image_file.h"
 #include "files/large_vector.h"
 #include "files/printable.h"
@@ -60,6 +62,12 @@ public:
             image.remarks.emplace_back("exposure of the header divided out");
         if (has_zero_exposure_)
             image.remarks.emplace_back("EXPOSURE=0 of the header counts as 1");
+        if (space_)
+            try {
+                image.remarks.push_back(convert_to_rec709(*space_, image));
+            } catch (const std::invalid_argument&) {
+                fail("PRIMARIES= that span colours", "others");
+            }
         return image;
     }
 
@@ -91,6 +99,8 @@ private:
                 read_exposure(line.substr(9));
             if (line.starts_with("COLORCORR="))
                 read_color_correction(line.substr(10));
+            if (line.starts_with("PRIMARIES="))
+                read_primaries(line.substr(10));
         }
         if (!(std::min({exposure_.x, exposure_.y, exposure_.z}) > 1e-30 &&
               std::max({exposure_.x, exposure_.y, exposure_.z}) < 1e30))
@@ -114,6 +124,17 @@ private:
         }
     }
 
+    /// Takes x and y of red, green, blue and white.
+    void read_primaries(std::string_view text) {
+        std::array<double, 8> xy{};
+        for (double& each : xy) {
+            text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+            each = multiplier(text);
+            text.remove_prefix(std::min(text.find(' '), text.size()));
+        }
+        space_ = space_of({{xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}});
+    }
+
     [[nodiscard]] double multiplier(std::string_view text) const {
         const std::string number(text);
         char* end = nullptr;
@@ -121,7 +142,7 @@ private:
         // strtod() also takes hexadecimal numbers.
         if (end == number.c_str() || std::any_of(number.c_str(), static_cast<const char*>(end),
                                                  [](char c) { return c == 'x' || c == 'X'; }))
-            fail("a number after EXPOSURE= or COLORCORR=",
+            fail("a number after EXPOSURE=, COLORCORR= or PRIMARIES=",
                  fmt::format("'{:.60}'", files::printable(text)));
         return value;
     }
@@ -230,6 +251,8 @@ private:
     glm::dvec3 exposure_{1.0};
     std::uint32_t width_ = 0, height_ = 0;
     bool bottom_up_ = false, right_to_left_ = false, has_zero_exposure_ = false;
+    /// Empty: linear Rec. 709, as far as the header says
+    std::optional<ColorSpace> space_;
 };
 
 Rgbe rgbe(const glm::vec3& radiance) {

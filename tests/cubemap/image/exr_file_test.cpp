@@ -18,8 +18,10 @@
 #include <ImfPartType.h>
 #include <ImfRgbaFile.h>
 #include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
 #include <ImfTiledOutputFile.h>
-#include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+#include <gmock/gmock.h>
 
 #include "cubemap/image/image_file.h"
 #include "files/output_file.h"
@@ -280,7 +282,46 @@ TEST(ExrFile, AttributesAreReported) {
     write_scanlines(folder / "a.exr", rgb(Imf::HALF), whole_numbers(), header);
     const ImageFile image = decode(folder / "a.exr");
     EXPECT_EQ(image.envmap, Layout::LatLong);
-    EXPECT_EQ(image.remarks, std::vector<std::string>{"chromaticities not converted"});
+    EXPECT_TRUE(image.remarks.empty()) << "the usual chromaticities are those of Rec. 709";
+}
+
+/// A picture of one colour, with a header of its own.
+ImageFile decoded(const Imf::Header& header, const glm::vec3& color) {
+    const TemporaryFolder folder;
+    write_scanlines(folder / "a.exr", rgb(Imf::FLOAT),
+                    std::vector<glm::vec3>(std::size_t{Width} * Height, color), header);
+    return decode(folder / "a.exr");
+}
+
+TEST(ExrFile, ChromaticitiesAreConverted) {
+    Imf::Header header(Width, Height);
+    Imf::addChromaticities(
+        header, {{0.713f, 0.293f}, {0.165f, 0.830f}, {0.128f, 0.044f}, {0.32168f, 0.33767f}});
+    // Rec. 709's 1, 0.2, 0.05 in ACEScg.
+    const ImageFile image = decoded(header, {0.684323f, 0.254196f, 0.085943f});
+    EXPECT_LT(glm::distance(image.pixels[5], glm::vec3(1.0f, 0.2f, 0.05f)), 2e-3f);
+    EXPECT_EQ(image.remarks, std::vector<std::string>{"ACEScg converted to Rec. 709"});
+    // A green that Rec. 709 has not is cut off, and said.
+    const ImageFile green = decoded(header, {0.0f, 1.0f, 0.0f});
+    EXPECT_EQ(green.pixels[0].r, 0.0f);
+    EXPECT_THAT(green.remarks,
+                testing::ElementsAre(testing::HasSubstr("cannot show the colour of")));
+}
+
+TEST(ExrFile, TheSpaceThatBlenderNamesHolds) {
+    Imf::Header header(Width, Height);
+    header.insert("colorInteropID", Imf::StringAttribute("srgb_rec709_display"));
+    const ImageFile image = decoded(header, glm::vec3(0.5f));
+    EXPECT_NEAR(image.pixels[0].r, 0.21404f, 1e-5f);
+    EXPECT_EQ(image.remarks, std::vector<std::string>{"srgb_rec709_display converted to Rec. 709"});
+    header.insert("colorInteropID", Imf::StringAttribute("lin_rec709_scene"));
+    EXPECT_EQ(decoded(header, glm::vec3(0.5f)).pixels[0].r, 0.5f);
+}
+
+TEST(ExrFile, ChromaticitiesOnALineAreRefused) {
+    Imf::Header header(Width, Height);
+    Imf::addChromaticities(header, {{0.3f, 0.3f}, {0.4f, 0.4f}, {0.5f, 0.5f}, {0.31f, 0.33f}});
+    EXPECT_THROW(static_cast<void>(decoded(header, glm::vec3(0.5f))), std::runtime_error);
 }
 
 TEST(ExrFile, TheFirstPartWithColourIsTaken) {

@@ -55,6 +55,20 @@ TEST(HdrFile, ExposureAndColorCorrectionAreDividedOut) {
     EXPECT_EQ(image.remarks.size(), 1u);
 }
 
+TEST(HdrFile, PrimariesAreConverted) {
+    const auto of = [](const std::string& primaries) {
+        return decode("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nPRIMARIES=" + primaries +
+                      "\n\n-Y 1 +X 1\n" + pixel(128, 128, 128, 129));
+    };
+    const ImageFile wide = of(" 0.708 0.292 0.170 0.797 0.131 0.046 0.3127 0.3290");
+    for (int channel = 0; channel < 3; ++channel)
+        EXPECT_NEAR(wide.pixels[0][channel], 1.0f, 1e-5f) << "white stays white";
+    EXPECT_THAT(wide.remarks, testing::ElementsAre("Rec. 2020 converted to Rec. 709"));
+    EXPECT_TRUE(of("0.64 0.33 0.30 0.60 0.15 0.06 0.3127 0.3290").remarks.empty());
+    EXPECT_THROW(static_cast<void>(of("0 0 0 0 0 0 0 0")), std::runtime_error);
+    EXPECT_THROW(static_cast<void>(of("0.64 0.33")), std::runtime_error);
+}
+
 /// FreeImage writes EXPOSURE=0 where nothing was set.
 TEST(HdrFile, AnExposureOfZeroIsNone) {
     const ImageFile image = decode("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=0\n\n-Y 1 +X 1\n" +

@@ -1,0 +1,53 @@
+// Colour spaces that files of pictures state, and their way to linear Rec. 709.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+
+#include "cubemap/image/picture.h"
+
+namespace relumine::cubemap {
+
+/// CIE 1931 xy of the primaries and the white of a space.
+struct Primaries {
+    glm::dvec2 red, green, blue, white;
+};
+
+/// How a file's numbers stand for light.
+enum class Transfer { Linear, Srgb, Gamma22, Gamma18 };
+
+struct ColorSpace {
+    Primaries primaries;
+    Transfer transfer = Transfer::Linear;
+    /// "ACEScg", "P3-D65"; empty: a space without a name
+    std::string name = {};
+};
+
+/// Returns the matrix from linear colours of these primaries to those of Rec. 709. White stays
+/// white: Bradford's adaptation [Lindbloom, "Chromatic Adaptation"].
+///
+/// Throws:  std::invalid_argument for primaries that lie on a line, or a white of no luminance.
+[[nodiscard]] glm::dmat3 to_rec709(const Primaries& primaries);
+/// Returns the matrix from CIE XYZ with the white of D65.
+[[nodiscard]] glm::dmat3 rec709_from_xyz();
+
+/// Returns the space of these primaries, with a name where one has them within 0.001. Empty for
+/// those of Rec. 709, which need no conversion.
+[[nodiscard]] std::optional<ColorSpace> space_of(const Primaries& primaries);
+/// Returns the space that a `colorInteropID` names ("lin_ap1_scene", "srgb_rec709_display").
+/// Empty for linear Rec. 709, and for names that say nothing of colours or are not known.
+[[nodiscard]] std::optional<ColorSpace> space_of_id(std::string_view id);
+
+/// Turns a picture's colours into linear Rec. 709. What Rec. 709 cannot show, a negative number,
+/// becomes 0 where it was not negative before. Returns a remark: what was done, and to how many
+/// pixels that happened.
+std::string convert_to_rec709(const ColorSpace& space, Picture& picture);
+/// Does the same for CIE XYZ.
+std::string convert_from_xyz(Picture& picture);
+
+} // namespace relumine::cubemap
