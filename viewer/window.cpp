@@ -197,13 +197,19 @@ void Window::begin_frame(double wait_seconds, const std::optional<Pointer>& poin
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     if (impl_->scripted) {
-        // Behind what the real pointer did, and all in this frame.
         ImGuiIO& io = ImGui::GetIO();
+#if IMGUI_VERSION_NUM >= 18700
+        // Behind what the real pointer did, and all in this frame.
         io.ConfigInputTrickleEventQueue = false;
         io.AddMousePosEvent(pointer ? pointer->pixel.x : -1.0f, pointer ? pointer->pixel.y : -1.0f);
         io.AddMouseButtonEvent(0, pointer && pointer->down);
         io.AddMouseButtonEvent(1, false);
         io.AddMouseButtonEvent(2, false);
+#else
+        io.MousePos = pointer ? ImVec2(pointer->pixel.x, pointer->pixel.y) : ImVec2(-1.0f, -1.0f);
+        io.MouseDown[0] = pointer && pointer->down;
+        io.MouseDown[1] = io.MouseDown[2] = false;
+#endif
     }
     ImGui::NewFrame();
     int width = 0;

@@ -46,8 +46,6 @@ def picture(name, *, seed=1, width=256, float_buffer=True, path=None, image_form
     if path is None:
         return image
     image.filepath_raw, image.file_format = path, image_format
-    if image_format == "OPEN_EXR":
-        image.colorspace_settings.name = "Linear" if bpy.app.version < (4, 0, 0) else "Linear Rec.709"
     image.save()
     bpy.data.images.remove(image)
     return bpy.data.images.load(path)
@@ -364,6 +362,7 @@ def main():
     assert not wrong, wrong
     follows_changes(scene, thing)
     relumine_lights.unregister()
+    print(f"worlds in Blender {bpy.app.version_string}")
     print("all is well")
 
 

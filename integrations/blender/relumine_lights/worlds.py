@@ -80,6 +80,13 @@ def turning_node(tree):
     return mappings[0]
 
 
+def states_colors(path):
+    """Whether a file's header says of colours what Relumine follows, and Blender perhaps does not."""
+    with open(path, "rb") as file:
+        head = file.read(1 << 16)
+    return any(word in head for word in (b"chromaticities\0", b"colorInteropID\0", b"\nPRIMARIES="))
+
+
 class WorldLight:
     """How a world lights: a colour, a picture file or a bake; a turn, a strength.
 
@@ -147,6 +154,7 @@ class WorldLight:
             or not path.lower().endswith((".exr", ".hdr"))
             or image.colorspace_settings.name not in LINEAR
             or not os.path.exists(path)
+            or states_colors(path)
         ):
             return False
         if source_of(texture.inputs["Vector"]) is not None:
