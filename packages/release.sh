@@ -22,6 +22,7 @@ python_of() {
 }
 
 if [ "${1:-}" = --try ]; then
+    compgen -G 'dist/*.whl' >/dev/null || { echo "release: expected wheels in dist/; ./dev release makes them" >&2; exit 1; }
     for wheel in dist/*.whl; do
         python=$(python_of "$wheel")
         environment "$python" build/wheels/try
@@ -40,7 +41,7 @@ fi
 
 [ $# -gt 0 ] || set -- python3
 environment "$1" build/wheels/tools
-build/wheels/tools/bin/pip install -q -r packages/release-tools.txt
+build/wheels/tools/bin/pip install -q -r packages/release.pip
 rm -rf dist build/wheels/made
 mkdir -p dist build/wheels/made
 build/wheels/tools/bin/python -m build --sdist -o dist . >build/wheels/sdist.log
