@@ -45,9 +45,10 @@ build/wheels/tools/bin/pip install -q -r packages/release.pip
 rm -rf dist build/wheels/made
 mkdir -p dist build/wheels/made
 build/wheels/tools/bin/python -m build --sdist -o dist . >build/wheels/sdist.log
+# From the source distribution, so that what is missing in it is seen.
 for python in "$@"; do
     environment "$python" build/wheels/maker
-    build/wheels/maker/bin/pip wheel -q --no-deps -w build/wheels/made -C "build-dir=build/wheels/{wheel_tag}" .
+    build/wheels/maker/bin/pip wheel -q --no-deps -w build/wheels/made dist/*.tar.gz
 done
 PATH="$PWD/build/wheels/tools/bin:$PATH" auditwheel repair --strip -z 9 -w dist build/wheels/made/*.whl
 
