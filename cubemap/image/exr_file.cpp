@@ -303,7 +303,7 @@ private:
         try {
             image.remarks.push_back(convert_to_rec709(*space, image));
         } catch (const std::invalid_argument&) {
-            fail("chromaticities that span colours", "others");
+            image.remarks.emplace_back("chromaticities span no colours: passed over");
         }
     }
 

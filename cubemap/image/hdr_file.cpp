@@ -66,7 +66,7 @@ public:
             try {
                 image.remarks.push_back(convert_to_rec709(*space_, image));
             } catch (const std::invalid_argument&) {
-                fail("PRIMARIES= that span colours", "others");
+                image.remarks.emplace_back("PRIMARIES of the header span no colours: passed over");
             }
         return image;
     }
@@ -132,7 +132,9 @@ private:
             each = multiplier(text);
             text.remove_prefix(std::min(text.find(' '), text.size()));
         }
-        space_ = space_of({{xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}});
+        // Zeros are not set: FreeImage writes them into every file.
+        if (xy != std::array<double, 8>{})
+            space_ = space_of({{xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}});
     }
 
     [[nodiscard]] double multiplier(std::string_view text) const {
