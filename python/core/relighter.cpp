@@ -239,8 +239,8 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
         });
 }
 
-py::dict verify(const LitPointer& own, std::size_t samples, std::size_t surface,
-                std::uint64_t seed, std::uint32_t paths, const py::object& progress) {
+py::dict verify(const LitPointer& own, std::size_t samples, std::size_t surface, std::uint64_t seed,
+                std::uint32_t paths, const py::object& progress) {
     Verification found = slowly(own, progress, [=](LitScene& lit, const Reins& reins) {
         return relumine::verify(lit, {.num_samples = samples,
                                       .seed = seed,
