@@ -1,5 +1,6 @@
 // Reads OpenEXR pictures in memory.
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <memory>
 #include <set>
@@ -65,8 +66,18 @@ struct Channels {
     std::string layer;
 };
 
-/// Returns the channels R, G and B without a layer, else the channels of the only layer that has
-/// all three, else X, Y and Z, else luminance.
+/// Whether a layer's name says that it is the picture: "ViewLayer.Combined." of Blender, "beauty."
+/// of others.
+bool is_beauty(const std::string& layer) {
+    const std::size_t end = layer.size() - 1, begin = layer.rfind('.', end - 1) + 1;
+    std::string name = layer.substr(begin, end - begin);
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return name == "combined" || name == "beauty" || name == "rgba" || name == "rgb";
+}
+
+/// Returns the channels R, G and B without a layer, else those of the only layer that has all three
+/// or whose name says that it is the picture, else r, g and b, else X, Y and Z, else luminance.
 std::optional<Channels> find_channels(const Imf::ChannelList& list) {
     const auto has = [&](const std::string& channel) {
         return list.findChannel(channel.c_str()) != nullptr;
@@ -78,10 +89,14 @@ std::optional<Channels> find_channels(const Imf::ChannelList& list) {
         if (has(layer + "R") && has(layer + "G") && has(layer + "B"))
             layers.insert(layer);
     }
+    if (!layers.contains("") && layers.size() > 1)
+        std::erase_if(layers, [](const std::string& layer) { return !is_beauty(layer); });
     if (layers.contains("") || layers.size() == 1) {
         const std::string layer = layers.contains("") ? "" : *layers.begin();
         return Channels{Channels::Kind::Rgb, {layer + "R", layer + "G", layer + "B"}, layer};
     }
+    if (has("r") && has("g") && has("b"))
+        return Channels{Channels::Kind::Rgb, {"r", "g", "b"}, ""};
     if (has("X") && has("Y") && has("Z"))
         return Channels{Channels::Kind::Xyz, {"X", "Y", "Z"}, ""};
     if (!has("Y"))

@@ -195,6 +195,30 @@ TEST(ExrFile, AlphaAndExtraChannelsAreIgnored) {
     EXPECT_TRUE(image.remarks.empty());
 }
 
+TEST(ExrFile, OfManyLayersThePictureIsTaken) {
+    const TemporaryFolder folder;
+    std::vector<Channel> channels = rgb(Imf::FLOAT, "ViewLayer.DiffDir.");
+    for (const Channel& each : rgb(Imf::FLOAT, "ViewLayer.Combined."))
+        channels.push_back(each);
+    write_scanlines(folder / "a.exr", channels, whole_numbers());
+    const ImageFile image = decode(folder / "a.exr");
+    EXPECT_EQ(image.pixels, whole_numbers());
+    EXPECT_EQ(image.remarks, std::vector<std::string>{"layer ViewLayer.Combined"});
+    // Two pictures are a question.
+    for (const Channel& each : rgb(Imf::FLOAT, "Other.beauty."))
+        channels.push_back(each);
+    write_scanlines(folder / "b.exr", channels, whole_numbers());
+    EXPECT_THROW(static_cast<void>(decode(folder / "b.exr")), std::runtime_error);
+}
+
+TEST(ExrFile, ChannelsMayBeSmallLetters) {
+    const TemporaryFolder folder;
+    write_scanlines(folder / "a.exr",
+                    {{"r", Imf::FLOAT, 0}, {"g", Imf::FLOAT, 1}, {"b", Imf::FLOAT, 2}},
+                    whole_numbers());
+    EXPECT_EQ(decode(folder / "a.exr").pixels, whole_numbers());
+}
+
 TEST(ExrFile, TheOnlyLayerWithColourIsTaken) {
     const TemporaryFolder folder;
     auto channels = rgb(Imf::FLOAT, "sky.dome.");
