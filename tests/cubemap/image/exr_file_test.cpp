@@ -200,14 +200,14 @@ TEST(ExrFile, OfManyLayersThePictureIsTaken) {
     std::vector<Channel> channels = rgb(Imf::FLOAT, "ViewLayer.DiffDir.");
     for (const Channel& each : rgb(Imf::FLOAT, "ViewLayer.Combined."))
         channels.push_back(each);
-    write_scanlines(folder / "a.exr", channels, whole_numbers());
+    write_scanlines(folder / "a.exr", channels, whole_numbers(), Imf::Header(Width, Height));
     const ImageFile image = decode(folder / "a.exr");
     EXPECT_EQ(image.pixels, whole_numbers());
     EXPECT_EQ(image.remarks, std::vector<std::string>{"layer ViewLayer.Combined"});
     // Two pictures are a question.
     for (const Channel& each : rgb(Imf::FLOAT, "Other.beauty."))
         channels.push_back(each);
-    write_scanlines(folder / "b.exr", channels, whole_numbers());
+    write_scanlines(folder / "b.exr", channels, whole_numbers(), Imf::Header(Width, Height));
     EXPECT_THROW(static_cast<void>(decode(folder / "b.exr")), std::runtime_error);
 }
 
@@ -215,7 +215,7 @@ TEST(ExrFile, ChannelsMayBeSmallLetters) {
     const TemporaryFolder folder;
     write_scanlines(folder / "a.exr",
                     {{"r", Imf::FLOAT, 0}, {"g", Imf::FLOAT, 1}, {"b", Imf::FLOAT, 2}},
-                    whole_numbers());
+                    whole_numbers(), Imf::Header(Width, Height));
     EXPECT_EQ(decode(folder / "a.exr").pixels, whole_numbers());
 }
 
