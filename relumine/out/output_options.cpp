@@ -186,8 +186,12 @@ Camera camera_of(const Scene& scene, const OutputOptions& options) {
     const bool is_plain = !options.camera_place && options.front == Front::PositiveZ;
     const std::optional<Camera> own = is_plain ? own_camera(scene, framing.aspect) : std::nullopt;
     Camera camera = own ? *own : relight::framed(scene.mesh, framing);
-    if (own && !scene.settings.view)
-        camera.fov_degrees = options.fov_degrees.value_or(camera.fov_degrees);
+    if (own && !scene.settings.view) {
+        // The automatic camera of a room is wide. An eye that was chosen is as other eyes.
+        const bool is_chosen = options.eye && !scene.settings.camera;
+        camera.fov_degrees =
+            options.fov_degrees.value_or(is_chosen ? framing.fov_degrees : camera.fov_degrees);
+    }
     if (options.target) {
         camera.eye += *options.target - camera.target;
         camera.target = *options.target;

@@ -397,6 +397,12 @@ TEST_F(Output, TheCameraIsThatOfTheFileOrInsideOfARoom) {
         EXPECT_GT(inside.eye[axis], box.min[axis]);
         EXPECT_LT(inside.eye[axis], box.max[axis]);
     }
+    EXPECT_GT(inside.fov_degrees, 50.0f);
+    EXPECT_EQ(camera_of(room, OutputOptions{.eye = glm::vec3(1.0f)}).fov_degrees, 35.0f)
+        << "as for any other eye";
+    EXPECT_EQ(
+        camera_of(room, OutputOptions{.eye = glm::vec3(1.0f), .fov_degrees = 50.0f}).fov_degrees,
+        50.0f);
 }
 
 TEST_F(Output, HighlightsKeepTextures) {
