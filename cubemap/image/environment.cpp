@@ -85,7 +85,7 @@ BadPixels find_bad_pixels(const EnvironmentImage& image) {
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         const glm::vec3& pixel = image.pixels[i];
         if (pixel.x >= 0.0f && pixel.y >= 0.0f && pixel.z >= 0.0f &&
-            std::isfinite(pixel.x + pixel.y + pixel.z))
+            std::max({pixel.x, pixel.y, pixel.z}) <= BadPixels::MostRadiance)
             continue;
         const auto any = [&](auto test) {
             return test(pixel.x) || test(pixel.y) || test(pixel.z);
@@ -93,12 +93,10 @@ BadPixels find_bad_pixels(const EnvironmentImage& image) {
         std::size_t* count = nullptr;
         if (any([](float value) { return std::isnan(value); }))
             count = &bad.num_nan;
-        else if (any([](float value) { return std::isinf(value); }))
+        else if (any([](float value) { return std::abs(value) > BadPixels::MostRadiance; }))
             count = &bad.num_infinite;
-        else if (any([](float value) { return value < 0.0f; }))
-            count = &bad.num_negative;
         else
-            continue; // only the sum of the three was infinite
+            count = &bad.num_negative;
         if (bad.count() == 0) {
             bad.first_x = static_cast<std::uint32_t>(i % image.width);
             bad.first_y = static_cast<std::uint32_t>(i / image.width);
@@ -126,7 +124,7 @@ void fix_bad_pixels(EnvironmentImage& image) {
     float largest = 0.0f;
     for (const glm::vec3& pixel : image.pixels) {
         for (int channel = 0; channel < 3; ++channel) {
-            if (std::isfinite(pixel[channel]))
+            if (pixel[channel] <= BadPixels::MostRadiance)
                 largest = std::max(largest, pixel[channel]);
         }
     }
@@ -135,7 +133,7 @@ void fix_bad_pixels(EnvironmentImage& image) {
             float& value = pixel[channel];
             if (!(value >= 0.0f))
                 value = 0.0f; // NaN too
-            else if (std::isinf(value))
+            else if (value > BadPixels::MostRadiance)
                 value = largest;
         }
     }

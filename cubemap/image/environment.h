@@ -68,9 +68,12 @@ struct BadPixels {
     /// Largest negative_share that is taken for what a resampling filter left.
     static constexpr double MostNegativeLight = 0.01;
 
+    /// Radiance beyond this is no light: it counts as infinite.
+    static constexpr float MostRadiance = 1e30f;
+
     /// Pixels with a NaN channel.
     std::size_t num_nan = 0;
-    /// Pixels with an infinite channel and no NaN.
+    /// Pixels with a channel beyond MostRadiance and no NaN.
     std::size_t num_infinite = 0;
     /// Pixels with a negative channel, no NaN and nothing infinite.
     std::size_t num_negative = 0;

@@ -107,6 +107,20 @@ TEST_F(BadPixelsTest, AreFixedWhenAskedFor) {
     EXPECT_EQ(image.pixels[14], glm::vec3(0.0f, 0.5f, 0.5f));
 }
 
+TEST_F(BadPixelsTest, WhatNoLightCanBeIsInfinite) {
+    EnvironmentImage image;
+    image.width = 4;
+    image.height = 2;
+    image.pixels.assign(8, glm::vec3(0.5f));
+    image.pixels[2] = glm::vec3(3e38f, 1.0f, 1.0f);
+    save_image(path_, image);
+    EXPECT_EQ(message_of([&] { (void)load_environment(path_); }),
+              path_.string() + ": expected finite radiance >= 0, got 1 NaN/Inf and 0 negative "
+                               "pixels, first at (2, 0); use --fix-env");
+    EXPECT_EQ(load_environment(path_, {.fix_bad_pixels = true}).pixels[2],
+              glm::vec3(1.0f, 1.0f, 1.0f));
+}
+
 TEST_F(BadPixelsTest, AreLoadedAsTheyAreForInspection) {
     const EnvironmentImage image = load_environment(path_, {.refuse_bad_pixels = false});
     EXPECT_FALSE(image.fixed);
