@@ -155,7 +155,7 @@ public:
         const Imf::Header& header = file.header(part_);
         const Window inner = window(header.dataWindow());
         const Window outer = window(header.displayWindow());
-        return fills_display_window(header) ? ImageSize{outer.width, outer.height}
+        return shows_display_window(header) ? ImageSize{outer.width, outer.height}
                                             : ImageSize{inner.width, inner.height};
     }
 
@@ -287,7 +287,7 @@ private:
         if (channels_.kind == Channels::Kind::LuminanceChroma)
             image.remarks.emplace_back("luminance and chroma");
         convert_colors(header, image);
-        fill_display_window(header, image);
+        show_display_window(header, image);
     }
 
     /// What the header says of colours holds: its chromaticities, and the `colorInteropID` that
@@ -322,8 +322,9 @@ private:
         }
     }
 
-    /// A data window smaller than an environment's display window is the part that is not black.
-    [[nodiscard]] static bool fills_display_window(const Imf::Header& header) {
+    /// Whether the picture is the display window, an environment's, and not the data window: what
+    /// lies beyond it is overscan, and what it lacks is black.
+    [[nodiscard]] static bool shows_display_window(const Imf::Header& header) {
         if (Imf::hasEnvmap(header) &&
             (Imf::envmap(header) == Imf::ENVMAP_LATLONG || Imf::envmap(header) == Imf::ENVMAP_CUBE))
             return false;
@@ -337,11 +338,11 @@ private:
         const Imath::Box2i& outer = header.displayWindow();
         const std::uint64_t num_pixels = std::uint64_t{display.width} * display.height;
         return is_environment && num_pixels != 0 && num_pixels <= MaxPixels && inner != outer &&
-               outer.intersects(inner.min) && outer.intersects(inner.max);
+               outer.intersects(inner);
     }
 
-    void fill_display_window(const Imf::Header& header, ImageFile& image) const {
-        if (!fills_display_window(header))
+    void show_display_window(const Imf::Header& header, ImageFile& image) const {
+        if (!shows_display_window(header))
             return;
         const Window display = window(header.displayWindow());
         const std::uint64_t num_pixels = std::uint64_t{display.width} * display.height;
@@ -349,18 +350,27 @@ private:
         if (num_pixels > std::max<std::uint64_t>(image.pixels.size() * 64, std::uint64_t{1} << 22))
             fail(fmt::format("data for {}x{} pixels", display.width, display.height),
                  fmt::format("{}x{}", image.width, image.height));
+        const Imath::Box2i& inner = header.dataWindow();
+        const Imath::Box2i& outer = header.displayWindow();
+        const Imath::V2i first(std::max(inner.min.x, outer.min.x),
+                               std::max(inner.min.y, outer.min.y));
+        const Imath::V2i last(std::min(inner.max.x, outer.max.x),
+                              std::min(inner.max.y, outer.max.y));
         std::vector<glm::vec3> pixels(num_pixels, glm::vec3(0.0f));
-        const auto left =
-            static_cast<std::size_t>(static_cast<std::int64_t>(window_.x) - display.x);
-        const auto top = static_cast<std::size_t>(static_cast<std::int64_t>(window_.y) - display.y);
-        for (std::size_t y = 0; y < image.height; ++y)
-            std::copy_n(
-                image.pixels.begin() + static_cast<std::ptrdiff_t>(y * image.width), image.width,
-                pixels.begin() + static_cast<std::ptrdiff_t>((top + y) * display.width + left));
+        const auto index = [](const Window& in, int x, int y) {
+            return static_cast<std::ptrdiff_t>((std::int64_t{y} - in.y) * std::int64_t{in.width} +
+                                               (std::int64_t{x} - in.x));
+        };
+        for (int y = first.y; y <= last.y; ++y)
+            std::copy_n(image.pixels.begin() + index(window_, first.x, y), last.x - first.x + 1,
+                        pixels.begin() + index(display, first.x, y));
         image.pixels = std::move(pixels);
         image.width = display.width;
         image.height = display.height;
-        image.remarks.emplace_back("black outside the data window");
+        if (Imath::Box2i(first, last) != inner)
+            image.remarks.emplace_back("cut to the display window");
+        if (Imath::Box2i(first, last) != outer)
+            image.remarks.emplace_back("black outside the data window");
     }
 
     std::span<const std::byte> bytes_;

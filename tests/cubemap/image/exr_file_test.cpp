@@ -24,6 +24,7 @@
 #include <gmock/gmock.h>
 
 #include "cubemap/image/image_file.h"
+#include "cubemap/image/image_size.h"
 #include "files/output_file.h"
 #include "tests/cubemap/test_images.h"
 
@@ -296,6 +297,27 @@ TEST(ExrFile, OutsideTheDataWindowAnEnvironmentIsBlack) {
     header.displayWindow() = Imath::Box2i({0, 0}, {120, 50});
     write_scanlines(folder / "b.exr", rgb(Imf::HALF), whole_numbers(), header);
     EXPECT_EQ(decode(folder / "b.exr").width, 70u);
+}
+
+TEST(ExrFile, OverscanIsCutOff) {
+    const TemporaryFolder folder;
+    Imf::Header header(60, 30);
+    header.dataWindow() = Imath::Box2i({-4, -2}, {-4 + Width - 1, -2 + Height - 1});
+    write_scanlines(folder / "a.exr", rgb(Imf::HALF), whole_numbers(), header);
+    const ImageFile image = decode(folder / "a.exr");
+    ASSERT_EQ(image.width, 60u);
+    ASSERT_EQ(image.height, 30u);
+    EXPECT_EQ(image.pixels[0], whole_numbers()[Width * 2 + 4]);
+    EXPECT_EQ(image.pixels[60 * 29 + 59], whole_numbers()[Width * 31 + 63]);
+    EXPECT_EQ(image.remarks, std::vector<std::string>{"cut to the display window"});
+    EXPECT_EQ(read_image_size(folder / "a.exr"), (ImageSize{60, 30}));
+    // It may reach out on one side, and be short on another.
+    header.dataWindow() = Imath::Box2i({-4, 7}, {-4 + Width - 1, 7 + Height - 1});
+    write_scanlines(folder / "b.exr", rgb(Imf::HALF), whole_numbers(), header);
+    const ImageFile partly = decode(folder / "b.exr");
+    EXPECT_EQ(partly.pixels[60 * 6 + 59], glm::vec3(0.0f));
+    EXPECT_EQ(partly.pixels[60 * 7], whole_numbers()[4]);
+    EXPECT_EQ(partly.remarks.size(), 2u);
 }
 
 TEST(ExrFile, AttributesAreReported) {
