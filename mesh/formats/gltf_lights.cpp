@@ -21,13 +21,30 @@ constexpr const char* Name = "KHR_lights_punctual";
 /// Pictures of such lights, with room for exposure, stay within what a float holds.
 constexpr double Brightest = 1e9;
 
-double in_range(const Json& object, const char* key, double fallback, double low, double high) {
-    const double value = number(object, key, fallback);
-    if (!(value >= low && value <= high))
-        throw std::runtime_error(fmt::format("expected {:g} to {:g} as \"{}\" of a light, got {:g}",
-                                             low, high, key, value));
-    return value;
-}
+/// Reads numbers of one light. What is out of range is brought into it, with a warning.
+class LightNumbers {
+public:
+    LightNumbers(const std::string& name, std::vector<std::string>& warnings)
+        : name_(name), warnings_(warnings) {}
+
+    [[nodiscard]] double within(const Json& object, const char* key, double fallback, double low,
+                                double high) const {
+        return clamped(key, number(object, key, fallback), low, high);
+    }
+    /// A rounding outside is no fault.
+    [[nodiscard]] double clamped(const char* key, double value, double low, double high) const {
+        const double result = std::clamp(value, low, high);
+        if (std::abs(value - result) > 1e-6)
+            warnings_.push_back(fmt::format("the light {}: expected {:g} to {:g} as \"{}\", got "
+                                            "{:g}: it counts as {:g}",
+                                            name_, low, high, key, value, result));
+        return result;
+    }
+
+private:
+    const std::string& name_;
+    std::vector<std::string>& warnings_;
+};
 
 PunctualLight::Kind kind_of(const Json& light) {
     const std::string type = text(light, "type");
@@ -41,24 +58,20 @@ PunctualLight::Kind kind_of(const Json& light) {
         "expected point, spot or directional as \"type\" of a light, got {}", excerpt(type)));
 }
 
-void read_cones(const Json& spot, PunctualLight& light) {
-    constexpr double RightAngle = 0.5 * std::numbers::pi;
-    // A float of it may be a rounding above.
+void read_cones(const Json& spot, const LightNumbers& numbers, PunctualLight& light) {
+    constexpr double RightAngle = 0.5 * std::numbers::pi, Narrowest = 1e-3;
     const double outer =
-        std::min(in_range(spot, "outerConeAngle", 0.25 * std::numbers::pi, 0.0, RightAngle + 1e-6),
-                 RightAngle);
-    const double inner = in_range(spot, "innerConeAngle", 0.0, 0.0, RightAngle);
-    if (!(inner < outer))
-        throw std::runtime_error(fmt::format(
-            "expected an \"innerConeAngle\" below the outer one ({:g}), got {:g}", outer, inner));
-    light.inner_cone = static_cast<float>(inner);
+        numbers.within(spot, "outerConeAngle", 0.25 * std::numbers::pi, Narrowest, RightAngle);
+    // The edge of a spot has a width.
+    light.inner_cone = static_cast<float>(
+        numbers.within(spot, "innerConeAngle", 0.0, 0.0, outer - 0.5 * Narrowest));
     light.outer_cone = static_cast<float>(outer);
 }
 
 } // namespace
 
 std::optional<PunctualLight> light_at(const Document& document, const Json& node,
-                                      const glm::dmat4& world) {
+                                      const glm::dmat4& world, std::vector<std::string>& warnings) {
     const Json& own = child(child(node, "extensions"), Name);
     if (own.find("light") == nullptr)
         return std::nullopt;
@@ -72,24 +85,24 @@ std::optional<PunctualLight> light_at(const Document& document, const Json& node
     light.name = text(node, "name");
     if (light.name.empty())
         light.name = text(description, "name", fmt::format("light {}", index));
+    const LightNumbers of_light(light.name, warnings);
     const std::vector<double> color = numbers(description, "color", {1.0, 1.0, 1.0});
-    const double intensity = in_range(description, "intensity", 1.0, 0.0, Brightest);
-    for (int channel = 0; channel < 3; ++channel) {
-        const double value = color[static_cast<std::size_t>(channel)];
-        if (!is_fraction(value))
-            throw std::runtime_error(
-                fmt::format("expected 0 to 1 in \"color\" of a light, got {:g}", value));
-        light.intensity[channel] = static_cast<float>(intensity * std::clamp(value, 0.0, 1.0));
-    }
+    const double intensity = of_light.within(description, "intensity", 1.0, 0.0, Brightest);
+    for (int channel = 0; channel < 3; ++channel)
+        light.intensity[channel] = static_cast<float>(
+            intensity *
+            of_light.clamped("color", color[static_cast<std::size_t>(channel)], 0.0, 1.0));
     if (description.find("range") != nullptr) {
         const double range = number(description, "range", 0.0);
-        if (!(range > 0.0))
-            throw std::runtime_error(
-                fmt::format("expected more than 0 as \"range\" of a light, got {:g}", range));
-        light.range = static_cast<float>(range);
+        if (range > 0.0)
+            light.range = static_cast<float>(range);
+        else
+            warnings.push_back(fmt::format(
+                "the light {}: expected more than 0 as \"range\", got {:g}: it reaches everywhere",
+                light.name, range));
     }
     if (light.kind == PunctualLight::Kind::Spot)
-        read_cones(child(description, "spot"), light);
+        read_cones(child(description, "spot"), of_light, light);
     // The extension keeps range and intensity out of the node's scale.
     const glm::dvec3 forward = -glm::dvec3(world[2]);
     const double length = glm::length(forward);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <glm/mat4x4.hpp>
 
@@ -11,10 +13,13 @@
 namespace relumine::mesh::gltf {
 
 /// Returns the light that stands at a node, placed by the node's world matrix; none where there is
-/// none. It has the node's name, or its own.
+/// none. It has the node's name, or its own. Numbers out of range are brought into it, and
+/// `warnings` says so.
 ///
-/// Throws:  std::runtime_error "expected X, got Y" for a light that the extension does not allow.
+/// Throws:  std::runtime_error "expected X, got Y" for a kind of light or an index that is not
+///          there.
 [[nodiscard]] std::optional<PunctualLight> light_at(const Document& document, const Json& node,
-                                                    const glm::dmat4& world);
+                                                    const glm::dmat4& world,
+                                                    std::vector<std::string>& warnings);
 
 } // namespace relumine::mesh::gltf

@@ -63,6 +63,7 @@ private:
     void append(const Primitive& primitive, const FrameOf& frame_of, std::uint32_t group);
     void append_skinned(const Primitive& primitive, const gltf::Skin& skin, std::uint32_t group);
     void append_node(std::uint64_t index);
+    void add_light(const Json& node, const glm::dmat4& world);
     [[nodiscard]] std::vector<std::uint64_t> place(const std::vector<std::uint64_t>& roots);
     [[nodiscard]] std::vector<double> weights(std::uint64_t node) const;
     void finish();
@@ -340,6 +341,16 @@ void GltfReader::finish() {
     soup_.warnings.insert(soup_.warnings.begin(), warnings.begin(), warnings.end());
 }
 
+/// One light never stops an asset.
+void GltfReader::add_light(const Json& node, const glm::dmat4& world) {
+    try {
+        if (auto light = gltf::light_at(document_, node, world, soup_.warnings))
+            soup_.lights.push_back(std::move(*light));
+    } catch (const std::runtime_error& reason) {
+        soup_.warnings.push_back(fmt::format("a light is left out: {}", reason.what()));
+    }
+}
+
 PolygonSoup GltfReader::read() {
     materials_ = gltf::read_materials(document_);
     meshes_.resize(document_.count("meshes"));
@@ -350,8 +361,7 @@ PolygonSoup GltfReader::read() {
         const Json& node = document_.element("nodes", index);
         if (node.find("mesh"))
             append_node(index);
-        if (auto light = gltf::light_at(document_, node, *worlds_[index]))
-            soup_.lights.push_back(std::move(*light));
+        add_light(node, *worlds_[index]);
         if (!camera_ && node.find("camera"))
             camera_ = gltf::camera_at(document_.element("cameras", gltf::whole(node, "camera")),
                                       *worlds_[index]);

@@ -829,23 +829,38 @@ TEST_F(GltfTest, LightsStandAtTheirNodes) {
     EXPECT_TRUE(std::isinf(sun.lights[0].range));
 }
 
-TEST_F(GltfTest, LightsThatCannotBeAreRefused) {
-    const auto expect_light_refused = [](const Model& broken, const std::string& part) {
-        EXPECT_THAT([&] { static_cast<void>(gltf(broken.embedded())); },
-                    testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr(part)));
+TEST_F(GltfTest, LightsOutOfRangeAreBroughtIntoIt) {
+    const auto read = [](const Json& light, const std::string& warning) {
+        const TriangleMesh mesh = gltf(square_with_light(light).embedded());
+        EXPECT_THAT(mesh.warnings, testing::ElementsAre(testing::HasSubstr(warning)));
+        return mesh.lights.at(0);
     };
-    const auto refused = [&](const Json& light, const std::string& part) {
-        expect_light_refused(square_with_light(light), part);
-    };
-    refused({{"type", "area"}}, "expected point, spot or directional");
-    refused({{"type", "point"}, {"intensity", -1}}, "as \"intensity\" of a light, got -1");
-    refused({{"type", "point"}, {"color", {1, 2, 1}}}, "expected 0 to 1 in \"color\"");
-    refused({{"type", "point"}, {"range", 0}}, "expected more than 0 as \"range\"");
-    refused({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.8}}}}, "\"innerConeAngle\" below");
-    refused({{"type", "spot"}, {"spot", {{"outerConeAngle", 3}}}}, "\"outerConeAngle\" of a light");
+    EXPECT_EQ(read({{"type", "point"}, {"intensity", -1}}, "as \"intensity\", got -1").intensity,
+              glm::vec3(0.0f));
+    EXPECT_EQ(
+        read({{"type", "point"}, {"color", {1, 1.2, 0.5}}}, "as \"color\", got 1.2").intensity,
+        glm::vec3(1.0f, 1.0f, 0.5f));
+    EXPECT_TRUE(std::isinf(
+        read({{"type", "point"}, {"range", 0}}, "more than 0 as \"range\", got 0").range));
+    const PunctualLight sharp =
+        read({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}}}},
+             "as \"innerConeAngle\", got 0.5");
+    EXPECT_LT(sharp.inner_cone, sharp.outer_cone);
+    EXPECT_FLOAT_EQ(
+        read({{"type", "spot"}, {"spot", {{"outerConeAngle", 3}}}}, "\"outerConeAngle\"")
+            .outer_cone,
+        std::numbers::pi_v<float> / 2);
+}
+
+TEST_F(GltfTest, LightsThatCannotBeAreLeftOut) {
     Model model = square_with_light({{"type", "point"}});
     model.json["nodes"][1]["extensions"]["KHR_lights_punctual"]["light"] = 4;
-    expect_light_refused(model, "expected indices of lights below 1, got 4");
+    for (const Model& broken : {square_with_light({{"type", "area"}}), model}) {
+        const TriangleMesh mesh = gltf(broken.embedded());
+        EXPECT_TRUE(mesh.lights.empty());
+        EXPECT_THAT(mesh.warnings,
+                    testing::ElementsAre(testing::StartsWith("a light is left out: ")));
+    }
 }
 
 } // namespace
