@@ -207,13 +207,6 @@ double number(const Json& object, const char* key, std::optional<double> fallbac
     return value->number();
 }
 
-float fraction(const Json& object, const char* key, float fallback) {
-    const double value = number(object, key, double{fallback});
-    if (!is_fraction(value))
-        fail(key, "a number of 0 to 1", require(object, key));
-    return static_cast<float>(std::clamp(value, 0.0, 1.0));
-}
-
 bool flag(const Json& object, const char* key) {
     const Json* value = find(object, key);
     if (value != nullptr && value->type() != Json::Type::Boolean)

@@ -30,8 +30,6 @@ using files::Json;
                                   std::optional<std::uint64_t> fallback = {});
 [[nodiscard]] double number(const Json& object, const char* key,
                             std::optional<double> fallback = {});
-/// Returns a number in [0, 1]. A rounding outside is brought inside.
-[[nodiscard]] float fraction(const Json& object, const char* key, float fallback);
 /// Returns a truth value; false if it is absent.
 [[nodiscard]] bool flag(const Json& object, const char* key);
 [[nodiscard]] std::string text(const Json& object, const char* key,

@@ -39,8 +39,14 @@ private:
     void read_specular(const Json& extensions, Material& material);
     void read_coat(const Json& extension, Material& material);
     void read_sheen(const Json& extension, Material& material);
+    double in_range(const char* key, double value, double low, double high);
+    float fraction(const Json& object, const char* key, float fallback);
+    std::vector<double> factors(const Json& object, const char* key, std::vector<double> fallback,
+                                double most = 1.0);
 
     Document& document_;
+    /// The material that is being read
+    std::string name_;
     Materials result_;
     /// Texture of each image. Empty: the image is missing.
     std::map<std::uint64_t, std::optional<std::uint32_t>> textures_;
@@ -171,15 +177,28 @@ void MaterialReader::join_uv_sets(Material& material) {
     }
 }
 
-/// Returns factors of a colour, each in [0, 1]. A rounding outside is brought inside.
-std::vector<double> factors(const Json& object, const char* key, std::vector<double> fallback) {
+/// Brings a value into its range: one that is out of it costs no more than itself. A rounding
+/// outside is not said.
+double MaterialReader::in_range(const char* key, double value, double low, double high) {
+    const double result = std::clamp(value, low, high);
+    if (std::abs(value - result) > 1e-6)
+        result_.warnings.push_back(
+            fmt::format("the material {}: expected {:g} to {:g} as \"{}\", got {:g}: it counts as "
+                        "{:g}",
+                        name_, low, high, key, value, result));
+    return result;
+}
+
+float MaterialReader::fraction(const Json& object, const char* key, float fallback) {
+    return static_cast<float>(in_range(key, number(object, key, double{fallback}), 0.0, 1.0));
+}
+
+/// Returns the factors of a colour.
+std::vector<double> MaterialReader::factors(const Json& object, const char* key,
+                                            std::vector<double> fallback, double most) {
     std::vector<double> values = numbers(object, key, std::move(fallback));
-    for (double& value : values) {
-        if (!is_fraction(value))
-            throw std::runtime_error(
-                fmt::format("expected numbers of 0 to 1 as \"{}\", got {}", key, value));
-        value = std::clamp(value, 0.0, 1.0);
-    }
+    for (double& value : values)
+        value = in_range(key, value, 0.0, most);
     return values;
 }
 
@@ -218,15 +237,17 @@ void MaterialReader::read_specular_glossiness(const Json& description, Material&
 
 /// Reads what the surface gives of its own.
 void MaterialReader::read_emission(const Json& description, Material& material) {
-    const std::vector<double> factor = factors(description, "emissiveFactor", {0.0, 0.0, 0.0});
-    const double strength =
-        number(child(child(description, "extensions"), "KHR_materials_emissive_strength"),
-               "emissiveStrength", 1.0);
     // Pictures of such lamps, with room for exposure, stay within what a float holds.
     constexpr double Strongest = 1e9;
-    if (!(strength >= 0.0 && strength <= Strongest))
-        throw std::runtime_error(fmt::format("expected 0 to {:g} as \"emissiveStrength\", got {:g}",
-                                             Strongest, strength));
+    // Beyond 1 is beyond glTF, and what tools write that have no strength.
+    const std::vector<double> factor =
+        factors(description, "emissiveFactor", {0.0, 0.0, 0.0}, Strongest);
+    const double brightest = std::max({factor[0], factor[1], factor[2], 1.0});
+    const double strength =
+        in_range("emissiveStrength",
+                 number(child(child(description, "extensions"), "KHR_materials_emissive_strength"),
+                        "emissiveStrength", 1.0),
+                 0.0, Strongest / brightest);
     material.emission = glm::vec3(strength * factor[0], strength * factor[1], strength * factor[2]);
     if (material.emission != glm::vec3(0.0f))
         material.emission_texture = slot(description, "emissiveTexture", true);
@@ -329,11 +350,7 @@ void MaterialReader::read_specular(const Json& extensions, Material& material) {
     const Json& specular = child(extensions, "KHR_materials_specular");
     material.specular_strength = fraction(specular, "specularFactor", 1.0f);
     material.specular_strength_texture = alpha_slot(specular, "specularTexture");
-    const std::vector<double> tint = numbers(specular, "specularColorFactor", {1.0, 1.0, 1.0});
-    for (const double channel : tint)
-        if (!(channel >= 0.0 && channel <= 1e6))
-            throw std::runtime_error(fmt::format(
-                "expected numbers of 0 to 1e6 as \"specularColorFactor\", got {}", channel));
+    const std::vector<double> tint = factors(specular, "specularColorFactor", {1.0, 1.0, 1.0}, 1e6);
     material.specular_tint = glm::vec3(tint[0], tint[1], tint[2]);
     material.specular_tint_texture = slot(specular, "specularColorTexture", true);
 }
@@ -399,7 +416,7 @@ Materials MaterialReader::read() {
         std::string name = fmt::format("material {}", i);
         try {
             const Json& description = document_.element("materials", i);
-            name = text(description, "name", name);
+            name = name_ = text(description, "name", name);
             Material read = material(description, i);
             join_uv_sets(read);
             result_.materials.push_back(std::move(read));

@@ -286,11 +286,12 @@ TEST_F(GltfTest, SpecularCoatAndSheen) {
         EXPECT_THAT(gltf(model.embedded()).warnings, ElementsAre(testing::HasSubstr(message)));
     };
     refused("KHR_materials_ior", {{"ior", 0.5}}, "expected 0, or 1 to 1e6, as \"ior\", got 0.5");
-    refused("KHR_materials_clearcoat", {{"clearcoatFactor", 2}}, "\"clearcoatFactor\", got '2'");
+    refused("KHR_materials_clearcoat", {{"clearcoatFactor", 2}},
+            "expected 0 to 1 as \"clearcoatFactor\", got 2: it counts as 1");
     refused("KHR_materials_sheen", {{"sheenColorFactor", {-1, 0, 0}}},
-            "expected numbers of 0 to 1 as \"sheenColorFactor\", got -1");
+            "expected 0 to 1 as \"sheenColorFactor\", got -1");
     refused("KHR_materials_specular", {{"specularColorFactor", {-1, 0, 0}}},
-            "expected numbers of 0 to 1e6 as \"specularColorFactor\", got -1");
+            "expected 0 to 1e+06 as \"specularColorFactor\", got -1");
 }
 
 /// A mirrored frame keeps the bitangent where it is. What is no tangent is computed.
@@ -340,10 +341,16 @@ TEST_F(GltfTest, WhatCannotBeReadIsGreyWithAWarning) {
         return mesh.materials.at(0);
     };
     const Material grey{.name = "paint", .base_color = glm::vec3(0.5f)};
-    EXPECT_EQ(warned({{"roughnessFactor", 2}}, "",
+    EXPECT_EQ(warned({{"roughnessFactor", "much"}}, "",
                      "the material paint is grey, since it cannot be read: material 0: expected a "
-                     "number of 0 to 1 as \"roughnessFactor\", got '2'"),
+                     "number as \"roughnessFactor\""),
               grey);
+    const Material bright =
+        warned({{"roughnessFactor", 2}, {"baseColorFactor", {1, 0.5, 0, 1}}}, "",
+               "the material paint: expected 0 to 1 as \"roughnessFactor\", "
+               "got 2: it counts as 1");
+    EXPECT_EQ(bright.roughness, 1.0f);
+    EXPECT_EQ(bright.base_color, glm::vec3(1.0f, 0.5f, 0.0f)) << "the others stay";
     EXPECT_EQ(warned({{"baseColorFactor", {1, 1, 1}}}, "", "4 numbers"), grey);
     EXPECT_EQ(warned({{"baseColorTexture", {{"index", 7}}}}, "", "indices of \"textures\""), grey);
     const Json textured = {{"baseColorFactor", {0.25, 0.5, 0.75, 1}},
@@ -469,7 +476,7 @@ TEST_F(GltfTest, SpecularGlossiness) {
               ["specularFactor"] = {2, 0, 0};
     EXPECT_THAT(gltf(model.embedded()).warnings,
                 testing::Contains(testing::HasSubstr(
-                    "material 0: expected numbers of 0 to 1 as \"specularFactor\", got 2")));
+                    "expected 0 to 1 as \"specularFactor\", got 2: it counts as 1")));
 }
 
 TEST_F(GltfTest, AlphaCutsOut) {
@@ -651,14 +658,21 @@ TEST_F(GltfTest, EmissionAndUnlit) {
     EXPECT_EQ(mesh.materials[1].model, MaterialModel::Unlit);
     EXPECT_EQ(mesh.materials[1].base_color, glm::vec3(1.0f, 0.5f, 0.25f));
     EXPECT_EQ(mesh.materials[1].emission, glm::vec3(0.0f)) << "unlit ones have their colour alone";
-    for (const Json& strength : {Json(-1.0), Json(1e30), Json("NaN")}) {
+    for (const auto& [strength, said] :
+         {std::pair(Json(-1.0), "it counts as 0"), std::pair(Json(1e30), "it counts as 1e+09"),
+          std::pair(Json("NaN"), "the material material 0 is grey, since it cannot be read")}) {
         model.json["materials"][0]["extensions"]["KHR_materials_emissive_strength"] = {
             {"emissiveStrength", strength}};
         const TriangleMesh broken = gltf(model.embedded());
         ASSERT_FALSE(broken.warnings.empty());
-        EXPECT_THAT(broken.warnings[0],
-                    testing::HasSubstr("the material material 0 is grey, since it cannot be read"));
+        EXPECT_THAT(broken.warnings[0], testing::HasSubstr(said));
     }
+    // What tools write that have no strength.
+    model.json["materials"][0].erase("extensions");
+    model.json["materials"][0]["emissiveFactor"] = {2.0, 0.5, 0.0};
+    const TriangleMesh strong = gltf(model.embedded());
+    EXPECT_EQ(strong.materials[0].emission, glm::vec3(2.0f, 0.5f, 0.0f));
+    EXPECT_THAT(strong.warnings, testing::IsEmpty());
 }
 
 TEST_F(GltfTest, RefusesWhatItWouldMisread) {
