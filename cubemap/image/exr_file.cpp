@@ -328,17 +328,22 @@ private:
         if (Imf::hasEnvmap(header) &&
             (Imf::envmap(header) == Imf::ENVMAP_LATLONG || Imf::envmap(header) == Imf::ENVMAP_CUBE))
             return false;
+        const auto is_environment = [](const Window& of) {
+            return of.width == 2 * std::uint64_t{of.height} ||
+                   std::any_of(AllLayouts.begin(), AllLayouts.end(), [&](Layout layout) {
+                       return layout != Layout::LatLong && fits(layout, of.width, of.height);
+                   });
+        };
         const Window display = window(header.displayWindow());
-        const bool is_environment =
-            display.width == 2 * std::uint64_t{display.height} ||
-            std::any_of(AllLayouts.begin(), AllLayouts.end(), [&](Layout layout) {
-                return layout != Layout::LatLong && fits(layout, display.width, display.height);
-            });
         const Imath::Box2i& inner = header.dataWindow();
         const Imath::Box2i& outer = header.displayWindow();
         const std::uint64_t num_pixels = std::uint64_t{display.width} * display.height;
-        return is_environment && num_pixels != 0 && num_pixels <= MaxPixels && inner != outer &&
-               outer.intersects(inner);
+        if (!is_environment(display) || num_pixels == 0 || num_pixels > MaxPixels || inner == outer)
+            return false;
+        const bool is_inside = outer.intersects(inner.min) && outer.intersects(inner.max);
+        // A data window that is an environment itself has no overscan: parts share a display
+        // window.
+        return is_inside || (outer.intersects(inner) && !is_environment(window(inner)));
     }
 
     void show_display_window(const Imf::Header& header, ImageFile& image) const {

@@ -133,7 +133,7 @@ TEST_F(BadPixelsTest, AreLoadedAsTheyAreForInspection) {
 TEST(Environment, HugeFiniteValuesAreNotBad) {
     const TemporaryFolder folder;
     EnvironmentImage image = grey(Layout::LatLong, Sampling::TexelCentres, 8, 4);
-    image.pixels[5] = glm::vec3(3e38f);
+    image.pixels[5] = glm::vec3(BadPixels::MostRadiance);
     write(folder / "a.exr", encode_exr(image));
     EXPECT_EQ(load_environment(folder / "a.exr").bad_pixels.count(), 0u);
 }
