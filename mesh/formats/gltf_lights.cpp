@@ -34,7 +34,7 @@ public:
     /// A rounding outside is no fault.
     [[nodiscard]] double clamped(const char* key, double value, double low, double high) const {
         const double result = std::clamp(value, low, high);
-        if (std::abs(value - result) > 1e-6)
+        if (std::abs(value - result) > 1e-4) // as is_fraction()
             warnings_.push_back(fmt::format("the light {}: expected {:g} to {:g} as \"{}\", got "
                                             "{:g}: it counts as {:g}",
                                             name_, low, high, key, value, result));

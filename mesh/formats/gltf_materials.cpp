@@ -181,7 +181,8 @@ void MaterialReader::join_uv_sets(Material& material) {
 /// outside is not said.
 double MaterialReader::in_range(const char* key, double value, double low, double high) {
     const double result = std::clamp(value, low, high);
-    if (std::abs(value - result) > 1e-6)
+    constexpr double Rounding = 1e-4; // as is_fraction()
+    if (std::abs(value - result) > Rounding)
         result_.warnings.push_back(
             fmt::format("the material {}: expected {:g} to {:g} as \"{}\", got {:g}: it counts as "
                         "{:g}",

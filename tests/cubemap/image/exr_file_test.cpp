@@ -300,23 +300,25 @@ TEST(ExrFile, OutsideTheDataWindowAnEnvironmentIsBlack) {
 }
 
 TEST(ExrFile, OverscanIsCutOff) {
+    constexpr int Wide = 72; // no environment's proportions
+    const std::vector<glm::vec3> pixels = whole_numbers(Wide, Height);
     const TemporaryFolder folder;
     Imf::Header header(60, 30);
-    header.dataWindow() = Imath::Box2i({-4, -2}, {-4 + Width - 1, -2 + Height - 1});
-    write_scanlines(folder / "a.exr", rgb(Imf::HALF), whole_numbers(), header);
+    header.dataWindow() = Imath::Box2i({-4, -2}, {-4 + Wide - 1, -2 + Height - 1});
+    write_scanlines(folder / "a.exr", rgb(Imf::HALF), pixels, header);
     const ImageFile image = decode(folder / "a.exr");
     ASSERT_EQ(image.width, 60u);
     ASSERT_EQ(image.height, 30u);
-    EXPECT_EQ(image.pixels[0], whole_numbers()[Width * 2 + 4]);
-    EXPECT_EQ(image.pixels[60 * 29 + 59], whole_numbers()[Width * 31 + 63]);
+    EXPECT_EQ(image.pixels[0], pixels[Wide * 2 + 4]);
+    EXPECT_EQ(image.pixels[60 * 29 + 59], pixels[Wide * 31 + 63]);
     EXPECT_EQ(image.remarks, std::vector<std::string>{"cut to the display window"});
     EXPECT_EQ(read_image_size(folder / "a.exr"), (ImageSize{60, 30}));
     // It may reach out on one side, and be short on another.
-    header.dataWindow() = Imath::Box2i({-4, 7}, {-4 + Width - 1, 7 + Height - 1});
-    write_scanlines(folder / "b.exr", rgb(Imf::HALF), whole_numbers(), header);
+    header.dataWindow() = Imath::Box2i({-4, 7}, {-4 + Wide - 1, 7 + Height - 1});
+    write_scanlines(folder / "b.exr", rgb(Imf::HALF), pixels, header);
     const ImageFile partly = decode(folder / "b.exr");
     EXPECT_EQ(partly.pixels[60 * 6 + 59], glm::vec3(0.0f));
-    EXPECT_EQ(partly.pixels[60 * 7], whole_numbers()[4]);
+    EXPECT_EQ(partly.pixels[60 * 7], pixels[4]);
     EXPECT_EQ(partly.remarks.size(), 2u);
 }
 
