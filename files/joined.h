@@ -1,6 +1,7 @@
 // Lists of words in one line.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -18,6 +19,18 @@ template<class Words>
         line += word;
         is_first = false;
     }
+    return line;
+}
+
+/// Returns the choices of an error: "a, b or c".
+template<class Words>
+[[nodiscard]] std::string joined_by_or(const Words& words) {
+    const std::span<const typename Words::value_type> all(words);
+    if (all.size() < 2)
+        return joined(all, "");
+    std::string line = joined(all.first(all.size() - 1), ", ");
+    line += " or ";
+    line += all.back();
     return line;
 }
 

@@ -19,9 +19,7 @@ std::string mesh_extensions() {
     std::vector<std::string_view> names;
     for (const MeshFormat& format : mesh_formats())
         names.push_back(format.extension);
-    const std::string_view last = names.back();
-    names.pop_back();
-    return fmt::format("{} or {}", files::joined(names, ", "), last);
+    return files::joined_by_or(names);
 }
 
 bool has_mesh_extension(const std::filesystem::path& path) {

@@ -55,7 +55,7 @@ def lines_of(process, timeout):
     selector.register(process.stdout, selectors.EVENT_READ)
     rest = b""
     at_line = work = work_of(process.pid)
-    rests_since = time.monotonic()
+    rests_since = measured = time.monotonic()
     while True:
         if not selector.select(timeout / 10):
             before, work = work, work_of(process.pid)
@@ -65,8 +65,10 @@ def lines_of(process, timeout):
                 yield None
                 return
             continue
-        at_line = work = work_of(process.pid)
         rests_since = time.monotonic()
+        if rests_since - measured > timeout / 100:  # asked at every line, it costs seconds
+            at_line = work = work_of(process.pid)
+            measured = rests_since
         chunk = os.read(process.stdout.fileno(), 1 << 16)
         if not chunk:
             if rest:

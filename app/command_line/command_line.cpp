@@ -191,7 +191,7 @@ std::string complaint(const CLI::App& command, const CLI::ParseError& error) {
         return fmt::format("expected a command, got '{}'{}", rest.front(),
                            files::did_you_mean(rest.front(), commands));
     if (!commands.empty())
-        return fmt::format("a command is required: {}", one_of_text(commands));
+        return fmt::format("a command is required: {}", files::joined_by_or(commands));
     if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !rest.empty())
         return surplus(command, rest);
     return error.what();

@@ -16,6 +16,7 @@
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
 #include "files/counted.h"
+#include "files/joined.h"
 #include "relumine/ask/environment_doctor.h"
 #include "relumine/ask/reference.h"
 #include "relumine/light/light_lists.h"
@@ -55,7 +56,7 @@ lights::LightFormat format_of(const LightsArguments& options) {
         known.emplace_back(lights::extension(format));
     throw UsageError("--output", fmt::format("expected a name that ends in {}, or --format with "
                                              "it, got '{}'",
-                                             one_of_text(known), options.path));
+                                             files::joined_by_or(known), options.path));
 }
 
 /// Refuses what cannot be written before any work is done.

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "app/session.h"
+#include "files/joined.h"
 #include "files/output_file.h"
 
 namespace relumine::app {
@@ -109,7 +110,7 @@ void require_extension(const std::string& option, const std::string& path,
     const std::string extension = extension_of(path);
     if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
         throw UsageError(option, fmt::format("expected a name that ends in {}, got '{}'",
-                                             one_of_text(extensions), path));
+                                             files::joined_by_or(extensions), path));
 }
 
 void require_environment_name(const std::string& option, const std::string& path) {

@@ -166,8 +166,14 @@ std::optional<ColorSpace> space_of_id(std::string_view id) {
 }
 
 std::string convert_to_rec709(const ColorSpace& space, Picture& picture) {
-    const std::size_t outside = multiply(to_rec709(space.primaries), space.transfer, picture);
-    return remark(space.name.empty() ? "the header's primaries" : space.name, outside);
+    const std::string name = space.name.empty() ? "the header's primaries" : space.name;
+    glm::dmat3 matrix;
+    try {
+        matrix = to_rec709(space.primaries);
+    } catch (const std::invalid_argument&) {
+        return fmt::format("{} span no colours: passed over", name);
+    }
+    return remark(name, multiply(matrix, space.transfer, picture));
 }
 
 std::string convert_from_xyz(Picture& picture) {

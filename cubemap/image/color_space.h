@@ -45,7 +45,8 @@ struct ColorSpace {
 
 /// Turns a picture's colours into linear Rec. 709. What Rec. 709 cannot show, a negative number,
 /// becomes 0 where it was not negative before. Returns a remark: what was done, and to how many
-/// pixels that happened.
+/// pixels that happened. Primaries that span no colours leave the picture as it is, which the
+/// remark says.
 std::string convert_to_rec709(const ColorSpace& space, Picture& picture);
 /// Does the same for CIE XYZ.
 std::string convert_from_xyz(Picture& picture);

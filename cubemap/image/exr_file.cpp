@@ -313,13 +313,8 @@ private:
             else if (stated)
                 space = stated;
         }
-        if (!space)
-            return;
-        try {
+        if (space)
             image.remarks.push_back(convert_to_rec709(*space, image));
-        } catch (const std::invalid_argument&) {
-            image.remarks.emplace_back("chromaticities span no colours: passed over");
-        }
     }
 
     /// Whether the picture is the display window, an environment's, and not the data window: what

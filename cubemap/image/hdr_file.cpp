@@ -63,11 +63,7 @@ public:
         if (has_zero_exposure_)
             image.remarks.emplace_back("EXPOSURE=0 of the header counts as 1");
         if (space_)
-            try {
-                image.remarks.push_back(convert_to_rec709(*space_, image));
-            } catch (const std::invalid_argument&) {
-                image.remarks.emplace_back("PRIMARIES of the header span no colours: passed over");
-            }
+            image.remarks.push_back(convert_to_rec709(*space_, image));
         return image;
     }
 
@@ -109,7 +105,7 @@ private:
 
     /// Takes 0 as not set: FreeImage writes it into every file.
     void read_exposure(std::string_view text) {
-        const double exposure = multiplier(text);
+        const double exposure = number(text);
         if (exposure == 0.0)
             has_zero_exposure_ = true;
         else
@@ -117,33 +113,36 @@ private:
     }
 
     void read_color_correction(std::string_view text) {
-        for (int channel = 0; channel < 3; ++channel) {
-            text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-            exposure_[channel] *= multiplier(text);
-            text.remove_prefix(std::min(text.find(' '), text.size()));
-        }
+        const auto [red, green, blue] = numbers<3>(text);
+        exposure_ *= glm::dvec3(red, green, blue);
     }
 
     /// Takes x and y of red, green, blue and white.
     void read_primaries(std::string_view text) {
-        std::array<double, 8> xy{};
-        for (double& each : xy) {
-            text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-            each = multiplier(text);
-            text.remove_prefix(std::min(text.find(' '), text.size()));
-        }
+        const std::array<double, 8> xy = numbers<8>(text);
         // Zeros are not set: FreeImage writes them into every file.
         if (xy != std::array<double, 8>{})
             space_ = space_of({{xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}});
     }
 
-    [[nodiscard]] double multiplier(std::string_view text) const {
-        const std::string number(text);
+    template<std::size_t N>
+    [[nodiscard]] std::array<double, N> numbers(std::string_view text) const {
+        std::array<double, N> result{};
+        for (double& each : result) {
+            text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+            each = number(text);
+            text.remove_prefix(std::min(text.find(' '), text.size()));
+        }
+        return result;
+    }
+
+    [[nodiscard]] double number(std::string_view text) const {
+        const std::string line(text);
         char* end = nullptr;
-        const double value = std::strtod(number.c_str(), &end);
+        const double value = std::strtod(line.c_str(), &end);
         // strtod() also takes hexadecimal numbers.
-        if (end == number.c_str() || std::any_of(number.c_str(), static_cast<const char*>(end),
-                                                 [](char c) { return c == 'x' || c == 'X'; }))
+        if (end == line.c_str() || std::any_of(line.c_str(), static_cast<const char*>(end),
+                                               [](char c) { return c == 'x' || c == 'X'; }))
             fail("a number after EXPOSURE=, COLORCORR= or PRIMARIES=",
                  fmt::format("'{:.60}'", files::printable(text)));
         return value;

@@ -63,7 +63,7 @@ std::string image_extensions() {
     std::vector<std::string_view> names;
     for (const ImageFormat& format : Formats)
         names.push_back(format.extension);
-    return files::joined(names, " or ");
+    return files::joined_by_or(names);
 }
 
 const ImageFormat& format_of(std::span<const std::byte> bytes, const std::filesystem::path& path) {
@@ -74,7 +74,7 @@ const ImageFormat& format_of(std::span<const std::byte> bytes, const std::filesy
     for (const ImageFormat& format : Formats)
         names.push_back(format.name);
     throw std::runtime_error(fmt::format("{}: expected an {} file, got {}", path.string(),
-                                         files::joined(names, " or "), kind_of_other(path, bytes)));
+                                         files::joined_by_or(names), kind_of_other(path, bytes)));
 }
 
 const ImageFormat* format_of_name(const std::filesystem::path& path) {

@@ -1,7 +1,5 @@
 #include "mesh/formats/gltf_lights.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -21,7 +19,7 @@ constexpr const char* Name = "KHR_lights_punctual";
 /// Pictures of such lights, with room for exposure, stay within what a float holds.
 constexpr double Brightest = 1e9;
 
-/// Reads numbers of one light. What is out of range is brought into it, with a warning.
+/// Reads numbers of one light into their ranges.
 class LightNumbers {
 public:
     LightNumbers(const std::string& name, std::vector<std::string>& warnings)
@@ -29,16 +27,10 @@ public:
 
     [[nodiscard]] double within(const Json& object, const char* key, double fallback, double low,
                                 double high) const {
-        return clamped(key, number(object, key, fallback), low, high);
+        return in_range(key, number(object, key, fallback), low, high);
     }
-    /// A rounding outside is no fault.
-    [[nodiscard]] double clamped(const char* key, double value, double low, double high) const {
-        const double result = std::clamp(value, low, high);
-        if (std::abs(value - result) > 1e-4) // as is_fraction()
-            warnings_.push_back(fmt::format("the light {}: expected {:g} to {:g} as \"{}\", got "
-                                            "{:g}: it counts as {:g}",
-                                            name_, low, high, key, value, result));
-        return result;
+    [[nodiscard]] double in_range(const char* key, double value, double low, double high) const {
+        return clamped("light " + name_, key, value, low, high, warnings_);
     }
 
 private:
@@ -91,7 +83,7 @@ std::optional<PunctualLight> light_at(const Document& document, const Json& node
     for (int channel = 0; channel < 3; ++channel)
         light.intensity[channel] = static_cast<float>(
             intensity *
-            of_light.clamped("color", color[static_cast<std::size_t>(channel)], 0.0, 1.0));
+            of_light.in_range("color", color[static_cast<std::size_t>(channel)], 0.0, 1.0));
     if (description.find("range") != nullptr) {
         const double range = number(description, "range", 0.0);
         if (range > 0.0)

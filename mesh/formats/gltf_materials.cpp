@@ -177,17 +177,8 @@ void MaterialReader::join_uv_sets(Material& material) {
     }
 }
 
-/// Brings a value into its range: one that is out of it costs no more than itself. A rounding
-/// outside is not said.
 double MaterialReader::in_range(const char* key, double value, double low, double high) {
-    const double result = std::clamp(value, low, high);
-    constexpr double Rounding = 1e-4; // as is_fraction()
-    if (std::abs(value - result) > Rounding)
-        result_.warnings.push_back(
-            fmt::format("the material {}: expected {:g} to {:g} as \"{}\", got {:g}: it counts as "
-                        "{:g}",
-                        name_, low, high, key, value, result));
-    return result;
+    return clamped("material " + name_, key, value, low, high, result_.warnings);
 }
 
 float MaterialReader::fraction(const Json& object, const char* key, float fallback) {

@@ -14,6 +14,15 @@ namespace relumine::prt {
 
 namespace {
 
+DirectionPacket nine_directions(const Cell& cell) {
+    const auto points = lattice_points(cell);
+    DirectionPacket packet;
+    packet.num_directions = SamplesPerCell;
+    for (std::size_t l = 0; l < SamplesPerCell; ++l)
+        packet.set(l, direction(points[l]));
+    return packet;
+}
+
 /// What one receiver has of the nine samples of a cell.
 struct NineSamples {
     /// Whether a sample is above the receiver's horizon, and whether its light arrives.
@@ -22,13 +31,9 @@ struct NineSamples {
     std::array<double, SamplesPerCell> transfer{};
 
     NineSamples(const Receivers& receivers, std::size_t receiver, const Blockers& blockers,
-                float bias, const Cell& cell) {
+                float bias, const DirectionPacket& packet) {
         const glm::vec3& normal = receivers.normals[receiver];
         const bool is_point = receiver < receivers.num_points(); // in space, without a horizon
-        DirectionPacket packet;
-        packet.num_directions = SamplesPerCell;
-        for (std::size_t l = 0; l < SamplesPerCell; ++l)
-            packet.set(l, direction(lattice_points(cell)[l]));
         const std::uint32_t blocked =
             blockers.occluded(ray_origin(receivers.positions[receiver], normal, bias), packet,
                               (1u << SamplesPerCell) - 1);
@@ -67,8 +72,9 @@ PlainClusters plain_clusters(const Receivers& receivers, const Blockers& blocker
             return true;
         std::array<double, SamplesPerCell> squares{}; // ||T_C - T_l||^2
         std::vector<std::uint8_t> counts;
+        const DirectionPacket packet = nine_directions(cell);
         for (std::size_t receiver = 0; receiver < receivers.size(); ++receiver) {
-            const NineSamples samples(receivers, receiver, blockers, options.bias, cell);
+            const NineSamples samples(receivers, receiver, blockers, options.bias, packet);
             double mean = 0.0; // [JN, Eq. 10]
             for (std::size_t l = 0; l < SamplesPerCell; ++l)
                 mean += samples.transfer[l] * SampleWeights[l] / FullCount;

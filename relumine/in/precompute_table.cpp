@@ -47,7 +47,7 @@ struct Parser {
             forms.push_back(fmt::format(
                 "[GROUP=]{}:...",
                 prt::facts_of(static_cast<prt::Highlight>(i % prt::NumHighlights)).name));
-        refuse_text(one_of_text(forms), text);
+        refuse_text(files::joined_by_or(forms), text);
     }
 
     /// key=number,number,number,key=number: words without = belong to the key before them.

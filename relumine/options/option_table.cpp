@@ -81,7 +81,7 @@ void OptionRow::set(std::span<const std::string> given) const {
             if (!choices.empty() &&
                 std::find(choices.begin(), choices.end(), text) == choices.end())
                 throw std::invalid_argument(fmt::format("expected {}, got '{}'{}",
-                                                        one_of_text(choices), text,
+                                                        files::joined_by_or(choices), text,
                                                         files::did_you_mean(text, choices)));
         }
         read(texts);
@@ -161,13 +161,6 @@ std::optional<std::vector<double>> parse_numbers(const std::string& text) {
 
 void refuse_text(const std::string& expected, std::string_view text) {
     throw std::invalid_argument(fmt::format("expected {}, got '{}'", expected, text));
-}
-
-std::string one_of_text(std::span<const std::string> choices) {
-    if (choices.size() < 2)
-        return choices.empty() ? std::string() : choices.front();
-    return fmt::format("{} or {}", files::joined(choices.first(choices.size() - 1), ", "),
-                       choices.back());
 }
 
 namespace option_text {

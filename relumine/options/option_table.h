@@ -129,9 +129,6 @@ parse_sides(std::string_view text);
 /// Throws std::invalid_argument "expected X, got 'TEXT'".
 [[noreturn]] void refuse_text(const std::string& expected, std::string_view text);
 
-/// "fast, exact or slow"
-[[nodiscard]] std::string one_of_text(std::span<const std::string> choices);
-
 // How values are written: read() and show() are each other's inverse. Options of a kind of their
 // own name a struct like these: row<ColorText>("--albedo", ...).
 
