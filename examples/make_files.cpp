@@ -8,7 +8,8 @@
 
 int main() {
     using namespace relumine;
-    const mesh::TriangleMesh mesh = data_gen::blob(5000);
-    mesh::save("boulder.ply", mesh, std::vector<glm::vec3>(mesh.num_vertices(), glm::vec3(1.0f)));
+    mesh::TriangleMesh mesh = data_gen::blob(5000);
+    mesh.colors.assign(mesh.num_vertices(), glm::vec3(1.0f));
+    mesh::save("boulder.ply", mesh);
     cubemap::save_environment("sky.exr", data_gen::sun_and_sky(64), cubemap::Layout::LatLong);
 }

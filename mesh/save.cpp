@@ -1,7 +1,9 @@
 #include "mesh/save.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <stdexcept>
 
@@ -11,6 +13,7 @@
 #include "files/output_file.h"
 #include "mesh/formats/glb_writer.h"
 #include "mesh/formats/obj_writer.h"
+#include "mesh/materials/srgb.h"
 
 namespace relumine::mesh {
 
@@ -19,9 +22,22 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "binary_little_endian is written from memory as it is");
 
-/// Without colours or uvs where they are empty.
-std::string ply(const TriangleMesh& mesh, const std::string& comment,
-                std::span<const glm::vec3> colors, std::span<const glm::vec2> uvs) {
+/// What a .ply file holds of a vertex beside its position and normal. Empty arrays are left out.
+struct PlyVertices {
+    /// Linear colours, as they are
+    std::span<const glm::vec3> colors = {};
+    std::span<const glm::vec2> uvs = {};
+    /// Radiance, and the colours in which viewers show it
+    std::span<const glm::vec3> radiance = {};
+};
+
+std::uint8_t srgb_byte(float linear) {
+    return static_cast<std::uint8_t>(
+        std::lround(255.0f * srgb_of_linear(std::clamp(linear, 0.0f, 1.0f))));
+}
+
+std::string ply(const TriangleMesh& mesh, const std::string& comment, const PlyVertices& vertices) {
+    const auto& [colors, uvs, radiance] = vertices;
     std::string content = fmt::format(
         "ply\n"
         "format binary_little_endian 1.0\n"
@@ -29,17 +45,22 @@ std::string ply(const TriangleMesh& mesh, const std::string& comment,
         "element vertex {}\n"
         "property float x\nproperty float y\nproperty float z\n"
         "property float nx\nproperty float ny\nproperty float nz\n"
-        "{}{}"
+        "{}{}{}"
         "element face {}\n"
         "property list uchar uint vertex_indices\n"
         "end_header\n",
         comment, mesh.num_vertices(),
         colors.empty() ? "" : "property float red\nproperty float green\nproperty float blue\n",
-        uvs.empty() ? "" : "property float s\nproperty float t\n", mesh.num_triangles());
+        uvs.empty() ? "" : "property float s\nproperty float t\n",
+        radiance.empty() ? ""
+                         : "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                           "property float radiance_red\nproperty float radiance_green\n"
+                           "property float radiance_blue\n",
+        mesh.num_triangles());
     const auto append = [&content](const auto& value) {
         content.append(reinterpret_cast<const char*>(&value), sizeof value);
     };
-    content.reserve(content.size() + mesh.num_vertices() * 44 + mesh.num_triangles() * 13);
+    content.reserve(content.size() + mesh.num_vertices() * 48 + mesh.num_triangles() * 13);
     for (std::size_t i = 0; i < mesh.num_vertices(); ++i) {
         append(mesh.positions[i]);
         append(i < mesh.normals.size() ? mesh.normals[i] : glm::vec3(0.0f));
@@ -47,6 +68,11 @@ std::string ply(const TriangleMesh& mesh, const std::string& comment,
             append(colors[i]);
         if (!uvs.empty())
             append(uvs[i]);
+        if (!radiance.empty()) {
+            for (int channel = 0; channel < 3; ++channel)
+                append(srgb_byte(radiance[i][channel]));
+            append(radiance[i]);
+        }
     }
     for (const Triangle& triangle : mesh.triangles) {
         content += '\3';
@@ -78,8 +104,8 @@ void check(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
 
 } // namespace
 
-void save(const std::filesystem::path& path, const TriangleMesh& mesh,
-          std::span<const glm::vec3> colors) {
+void save_lit(const std::filesystem::path& path, const TriangleMesh& mesh,
+              std::span<const glm::vec3> radiance) {
     const std::string extension = files::extension_of(path);
     if (extension != ".ply" && extension != ".glb")
         throw std::runtime_error(
@@ -87,10 +113,11 @@ void save(const std::filesystem::path& path, const TriangleMesh& mesh,
                         extension));
     std::string content;
     try {
-        check(mesh, colors);
+        check(mesh, radiance);
         content = extension == ".ply"
-                      ? ply(mesh, "Relumine: linear RGB radiance per vertex", colors, {})
-                      : glb(mesh, colors);
+                      ? ply(mesh, "Relumine: sRGB colours and linear radiance of vertices",
+                            {.radiance = radiance})
+                      : lit_glb(mesh, radiance);
     } catch (const std::runtime_error& error) {
         throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));
     }
@@ -115,7 +142,7 @@ std::vector<std::string> save(const std::filesystem::path& path, const TriangleM
         leave_out(!mesh.triangle_materials.empty() && extension == ".ply", "materials");
         leave_out(!mesh.triangle_groups.empty(), "groups");
         if (extension == ".ply") {
-            write(path, ply(mesh, "Relumine", mesh.colors, mesh.uvs));
+            write(path, ply(mesh, "Relumine", {.colors = mesh.colors, .uvs = mesh.uvs}));
         } else {
             try {
                 check(mesh, mesh.colors.empty() ? mesh.positions : mesh.colors);

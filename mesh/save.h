@@ -1,4 +1,4 @@
-// Writes mesh files: PLY and binary glTF with float vertex colours.
+// Writes mesh files: PLY, binary glTF and OBJ.
 #pragma once
 
 #include <filesystem>
@@ -10,14 +10,16 @@
 
 namespace relumine::mesh {
 
-/// Writes the mesh with one linear RGB colour per vertex. The extension tells the format: .ply
-/// (binary little-endian, float red/green/blue) or .glb (COLOR_0 as float RGB on an unlit
-/// material). The file appears whole or not at all.
+/// Writes the mesh with the light of its vertices: the colours in which viewers show it, radiance
+/// above 1 as 1, and beside them the linear radiance itself. The extension tells the format: .ply
+/// (binary little-endian; red, green and blue are bytes of sRGB; floats radiance_red, _green and
+/// _blue) or .glb (an unlit material, COLOR_0 and _RADIANCE are linear floats). The file appears
+/// whole or not at all.
 ///
-/// Shape:   `colors` is [num_vertices].
+/// Shape:   `radiance` is [num_vertices].
 /// Throws:  std::runtime_error naming the path.
-void save(const std::filesystem::path& path, const TriangleMesh& mesh,
-          std::span<const glm::vec3> colors);
+void save_lit(const std::filesystem::path& path, const TriangleMesh& mesh,
+              std::span<const glm::vec3> radiance);
 
 /// Writes the mesh as it is, for other programs and for load(): .ply (binary little-endian:
 /// normals, float colours, uvs of vertices), .glb (also materials) or .obj (also uvs of corners,

@@ -29,7 +29,7 @@ struct GenerateArguments {
 
 void write_scene(const data_gen::Scene& scene, const GenerateArguments& options, Session& session,
                  std::vector<Report>& files) {
-    const mesh::TriangleMesh mesh = scene.make(options.num_vertices);
+    mesh::TriangleMesh mesh = scene.make(options.num_vertices);
     session.poll();
     files::make_folder(options.folder);
     const bool has_materials = !mesh.materials.empty();
@@ -37,12 +37,9 @@ void write_scene(const data_gen::Scene& scene, const GenerateArguments& options,
         std::filesystem::path(options.folder) /
         fmt::format("{}.{}", scene.name, has_materials ? "glb" : "ply");
     constexpr float Plaster = 0.5f; // white would keep all light that bounces
-    if (has_materials)
-        mesh::save(path, mesh);
-    else
-        mesh::save(path, mesh,
-                   mesh.colors.empty() ? std::vector(mesh.num_vertices(), glm::vec3(Plaster))
-                                       : mesh.colors);
+    if (!has_materials && mesh.colors.empty())
+        mesh.colors.assign(mesh.num_vertices(), glm::vec3(Plaster));
+    mesh::save(path, mesh);
     session.say(fmt::format("{}: {} vertices, {} triangles", path.string(), mesh.num_vertices(),
                             mesh.num_triangles()));
     files.push_back({{"file", path.string()},

@@ -218,15 +218,19 @@ files::Json material_of(const Material& material, std::set<std::string>& used) {
 
 } // namespace
 
-std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
-    check_size(mesh, 36);
+std::string lit_glb(const TriangleMesh& mesh, std::span<const glm::vec3> radiance) {
+    check_size(mesh, 48);
     Arrays arrays;
     files::Json attributes = append_shape(arrays, mesh);
-    attributes.set("COLOR_0", arrays.append(colors));
+    std::vector<glm::vec3> shown(radiance.begin(), radiance.end());
+    for (glm::vec3& color : shown)
+        color = glm::clamp(color, 0.0f, 1.0f);
+    attributes.set("COLOR_0", arrays.append(std::span<const glm::vec3>(shown)));
+    attributes.set("_RADIANCE", arrays.append(radiance));
     using files::Json;
     const std::size_t indices = append_indices(arrays, mesh.triangles);
     return file_of(arrays,
-                   Json::Array{{{"name", "radiance"},
+                   Json::Array{{{"name", "lit"},
                                 {"doubleSided", true},
                                 {"extensions", {{"KHR_materials_unlit", Json::Object{}}}}}},
                    Json::Array{primitive(attributes, indices, 0)}, {"KHR_materials_unlit"});

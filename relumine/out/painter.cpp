@@ -90,7 +90,7 @@ void Painter::save(const std::filesystem::path& path, const Lighting& lighting) 
     if (extension == ".npy")
         relight::save_npy(path, numbers);
     else
-        mesh::save(path, scene.mesh, numbers);
+        mesh::save_lit(path, scene.mesh, numbers);
 }
 
 void Painter::meter(const Lighting& lighting) {

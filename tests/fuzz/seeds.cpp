@@ -62,7 +62,7 @@ void write_meshes(const fs::path& folder) {
     const mesh::TriangleMesh mesh = octahedron(folder / "obj");
     for (const char* name : {"ply/octahedron.ply", "gltf/octahedron.glb"}) {
         fs::create_directories((folder / name).parent_path());
-        mesh::save(folder / name, mesh, mesh.colors);
+        mesh::save(folder / name, mesh);
     }
     std::string stl(80, ' ');
     const auto put = [&](auto value) {

@@ -1,10 +1,13 @@
 #include "mesh/save.h"
 
+#include <cstring>
 #include <limits>
 
+#include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
 #include "files/output_file.h"
+#include "tests/mesh/lit_ply.h"
 #include "tests/mesh/mesh_files.h"
 
 namespace relumine::mesh {
@@ -17,20 +20,33 @@ protected:
             std::distance(std::filesystem::directory_iterator(folder_), {}));
     }
     const TriangleMesh box_ = ply(box_ply());
-    const std::vector<glm::vec3> colors_ = {{0, 0, 0},     {1, 0, 0},           {0, 100.5f, 0},
-                                            {0, 0, 1e-6f}, {1, 0.1f, 1},        {2, 2, 2},
-                                            {3, 3, 3},     {0.25f, 0.5f, 0.75f}};
+    const std::vector<glm::vec3> radiance_ = {{0, 0, 0},     {1, 0, 0},           {0, 100.5f, 0},
+                                              {0, 0, 1e-6f}, {1, 0.1f, 1},        {2, 2, 2},
+                                              {3, 3, 3},     {0.25f, 0.5f, 0.75f}};
 };
 
 TEST_F(SaveTest, PlyLoadsAgainUnchanged) {
-    save(folder_ / "box.ply", box_, colors_);
+    TriangleMesh mesh = box_;
+    mesh.colors = radiance_;
+    save(folder_ / "box.ply", mesh);
     const TriangleMesh loaded = load(folder_ / "box.ply");
     EXPECT_EQ(loaded.positions, box_.positions);
     EXPECT_EQ(loaded.triangles, box_.triangles);
-    EXPECT_EQ(loaded.colors, colors_) << "floats, beyond 1 as well";
+    EXPECT_EQ(loaded.colors, radiance_) << "floats, beyond 1 as well";
     for (std::size_t i = 0; i < loaded.num_vertices(); ++i)
         EXPECT_NEAR(glm::distance(loaded.normals[i], box_.normals[i]), 0.0f, 1e-6f);
     EXPECT_EQ(num_files(), 1u);
+}
+
+TEST_F(SaveTest, LitPlyHoldsWhatViewersShowAndTheRadiance) {
+    save_lit(folder_ / "box.ply", box_, radiance_);
+    EXPECT_EQ(load(folder_ / "box.ply").triangles, box_.triangles);
+
+    const std::vector<LitVertex> vertices = lit_ply(folder_ / "box.ply", 8);
+    for (std::size_t i = 0; i < 8; ++i)
+        EXPECT_EQ(vertices[i].radiance, radiance_[i]);
+    EXPECT_THAT(vertices[2].shown, testing::ElementsAre(0, 255, 0)) << "100.5";
+    EXPECT_THAT(vertices[7].shown, testing::ElementsAre(137, 188, 225)) << "the curve of sRGB";
 }
 
 /// A .glb file's JSON and its bytes, read by the format's own words and not by Relumine's reader.
@@ -89,7 +105,7 @@ Glb read_glb(const std::filesystem::path& path) {
 TEST_F(SaveTest, GlbHoldsWhatItShould) {
     TriangleMesh mesh = box_;
     mesh.normals[3] = glm::vec3(0.0f);
-    save(folder_ / "box.GLB", mesh, colors_);
+    save_lit(folder_ / "box.GLB", mesh, radiance_);
     EXPECT_EQ(num_files(), 1u);
 
     const Glb glb = read_glb(folder_ / "box.GLB");
@@ -116,7 +132,11 @@ TEST_F(SaveTest, GlbHoldsWhatItShould) {
     const nlohmann::json& color = attributes.at("COLOR_0");
     EXPECT_EQ(glb.accessor(color).at("componentType"), Float);
     EXPECT_EQ(glb.accessor(color).at("type"), "VEC3");
-    EXPECT_EQ(glb.values<glm::vec3>(color), colors_);
+    std::vector<glm::vec3> shown = radiance_;
+    for (glm::vec3& value : shown)
+        value = glm::min(value, 1.0f);
+    EXPECT_EQ(glb.values<glm::vec3>(color), shown) << "glTF's colours end at 1";
+    EXPECT_EQ(glb.values<glm::vec3>(attributes.at("_RADIANCE")), radiance_);
     for (const glm::vec3& normal : glb.values<glm::vec3>(attributes.at("NORMAL")))
         EXPECT_NEAR(glm::length(normal), 1.0f, 1e-5f) << "glTF knows no zero normals";
     EXPECT_EQ(glb.accessor(primitive.at("indices")).at("componentType"), UnsignedInt);
@@ -129,17 +149,18 @@ TEST_F(SaveTest, GlbHoldsWhatItShould) {
 TEST_F(SaveTest, FailingLeavesNothingBehind) {
     for (const char* name : {"box.ply", "box.glb"}) {
         const std::filesystem::path target = write(name, "old");
-        std::vector<glm::vec3> bad = colors_;
+        std::vector<glm::vec3> bad = radiance_;
         bad[5].y = std::numeric_limits<float>::quiet_NaN();
-        expect_refusal([&] { return save(target, box_, bad), 0; },
+        expect_refusal([&] { return save_lit(target, box_, bad), 0; },
                        "finite colours, got 2 nan 2 at vertex 5");
         bad.pop_back();
-        expect_refusal([&] { return save(target, box_, bad), 0; }, "expected 8 colours, got 7");
-        expect_refusal([&] { return save(target, TriangleMesh{}, {}), 0; }, "triangles");
+        expect_refusal([&] { return save_lit(target, box_, bad), 0; }, "expected 8 colours, got 7");
+        expect_refusal([&] { return save_lit(target, TriangleMesh{}, {}), 0; }, "triangles");
         EXPECT_EQ(files::read(target).size(), 3u);
-        EXPECT_THROW(save(folder_ / "missing" / name, box_, colors_), std::runtime_error);
+        EXPECT_THROW(save_lit(folder_ / "missing" / name, box_, radiance_), std::runtime_error);
     }
-    expect_refusal([&] { return save(folder_ / "box.obj", box_, colors_), 0; }, ".ply or .glb");
+    expect_refusal([&] { return save_lit(folder_ / "box.obj", box_, radiance_), 0; },
+                   ".ply or .glb");
     EXPECT_EQ(num_files(), 2u);
 }
 

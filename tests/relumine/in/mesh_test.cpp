@@ -24,7 +24,7 @@ class MeshFile : public scenes::InFolder {};
 
 TEST_F(MeshFile, KnowsItsOriginAndItsFloor) {
     const mesh::TriangleMesh squares = scenes::two_squares();
-    mesh::save(file("squares.ply"), squares, squares.colors);
+    mesh::save(file("squares.ply"), squares);
 
     const Mesh plain = load_mesh(file("squares.ply"));
     EXPECT_EQ(plain.geometry.positions, squares.positions);
@@ -42,7 +42,7 @@ TEST_F(MeshFile, KnowsItsOriginAndItsFloor) {
 
 TEST_F(MeshFile, IsTurnedUpright) {
     const mesh::TriangleMesh squares = scenes::two_squares();
-    mesh::save(file("squares.ply"), squares, squares.colors);
+    mesh::save(file("squares.ply"), squares);
     const Mesh turned = load_mesh(file("squares.ply"), {.up = mesh::UpAxis::Z});
     for (std::size_t i = 0; i < 8; ++i) {
         EXPECT_EQ(turned.geometry.normals[i], glm::vec3(0, 0, -1));

@@ -8,7 +8,7 @@
 
 #include "cubemap/image/environment.h"
 #include "mesh/floor.h"
-#include "mesh/load.h"
+#include "tests/mesh/lit_ply.h"
 #include "tests/prt/scenes.h"
 #include "tests/prt/textured_square.h"
 #include "tests/relight/environments.h"
@@ -84,8 +84,11 @@ TEST_F(Output, IsWrittenByExtension) {
         EXPECT_EQ(written.pixels[i], 2.0f * picture.pixels[i]);
 
     save(scene, file("lit.ply"), {.albedo = glm::vec3(0.5f), .exposure_ev = 0.0});
-    EXPECT_EQ(mesh::load(file("lit.ply")).colors,
-              colors_of(scene.scene(), scene.radiance(), glm::vec3(0.5f)));
+    const std::vector<glm::vec3> colors =
+        colors_of(scene.scene(), scene.radiance(), glm::vec3(0.5f));
+    const std::vector<mesh::LitVertex> vertices = mesh::lit_ply(file("lit.ply"), colors.size());
+    for (std::size_t i = 0; i < colors.size(); ++i)
+        EXPECT_EQ(vertices[i].radiance, colors[i]);
     for (const char* name : {"lit.png", "lit.glb", "lit.npy"}) {
         save(scene, file(name), {.width = 8, .height = 4});
         EXPECT_GT(std::filesystem::file_size(file(name)), 50u) << name;
