@@ -119,9 +119,10 @@ double negative_share(const EnvironmentImage& image) {
     return below == 0.0 ? 0.0 : below / above; // infinite without any light
 }
 
-/// NaN and negative values become 0, infinity becomes the largest finite value.
-void fix_bad_pixels(EnvironmentImage& image) {
-    float largest = 0.0f;
+/// NaN and negative values become 0, infinity becomes the largest finite value, but not less than
+/// what is known of it.
+void fix_bad_pixels(EnvironmentImage& image, float least_infinity) {
+    float largest = least_infinity;
     for (const glm::vec3& pixel : image.pixels) {
         for (int channel = 0; channel < 3; ++channel) {
             if (pixel[channel] <= BadPixels::MostRadiance)
@@ -138,6 +139,7 @@ void fix_bad_pixels(EnvironmentImage& image) {
         }
     }
     image.fixed = true;
+    image.infinity_became = largest;
 }
 
 /// In a path of six files, `{face}` stands for px, nx, ...
@@ -172,6 +174,9 @@ ImageFile decode_faces(const std::vector<std::filesystem::path>& paths) {
 /// Finds out the layout, and looks at every pixel.
 EnvironmentImage understood(ImageFile file, const LoadOptions& options, const std::string& path) {
     EnvironmentImage image;
+    // A sun that was brighter than halves can say.
+    constexpr float MostOfHalves = 65504.0f;
+    const float least_infinity = file.is_half ? MostOfHalves : 0.0f;
     static_cast<Picture&>(image) = static_cast<Picture&&>(file);
     interpret(file, options, path, image);
     image.bad_pixels = find_bad_pixels(image);
@@ -181,7 +186,7 @@ EnvironmentImage understood(ImageFile file, const LoadOptions& options, const st
     if (bad.num_negative > 0)
         bad.negative_share = negative_share(image);
     if (options.fix_bad_pixels || (bad.is_harmless() && options.refuse_bad_pixels))
-        fix_bad_pixels(image);
+        fix_bad_pixels(image, least_infinity);
     else if (options.refuse_bad_pixels)
         throw std::runtime_error(fmt::format(
             "{}: expected finite radiance >= 0, got {} NaN/Inf and {} negative pixels{}, first at "

@@ -102,6 +102,8 @@ struct EnvironmentImage : Picture {
     /// True if bad pixels were replaced: all of them, or the few negative ones that every file may
     /// have.
     bool fixed = false;
+    /// What infinite radiance was replaced by
+    float infinity_became = 0.0f;
 };
 
 /// How load_environment() interprets a file.

@@ -142,6 +142,8 @@ public:
             read_luminance_chroma(image);
         else
             read_bands(header, image);
+        const Imf::Channel* first = header.channels().findChannel(channels_.names[0]);
+        image.is_half = first != nullptr && first->type == Imf::HALF;
         describe(header, file.parts(), image);
         return image;
     }

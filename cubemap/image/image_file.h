@@ -21,6 +21,8 @@ namespace relumine::cubemap {
 struct ImageFile : Picture {
     /// The layout that the file itself states by OpenEXR's `envmap` attribute. Empty: none stated.
     std::optional<Layout> envmap;
+    /// True: 16-bit floats, in which radiance above 65504 is infinite.
+    bool is_half = false;
     /// What a user may want to know, for example "luminance only".
     std::vector<std::string> remarks;
 };

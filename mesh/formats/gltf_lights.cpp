@@ -38,6 +38,14 @@ private:
     std::vector<std::string>& warnings_;
 };
 
+/// Blender's exporter gives lumens by the peak of the eye, where it gives emission as radiance.
+constexpr double LumensPerWattOfBlender = 683.0;
+
+bool is_of_blender(const Document& document) {
+    const std::string generator = text(child(document.root(), "asset"), "generator");
+    return generator.starts_with("Khronos glTF Blender I/O");
+}
+
 PunctualLight::Kind kind_of(const Json& light) {
     const std::string type = text(light, "type");
     if (type == "point")
@@ -79,7 +87,8 @@ std::optional<PunctualLight> light_at(const Document& document, const Json& node
         light.name = text(description, "name", fmt::format("light {}", index));
     const LightNumbers of_light(light.name, warnings);
     const std::vector<double> color = numbers(description, "color", {1.0, 1.0, 1.0});
-    const double intensity = of_light.within(description, "intensity", 1.0, 0.0, Brightest);
+    const double intensity = of_light.within(description, "intensity", 1.0, 0.0, Brightest) /
+                             (is_of_blender(document) ? LumensPerWattOfBlender : 1.0);
     for (int channel = 0; channel < 3; ++channel)
         light.intensity[channel] = static_cast<float>(
             intensity *
@@ -102,6 +111,14 @@ std::optional<PunctualLight> light_at(const Document& document, const Json& node
         light.direction = glm::vec3(forward / length);
     light.position = glm::vec3(world[3]);
     return light;
+}
+
+std::optional<std::string> unit_of_lights(const Document& document) {
+    if (!is_of_blender(document))
+        return std::nullopt;
+    return fmt::format("lights are divided by {:g}, with which Blender's exporter multiplies them "
+                       "and not emission",
+                       LumensPerWattOfBlender);
 }
 
 } // namespace relumine::mesh::gltf

@@ -332,6 +332,8 @@ void GltfReader::finish() {
     };
     add(materials_.warnings);
     add(gltf::left_out(document_, pose_.has_value()));
+    if (const auto unit = gltf::unit_of_lights(document_); unit && !soup_.lights.empty())
+        add({*unit});
     if (num_odd_weights_ > 0)
         add({fmt::format("the weights of joints do not sum to 1 at {} vertices: they are scaled",
                          num_odd_weights_)});

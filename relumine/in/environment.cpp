@@ -177,6 +177,12 @@ std::vector<std::string> warnings_about(const cubemap::EnvironmentImage& image,
     if (image.fixed && bad.is_harmless())
         result.push_back(fmt::format("{} negative pixels became 0 ({:.2g} % of the light)",
                                      bad.num_negative, 100.0 * bad.negative_share));
+    if (image.fixed && bad.num_infinite > 0)
+        result.push_back(
+            fmt::format("{} infinite pixels became {:g}, {}: the light there was brighter",
+                        bad.num_infinite, image.infinity_became,
+                        image.infinity_became == 65504.0f ? "the most that 16-bit floats hold"
+                                                          : "the largest radiance of the others"));
     if (const auto doubt = cubemap::upside_down(light_from_below))
         result.push_back(*doubt);
     return result;

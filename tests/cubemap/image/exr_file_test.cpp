@@ -299,6 +299,22 @@ TEST(ExrFile, OutsideTheDataWindowAnEnvironmentIsBlack) {
     EXPECT_EQ(decode(folder / "b.exr").width, 70u);
 }
 
+// A sun of 200,000 is infinite in 16-bit floats, and the rest of the sky says nothing of it.
+TEST(ExrFile, WhatHalvesCannotHoldIsTheMostThatTheyHold) {
+    constexpr int Side = 32;
+    std::vector<glm::vec3> pixels(std::size_t{2} * Side * Side, glm::vec3(0.5f));
+    pixels[40] = glm::vec3(2e5f, 1e5f, 3.0f);
+    const TemporaryFolder folder;
+    const Imf::Header header(2 * Side, Side);
+    for (const bool is_half : {true, false}) {
+        write_scanlines(folder / "a.exr", rgb(is_half ? Imf::HALF : Imf::FLOAT), pixels, header);
+        const EnvironmentImage image = load_environment(folder / "a.exr", {.fix_bad_pixels = true});
+        EXPECT_EQ(image.fixed, is_half);
+        EXPECT_EQ(image.pixels[40], is_half ? glm::vec3(65504.0f, 65504.0f, 3.0f) : pixels[40]);
+        EXPECT_EQ(image.infinity_became, is_half ? 65504.0f : 0.0f);
+    }
+}
+
 TEST(ExrFile, OverscanIsCutOff) {
     constexpr int Wide = 72; // no environment's proportions
     const std::vector<glm::vec3> pixels = whole_numbers(Wide, Height);

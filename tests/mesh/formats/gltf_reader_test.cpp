@@ -843,6 +843,21 @@ TEST_F(GltfTest, LightsStandAtTheirNodes) {
     EXPECT_TRUE(std::isinf(sun.lights[0].range));
 }
 
+// Its exporter writes 683 lumens for a watt of a light, and emission as radiance.
+TEST_F(GltfTest, LightsOfBlenderAreAsBrightBesideEmissionAsInBlender) {
+    Model model = square_with_light({{"type", "point"}, {"intensity", 683.0 * 3.0}});
+    model.json["asset"]["generator"] = "Khronos glTF Blender I/O v4.2.57";
+    const TriangleMesh mesh = gltf(model.embedded());
+    EXPECT_FLOAT_EQ(mesh.lights.at(0).intensity.x, 3.0f);
+    EXPECT_THAT(mesh.warnings, testing::ElementsAre(testing::HasSubstr("divided by 683")));
+
+    Model dark = square();
+    dark.json["asset"]["generator"] = "Khronos glTF Blender I/O v4.2.57";
+    EXPECT_THAT(gltf(dark.embedded()).warnings, testing::IsEmpty());
+    model.json["asset"]["generator"] = "COLLADA2GLTF";
+    EXPECT_FLOAT_EQ(gltf(model.embedded()).lights.at(0).intensity.x, 683.0f * 3.0f);
+}
+
 TEST_F(GltfTest, LightsOutOfRangeAreBroughtIntoIt) {
     const auto read = [](const Json& light, const std::string& warning) {
         const TriangleMesh mesh = gltf(square_with_light(light).embedded());

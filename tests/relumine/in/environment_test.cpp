@@ -36,6 +36,12 @@ TEST_F(EnvironmentFile, WithBadPixelsIsFixedOnlyWhenAsked) {
     cubemap::save_image(file("bad.exr"), image);
     EXPECT_THROW(static_cast<void>(load_environment(file("bad.exr"))), std::runtime_error);
     EXPECT_EQ(load_environment(file("bad.exr"), {.fix_bad_pixels = true}).num_fixed_pixels, 1u);
+
+    image.pixels[20].g = std::numeric_limits<float>::infinity();
+    cubemap::save_image(file("bad.exr"), image);
+    EXPECT_THAT(load_environment(file("bad.exr"), {.fix_bad_pixels = true}).warnings,
+                testing::ElementsAre("1 infinite pixels became 1, the largest radiance of the "
+                                     "others: the light there was brighter"));
 }
 
 } // namespace
