@@ -239,6 +239,10 @@ std::function<void(double)> Session::progress(const std::string& what) {
     };
 }
 
+prt::Work Session::work(const std::string& what) {
+    return {.stop = stop(), .on_progress = progress(what)};
+}
+
 void Session::end_progress() const {
     const std::scoped_lock lock(mutex_);
     if (bar_open_)

@@ -242,12 +242,12 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
 py::dict verify(const LitPointer& own, std::size_t samples, std::size_t surface, std::uint64_t seed,
                 std::uint32_t paths, const py::object& progress) {
     Verification found = slowly(own, progress, [=](LitScene& lit, const Reins& reins) {
-        return relumine::verify(lit, {.num_samples = samples,
-                                      .seed = seed,
-                                      .num_surface_points = surface,
-                                      .num_paths = paths,
-                                      .stop = reins.stop,
-                                      .on_progress = reins.on_progress});
+        return relumine::verify(lit,
+                                {.num_samples = samples,
+                                 .seed = seed,
+                                 .num_surface_points = surface,
+                                 .num_paths = paths},
+                                reins);
     });
     py::dict result;
     result["relative_l2"] = found.error.relative_l2;
@@ -344,8 +344,7 @@ Array sees(const LitPointer& own, const py::buffer& points) {
 
 LightArrays transfer_lights(const LitPointer& own, std::size_t number, const py::object& progress) {
     return arrays_of(slowly(own, progress, [number](LitScene& lit, const Reins& reins) {
-        return relight::transfer_lights(lit.relighter(), number,
-                                        {.stop = reins.stop, .on_progress = reins.on_progress});
+        return relight::transfer_lights(lit.relighter(), number, reins);
     }));
 }
 
