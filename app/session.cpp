@@ -1,17 +1,11 @@
 #include "app/session.h"
 
-#include <cerrno>
-
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <mutex>
-#include <optional>
-#include <sstream>
-#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>

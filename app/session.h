@@ -1,7 +1,6 @@
 // What all subcommands share: common options, cancellation, progress, output.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <mutex>

@@ -10,8 +10,6 @@
 #include <unordered_set>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "files/parallel.h"
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/clusters/lattice.h"

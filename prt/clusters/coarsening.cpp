@@ -6,7 +6,6 @@
 #include <functional>
 #include <numbers>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <stdexcept>
 #include <unordered_set>

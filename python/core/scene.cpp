@@ -1,10 +1,6 @@
 // Meshes and precomputed scenes.
 #include "scene.h"
 
-#include <atomic>
-#include <limits>
-#include <mutex>
-
 #include <pybind11/stl/filesystem.h>
 
 #include "arrays.h"

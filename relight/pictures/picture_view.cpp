@@ -1,6 +1,5 @@
 #include "relight/pictures/picture_view.h"
 
-#include <algorithm>
 #include <mutex>
 #include <stdexcept>
 

@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>

@@ -1,8 +1,6 @@
 #include "relight/pictures/refractions.h"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <mutex>
 #include <numbers>
-#include <numeric>
 #include <stdexcept>
 
 #include <glm/geometric.hpp>

@@ -2,7 +2,6 @@
 // nothing but the rays.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>

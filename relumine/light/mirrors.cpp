@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 
 #include "files/parallel.h"
 #include "prt/glossy/brdf.h"

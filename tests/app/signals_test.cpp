@@ -1,5 +1,4 @@
 // Ctrl-C and SIGTERM: a soon end, one line, nothing left behind. And a real full disk.
-#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <thread>

@@ -1,5 +1,4 @@
 // From nothing to a lit picture, the way the README goes.
-#include <cmath>
 
 #include <fmt/format.h>
 

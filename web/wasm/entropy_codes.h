@@ -1,7 +1,6 @@
 // The two codes of zstd's blocks (RFC 8878, Section 4): finite states and Huffman's.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

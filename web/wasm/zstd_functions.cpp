@@ -1,6 +1,5 @@
 // The functions of headers/zstd.h.
 #include <algorithm>
-#include <cstring>
 #include <new>
 #include <vector>
 

@@ -1,5 +1,4 @@
 // What all subcommands have in common: help, exit codes, --json, -q.
-#include <cmath>
 
 #include "tests/app/command.h"
 #include "tests/app/small_files.h"

@@ -1,10 +1,8 @@
 // Meshes at the edge of what is one, through the whole program. Files that are none (NaN, no faces)
 // are in mesh_files_test.cpp.
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 
 #include "tests/app/command.h"
 #include "tests/app/formats.h"

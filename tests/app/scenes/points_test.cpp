@@ -1,6 +1,5 @@
 // Points in space and grids: `relumine precompute --receivers points:FILE`, `relumine relight
 // --harmonics FILE`.
-#include <algorithm>
 #include <cmath>
 
 #include "tests/app/command.h"

@@ -1,5 +1,4 @@
 // `relumine precompute`: options and what it refuses.
-#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include "tests/app/command.h"

@@ -1,5 +1,4 @@
 // Scenes whose receivers are pixels or texels, from the mesh to the picture.
-#include <cmath>
 #include <string>
 
 #include "tests/app/command.h"

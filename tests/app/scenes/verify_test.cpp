@@ -1,6 +1,5 @@
 // `relumine verify`: its figures and options.
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

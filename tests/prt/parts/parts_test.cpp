@@ -5,7 +5,6 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <stdexcept>
 #include <stop_token>
 #include <string>

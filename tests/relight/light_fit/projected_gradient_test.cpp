@@ -1,6 +1,5 @@
 #include "relight/light_fit/projected_gradient.h"
 
-#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>

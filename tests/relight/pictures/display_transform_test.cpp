@@ -1,7 +1,6 @@
 #include "relight/pictures/display_transform.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>

@@ -1,16 +1,10 @@
 #include "relight/pictures/picture.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <functional>
-#include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #define STB_IMAGE_STATIC

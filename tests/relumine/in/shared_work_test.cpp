@@ -1,7 +1,6 @@
 // Processes that share a precompute and its light, and parts of a plan, against one process. Here
 // the processes are threads.
 #include <cmath>
-#include <optional>
 
 #include <glm/geometric.hpp>
 

@@ -1,7 +1,5 @@
 #include "relumine/out/camera_path.h"
 
-#include <algorithm>
-#include <cmath>
 #include <random>
 #include <stdexcept>
 #include <string>
