@@ -298,19 +298,6 @@ Array harmonics_adjoint(const LitPointer& own, const py::buffer& weights) {
     return owned(std::move(map));
 }
 
-/// Row beginnings, columns, values of each channel, and the light.
-py::tuple transport(const LitPointer& own, std::size_t max_entries) {
-    relight::Transport found = slowly(own, py::none(), [=](LitScene& lit, const Reins&) {
-        return relumine::transport(lit, {.max_entries = max_entries});
-    });
-    const auto count = static_cast<py::ssize_t>(found.columns.size());
-    py::list data;
-    for (std::vector<float>& channel : found.data)
-        data.append(owned(std::move(channel), {count}));
-    return py::make_tuple(owned(std::move(found.row_begins)), owned(std::move(found.columns)),
-                          std::move(data), owned(std::move(found.light)));
-}
-
 /// `cubes` is [B, 6, R, R, 3]; returns [B, num_receivers, 3].
 Array relight_batch(const LitPointer& own, const py::buffer& cubes, std::size_t count,
                     std::uint32_t resolution) {
@@ -354,7 +341,6 @@ void bind_questions(py::class_<Lit, LitPointer>& type) {
         .def("contribution_map", &contribution_map)
         .def("adjoint", &adjoint)
         .def("harmonics_adjoint", &harmonics_adjoint)
-        .def("transport", &transport)
         .def("relight_batch", &relight_batch)
         .def("sees", &sees)
         .def("transfer_lights", &transfer_lights);

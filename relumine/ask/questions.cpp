@@ -302,12 +302,6 @@ cubemap::CubeMap harmonics_adjoint(const LitScene& lit, std::span<const glm::vec
     return relight::harmonics_adjoint(lit.relighter(), weights, surfaces_of(lit));
 }
 
-relight::Transport transport(const LitScene& lit, const relight::TransportOptions& options) {
-    if (lit.radiance().empty())
-        throw std::logic_error("expected a scene that is lit, got one without light");
-    return relight::transport(lit.relighter(), options);
-}
-
 void relight_batch(const LitScene& lit, std::span<const cubemap::CubeMap> environments,
                    std::span<glm::vec3> radiance) {
     relight::relight_batch(lit.relighter(), environments, radiance);

@@ -15,7 +15,6 @@
 #include "cubemap/layers/light_layer.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/work.h"
-#include "relight/adjoint/transport.h"
 #include "relight/reference/exact.h"
 #include "relight/sharp/sharp_lights.h"
 #include "relumine/light/lighting.h"
@@ -142,13 +141,6 @@ struct Share {
 /// Throws:  as adjoint(), and std::logic_error for a scene without LightOptions::harmonics.
 [[nodiscard]] cubemap::CubeMap harmonics_adjoint(const LitScene& lit,
                                                  std::span<const glm::vec3> weights);
-
-/// Returns the scene's direct light as a sparse matrix and the light that it is multiplied with:
-/// docs/operator.md
-///
-/// Throws:  as relight::transport(); std::logic_error for a scene without light.
-[[nodiscard]] relight::Transport transport(const LitScene& lit,
-                                           const relight::TransportOptions& options = {});
 
 /// Lights the scene with one environment after the other, and leaves its own light as it is. Direct
 /// light, as it is after LitScene::light() of the map.
