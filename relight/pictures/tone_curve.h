@@ -9,6 +9,9 @@
 #include <string>
 #include <string_view>
 
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 namespace relumine::relight {
