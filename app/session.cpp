@@ -1,17 +1,11 @@
 #include "app/session.h"
 
-#include <cerrno>
-
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <mutex>
-#include <optional>
-#include <sstream>
-#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -237,6 +231,10 @@ std::function<void(double)> Session::progress(const std::string& what) {
             fmt::print(stderr, "{}: {:.0f} %{}\n", what, 100.0 * fraction, left);
         }
     };
+}
+
+prt::Work Session::work(const std::string& what) {
+    return {.stop = stop(), .on_progress = progress(what)};
 }
 
 void Session::end_progress() const {

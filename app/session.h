@@ -1,7 +1,6 @@
 // What all subcommands share: common options, cancellation, progress, output.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <mutex>
@@ -14,6 +13,7 @@
 
 namespace relumine::prt {
 class Team;
+struct Work;
 } // namespace relumine::prt
 
 namespace relumine::app {
@@ -50,6 +50,8 @@ public:
     /// Shows a bar with the time left on a terminal, lines elsewhere (ProgressLines), nothing in
     /// the first second or with -q. To be called with fractions in [0, 1].
     [[nodiscard]] std::function<void(double)> progress(const std::string& what);
+    /// The handle of long work that shows its progress, without its processes.
+    [[nodiscard]] prt::Work work(const std::string& what);
     /// Ends the bar's line. Harmless when there is none.
     void end_progress() const;
 

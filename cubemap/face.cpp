@@ -1,9 +1,6 @@
 #include "cubemap/face.h"
 
-#include <algorithm>
 #include <cmath>
-
-#include <glm/geometric.hpp>
 
 namespace relumine::cubemap {
 

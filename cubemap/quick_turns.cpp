@@ -1,14 +1,11 @@
 #include "cubemap/quick_turns.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
 #include <utility>
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include "cubemap/luminance.h"

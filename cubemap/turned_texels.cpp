@@ -1,7 +1,6 @@
 #include "cubemap/turned_texels.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <span>
 #include <utility>

@@ -1,7 +1,6 @@
 #include "cubemap/turned_tile.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <glm/common.hpp>
 

@@ -1,10 +1,8 @@
 #include "cubemap/turned_tile_kernels.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 
-#include <glm/common.hpp>
 #include <hwy/cache_control.h>
 
 // Highway compiles the block below once per instruction set and picks one at run time.

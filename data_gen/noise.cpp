@@ -3,8 +3,6 @@
 #include <array>
 #include <cmath>
 
-#include <glm/geometric.hpp>
-
 namespace relumine::data_gen {
 namespace {
 

@@ -1,8 +1,5 @@
 // The rooms of scenes.h.
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <utility>
 #include <vector>

@@ -1,6 +1,5 @@
 #include "files/posix_file.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>

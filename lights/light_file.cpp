@@ -1,9 +1,7 @@
 #include "lights/light_file.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 #include <stdexcept>
 #include <string_view>
 

@@ -1,7 +1,6 @@
 // A few distant lights that stand for an environment.
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include <glm/vec3.hpp>

@@ -1,7 +1,6 @@
 // Finds the nearest of some hundred centres.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

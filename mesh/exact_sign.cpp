@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include <glm/geometric.hpp>
-
 namespace relumine::mesh {
 
 namespace {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <optional>
 
-#include <glm/common.hpp>
 #include <glm/exponential.hpp>
 
 #include "mesh/tangents.h"

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>

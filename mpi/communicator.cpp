@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <new>
 #include <set>
-#include <stdexcept>
 #include <thread>
 #include <utility>
 

@@ -3,8 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <string>
 
 #include "prt/precompute.h"
 #include "prt/receivers/receivers.h"

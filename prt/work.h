@@ -30,7 +30,7 @@ struct TooLarge : std::runtime_error {
     std::uint64_t bytes;
 };
 
-/// Changes nothing in a result.
+/// The handle of all long work. Changes nothing in a result.
 struct Work {
     /// Processes that share the work: each has its part of the receivers, and what they decide
     /// follows from figures of all. When one is asked to stop, all end.
@@ -52,6 +52,26 @@ struct Work {
     [[nodiscard]] std::stop_token stop_in_step() const {
         return team.has_others() ? std::stop_token() : stop;
     }
+    /// Throws:  Cancelled when the work must stop.
+    void poll() const {
+        if (stop.stop_requested())
+            throw Cancelled();
+    }
+    /// Says that a fraction is done.
+    void tell(double fraction) const {
+        if (on_progress)
+            on_progress(fraction);
+    }
+    /// Returns the handle of a part of this work, for processes that have all of it.
+    [[nodiscard]] Work part(double begin, double share) const {
+        Work result{.team = team, .stop = stop};
+        if (on_progress)
+            result.on_progress = [told = on_progress, begin, share](double fraction) {
+                told(begin + share * fraction);
+            };
+        return result;
+    }
+
     /// Whether there is anything to look at between steps.
     [[nodiscard]] bool has_steps() const { return checkpoint != nullptr || team.has_others(); }
 };

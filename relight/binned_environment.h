@@ -5,8 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include <glm/vec3.hpp>
-
 #include "cubemap/cube_map.h"
 #include "prt/transfer/transfer.h"
 #include "relight/kernels/cluster_lights.h"

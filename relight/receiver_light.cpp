@@ -6,10 +6,8 @@
 #include <atomic>
 #include <bit>
 #include <stdexcept>
-#include <utility>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 
 #include "files/large_vector.h"
 #include "files/parallel.h"

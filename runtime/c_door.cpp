@@ -1,8 +1,6 @@
 // The functions of the C header: arguments are checked here, and exceptions become codes.
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <memory>
 #include <new>
 #include <stdexcept>
 #include <string>

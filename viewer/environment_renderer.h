@@ -2,8 +2,6 @@
 // receiver, can lie over it.
 #pragma once
 
-#include <glm/vec2.hpp>
-
 #include "relumine/in/environment_files.h"
 #include "relumine/light/light_parts.h"
 #include "viewer/cube_texture.h"

@@ -34,7 +34,7 @@ relight::Picture drawn(const mesh::TriangleMesh& mesh, const prt::RayScene& rays
                                     {.width = moment.width,
                                      .height = moment.height,
                                      .samples_per_axis = samples_per_axis,
-                                     .stop = stop},
+                                     .work = {.stop = stop}},
                                     shading.floor, 0);
     relight::MeshLight light{.radiance = colors,
                              .lights = moment.lights,

@@ -1,10 +1,8 @@
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include <imgui.h>
 
-#include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
 #include "viewer/panels.h"

@@ -1,7 +1,6 @@
 // Draws the relit mesh with the environment behind it.
 #pragma once
 
-#include <cstdint>
 #include <span>
 
 #include <glm/vec3.hpp>

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
-#include <span>
 #include <stdexcept>
 #include <utility>
 

@@ -2,10 +2,7 @@
 
 #include <filesystem>
 #include <future>
-#include <stdexcept>
-#include <system_error>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 

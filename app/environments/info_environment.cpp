@@ -1,7 +1,6 @@
 #include "app/environments/info_environment.h"
 
 #include <array>
-#include <cmath>
 #include <optional>
 #include <string_view>
 #include <vector>

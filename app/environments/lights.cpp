@@ -5,7 +5,6 @@
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -133,12 +132,10 @@ lights::Placement place(const LightsArguments& options, const cubemap::Environme
         if (options.method != TransferMethod)
             return lights::place(*lights::method_named(options.method), map, options.number,
                                  options.seed);
-        lights::Placement result{
-            .lights = relight::transfer_lights(
-                lit->scene.relighter(), options.number,
-                {.stop = session.stop(),
-                 .on_progress = session.progress(files::counted(options.number, "light"))}),
-            .regions = {}};
+        lights::Placement result{.lights = relight::transfer_lights(
+                                     lit->scene.relighter(), options.number,
+                                     session.work(files::counted(options.number, "light"))),
+                                 .regions = {}};
         session.end_progress();
         return result;
     } catch (const std::invalid_argument& error) {

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <set>
 #include <stdexcept>
-#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>

@@ -1,9 +1,6 @@
 #include "app/movies/frame_record.h"
 
-#include <cstdio>
-#include <span>
 #include <sstream>
-#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <utility>

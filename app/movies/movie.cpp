@@ -7,7 +7,6 @@
 #include <cstring>
 #include <sstream>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include <fcntl.h>

@@ -79,9 +79,7 @@ Mesh RefineOptionGroup::refined(Mesh mesh, std::optional<float> bias, Session& s
         options.light = relumine::load_environment(light_).map;
     const std::size_t num_before = mesh.geometry.num_vertices();
     RefineReport found;
-    Mesh result = relumine::refined(
-        std::move(mesh), options,
-        {.stop = session.stop(), .on_progress = session.progress("refine")}, &found);
+    Mesh result = relumine::refined(std::move(mesh), options, session.work("refine"), &found);
     session.end_progress();
     const std::size_t num_after = result.geometry.num_vertices();
     if (num_after == num_before)

@@ -1,6 +1,5 @@
 #include "app/scenes/checkpoint_words.h"
 
-#include <string>
 #include <system_error>
 
 #include <fmt/format.h>

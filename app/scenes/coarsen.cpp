@@ -32,8 +32,7 @@ void coarsen(const CoarsenArguments& options, Session& session) {
         throw std::runtime_error(
             fmt::format("{}: made with --tolerance {:.4g}, expected at least as much, got {:.4g}",
                         options.scene, own, options.tolerance));
-    scene = coarsened(std::move(scene), options.tolerance, session.stop(),
-                      session.progress("joining clusters"));
+    scene = coarsened(std::move(scene), options.tolerance, session.work("joining clusters"));
     session.end_progress();
     const std::size_t num_clusters = scene.transfer.num_clusters();
     const std::uint64_t bytes = save_scene(options.output, scene);

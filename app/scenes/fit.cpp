@@ -158,7 +158,7 @@ void save_list(const FitArguments& options, const std::vector<lights::DistantLig
 
 /// Finds the light and writes it. Returns what was found, for people.
 std::string find_light(const FitArguments& options, LitScene& lit, const FitTarget& target,
-                       const FitWork& work) {
+                       const prt::Work& work) {
     if (options.num_lights != 0) {
         const std::vector<lights::DistantLight> list =
             fit_lights(lit, target, options.num_lights, work);
@@ -232,8 +232,7 @@ void fit_to_picture(const FitArguments& options, const Command& command, LitScen
     const Picture picture = read_picture(options, command, lit.scene());
     double distance = 0.0;
     const std::vector<lights::DistantLight> list = fit_lights_to_picture(
-        lit, picture, options.shown, options.num_lights, distance,
-        {.stop = session.stop(), .on_progress = session.progress("light that fits")});
+        lit, picture, options.shown, options.num_lights, distance, session.work("light that fits"));
     session.end_progress();
     save_list(options, list);
     tell(options, files::counted(list.size(), "light"), distance, watch.total(), session);
@@ -257,9 +256,7 @@ void run(FitArguments& options, const Command& command, Session& session) {
             lit.light(cubemap::CubeMap(1));
             static_cast<void>(options.bounces.bounce(lit, options.shown, options.scene.path));
         }
-        const std::string found = find_light(
-            options, lit, target,
-            {.stop = session.stop(), .on_progress = session.progress("light that fits")});
+        const std::string found = find_light(options, lit, target, session.work("light that fits"));
         session.end_progress();
         tell(options, found, distance_to(target, lit), watch.total(), session);
     } catch (const OptionError&) { // names the option already

@@ -89,15 +89,16 @@ void run(const VerifyArguments& options, Session& session) {
         options.bounces.bounce(lit, {.albedo = glm::vec3(options.albedo)}, options.scene.path);
 
     Stopwatch watch;
-    const Verification check = verify(lit, {.num_samples = options.num_samples,
-                                            .seed = options.seed,
-                                            .num_surface_points = options.num_surface_points,
-                                            .num_paths = options.num_paths,
-                                            .eye = options.eye,
-                                            .eye_options = options.eye_options,
-                                            .team = session.processes(),
-                                            .stop = session.stop(),
-                                            .on_progress = session.progress("exact integration")});
+    const Verification check = verify(lit,
+                                      {.num_samples = options.num_samples,
+                                       .seed = options.seed,
+                                       .num_surface_points = options.num_surface_points,
+                                       .num_paths = options.num_paths,
+                                       .eye = options.eye,
+                                       .eye_options = options.eye_options},
+                                      {.team = session.processes(),
+                                       .stop = session.stop(),
+                                       .on_progress = session.progress("exact integration")});
     session.end_progress();
     warn_of_smooth_surfaces(check.num_too_smooth, session);
     const relight::ErrorReport& error = check.error;

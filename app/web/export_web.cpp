@@ -226,7 +226,7 @@ Scene fitted(Scene scene, ExportWebArguments options, const WebFiles& parts, con
             given_up = {"the light between surfaces is left out"};
             page = made_page(scene, options, words, session);
         } else if (next <= Coarsest) {
-            scene = coarsened(std::move(scene), next, session.stop());
+            scene = coarsened(std::move(scene), next, {.stop = session.stop()});
             given_up.resize(1);
             given_up.push_back(fmt::format("--tolerance becomes {:.3g}", next));
             // Nothing else depends on the clusters but some digits.
@@ -303,8 +303,7 @@ Scene scene_of_page(const ExportWebArguments& options, PageWords& words, Session
     scene.transfer.glossy.reset();
     order_triangles(scene.mesh);
     if (rms_tolerance(scene) < options.tolerance)
-        scene = coarsened(std::move(scene), options.tolerance, session.stop(),
-                          session.progress("joining clusters"));
+        scene = coarsened(std::move(scene), options.tolerance, session.work("joining clusters"));
     session.end_progress();
     thin_bounces(scene, options, words);
     return scene;

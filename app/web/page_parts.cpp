@@ -4,8 +4,6 @@
 #include <stdexcept>
 #include <system_error>
 
-#include <fmt/format.h>
-
 #include "files/output_file.h"
 
 namespace relumine::app {

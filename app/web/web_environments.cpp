@@ -102,10 +102,8 @@ double error_under(const Named& named, LitScene& lit, const std::string& path,
         lit.light(cubemap::CubeMap(named.map));
     else
         lit.light(load_environment(path, {.face_resolution = PageLightResolution}));
-    return verify(lit, {.num_samples = num_samples,
-                        .num_surface_points = 0,
-                        .stop = session.stop(),
-                        .on_progress = session.progress("exact integration")})
+    return verify(lit, {.num_samples = num_samples, .num_surface_points = 0},
+                  session.work("exact integration"))
         .error.relative_l2;
 }
 

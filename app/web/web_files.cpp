@@ -1,6 +1,5 @@
 #include "app/web/web_files.h"
 
-#include <array>
 #include <stdexcept>
 #include <system_error>
 

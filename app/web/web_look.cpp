@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <map>
 #include <numeric>
@@ -14,7 +13,6 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 
 #include "files/gzip.h"
 #include "relumine/ask/questions.h"

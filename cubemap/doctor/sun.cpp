@@ -1,7 +1,6 @@
 #include "cubemap/doctor/sun.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <numbers>
 #include <span>

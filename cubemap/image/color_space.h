@@ -1,7 +1,6 @@
 // Colour spaces that files of pictures state, and their way to linear Rec. 709.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>

@@ -1,8 +1,6 @@
 // The ways in which other programs place an environment picture in the world.
 #pragma once
 
-#include <array>
-#include <optional>
 #include <span>
 #include <string_view>
 

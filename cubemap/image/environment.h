@@ -10,8 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include <glm/vec3.hpp>
-
 #include "cubemap/cube_map.h"
 #include "cubemap/image/picture.h"
 

@@ -4,7 +4,6 @@
 // less than half of the time of zlib, which OpenEXR before 3.2 uses, for the same size. They have
 // the form of ZIP_COMPRESSION in OpenEXR's ImfZip.cpp, so every reader reads them.
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstring>
 #include <memory>

@@ -1,6 +1,5 @@
 #include "cubemap/image/frame_sequence.h"
 
-#include <algorithm>
 #include <charconv>
 #include <map>
 #include <stdexcept>

@@ -12,7 +12,6 @@
 #include <cstddef>
 #include <optional>
 
-#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include "cubemap/face.h"

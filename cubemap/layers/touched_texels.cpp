@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <variant>
 
-#include <fmt/format.h>
-
 #include "cubemap/layers/layer_composite.h"
 #include "cubemap/layers/texel_range.h"
 

@@ -1,6 +1,5 @@
 #include "cubemap/resample/pixel_symmetry.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>

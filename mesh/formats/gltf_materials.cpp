@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "mesh/materials/material_members.h"
 #include "mesh/text_reader.h"
 
 namespace relumine::mesh::gltf {
@@ -157,10 +158,11 @@ std::optional<TextureSlot> MaterialReader::slot(const Json& parent, const char* 
 /// A mesh has two uvs for each vertex. A texture of a third set is left out.
 void MaterialReader::join_uv_sets(Material& material) {
     auto& sets = result_.uv_sets.back();
-    for (const SlotName& entry : TextureSlots) {
-        std::optional<TextureSlot>& slot = material.*entry.slot;
-        if (!slot)
+    for (const MaterialMember& member : MaterialMembers) {
+        const auto place_of_slot = member.texture();
+        if (place_of_slot == nullptr || !(material.*place_of_slot))
             continue;
+        std::optional<TextureSlot>& slot = material.*place_of_slot;
         const std::uint32_t own = slot->uv_set;
         const auto place = std::find_if(sets.begin(), sets.end(),
                                         [&](const auto& set) { return !set || *set == own; });
@@ -172,7 +174,7 @@ void MaterialReader::join_uv_sets(Material& material) {
         result_.warnings.push_back(
             fmt::format("the material {} has textures in TEXCOORD_{}, TEXCOORD_{} and TEXCOORD_{}; "
                         "two sets are read: its {} is left out",
-                        material.name, *sets[0], *sets[1], own, entry.name));
+                        material.name, *sets[0], *sets[1], own, member.name_in_file()));
         slot.reset();
     }
 }

@@ -1,7 +1,6 @@
 // The smooth surface that a mesh's normals pretend.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #include "mesh/half_edge/diagnosis.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include <glm/geometric.hpp>
 

@@ -1,6 +1,5 @@
 #include "mesh/half_edge/winding.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <random>
 #include <stdexcept>
-#include <string>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>

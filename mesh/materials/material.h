@@ -154,31 +154,6 @@ struct Material {
     bool operator==(const Material&) const = default;
 };
 
-/// A texture of a material and its name in files.
-struct SlotName {
-    std::optional<TextureSlot> Material::* slot;
-    const char* name;
-};
-
-/// All textures of a material; the colours come first.
-inline constexpr std::array<SlotName, 16> TextureSlots = {
-    {{&Material::base_color_texture, "base_texture"},
-     {&Material::metallic_roughness_texture, "metallic_texture"},
-     {&Material::roughness_texture, "own_roughness_texture"},
-     {&Material::metallic_texture, "own_metallic_texture"},
-     {&Material::specular_texture, "specular_texture"},
-     {&Material::emission_texture, "emission_texture"},
-     {&Material::normal_texture, "normal_texture"},
-     {&Material::specular_strength_texture, "specular_strength_texture"},
-     {&Material::specular_tint_texture, "specular_tint_texture"},
-     {&Material::coat_texture, "coat_texture"},
-     {&Material::coat_roughness_texture, "coat_roughness_texture"},
-     {&Material::coat_normal_texture, "coat_normal_texture"},
-     {&Material::sheen_texture, "sheen_texture"},
-     {&Material::sheen_roughness_texture, "sheen_roughness_texture"},
-     {&Material::alpha_texture, "alpha_texture"},
-     {&Material::transmission_texture, "transmission_texture"}}};
-
 /// Returns what stands for a material that cannot be read: grey, Lambert.
 [[nodiscard]] inline Material unreadable_material(std::string name) {
     return {.name = std::move(name), .base_color = glm::vec3(0.5f)};

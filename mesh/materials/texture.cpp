@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstring>
 
-#include <glm/common.hpp>
-
 #include "files/free_memory.h"
 #include "mesh/materials/image_decoder.h"
 #include "mesh/materials/srgb.h"

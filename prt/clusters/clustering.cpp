@@ -10,8 +10,6 @@
 #include <unordered_set>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "files/parallel.h"
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/clusters/lattice.h"
@@ -242,16 +240,36 @@ LeafColumn Clustering::column(const Cell& cell) const {
                        is_texel ? CentreWeights : SampleWeights, origins_.size());
 }
 
-/// Keeps the clusters, goes on with the children of the other cells, and forgets the planes that
-/// nothing needs any more. Decided cells leave the batch in slices. So memory can be watched (a
-/// column takes at most a byte per receiver), and checkpoints can be saved between slices.
-void Clustering::decide_batch() {
-    const std::size_t max_slice = std::max<std::size_t>(64, BytesPerSlice / order_.size());
+/// Refuses more clusters and bytes than there may be, once the cells of the batch's begin are
+/// decided.
+void Clustering::check_limits(std::span<const std::uint8_t> levels,
+                              std::span<const LeafColumn> columns) const {
+    const auto num_found =
+        static_cast<std::size_t>(std::count(levels.begin(), levels.end(), std::uint8_t{0}));
+    // Every waiting cell becomes one cluster at least.
+    const std::size_t num_waiting =
+        batch_.size() - levels.size() + pending_.size() + 4 * (levels.size() - num_found);
+    const std::size_t num_all = clusters_.size() + num_found + num_waiting;
+    if (options_.most_clusters && num_all > *options_.most_clusters)
+        throw TooManyClusters();
     const std::size_t num_words = (origins_.size() / BlockSize + 63) / 64;
     LeafColumn empty;
     empty.visible.resize(num_words);
     empty.mixed.resize(num_words);
-    const std::uint64_t min_bytes = bytes_of(empty, context_.column_scale);
+    std::uint64_t num_bytes = column_bytes_ + num_waiting * bytes_of(empty, context_.column_scale);
+    for (std::size_t i = 0; i < levels.size(); ++i)
+        num_bytes += levels[i] == 0 ? bytes_of(columns[i], context_.column_scale) : 0;
+    num_bytes = largest_of_all(work_.team, num_bytes > options_.max_column_bytes ? num_bytes : 0);
+    if (num_bytes != 0)
+        throw TooLarge("clusters", num_all, num_bytes);
+}
+
+/// Keeps the clusters, goes on with the children of the other cells, and forgets the planes that
+/// nothing needs any more [JN, Section 4]. Decided cells leave the batch in slices, of which a
+/// column takes at most a byte per receiver. So memory can be watched, and checkpoints can be saved
+/// between slices.
+void Clustering::decide_batch() {
+    const std::size_t max_slice = std::max<std::size_t>(64, BytesPerSlice / order_.size());
     while (!batch_.empty()) {
         const std::span<const Cell> slice =
             std::span<const Cell>(batch_).first(std::min(max_slice, batch_.size()));
@@ -262,31 +280,14 @@ void Clustering::decide_batch() {
             if (levels[i] == 0)
                 columns[i] = column(slice[i]);
         });
-        std::uint64_t num_bytes = column_bytes_;
-        std::size_t num_found = 0;
+        check_limits(levels, columns);
         for (std::size_t i = 0; i < slice.size(); ++i) {
-            num_bytes += levels[i] == 0 ? bytes_of(columns[i], context_.column_scale) : 0;
-            num_found += levels[i] == 0 ? 1 : 0;
             ++depths_[levels[i]];
-        }
-        // Every waiting cell becomes one cluster at least.
-        const std::size_t num_waiting =
-            batch_.size() - slice.size() + pending_.size() + 4 * (slice.size() - num_found);
-        if (options_.most_clusters &&
-            clusters_.size() + num_found + num_waiting > *options_.most_clusters)
-            throw TooManyClusters();
-        num_bytes += num_waiting * min_bytes;
-        num_bytes =
-            largest_of_all(work_.team, num_bytes > options_.max_column_bytes ? num_bytes : 0);
-        if (num_bytes != 0)
-            throw TooLarge("clusters", clusters_.size() + num_found + num_waiting, num_bytes);
-        for (std::size_t i = 0; i < slice.size(); ++i) {
-            if (levels[i] == 0) {
+            if (levels[i] == 0)
                 add_cluster({slice[i], std::exchange(columns[i], {})});
-                continue;
-            }
-            for (std::uint32_t child = 0; child < 4; ++child)
-                pending_.push(slice[i].child(child));
+            else
+                for (std::uint32_t child = 0; child < 4; ++child)
+                    pending_.push(slice[i].child(child));
         }
         batch_.erase(batch_.begin(), batch_.begin() + index_of(slice.size()));
         if (!batch_.empty())

@@ -55,6 +55,8 @@ private:
     void take_batch();
     void start_progress();
     void trace_batch();
+    void check_limits(std::span<const std::uint8_t> levels,
+                      std::span<const LeafColumn> columns) const;
     void decide_batch();
     [[nodiscard]] Steps::Content content() const;
     void add_cluster(const Cluster& cluster);

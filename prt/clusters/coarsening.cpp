@@ -6,7 +6,6 @@
 #include <functional>
 #include <numbers>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <stdexcept>
 #include <unordered_set>
@@ -128,7 +127,7 @@ public:
     }
 
     /// Call it once.
-    [[nodiscard]] Transfer run() const;
+    [[nodiscard]] Transfer run(const Work& work) const;
 
 private:
     [[nodiscard]] bool holds(const Cell& cell) const;
@@ -369,8 +368,7 @@ LeafColumn Coarsening::column(const Cell& cell) const {
     return column;
 }
 
-Transfer Coarsening::run() const {
-    const Work work{.stop = options_.stop, .on_progress = options_.on_progress};
+Transfer Coarsening::run(const Work& work) const {
     Progress progress(work);
     progress.start_stage(0.0, 0.5);
     Transfer result{.quadtree = tree(progress),
@@ -402,10 +400,10 @@ Transfer Coarsening::run() const {
 
 } // namespace
 
-Transfer coarsened(const Transfer& transfer, const CoarsenOptions& options) {
+Transfer coarsened(const Transfer& transfer, const CoarsenOptions& options, const Work& work) {
     if (!(options.tolerance > 0.0f) || !std::isfinite(options.tolerance))
         throw std::invalid_argument("coarsen: expected a tolerance above 0");
-    return Coarsening(transfer, options).run();
+    return Coarsening(transfer, options).run(work);
 }
 
 } // namespace relumine::prt

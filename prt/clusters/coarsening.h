@@ -4,10 +4,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <stop_token>
 
 #include "prt/transfer/transfer.h"
+#include "prt/work.h"
 
 namespace relumine::prt {
 
@@ -19,9 +18,6 @@ struct CoarsenOptions {
     std::uint32_t min_level = 3;
     /// R: cells of the finest level, single texels, have one sample. The precompute's.
     std::uint32_t face_resolution = 1024;
-    std::stop_token stop = {};
-    /// Receives the fraction done, in [0, 1]; one call at a time.
-    std::function<void(double)> on_progress = {};
 };
 
 /// Returns the transfer with the clusters that a precompute of this tolerance would have had, as
@@ -37,6 +33,7 @@ struct CoarsenOptions {
 /// Throws:  std::invalid_argument for a tolerance that is not a number above 0; Cancelled.
 /// Cost:    O(receivers times clusters); no rays.
 /// Threads: parallel inside; the result is the same bit by bit for any number of threads.
-[[nodiscard]] Transfer coarsened(const Transfer& transfer, const CoarsenOptions& options);
+[[nodiscard]] Transfer coarsened(const Transfer& transfer, const CoarsenOptions& options,
+                                 const Work& work = {});
 
 } // namespace relumine::prt

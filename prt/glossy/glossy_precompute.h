@@ -2,7 +2,6 @@
 // diffuse part.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 

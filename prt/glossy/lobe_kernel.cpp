@@ -1,6 +1,5 @@
 #include "prt/glossy/lobe_kernel.h"
 
-#include <bit>
 #include <numbers>
 
 #include <glm/geometric.hpp>

@@ -1,10 +1,7 @@
 #include "prt/parts/scene_part.h"
 
-#include <algorithm>
 #include <stdexcept>
-#include <string>
 #include <utility>
-#include <variant>
 
 #include <fmt/format.h>
 

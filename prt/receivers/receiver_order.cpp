@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 #include <span>
 
 #include <glm/common.hpp>

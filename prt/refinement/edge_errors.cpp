@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <utility>
 
 #include "files/parallel.h"
 #include "prt/refinement/large_triangles.h"

@@ -1,7 +1,6 @@
 // Triangles that are large in a scene, and the points inside of them that are asked.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include <glm/vec2.hpp>

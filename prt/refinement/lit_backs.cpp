@@ -1,7 +1,6 @@
 #include "prt/refinement/lit_backs.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 #include <vector>
 

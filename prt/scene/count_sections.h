@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "prt/scene/section_file.h"
 #include "prt/scene/section_reader.h"

@@ -3,8 +3,6 @@
 
 #include <cstddef>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "prt/scene/section_group.h"
 #include "prt/transfer/glossy_transfer.h"

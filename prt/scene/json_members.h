@@ -1,7 +1,6 @@
 // One list of members for writing a JSON object and for reading it.
 #pragma once
 
-#include <concepts>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>

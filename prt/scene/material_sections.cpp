@@ -1,8 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <map>
 #include <optional>
+#include <type_traits>
+#include <variant>
 
+#include "mesh/materials/material_members.h"
 #include "mesh/opacity.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/scene/brdf_tables.h"
@@ -15,6 +19,7 @@ namespace {
 
 using files::Json;
 using mesh::Material;
+using mesh::MaterialMember;
 using mesh::TextureSlot;
 
 /// The textures that are stored, by their index in the mesh.
@@ -34,39 +39,6 @@ Json json_of(const std::optional<TextureSlot>& slot, const Stored& stored) {
     return json;
 }
 
-/// Textures that most materials have not, and whose members they do not have then.
-constexpr std::array RareSlots = {
-    &Material::normal_texture,         &Material::specular_strength_texture,
-    &Material::specular_tint_texture,  &Material::coat_texture,
-    &Material::coat_roughness_texture, &Material::coat_normal_texture,
-    &Material::sheen_texture,          &Material::sheen_roughness_texture};
-
-/// The textures of a material that its picture depends on.
-std::vector<std::optional<TextureSlot> Material::*> color_slots(const Material& material) {
-    std::vector<std::optional<TextureSlot> Material::*> slots = {&Material::base_color_texture};
-    if (material.model == mesh::MaterialModel::MetallicRoughness)
-        slots.push_back(&Material::metallic_roughness_texture);
-    if (material.model == mesh::MaterialModel::SpecularGlossiness || material.specular_texture)
-        slots.push_back(&Material::specular_texture);
-    for (const auto slot : {&Material::roughness_texture, &Material::metallic_texture})
-        if (material.*slot)
-            slots.push_back(slot);
-    if (material.emission != glm::vec3(0.0f))
-        slots.push_back(&Material::emission_texture);
-    if (material.transmission > 0.0f)
-        slots.push_back(&Material::transmission_texture);
-    for (const auto slot : RareSlots)
-        if (material.*slot)
-            slots.push_back(slot);
-    return slots;
-}
-
-const char* name_of(std::optional<TextureSlot> Material::* slot) {
-    return std::find_if(mesh::TextureSlots.begin(), mesh::TextureSlots.end(),
-                        [&](const mesh::SlotName& entry) { return entry.slot == slot; })
-        ->name;
-}
-
 /// Returns a whole number below a limit.
 std::uint32_t below(const Json& json, std::uint32_t limit) {
     const std::uint32_t number = natural(json);
@@ -80,37 +52,6 @@ float finite(const Json& json) {
     if (!std::isfinite(number))
         throw std::out_of_range("expected a finite number");
     return number;
-}
-
-/// Returns a number from 0 to the most.
-float within(const Json& json, float most) {
-    const float number = real(json);
-    if (!(number >= 0.0f && number <= most))
-        throw std::out_of_range("expected a number within its limits");
-    return number;
-}
-
-/// Returns a number in [0, 1].
-float fraction(const Json& json) {
-    return within(json, 1.0f);
-}
-
-/// A number that a material has where it is not the usual one.
-struct Scalar {
-    const char* name;
-    float Material::* member;
-    float most;
-};
-constexpr std::array<Scalar, 5> Scalars = {
-    {{"ior", &Material::ior, 1e6f},
-     {"specular_strength", &Material::specular_strength, 1e6f},
-     {"coat", &Material::coat, 1.0f},
-     {"coat_roughness", &Material::coat_roughness, 1.0f},
-     {"sheen_roughness", &Material::sheen_roughness, 1.0f}}};
-
-glm::vec3 color(const Json& json) {
-    return {fraction(json.values().at(0)), fraction(json.values().at(1)),
-            fraction(json.values().at(2))};
 }
 
 std::optional<TextureSlot> slot_of(const Json& json, std::size_t num_textures) {
@@ -129,92 +70,47 @@ std::optional<TextureSlot> slot_of(const Json& json, std::size_t num_textures) {
                        .uv_offset = glm::vec2(finite(uv.at(4)), finite(uv.at(5)))};
 }
 
-/// Members of a material that rays meet. Others have none.
-void add_alpha(Json& json, const Material& material, const Stored& stored) {
-    if (!material.is_double_sided)
-        json.set("double_sided", false);
-    if (material.transmission > 0.0f) {
-        const glm::vec3& color = material.attenuation_color;
-        json.set("transmission", material.transmission);
-        json.set("thickness", material.thickness);
-        json.set("attenuation", {color.r, color.g, color.b});
-        json.set("attenuation_per_length", 1.0f / material.attenuation_distance);
-    }
-    if (material.alpha_mode == mesh::AlphaMode::Opaque)
-        return;
-    json.set("alpha_mode", static_cast<int>(material.alpha_mode));
-    json.set("alpha", material.alpha);
-    json.set("alpha_cutoff", material.alpha_cutoff);
-    json.set("alpha_texture", json_of(material.alpha_texture, stored));
+/// Reads a number within a member's limits.
+float within(const Json& json, const MaterialMember& member) {
+    const float number = real(json);
+    if (!(number >= member.least && number <= member.most))
+        throw std::out_of_range("expected a number within its limits");
+    return number;
 }
 
-void read_alpha(const Json& json, std::size_t num_textures, Material& material) {
-    if (const Json* sides = json.find("double_sided"))
-        material.is_double_sided = sides->boolean();
-    if (json.find("transmission") != nullptr) {
-        material.transmission = fraction(json.at("transmission"));
-        material.thickness = finite(json.at("thickness"));
-        material.attenuation_color = color(json.at("attenuation"));
-        material.attenuation_distance = 1.0f / finite(json.at("attenuation_per_length"));
-        if (material.thickness < 0.0f || material.attenuation_distance < 0.0f)
-            throw std::out_of_range("expected lengths of 0 or more");
-    }
-    const Json* mode = json.find("alpha_mode");
-    if (mode == nullptr)
-        return;
-    material.alpha_mode = static_cast<mesh::AlphaMode>(below(*mode, 3));
-    material.alpha = fraction(json.at("alpha"));
-    material.alpha_cutoff = finite(json.at("alpha_cutoff"));
-    material.alpha_texture = slot_of(json.at("alpha_texture"), num_textures);
+template<typename Value>
+Value value_of(const Json& json, const MaterialMember& member, std::size_t num_textures) {
+    if constexpr (std::same_as<Value, std::optional<TextureSlot>>)
+        return slot_of(json, num_textures);
+    else if constexpr (std::same_as<Value, bool>)
+        return json.boolean();
+    else if constexpr (std::same_as<Value, float>)
+        return within(json, member);
+    else if constexpr (std::same_as<Value, glm::vec3>)
+        return {within(json.values().at(0), member), within(json.values().at(1), member),
+                within(json.values().at(2), member)};
+    else
+        return static_cast<Value>(below(json, static_cast<std::uint32_t>(member.most) + 1));
 }
 
 Material material_of(const Json& json, std::size_t num_textures, const BrdfTables& tables) {
     Material material;
-    material.model = static_cast<mesh::MaterialModel>(below(json.at("model"), 5));
-    material.base_color = color(json.at("base"));
-    material.metallic = fraction(json.at("metallic"));
-    material.specular = color(json.at("specular"));
-    material.times_vertex_color = json.at("times_vertex_color").boolean();
-    if (const Json* roughness = json.find("roughness")) {
-        material.roughness = fraction(*roughness);
-        material.exponent = finite(json.at("exponent"));
-        if (material.exponent < 0.0f)
-            throw std::out_of_range("expected an exponent of 0 or more");
-    }
-    if (const Json* emission = json.find("emission"))
-        for (int channel = 0; channel < 3; ++channel) {
-            material.emission[channel] =
-                finite(emission->values().at(static_cast<std::size_t>(channel)));
-            if (material.emission[channel] < 0.0f)
-                throw std::out_of_range("expected an emission of 0 or more");
-        }
-    for (const auto& [name, member, most] : Scalars)
-        if (const Json* value = json.find(name))
-            material.*member = within(*value, most);
-    if (const Json* sheen = json.find("sheen"))
-        material.sheen = color(*sheen);
-    if (const Json* tint = json.find("specular_tint"))
-        for (int channel = 0; channel < 3; ++channel)
-            material.specular_tint[channel] =
-                within(tint->values().at(static_cast<std::size_t>(channel)), 1e6f);
+    for (const MaterialMember& member : mesh::MaterialMembers)
+        if (const Json* own = json.find(member.name_in_file()))
+            std::visit(
+                [&]<typename Value>(Value Material::* at) {
+                    material.*at = value_of<Value>(*own, member, num_textures);
+                },
+                member.at);
+        else if (member.stands(material, member.in_file))
+            throw std::out_of_range("expected all members of a material");
+    if (material.transmission > 0.0f)
+        material.attenuation_distance = 1.0f / finite(json.at("attenuation_per_length"));
+    if (material.attenuation_distance < 0.0f)
+        throw std::out_of_range("expected a length of 0 or more");
     if (material.model == mesh::MaterialModel::Measured)
         material.measured =
             tables.at(below(json.at("brdf"), static_cast<std::uint32_t>(tables.size())));
-    read_alpha(json, num_textures, material);
-    for (const auto slot : color_slots(material))
-        material.*slot = slot_of(json.at(name_of(slot)), num_textures);
-    // Of Phong, and of MTL.
-    for (const auto slot :
-         {&Material::specular_texture, &Material::roughness_texture, &Material::metallic_texture})
-        if (const Json* own = json.find(name_of(slot)))
-            material.*slot = slot_of(*own, num_textures);
-    for (const auto slot : RareSlots)
-        if (const Json* own = json.find(name_of(slot)))
-            material.*slot = slot_of(*own, num_textures);
-    if (const Json* scale = json.find("normal_scale"))
-        material.normal_scale = finite(*scale);
-    if (const Json* scale = json.find("coat_normal_scale"))
-        material.coat_normal_scale = finite(*scale);
     return material;
 }
 
@@ -309,32 +205,30 @@ private:
     Json images_ = Json::Array{}, texels_ = Json::Array{};
 };
 
+bool is_of_alpha(const MaterialMember& member) {
+    return member.texture() == &Material::alpha_texture;
+}
+
+/// `is_kept`: with the textures of its colours.
 Json json_of(const Material& material, bool is_kept, bool has_shape, const Stored& stored) {
-    Json json = {{"model", static_cast<int>(material.model)},
-                 {"base", {material.base_color.r, material.base_color.g, material.base_color.b}},
-                 {"metallic", material.metallic},
-                 {"specular", {material.specular.r, material.specular.g, material.specular.b}},
-                 {"times_vertex_color", material.times_vertex_color}};
-    if (has_shape) {
-        json.set("roughness", material.roughness);
-        json.set("exponent", material.exponent);
-    }
-    if (const glm::vec3& emission = material.emission; emission != glm::vec3(0.0f))
-        json.set("emission", {emission.r, emission.g, emission.b});
-    if (material.normal_texture)
-        json.set("normal_scale", material.normal_scale);
-    if (material.coat_normal_texture)
-        json.set("coat_normal_scale", material.coat_normal_scale);
-    for (const auto& [name, member, most] : Scalars)
-        if (material.*member != Material().*member)
-            json.set(name, material.*member);
-    if (const glm::vec3& sheen = material.sheen; sheen != glm::vec3(0.0f))
-        json.set("sheen", {sheen.r, sheen.g, sheen.b});
-    if (const glm::vec3& tint = material.specular_tint; tint != glm::vec3(1.0f))
-        json.set("specular_tint", {tint.r, tint.g, tint.b});
-    for (const auto slot : color_slots(material))
-        json.set(name_of(slot), json_of(is_kept ? material.*slot : std::nullopt, stored));
-    add_alpha(json, material, stored);
+    Json json = Json::Object{};
+    for (const MaterialMember& member : mesh::MaterialMembers)
+        if (member.is_of_highlight ? has_shape : member.stands(material, member.in_file))
+            std::visit(
+                [&]<typename Value>(Value Material::* at) {
+                    const Value& value = material.*at;
+                    if constexpr (std::same_as<Value, std::optional<TextureSlot>>)
+                        json.set(
+                            member.name_in_file(),
+                            json_of(is_kept || is_of_alpha(member) ? value : std::nullopt, stored));
+                    else if constexpr (std::is_enum_v<Value>)
+                        json.set(member.name_in_file(), static_cast<int>(value));
+                    else
+                        json.set(member.name_in_file(), value);
+                },
+                member.at);
+    if (material.transmission > 0.0f)
+        json.set("attenuation_per_length", 1.0f / material.attenuation_distance);
     return json;
 }
 
@@ -363,17 +257,17 @@ void add_materials(NewSections& sections, const Scene& scene) {
     const auto is_kept = [&](const Material& material) {
         return shows || material.transmission > 0.0f;
     };
-    const auto for_each_kept = [&](auto add) {
+    const auto for_each = [&](bool alpha, auto add) {
         for (const Material& material : mesh.materials)
-            for (const auto slot : color_slots(material))
-                if (const auto& used = material.*slot; used && is_kept(material))
-                    (textures.*add)(*used);
+            for (const MaterialMember& member : mesh::MaterialMembers)
+                if (const auto slot = member.texture();
+                    slot != nullptr && material.*slot && is_of_alpha(member) == alpha &&
+                    (alpha || is_kept(material)) && member.stands(material, member.in_file))
+                    (textures.*add)(*(material.*slot));
     };
-    for_each_kept(&StoredTextures::add_image);
-    for_each_kept(&StoredTextures::add_texels);
-    for (const Material& material : mesh.materials)
-        if (material.alpha_texture)
-            textures.add_texels(*material.alpha_texture);
+    for_each(false, &StoredTextures::add_image);
+    for_each(false, &StoredTextures::add_texels);
+    for_each(true, &StoredTextures::add_texels);
     Json materials = Json::Array{};
     for (const Material& material : mesh.materials)
         materials.push_back(json_of(material, is_kept(material), shows && mirrors(scene, material),

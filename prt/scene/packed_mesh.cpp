@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace relumine::prt {

@@ -1,7 +1,6 @@
 #include "prt/scene/scene_file.h"
 
 #include <stdexcept>
-#include <utility>
 
 #include <fmt/format.h>
 

@@ -2,13 +2,10 @@
 #pragma once
 
 #include <cstring>
-#include <filesystem>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>

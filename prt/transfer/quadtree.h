@@ -1,7 +1,6 @@
 // The quadtree over the six cube faces whose leaves are the light clusters.
 #pragma once
 
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>

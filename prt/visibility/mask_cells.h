@@ -1,10 +1,7 @@
 // Where an alpha mask is all there or all cut out, texel by texel: most lookups need no more.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <limits>
-
-#include <glm/common.hpp>
 
 #include "prt/visibility/bit_matrix.h"
 #include "prt/visibility/shaft_leaves.h"

@@ -1,7 +1,5 @@
 // Environments: arrays and files to maps that light, conversions, findings.
-#include <algorithm>
 #include <array>
-#include <limits>
 #include <memory>
 #include <utility>
 

@@ -242,12 +242,12 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
 py::dict verify(const LitPointer& own, std::size_t samples, std::size_t surface, std::uint64_t seed,
                 std::uint32_t paths, const py::object& progress) {
     Verification found = slowly(own, progress, [=](LitScene& lit, const Reins& reins) {
-        return relumine::verify(lit, {.num_samples = samples,
-                                      .seed = seed,
-                                      .num_surface_points = surface,
-                                      .num_paths = paths,
-                                      .stop = reins.stop,
-                                      .on_progress = reins.on_progress});
+        return relumine::verify(lit,
+                                {.num_samples = samples,
+                                 .seed = seed,
+                                 .num_surface_points = surface,
+                                 .num_paths = paths},
+                                reins);
     });
     py::dict result;
     result["relative_l2"] = found.error.relative_l2;
@@ -298,19 +298,6 @@ Array harmonics_adjoint(const LitPointer& own, const py::buffer& weights) {
     return owned(std::move(map));
 }
 
-/// Row beginnings, columns, values of each channel, and the light.
-py::tuple transport(const LitPointer& own, std::size_t max_entries) {
-    relight::Transport found = slowly(own, py::none(), [=](LitScene& lit, const Reins&) {
-        return relumine::transport(lit, {.max_entries = max_entries});
-    });
-    const auto count = static_cast<py::ssize_t>(found.columns.size());
-    py::list data;
-    for (std::vector<float>& channel : found.data)
-        data.append(owned(std::move(channel), {count}));
-    return py::make_tuple(owned(std::move(found.row_begins)), owned(std::move(found.columns)),
-                          std::move(data), owned(std::move(found.light)));
-}
-
 /// `cubes` is [B, 6, R, R, 3]; returns [B, num_receivers, 3].
 Array relight_batch(const LitPointer& own, const py::buffer& cubes, std::size_t count,
                     std::uint32_t resolution) {
@@ -344,8 +331,7 @@ Array sees(const LitPointer& own, const py::buffer& points) {
 
 LightArrays transfer_lights(const LitPointer& own, std::size_t number, const py::object& progress) {
     return arrays_of(slowly(own, progress, [number](LitScene& lit, const Reins& reins) {
-        return relight::transfer_lights(lit.relighter(), number,
-                                        {.stop = reins.stop, .on_progress = reins.on_progress});
+        return relight::transfer_lights(lit.relighter(), number, reins);
     }));
 }
 
@@ -355,7 +341,6 @@ void bind_questions(py::class_<Lit, LitPointer>& type) {
         .def("contribution_map", &contribution_map)
         .def("adjoint", &adjoint)
         .def("harmonics_adjoint", &harmonics_adjoint)
-        .def("transport", &transport)
         .def("relight_batch", &relight_batch)
         .def("sees", &sees)
         .def("transfer_lights", &transfer_lights);

@@ -8,7 +8,6 @@
 #include <atomic>
 #include <condition_variable>
 #include <exception>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -18,16 +17,15 @@
 
 #include <pybind11/pybind11.h>
 
+#include "relumine/in/precompute_options.h"
+
 namespace relumine::python {
 
 namespace py = pybind11;
 using Release = py::gil_scoped_release;
 
 /// What work polls and tells.
-struct Reins {
-    std::stop_token stop;
-    std::function<void(double)> on_progress;
-};
+using Reins = prt::Work;
 
 /// Work in a thread of its own.
 class Job {

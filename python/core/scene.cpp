@@ -1,10 +1,6 @@
 // Meshes and precomputed scenes.
 #include "scene.h"
 
-#include <atomic>
-#include <limits>
-#include <mutex>
-
 #include <pybind11/stl/filesystem.h>
 
 #include "arrays.h"
@@ -87,9 +83,7 @@ py::tuple refined_mesh(const MeshPointer& mesh, const py::dict& given, const py:
     const Result result =
         in_background(progress, [mesh, options = std::move(chosen)](const Reins& reins) {
             Result found;
-            found.first = std::make_shared<Mesh>(
-                refined(*mesh, options, {.stop = reins.stop, .on_progress = reins.on_progress},
-                        &found.second));
+            found.first = std::make_shared<Mesh>(refined(*mesh, options, reins, &found.second));
             return found;
         });
     py::dict report;

@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <mutex>
-#include <string>
 
 #include <pybind11/pybind11.h>
 

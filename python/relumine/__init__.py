@@ -36,7 +36,6 @@ from ._relighter import (
     Relighter,
     RelightTimes,
     Share,
-    Transport,
     Update,
     Verification,
 )
@@ -46,7 +45,7 @@ __version__: str = _core.__version__
 __all__ = [
     "FACES", "Blinn", "Bounces", "Brdf", "Emit", "Environment", "FileError", "Frame", "Gain", "Ggx",
     "Image", "Lambert", "Layer", "LightList", "Mesh", "Picture",
-    "RelightTimes", "Relighter", "RelumineWarning", "Scene", "Share", "Transport", "Update",
+    "RelightTimes", "Relighter", "RelumineWarning", "Scene", "Share", "Update",
     "Verification", "irradiance", "join", "load_layers", "plan", "precompute", "precompute_part", "save_layers",
     "set_threads", *_SHAPES,
 ]  # fmt: skip

@@ -86,40 +86,6 @@ class Share(NamedTuple):
     share: float
 
 
-class Transport(NamedTuple):
-    """Direct light as a sparse matrix for each channel: its rows are receivers, its columns lights.
-
-    The lights are the scene's clusters and, behind them, the sharp lights. What product() computes:
-    radiance[:, c] = scipy.sparse.csr_array((data[c], indices, indptr), shape) @ light[:, c].
-    """
-
-    #: (3, num_entries) float32, 1/sr: red, green and blue
-    data: Floats
-    #: (num_entries,) int32: the column of each entry
-    indices: NDArray[np.int32]
-    #: (num_receivers + 1,) int32: where rows begin
-    indptr: NDArray[np.int32]
-    #: (num_lights, 3) float64, radiance times sr
-    light: NDArray[np.float64]
-
-    @property
-    def shape(self) -> Tuple[int, int]:
-        """(num_receivers, num_lights)"""
-        return len(self.indptr) - 1, len(self.light)
-
-    def product(self, light: Optional[ArrayLike] = None) -> NDArray[np.float64]:
-        """The radiance under a light (num_lights, 3), its own by default, with numpy alone."""
-        given = self.light if light is None else np.asarray(light, np.float64)
-        if given.shape != self.light.shape:
-            raise ValueError(f"light: expected shape {self.light.shape}, got {given.shape}")
-        rows = np.repeat(np.arange(self.shape[0]), np.diff(self.indptr))
-        sums = [
-            np.bincount(rows, self.data[c] * given[self.indices, c], self.shape[0])
-            for c in range(3)
-        ]
-        return np.stack(sums, axis=1)
-
-
 class Frame(NamedTuple):
     """One frame of an animation."""
 
@@ -548,27 +514,6 @@ class Relighter:
         with errors():
             result: Floats = view(self._core.harmonics_adjoint(values))
         return result
-
-    def transport(self, *, max_entries: int = 100_000_000) -> Transport:
-        """The operator of the present light as a sparse matrix, for scenes that are small.
-
-        max_entries  a larger matrix is refused; an entry takes 16 bytes
-
-        Direct light; colours of surfaces count. Under other light the matrix is nearly the same:
-        how it depends on the light is in docs/operator.md.
-
-        >>> matrix = relighter.transport()
-        >>> bool(np.allclose(matrix.product(), relighter.radiance, rtol=1e-5))
-        True
-        """
-        with errors():
-            begins, columns, data, light = self._core.transport(whole("max_entries", max_entries))
-        return Transport(
-            np.stack([view(channel) for channel in data]),
-            view(columns).view(np.int32),
-            view(begins).view(np.int32),
-            view(light),
-        )
 
     def sees(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Whether the way from each receiver to points in space is free: (num_receivers, K).

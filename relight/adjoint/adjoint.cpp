@@ -1,6 +1,5 @@
 #include "relight/adjoint/adjoint.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numbers>

@@ -1,7 +1,6 @@
 #include "relight/adjoint/adjoint_kernel.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "prt/clusters/lattice.h"
 

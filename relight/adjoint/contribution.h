@@ -3,9 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
-
-#include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
 #include "relight/bounces/bounce_light.h"

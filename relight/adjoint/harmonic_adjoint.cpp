@@ -7,7 +7,6 @@
 #include <numbers>
 #include <stdexcept>
 
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "cubemap/face.h"

@@ -2,7 +2,6 @@
 // weights are summed into clusters. Vectorised with run-time dispatch.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>

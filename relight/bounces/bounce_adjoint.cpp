@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cstddef>
-#include <functional>
 #include <stdexcept>
 
 #include "relight/bounces/bounce_light.h"

@@ -4,10 +4,8 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>

@@ -1,10 +1,8 @@
 // Bounces between groups of receivers: what many bounces add up to, nearly.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 

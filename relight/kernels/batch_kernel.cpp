@@ -1,7 +1,6 @@
 #include "relight/kernels/batch_kernel.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include <glm/common.hpp>

@@ -1,7 +1,5 @@
 #include "relight/kernels/block_kernels.h"
 
-#include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "prt/clusters/lattice.h"

@@ -1,7 +1,6 @@
 #include "relight/kernels/cluster_lights.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 

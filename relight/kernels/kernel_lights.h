@@ -7,8 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include <glm/vec3.hpp>
-
 #include "relight/kernels/cluster_lights.h"
 
 namespace relumine::relight {

@@ -1,7 +1,6 @@
 // The light of a scene's own lamps: what reaches its receivers without a bounce.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 

@@ -1,9 +1,7 @@
 // Least squares with non-negative unknowns.
 #pragma once
 
-#include <cstddef>
 #include <span>
-#include <vector>
 
 namespace relumine::relight {
 

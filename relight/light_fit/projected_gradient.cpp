@@ -51,7 +51,7 @@ bool take_step(const Objective& objective, const Point& here, std::span<const do
 } // namespace
 
 GradientReport minimise_non_negative(const Objective& objective, std::span<double> x,
-                                     const GradientOptions& options) {
+                                     const GradientOptions& options, const prt::Work& work) {
     const std::size_t size = x.size();
     Point here{{x.begin(), x.end()}, std::vector<double>(size)}, there = here;
     here.value = objective(here.x, here.gradient);
@@ -63,8 +63,7 @@ GradientReport minimise_non_negative(const Objective& objective, std::span<doubl
         step = std::max(step, std::abs(slope));
     step = step > 0.0 ? std::max(1e-3, *std::max_element(x.begin(), x.end())) / step : 1.0;
     while (report.num_iterations < options.max_iterations) {
-        if (options.stop.stop_requested())
-            throw prt::Cancelled();
+        work.poll();
         for (std::size_t i = 0; i < size; ++i)
             direction[i] = std::max(0.0, here.x[i] - step * here.gradient[i]) - here.x[i];
         if (!take_step(objective, here, direction, *std::max_element(values.begin(), values.end()),
@@ -88,9 +87,8 @@ GradientReport minimise_non_negative(const Objective& objective, std::span<doubl
             std::copy(here.x.begin(), here.x.end(), x.begin());
         }
         best_values.push_back(report.value);
-        if (options.on_progress)
-            options.on_progress(static_cast<double>(report.num_iterations) /
-                                static_cast<double>(options.max_iterations));
+        work.tell(static_cast<double>(report.num_iterations) /
+                  static_cast<double>(options.max_iterations));
         if (best_values.size() > Memory &&
             best_values[best_values.size() - 1 - Memory] - report.value <=
                 options.tolerance * report.value)

@@ -4,7 +4,8 @@
 #include <cstddef>
 #include <functional>
 #include <span>
-#include <stop_token>
+
+#include "prt/work.h"
 
 namespace relumine::relight {
 
@@ -12,10 +13,6 @@ struct GradientOptions {
     std::size_t max_iterations = 200;
     /// Ends where ten iterations lower the value by less than this part of it
     double tolerance = 1e-4;
-    /// Polled in each iteration. A stop ends the work with prt::Cancelled.
-    std::stop_token stop = {};
-    /// Receives the fraction of the iterations that are done, in [0, 1].
-    std::function<void(double)> on_progress = {};
 };
 
 struct GradientReport {
@@ -30,9 +27,11 @@ using Objective = std::function<double(std::span<const double> x, std::span<doub
 /// point that was found. The value there is never above that of the start.
 ///
 /// Cost:    about one call of the objective for each iteration.
+/// Throws:  prt::Cancelled.
 /// Source:  Birgin, Martinez and Raydan, "Nonmonotone Spectral Projected Gradient Methods on Convex
 ///          Sets", 2000 (SPG2).
 GradientReport minimise_non_negative(const Objective& objective, std::span<double> x,
-                                     const GradientOptions& options = {});
+                                     const GradientOptions& options = {},
+                                     const prt::Work& work = {});
 
 } // namespace relumine::relight

@@ -38,6 +38,9 @@ constexpr int RefiningPasses = 2;
 // many take part in the steps.
 constexpr std::size_t RefiningFactor = 2;
 
+/// Receivers that lights are chosen with.
+constexpr std::size_t NumReceivers = 16000;
+
 // Exchanging costs lights^2 x candidates. With more lights than this it takes longer than it is
 // worth.
 constexpr std::size_t MaxExchanged = 128;
@@ -171,15 +174,13 @@ std::vector<lights::DistantLight> moved(const Relighter& relighter,
 std::vector<lights::DistantLight> chosen_lights(const Relighter& relighter, const LightGoal& goal,
                                                 std::span<const glm::dvec3> candidates,
                                                 std::vector<double> errors, std::size_t count,
-                                                const TransferLightOptions& options) {
-    const Wanted wanted(relighter, goal, errors, options.num_receivers);
+                                                const prt::Work& work) {
+    const Wanted wanted(relighter, goal, errors, NumReceivers);
     if (wanted.receivers.places.empty() || candidates.empty())
         return {};
     const auto poll = [&](double progress) {
-        if (options.stop.stop_requested())
-            throw prt::Cancelled();
-        if (options.on_progress)
-            options.on_progress(progress);
+        work.poll();
+        work.tell(progress);
     };
 
     std::vector<LightPursuit::Light> chosen;
@@ -197,7 +198,7 @@ std::vector<lights::DistantLight> chosen_lights(const Relighter& relighter, cons
     // There are far fewer directions now, so more receivers take part; most of the added ones are
     // where this list is wrong.
     add_squared_errors(relighter, goal, list_of(chosen, candidates), errors);
-    const Wanted all_over(relighter, goal, errors, RefiningFactor * options.num_receivers);
+    const Wanted all_over(relighter, goal, errors, RefiningFactor * NumReceivers);
     std::vector<glm::dvec3> directions;
     directions.reserve(chosen.size());
     for (const LightPursuit::Light& light : chosen)
@@ -226,7 +227,7 @@ std::vector<glm::dvec3> even_candidates() {
 } // namespace
 
 std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, std::size_t count,
-                                                  const TransferLightOptions& options) {
+                                                  const prt::Work& work) {
     if (relighter.environment().resolution == 0 || relighter.shadow_rays().blockers == nullptr)
         throw std::invalid_argument("expected a relighter with an environment and shadow rays");
     if (relighter.transfer().num_points != 0)
@@ -237,12 +238,11 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
     if (candidates.empty())
         return {};
     return chosen_lights(relighter, {.radiance = relighter.radiance()}, candidates,
-                         errors_of_cuts(relighter, count), count, options);
+                         errors_of_cuts(relighter, count), count, work);
 }
 
 std::vector<lights::DistantLight> fit_lights(const Relighter& relighter, const LightGoal& goal,
-                                             std::size_t count,
-                                             const TransferLightOptions& options) {
+                                             std::size_t count, const prt::Work& work) {
     const std::size_t num_receivers = relighter.transfer().num_receivers();
     if (relighter.shadow_rays().blockers == nullptr)
         throw std::invalid_argument("expected a relighter with shadow rays");
@@ -257,7 +257,7 @@ std::vector<lights::DistantLight> fit_lights(const Relighter& relighter, const L
     std::vector<double> errors(num_receivers);
     for (std::size_t place = 0; place < num_receivers && !goal.weights.empty(); ++place)
         errors[place] = static_cast<double>(goal.weights[relighter.transfer().order[place]]);
-    return chosen_lights(relighter, goal, even_candidates(), std::move(errors), count, options);
+    return chosen_lights(relighter, goal, even_candidates(), std::move(errors), count, work);
 }
 
 } // namespace relumine::relight

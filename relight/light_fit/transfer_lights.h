@@ -3,24 +3,14 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
-#include <stop_token>
 #include <vector>
 
 #include "lights/light_list.h"
+#include "prt/work.h"
 #include "relight/light_fit/scaled_receivers.h"
 #include "relight/relighter.h"
 
 namespace relumine::relight {
-
-struct TransferLightOptions {
-    /// Receivers that the lights are chosen with. The lights are moved with twice as many.
-    std::size_t num_receivers = 16000;
-    /// Polled after each light. A stop ends the work with prt::Cancelled.
-    std::stop_token stop = {};
-    /// Receives the fraction done, in [0, 1].
-    std::function<void(double)> on_progress = {};
-};
 
 /// Chooses `count` lights, each anywhere in the sky, that light receivers as they should be.
 /// Directions are traced on a grid of 2.8 degrees, then moved by small steps; irradiances are never
@@ -30,9 +20,9 @@ struct TransferLightOptions {
 /// Cost:    as transfer_lights().
 /// Throws:  std::invalid_argument for a relighter without shadow rays, a goal for other receivers,
 ///          or count 0; prt::Cancelled when stopped.
-[[nodiscard]] std::vector<lights::DistantLight>
-fit_lights(const Relighter& relighter, const LightGoal& goal, std::size_t count,
-           const TransferLightOptions& options = {});
+[[nodiscard]] std::vector<lights::DistantLight> fit_lights(const Relighter& relighter,
+                                                           const LightGoal& goal, std::size_t count,
+                                                           const prt::Work& work = {});
 
 /// Chooses `count` lights for the scene of a relighter that has an environment and shadow rays.
 /// Returns fewer lights where more would not help. Deterministic for any number of threads.
@@ -57,7 +47,6 @@ fit_lights(const Relighter& relighter, const LightGoal& goal, std::size_t count,
 /// Throws:  std::invalid_argument without environment or shadow rays, or for count 0;
 ///          prt::Cancelled when stopped.
 [[nodiscard]] std::vector<lights::DistantLight>
-transfer_lights(const Relighter& relighter, std::size_t count,
-                const TransferLightOptions& options = {});
+transfer_lights(const Relighter& relighter, std::size_t count, const prt::Work& work = {});
 
 } // namespace relumine::relight

@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include <glm/vec3.hpp>
-
 #include "prt/glossy/lobe_kernel.h"
 #include "relight/kernels/block_kernels.h"
 #include "relight/moving_eye/sky_cells.h"

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>

@@ -11,6 +11,7 @@
 #include "prt/glossy/ggx_lobe.h"
 #include "prt/glossy/sheen_lobe.h"
 #include "prt/receivers/lit_position.h"
+#include "relight/pictures/highlight_rays.h"
 
 namespace relumine::relight {
 
@@ -170,17 +171,17 @@ MirroredLight Mirrors::light(const Mirror& mirror, const prt::MeshPoint& point) 
         return *light;
     }
     const std::optional<Middle>& middle = middles_[std::size_t{y_} * width_ + x_];
-    // Where a wide lobe turns from pixel to pixel, a pixel has as many rays as four would share.
     const bool is_wide = reach_of(lobe_alpha(mirror.surface)) > 0;
-    const std::uint32_t all = light_.reflections->num_rays() * (is_wide ? 4 : 1);
+    const std::uint32_t num_rays =
+        rays_of_pixel(light_.reflections->num_rays(), is_wide, traced_.empty());
     if (traced_.empty() && middle && are_alike(middle->traced.mirror, mirror)) {
         traced_.push_back(middle->traced);
         if (is_wide)
-            traced_.back().light = trace(middle->traced.mirror, middle->point, all);
+            traced_.back().light = trace(middle->traced.mirror, middle->point, num_rays);
         return traced_.back().light;
     }
     // A pixel of several normals sums their rays.
-    traced_.push_back({mirror, trace(mirror, point, traced_.empty() ? all : (all + 1) / 2)});
+    traced_.push_back({mirror, trace(mirror, point, num_rays)});
     return traced_.back().light;
 }
 

@@ -1,7 +1,6 @@
 #include "relight/pictures/picture.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <span>
 #include <stdexcept>

@@ -1,6 +1,5 @@
 #include "relight/pictures/picture_view.h"
 
-#include <algorithm>
 #include <mutex>
 #include <stdexcept>
 
@@ -40,7 +39,7 @@ PictureView::PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& ra
       grid_(camera, options.width, options.height, options.samples_per_axis),
       samples_(std::make_unique<const EyeSamples>(mesh, rays, camera.eye, grid_,
                                                   PictureTiles{options.width, options.height},
-                                                  max_bytes, options.stop)) {}
+                                                  max_bytes, options.work.stop)) {}
 PictureView::~PictureView() = default;
 PictureView::PictureView(PictureView&&) noexcept = default;
 
@@ -68,13 +67,11 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
     std::mutex mutex;
     std::uint32_t num_drawn = 0;
     files::parallel_for(std::uint32_t{0}, tiles.count(), [&](std::uint32_t tile) {
-        if (options_.stop.stop_requested())
+        if (options_.work.stop.stop_requested())
             return;
         PictureTile(scene).draw(tile, picture);
-        if (!options_.on_progress)
-            return;
         const std::scoped_lock lock(mutex);
-        options_.on_progress(static_cast<double>(++num_drawn) / tiles.count());
+        options_.work.tell(static_cast<double>(++num_drawn) / tiles.count());
     });
     return picture;
 }

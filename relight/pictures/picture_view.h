@@ -3,12 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
-#include <stop_token>
-#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -19,6 +16,7 @@
 #include "prt/receivers/surface.h"
 #include "prt/visibility/blockers.h"
 #include "prt/visibility/ray_scene.h"
+#include "prt/work.h"
 #include "relight/pictures/backdrop.h"
 #include "relight/pictures/reflections.h"
 #include "relight/pictures/surface_colors.h"
@@ -34,10 +32,8 @@ struct PictureOptions {
     std::uint32_t height = 768;
     /// n: each pixel has n x n rays and a box filter.
     std::uint32_t samples_per_axis = 3;
-    /// Polled between parts of the picture. What is drawn after a stop request is unfinished.
-    std::stop_token stop = {};
-    /// Receives the fraction of a picture that is drawn; one call at a time, from any thread.
-    std::function<void(double)> on_progress = {};
+    /// What is drawn after a wish to stop is unfinished.
+    prt::Work work = {};
 
     [[nodiscard]] float aspect() const {
         return static_cast<float>(width) / static_cast<float>(height);

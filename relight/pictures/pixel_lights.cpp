@@ -5,8 +5,6 @@
 #include <bit>
 #include <utility>
 
-#include <glm/geometric.hpp>
-
 #include "prt/receivers/lit_position.h"
 #include "relight/sharp/light_packets.h"
 

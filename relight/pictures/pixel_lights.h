@@ -6,8 +6,6 @@
 #include <span>
 #include <vector>
 
-#include <glm/vec3.hpp>
-
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/visibility/blockers.h"

@@ -14,6 +14,7 @@
 #include "prt/glossy/ggx_lobe.h"
 #include "prt/glossy/sheen_lobe.h"
 #include "relight/kernels/cluster_lights.h"
+#include "relight/pictures/highlight_rays.h"
 #include "relight/pictures/ray_fan.h"
 
 namespace relumine::relight {
@@ -23,10 +24,6 @@ namespace {
 /// The part of its share of the lobe over which a ray sees the mean. Over all of it, 32 rays of a
 /// rough metal under lamps were 9 of 255 brighter than many rays.
 constexpr float SeenPart = 0.5f;
-
-/// Lobes as wide as this take twice as many rays, and so does sheen: what a part of a share leaves
-/// out is noise.
-constexpr float WideAlpha = 0.25f;
 
 /// Sums of weights and of weighted radiance, by colour.
 struct Weighted {
@@ -148,12 +145,12 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
     const auto lobes = [&](const glm::vec3& w) {
         return prt::evaluate_lobes(surface, point.normal, point.to_eye, w);
     };
-    const std::uint32_t num_all = lobe_alpha(surface) > WideAlpha ? 2 * num_rays : num_rays;
+    const LobeRays rays(surface, num_rays);
     const glm::vec3 origin = point.position + bias_ * point.normal;
     RayFan fan{.normal = point.normal,
                .to_eye = point.to_eye,
                .alpha = lobe_alpha(surface),
-               .num_rays = num_all,
+               .num_rays = rays.all,
                .shift = point.shift};
     Weighted all, grazing, coat, sheen;
     send(origin, fan, surfaces, [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
@@ -161,7 +158,7 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
         all.add(highlight_of(surface, lobe) / dense, radiance);
         grazing.add(glm::vec3(lobe.specular_grazing / dense), radiance);
     });
-    fan.num_rays = (num_rays + 1) / 2;
+    fan.num_rays = rays.coat;
     if (prt::has_coat(surface) && n_v.coat > 0.0f) {
         fan.alpha = prt::ggx_alpha(surface.coat_roughness);
         if (surface.coat_normal != glm::vec3(0.0f))
@@ -172,7 +169,7 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
              });
     }
     if (prt::has_sheen(surface)) {
-        fan.num_rays = 2 * num_rays; // which are as dense everywhere
+        fan.num_rays = rays.sheen;
         fan.alpha = 0.0f;
         fan.normal = point.normal;
         send(origin, fan, surfaces,
@@ -182,7 +179,7 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
     }
     return {.all = all.mean(),
             .grazing = grazing.mean(),
-            .whole = all.weight.r / static_cast<float>(num_all),
+            .whole = all.weight.r / static_cast<float>(rays.all),
             .coat = coat.mean(),
             .sheen = sheen.mean()};
 }

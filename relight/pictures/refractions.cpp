@@ -1,8 +1,6 @@
 #include "relight/pictures/refractions.h"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
@@ -12,6 +10,7 @@
 #include "cubemap/frame.h"
 #include "mesh/opacity.h"
 #include "prt/glossy/brdf.h"
+#include "relight/pictures/highlight_rays.h"
 #include "relight/pictures/visible_normals.h"
 
 namespace relumine::relight {
@@ -98,7 +97,7 @@ glm::vec3 Refractions::light(const Mirror& mirror, const prt::MeshPoint& at, std
     const mesh::Material& material = mesh_.materials[mesh_.triangle_materials[at.triangle]];
     const float alpha = lobe_alpha(mirror.surface);
     const bool is_rough = alpha > SmoothAlpha;
-    const std::uint32_t count = is_rough ? (light_.reflections->num_rays() + 7) / 8 : 1;
+    const std::uint32_t count = is_rough ? rays_through_glass(light_.reflections->num_rays()) : 1;
     const glm::vec3 through =
         passed_part(mirror) * mesh::glass_tint(mesh_, at.triangle, at.barycentric);
     const glm::vec3 position = prt::value_at(mesh_, mesh_.positions, at);

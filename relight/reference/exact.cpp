@@ -6,7 +6,6 @@
 #include <cmath>
 #include <mutex>
 #include <numbers>
-#include <numeric>
 #include <stdexcept>
 
 #include <glm/geometric.hpp>
@@ -131,8 +130,8 @@ void check(const prt::Receivers& receivers, std::span<const std::uint32_t> recei
 class Integration {
 public:
     Integration(const prt::Receivers& receivers, std::span<const std::uint32_t> receiver_indices,
-                const prt::Blockers& blockers, const ExactOptions& options)
-        : blockers_(blockers), options_(options), sums_(receiver_indices.size()) {
+                const prt::Blockers& blockers, const ExactOptions& options, const prt::Work& work)
+        : blockers_(blockers), work_(work), sums_(receiver_indices.size()) {
         check(receivers, receiver_indices);
         receivers_.reserve(receiver_indices.size());
         for (const std::uint32_t receiver : receiver_indices)
@@ -154,13 +153,11 @@ public:
                         for (std::size_t i = begin; i < end; ++i)
                             receivers_[i].add(tile, blockers_, sums_[i]);
                 });
-                if (options_.stop.stop_requested())
-                    throw prt::Cancelled();
+                work_.poll();
                 const std::scoped_lock lock(mutex);
                 ++rows_done;
-                if (options_.on_progress)
-                    options_.on_progress(static_cast<double>(rows_done) /
-                                         static_cast<double>(num_tasks * num_rows));
+                work_.tell(static_cast<double>(rows_done) /
+                           static_cast<double>(num_tasks * num_rows));
             }
         });
         std::vector<glm::dvec3> radiance(sums_.size());
@@ -171,7 +168,7 @@ public:
 
 private:
     const prt::Blockers& blockers_;
-    const ExactOptions& options_;
+    const prt::Work& work_;
     std::vector<ExactReceiver> receivers_;
     std::vector<prt::Lobes<glm::dvec3>> sums_;
 };
@@ -326,13 +323,13 @@ std::vector<glm::dvec3> exact_radiance(const prt::Receivers& receivers,
                                        std::span<const std::uint32_t> receiver_indices,
                                        const prt::Blockers& blockers,
                                        const cubemap::CubeMap& environment,
-                                       const ExactOptions& options) {
+                                       const ExactOptions& options, const prt::Work& work) {
     const std::uint32_t r = environment.resolution;
     require(r > 0 && environment.texels.size() == std::size_t{cubemap::NumFaces} * r * r,
             "expected an environment of 6 x R x R texels");
     const std::vector<double> solid_angles = cubemap::texel_solid_angles(r);
     const std::size_t rows_per_face = (r + TileSize - 1) / TileSize;
-    return Integration(receivers, receiver_indices, blockers, options)
+    return Integration(receivers, receiver_indices, blockers, options, work)
         .radiance(cubemap::NumFaces * rows_per_face, [&](std::size_t row, const auto& visit) {
             const cubemap::Face face = cubemap::AllFaces[row / rows_per_face];
             const auto y = static_cast<std::uint32_t>(row % rows_per_face) * TileSize;
@@ -345,13 +342,13 @@ std::vector<glm::dvec3> exact_radiance(const prt::Receivers& receivers,
                                        std::span<const std::uint32_t> receiver_indices,
                                        const prt::Blockers& blockers,
                                        const cubemap::EnvironmentFile& environment,
-                                       const ExactOptions& options) {
+                                       const ExactOptions& options, const prt::Work& work) {
     require(environment.image != nullptr &&
                 environment.image->pixels.size() ==
                     std::size_t{environment.image->width} * environment.image->height,
             "expected an environment of width x height pixels");
     const ImageTiles tiles(*environment.image, environment.turn);
-    return Integration(receivers, receiver_indices, blockers, options)
+    return Integration(receivers, receiver_indices, blockers, options, work)
         .radiance(tiles.rows().size(), [&](std::size_t row, const auto& visit) {
             for (const Tile& tile : tiles.rows()[row])
                 visit(tile);

@@ -4,9 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -16,16 +14,13 @@
 #include "prt/receivers/receivers.h"
 #include "prt/transfer/transfer.h"
 #include "prt/visibility/blockers.h"
+#include "prt/work.h"
 
 namespace relumine::relight {
 
 struct ExactOptions {
     /// Lift of the rays' origins, as in prt::PrecomputeOptions.
     float bias = 0.0f;
-    /// Polled a few times a second. A stop ends the work with prt::Cancelled.
-    std::stop_token stop = {};
-    /// Receives the fraction done, in [0, 1]; one call at a time.
-    std::function<void(double)> on_progress = {};
 };
 
 /// Returns the outgoing radiance of the chosen receivers: B = 1/pi sum over all 6 R^2 texels of L_j
@@ -41,7 +36,7 @@ struct ExactOptions {
 [[nodiscard]] std::vector<glm::dvec3>
 exact_radiance(const prt::Receivers& receivers, std::span<const std::uint32_t> receiver_indices,
                const prt::Blockers& blockers, const cubemap::CubeMap& environment,
-               const ExactOptions& options = {});
+               const ExactOptions& options = {}, const prt::Work& work = {});
 
 /// Integrates the pixels of an environment's file, without a cube map between: each pixel is a
 /// small area of even radiance. Pixels that hold much of the light are cut into parts, so that no
@@ -53,7 +48,7 @@ exact_radiance(const prt::Receivers& receivers, std::span<const std::uint32_t> r
 [[nodiscard]] std::vector<glm::dvec3>
 exact_radiance(const prt::Receivers& receivers, std::span<const std::uint32_t> receiver_indices,
                const prt::Blockers& blockers, const cubemap::EnvironmentFile& environment,
-               const ExactOptions& options = {});
+               const ExactOptions& options = {}, const prt::Work& work = {});
 
 /// Returns `count` receivers chosen at random without repetition; all of them for 0, or for more
 /// than there are. Only receivers below `end` are taken. The same seed gives the same receivers.

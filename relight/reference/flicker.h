@@ -4,7 +4,6 @@
 // environment sequences", 2011.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>

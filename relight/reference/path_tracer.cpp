@@ -301,7 +301,7 @@ std::vector<TracedBounces>
 trace_bounces(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> albedo,
               const prt::Receivers& receivers, std::span<const std::uint32_t> receiver_indices,
               const prt::RayScene& rays, const cubemap::CubeMap& environment,
-              const PathTracerOptions& options) {
+              const PathTracerOptions& options, const prt::Work& work) {
     if (albedo.size() != mesh.num_vertices())
         throw std::invalid_argument(fmt::format("expected the albedo of {} vertices, got {}",
                                                 mesh.num_vertices(), albedo.size()));
@@ -320,7 +320,7 @@ trace_bounces(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> albedo,
     files::parallel_for(std::size_t{0}, receiver_indices.size(), [&](std::size_t i) {
         const std::uint32_t index = receiver_indices[i];
         const glm::vec3& normal = receivers.normals[index];
-        if (options.stop.stop_requested() || normal == glm::vec3(0.0f))
+        if (work.stop.stop_requested() || normal == glm::vec3(0.0f))
             return;
         Random random(options.seed * cubemap::SplitMix64::Step ^ cubemap::SplitMix64(index).next());
         const PathPoint start{.origin =
@@ -339,12 +339,9 @@ trace_bounces(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> albedo,
         result[i].standard_error = glm::sqrt(variance / std::max(n - 1.0, 1.0));
         const std::scoped_lock lock(progress);
         ++num_done;
-        if (options.on_progress)
-            options.on_progress(static_cast<double>(num_done) /
-                                static_cast<double>(receiver_indices.size()));
+        work.tell(static_cast<double>(num_done) / static_cast<double>(receiver_indices.size()));
     });
-    if (options.stop.stop_requested())
-        throw prt::Cancelled();
+    work.poll();
     return result;
 }
 

@@ -2,12 +2,9 @@
 // nothing but the rays.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -17,6 +14,7 @@
 #include "prt/lamps/lamps.h"
 #include "prt/receivers/receivers.h"
 #include "prt/visibility/ray_scene.h"
+#include "prt/work.h"
 
 namespace relumine::relight {
 
@@ -35,10 +33,6 @@ struct PathTracerOptions {
     bool two_sided = false;
     /// Lift of the rays' origins, as in prt::PrecomputeOptions.
     float bias = 0.0f;
-    /// Polled a few times a second. A stop ends the work with prt::Cancelled.
-    std::stop_token stop = {};
-    /// Receives the fraction done, in [0, 1]; one call at a time.
-    std::function<void(double)> on_progress = {};
 };
 
 /// A mean over paths and how sure it is.
@@ -63,6 +57,6 @@ struct TracedBounces {
 trace_bounces(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> albedo,
               const prt::Receivers& receivers, std::span<const std::uint32_t> receiver_indices,
               const prt::RayScene& rays, const cubemap::CubeMap& environment,
-              const PathTracerOptions& options = {});
+              const PathTracerOptions& options = {}, const prt::Work& work = {});
 
 } // namespace relumine::relight

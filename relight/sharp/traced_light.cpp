@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include <glm/geometric.hpp>
-
 #include "files/large_vector.h"
 #include "files/parallel.h"
 #include "relight/sharp/light_packets.h"

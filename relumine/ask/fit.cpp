@@ -322,7 +322,7 @@ double distance_to(const FitTarget& target, const LitScene& lit) {
 }
 
 cubemap::CubeMap fit_environment(LitScene& lit, const FitTarget& target,
-                                 const EnvironmentFit& options, const FitWork& work) {
+                                 const EnvironmentFit& options, const prt::Work& work) {
     require_fitting(target, lit);
     require_diffuse(lit);
     EnvironmentObjective objective(lit, target, options);
@@ -331,17 +331,14 @@ cubemap::CubeMap fit_environment(LitScene& lit, const FitTarget& target,
         [&](std::span<const double> at, std::span<double> gradient) {
             return objective(at, gradient);
         },
-        x,
-        {.max_iterations = options.max_iterations,
-         .stop = work.stop,
-         .on_progress = work.on_progress});
+        x, {.max_iterations = options.max_iterations}, work);
     const cubemap::CubeMap& result = objective.map_of(x);
     objective.light(result);
     return result;
 }
 
 std::vector<lights::DistantLight> fit_lights(LitScene& lit, const FitTarget& target,
-                                             std::size_t count, const FitWork& work) {
+                                             std::size_t count, const prt::Work& work) {
     require_fitting(target, lit);
     require_surfaces(lit);
     // Surfaces reflect a part of what receivers of albedo 1 would.
@@ -355,9 +352,8 @@ std::vector<lights::DistantLight> fit_lights(LitScene& lit, const FitTarget& tar
                 albedo[channel] > 0.0f ? radiance[i][channel] / albedo[channel] : 0.0f;
         weights[i] *= glm::dot(albedo, albedo) / 3.0f;
     }
-    std::vector<lights::DistantLight> result =
-        relight::fit_lights(lit.relighter(), {.radiance = radiance, .weights = weights}, count,
-                            {.stop = work.stop, .on_progress = work.on_progress});
+    std::vector<lights::DistantLight> result = relight::fit_lights(
+        lit.relighter(), {.radiance = radiance, .weights = weights}, count, work);
     lit.light(Light(result));
     return result;
 }
@@ -365,7 +361,7 @@ std::vector<lights::DistantLight> fit_lights(LitScene& lit, const FitTarget& tar
 std::vector<lights::DistantLight> fit_lights_to_picture(LitScene& lit, const Picture& picture,
                                                         const OutputOptions& options,
                                                         std::size_t count, double& distance,
-                                                        const FitWork& work) {
+                                                        const prt::Work& work) {
     require_surfaces(lit);
     const Scene& scene = lit.scene();
     if (!prt::on_vertices(scene.layout))
@@ -399,9 +395,8 @@ std::vector<lights::DistantLight> fit_lights_to_picture(LitScene& lit, const Pic
                                             .positions = positions,
                                             .bias = scene.settings.bias,
                                             .tolerance = rms_tolerance(scene)});
-    std::vector<lights::DistantLight> result =
-        relight::fit_lights(relighter, {.radiance = target.radiance, .weights = target.weights},
-                            count, {.stop = work.stop, .on_progress = work.on_progress});
+    std::vector<lights::DistantLight> result = relight::fit_lights(
+        relighter, {.radiance = target.radiance, .weights = target.weights}, count, work);
     relighter.set_lights(result);
     distance = distance_between(target, relighter.radiance());
     lit.light(Light(result));
@@ -409,22 +404,19 @@ std::vector<lights::DistantLight> fit_lights_to_picture(LitScene& lit, const Pic
 }
 
 std::vector<double> fit_gains(LitScene& lit, const FitTarget& target, std::span<const Light> lights,
-                              const FitWork& work) {
+                              const prt::Work& work) {
     require_fitting(target, lit);
     if (lights.empty())
         throw std::invalid_argument("expected at least one light");
     const bool bounces = lit.bounces().is_set();
     std::vector<std::vector<glm::vec3>> columns;
     for (const Light& light : lights) {
-        if (work.stop.stop_requested())
-            throw prt::Cancelled();
+        work.poll();
         lit.light(light);
         if (bounces)
             lit.bounce();
         columns.emplace_back(lit.radiance().begin(), lit.radiance().end());
-        if (work.on_progress)
-            work.on_progress(static_cast<double>(columns.size()) /
-                             static_cast<double>(lights.size()));
+        work.tell(static_cast<double>(columns.size()) / static_cast<double>(lights.size()));
     }
     const auto product = [&](std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
         double sum = 0.0;

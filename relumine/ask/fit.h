@@ -4,15 +4,14 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
 #include "lights/light_list.h"
+#include "prt/work.h"
 #include "relumine/light/lit_scene.h"
 #include "relumine/out/output.h"
 
@@ -46,12 +45,6 @@ struct FitTarget {
 /// Returns how far the scene's present light is from the target: relative L2.
 [[nodiscard]] double distance_to(const FitTarget& target, const LitScene& lit);
 
-struct FitWork {
-    std::stop_token stop = {};
-    /// Fraction in [0, 1]
-    std::function<void(double)> on_progress = {};
-};
-
 /// Returns so many distant lights whose direct light on what a picture of a mesh shows comes
 /// nearest to it: each pixel's point is a receiver of its own, so shadows are as sharp as the
 /// picture's. The scene has vertices, and is lit with the lights afterwards. `distance` receives
@@ -61,7 +54,7 @@ struct FitWork {
 std::vector<lights::DistantLight> fit_lights_to_picture(LitScene& lit, const Picture& picture,
                                                         const OutputOptions& options,
                                                         std::size_t count, double& distance,
-                                                        const FitWork& work = {});
+                                                        const prt::Work& work = {});
 
 struct EnvironmentFit {
     /// R of the environment: 6 x R x R texels.
@@ -82,14 +75,14 @@ struct EnvironmentFit {
 /// Throws:  std::invalid_argument for another number of receivers, or receivers with highlights;
 ///          prt::Cancelled.
 cubemap::CubeMap fit_environment(LitScene& lit, const FitTarget& target,
-                                 const EnvironmentFit& options = {}, const FitWork& work = {});
+                                 const EnvironmentFit& options = {}, const prt::Work& work = {});
 
 /// Returns so many distant lights, or fewer where more would not help, whose direct light comes
 /// nearest to the target, and lights the scene with them. relight::fit_lights() says how.
 ///
 /// Throws:  as relight::fit_lights(), and std::invalid_argument for receivers with highlights.
 std::vector<lights::DistantLight> fit_lights(LitScene& lit, const FitTarget& target,
-                                             std::size_t count, const FitWork& work = {});
+                                             std::size_t count, const prt::Work& work = {});
 
 /// Returns how bright each of some lights has to be, >= 0, to come nearest to the target together.
 /// After bounce() light that bounces counts. The scene is left in the light of the last one.
@@ -97,6 +90,6 @@ std::vector<lights::DistantLight> fit_lights(LitScene& lit, const FitTarget& tar
 /// Throws:  std::invalid_argument for no lights or another number of receivers; as
 ///          LitScene::light().
 std::vector<double> fit_gains(LitScene& lit, const FitTarget& target, std::span<const Light> lights,
-                              const FitWork& work = {});
+                              const prt::Work& work = {});
 
 } // namespace relumine

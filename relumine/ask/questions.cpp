@@ -69,25 +69,26 @@ const cubemap::EnvironmentFile* file_of(const LitScene& lit) {
     return base != nullptr && !base->map() && base->file().image ? &base->file() : nullptr;
 }
 
-/// Integrates the light of receivers exactly; `options` has the processes that share the work.
+/// Integrates the light of receivers exactly.
 std::vector<glm::dvec3> exact_radiance(const LitScene& lit, const prt::Receivers& receivers,
                                        std::span<const std::uint32_t> indices,
-                                       const VerifyOptions& options,
-                                       const relight::ExactOptions& exact_options) {
-    return in_slices<glm::dvec3>(options.team, indices, [&](std::span<const std::uint32_t> slice) {
+                                       const prt::Work& work) {
+    return in_slices<glm::dvec3>(work.team, indices, [&](std::span<const std::uint32_t> slice) {
+        const relight::ExactOptions options{.bias = lit.scene().settings.bias};
         const cubemap::EnvironmentFile* file = file_of(lit);
         return file != nullptr
                    ? relight::exact_radiance(receivers, slice, lit.rays().blockers(), *file,
-                                             exact_options)
+                                             options, work)
                    : relight::exact_radiance(receivers, slice, lit.rays().blockers(),
-                                             lit.relighter().environment(), exact_options);
+                                             lit.relighter().environment(), options, work);
     });
 }
 
 /// Adds the bounces of a path tracer to exact direct light. Returns the standard error of the
 /// sum, relative to it, L2 over the receivers.
 double add_traced(const LitScene& lit, std::span<const std::uint32_t> receivers,
-                  const VerifyOptions& options, std::vector<glm::dvec3>& exact) {
+                  const VerifyOptions& options, const prt::Work& work,
+                  std::vector<glm::dvec3>& exact) {
     const Scene& scene = lit.scene();
     const bool is_bounced = !lit.bounces().bounced().empty();
     const std::vector<glm::vec3> albedo_of_vertices =
@@ -96,7 +97,7 @@ double add_traced(const LitScene& lit, std::span<const std::uint32_t> receivers,
             : std::vector<glm::vec3>(scene.mesh.num_vertices());
     const prt::Lamps lamps = dimmed(scene.lamps, lit.lamps().gains());
     const auto traced = in_slices<relight::TracedBounces>(
-        options.team, receivers, [&](std::span<const std::uint32_t> slice) {
+        work.team, receivers, [&](std::span<const std::uint32_t> slice) {
             return relight::trace_bounces(
                 scene.mesh, albedo_of_vertices, scene.receivers, slice, lit.rays().of_mesh(),
                 lit.relighter().environment(),
@@ -106,9 +107,8 @@ double add_traced(const LitScene& lit, std::span<const std::uint32_t> receivers,
                  .emitters = lamps.emitters,
                  .lights = lamps.lights,
                  .two_sided = scene.settings.two_sided_bounces,
-                 .bias = scene.settings.bias,
-                 .stop = options.stop,
-                 .on_progress = options.on_progress});
+                 .bias = scene.settings.bias},
+                work);
         });
     double errors = 0.0, all = 0.0;
     for (std::size_t i = 0; i < exact.size(); ++i) {
@@ -129,7 +129,7 @@ std::optional<Verification::Surface> verify_points(const LitScene& lit,
                                                    std::vector<prt::MeshPoint> points,
                                                    std::span<const glm::vec3> at_vertices,
                                                    std::span<const relight::SharpLight> lights,
-                                                   const VerifyOptions& options) {
+                                                   const prt::Work& work) {
     if (points.empty())
         return std::nullopt;
     const Scene& scene = lit.scene();
@@ -148,9 +148,7 @@ std::optional<Verification::Surface> verify_points(const LitScene& lit,
         shown.push_back(prt::value_at(scene.mesh, at_vertices, point) +
                         glm::vec3(packets.radiance(position, normal, rays)));
     }
-    const relight::ExactOptions exact_options{
-        .bias = scene.settings.bias, .stop = options.stop, .on_progress = options.on_progress};
-    const auto exact = exact_radiance(lit, receivers, indices, options, exact_options);
+    const auto exact = exact_radiance(lit, receivers, indices, work);
     Verification::Surface result{.points = std::move(points), .error = {}};
     result.error = relight::compare(indices, exact, shown);
     return result;
@@ -185,15 +183,15 @@ std::vector<prt::MeshPoint> points_of_picture(const LitScene& lit, std::size_t m
 
 /// Pictures trace sharp lights by themselves, unless the scene has highlights, whose part of them
 /// is not diffuse.
-std::optional<Verification::Surface> verify_picture(const LitScene& lit,
-                                                    const VerifyOptions& options) {
+std::optional<Verification::Surface> verify_picture(const LitScene& lit, std::size_t most,
+                                                    const prt::Work& work) {
     const relight::Relighter& relighter = lit.relighter();
-    std::vector<prt::MeshPoint> points = points_of_picture(lit, options.num_surface_points);
+    std::vector<prt::MeshPoint> points = points_of_picture(lit, most);
     const auto lights = relight::picture_lights(relighter);
     if (lights.empty() || lit.scene().transfer.glossy)
-        return verify_points(lit, std::move(points), relighter.diffuse_radiance(), {}, options);
+        return verify_points(lit, std::move(points), relighter.diffuse_radiance(), {}, work);
     return verify_points(lit, std::move(points), relighter.receiver_light().soft_radiance(), lights,
-                         options);
+                         work);
 }
 
 double sum_of(std::span<const glm::vec3> radiance) {
@@ -205,7 +203,8 @@ double sum_of(std::span<const glm::vec3> radiance) {
 }
 
 /// Compares the light towards an eye.
-Verification verify_eye(const LitScene& lit, const glm::vec3& eye, const VerifyOptions& options) {
+Verification verify_eye(const LitScene& lit, const glm::vec3& eye, const VerifyOptions& options,
+                        const prt::Work& work) {
     if (!lit.bounces().bounced().empty() || !lit.scene().lamps.empty())
         throw std::invalid_argument("expected the direct light of an environment for an eye");
     const Scene& scene = lit.scene();
@@ -217,19 +216,17 @@ Verification verify_eye(const LitScene& lit, const glm::vec3& eye, const VerifyO
     result.receivers = relight::random_receivers(scene.transfer, options.num_samples, options.seed);
     result.of_file = file_of(lit) != nullptr;
     result.num_too_smooth = live.num_too_smooth();
-    const std::vector<glm::dvec3> exact = exact_radiance(
-        lit, seen, result.receivers, options,
-        {.bias = scene.settings.bias, .stop = options.stop, .on_progress = options.on_progress});
+    const std::vector<glm::dvec3> exact = exact_radiance(lit, seen, result.receivers, work);
     result.error = relight::compare(result.receivers, exact, live.look(eye, options.eye_options));
     return result;
 }
 
 } // namespace
 
-Verification verify(const LitScene& lit, const VerifyOptions& options) {
+Verification verify(const LitScene& lit, const VerifyOptions& options, const prt::Work& work) {
     require_environment(lit);
     if (options.eye)
-        return verify_eye(lit, *options.eye, options);
+        return verify_eye(lit, *options.eye, options, work);
     const Scene& scene = lit.scene();
     Verification result;
     result.receivers = relight::random_receivers(scene.transfer, options.num_samples, options.seed,
@@ -240,31 +237,21 @@ Verification verify(const LitScene& lit, const VerifyOptions& options) {
     const double num_points = has_surface ? static_cast<double>(options.num_surface_points) : 0.0;
     const double all = (is_traced ? 2.0 : 1.0) * num_receivers + 2.0 * num_points;
     double done = 0.0;
-    // Each part of the work has its part of the progress.
-    const auto options_of_next = [&](double size) {
-        VerifyOptions part = options;
-        if (options.on_progress)
-            part.on_progress = [&options, begin = done / all, share = size / all](double fraction) {
-                options.on_progress(begin + share * fraction);
-            };
-        done += size;
-        return part;
+    const auto next = [&](double size) {
+        return work.part(std::exchange(done, done + size) / all, size / all);
     };
-    const VerifyOptions direct = options_of_next(num_receivers);
-    const relight::ExactOptions exact_options{
-        .bias = scene.settings.bias, .stop = direct.stop, .on_progress = direct.on_progress};
     result.of_file = file_of(lit) != nullptr;
     std::vector<glm::dvec3> exact =
-        exact_radiance(lit, scene.receivers, result.receivers, direct, exact_options);
+        exact_radiance(lit, scene.receivers, result.receivers, next(num_receivers));
     if (is_traced)
-        result.noise = add_traced(lit, result.receivers, options_of_next(num_receivers), exact);
+        result.noise = add_traced(lit, result.receivers, options, next(num_receivers), exact);
     result.error = relight::compare(result.receivers, exact, lit.radiance());
     if (!has_surface)
         return result;
     result.surface =
         verify_points(lit, prt::random_points(scene.mesh, options.num_surface_points, options.seed),
-                      lit.relighter().diffuse_radiance(), {}, options_of_next(num_points));
-    result.picture = verify_picture(lit, options_of_next(num_points));
+                      lit.relighter().diffuse_radiance(), {}, next(num_points));
+    result.picture = verify_picture(lit, options.num_surface_points, next(num_points));
     return result;
 }
 
@@ -313,12 +300,6 @@ cubemap::CubeMap harmonics_adjoint(const LitScene& lit, std::span<const glm::vec
     if (lit.harmonic_order() == 0)
         throw std::logic_error("expected a scene lit with harmonics, got one without");
     return relight::harmonics_adjoint(lit.relighter(), weights, surfaces_of(lit));
-}
-
-relight::Transport transport(const LitScene& lit, const relight::TransportOptions& options) {
-    if (lit.radiance().empty())
-        throw std::logic_error("expected a scene that is lit, got one without light");
-    return relight::transport(lit.relighter(), options);
 }
 
 void relight_batch(const LitScene& lit, std::span<const cubemap::CubeMap> environments,

@@ -4,10 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <string_view>
 #include <vector>
 
@@ -16,8 +14,7 @@
 #include "cubemap/cube_map.h"
 #include "cubemap/layers/light_layer.h"
 #include "prt/receivers/mesh_point.h"
-#include "prt/team.h"
-#include "relight/adjoint/transport.h"
+#include "prt/work.h"
 #include "relight/reference/exact.h"
 #include "relight/sharp/sharp_lights.h"
 #include "relumine/light/lighting.h"
@@ -41,13 +38,6 @@ struct VerifyOptions {
     /// compared, at the vertices alone and without bounces, and how its cuts are made.
     std::optional<glm::vec3> eye = {};
     EyeOptions eye_options = {};
-    /// Processes that share the work, each with the whole scene in the same light: each integrates
-    /// some of the points, and all get the same result.
-    prt::Team& team = prt::alone();
-    /// Polled a few times a second; Cancelled is thrown
-    std::stop_token stop = {};
-    /// Fraction in [0, 1]; one call at a time
-    std::function<void(double)> on_progress = {};
 };
 
 /// How far the radiance is from exact integration.
@@ -105,13 +95,16 @@ struct Share {
 /// Compares the radiance with exact integration, every shadow ray traced. Under an Environment from
 /// a file, its own pixels are integrated, each as a small area: so the error includes that of
 /// resampling. Under a map, or when edits changed the environment, the map's texels are. After
-/// bounce() its light is compared with a path tracer, which shares nothing but the rays.
+/// bounce() its light is compared with a path tracer, which shares nothing but the rays. Processes
+/// that share the work have the whole scene in the same light: each integrates some of the points,
+/// and all get the same result.
 ///
 /// Throws:  std::logic_error unless an environment lights the scene; Cancelled;
 ///          std::invalid_argument for an eye where there are no live highlights, or other light
 ///          than the environment's.
 /// Cost:    half a million rays for each receiver, or 6 R^2: seconds for 2000 of them.
-[[nodiscard]] Verification verify(const LitScene& lit, const VerifyOptions& options = {});
+[[nodiscard]] Verification verify(const LitScene& lit, const VerifyOptions& options = {},
+                                  const prt::Work& work = {});
 
 /// What lights these receivers: the environment, each texel weighted by how much of it they
 /// reflect, in radiance per sr.
@@ -148,13 +141,6 @@ struct Share {
 /// Throws:  as adjoint(), and std::logic_error for a scene without LightOptions::harmonics.
 [[nodiscard]] cubemap::CubeMap harmonics_adjoint(const LitScene& lit,
                                                  std::span<const glm::vec3> weights);
-
-/// Returns the scene's direct light as a sparse matrix and the light that it is multiplied with:
-/// docs/operator.md
-///
-/// Throws:  as relight::transport(); std::logic_error for a scene without light.
-[[nodiscard]] relight::Transport transport(const LitScene& lit,
-                                           const relight::TransportOptions& options = {});
 
 /// Lights the scene with one environment after the other, and leaves its own light as it is. Direct
 /// light, as it is after LitScene::light() of the map.

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -10,8 +9,7 @@
 
 namespace relumine {
 
-Scene coarsened(Scene scene, float tolerance, std::stop_token stop,
-                const std::function<void(double)>& on_progress) {
+Scene coarsened(Scene scene, float tolerance, const prt::Work& work) {
     if (!has_clusters(scene))
         throw std::invalid_argument("coarsen: expected a scene with clusters");
     const float own = rms_tolerance(scene);
@@ -21,12 +19,11 @@ Scene coarsened(Scene scene, float tolerance, std::stop_token stop,
             tolerance));
     if (tolerance == own)
         return scene;
-    scene.transfer =
-        prt::coarsened(scene.transfer, {.tolerance = tolerance,
-                                        .min_level = scene.settings.min_level,
-                                        .face_resolution = scene.settings.face_resolution,
-                                        .stop = std::move(stop),
-                                        .on_progress = on_progress});
+    scene.transfer = prt::coarsened(scene.transfer,
+                                    {.tolerance = tolerance,
+                                     .min_level = scene.settings.min_level,
+                                     .face_resolution = scene.settings.face_resolution},
+                                    work);
     scene.settings.tolerance = tolerance;
     scene.settings.epsilon.reset();
     return scene;

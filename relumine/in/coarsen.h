@@ -1,9 +1,7 @@
 // A scene with fewer clusters, without a new precompute.
 #pragma once
 
-#include <functional>
-#include <stop_token>
-
+#include "prt/work.h"
 #include "relumine/in/scene.h"
 
 namespace relumine {
@@ -16,7 +14,6 @@ namespace relumine {
 /// Throws:  std::invalid_argument for a tolerance below the scene's, or a scene without clusters;
 ///          prt::Cancelled.
 /// Cost:    seconds for ten thousand clusters of 73,000 vertices.
-[[nodiscard]] Scene coarsened(Scene scene, float tolerance, std::stop_token stop = {},
-                              const std::function<void(double)>& on_progress = {});
+[[nodiscard]] Scene coarsened(Scene scene, float tolerance, const prt::Work& work = {});
 
 } // namespace relumine

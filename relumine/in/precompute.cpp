@@ -9,7 +9,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "files/extension.h"
@@ -155,9 +154,8 @@ private:
             return mesh;
         mesh.is_open = mesh.is_open && !options_.no_refine && options_.blockers == nullptr;
         prt::RefineReport found;
-        mesh = refined_by_itself(
-            std::move(mesh), options_.bias,
-            {.stop = work_.stop, .on_progress = progress_of(work_, Stage::Refinement)}, &found);
+        mesh =
+            refined_by_itself(std::move(mesh), options_.bias, work_.of(Stage::Refinement), &found);
         if (found.num_added != 0)
             report_.refined = found;
         return mesh;

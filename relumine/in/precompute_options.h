@@ -210,6 +210,16 @@ struct PrecomputeWork {
     std::function<void(Warning, const std::string&)> on_warning = {};
     /// Gets a sentence that helps to understand a run. One call at a time.
     std::function<void(const std::string&)> on_note = {};
+
+    /// The handle of a stage that the processes do not share.
+    [[nodiscard]] prt::Work of(Stage stage) const {
+        prt::Work work{.stop = stop};
+        if (on_progress)
+            work.on_progress = [told = on_progress, stage](double fraction) {
+                told(stage, fraction);
+            };
+        return work;
+    }
 };
 
 /// What one of the processes that share a precompute did.

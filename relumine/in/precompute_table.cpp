@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <stdexcept>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

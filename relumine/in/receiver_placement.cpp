@@ -130,13 +130,13 @@ private:
                                        ? *options_.view->camera
                                        : camera_of(scene_, static_cast<float>(size.width) /
                                                                static_cast<float>(size.height));
-        prt::PixelReceivers pixels = prt::pixel_receivers(
-            scene_.mesh, mesh_rays(),
-            {.camera = camera,
-             .width = size.width,
-             .height = size.height,
-             .samples_per_axis = size.samples_per_axis},
-            {.stop = work_.stop, .on_progress = progress_of(work_, Stage::Receivers)});
+        prt::PixelReceivers pixels =
+            prt::pixel_receivers(scene_.mesh, mesh_rays(),
+                                 {.camera = camera,
+                                  .width = size.width,
+                                  .height = size.height,
+                                  .samples_per_axis = size.samples_per_axis},
+                                 work_.of(Stage::Receivers));
         scene_.receivers = std::move(pixels.receivers);
         leave_obstacles();
         scene_.layout = std::move(pixels.layout);

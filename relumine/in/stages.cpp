@@ -54,14 +54,6 @@ void note(const PrecomputeWork& work, const std::string& message) {
         work.on_note(message);
 }
 
-std::function<void(double)> progress_of(const PrecomputeWork& work, Stage stage) {
-    if (!work.on_progress)
-        return {};
-    return [&on_progress = work.on_progress, stage](double fraction) {
-        on_progress(stage, fraction);
-    };
-}
-
 prt::RayScene ray_scene(const mesh::TriangleMesh& mesh, const std::string& prefix) {
     try {
         return prt::RayScene(mesh);
@@ -130,7 +122,7 @@ prt::Work Stages::work_for(Stage stage, bool more_follows) const {
             .checkpoint = options_.checkpoint,
             .more_follows = more_follows,
             .stop = work_.stop,
-            .on_progress = progress_of(work_, stage)};
+            .on_progress = work_.of(stage).on_progress};
 }
 
 /// Calls find(blockers, options, work).

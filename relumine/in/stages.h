@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -21,8 +20,6 @@ namespace relumine {
 // What a precompute tells its caller, who need not listen.
 void warn(const PrecomputeWork& work, Warning kind, const std::string& message);
 void note(const PrecomputeWork& work, const std::string& message);
-/// Null where nobody listens.
-[[nodiscard]] std::function<void(double)> progress_of(const PrecomputeWork& work, Stage stage);
 
 /// Clusters, highlights and bounces of the receivers that this process or part has.
 class Stages {

@@ -1,7 +1,6 @@
 // The light of a scene's own lamps.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>

@@ -1,7 +1,6 @@
 // The light of a list of distant lights, which comes on top of an environment's.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 

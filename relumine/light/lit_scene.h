@@ -1,11 +1,9 @@
 // A scene under light: what a program that relights keeps in memory.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 

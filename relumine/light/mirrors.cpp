@@ -4,15 +4,13 @@
 #include <cmath>
 
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 
 #include "files/parallel.h"
 #include "prt/glossy/brdf.h"
-#include "prt/glossy/sheen_lobe.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/visibility/twin_triangles.h"
-#include "relight/pictures/reflections.h"
+#include "relight/pictures/highlight_rays.h"
 
 namespace relumine {
 
@@ -73,20 +71,6 @@ private:
     std::vector<glm::vec3> light_, sent_, emission_;
 };
 
-/// Returns the rays of a surface, as a factor: those of a narrow lobe go one way, of sheen all, and
-/// a rough metal shows nothing but its rays.
-float part_of_rays(const prt::Surface& surface) {
-    constexpr float WideFrom = 0.1f, LeastOfMetals = 0.25f, WideAlpha = 0.1f;
-    if (prt::has_sheen(surface))
-        return 2.0f;
-    if (std::max({surface.specular.r, surface.specular.g, surface.specular.b}) > LeastOfMetals &&
-        relight::lobe_alpha(surface) > WideAlpha)
-        return 4.0f;
-    if (!prt::facts_of(surface.highlight).is_roughness || prt::has_coat(surface))
-        return 1.0f;
-    return std::min(surface.roughness_or_exponent / WideFrom, 1.0f);
-}
-
 } // namespace
 
 SceneMirrors::SceneMirrors(const Scene& scene, const SceneRays& rays, std::uint32_t num_rays)
@@ -97,15 +81,13 @@ SceneMirrors::SceneMirrors(const Scene& scene, const SceneRays& rays, std::uint3
 }
 
 std::uint32_t SceneMirrors::rays_of(std::size_t receiver) const {
-    constexpr std::uint32_t Least = 4;
     if (rays_per_pixel_ == 0)
         return 0;
-    float rays =
-        static_cast<float>(rays_per_pixel_) * part_of_rays(scene_->receivers.surfaces[receiver]);
-    if (const auto* pixels = std::get_if<prt::PixelLayout>(&scene_->layout))
-        rays *= static_cast<float>(pixels->num_shown(receiver)) /
-                static_cast<float>(pixels->samples_per_pixel());
-    return std::max(static_cast<std::uint32_t>(std::ceil(rays)), Least);
+    const auto* pixels = std::get_if<prt::PixelLayout>(&scene_->layout);
+    const float shown = pixels == nullptr ? 1.0f
+                                          : static_cast<float>(pixels->num_shown(receiver)) /
+                                                static_cast<float>(pixels->samples_per_pixel());
+    return relight::rays_of_receiver(scene_->receivers.surfaces[receiver], rays_per_pixel_, shown);
 }
 
 void SceneMirrors::add(const relight::Relighter& light, const Surfaces& surfaces,

@@ -1,8 +1,6 @@
 #include "relumine/light/shared_receivers.h"
 
-#include <algorithm>
 #include <cstring>
-#include <functional>
 #include <numeric>
 #include <stdexcept>
 #include <utility>

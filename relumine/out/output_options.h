@@ -15,6 +15,7 @@
 #include "relight/pictures/tone_curve.h"
 #include "relumine/in/emission.h"
 #include "relumine/in/scene.h"
+#include "relumine/light/mirrors.h"
 #include "relumine/options/option_table.h"
 
 namespace relumine {
@@ -124,7 +125,7 @@ struct OutputOptions {
     SunShadows sun = SunShadows::Pixels;
     /// Rays that find what a pixel mirrors, where the scene has no highlights of its own; 0:
     /// surfaces are matte. Receivers on pixels take LightOptions::highlight_rays.
-    std::uint32_t highlight_rays = 32;
+    std::uint32_t highlight_rays = DefaultHighlightRays;
 
     /// Not for scenes of texels.
     Background background = EnvironmentBehind{};

@@ -1,7 +1,6 @@
 #include "relumine/out/output.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <stdexcept>

@@ -60,7 +60,7 @@ struct Painter::Impl {
         return {.width = options.width,
                 .height = options.height,
                 .samples_per_axis = options.samples_per_axis,
-                .on_progress = on_progress};
+                .work = {.on_progress = on_progress}};
     }
     const Camera& camera() {
         if (!chosen_camera)

@@ -95,6 +95,11 @@ nlohmann::json Result::json() const {
     return result.is_object() ? result : nlohmann::json::object();
 }
 
+Words::Words(const char* line) {
+    std::istringstream words(line);
+    assign(std::istream_iterator<std::string>(words), {});
+}
+
 Process::Process(const fs::path& folder, const std::vector<std::string>& arguments,
                  const RunOptions& options)
     : start_(now()) {
@@ -222,19 +227,18 @@ AppTest::~AppTest() {
     fs::remove_all(folder_, ignored);
 }
 
-Result AppTest::relumine(const std::vector<std::string>& arguments,
-                         const RunOptions& options) const {
+Result AppTest::relumine(const Words& arguments, const RunOptions& options) const {
     return Process(folder_, arguments, options).wait();
 }
 
-Result AppTest::succeed(const std::vector<std::string>& arguments) const {
+Result AppTest::succeed(const Words& arguments) const {
     Result result = relumine(arguments);
     EXPECT_EQ(result.exit_code, 0) << joined(arguments) << "\n" << result.described();
     return result;
 }
 
-Result AppTest::fail(const std::vector<std::string>& arguments,
-                     const std::vector<std::string>& parts, const RunOptions& options) const {
+Result AppTest::fail(const Words& arguments, const std::vector<std::string>& parts,
+                     const RunOptions& options) const {
     const std::vector<std::string> before = files();
     Result result = relumine(arguments, options);
     const std::string what = joined(arguments) + "\n" + result.described();
@@ -248,7 +252,7 @@ Result AppTest::fail(const std::vector<std::string>& arguments,
     return result;
 }
 
-Result AppTest::misuse(const std::vector<std::string>& arguments, const std::string& part) const {
+Result AppTest::misuse(const Words& arguments, const std::string& part) const {
     const std::vector<std::string> before = files();
     Result result = relumine(arguments);
     const std::string what = joined(arguments) + "\n" + result.described();

@@ -45,6 +45,13 @@ struct Result {
     [[nodiscard]] nlohmann::json json() const;
 };
 
+/// What the program is called with: words, or a line of words without blanks.
+struct Words : std::vector<std::string> {
+    using std::vector<std::string>::vector;
+    Words(const std::vector<std::string>& words) : vector(words) {}
+    Words(const char* line);
+};
+
 struct RunOptions {
     /// Writing beyond fails, as on a full disk
     std::optional<std::uint64_t> max_file_bytes = {};
@@ -99,16 +106,15 @@ protected:
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
     /// `relumine ARGUMENTS...` with the test's folder as the current one.
-    [[nodiscard]] Result relumine(const std::vector<std::string>& arguments,
-                                  const RunOptions& options = {}) const;
+    [[nodiscard]] Result relumine(const Words& arguments, const RunOptions& options = {}) const;
     /// The same, expected to succeed.
-    Result succeed(const std::vector<std::string>& arguments) const;
+    Result succeed(const Words& arguments) const;
     /// Expected to end with exit code 1 and one line that begins "relumine: " and holds all of
     /// `parts`, and to leave every file of the folder as it was and no new one.
-    Result fail(const std::vector<std::string>& arguments,
-                const std::vector<std::string>& parts = {}, const RunOptions& options = {}) const;
+    Result fail(const Words& arguments, const std::vector<std::string>& parts = {},
+                const RunOptions& options = {}) const;
     /// Expected to end with exit code 2, one line on stderr and nothing done.
-    Result misuse(const std::vector<std::string>& arguments, const std::string& part = {}) const;
+    Result misuse(const Words& arguments, const std::string& part = {}) const;
 
     /// Names (relative) and content hashes of all files below the folder.
     [[nodiscard]] std::vector<std::string> files() const;

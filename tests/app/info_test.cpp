@@ -11,7 +11,7 @@ protected:
 };
 
 TEST_F(Info, Mesh) {
-    const nlohmann::json info = succeed({"info", "mesh.obj", "--json"}).json();
+    const nlohmann::json info = succeed("info mesh.obj --json").json();
     EXPECT_EQ(info["kind"], "mesh");
     EXPECT_EQ(info["vertices"], 6);
     EXPECT_EQ(info["triangles"], 8);
@@ -19,9 +19,9 @@ TEST_F(Info, Mesh) {
     EXPECT_EQ(info["max"], (nlohmann::json{1.0, 1.0, 1.0}));
     EXPECT_EQ(info["diagnosis"]["isolated_vertices"], 0);
     EXPECT_EQ(info["colors"], false);
-    EXPECT_NE(succeed({"info", "mesh.obj"}).out.find("6 vertices, 8 triangles"), std::string::npos);
+    EXPECT_NE(succeed("info mesh.obj").out.find("6 vertices, 8 triangles"), std::string::npos);
     write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    EXPECT_NE(succeed({"info", "one.obj"}).out.find("3 vertices, 1 triangle\n"), std::string::npos);
+    EXPECT_NE(succeed("info one.obj").out.find("3 vertices, 1 triangle\n"), std::string::npos);
 }
 
 TEST_F(Info, NamesInFilesDoNotCommandTheTerminal) {
@@ -29,7 +29,7 @@ TEST_F(Info, NamesInFilesDoNotCommandTheTerminal) {
     write(name, octahedron_obj());
     succeed({"precompute", name, "-o", "scene.prt", "--tolerance", "1", "--min-depth", "0", "-q",
              "--no-refine", "--bounces", "0"});
-    const std::string out = succeed({"info", "scene.prt"}).out;
+    const std::string out = succeed("info scene.prt").out;
     EXPECT_NE(out.find("from ?]0;title?"), std::string::npos) << out;
     EXPECT_EQ(out.find_first_of("\x1b\a\xff"), std::string::npos) << out;
 }
@@ -37,7 +37,7 @@ TEST_F(Info, NamesInFilesDoNotCommandTheTerminal) {
 TEST_F(Info, WithoutRoomForAThreadItEndsWithOneLine) {
     // Threads get stacks of this size, which no address space has.
     const Result result =
-        fail({"info", "mesh.obj"}, {"cannot start a thread"}, {.stack_bytes = 1ull << 58});
+        fail("info mesh.obj", {"cannot start a thread"}, {.stack_bytes = 1ull << 58});
     EXPECT_EQ(result.signal, 0);
 }
 
@@ -68,22 +68,21 @@ TEST_F(Info, PoseOfAMesh) {
     EXPECT_EQ(low({"--pose", "up@0.5"}), 1.0);
     EXPECT_EQ(low({"--pose", "0@3"}), 2.0);
     write("white.hdr", white_hdr());
-    succeed({"relight", "lift.gltf", "white.hdr", "--no-cache", "--pose", "up@1", "-o", "posed.png",
-             "--size", "32x32"});
-    fail({"info", "lift.gltf", "--pose", "down@1"}, {"lift.gltf", "down"});
-    fail({"info", "mesh.obj", "--pose", "0@1"}, {"expected .glb or .gltf for a pose"});
-    misuse({"info", "white.hdr", "--pose", "0@1"}, "--pose");
-    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--tolerance", "1", "--min-depth", "0",
-             "-q", "--no-refine", "--bounces", "0"});
-    misuse({"info", "scene.prt", "--pose", "0@1"}, "--pose");
-    misuse({"relight", "scene.prt", "white.hdr", "--pose", "0@1", "-o", "posed.png"}, "--pose");
+    succeed("relight lift.gltf white.hdr --no-cache --pose up@1 -o posed.png --size 32x32");
+    fail("info lift.gltf --pose down@1", {"lift.gltf", "down"});
+    fail("info mesh.obj --pose 0@1", {"expected .glb or .gltf for a pose"});
+    misuse("info white.hdr --pose 0@1", "--pose");
+    succeed(
+        "precompute mesh.obj -o scene.prt --tolerance 1 --min-depth 0 -q --no-refine --bounces 0");
+    misuse("info scene.prt --pose 0@1", "--pose");
+    misuse("relight scene.prt white.hdr --pose 0@1 -o posed.png", "--pose");
 }
 
 TEST_F(Info, MaterialsOfAMesh) {
     write("a.mtl",
           "newmtl shiny\nKd 0.5\nKs 0.25\nNs 50\nmap_Kd gone.png\nnewmtl metal\nPr 0.25\nPm 1\n");
     write("parts.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no lid\nusemtl shiny\nf 1 2 3\n");
-    const nlohmann::json info = succeed({"info", "parts.obj", "--json"}).json();
+    const nlohmann::json info = succeed("info parts.obj --json").json();
     ASSERT_EQ(info["materials"].size(), 2u);
     EXPECT_EQ(info["materials"][0]["name"], "shiny");
     EXPECT_EQ(info["materials"][0]["model"], "phong");
@@ -92,7 +91,7 @@ TEST_F(Info, MaterialsOfAMesh) {
     EXPECT_EQ(info["materials"][1]["roughness"], 0.25);
     EXPECT_EQ(info["groups"], nlohmann::json{"lid"});
     EXPECT_EQ(info["missing"], nlohmann::json{"gone.png"});
-    const Result told = succeed({"info", "parts.obj"});
+    const Result told = succeed("info parts.obj");
     constexpr const char* Heads =
         "material  model               colour       metallic  roughness  specular        exponent";
     for (const char* part :
@@ -102,29 +101,28 @@ TEST_F(Info, MaterialsOfAMesh) {
           "not found           gone.png"})
         EXPECT_NE(told.out.find(part), std::string::npos) << part << told.described();
     write("a.mtl", "newmtl shiny\nKd 2\n");
-    EXPECT_NE(succeed({"info", "parts.obj"})
+    EXPECT_NE(succeed("info parts.obj")
                   .out.find("left out            the material shiny is grey, since it cannot be "
                             "read: a.mtl: expected a number of 0 to 1 in line 2, got '2'"),
               std::string::npos);
     write("a.gltf", "{\"asset\": {\"version\": \"2.0\"}");
-    fail({"info", "a.gltf"}, {"a.gltf: expected glTF's JSON, got a syntax error"});
-    EXPECT_TRUE(succeed({"info", "mesh.obj", "--json"}).json()["materials"].empty());
+    fail("info a.gltf", {"a.gltf: expected glTF's JSON, got a syntax error"});
+    EXPECT_TRUE(succeed("info mesh.obj --json").json()["materials"].empty());
 }
 
 TEST_F(Info, ExtensionsInCapitals) {
     write("MESH.OBJ", octahedron_obj());
     write("ENV.HDR", white_hdr());
-    EXPECT_EQ(succeed({"info", "MESH.OBJ", "--json"}).json()["kind"], "mesh");
-    EXPECT_EQ(succeed({"info", "ENV.HDR", "--json"}).json()["kind"], "environment");
+    EXPECT_EQ(succeed("info MESH.OBJ --json").json()["kind"], "mesh");
+    EXPECT_EQ(succeed("info ENV.HDR --json").json()["kind"], "environment");
 }
 
 TEST_F(Info, CheckFindsEveryFlippedBit) {
-    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q",
-             "--no-refine"});
-    EXPECT_NE(succeed({"info", "scene.prt", "--check"}).out.find("checked: whole and sound"),
+    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 -q --no-refine");
+    EXPECT_NE(succeed("info scene.prt --check").out.find("checked: whole and sound"),
               std::string::npos);
-    EXPECT_EQ(succeed({"info", "scene.prt", "--check", "--json"}).json()["checked"], true);
-    misuse({"info", "mesh.obj", "--check"}, "--check: expected a scene (.prt), got 'mesh.obj'");
+    EXPECT_EQ(succeed("info scene.prt --check --json").json()["checked"], true);
+    misuse("info mesh.obj --check", "--check: expected a scene (.prt), got 'mesh.obj'");
     const std::string whole = read("scene.prt");
     // All over the file; tests of prt flip every bit.
     for (std::size_t i = 0; i < 60; ++i) {
@@ -132,20 +130,20 @@ TEST_F(Info, CheckFindsEveryFlippedBit) {
         const std::size_t at = i * (whole.size() - 1) / 59;
         bytes[at] = static_cast<char>(bytes[at] ^ 1 << i % 8);
         write("scene.prt", bytes);
-        fail({"info", "scene.prt", "--check"}, {"scene.prt: expected "});
+        fail("info scene.prt --check", {"scene.prt: expected "});
     }
     // The next version, by its number.
     std::string newer = whole;
     newer[12] = 6;
     write("scene.prt", newer);
-    fail({"info", "scene.prt", "--check"},
+    fail("info scene.prt --check",
          {"scene.prt: expected .prt version 5, got version 6, made by a newer relumine"});
 }
 
 TEST_F(Info, Scene) {
-    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "--tolerance",
-             "0.25", "--min-depth", "2", "--bias", "0.125", "--floor", "4", "--no-refine"});
-    const nlohmann::json info = succeed({"info", "scene.prt", "--json"}).json();
+    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --tolerance 0.25 --min-depth 2 "
+            "--bias 0.125 --floor 4 --no-refine");
+    const nlohmann::json info = succeed("info scene.prt --json").json();
     EXPECT_EQ(info["kind"], "scene");
     EXPECT_EQ(info["vertices"], 22);
     EXPECT_EQ(info["tolerance"], 0.25);
@@ -155,14 +153,13 @@ TEST_F(Info, Scene) {
     EXPECT_EQ(info["floor"], 4);
     EXPECT_EQ(info["source"], "mesh.obj");
     EXPECT_FALSE(info.contains("epsilon"));
-    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "--epsilon",
-             "0.5", "--no-refine"});
-    EXPECT_EQ(succeed({"info", "scene.prt", "--json"}).json()["epsilon"], 0.5);
+    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --epsilon 0.5 --no-refine");
+    EXPECT_EQ(succeed("info scene.prt --json").json()["epsilon"], 0.5);
 }
 
 TEST_F(Info, BrightestDirectionAndRangeOfAnEnvironment) {
     write("lamp.hdr", lamp_hdr(32)); // +X
-    const nlohmann::json info = succeed({"info", "lamp.hdr", "--json"}).json();
+    const nlohmann::json info = succeed("info lamp.hdr --json").json();
     EXPECT_EQ(info["width"], 128);
     EXPECT_EQ(info["height"], 64);
     EXPECT_EQ(info["face_resolution"], 32);
@@ -172,7 +169,7 @@ TEST_F(Info, BrightestDirectionAndRangeOfAnEnvironment) {
     for (const char* key : {"assumptions", "mean_radiance", "mean_luminance", "dynamic_range_ev",
                             "num_nan", "num_infinite", "num_negative"})
         EXPECT_TRUE(info.contains(key)) << key;
-    const Result told = succeed({"info", "lamp.hdr"});
+    const Result told = succeed("info lamp.hdr");
     for (const char* part : {"lat-long", "assumed", "mean radiance", "brightest", "bad pixels"})
         EXPECT_NE(told.out.find(part), std::string::npos) << part << told.described();
 }
@@ -180,11 +177,10 @@ TEST_F(Info, BrightestDirectionAndRangeOfAnEnvironment) {
 TEST_F(Info, LayoutOnRequest) {
     write("odd.hdr",
           hdr_file(30, 30, [](std::uint32_t, std::uint32_t) { return Rgb{1.0f, 1.0f, 1.0f}; }));
-    fail({"info", "odd.hdr"}, {"30x30"});
-    EXPECT_EQ(succeed({"info", "odd.hdr", "--layout", "latlong", "--json"}).json()["layout"],
-              "lat-long");
-    fail({"info", "odd.hdr", "--layout", "cube"}, {"odd.hdr", "30x30"});
-    misuse({"info", "odd.hdr", "--layout", "dodecahedron"}, "--layout");
+    fail("info odd.hdr", {"30x30"});
+    EXPECT_EQ(succeed("info odd.hdr --layout latlong --json").json()["layout"], "lat-long");
+    fail("info odd.hdr --layout cube", {"odd.hdr", "30x30"});
+    misuse("info odd.hdr --layout dodecahedron", "--layout");
 }
 
 } // namespace

@@ -36,8 +36,8 @@ protected:
 #endif
             GTEST_SKIP() << "the processor has no AVX2";
         AppTest::SetUp();
-        succeed({"generate", "painted_room", "-o", ".", "--vertices", "2000", "-q"});
-        succeed({"generate", "colonnade", "-o", ".", "--vertices", "2000", "-q"});
+        succeed("generate painted_room -o . --vertices 2000 -q");
+        succeed("generate colonnade -o . --vertices 2000 -q");
     }
 
     /// Walls are parallel to axes, so many rays lie in planes of triangles and on their edges.
@@ -70,7 +70,7 @@ TEST_F(ProcessorsTest, HighlightsWithEitherEngine) {
 }
 
 TEST_F(ProcessorsTest, OfOtherKindsShareNoWork) {
-    succeed({"plan", "colonnade.ply", "-o", "scene.plan", "--tolerance", "0.06", "-q"});
+    succeed("plan colonnade.ply -o scene.plan --tolerance 0.06 -q");
     const std::vector<std::string> part = {"precompute", "--plan", "scene.plan", "--part",
                                            "1/2",        "-o",     "part",       "-q"};
     succeed(part);
@@ -91,9 +91,8 @@ TEST_F(ProcessorsTest, AnEmbreeThatLacksSomethingIsRefused) {
         ::setenv("RELUMINE_EMBREE_LACKS", lack, 1);
         {
             const Limit limit("avx2");
-            fail({"precompute", "colonnade.ply", "-o", "scene.prt", "-q"},
-                 {sentence, "got another"});
-            EXPECT_EQ(succeed({"--version"}).out.rfind("relumine ", 0), 0u);
+            fail("precompute colonnade.ply -o scene.prt -q", {sentence, "got another"});
+            EXPECT_EQ(succeed("--version").out.rfind("relumine ", 0), 0u);
         }
         ::unsetenv("RELUMINE_EMBREE_LACKS");
     }

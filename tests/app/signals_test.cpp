@@ -1,5 +1,4 @@
 // Ctrl-C and SIGTERM: a soon end, one line, nothing left behind. And a real full disk.
-#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <thread>
@@ -45,7 +44,7 @@ protected:
 };
 
 TEST_F(Signals, PrecomputeStopsAtOnce) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "20000", "-q"});
+    succeed("generate knot -o . --vertices 20000 -q");
     write("scene.prt", "the old one");
     interrupt(Endless, {SIGINT}, std::chrono::milliseconds(300));
     interrupt(Endless, {SIGTERM}, std::chrono::milliseconds(700));
@@ -58,7 +57,7 @@ TEST_F(Signals, PrecomputeStopsAtOnce) {
 }
 
 TEST_F(Signals, AClosedTerminalIsNothingToNohup) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "20000", "-q"});
+    succeed("generate knot -o . --vertices 20000 -q");
     Process process(folder(), Endless, {.ignored_signal = SIGHUP});
     process.wait_until_it_takes(SIGTERM);
     process.send(SIGHUP);
@@ -73,26 +72,25 @@ TEST_F(Signals, WorkOfLibrariesThatDoNotPollStopsAtOnce) {
     interrupt({"env", "convert", "white.hdr", "--rotate", "33", "--size", "16384x8192", "-o",
                "large.exr", "-q"},
               {SIGINT}, std::chrono::milliseconds(1000));
-    succeed({"generate", "blob", "-o", ".", "--vertices", "2000", "-q"});
-    succeed({"precompute", "blob.ply", "-o", "scene.prt", "--tolerance", "0.1", "-q"});
+    succeed("generate blob -o . --vertices 2000 -q");
+    succeed("precompute blob.ply -o scene.prt --tolerance 0.1 -q");
     interrupt(
         {"relight", "scene.prt", "white.hdr", "--size", "12000x12000", "-o", "large.png", "-q"},
         {SIGTERM}, std::chrono::milliseconds(1000));
 }
 
 TEST_F(Signals, VerifyStopsAtOnce) {
-    succeed({"generate", "blob", "-o", ".", "--vertices", "20000", "-q"});
+    succeed("generate blob -o . --vertices 20000 -q");
     write("white.hdr", white_hdr());
-    succeed({"precompute", "blob.ply", "-o", "scene.prt", "--tolerance", "0.05", "-q"});
+    succeed("precompute blob.ply -o scene.prt --tolerance 0.05 -q");
     interrupt(
         {"verify", "scene.prt", "white.hdr", "--samples", "0", "--face-resolution", "512", "-q"},
         {SIGINT}, std::chrono::milliseconds(1500));
 }
 
 TEST_F(Signals, ProgressIsPlainLinesWithTheTimeLeft) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "15000", "-q"});
-    const Result result =
-        succeed({"precompute", "knot.ply", "-o", "scene.prt", "--tolerance", "0.0135", "--json"});
+    succeed("generate knot -o . --vertices 15000 -q");
+    const Result result = succeed("precompute knot.ply -o scene.prt --tolerance 0.0135 --json");
     ASSERT_FALSE(result.json().empty());
     EXPECT_EQ(result.err.find('\r'), std::string::npos) << result.described();
     // Five seconds after it began, work tells of its next tenth.
@@ -123,21 +121,17 @@ private:
 TEST_F(FullDisk, LeavesTheOldFile) {
     write("mesh.obj", octahedron_obj());
     write("white.hdr", white_hdr());
-    succeed({"precompute", "mesh.obj", "-o", "disk/scene.prt", "--no-refine", "--face-resolution",
-             "16", "-q"});
-    succeed({"relight", "disk/scene.prt", "white.hdr", "-o", "disk/lit.npy"});
+    succeed("precompute mesh.obj -o disk/scene.prt --no-refine --face-resolution 16 -q");
+    succeed("relight disk/scene.prt white.hdr -o disk/lit.npy");
     const std::vector<std::string> no_space = {"cannot write", "No space left"};
-    fail({"generate", "blob", "-o", "disk", "--vertices", "3000"}, no_space);
+    fail("generate blob -o disk --vertices 3000", no_space);
 
-    succeed({"generate", "blob", "-o", ".", "--vertices", "7000", "-q"});
-    succeed(
-        {"precompute", "blob.ply", "-o", "scene.prt", "--no-refine", "--face-resolution", "16"});
+    succeed("generate blob -o . --vertices 7000 -q");
+    succeed("precompute blob.ply -o scene.prt --no-refine --face-resolution 16");
     for (const char* name : {"disk/lit.npy", "disk/lit.ply", "disk/lit.glb"})
         fail({"relight", "scene.prt", "white.hdr", "-o", name}, no_space);
-    fail({"precompute", "blob.ply", "-o", "disk/scene.prt", "--no-refine", "--face-resolution",
-          "16", "-q"},
-         no_space);
-    succeed({"info", "disk/scene.prt"});
+    fail("precompute blob.ply -o disk/scene.prt --no-refine --face-resolution 16 -q", no_space);
+    succeed("info disk/scene.prt");
 }
 
 } // namespace

@@ -1,5 +1,4 @@
 // From nothing to a lit picture, the way the README goes.
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -40,7 +39,7 @@ TEST_F(WholePath, GeneratePrecomputeInfoRelightEditVerify) {
     EXPECT_GE(made["samples"], made["rays"]);
     EXPECT_LT(made["peak_bytes"], 500'000'000ll * SanitizerFactor);
 
-    const nlohmann::json info = succeed({"info", "scene.prt", "--json"}).json();
+    const nlohmann::json info = succeed("info scene.prt --json").json();
     EXPECT_EQ(info["kind"], "scene");
     for (const char* key : {"vertices", "triangles", "clusters", "file_bytes"})
         EXPECT_EQ(info[key], made[key]) << key;
@@ -77,25 +76,23 @@ TEST_F(WholePath, GeneratePrecomputeInfoRelightEditVerify) {
     EXPECT_EQ(lit.size(), vertices);
 
     // The lit mesh is a mesh again, with its colours.
-    const nlohmann::json ply = succeed({"info", "lit.ply", "--json"}).json();
+    const nlohmann::json ply = succeed("info lit.ply --json").json();
     EXPECT_EQ(ply["vertices"], vertices);
     EXPECT_EQ(ply["colors"], true);
 
-    const nlohmann::json edit =
-        succeed({"edit", "scene.prt", "soft_boxes.exr", "-o", "edited.npy", "--disc", "0,1,0",
-                 "--radius", "20", "--gain", "3", "--save-env", "edited.exr", "--json"})
-            .json();
+    const nlohmann::json edit = succeed("edit scene.prt soft_boxes.exr -o edited.npy --disc 0,1,0 "
+                                        "--radius 20 --gain 3 --save-env edited.exr --json")
+                                    .json();
     EXPECT_GT(edit["clusters_touched"], 0);
     EXPECT_LT(edit["clusters_touched"], edit["clusters"]);
     // What an edit leaves is what the edited environment gives.
-    succeed({"relight", "scene.prt", "edited.exr", "-o", "again.npy"});
+    succeed("relight scene.prt edited.exr -o again.npy");
     const auto edited = npy_values(read("edited.npy"));
     EXPECT_LT(relative_l2(edited, npy_values(read("again.npy"))), 2e-3);
     EXPECT_GT(relative_l2(edited, lit), 0.01);
 
-    const nlohmann::json verified = succeed({"verify", "scene.prt", "soft_boxes.exr", "--samples",
-                                             "100", "--surface", "20", "--json"})
-                                        .json();
+    const nlohmann::json verified =
+        succeed("verify scene.prt soft_boxes.exr --samples 100 --surface 20 --json").json();
     EXPECT_EQ(verified["samples"], 100);
     EXPECT_LT(verified["relative_l2"], 0.02);
     EXPECT_LE(verified["mean_abs"], verified["max_abs"]);
@@ -149,7 +146,7 @@ TEST_F(WholePath, TheSunKeepsItsLightAtEveryResolution) {
 }
 
 TEST_F(WholePath, ThreadsDoNotChangeABit) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "1500", "-q"});
+    succeed("generate knot -o . --vertices 1500 -q");
     generate("sun_sky", 32);
     for (const std::string threads : {"1", "2"}) {
         const auto name = [&](const char* end) {

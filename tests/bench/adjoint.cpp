@@ -1,8 +1,6 @@
 // What the derivative by the environment costs beside a relight. See `./dev bench adjoint --help`.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <random>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 

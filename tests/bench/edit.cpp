@@ -2,14 +2,11 @@
 // Lights", Section 6: the bunny under the beach, two discs of 5 % and 10 % of the map's width in
 // front of it and at its side grow brighter over 60 steps, then move over 60.
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <string>
 #include <vector>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include "relumine/relumine.h"

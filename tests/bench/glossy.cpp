@@ -1,6 +1,5 @@
 // Glossy surfaces seen from one side: size, speed and error against exact integration for several
 // roughnesses and environments.
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>

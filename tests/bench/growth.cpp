@@ -1,11 +1,9 @@
 // How cost grows with vertices, clusters and blockers: measured, plotted, and a power law fitted.
 // See `./dev bench growth --help`.
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>

@@ -2,7 +2,6 @@
 // cancelling. See `./dev bench precompute --help`.
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <filesystem>

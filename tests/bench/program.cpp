@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <type_traits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

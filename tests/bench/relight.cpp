@@ -1,12 +1,10 @@
 // How fast a precomputed scene is relit and edited, beside the plain ways: a dense table of bytes,
 // and a full relighting for every edit. All in one run, so that the ratios hold on a busy machine.
 // See `./dev bench relight --help`.
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>

@@ -2,7 +2,6 @@
 // measured, and a simulation of its tasks on hosts that are slow at times and fail at times. See
 // `./dev bench scale --help`.
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <functional>

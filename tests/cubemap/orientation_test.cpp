@@ -2,7 +2,6 @@
 // pictures of one place.
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <numbers>
 
 #include <fmt/format.h>

@@ -14,6 +14,7 @@
 #include "cubemap/cube_map.h"
 #include "cubemap/image/environment.h"
 #include "cubemap/image/image_layout.h"
+#include "tests/own_folder.h"
 #include "tests/real_data.h"
 
 namespace relumine::cubemap {
@@ -66,12 +67,7 @@ inline glm::dvec3 total_power(const EnvironmentImage& image) {
 /// A folder of the test's own that goes with it.
 class TemporaryFolder {
 public:
-    TemporaryFolder()
-        : path_(std::filesystem::path(testing::TempDir()) /
-                ("cubemap_" +
-                 std::string(
-                     testing::UnitTest::GetInstance()->current_test_info()->test_suite_name()) +
-                 "_" + testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    TemporaryFolder() : path_(tests::folder_of_test()) {
         std::filesystem::remove_all(path_);
         std::filesystem::create_directories(path_);
     }
@@ -90,16 +86,7 @@ private:
     std::filesystem::path path_;
 };
 
-/// The message of the std::exception that a call throws, or nothing.
-template<typename Call>
-std::string message_of(const Call& call) {
-    try {
-        call();
-    } catch (const std::exception& error) {
-        return error.what();
-    }
-    return {};
-}
+using tests::message_of;
 
 /// A file of the data folder, or empty where that is absent.
 inline std::filesystem::path data_file(const std::string& name) {

@@ -1,6 +1,5 @@
 #include "data_gen/environments.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>

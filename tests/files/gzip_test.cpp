@@ -1,6 +1,5 @@
 #include "files/gzip.h"
 
-#include <cstdint>
 #include <random>
 #include <vector>
 

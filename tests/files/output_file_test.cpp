@@ -1,4 +1,5 @@
 #include "files/output_file.h"
+#include "tests/own_folder.h"
 
 #include <algorithm>
 #include <array>
@@ -21,18 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class OutputFileTest : public testing::Test {
-protected:
-    void SetUp() override { fs::create_directories(folder_); }
-    void TearDown() override { fs::remove_all(folder_); }
-    [[nodiscard]] std::size_t num_files() const {
-        return static_cast<std::size_t>(
-            std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-    }
-    fs::path folder_ = fs::path(testing::TempDir()) /
-                       ("output_file_" +
-                        std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-};
+using OutputFileTest = tests::FolderTest;
 
 std::vector<std::byte> bytes_of(const std::string& text) {
     std::vector<std::byte> bytes(text.size());

@@ -21,7 +21,7 @@
     X(gltf)                                                                                        \
     X(hdr)                                                                                         \
     X(layers)                                                                                      \
-    X(lights) X(mtl) X(obj) X(off) X(ply) X(prt) X(sections) X(stl) X(texture) X(zstd)
+    X(lights) X(mtl) X(obj) X(off) X(ply) X(prt) X(sections) X(stl) X(texture)
 
 #define RELUMINE_DECLARE(name)                                                                     \
     extern "C" int relumine_fuzz_##name(const std::uint8_t* data, std::size_t size);

@@ -1,7 +1,6 @@
 #include "tests/fuzz/scene_target.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "cubemap/cube_map.h"
 #include "prt/transfer/quadtree.h"

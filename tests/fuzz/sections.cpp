@@ -1,8 +1,6 @@
 // The sections of a .prt file without its container, so that mutations reach what is in them: for
 // each section the letter of its name (below), its size (two bytes, low first) and its bytes. With
 // a section `plan` they are those of a plan, whose light is computed.
-#include <array>
-#include <vector>
 
 #include "prt/parts/part_file.h"
 #include "prt/scene/section_group.h"

@@ -1,7 +1,5 @@
 #include "lights/importance_sampling.h"
 
-#include <numbers>
-
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 

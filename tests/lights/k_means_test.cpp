@@ -1,6 +1,5 @@
 #include "lights/k_means.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>

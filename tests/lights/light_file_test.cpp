@@ -13,33 +13,24 @@
 
 #include "lights/place_lights.h"
 #include "tests/lights/test_maps.h"
+#include "tests/own_folder.h"
 
 namespace relumine::lights {
 namespace {
 
 using testing::HasSubstr;
 
-class LightFile : public testing::Test {
+class LightFile : public tests::FolderTest {
 protected:
-    LightFile()
-        : path_(std::filesystem::temp_directory_path() /
-                ("relumine_light_file_" + std::to_string(::getpid()) + ".json")) {}
-    ~LightFile() override { std::filesystem::remove(path_); }
-
     [[nodiscard]] std::string message(const std::string& content) const {
         std::ofstream(path_) << content;
-        try {
-            (void)load_lights(path_);
-        } catch (const std::runtime_error& error) {
-            return error.what();
-        }
-        return "no error";
+        return tests::message_of([&] { (void)load_lights(path_); });
     }
     [[nodiscard]] std::string with_light(const std::string& light) const {
         return message("{\"version\": 1,\n\"lights\": [\n" + light + "\n]}");
     }
 
-    std::filesystem::path path_;
+    const std::filesystem::path path_ = folder_ / "lights.json";
 };
 
 TEST_F(LightFile, ReadsBackBitByBit) {
@@ -64,7 +55,7 @@ TEST_F(LightFile, ReadsBackBitByBit) {
 
 TEST_F(LightFile, AFileByHandNeedsLittle) {
     EXPECT_EQ(with_light(R"({"direction": [0, 0.7071, 0.7071], "irradiance": [1, 2, 3]})"),
-              "no error");
+              "");
     const LightList list = load_lights(path_);
     ASSERT_EQ(list.lights.size(), 1u);
     EXPECT_NEAR(glm::length(list.lights[0].direction), 1.0, 1e-15);

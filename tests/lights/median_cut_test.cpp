@@ -3,7 +3,6 @@
 #include <bit>
 #include <numbers>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "lights/place_lights.h"

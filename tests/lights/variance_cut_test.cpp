@@ -1,7 +1,5 @@
 #include "lights/variance_cut.h"
 
-#include <numbers>
-
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 // Every truncation and every single changed byte of a small file of each format: the readers must
 // refuse the result or read a valid mesh, quickly.
 #include <ctime>
-#include <functional>
 
 #include "tests/mesh/mesh_files.h"
 

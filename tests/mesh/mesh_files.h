@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -20,6 +19,7 @@
 
 #include "mesh/formats/polygon_soup.h"
 #include "mesh/load.h"
+#include "tests/own_folder.h"
 
 namespace relumine::mesh {
 
@@ -142,18 +142,13 @@ void expect_refusal(Load load, const std::string& part) {
 }
 
 /// A folder for the files of one test.
-class MeshFileTest : public testing::Test {
+class MeshFileTest : public tests::FolderTest {
 protected:
-    void SetUp() override { std::filesystem::create_directories(folder_); }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
     [[nodiscard]] std::filesystem::path write(const std::string& name,
                                               std::string_view content) const {
         std::ofstream(folder_ / name, std::ios::binary) << content;
         return folder_ / name;
     }
-    std::filesystem::path folder_ =
-        std::filesystem::path(testing::TempDir()) /
-        fmt::format("mesh_{}", testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 /// PLY of the box, with options for everything that differs between writers.

@@ -1,6 +1,5 @@
 #include "mesh/tangents.h"
 
-#include <cmath>
 #include <numbers>
 
 #include <glm/geometric.hpp>

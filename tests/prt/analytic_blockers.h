@@ -2,8 +2,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <map>

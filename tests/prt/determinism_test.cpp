@@ -4,7 +4,6 @@
 #include <map>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>

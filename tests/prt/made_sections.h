@@ -2,10 +2,8 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "prt/scene/section_reader.h"
 

@@ -1,9 +1,7 @@
 // What processors answer alike, from AVX2 on: rays through edges and corners, and along planes. The
 // instruction sets of this processor stand for others.
 #include <cstdint>
-#include <memory>
 #include <random>
-#include <string>
 #include <vector>
 
 #include <glm/geometric.hpp>

@@ -143,37 +143,6 @@ def test_copies_are_equal(scene, sky):
         pickle.dumps(relumine.Scene.unclustered(relumine.Mesh(np.eye(3), [[0, 1, 2]])))
 
 
-def test_the_matrix_times_the_light_is_the_radiance(scene, sky):
-    relighter = relumine.Relighter(scene)
-    with pytest.raises(RuntimeError, match="expected a scene that is lit"):
-        relighter.transport()
-    relighter.set_environment(sky)
-    matrix = relighter.transport()
-    radiance = relighter.radiance
-    assert matrix.shape[0] == scene.num_receivers
-    assert matrix.data.shape == (3, len(matrix.indices))
-    assert np.allclose(matrix.product(), radiance, rtol=1e-5, atol=1e-6)
-    assert np.allclose(matrix.product(2 * matrix.light), 2 * radiance, rtol=1e-5, atol=1e-6)
-    # Row by row, as the format says.
-    for row in range(0, scene.num_receivers, 997):
-        part = slice(matrix.indptr[row], matrix.indptr[row + 1])
-        assert (np.diff(matrix.indices[part]) > 0).all()
-        light = matrix.light[matrix.indices[part]]
-        assert np.allclose((matrix.data[:, part].T * light).sum(axis=0), radiance[row], rtol=1e-5)
-    with pytest.raises(ValueError, match="light: expected shape"):
-        matrix.product(np.ones(3))
-    with pytest.raises(ValueError, match="at most 10 entries"):
-        relighter.transport(max_entries=10)
-
-
-def test_scipy_takes_the_matrix(relighter):
-    sparse = pytest.importorskip("scipy.sparse")
-    matrix = relighter.transport()
-    for c in range(3):
-        rows = sparse.csr_matrix((matrix.data[c], matrix.indices, matrix.indptr), matrix.shape)
-        assert np.allclose(rows @ matrix.light[:, c], relighter.radiance[:, c], rtol=1e-5)
-
-
 def test_one_normal_serves_all(scene):
     relighter = relumine.Relighter(scene, harmonics=2)
     relighter.set_environment(relumine.Environment(np.ones((6, 4, 4, 3))))

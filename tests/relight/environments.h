@@ -7,7 +7,6 @@
 #include <random>
 #include <span>
 
-#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <gtest/gtest.h>
 

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "relight/binned_environment.h"

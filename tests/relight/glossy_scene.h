@@ -1,8 +1,6 @@
 // Shiny receivers of every kind under one eye, precomputed, for the tests of glossy relighting.
 #pragma once
 
-#include <glm/geometric.hpp>
-
 #include "prt/glossy/glossy_precompute.h"
 #include "tests/relight/relit_scene.h"
 

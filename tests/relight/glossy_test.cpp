@@ -1,7 +1,6 @@
 // Glossy relighting against closed forms and exact integration.
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

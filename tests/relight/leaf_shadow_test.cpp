@@ -1,5 +1,4 @@
 // The shadow of a card of leaves, which alpha cuts out.
-#include <cmath>
 #include <numeric>
 
 #include <gtest/gtest.h>

@@ -1,7 +1,5 @@
 #include "relight/light_pyramid.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
 
 #include "tests/relight/environments.h"

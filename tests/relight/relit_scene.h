@@ -2,9 +2,6 @@
 #pragma once
 
 #include <utility>
-#include <vector>
-
-#include <glm/vec3.hpp>
 
 #include "mesh/triangle_mesh.h"
 #include "prt/precompute.h"

@@ -1,6 +1,5 @@
 // Light and pictures behind what is blended, and behind glass.
 #include <cmath>
-#include <numeric>
 
 #include <gtest/gtest.h>
 

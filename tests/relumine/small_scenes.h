@@ -12,6 +12,7 @@
 
 #include "data_gen/scenes.h"
 #include "relumine/relumine.h"
+#include "tests/own_folder.h"
 
 namespace relumine::scenes {
 
@@ -68,20 +69,8 @@ inline constexpr float Tolerance = 0.06f;
     return mesh;
 }
 
-/// A folder of its own for each test, gone afterwards.
-class InFolder : public testing::Test {
+class InFolder : public tests::FolderTest {
 protected:
-    InFolder() {
-        const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::temp_directory_path() /
-                  (std::string("relumine_door_") + test.test_suite_name() + "_" + test.name() +
-                   "_" + std::to_string(::getpid()));
-        std::filesystem::create_directories(folder_);
-    }
-    ~InFolder() override { std::filesystem::remove_all(folder_); }
-    InFolder(const InFolder&) = delete;
-    InFolder& operator=(const InFolder&) = delete;
-
     [[nodiscard]] std::filesystem::path file(const std::string& name) const {
         return folder_ / name;
     }
@@ -95,17 +84,10 @@ protected:
     template<typename Damage>
     void refuses_damage(Scene scene, const Damage& damage, const char* what) const {
         damage(scene);
-        try {
-            save_scene(file("damaged.prt"), scene);
-            ADD_FAILURE() << what;
-        } catch (const std::runtime_error& error) {
-            EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
-        }
+        const std::string said = tests::message_of([&] { save_scene(file("damaged.prt"), scene); });
+        EXPECT_NE(said.find(what), std::string::npos) << said;
         EXPECT_FALSE(std::filesystem::exists(file("damaged.prt")));
     }
-
-private:
-    std::filesystem::path folder_;
 };
 
 } // namespace relumine::scenes

@@ -1,13 +1,11 @@
 // The runtime gives what the libraries give from the same file.
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
-#include <string>
 #include <thread>
 #include <vector>
 

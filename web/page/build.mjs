@@ -46,4 +46,8 @@ URL.revokeObjectURL(url);
 `);
 write('relumine.wasm.gz', zlib.gzipSync(fs.readFileSync(wasm), {level: 9}));
 write('index.html', fs.readFileSync(path.join(here, 'index.html')));
-write('LICENSE-three.txt', fs.readFileSync(path.join(three, 'LICENSE')));
+const zstd = path.join(path.dirname(wasm), '../zstd/package/deps/zstd/LICENSE');
+write('LICENSE-three.txt', `${fs.readFileSync(path.join(three, 'LICENSE'))}
+relumine.wasm has zstd:
+
+${fs.readFileSync(zstd)}`);

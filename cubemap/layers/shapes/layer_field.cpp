@@ -1,6 +1,5 @@
 #include "cubemap/layers/shapes/layer_field.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <stdexcept>

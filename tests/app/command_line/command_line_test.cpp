@@ -1,5 +1,4 @@
 // What all subcommands have in common: help, exit codes, --json, -q.
-#include <cmath>
 
 #include "tests/app/command.h"
 #include "tests/app/small_files.h"
@@ -16,8 +15,7 @@ protected:
         write("env.hdr", white_hdr());
     }
     void precompute() const {
-        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16",
-                 "--no-refine"});
+        succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --no-refine");
     }
 
     /// One command line per subcommand that does its work.
@@ -40,8 +38,8 @@ std::vector<std::string> with(std::vector<std::string> arguments,
 }
 
 TEST_F(CommandLineTest, HelpOfEverythingIsPrintedAndSucceeds) {
-    EXPECT_NE(succeed({"--help"}).out.find("precompute"), std::string::npos);
-    EXPECT_EQ(succeed({"--version"}).out.rfind("relumine ", 0), 0u);
+    EXPECT_NE(succeed("--help").out.find("precompute"), std::string::npos);
+    EXPECT_EQ(succeed("--version").out.rfind("relumine ", 0), 0u);
     for (const char* name : {"precompute", "relight", "edit", "verify", "info", "generate"}) {
         const Result help = succeed({name, "--help"});
         EXPECT_NE(help.out.find("Usage: relumine " + std::string(name)), std::string::npos)
@@ -54,21 +52,21 @@ TEST_F(CommandLineTest, HelpOfEverythingIsPrintedAndSucceeds) {
 
 TEST_F(CommandLineTest, WrongUsageExitsWithTwoAndOneLine) {
     misuse({});
-    misuse({"--nonsense"}, "--nonsense");
-    misuse({"illuminate"}, "illuminate");
+    misuse("--nonsense", "--nonsense");
+    misuse("illuminate", "illuminate");
     for (const char* name : {"precompute", "relight", "edit", "verify", "info", "generate"}) {
         misuse({name}, "required");
         misuse({name, "--nonsense"});
         misuse({name, "a", "b", "c", "d"});
     }
-    misuse({"precompute", "mesh.obj"}, "--output");
-    misuse({"relight", "scene.prt", "env.hdr"}, "--output");
-    misuse({"edit", "scene.prt", "env.hdr", "-o", "new.npy"}, "--disc");
-    misuse({"generate", "teapot", "-o", "new"}, "teapot");
-    misuse({"generate", "blob"}, "--output");
-    misuse({"info", "mesh.obj", "--threads", "-1"}, "--threads");
-    misuse({"info", "mesh.obj", "--threads", "two"}, "--threads");
-    misuse({"info", "mesh.obj", "--threads"}, "--threads");
+    misuse("precompute mesh.obj", "--output");
+    misuse("relight scene.prt env.hdr", "--output");
+    misuse("edit scene.prt env.hdr -o new.npy", "--disc");
+    misuse("generate teapot -o new", "teapot");
+    misuse("generate blob", "--output");
+    misuse("info mesh.obj --threads -1", "--threads");
+    misuse("info mesh.obj --threads two", "--threads");
+    misuse("info mesh.obj --threads", "--threads");
 }
 
 TEST_F(CommandLineTest, EmptyValuesAreWrongUsage) {
@@ -117,7 +115,7 @@ TEST_F(CommandLineTest, QuietPrintsNothingOnSuccess) {
 
 TEST_F(CommandLineTest, VerboseSaysWhatWasAssumedOfTheEnvironment) {
     precompute();
-    const Result result = succeed({"relight", "scene.prt", "env.hdr", "-o", "new.npy", "-v"});
+    const Result result = succeed("relight scene.prt env.hdr -o new.npy -v");
     EXPECT_NE(result.out.find("2:1"), std::string::npos) << result.described();
 }
 
@@ -200,18 +198,18 @@ TEST_F(CommandLineTest, NamesMayBeAsLongAsTheSystemAllows) {
 }
 
 TEST_F(CommandLineTest, AMisspeltNameIsToldTheNearest) {
-    misuse({"relihgt", "a", "b"}, "expected a command, got 'relihgt'; did you mean relight? (see "
-                                  "relumine --help)");
-    misuse({"env", "conver"}, "did you mean convert? (see relumine env --help)");
+    misuse("relihgt a b", "expected a command, got 'relihgt'; did you mean relight? (see "
+                          "relumine --help)");
+    misuse("env conver", "did you mean convert? (see relumine env --help)");
     // Before what else may be wrong: -o is missing, too.
-    misuse({"relight", "a.prt", "b.exr", "--exposrue", "1"},
+    misuse("relight a.prt b.exr --exposrue 1",
            "--exposrue: no option of `relumine relight`; did you mean --exposure? (see relumine "
            "relight --help)");
-    misuse({"relight", "a.prt", "b.exr", "--exposrue=1", "-o", "x.png"}, "relumine: --exposrue: ");
-    misuse({"precompute", "a.obj", "-o", "b.prt", "--engine", "embre"},
+    misuse("relight a.prt b.exr --exposrue=1 -o x.png", "relumine: --exposrue: ");
+    misuse("precompute a.obj -o b.prt --engine embre",
            "--engine: expected beam or embree, got 'embre'; did you mean embree?");
-    misuse({"lights", "env.hdr", "--zzz"}, "--zzz: no option of `relumine lights` (see");
-    misuse({"generate", "knto", "-o", "x"}, "did you mean knot?");
+    misuse("lights env.hdr --zzz", "--zzz: no option of `relumine lights` (see");
+    misuse("generate knto -o x", "did you mean knot?");
     precompute();
     write("layers.json", R"({"version": 1, "layers": [{"name": "key light", "type": "disc",
         "effect": "gain", "direction": [0, 1, 0], "radius_degrees": 30},
@@ -222,47 +220,44 @@ TEST_F(CommandLineTest, AMisspeltNameIsToldTheNearest) {
            "got 'key ligt'; did you mean key light?");
     write("wrong.json", R"({"version": 1, "layers": [{"name": "key", "type": "disc",
         "effect": "gain", "direction": [0, 1, 0], "radius_degree": 30}]})");
-    fail({"edit", "scene.prt", "env.hdr", "wrong.json", "-o", "x.npy"},
+    fail("edit scene.prt env.hdr wrong.json -o x.npy",
          {"wrong.json:2: expected \"radius_degrees\", got \"radius_degree\""});
     write("wrong.json", R"({"version": 1, "layers": [{"name": "key", "type": "disc",
         "effect": "gain", "direction": [0, 1, 0], "radius_degrees": 30, "fctor": 2}]})");
-    fail({"edit", "scene.prt", "env.hdr", "wrong.json", "-o", "x.npy"},
-         {"got \"fctor\"; did you mean factor?"});
+    fail("edit scene.prt env.hdr wrong.json -o x.npy", {"got \"fctor\"; did you mean factor?"});
 }
 
 TEST_F(CommandLineTest, APatternWithoutQuotesIsToldSo) {
     precompute();
     for (const char* name : {"f.1.hdr", "f.2.hdr", "f.3.hdr"})
         write(name, white_hdr());
-    misuse({"animate", "scene.prt", "f.1.hdr", "f.2.hdr", "f.3.hdr", "-o", "x.%d.npy"},
+    misuse("animate scene.prt f.1.hdr f.2.hdr f.3.hdr -o x.%d.npy",
            "FRAMES: expected one name, got 3 files; put a pattern in quotes: 'f.*.hdr' (see "
            "relumine animate --help)");
-    misuse({"relight", "scene.prt", "f.1.hdr", "f.2.hdr", "-o", "x.npy"},
+    misuse("relight scene.prt f.1.hdr f.2.hdr -o x.npy",
            "ENV: expected one name, got 2 files; put a pattern in quotes: 'f.*.hdr'");
-    misuse({"relight", "scene.prt", "f.1.hdr", "stray", "-o", "x.npy"},
+    misuse("relight scene.prt f.1.hdr stray -o x.npy",
            "ENV: expected no argument more, got 'stray'");
     // A name with blanks, without quotes; words of other programs; the wrong way round; a picture.
     write("my white sky.hdr", white_hdr());
-    misuse({"relight", "scene.prt", "my", "white", "sky.hdr", "-o", "x.npy"},
+    misuse("relight scene.prt my white sky.hdr -o x.npy",
            "put a name with blanks in quotes: 'my white sky.hdr'");
-    misuse({"relight", "scene.prt", "f.1.hdr", "--rotation", "9", "-o", "x.npy"},
-           "did you mean --rotate?");
-    misuse({"relight", "scene.prt", "f.1.hdr", "--layout", "equirectangular", "-o", "x.npy"},
-           "did you mean latlong?");
-    misuse({"relight", "f.1.hdr", "scene.prt", "-o", "x.npy"},
+    misuse("relight scene.prt f.1.hdr --rotation 9 -o x.npy", "did you mean --rotate?");
+    misuse("relight scene.prt f.1.hdr --layout equirectangular -o x.npy", "did you mean latlong?");
+    misuse("relight f.1.hdr scene.prt -o x.npy",
            "SCENE: expected a scene, got the environment f.1.hdr: the scene stands first");
     write("sky.jpg", "\xff\xd8\xff\xe0 and more");
-    fail({"info", "sky.jpg"}, {"sky.jpg: expected"});
+    fail("info sky.jpg", {"sky.jpg: expected"});
     write("jpeg.hdr", "\xff\xd8\xff\xe0 and more");
-    fail({"relight", "scene.prt", "jpeg.hdr", "-o", "x.npy"}, {"holds no light above white"});
-    fail({"relight", "scene.prt", "scene.prt", "-o", "x.npy"}, {"the scene stands first"});
+    fail("relight scene.prt jpeg.hdr -o x.npy", {"holds no light above white"});
+    fail("relight scene.prt scene.prt -o x.npy", {"the scene stands first"});
 }
 
 TEST_F(CommandLineTest, HelpIsACommandToo) {
-    EXPECT_EQ(succeed({"help"}).out, succeed({"--help"}).out);
-    EXPECT_EQ(succeed({"help", "relight"}).out, succeed({"relight", "--help"}).out);
-    EXPECT_EQ(succeed({"help", "env", "convert"}).out, succeed({"env", "convert", "--help"}).out);
-    misuse({"help", "relihgt"}, "did you mean relight?");
+    EXPECT_EQ(succeed("help").out, succeed("--help").out);
+    EXPECT_EQ(succeed("help relight").out, succeed("relight --help").out);
+    EXPECT_EQ(succeed("help env convert").out, succeed("env convert --help").out);
+    misuse("help relihgt", "did you mean relight?");
 }
 
 TEST_F(CommandLineTest, ANameThatIsNotThereSaysSoFirst) {
@@ -293,10 +288,10 @@ TEST_F(CommandLineTest, NumbersThatOverflowAreRefused) {
              {output, ": expected radiance times albedo and exposure within"});
     for (const char* option : {"--eye", "--target"})
         misuse({"relight", "scene.prt", "env.hdr", "-o", "new.png", option, "1e19,0,0"}, option);
-    misuse({"relight", "scene.prt", "env.hdr", "-o", "new.png", "--size", "4294967297x1"},
+    misuse("relight scene.prt env.hdr -o new.png --size 4294967297x1",
            "--size: expected WIDTHxHEIGHT, got '4294967297x1'");
-    misuse({"relight", "scene.prt", "env.hdr", "-o", "new.png", "--size", "0x1"}, "--size");
-    misuse({"relight", "scene.prt", "env.hdr", "-o", "new.png", "--fov", "1e30"}, "--fov");
+    misuse("relight scene.prt env.hdr -o new.png --size 0x1", "--size");
+    misuse("relight scene.prt env.hdr -o new.png --fov 1e30", "--fov");
 }
 
 TEST_F(CommandLineTest, JsonCarriesWarningsAndReplacedPixels) {
@@ -304,8 +299,7 @@ TEST_F(CommandLineTest, JsonCarriesWarningsAndReplacedPixels) {
     write("nan.exr", exr_file(64, 32, [](std::uint32_t x, std::uint32_t y) {
               return Rgb{x + y == 0 ? std::nanf("") : 1.0f, 1.0f, 1.0f};
           }));
-    const Result result =
-        succeed({"relight", "scene.prt", "nan.exr", "--fix-env", "-o", "new.npy", "--json"});
+    const Result result = succeed("relight scene.prt nan.exr --fix-env -o new.npy --json");
     EXPECT_EQ(result.json()["replaced_pixels"], 1);
     for (const std::vector<std::string>& arguments : all_)
         EXPECT_TRUE(succeed(with(arguments, {"--json"})).json()["warnings"].is_array())
@@ -315,9 +309,9 @@ TEST_F(CommandLineTest, JsonCarriesWarningsAndReplacedPixels) {
 TEST_F(CommandLineTest, NamesThatLookLikeOptionsWorkAfterTwoDashes) {
     write("-m.obj", octahedron_obj());
     write("-e.hdr", white_hdr());
-    succeed({"precompute", "-o", "./-s.prt", "--face-resolution", "16", "--", "-m.obj"});
-    succeed({"info", "--", "-s.prt"});
-    succeed({"relight", "-o", "./-o.npy", "--", "-s.prt", "-e.hdr"});
+    succeed("precompute -o ./-s.prt --face-resolution 16 -- -m.obj");
+    succeed("info -- -s.prt");
+    succeed("relight -o ./-o.npy -- -s.prt -e.hdr");
     EXPECT_TRUE(fs::exists(folder() / "-o.npy"));
 }
 
@@ -329,7 +323,7 @@ TEST_F(CommandLineTest, LinesOfAFileNameWithALineBreakStayOneLine) {
 
 TEST_F(CommandLineTest, ManyThreadsAreNoMistake) {
     precompute();
-    succeed({"relight", "scene.prt", "env.hdr", "-o", "new.npy", "--threads", "64"});
+    succeed("relight scene.prt env.hdr -o new.npy --threads 64");
 }
 
 } // namespace

@@ -56,7 +56,7 @@ protected:
 };
 
 TEST_F(Completion, BashCompletesCommands) {
-    succeed({"completion", "-o", "relumine.bash"});
+    succeed("completion -o relumine.bash");
     EXPECT_EQ(shell("bash -n relumine.bash"), "");
     EXPECT_THAT(offered({"relumine", "re"}), ElementsAre("relight"));
     EXPECT_THAT(offered({"relumine", ""}), testing::UnorderedElementsAreArray(commands()));
@@ -66,7 +66,7 @@ TEST_F(Completion, BashCompletesCommands) {
 }
 
 TEST_F(Completion, BashCompletesOptionsAndValues) {
-    succeed({"completion", "-o", "relumine.bash"});
+    succeed("completion -o relumine.bash");
     EXPECT_THAT(offered({"relumine", "animate", "--me"}),
                 UnorderedElementsAre("--method", "--measure"));
     EXPECT_THAT(offered({"relumine", "animate", "--method", ""}),
@@ -80,7 +80,7 @@ TEST_F(Completion, BashCompletesOptionsAndValues) {
 }
 
 TEST_F(Completion, BashCompletesFileNames) {
-    succeed({"completion", "-o", "relumine.bash"});
+    succeed("completion -o relumine.bash");
     write("a mesh.ply", "");
     write("other.prt", "");
     fs::create_directory(folder() / "a folder");
@@ -91,8 +91,8 @@ TEST_F(Completion, BashCompletesFileNames) {
 }
 
 TEST_F(Completion, WrongUsage) {
-    misuse({"completion", "tcsh"}, "tcsh");
-    fail({"completion", "-o", "missing/relumine"}, {"missing/relumine"});
+    misuse("completion tcsh", "tcsh");
+    fail("completion -o missing/relumine", {"missing/relumine"});
 }
 
 } // namespace

@@ -18,8 +18,7 @@ class EnvironmentFiles : public AppTest {
 protected:
     EnvironmentFiles() {
         write("mesh.obj", octahedron_obj());
-        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16",
-                 "--no-refine", "-q"});
+        succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --no-refine -q");
     }
     void refused(const std::string& name, const std::string& content,
                  const std::vector<std::string>& parts = {}) const {
@@ -50,10 +49,8 @@ TEST_F(EnvironmentFiles, AspectRatiosThatNoLayoutHas) {
                 {"2:1", fmt::format("{}x{}", width, height)});
     }
     write("square.hdr", hdr_file(32, 32, grey));
-    fail({"relight", "scene.prt", "square.hdr", "-o", "new.npy", "--layout", "cube"},
-         {"square.hdr", "1:6"});
-    fail({"relight", "scene.prt", "square.hdr", "-o", "new.npy", "--layout", "cross"},
-         {"square.hdr", "3:4"});
+    fail("relight scene.prt square.hdr -o new.npy --layout cube", {"square.hdr", "1:6"});
+    fail("relight scene.prt square.hdr -o new.npy --layout cross", {"square.hdr", "3:4"});
 }
 
 TEST_F(EnvironmentFiles, LayoutsByTheirAspectRatio) {
@@ -83,21 +80,20 @@ TEST_F(EnvironmentFiles, BadPixelsAreCountedRefusedAndFixedOnRequest) {
                   return Rgb{1.0f, 1.0f, -2.0f};
               return Rgb{1.0f, 1.0f, 1.0f};
           }));
-    const nlohmann::json info = succeed({"info", "bad.exr", "--json"}).json();
+    const nlohmann::json info = succeed("info bad.exr --json").json();
     EXPECT_EQ(info["num_nan"], 3);
     EXPECT_EQ(info["num_infinite"], 2);
     EXPECT_EQ(info["num_negative"], 4);
-    const Result told = succeed({"info", "bad.exr"});
+    const Result told = succeed("info bad.exr");
     EXPECT_NE(told.out.find("3 NaN, 2 infinite, 4 negative"), std::string::npos)
         << told.described();
 
-    fail({"relight", "scene.prt", "bad.exr", "-o", "new.npy"},
+    fail("relight scene.prt bad.exr -o new.npy",
          {"bad.exr", "--fix-env", "5 NaN/Inf", "4 negative", "(0, 8)"});
-    fail({"verify", "scene.prt", "bad.exr"}, {"bad.exr", "--fix-env"});
-    fail({"edit", "scene.prt", "bad.exr", "-o", "new.npy", "--disc", "0,1,0"},
-         {"bad.exr", "--fix-env"});
+    fail("verify scene.prt bad.exr", {"bad.exr", "--fix-env"});
+    fail("edit scene.prt bad.exr -o new.npy --disc 0,1,0", {"bad.exr", "--fix-env"});
 
-    const Result fixed = succeed({"relight", "scene.prt", "bad.exr", "-o", "new.npy", "--fix-env"});
+    const Result fixed = succeed("relight scene.prt bad.exr -o new.npy --fix-env");
     EXPECT_NE(fixed.out.find("replaced 9 bad pixels"), std::string::npos) << fixed.described();
     for (const auto& value : npy_values(read("new.npy")))
         for (const float channel : value) {
@@ -105,25 +101,21 @@ TEST_F(EnvironmentFiles, BadPixelsAreCountedRefusedAndFixedOnRequest) {
             EXPECT_GE(channel, 0.0f);
             EXPECT_LE(channel, 1.01f);
         }
-    EXPECT_FALSE(
-        succeed({"relight", "scene.prt", "bad.exr", "-o", "new.npy", "--fix-env", "--json"})
-            .json()
-            .empty());
+    EXPECT_FALSE(succeed("relight scene.prt bad.exr -o new.npy --fix-env --json").json().empty());
 }
 
 TEST_F(EnvironmentFiles, NothingButBadPixels) {
     for (const float bad : {NaN, Infinity, -Infinity, -1.0f}) {
         write("bad.exr",
               exr_file(32, 16, [bad](std::uint32_t, std::uint32_t) { return Rgb{bad, bad, bad}; }));
-        fail({"relight", "scene.prt", "bad.exr", "-o", "new.npy"}, {"bad.exr", "--fix-env", "512"});
-        succeed({"info", "bad.exr"});
-        const nlohmann::json info = succeed({"info", "bad.exr", "--json"}).json();
+        fail("relight scene.prt bad.exr -o new.npy", {"bad.exr", "--fix-env", "512"});
+        succeed("info bad.exr");
+        const nlohmann::json info = succeed("info bad.exr --json").json();
         EXPECT_EQ(info["num_nan"].get<int>() + info["num_infinite"].get<int>() +
                       info["num_negative"].get<int>(),
                   512);
         // There is nothing left to light with, or black; either way no NaN.
-        const Result fixed =
-            relumine({"relight", "scene.prt", "bad.exr", "-o", "black.npy", "--fix-env"});
+        const Result fixed = relumine("relight scene.prt bad.exr -o black.npy --fix-env");
         if (fixed.exit_code == 0) {
             for (const auto& value : npy_values(read("black.npy")))
                 EXPECT_EQ(value[0], 0.0f) << bad;
@@ -136,15 +128,14 @@ TEST_F(EnvironmentFiles, NothingButBadPixels) {
 TEST_F(EnvironmentFiles, BlackIsAnEnvironment) {
     write("black.hdr",
           hdr_file(32, 16, [](std::uint32_t, std::uint32_t) { return Rgb{0.0f, 0.0f, 0.0f}; }));
-    succeed({"info", "black.hdr"});
-    succeed({"info", "black.hdr", "--json"});
-    succeed({"relight", "scene.prt", "black.hdr", "-o", "black.npy"});
+    succeed("info black.hdr");
+    succeed("info black.hdr --json");
+    succeed("relight scene.prt black.hdr -o black.npy");
     for (const auto& value : npy_values(read("black.npy")))
         EXPECT_EQ(value[0], 0.0f);
-    EXPECT_EQ(succeed({"verify", "scene.prt", "black.hdr", "--json"}).json()["max_abs"], 0.0);
-    succeed(
-        {"edit", "scene.prt", "black.hdr", "-o", "black.npy", "--disc", "0,1,0", "--gain", "5"});
-    succeed({"relight", "scene.prt", "black.hdr", "-o", "black.png", "--size", "8x8"});
+    EXPECT_EQ(succeed("verify scene.prt black.hdr --json").json()["max_abs"], 0.0);
+    succeed("edit scene.prt black.hdr -o black.npy --disc 0,1,0 --gain 5");
+    succeed("relight scene.prt black.hdr -o black.png --size 8x8");
 }
 
 TEST_F(EnvironmentFiles, HugeDeclaredSizes) {
@@ -174,12 +165,12 @@ TEST_F(EnvironmentFiles, TruncatedAndOtherFiles) {
     refused("env.exr", "\x89PNG\r\n\x1a\n");
     refused("env.hdr", octahedron_obj());
     refused("env.hdr", read("scene.prt"));
-    fail({"info", "missing.exr"}, {"missing.exr", "cannot read"});
+    fail("info missing.exr", {"missing.exr", "cannot read"});
 }
 
 TEST_F(EnvironmentFiles, TheContentTellsTheFormatNotTheName) {
     write("env.exr", white_hdr());
-    EXPECT_EQ(succeed({"info", "env.exr", "--json"}).json()["kind"], "environment");
+    EXPECT_EQ(succeed("info env.exr --json").json()["kind"], "environment");
 }
 
 } // namespace

@@ -54,7 +54,7 @@ TEST_F(EnvironmentInfo, SunInWorldAxes) {
     const double sky = 2.0 * 3.14159265 * 1.25;
     EXPECT_NEAR(sun["share_of_power"].get<double>(),
                 3999.0 * solid_angle / (3999.0 * solid_angle + sky), 1e-3);
-    const Result told = succeed({"info", "sun.exr"});
+    const Result told = succeed("info sun.exr");
     for (const char* part : {"sun towards", "azimuth -91.4, elevation 46.4", "degrees wide",
                              "% of all light", "seams and poles     in line"})
         EXPECT_NE(told.out.find(part), std::string::npos) << part << told.described();
@@ -67,7 +67,7 @@ TEST_F(EnvironmentInfo, NoSunAndWhy) {
     EXPECT_TRUE(white["why_no_sun"].is_string());
     EXPECT_TRUE(white["clipped_sun"].is_null());
     EXPECT_EQ(white["seam_faults"], nlohmann::json::array());
-    EXPECT_NE(succeed({"info", "white.hdr"}).out.find("none: "), std::string::npos);
+    EXPECT_NE(succeed("info white.hdr").out.find("none: "), std::string::npos);
 }
 
 TEST_F(EnvironmentInfo, ClippedSun) {
@@ -82,7 +82,7 @@ TEST_F(EnvironmentInfo, ClippedSun) {
     ASSERT_TRUE(clipped.is_object());
     EXPECT_NEAR(clipped["azimuth_degrees"].get<double>(), 180.0 - 61.5 * 360.0 / 256.0, 0.5);
     EXPECT_NE(clipped["why"].get<std::string>().find("9 adjacent pixels"), std::string::npos);
-    EXPECT_NE(succeed({"info", "clipped.exr"}).out.find("\nsuspect  "), std::string::npos);
+    EXPECT_NE(succeed("info clipped.exr").out.find("\nsuspect  "), std::string::npos);
 }
 
 TEST_F(EnvironmentInfo, SeamsOutOfLine) {
@@ -93,8 +93,7 @@ TEST_F(EnvironmentInfo, SeamsOutOfLine) {
     ASSERT_EQ(faults.size(), 1u);
     EXPECT_EQ(faults[0]["where"], "top row");
     EXPECT_GT(faults[0]["step_ev"], 5.0);
-    EXPECT_NE(succeed({"info", "black_row.exr"}).out.find("top row out of line"),
-              std::string::npos);
+    EXPECT_NE(succeed("info black_row.exr").out.find("top row out of line"), std::string::npos);
 }
 
 TEST_F(EnvironmentInfo, BadPixelsDoNotSpoilTheFigures) {
@@ -108,30 +107,30 @@ TEST_F(EnvironmentInfo, BadPixelsDoNotSpoilTheFigures) {
     EXPECT_EQ(bad["num_nan"], 1);
     EXPECT_TRUE(bad["sun"].is_object());
     EXPECT_NEAR(bad["irradiance"]["-Y"][0].get<double>(), 0.25 * 3.14159, 0.01);
-    EXPECT_NE(succeed({"info", "bad.exr"}).out.find("--fix-env"), std::string::npos);
+    EXPECT_NE(succeed("info bad.exr").out.find("--fix-env"), std::string::npos);
 }
 
 TEST_F(EnvironmentInfo, Picture) {
     write("sun.exr", exr_file(128, 64, sky_with_sun(96, 15, 4000.0f)));
-    succeed({"info", "sun.exr", "--picture", "sun.png"});
+    succeed("info sun.exr --picture sun.png");
     EXPECT_EQ(png_size(read("sun.png")), (Size{1024, 512}));
     // The mark is the sun's: without one the picture is another.
     write("sky.exr", exr_file(128, 64, sky_with_sun(0, 99, 0.0f)));
-    succeed({"info", "sky.exr", "--picture", "sky.png"});
+    succeed("info sky.exr --picture sky.png");
     EXPECT_NE(read("sun.png"), read("sky.png"));
     // Maps of any size and none too dark.
     write("dot.exr",
           exr_file(2, 1, [](std::uint32_t, std::uint32_t) { return Rgb{0.0f, 0.0f, 0.0f}; }));
-    succeed({"info", "dot.exr", "--picture", "dot.png"});
+    succeed("info dot.exr --picture dot.png");
     EXPECT_EQ(png_size(read("dot.png")), (Size{1024, 512}));
 }
 
 TEST_F(EnvironmentInfo, PictureOfTheWrongThing) {
     write("white.hdr", white_hdr());
     write("mesh.obj", octahedron_obj());
-    misuse({"info", "white.hdr", "--picture", "out.jpg"}, "--picture: expected a name that ends");
-    fail({"info", "white.hdr", "--picture", "missing/out.png"}, {"missing/out.png"});
-    fail({"info", "absent.hdr", "--picture", "out.png"}, {"absent.hdr"});
+    misuse("info white.hdr --picture out.jpg", "--picture: expected a name that ends");
+    fail("info white.hdr --picture missing/out.png", {"missing/out.png"});
+    fail("info absent.hdr --picture out.png", {"absent.hdr"});
     misuse({"info", "white.hdr", "--picture", ""}, "--picture");
 }
 

@@ -12,9 +12,8 @@ namespace fs = std::filesystem;
 class Generate : public AppTest {};
 
 TEST_F(Generate, AllMakesEveryScenesAndEnvironmentsFile) {
-    const nlohmann::json report = succeed({"generate", "all", "-o", "deep/er", "--vertices", "1000",
-                                           "--face-resolution", "16", "--json"})
-                                      .json();
+    const nlohmann::json report =
+        succeed("generate all -o deep/er --vertices 1000 --face-resolution 16 --json").json();
     std::set<std::string> names;
     for (const nlohmann::json& file : report["files"]) {
         const fs::path path = file["file"].get<std::string>();
@@ -49,7 +48,7 @@ TEST_F(Generate, TheSameEveryTime) {
 }
 
 TEST_F(Generate, SizesOfTheEnvironmentFiles) {
-    succeed({"generate", "constant", "-o", ".", "--face-resolution", "8"});
+    succeed("generate constant -o . --face-resolution 8");
     EXPECT_EQ(exr_size(read("constant.exr")), (Size{8, 48}));
     EXPECT_EQ(exr_size(read("constant_latlong.exr")), (Size{32, 16}));
 }
@@ -57,31 +56,28 @@ TEST_F(Generate, SizesOfTheEnvironmentFiles) {
 TEST_F(Generate, BadSizesAreRefusedAndMakeNoFolder) {
     for (const char* vertices : {"0", "999", "5000001", "18446744073709551615"})
         misuse({"generate", "blob", "-o", "new", "--vertices", vertices}, "--vertices");
-    misuse({"generate", "blob", "-o", "new", "--vertices", "-5"}, "--vertices");
-    misuse({"generate", "blob", "-o", "new", "--vertices", "many"}, "--vertices");
+    misuse("generate blob -o new --vertices -5", "--vertices");
+    misuse("generate blob -o new --vertices many", "--vertices");
     for (const char* resolution : {"0", "16385"})
         misuse({"generate", "sun_sky", "-o", "new", "--face-resolution", resolution},
                "--face-resolution");
-    misuse({"generate", "sun_sky", "-o", "new", "--face-resolution", "-1"}, "--face-resolution");
+    misuse("generate sun_sky -o new --face-resolution -1", "--face-resolution");
 }
 
 TEST_F(Generate, FoldersThatCannotBe) {
     write("file", "in the way");
-    fail({"generate", "blob", "-o", "file", "--vertices", "1000"}, {"file"});
-    fail({"generate", "blob", "-o", "file/folder", "--vertices", "1000"}, {"file/folder"});
-    fail({"generate", "blob", "-o", "/proc/folder", "--vertices", "1000"}, {"/proc/folder"});
+    fail("generate blob -o file --vertices 1000", {"file"});
+    fail("generate blob -o file/folder --vertices 1000", {"file/folder"});
+    fail("generate blob -o /proc/folder --vertices 1000", {"/proc/folder"});
     fs::create_directories(folder() / "taken/blob.ply");
-    fail({"generate", "blob", "-o", "taken", "--vertices", "1000"},
-         {"taken/blob.ply", "cannot write"});
+    fail("generate blob -o taken --vertices 1000", {"taken/blob.ply", "cannot write"});
 }
 
 TEST_F(Generate, AFullDiskLeavesTheOldFiles) {
     write("blob.ply", "precious");
     write("constant.exr", "precious");
-    fail({"generate", "blob", "-o", ".", "--vertices", "1000"}, {"blob.ply"},
-         {.max_file_bytes = 100});
-    fail({"generate", "constant", "-o", ".", "--face-resolution", "8"}, {"constant.exr"},
-         {.max_file_bytes = 100});
+    fail("generate blob -o . --vertices 1000", {"blob.ply"}, {.max_file_bytes = 100});
+    fail("generate constant -o . --face-resolution 8", {"constant.exr"}, {.max_file_bytes = 100});
 }
 
 } // namespace

@@ -1,10 +1,8 @@
 // Meshes at the edge of what is one, through the whole program. Files that are none (NaN, no faces)
 // are in mesh_files_test.cpp.
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 
 #include "tests/app/command.h"
 #include "tests/app/formats.h"
@@ -86,7 +84,7 @@ TEST_F(Degenerate, OneTriangleSeesItsHemisphere) {
     for (const auto& radiance : lit(up, "below.hdr"))
         EXPECT_NEAR(radiance[0], 0.0f, 1e-12f); // cells end at the horizon but for rounding
     // The lamp stands on the horizon: texels of its pixels' size would move its middle.
-    EXPECT_LT(succeed({"verify", "mesh.prt", "lamp.hdr", "--face-resolution", "512", "--json"})
+    EXPECT_LT(succeed("verify mesh.prt lamp.hdr --face-resolution 512 --json")
                   .json()["relative_l2"]
                   .get<double>(),
               0.02);
@@ -101,7 +99,7 @@ TEST_F(Degenerate, VerticesInOnePointHaveNoSideThatLightCouldReach) {
         lit("v 1 2 3\nv 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\nf 2 3 4\n", "white.hdr");
     ASSERT_EQ(radiance.size(), 4u);
     expect_black(radiance, 0, 4);
-    succeed({"verify", "mesh.prt", "white.hdr"});
+    succeed("verify mesh.prt white.hdr");
 }
 
 TEST_F(Degenerate, SizeMakesNoDifference) {
@@ -183,9 +181,8 @@ TEST_F(Degenerate, InsideAClosedBoxThereIsNoLight) {
                       (std::array<float, 3>{}))
                 << "outside there is";
         }
-    EXPECT_LT(
-        succeed({"verify", "mesh.prt", "white.hdr", "--json"}).json()["relative_l2"].get<double>(),
-        0.02);
+    EXPECT_LT(succeed("verify mesh.prt white.hdr --json").json()["relative_l2"].get<double>(),
+              0.02);
 }
 
 TEST_F(Degenerate, UnusedVerticesTakeNoLightAndChangeNothing) {

@@ -94,37 +94,36 @@ TEST_F(MeshFiles, TruncatedOnes) {
 TEST_F(MeshFiles, SizeWithoutExtentAndFarAway) {
     // One point three times: a mesh, though nothing can be seen of it.
     write("point.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n");
-    succeed({"info", "point.obj"});
+    succeed("info point.obj");
     write("far.obj", "v 0 0 0\nv 3e38 0 0\nv 0 3e38 0\nf 1 2 3\n");
-    fail({"precompute", "far.obj", "-o", "new.prt"}, {"expected"});
+    fail("precompute far.obj -o new.prt", {"expected"});
 }
 
 TEST_F(MeshFiles, UnknownKindsAndPaths) {
     refused("mesh.fbx", "Kaydara", "expected a mesh file");
     refused("mesh", octahedron_obj(), "expected a mesh file");
     refused("mesh.prt.txt", octahedron_obj(), "expected a mesh file");
-    fail({"info", "missing.obj"}, {"missing.obj", "cannot read"});
-    fail({"precompute", "missing.obj", "-o", "new.prt"}, {"missing.obj", "cannot read"});
-    fail({"precompute", "missing", "-o", "new.prt"}, {"missing", "cannot read"});
+    fail("info missing.obj", {"missing.obj", "cannot read"});
+    fail("precompute missing.obj -o new.prt", {"missing.obj", "cannot read"});
+    fail("precompute missing -o new.prt", {"missing", "cannot read"});
     fs::create_directory(folder() / "folder.ply");
-    fail({"info", "folder.ply"}, {"folder.ply", "regular file"});
-    fail({"precompute", "folder.ply", "-o", "new.prt"}, {"folder.ply", "regular file"});
+    fail("info folder.ply", {"folder.ply", "regular file"});
+    fail("precompute folder.ply -o new.prt", {"folder.ply", "regular file"});
     ASSERT_EQ(::mkfifo((folder() / "pipe.ply").c_str(), 0600), 0);
-    fail({"info", "pipe.ply"}, {"pipe.ply", "regular file"});
+    fail("info pipe.ply", {"pipe.ply", "regular file"});
 }
 
 TEST_F(MeshFiles, OneKindUnderTheNameOfAnother) {
     write("mesh.obj", octahedron_obj());
-    succeed(
-        {"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "--no-refine"});
+    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --no-refine");
     refused("scene.ply", read("scene.prt"));
     refused("scene.off", read("scene.prt"));
     refused("scene.obj", read("scene.prt"));
     refused("scene.stl", read("scene.prt"));
     refused("env.obj", white_hdr());
-    fail({"precompute", "scene.prt", "-o", "new.prt"}, {"scene.prt", "expected a mesh file"});
+    fail("precompute scene.prt -o new.prt", {"scene.prt", "expected a mesh file"});
     write("mesh.prt", octahedron_obj());
-    fail({"info", "mesh.prt"}, {"mesh.prt", "expected a .prt scene"});
+    fail("info mesh.prt", {"mesh.prt", "expected a .prt scene"});
 }
 
 } // namespace

@@ -40,42 +40,39 @@ TEST_F(MeshCommand, TheDoctorSaysWhatIsOdd) {
     EXPECT_GT(broken["repeated_sides"], 0);
     EXPECT_EQ(broken["zero_area"], 1);
     EXPECT_GT(broken["duplicates"], 0);
-    const Result told = succeed({"info", "broken.obj", "--picture", "faults.png"});
+    const Result told = succeed("info broken.obj --picture faults.png");
     EXPECT_NE(told.out.find("edges of 3 or more"), std::string::npos) << told.described();
     EXPECT_NE(told.out.find("the first between vertices"), std::string::npos);
     EXPECT_EQ(read("faults.png").substr(1, 3), "PNG");
     EXPECT_EQ(info("open.obj")["diagnosis"]["boundary_edges"], 4);
-    misuse({"info", "box.obj", "--picture", "box.obj"}, "--picture");
+    misuse("info box.obj --picture box.obj", "--picture");
 }
 
 TEST_F(MeshCommand, RepairMendsOnce) {
-    const nlohmann::json report =
-        succeed({"mesh", "repair", "broken.obj", "-o", "mended.ply", "--json"}).json();
+    const nlohmann::json report = succeed("mesh repair broken.obj -o mended.ply --json").json();
     EXPECT_EQ(report["zero_area"], 1);
     EXPECT_GT(report["duplicates"], 0);
     EXPECT_EQ(report["triangles"], 12);
     const nlohmann::json mended = info("mended.ply")["diagnosis"];
     EXPECT_EQ(mended["closed"], true);
     EXPECT_EQ(mended["repeated_sides"], 0);
-    EXPECT_NE(
-        succeed({"mesh", "repair", "mended.ply", "-o", "again.ply"}).out.find("nothing to repair"),
-        std::string::npos);
+    EXPECT_NE(succeed("mesh repair mended.ply -o again.ply").out.find("nothing to repair"),
+              std::string::npos);
     EXPECT_EQ(info("again.ply")["triangles"], 12);
     EXPECT_EQ(
-        succeed({"mesh", "repair", "open.obj", "-o", "whole.obj", "--fill-holes", "4", "--json"})
-            .json()["new_triangles"],
+        succeed("mesh repair open.obj -o whole.obj --fill-holes 4 --json").json()["new_triangles"],
         2);
     EXPECT_EQ(info("whole.obj")["diagnosis"]["closed"], true);
-    misuse({"mesh", "repair", "box.obj", "-o", "a.stl"}, "--output");
-    misuse({"mesh", "repair", "box.obj", "-o", "a.ply", "--fill-holes", "2"}, "--fill-holes");
-    fail({"mesh", "repair", "box.obj", "-o", "box.obj"}, {"box.obj"});
+    misuse("mesh repair box.obj -o a.stl", "--output");
+    misuse("mesh repair box.obj -o a.ply --fill-holes 2", "--fill-holes");
+    fail("mesh repair box.obj -o box.obj", {"box.obj"});
 }
 
 TEST_F(MeshCommand, ARimThatIsMetTwiceIsOneLine) {
     // Two tetrahedra without their lids that share a vertex of the rims.
     write("twice.obj", "v 0 0 0\nv 2 0 0\nv 1 0 2\nv 1 2 1\nv -2 0 0\nv -1 0 2\nv -1 2 1\n"
                        "f 1 4 2\nf 2 4 3\nf 3 4 1\nf 5 7 1\nf 1 7 6\nf 6 7 5\n");
-    fail({"mesh", "repair", "twice.obj", "-o", "a.ply", "--fill-holes", "3"},
+    fail("mesh repair twice.obj -o a.ply --fill-holes 3",
          {"twice.obj: expected holes whose rims the surface meets once"});
 }
 
@@ -85,26 +82,25 @@ TEST_F(MeshCommand, AttributesAreKeptInObj) {
           "mtllib a.mtl\nv 0 0 0 0.5 0.25 1\nv 1 0 0 0 0 0\nv 0 0 1 1 1 1\nv 1 0 1 1 1 1\n"
           "vt 0 0\nvt 1 0\nvt 0 1\nvt 5 5\nvt 6 5\nvt 5 6\n"
           "o left\nusemtl red\nf 1/1 3/3 2/2\no right\nusemtl shiny\nf 2/4 3/5 4/6\n");
-    succeed({"mesh", "repair", "parts.obj", "-o", "copy.obj"});
+    succeed("mesh repair parts.obj -o copy.obj");
     nlohmann::json before = info("parts.obj"), after = info("copy.obj");
     EXPECT_EQ(after, before);
     EXPECT_EQ(after["groups"], (nlohmann::json{"left", "right"}));
     EXPECT_EQ(after["colors"], true);
-    const Result flat = succeed({"mesh", "repair", "parts.obj", "-o", "copy.ply"});
+    const Result flat = succeed("mesh repair parts.obj -o copy.ply");
     EXPECT_NE(flat.err.find("left out: materials"), std::string::npos) << flat.described();
 }
 
 TEST_F(MeshCommand, CreasesAndSimpler) {
-    succeed({"mesh", "repair", "box.obj", "-o", "flat.ply", "--crease", "40"});
+    succeed("mesh repair box.obj -o flat.ply --crease 40");
     EXPECT_EQ(info("flat.ply")["vertices"], 24);
     EXPECT_EQ(info("flat.ply")["diagnosis"]["closed"], true);
-    succeed({"generate", "colonnade", "-o", ".", "--vertices", "2000", "-q"});
+    succeed("generate colonnade -o . --vertices 2000 -q");
     const std::int64_t all = info("colonnade.ply")["vertices"];
-    const Result fewer =
-        succeed({"mesh", "simplify", "colonnade.ply", "-o", "few.ply", "--vertices", "1500"});
+    const Result fewer = succeed("mesh simplify colonnade.ply -o few.ply --vertices 1500");
     EXPECT_LT(info("few.ply")["vertices"].get<std::int64_t>(), all) << fewer.described();
-    misuse({"mesh", "simplify", "box.obj", "-o", "a.ply", "--vertices", "3"}, "--vertices");
-    misuse({"mesh", "repair", "box.obj", "-o", "a.ply", "--crease", "181"}, "--crease");
+    misuse("mesh simplify box.obj -o a.ply --vertices 3", "--vertices");
+    misuse("mesh repair box.obj -o a.ply --crease 181", "--crease");
 }
 
 TEST_F(MeshCommand, RefinedFloorsHaveShadows) {
@@ -116,23 +112,21 @@ TEST_F(MeshCommand, RefinedFloorsHaveShadows) {
         arguments.insert(arguments.end(), more.begin(), more.end());
         const nlohmann::json report = succeed(arguments).json();
         EXPECT_EQ(report.contains("refine"), more.front() == "--refine");
-        const nlohmann::json verified = succeed({"verify", "scene.prt", "lamp.hdr", "--samples",
-                                                 "20", "--surface", "500", "--json"})
-                                            .json();
+        const nlohmann::json verified =
+            succeed("verify scene.prt lamp.hdr --samples 20 --surface 500 --json").json();
         EXPECT_EQ(verified["surface"]["points"], 500);
         return verified["surface"]["relative_l2"].get<double>();
     };
     const double coarse = surface_error({"--no-refine"});
     const double fine = surface_error({"--refine", "0", "--max-vertices", "600"});
     EXPECT_LT(fine, 0.5 * coarse);
-    const nlohmann::json scene = succeed({"info", "scene.prt", "--check", "--json"}).json();
+    const nlohmann::json scene = succeed("info scene.prt --check --json").json();
     EXPECT_LE(scene["vertices"], 600);
     EXPECT_GT(scene["vertices"], 580);
     EXPECT_EQ(scene["floor"], 2);
     // The floor is still known: it fades, and has its own albedo.
-    succeed({"relight", "scene.prt", "white.hdr", "-o", "a.png", "--size", "64x48"});
-    succeed({"relight", "scene.prt", "white.hdr", "-o", "b.png", "--size", "64x48",
-             "--floor-albedo", "0.9"});
+    succeed("relight scene.prt white.hdr -o a.png --size 64x48");
+    succeed("relight scene.prt white.hdr -o b.png --size 64x48 --floor-albedo 0.9");
     EXPECT_NE(read("a.png"), read("b.png"));
 }
 
@@ -156,23 +150,22 @@ TEST_F(MeshCommand, RefinedForAnEnvironment) {
     EXPECT_NE(read("any.ply"), read("lamp.ply"));
     arguments.back() = "no.hdr";
     fail(arguments, {"no.hdr"});
-    misuse({"precompute", "box.obj", "-o", "a.prt", "--refine-for", "lamp.hdr"}, "--refine-for");
-    misuse({"precompute", "box.obj", "-o", "a.prt", "--max-edge", "1", "--refine-for", "lamp.hdr"},
-           "--refine-for");
+    misuse("precompute box.obj -o a.prt --refine-for lamp.hdr", "--refine-for");
+    misuse("precompute box.obj -o a.prt --max-edge 1 --refine-for lamp.hdr", "--refine-for");
 }
 
 TEST_F(MeshCommand, GlbIsWrittenToo) {
-    succeed({"mesh", "repair", "box.obj", "-o", "box.glb", "--crease", "40"});
+    succeed("mesh repair box.obj -o box.glb --crease 40");
     const nlohmann::json box = info("box.glb");
     EXPECT_EQ(box["vertices"], 24);
     EXPECT_EQ(box["triangles"], 12);
     EXPECT_EQ(box["diagnosis"]["closed"], true);
-    succeed({"mesh", "repair", "box.glb", "-o", "box.ply"});
+    succeed("mesh repair box.glb -o box.ply");
     EXPECT_EQ(info("box.ply")["diagnosis"], box["diagnosis"]);
 }
 
 TEST_F(MeshCommand, SurfaceErrorsAreSeeded) {
-    succeed({"precompute", "box.obj", "-o", "scene.prt", "--face-resolution", "16", "--no-refine"});
+    succeed("precompute box.obj -o scene.prt --face-resolution 16 --no-refine");
     const auto verified = [&](const std::string& seed) {
         return succeed(
                    {"verify", "scene.prt", "lamp.hdr", "--surface", "20", "--seed", seed, "--json"})
@@ -180,56 +173,46 @@ TEST_F(MeshCommand, SurfaceErrorsAreSeeded) {
     };
     EXPECT_EQ(verified("1"), verified("1"));
     EXPECT_NE(verified("1"), verified("2"));
-    EXPECT_FALSE(succeed({"verify", "scene.prt", "lamp.hdr", "--surface", "0", "--json"})
-                     .json()
-                     .contains("surface"));
-    EXPECT_NE(succeed({"verify", "scene.prt", "white.hdr", "--surface", "10"})
-                  .out.find("between the vertices"),
+    EXPECT_FALSE(
+        succeed("verify scene.prt lamp.hdr --surface 0 --json").json().contains("surface"));
+    EXPECT_NE(succeed("verify scene.prt white.hdr --surface 10").out.find("between the vertices"),
               std::string::npos);
 }
 
 TEST_F(MeshCommand, SimplifiedReceiversHaveTheShadowsOfAll) {
-    succeed({"generate", "colonnade", "-o", ".", "--vertices", "3000", "-q"});
+    succeed("generate colonnade -o . --vertices 3000 -q");
     const std::int64_t all = info("colonnade.ply")["triangles"];
-    succeed({"precompute", "colonnade.ply", "-o", "light.prt", "--simplify", "2500", "--tolerance",
-             "0.03", "--face-resolution", "64"});
-    const nlohmann::json scene = succeed({"info", "light.prt", "--check", "--json"}).json();
+    succeed("precompute colonnade.ply -o light.prt --simplify 2500 --tolerance 0.03 "
+            "--face-resolution 64");
+    const nlohmann::json scene = succeed("info light.prt --check --json").json();
     EXPECT_LT(scene["triangles"], all);
     // Exact light knows the blockers, so the vertices agree with it.
-    EXPECT_LT(succeed({"verify", "light.prt", "lamp.hdr", "--samples", "200", "--json"})
-                  .json()["relative_l2"],
-              0.1);
+    EXPECT_LT(succeed("verify light.prt lamp.hdr --samples 200 --json").json()["relative_l2"], 0.1);
 }
 
 TEST_F(MeshCommand, WindingThatMakesBlackIsWarnedOf) {
-    const Result sound =
-        succeed({"precompute", "box.obj", "-o", "a.prt", "--face-resolution", "8"});
+    const Result sound = succeed("precompute box.obj -o a.prt --face-resolution 8");
     EXPECT_EQ(sound.err.find("wound"), std::string::npos) << sound.described();
     std::string inside_out = box_obj();
     inside_out.replace(inside_out.find("f 5 8 7 6"), 9, "f 6 7 8 5");
     write("inside.obj", inside_out);
-    const Result black =
-        succeed({"precompute", "inside.obj", "-o", "a.prt", "--face-resolution", "8"});
+    const Result black = succeed("precompute inside.obj -o a.prt --face-resolution 8");
     EXPECT_NE(black.err.find("2 of 12 triangles are wound the wrong way round"), std::string::npos)
         << black.described();
 }
 
 TEST_F(MeshCommand, LimitsThatContradictEachOtherAreRefused) {
-    misuse({"precompute", "box.obj", "-o", "a.prt", "--max-vertices", "100"}, "--max-vertices");
-    misuse({"precompute", "box.obj", "-o", "a.prt", "--curved"}, "--curved");
-    misuse(
-        {"precompute", "box.obj", "-o", "a.prt", "--refine", "--max-edge", "1", "--min-edge", "2"},
-        "--min-edge");
-    misuse({"precompute", "box.obj", "-o", "a.prt", "--refine", "2"}, "--refine");
-    misuse({"precompute", "box.obj", "-o", "a.prt", "--refine", "--view", "auto", "--receivers",
-            "pixels:8x8"},
-           "--refine");
-    fail({"precompute", "box.obj", "-o", "a.prt", "--refine", "--max-vertices", "5"},
+    misuse("precompute box.obj -o a.prt --max-vertices 100", "--max-vertices");
+    misuse("precompute box.obj -o a.prt --curved", "--curved");
+    misuse("precompute box.obj -o a.prt --refine --max-edge 1 --min-edge 2", "--min-edge");
+    misuse("precompute box.obj -o a.prt --refine 2", "--refine");
+    misuse("precompute box.obj -o a.prt --refine --view auto --receivers pixels:8x8", "--refine");
+    fail("precompute box.obj -o a.prt --refine --max-vertices 5",
          {"box.obj: expected a limit of at least the mesh's 8 vertices, got 5"});
     write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
-    fail({"mesh", "refine", "flat.obj", "-o", "a.ply"},
+    fail("mesh refine flat.obj -o a.ply",
          {"flat.obj: expected a triangle with an area to refine, got none"});
-    EXPECT_NE(succeed({"mesh", "refine", "box.obj", "-o", "same.ply", "--crease", "40"})
+    EXPECT_NE(succeed("mesh refine box.obj -o same.ply --crease 40")
                   .out.find("no edge needs to be split"),
               std::string::npos)
         << "a convex mesh with smooth normals of 40 degrees";

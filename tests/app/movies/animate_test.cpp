@@ -26,8 +26,7 @@ class Animate : public AppTest {
 protected:
     Animate() {
         write("mesh.obj", octahedron_obj());
-        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16",
-                 "--no-refine", "-q"});
+        succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --no-refine -q");
     }
     /// The last numbers of a .npy, as many as there are.
     [[nodiscard]] std::vector<float> numbers(const std::string& name, std::size_t count) const {
@@ -131,10 +130,10 @@ TEST_F(Animate, HighlightsFollowACameraPath) {
     write("walk.json", R"({"version": 1, "frames": [
         {"frame": 0, "eye": [0, 1, 4], "target": [0, 0, 0], "fov_degrees": 35},
         {"frame": 2, "eye": [3, 1, 3], "target": [0, 0, 0]}]})");
-    succeed({"precompute", "mesh.obj", "-o", "shiny.prt", "--face-resolution", "16", "-q",
-             "--no-refine", "--material", "ggx:roughness=0.4,albedo=0.3,f0=0.5"});
-    succeed({"animate", "shiny.prt", "lamp.hdr", "-o", "walk.%d.exr", "--size", "24x18",
-             "--background", "none", "--camera-path", "walk.json", "-q"});
+    succeed("precompute mesh.obj -o shiny.prt --face-resolution 16 -q --no-refine --material "
+            "ggx:roughness=0.4,albedo=0.3,f0=0.5");
+    succeed("animate shiny.prt lamp.hdr -o walk.%d.exr --size 24x18 --background none "
+            "--camera-path walk.json -q");
     const auto picture = [&](const std::string& eye, const std::vector<std::string>& more) {
         std::vector<std::string> command = {"relight", "shiny.prt", "lamp.hdr", "-o",
                                             "one.exr", "--size",    "24x18",    "--background",
@@ -189,9 +188,8 @@ TEST_F(Animate, ACameraPathThatCannotBeIsToldInOneLine) {
 
 TEST_F(Animate, EveryFrameIsWhatRelightMakesOfIt) {
     lamps(4);
-    const nlohmann::json report = succeed({"animate", "scene.prt", "lamp.%d.hdr", "-o",
-                                           "lit.###.npy", "--vertices", "all.npy", "--json"})
-                                      .json();
+    const nlohmann::json report =
+        succeed("animate scene.prt lamp.%d.hdr -o lit.###.npy --vertices all.npy --json").json();
     EXPECT_EQ(report["frames"], 4);
     EXPECT_EQ(report["frames_lit"], 4);
     const std::vector<float> all = numbers("all.npy", std::size_t{4} * 18);
@@ -208,11 +206,10 @@ TEST_F(Animate, EveryFrameIsWhatRelightMakesOfIt) {
 }
 
 TEST_F(Animate, PicturesAreThoseOfRelight) {
-    succeed({"generate", "sequence", "switch", "-o", "seq", "--num-frames", "4",
-             "--face-resolution", "16", "-q"});
-    const double exposure = succeed({"animate", "scene.prt", "seq/switch.%04d.exr", "-o",
-                                     "lit.%04d.png", "--size", "40x30", "--json"})
-                                .json()["exposure"];
+    succeed("generate sequence switch -o seq --num-frames 4 --face-resolution 16 -q");
+    const double exposure =
+        succeed("animate scene.prt seq/switch.%04d.exr -o lit.%04d.png --size 40x30 --json")
+            .json()["exposure"];
     // Full relightings are bit by bit the same: the first frame, and the one where the light goes
     // on. All frames have one exposure.
     for (const char* frame : {"0000", "0001"}) {
@@ -225,8 +222,7 @@ TEST_F(Animate, PicturesAreThoseOfRelight) {
 }
 
 TEST_F(Animate, TheSameForAnyNumberOfThreads) {
-    succeed({"generate", "sequence", "tunnel", "-o", "seq", "--num-frames", "6",
-             "--face-resolution", "16", "-q"});
+    succeed("generate sequence tunnel -o seq --num-frames 6 --face-resolution 16 -q");
     for (const char* method : {"prt", "importance"}) {
         succeed({"animate", "scene.prt", "seq/*.exr", "--vertices", "a.npy", "--threads", "1",
                  "--method", method});
@@ -241,8 +237,7 @@ TEST_F(Animate, EverySequenceIsMadeAndRead) {
     for (const char* kind : {"sun", "switch", "clouds", "tunnel"})
         succeed({"generate", "sequence", kind, "-o", kind, "--num-frames", "3", "--face-resolution",
                  "8", "-q"});
-    succeed({"generate", "sequence", "turn", "-o", "turn", "--num-frames", "3", "--env",
-             "probe.hdr", "-q"});
+    succeed("generate sequence turn -o turn --num-frames 3 --env probe.hdr -q");
     for (const char* kind : {"sun", "switch", "clouds", "tunnel", "turn"}) {
         const std::string name(kind);
         EXPECT_EQ(std::distance(fs::directory_iterator(folder() / name), {}), 3);
@@ -253,29 +248,26 @@ TEST_F(Animate, EverySequenceIsMadeAndRead) {
                 .json();
         EXPECT_EQ(report["frames"], 3);
     }
-    misuse({"generate", "sequence", "-o", "x"}, "KIND");
-    misuse({"generate", "sequence", "flood", "-o", "x"}, "flood");
-    misuse({"generate", "sequence", "turn", "-o", "x"}, "--env");
-    misuse({"generate", "sequence", "sun", "-o", "x", "--env", "probe.hdr"}, "--env");
-    misuse({"generate", "sequence", "sun", "-o", "x", "--num-frames", "0"}, "--num-frames");
-    misuse({"generate", "blob", "sun", "-o", "x"}, "KIND");
-    misuse({"generate", "sequence", "sun", "-o", "x", "--face-resolution", "0"},
-           "--face-resolution");
+    misuse("generate sequence -o x", "KIND");
+    misuse("generate sequence flood -o x", "flood");
+    misuse("generate sequence turn -o x", "--env");
+    misuse("generate sequence sun -o x --env probe.hdr", "--env");
+    misuse("generate sequence sun -o x --num-frames 0", "--num-frames");
+    misuse("generate blob sun -o x", "KIND");
+    misuse("generate sequence sun -o x --face-resolution 0", "--face-resolution");
 }
 
 TEST_F(Animate, ClustersLightLikeTheFramesAndFlickerIsMeasured) {
-    succeed({"generate", "sequence", "sun", "-o", "seq", "--num-frames", "6", "--face-resolution",
-             "32", "-q"});
-    succeed({"animate", "scene.prt", "seq/sun.%04d.exr", "--vertices", "prt.npy", "-q"});
-    const auto same = succeed({"animate", "scene.prt", "seq/sun.%04d.exr", "--vertices",
-                               "again.npy", "--measure", "prt.npy", "--json"})
-                          .json();
+    succeed("generate sequence sun -o seq --num-frames 6 --face-resolution 32 -q");
+    succeed("animate scene.prt seq/sun.%04d.exr --vertices prt.npy -q");
+    const auto same =
+        succeed("animate scene.prt seq/sun.%04d.exr --vertices again.npy --measure prt.npy --json")
+            .json();
     EXPECT_EQ(same["mean_inconsistency"], 0.0);
     EXPECT_EQ(same["mean_relative_l2"], 0.0);
     const auto clusters =
-        succeed({"animate", "scene.prt", "seq/sun.%04d.exr", "--method", "clusters", "--clusters",
-                 "100", "--samples", "400", "--vertices", "clusters.npy", "--measure", "prt.npy",
-                 "--plot", "e.svg", "--json"})
+        succeed("animate scene.prt seq/sun.%04d.exr --method clusters --clusters 100 --samples 400 "
+                "--vertices clusters.npy --measure prt.npy --plot e.svg --json")
             .json();
     EXPECT_EQ(clusters["samples"], 2400);
     EXPECT_GT(clusters["mean_live_lights"].get<double>(), 1.0);
@@ -293,27 +285,25 @@ TEST_F(Animate, ClustersLightLikeTheFramesAndFlickerIsMeasured) {
     std::vector<std::string> others = pictures;
     others[6] = "30";
     EXPECT_EQ(succeed(others).json()["frames_kept"], 0);
-    misuse({"animate", "scene.prt", "seq/sun.%04d.exr", "-o", "b.%04d.npy", "--measure", "prt.npy"},
+    misuse("animate scene.prt seq/sun.%04d.exr -o b.%04d.npy --measure prt.npy",
            "expected --vertices");
-    fail({"animate", "scene.prt", "seq/sun.%04d.exr", "--vertices", "b.npy", "--measure",
-          "none.npy"},
+    fail("animate scene.prt seq/sun.%04d.exr --vertices b.npy --measure none.npy",
          {"none.npy: cannot read"});
 }
 
 TEST_F(Animate, MissingAndDifferentFramesAreToldBeforeWorkStarts) {
     lamps(4);
     fs::remove(folder() / "lamp.2.hdr");
-    fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy"},
+    fail("animate scene.prt lamp.%d.hdr -o lit.%d.npy",
          {"lamp.%d.hdr", "expected frames 0 to 3 without a gap", "none for 2"});
-    fail({"animate", "scene.prt", "lamp.%d.hdr", "--frames", "3-5", "-o", "lit.%d.npy"},
-         {"none for 4-5"});
+    fail("animate scene.prt lamp.%d.hdr --frames 3-5 -o lit.%d.npy", {"none for 4-5"});
     write("lamp.2.hdr", white_hdr()); // 64 x 32
-    fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy"},
+    fail("animate scene.prt lamp.%d.hdr -o lit.%d.npy",
          {"lamp.2.hdr", "expected 128x64", "got 64x32"});
-    fail({"animate", "scene.prt", "none.%d.hdr", "-o", "lit.%d.npy"}, {"none.%d.hdr", "no file"});
-    misuse({"animate", "scene.prt", "lamp.%d.hdr", "--frames", "3-1", "-o", "lit.%d.npy"},
+    fail("animate scene.prt none.%d.hdr -o lit.%d.npy", {"none.%d.hdr", "no file"});
+    misuse("animate scene.prt lamp.%d.hdr --frames 3-1 -o lit.%d.npy",
            "relumine: --frames: expected FIRST-LAST or FIRST-LASTxSTEP, got '3-1'");
-    succeed({"animate", "scene.prt", "lamp.%d.hdr", "--frames", "0-1", "-o", "lit.%d.npy", "-q"});
+    succeed("animate scene.prt lamp.%d.hdr --frames 0-1 -o lit.%d.npy -q");
 }
 
 TEST_F(Animate, ABadFrameEndsItAndFinishedFramesStay) {
@@ -322,8 +312,8 @@ TEST_F(Animate, ABadFrameEndsItAndFinishedFramesStay) {
     const auto run_until_2 = [&](const std::vector<std::string>& parts) {
         for (const char* name : {"lit.0.npy", "lit.1.npy", "lit.all.npy.done"})
             fs::remove(folder() / name);
-        const Result result = relumine({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy",
-                                        "--vertices", "v.npy", "-q"});
+        const Result result =
+            relumine("animate scene.prt lamp.%d.hdr -o lit.%d.npy --vertices v.npy -q");
         EXPECT_EQ(result.exit_code, 1) << result.described();
         EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.described();
         for (const std::string& part : parts)
@@ -346,8 +336,7 @@ TEST_F(Animate, ABadFrameEndsItAndFinishedFramesStay) {
     // Mended, it goes on from there.
     write("lamp.2.hdr", whole);
     const nlohmann::json report =
-        succeed({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy", "--resume", "--json"})
-            .json();
+        succeed("animate scene.prt lamp.%d.hdr -o lit.%d.npy --resume --json").json();
     EXPECT_EQ(report["frames_kept"], 2);
     EXPECT_EQ(report["frames_lit"], 2);
 }
@@ -374,10 +363,10 @@ TEST_F(Animate, ResumeMakesOnlyWhatIsNotThereAnyMore) {
     write("lit.all.npy.done", "nonsense\n");
     EXPECT_EQ(kept(), 0);
     // One file of all frames needs all of them lit.
-    EXPECT_EQ(succeed({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy", "--resume",
-                       "--vertices", "v.npy", "--json"})
-                  .json()["frames_lit"],
-              4);
+    EXPECT_EQ(
+        succeed("animate scene.prt lamp.%d.hdr -o lit.%d.npy --resume --vertices v.npy --json")
+            .json()["frames_lit"],
+        4);
 }
 
 TEST_F(Animate, NumbersAreTheSameWhenPicturesGoOn) {
@@ -396,8 +385,7 @@ TEST_F(Animate, NumbersAreTheSameWhenPicturesGoOn) {
 }
 
 TEST_F(Animate, AnInterruptLeavesWholeFramesToGoOnFrom) {
-    succeed({"generate", "sequence", "tunnel", "-o", "seq", "--num-frames", "100",
-             "--face-resolution", "32", "-q"});
+    succeed("generate sequence tunnel -o seq --num-frames 100 --face-resolution 32 -q");
     const std::vector<std::string> command = {"animate", "scene.prt",    "seq/tunnel.%04d.exr",
                                               "-o",      "lit.%04d.png", "--size",
                                               "500x400", "-q",           "--resume"};
@@ -447,28 +435,25 @@ TEST_F(Animate, AMovieNeedsFfmpeg) {
     for (const auto& entry : fs::directory_iterator(folder()))
         EXPECT_NE(entry.path().filename().string().front(), '.') << entry.path();
     ::setenv("PATH", path.c_str(), 1);
-    misuse({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy", "--mp4", "out.mp4"},
+    misuse("animate scene.prt lamp.%d.hdr -o lit.%d.npy --mp4 out.mp4",
            "--mp4: expected --output with .png frames");
 }
 
 TEST_F(Animate, OutputsThatCannotBe) {
     lamps(2);
-    misuse({"animate", "scene.prt", "lamp.%d.hdr"}, "-o");
-    misuse({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.png", "--bound", "-1"}, "--bound");
-    misuse({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.png", "--method", "magic"},
-           "--method");
-    misuse({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.png"},
+    misuse("animate scene.prt lamp.%d.hdr", "-o");
+    misuse("animate scene.prt lamp.%d.hdr -o lit.%d.png --bound -1", "--bound");
+    misuse("animate scene.prt lamp.%d.hdr -o lit.%d.png --method magic", "--method");
+    misuse("animate scene.prt lamp.%d.hdr -o lit.png",
            "--output: expected a place for the frame's number");
-    misuse({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.jpg"},
+    misuse("animate scene.prt lamp.%d.hdr -o lit.%d.jpg",
            "--output: expected a name that ends in .png");
-    fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "no/lit.%d.png"},
-         {"no/lit.%d.png", "cannot write"});
-    misuse({"animate", "scene.prt", "lamp.%d.hdr", "--vertices", "v.txt"},
+    fail("animate scene.prt lamp.%d.hdr -o no/lit.%d.png", {"no/lit.%d.png", "cannot write"});
+    misuse("animate scene.prt lamp.%d.hdr --vertices v.txt",
            "--vertices: expected a name that ends in .npy, got 'v.txt'");
     write("in.0.exr", exr_file(4, 2, [](std::uint32_t, std::uint32_t) { return Rgb{1, 1, 1}; }));
-    fail({"animate", "scene.prt", "in.%d.exr", "-o", "in.%d.exr"},
-         {"in.0.exr", "other than the input"});
-    fail({"animate", "missing.prt", "lamp.%d.hdr", "-o", "lit.%d.png"}, {"missing.prt"});
+    fail("animate scene.prt in.%d.exr -o in.%d.exr", {"in.0.exr", "other than the input"});
+    fail("animate missing.prt lamp.%d.hdr -o lit.%d.png", {"missing.prt"});
 }
 
 } // namespace

@@ -14,7 +14,7 @@ namespace {
 class Bounces : public AppTest {
 protected:
     Bounces() {
-        succeed({"generate", "colonnade", "-o", ".", "--vertices", "2000", "-q"});
+        succeed("generate colonnade -o . --vertices 2000 -q");
         write("white.hdr", white_hdr());
     }
 
@@ -70,8 +70,7 @@ TEST_F(Bounces, AreThereWhereVerticesSeeOtherSurfaces) {
     // Nothing is before the faces of a box.
     write("box.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
                      "f 4 3 2 1\nf 6 7 8 5\nf 2 6 5 1\nf 8 7 3 4\nf 5 8 4 1\nf 3 7 6 2\n");
-    succeed(
-        {"precompute", "box.obj", "-o", "box.prt", "--face-resolution", "16", "--no-refine", "-q"});
+    succeed("precompute box.obj -o box.prt --face-resolution 16 --no-refine -q");
     EXPECT_EQ(num_bounces("box.prt"), 0);
 }
 
@@ -108,33 +107,31 @@ TEST_F(Bounces, GoThroughEditsFramesAndLightLists) {
     precompute("scene.prt", {"--bounces", "0.05"});
     const auto plain = relit("scene.prt", {});
     // An edit of the whole sphere by 2.
-    succeed({"edit", "scene.prt", "white.hdr", "--disc", "0,1,0", "--radius", "180", "--gain", "2",
-             "-o", "edited.npy", "-q"});
+    succeed("edit scene.prt white.hdr --disc 0,1,0 --radius 180 --gain 2 -o edited.npy -q");
     const auto edited = npy_values(read("edited.npy"));
     EXPECT_NEAR(mean(edited), 2.0 * mean(plain), 2e-3 * mean(edited));
-    succeed({"edit", "scene.prt", "white.hdr", "--disc", "0,1,0", "--radius", "180", "--gain", "2",
-             "-o", "direct.npy", "--bounces", "0", "-q"});
+    succeed(
+        "edit scene.prt white.hdr --disc 0,1,0 --radius 180 --gain 2 -o direct.npy --bounces 0 -q");
     EXPECT_LT(mean(npy_values(read("direct.npy"))), 0.99 * mean(edited));
     // What the whole sphere lights is everything.
-    const nlohmann::json share = succeed({"edit", "scene.prt", "white.hdr", "--disc", "0,1,0",
-                                          "--lit-by", "0,1,0,180", "-o", "part.png", "--json"})
-                                     .json();
+    const nlohmann::json share =
+        succeed("edit scene.prt white.hdr --disc 0,1,0 --lit-by 0,1,0,180 -o part.png --json")
+            .json();
     EXPECT_NEAR(share["lit_by_share"], 1.0, 2e-3);
     EXPECT_GT(share["bounces"], 0);
-    succeed({"edit", "scene.prt", "white.hdr", "--disc", "0,1,0", "--who", "0,0,0", "-o", "who.exr",
-             "-q"});
+    succeed("edit scene.prt white.hdr --disc 0,1,0 --who 0,0,0 -o who.exr -q");
 
     // Frames.
     write("frame.0000.hdr", white_hdr());
     write("frame.0001.hdr", white_hdr());
-    succeed({"animate", "scene.prt", "frame.%04d.hdr", "-o", "lit.###.npy", "-q"});
+    succeed("animate scene.prt frame.%04d.hdr -o lit.###.npy -q");
     EXPECT_EQ(npy_values(read("lit.000.npy")), plain);
     EXPECT_EQ(npy_values(read("lit.001.npy")), plain);
 
     // A list and an environment bounce together.
     write("sun.json", R"({"version": 1, "lights": [)"
                       R"({"direction": [0, 1, 0], "irradiance": [3, 2, 1]}]})");
-    succeed({"relight", "scene.prt", "--lights", "sun.json", "-o", "list.npy", "-q"});
+    succeed("relight scene.prt --lights sun.json -o list.npy -q");
     const auto list = npy_values(read("list.npy"));
     auto sum = plain;
     for (std::size_t i = 0; i < sum.size(); ++i)
@@ -145,27 +142,26 @@ TEST_F(Bounces, GoThroughEditsFramesAndLightLists) {
 
 TEST_F(Bounces, WrongUseIsOneLine) {
     precompute("direct.prt", {"--bounces", "0"});
-    fail({"relight", "direct.prt", "white.hdr", "-o", "x.png", "--bounces", "all"},
+    fail("relight direct.prt white.hdr -o x.png --bounces all",
          {"direct.prt: expected a scene made with `relumine precompute --bounces`"});
-    fail({"relight", "direct.prt", "white.hdr", "-o", "x.png", "--only-bounces"},
+    fail("relight direct.prt white.hdr -o x.png --only-bounces",
          {"direct.prt: expected bounces for --only-bounces, got none"});
-    fail({"edit", "direct.prt", "white.hdr", "--disc", "0,1,0", "-o", "x.png", "--bounces", "2"},
+    fail("edit direct.prt white.hdr --disc 0,1,0 -o x.png --bounces 2",
          {"direct.prt: expected a scene made with `relumine precompute --bounces`"});
     write("frame.0000.hdr", white_hdr());
-    fail({"animate", "direct.prt", "frame.%04d.hdr", "--vertices", "x.npy", "--bounces", "2"},
+    fail("animate direct.prt frame.%04d.hdr --vertices x.npy --bounces 2",
          {"direct.prt: expected a scene made with `relumine precompute --bounces`"});
-    misuse({"relight", "direct.prt", "-o", "x.png"}, "expected ENV, --lights or both");
-    misuse({"relight", "direct.prt", "white.hdr", "-o", "x.png", "--bounces", "many"},
+    misuse("relight direct.prt -o x.png", "expected ENV, --lights or both");
+    misuse("relight direct.prt white.hdr -o x.png --bounces many",
            "--bounces: expected a number of bounces or 'all', got 'many'");
-    misuse({"precompute", "colonnade.ply", "-o", "x.prt", "--bounces", "2"},
-           "--bounces: expected 0 to 1, got '2'");
-    misuse({"precompute", "--bounces", "colonnade.ply", "-o", "x.prt"}, "the mesh goes first");
-    misuse({"verify", "direct.prt", "white.hdr", "--albedo", "nan"}, "--albedo");
-    misuse({"relight", "direct.prt", "white.hdr", "-o", "x.png", "--albedo", "nan"}, "--albedo");
+    misuse("precompute colonnade.ply -o x.prt --bounces 2", "--bounces: expected 0 to 1, got '2'");
+    misuse("precompute --bounces colonnade.ply -o x.prt", "the mesh goes first");
+    misuse("verify direct.prt white.hdr --albedo nan", "--albedo");
+    misuse("relight direct.prt white.hdr -o x.png --albedo nan", "--albedo");
     // Points are no surfaces.
     write("points.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
                         "property float y\nproperty float z\nend_header\n0 0 0\n");
-    fail({"precompute", "points.ply", "-o", "x.prt", "--bounces"}, {"points.ply: "});
+    fail("precompute points.ply -o x.prt --bounces", {"points.ply: "});
     EXPECT_FALSE(std::filesystem::exists(folder() / "x.prt"));
 }
 
@@ -177,13 +173,12 @@ std::string closed_room() {
 
 TEST_F(Bounces, LightThatWouldGrowForEverIsRefusedWithTheLargestSafeAlbedo) {
     write("room.obj", closed_room());
-    succeed(
-        {"precompute", "room.obj", "-o", "room.prt", "--bounces", "--face-resolution", "16", "-q"});
-    fail({"relight", "room.prt", "white.hdr", "-o", "x.png", "--albedo", "1.1"},
+    succeed("precompute room.obj -o room.prt --bounces --face-resolution 16 -q");
+    fail("relight room.prt white.hdr -o x.png --albedo 1.1",
          {"room.prt: expected an albedo up to 0.99", ", beyond which bounces grow for ever, got "});
     EXPECT_FALSE(std::filesystem::exists(folder() / "x.png"));
     // A white room loses a little.
-    succeed({"relight", "room.prt", "white.hdr", "-o", "x.png", "--albedo", "1", "-q"});
+    succeed("relight room.prt white.hdr -o x.png --albedo 1 -q");
 }
 
 TEST_F(Bounces, PixelsAndTexelsGetThemFromTheVertices) {
@@ -192,26 +187,23 @@ TEST_F(Bounces, PixelsAndTexelsGetThemFromTheVertices) {
     const std::vector<std::string> pixels = {"--receivers", "pixels:48x32", "--view",
                                              "auto",        "--bounces",    "0.02"};
     precompute("pixels.prt", pixels);
-    const nlohmann::json info = succeed({"info", "pixels.prt", "--json"}).json();
+    const nlohmann::json info = succeed("info pixels.prt --json").json();
     EXPECT_LE(info["receivers"], 48 * 32);
     const auto all = relit("pixels.prt", {});
     ASSERT_EQ(all.size(), info["receivers"].get<std::size_t>()) << "vertices are not shown";
     const auto direct = relit("pixels.prt", {"--bounces", "0"});
     EXPECT_GT(mean(all), 1.02 * mean(direct));
     // Edits and frames end where a new environment does.
-    succeed({"edit", "pixels.prt", "white.hdr", "--disc", "0,1,0", "--radius", "180", "--gain", "2",
-             "-o", "edited.npy", "-q"});
+    succeed("edit pixels.prt white.hdr --disc 0,1,0 --radius 180 --gain 2 -o edited.npy -q");
     EXPECT_NEAR(mean(npy_values(read("edited.npy"))), 2.0 * mean(all), 4e-3 * mean(all));
     write("frame.0000.hdr", white_hdr());
-    succeed({"animate", "pixels.prt", "frame.%04d.hdr", "-o", "lit.##.npy", "--vertices", "v.npy",
-             "-q"});
+    succeed("animate pixels.prt frame.%04d.hdr -o lit.##.npy --vertices v.npy -q");
     EXPECT_EQ(npy_values(read("lit.00.npy")), all);
-    succeed({"relight", "pixels.prt", "white.hdr", "-o", "picture.png", "-q"});
-    succeed({"relight", "pixels.prt", "white.hdr", "-o", "only.exr", "--only-bounces", "-q"});
-    const nlohmann::json check =
-        succeed({"verify", "pixels.prt", "lamp.hdr", "--samples", "300", "--albedo", "0.8",
-                 "--paths", "500", "--bounces", "all", "--json"})
-            .json();
+    succeed("relight pixels.prt white.hdr -o picture.png -q");
+    succeed("relight pixels.prt white.hdr -o only.exr --only-bounces -q");
+    const nlohmann::json check = succeed("verify pixels.prt lamp.hdr --samples 300 --albedo 0.8 "
+                                         "--paths 500 --bounces all --json")
+                                     .json();
     EXPECT_GT(check["bounces"], 1);
     EXPECT_LT(check["relative_l2"], 0.05 + check["noise"].get<double>());
     EXPECT_LT(check["worst_receiver"], info["receivers"]);

@@ -37,7 +37,7 @@ protected:
                 .json();
         EXPECT_LT(report["clusters"], report["clusters_before"]);
         EXPECT_EQ(report["bytes"], std::filesystem::file_size(folder() / "small.prt"));
-        succeed({"info", "small.prt", "--check", "-q"});
+        succeed("info small.prt --check -q");
         std::vector<std::vector<Rgb>> light;
         for (const char* scene : {"scene.prt", "small.prt"}) {
             std::vector<std::string> arguments = {
@@ -92,20 +92,20 @@ TEST_F(Coarsen, KeepsPoints) {
 
 TEST_F(Coarsen, ChangesNoByteAtTheSameTolerance) {
     precompute({"--tolerance", "0.05"});
-    succeed({"coarsen", "scene.prt", "--tolerance", "0.05", "-o", "same.prt"});
+    succeed("coarsen scene.prt --tolerance 0.05 -o same.prt");
     EXPECT_EQ(read("same.prt"), read("scene.prt"));
 }
 
 TEST_F(Coarsen, RefusesInOneLine) {
     precompute({"--tolerance", "0.05"});
-    fail({"coarsen", "scene.prt", "--tolerance", "0.02", "-o", "small.prt"},
+    fail("coarsen scene.prt --tolerance 0.02 -o small.prt",
          {"scene.prt: made with --tolerance 0.05"});
-    fail({"coarsen", "mesh.obj", "--tolerance", "0.1", "-o", "small.prt"}, {"mesh.obj: expected"});
-    fail({"coarsen", "absent.prt", "--tolerance", "0.1", "-o", "small.prt"}, {"absent.prt"});
-    fail({"coarsen", "scene.prt", "--tolerance", "0.1", "-o", "scene.prt"}, {"scene.prt"});
-    misuse({"coarsen", "scene.prt", "--tolerance", "0.1", "-o", "small.relight"}, "--output");
-    misuse({"coarsen", "scene.prt", "--tolerance", "nan", "-o", "small.prt"}, "--tolerance");
-    misuse({"coarsen", "scene.prt", "--tolerance", "0.1"}, "--output");
+    fail("coarsen mesh.obj --tolerance 0.1 -o small.prt", {"mesh.obj: expected"});
+    fail("coarsen absent.prt --tolerance 0.1 -o small.prt", {"absent.prt"});
+    fail("coarsen scene.prt --tolerance 0.1 -o scene.prt", {"scene.prt"});
+    misuse("coarsen scene.prt --tolerance 0.1 -o small.relight", "--output");
+    misuse("coarsen scene.prt --tolerance nan -o small.prt", "--tolerance");
+    misuse("coarsen scene.prt --tolerance 0.1", "--output");
     EXPECT_FALSE(std::filesystem::exists(folder() / "small.prt"));
 }
 

@@ -17,8 +17,7 @@ protected:
     Edit() {
         write("mesh.obj", octahedron_obj());
         write("white.hdr", white_hdr());
-        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "32", "-q",
-                 "--no-refine"});
+        succeed("precompute mesh.obj -o scene.prt --face-resolution 32 -q --no-refine");
     }
     [[nodiscard]] static std::vector<std::string> command(const std::vector<std::string>& options) {
         std::vector<std::string> arguments = {"edit", "scene.prt", "white.hdr", "-o", "new.npy"};
@@ -67,8 +66,8 @@ TEST_F(Edit, BadOptionsAreRefused) {
         misuse(command({"--disc", "0,1,0", "--gain=" + std::string(gain)}), "--gain");
     for (const char* radius : {"nan", "-1", "181", "wide", "inf"})
         misuse(command({"--disc", "0,1,0", "--radius", radius}), "--radius");
-    misuse({"edit", "scene.prt", "white.hdr", "-o", "new.bmp", "--disc", "0,1,0"}, "new.bmp");
-    fail({"edit", "mesh.obj", "white.hdr", "-o", "new.npy", "--disc", "0,1,0"}, {"mesh.obj"});
+    misuse("edit scene.prt white.hdr -o new.bmp --disc 0,1,0", "new.bmp");
+    fail("edit mesh.obj white.hdr -o new.npy --disc 0,1,0", {"mesh.obj"});
 }
 
 TEST_F(Edit, ABadSavedEnvironmentIsFoundOutBeforeAnythingIsWritten) {
@@ -77,8 +76,7 @@ TEST_F(Edit, ABadSavedEnvironmentIsFoundOutBeforeAnythingIsWritten) {
     for (const char* name : {"missing/saved.exr", "/proc/saved.exr"})
         fail(command({"--disc", "0,1,0", "--save-env", name}), {name});
     fail(command({"--disc", "0,1,0", "--save-env", "white.hdr"}), {"white.hdr"});
-    fail({"edit", "scene.prt", "white.hdr", "-o", "same.exr", "--size", "8x8", "--disc", "0,1,0",
-          "--save-env", "./same.exr"},
+    fail("edit scene.prt white.hdr -o same.exr --size 8x8 --disc 0,1,0 --save-env ./same.exr",
          {"same.exr"});
 }
 
@@ -97,8 +95,7 @@ TEST_F(Edit, LayersAreAppliedOneByOneAndEachTellsItsCost) {
     still = still.substr(0, still.find("],\n  \"frames\"")) + "]}";
     write("layers.json", still);
     const nlohmann::json report =
-        succeed({"edit", "scene.prt", "white.hdr", "layers.json", "-o", "new.npy", "--json"})
-            .json();
+        succeed("edit scene.prt white.hdr layers.json -o new.npy --json").json();
     ASSERT_EQ(report["edits"].size(), 2u);
     EXPECT_EQ(report["edits"][0]["name"], "lamp");
     EXPECT_LT(report["edits"][0]["clusters"], report["clusters"]);
@@ -116,9 +113,9 @@ TEST_F(Edit, TheRotationOfTheFileTurnsEnvironmentAndLayers) {
     std::string still = Lamp;
     still = still.substr(0, still.find("],\n  \"frames\"")) + "]}";
     write("layers.json", still);
-    succeed({"edit", "scene.prt", "white.hdr", "layers.json", "-o", "still.npy"});
+    succeed("edit scene.prt white.hdr layers.json -o still.npy");
     write("turned.json", "{\"rotate_degrees\": 90, " + still.substr(1));
-    succeed({"edit", "scene.prt", "white.hdr", "turned.json", "-o", "turned.npy"});
+    succeed("edit scene.prt white.hdr turned.json -o turned.npy");
     const auto before = npy_values(read("still.npy")), after = npy_values(read("turned.npy"));
     for (std::size_t channel = 0; channel < 3; ++channel) {
         EXPECT_NEAR(after[5][channel], before[0][channel], 1e-3); // +X to -Z
@@ -128,28 +125,27 @@ TEST_F(Edit, TheRotationOfTheFileTurnsEnvironmentAndLayers) {
 
 TEST_F(Edit, FramesBecomeNumberedFiles) {
     write("layers.json", Lamp);
-    succeed({"edit", "scene.prt", "white.hdr", "layers.json", "-o", "frame.%03d.npy"});
+    succeed("edit scene.prt white.hdr layers.json -o frame.%03d.npy");
     for (const auto& [name, gain] :
          {std::pair{"frame.001.npy", 1.0}, {"frame.002.npy", 2.0}, {"frame.003.npy", 4.0}})
         EXPECT_NEAR(npy_values(read(name))[0][0], 1.0 + gain, 0.01 * (1.0 + gain)) << name;
-    misuse({"edit", "scene.prt", "white.hdr", "layers.json", "-o", "frame.%s.npy"},
+    misuse("edit scene.prt white.hdr layers.json -o frame.%s.npy",
            "--output: expected a place for the frame's number");
 }
 
 TEST_F(Edit, WhoShowsTheLightOfThatPoint) {
     write("layers.json", Lamp);
-    succeed({"edit", "scene.prt", "white.hdr", "layers.json", "--who", "1,0,0", "-o", "who.exr"});
-    const nlohmann::json map = succeed({"info", "who.exr", "--json"}).json();
+    succeed("edit scene.prt white.hdr layers.json --who 1,0,0 -o who.exr");
+    const nlohmann::json map = succeed("info who.exr --json").json();
     EXPECT_GT(map["brightest_direction"][0], 0.85);
     // Its integral over the sphere is the point's radiance.
     EXPECT_NEAR(map["mean_radiance"][0].get<double>() * 4.0 * 3.14159265, 2.0, 0.03);
-    succeed({"edit", "scene.prt", "white.hdr", "layers.json", "--who", "1,0,0", "-o", "who.png"});
+    succeed("edit scene.prt white.hdr layers.json --who 1,0,0 -o who.png");
     EXPECT_EQ(read("who.png").substr(1, 3), "PNG");
     // The lamp is the only light, and on the other side.
     write("black.hdr",
           hdr_file(64, 32, [](std::uint32_t, std::uint32_t) { return Rgb{0.0f, 0.0f, 0.0f}; }));
-    EXPECT_NE(succeed({"edit", "scene.prt", "black.hdr", "--disc", "0,1,0", "--who", "1,0,0", "-o",
-                       "who.png"})
+    EXPECT_NE(succeed("edit scene.prt black.hdr --disc 0,1,0 --who 1,0,0 -o who.png")
                   .err.find("who.png: black, since no light reaches vertex"),
               std::string::npos);
 }
@@ -158,8 +154,8 @@ TEST_F(Edit, LitByShowsWhatARegionLights) {
     // A disc of 30 degrees: sin(30 degrees)^2 of the white light on the corner that faces it,
     // nothing on the other side.
     const nlohmann::json disc =
-        succeed({"edit", "scene.prt", "white.hdr", "--disc", "0,1,0", "--gain", "1", "--lit-by",
-                 "1,0,0,30", "-o", "new.npy", "--json"})
+        succeed(
+            "edit scene.prt white.hdr --disc 0,1,0 --gain 1 --lit-by 1,0,0,30 -o new.npy --json")
             .json();
     EXPECT_NEAR(npy_values(read("new.npy"))[0][0], 0.25, 0.01);
     EXPECT_EQ(npy_values(read("new.npy"))[1][0], 0.0f);
@@ -189,9 +185,7 @@ TEST_F(Edit, LitByShowsWhatARegionLights) {
          {"nobody", "1,0,0", "0,0,0,10", "1,0,0,0", "1,0,0,181", "1,0,0,x", "1,0,0,nan", ","})
         misuse({"edit", "scene.prt", "white.hdr", "layers.json", "--lit-by", bad, "-o", "bad.npy"},
                "--lit-by");
-    misuse({"edit", "scene.prt", "white.hdr", "layers.json", "--lit-by", "lamp", "--who", "1,0,0",
-            "-o", "bad.exr"},
-           "--who");
+    misuse("edit scene.prt white.hdr layers.json --lit-by lamp --who 1,0,0 -o bad.exr", "--who");
     EXPECT_FALSE(std::filesystem::exists(folder() / "bad.npy"));
 }
 
@@ -237,20 +231,18 @@ TEST_F(Edit, TheMixersLayersAddUpToThePicture) {
 
 TEST_F(Edit, WhoIsAPictureAndAsksForAPoint) {
     write("layers.json", Lamp);
-    misuse({"edit", "scene.prt", "white.hdr", "layers.json", "--who", "1,0,0", "-o", "who.npy"},
+    misuse("edit scene.prt white.hdr layers.json --who 1,0,0 -o who.npy",
            "--output: expected a name that ends in .exr or .png, got 'who.npy'");
-    misuse({"edit", "scene.prt", "white.hdr", "layers.json", "--who", "here", "-o", "who.exr"},
-           "--who");
+    misuse("edit scene.prt white.hdr layers.json --who here -o who.exr", "--who");
 }
 
 TEST_F(Edit, BrokenLayersAreRefusedWithTheirLine) {
     write("broken.json",
           "{\n\"version\": 1,\n\"layers\": [\n{\"name\": \"a\", \"type\": \"disk\"}]}");
-    fail({"edit", "scene.prt", "white.hdr", "broken.json", "-o", "new.npy"},
-         {"broken.json:4: expected"});
+    fail("edit scene.prt white.hdr broken.json -o new.npy", {"broken.json:4: expected"});
     write("cut.json", "{\"version\": 1, \"layers\": [\n");
-    fail({"edit", "scene.prt", "white.hdr", "cut.json", "-o", "new.npy"}, {"cut.json:"});
-    misuse({"edit", "scene.prt", "white.hdr", "-o", "new.npy"}, "LAYERS");
+    fail("edit scene.prt white.hdr cut.json -o new.npy", {"cut.json:"});
+    misuse("edit scene.prt white.hdr -o new.npy", "LAYERS");
 }
 
 TEST_F(Edit, WatchFollowsWhatAnotherProgramSaves) {

@@ -28,8 +28,7 @@ protected:
 
 TEST_F(ExportRuntime, KeepsTheLightAndTheAlbedoOfBounces) {
     precompute({"--bounces", "0.05", "--floor", "9", "--material", "lambert:albedo=0.3"});
-    const nlohmann::json report =
-        succeed({"export", "runtime", "scene.prt", "-o", "lean.relight", "--json"}).json();
+    const nlohmann::json report = succeed("export runtime scene.prt -o lean.relight --json").json();
     EXPECT_EQ(report["bytes"], std::filesystem::file_size(folder() / "lean.relight"));
     EXPECT_LT(report["bytes"], report["bytes_before"]);
     const prt::RelightingScene lean =
@@ -42,13 +41,13 @@ TEST_F(ExportRuntime, KeepsTheLightAndTheAlbedoOfBounces) {
 
 TEST_F(ExportRuntime, SaysWhatItLeavesOut) {
     precompute({"--view", "auto", "--material", "ggx:roughness=0.5"});
-    const auto run = succeed({"export", "runtime", "scene.prt", "-o", "lean.relight"});
+    const auto run = succeed("export runtime scene.prt -o lean.relight");
     EXPECT_THAT(run.err, HasSubstr("highlights are left out"));
 }
 
 TEST_F(ExportRuntime, RefusesOtherNamesAndFiles) {
-    fail({"export", "runtime", "mesh.obj", "-o", "lean.relight"}, {"mesh.obj: expected"});
-    misuse({"export", "runtime", "mesh.obj", "-o", "lean.prt"}, "--output");
+    fail("export runtime mesh.obj -o lean.relight", {"mesh.obj: expected"});
+    misuse("export runtime mesh.obj -o lean.prt", "--output");
 }
 
 } // namespace

@@ -20,10 +20,9 @@ protected:
         write("lamps.json", R"({"version": 1, "lights": [
             {"direction": [0.48, 0.64, 0.6], "irradiance": [3.0, 2.4, 1.5]},
             {"direction": [-0.8, 0.36, 0.48], "irradiance": [0.4, 0.8, 1.6]}]})");
-        succeed({"generate", "colonnade", "--vertices", "4000", "-o", ".", "-q"});
-        succeed({"precompute", "colonnade.ply", "-o", "c.prt", "--tolerance", "0.06", "--no-refine",
-                 "--bounces", "0", "-q"});
-        succeed({"relight", "c.prt", "--lights", "lamps.json", "-o", "lit.npy", "-q"});
+        succeed("generate colonnade --vertices 4000 -o . -q");
+        succeed("precompute colonnade.ply -o c.prt --tolerance 0.06 --no-refine --bounces 0 -q");
+        succeed("relight c.prt --lights lamps.json -o lit.npy -q");
     }
 
     /// Both lamps are there, each within so many degrees and with so much of its energy.
@@ -55,24 +54,21 @@ protected:
 };
 
 TEST_F(Fit, FindsTwoLampsAgainFromNumbersAndFromAPicture) {
-    succeed({"fit", "c.prt", "lit.npy", "--lights", "2", "-o", "found.json", "-q"});
+    succeed("fit c.prt lit.npy --lights 2 -o found.json -q");
     expect_lamps("found.json", 2.0, 0.02);
-    succeed({"relight", "c.prt", "--lights", "lamps.json", "-o", "lit.exr", "--camera", "24,20",
-             "--albedo", "0.5", "--size", "256x192", "-q"});
-    succeed({"fit", "c.prt", "lit.exr", "--lights", "2", "--camera", "24,20", "--albedo", "0.5",
-             "-o", "seen.json", "-q"});
+    succeed("relight c.prt --lights lamps.json -o lit.exr --camera 24,20 --albedo 0.5 --size "
+            "256x192 -q");
+    succeed("fit c.prt lit.exr --lights 2 --camera 24,20 --albedo 0.5 -o seen.json -q");
     expect_lamps("seen.json", 5.0, 0.05);
 }
 
 TEST_F(Fit, FindsGainsAndAnEnvironment) {
-    succeed({"fit", "c.prt", "lit.npy", "--gains", "lamps.json", "-o", "gains.json", "-q"});
+    succeed("fit c.prt lit.npy --gains lamps.json -o gains.json -q");
     expect_lamps("gains.json", 0.01, 1e-4);
     // A smooth environment of its own kind comes back nearly whole.
     write("white.hdr", white_hdr());
-    succeed({"relight", "c.prt", "white.hdr", "--clusters-only", "-o", "white.npy", "-q"});
-    const auto report =
-        succeed({"fit", "c.prt", "white.npy", "-o", "env.exr", "--face-resolution", "4", "--json"})
-            .json();
+    succeed("relight c.prt white.hdr --clusters-only -o white.npy -q");
+    const auto report = succeed("fit c.prt white.npy -o env.exr --face-resolution 4 --json").json();
     EXPECT_LT(report["relative_l2"], 0.01);
 }
 
@@ -146,15 +142,13 @@ TEST_F(FitEnvironment, SparseLeavesLittleLight) {
 
 TEST_F(Fit, RefusesWhatCannotBeFitted) {
     write("empty.npy", "no numbers");
-    fail({"fit", "c.prt", "empty.npy", "-o", "env.exr"}, {"empty.npy"});
-    succeed(
-        {"relight", "c.prt", "--lights", "lamps.json", "-o", "lit.exr", "--size", "64x48", "-q"});
-    misuse({"fit", "c.prt", "lit.exr", "-o", "env.exr"}, "the camera of the picture");
+    fail("fit c.prt empty.npy -o env.exr", {"empty.npy"});
+    succeed("relight c.prt --lights lamps.json -o lit.exr --size 64x48 -q");
+    misuse("fit c.prt lit.exr -o env.exr", "the camera of the picture");
     write("mesh.obj", octahedron_obj());
-    fail({"fit", "c.prt", "mesh.obj", "-o", "env.exr"}, {"mesh.obj", "vertex colours"});
-    misuse({"fit", "c.prt", "lit.npy", "--gains", "lamps.json", "--lights", "2", "-o", "x.json"},
-           "--gains");
-    misuse({"fit", "c.prt", "lit.npy", "--lights", "2", "-o", "x.exr"}, ".json");
+    fail("fit c.prt mesh.obj -o env.exr", {"mesh.obj", "vertex colours"});
+    misuse("fit c.prt lit.npy --gains lamps.json --lights 2 -o x.json", "--gains");
+    misuse("fit c.prt lit.npy --lights 2 -o x.exr", ".json");
 }
 
 } // namespace

@@ -30,8 +30,8 @@ TEST_F(Glossy, HighlightsOnVerticesAreVerified) {
     const nlohmann::json made =
         make("s.prt", {"--material", "ggx:roughness=0.4,albedo=0.3,f0=0.5", "--view", "auto"});
     EXPECT_GT(made["glossy"]["cells"], 100);
-    EXPECT_LT(succeed({"verify", "s.prt", "white.hdr", "--json"}).json()["relative_l2"], 0.02);
-    succeed({"relight", "s.prt", "white.hdr", "-o", "lit.png", "--size", "32x24"});
+    EXPECT_LT(succeed("verify s.prt white.hdr --json").json()["relative_l2"], 0.02);
+    succeed("relight s.prt white.hdr -o lit.png --size 32x24");
     EXPECT_EQ(png_size(read("lit.png")), (Size{32, 24}));
     const auto warnings = [&](const std::string& camera) {
         return succeed({"relight", "s.prt", "white.hdr", "-o", "lit.png", "--size", "8x6", camera,
@@ -41,9 +41,9 @@ TEST_F(Glossy, HighlightsOnVerticesAreVerified) {
     };
     EXPECT_THAT(warnings("--camera=100,10"), testing::HasSubstr("stands elsewhere"));
     EXPECT_THAT(warnings("--camera=24,20"), testing::Not(testing::HasSubstr("elsewhere")));
-    succeed({"relight", "s.prt", "white.hdr", "-o", "lit.npy"});
+    succeed("relight s.prt white.hdr -o lit.npy");
     make("d.prt", {"--material", "lambert:albedo=0.3"});
-    succeed({"relight", "d.prt", "white.hdr", "-o", "dull.npy"});
+    succeed("relight d.prt white.hdr -o dull.npy");
     auto shiny = npy_values(read("lit.npy"));
     auto dull = npy_values(read("dull.npy"));
     ASSERT_EQ(shiny.size(), 6u + 81u);
@@ -65,24 +65,24 @@ TEST_F(Glossy, HighlightsOnVerticesAreVerified) {
 TEST_F(Glossy, PixelsTexelsEditsAndFramesTakeThem) {
     make("s.prt", {"--material", "blinn:exponent=20,kd=0.3,ks=0.5", "--view", "auto", "--receivers",
                    "pixels:24x16"});
-    succeed({"relight", "s.prt", "white.hdr", "-o", "lit.exr"});
+    succeed("relight s.prt white.hdr -o lit.exr");
     EXPECT_EQ(exr_size(read("lit.exr")), (Size{24, 16}));
-    EXPECT_LT(succeed({"verify", "s.prt", "white.hdr", "--json"}).json()["relative_l2"], 0.03);
+    EXPECT_LT(succeed("verify s.prt white.hdr --json").json()["relative_l2"], 0.03);
     write("layers.json",
           R"({"version": 1, "layers": [{"name": "lamp", "type": "disc", "direction": [0, 1, 0.2],
         "radius_degrees": 10, "effect": "emit", "radiance": [5, 4, 3]}]})");
-    succeed({"edit", "s.prt", "white.hdr", "layers.json", "-o", "edited.png"});
+    succeed("edit s.prt white.hdr layers.json -o edited.png");
     write("f.0001.hdr", white_hdr());
     write("f.0002.hdr", white_hdr());
-    succeed({"animate", "s.prt", "f.%04d.hdr", "-o", "out.%04d.png", "-q"});
+    succeed("animate s.prt f.%04d.hdr -o out.%04d.png -q");
     EXPECT_EQ(png_size(read("out.0002.png")), (Size{24, 16}));
 }
 
 TEST_F(Glossy, AnAlbedoScalesTheLight) {
     make("plain.prt", {});
     make("half.prt", {"--material", "lambert:albedo=0.5"});
-    succeed({"relight", "plain.prt", "white.hdr", "-o", "plain.npy"});
-    succeed({"relight", "half.prt", "white.hdr", "-o", "half.npy"});
+    succeed("relight plain.prt white.hdr -o plain.npy");
+    succeed("relight half.prt white.hdr -o half.npy");
     const auto plain = npy_values(read("plain.npy"));
     const auto half = npy_values(read("half.npy"));
     for (std::size_t i = 0; i < plain.size(); ++i)
@@ -101,8 +101,8 @@ TEST_F(Glossy, TheFloorShinesOnlyWhereItIsAskedTo) {
     const int both = cells({shape, "floor=" + shape});
     EXPECT_GT(both, 2 * mesh_alone);
     // Its own albedo is not replaced by the grey of pictures.
-    succeed({"relight", "s.prt", "white.hdr", "-o", "a.exr", "--floor-albedo", "0.1"});
-    succeed({"relight", "s.prt", "white.hdr", "-o", "b.exr", "--floor-albedo", "0.9"});
+    succeed("relight s.prt white.hdr -o a.exr --floor-albedo 0.1");
+    succeed("relight s.prt white.hdr -o b.exr --floor-albedo 0.9");
     EXPECT_TRUE(read("a.exr") == read("b.exr"));
 }
 
@@ -110,15 +110,14 @@ TEST_F(Glossy, ColoursMayChangeAfterwards) {
     const std::string shape = "ggx:roughness=0.4,";
     make("one.prt", {"--material", shape + "albedo=0.2,f0=0.9", "--view", "auto"});
     make("two.prt", {"--material", shape + "albedo=0.7,0.5,0.3,f0=0.1", "--view", "auto"});
-    succeed({"relight", "one.prt", "white.hdr", "-o", "one.npy", "--surface-albedo", "0.7,0.5,0.3",
-             "--surface-specular", "0.1"});
-    succeed({"relight", "two.prt", "white.hdr", "-o", "two.npy"});
+    succeed(
+        "relight one.prt white.hdr -o one.npy --surface-albedo 0.7,0.5,0.3 --surface-specular 0.1");
+    succeed("relight two.prt white.hdr -o two.npy");
     EXPECT_EQ(npy_values(read("one.npy")), npy_values(read("two.npy")));
     make("plain.prt", {});
-    misuse({"relight", "plain.prt", "white.hdr", "-o", "n.npy", "--surface-albedo", "0.5"},
+    misuse("relight plain.prt white.hdr -o n.npy --surface-albedo 0.5",
            "--surface-albedo: expected a scene with materials");
-    misuse({"relight", "one.prt", "white.hdr", "-o", "n.npy", "--surface-albedo", "-1"},
-           "--surface-albedo");
+    misuse("relight one.prt white.hdr -o n.npy --surface-albedo -1", "--surface-albedo");
 }
 
 TEST_F(Glossy, RoughnessMayChangeWhereHighlightsFollowTheEye) {
@@ -133,19 +132,16 @@ TEST_F(Glossy, RoughnessMayChangeWhereHighlightsFollowTheEye) {
         return read("lit.exr");
     };
     EXPECT_TRUE(picture("one.prt", {"--surface-roughness", "0.7"}) == picture("two.prt", {}));
-    EXPECT_EQ(succeed({"verify", "one.prt", "white.hdr", "--eye", "3,2,5", "--surface-roughness",
-                       "0.7", "--json"})
+    EXPECT_EQ(succeed("verify one.prt white.hdr --eye 3,2,5 --surface-roughness 0.7 --json")
                   .json()["relative_l2"],
-              succeed({"verify", "two.prt", "white.hdr", "--eye", "3,2,5", "--json"})
-                  .json()["relative_l2"]);
+              succeed("verify two.prt white.hdr --eye 3,2,5 --json").json()["relative_l2"]);
     make("fixed.prt", {"--material", "ggx:roughness=0.4," + colors, "--view", "auto"});
-    misuse({"relight", "fixed.prt", "white.hdr", "-o", "n.npy", "--surface-roughness", "0.5"},
+    misuse("relight fixed.prt white.hdr -o n.npy --surface-roughness 0.5",
            "--surface-roughness: fixed.prt: expected highlights that follow the eye");
     make("matt.prt", {"--material", "lambert:albedo=0.3"});
-    misuse({"relight", "matt.prt", "white.hdr", "-o", "n.npy", "--surface-roughness", "0.5"},
+    misuse("relight matt.prt white.hdr -o n.npy --surface-roughness 0.5",
            "--surface-roughness: matt.prt: expected surfaces with GGX highlights");
-    misuse({"relight", "one.prt", "white.hdr", "-o", "n.npy", "--surface-roughness", "2"},
-           "--surface-roughness");
+    misuse("relight one.prt white.hdr -o n.npy --surface-roughness 2", "--surface-roughness");
 }
 
 TEST_F(Glossy, EyesWithoutSenseAreToldOf) {
@@ -160,12 +156,12 @@ TEST_F(Glossy, EyesWithoutSenseAreToldOf) {
     const std::string outside = verified("3,2,5");
     EXPECT_THAT(outside, testing::Not(testing::HasSubstr("inside")));
     EXPECT_THAT(outside, testing::HasSubstr("smoother than roughness 0.11"));
-    const std::string drawn = succeed({"relight", "live.prt", "white.hdr", "-o", "in.png", "--size",
-                                       "8x6", "--eye", "0,0.01,0", "--json"})
-                                  .json()["warnings"]
-                                  .dump();
+    const std::string drawn =
+        succeed("relight live.prt white.hdr -o in.png --size 8x6 --eye 0,0.01,0 --json")
+            .json()["warnings"]
+            .dump();
     EXPECT_THAT(drawn, testing::HasSubstr("is inside of the mesh"));
-    const Result refused = fail({"verify", "matt.prt", "white.hdr", "--eye", "3,2,5"});
+    const Result refused = fail("verify matt.prt white.hdr --eye 3,2,5");
     EXPECT_THAT(refused.err, testing::HasSubstr("expected vertices with glossy materials"));
 }
 
@@ -177,9 +173,8 @@ TEST_F(Glossy, LimitsAreSaid) {
     const Result no_view = succeed({"precompute", "mesh.obj", "-o", "d.prt", "--face-resolution",
                                     "16", "--material", sharp, "--no-refine"});
     EXPECT_NE(no_view.err.find("--view"), std::string::npos) << no_view.described();
-    misuse({"precompute", "mesh.obj", "-o", "n.prt", "--material", "glass"}, "--material");
-    misuse({"precompute", "mesh.obj", "-o", "n.prt", "--glossy-tolerance", "0"},
-           "--glossy-tolerance");
+    misuse("precompute mesh.obj -o n.prt --material glass", "--material");
+    misuse("precompute mesh.obj -o n.prt --glossy-tolerance 0", "--glossy-tolerance");
 }
 
 } // namespace

@@ -17,7 +17,7 @@ protected:
 };
 
 TEST_F(MaxMemory, RefusesBeforeTheWorkWithBothFigures) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "20000", "-q"});
+    succeed("generate knot -o . --vertices 20000 -q");
     fail(run("10M"), {"knot.ply: expected work within 10 MB, got a scene that takes "});
     // Every texel of 6 x 1024 x 1024.
     fail(run("200M", {"--tolerance", "0"}),
@@ -30,7 +30,7 @@ TEST_F(MaxMemory, RefusesBeforeTheWorkWithBothFigures) {
 }
 
 TEST_F(MaxMemory, IsAskedBeforeAFloorIsMade) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "1000", "-q"});
+    succeed("generate knot -o . --vertices 1000 -q");
     const Result refused = fail(run("150M", {"--floor", "4097"}),
                                 {"knot.ply: expected work within 150 MB, got a floor with which"});
     EXPECT_LT(refused.peak_bytes, SanitizerFactor * (std::uint64_t{150} << 20));
@@ -41,17 +41,16 @@ TEST_F(MaxMemory, TheProcessorIsNotBlamedForALimitOfTheSystem) {
         GTEST_SKIP() << "sanitizers take terabytes of addresses";
     write("mesh.obj", octahedron_obj());
     for (const std::uint64_t megabytes : {90, 120, 150, 200}) {
-        const Result result =
-            relumine({"precompute", "mesh.obj", "-o", "scene.prt", "-q", "--no-refine"},
-                     {.max_address_bytes = megabytes * 1'000'000});
+        const Result result = relumine("precompute mesh.obj -o scene.prt -q --no-refine",
+                                       {.max_address_bytes = megabytes * 1'000'000});
         EXPECT_NE(result.exit_code, -1) << result.described();
         EXPECT_EQ(result.err.find("processor"), std::string::npos) << result.described();
     }
 }
 
 TEST_F(MaxMemory, EnoughOfItChangesNothing) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "5000", "-q"});
-    succeed({"precompute", "knot.ply", "-o", "plain.prt", "--tolerance", "0.05", "-q"});
+    succeed("generate knot -o . --vertices 5000 -q");
+    succeed("precompute knot.ply -o plain.prt --tolerance 0.05 -q");
     const nlohmann::json report = succeed(run("110M", {"--tolerance", "0.05", "--json"})).json();
     EXPECT_EQ(read("scene.prt"), read("plain.prt"));
     const double estimate = report["memory_estimate"];
@@ -61,7 +60,7 @@ TEST_F(MaxMemory, EnoughOfItChangesNothing) {
 }
 
 TEST_F(MaxMemory, HoldsForHighlights) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "5000", "-q"});
+    succeed("generate knot -o . --vertices 5000 -q");
     const auto glossy = [](std::vector<std::string> more) {
         more.insert(more.end(), {"--tolerance", "0.05", "--view", "auto", "--material",
                                  "ggx:roughness=0.3,f0=0.04"});

@@ -13,7 +13,7 @@ class PlanTest : public AppTest {
 protected:
     void SetUp() override {
         AppTest::SetUp();
-        succeed({"generate", "knot", "-o", ".", "--vertices", "4000", "-q"});
+        succeed("generate knot -o . --vertices 4000 -q");
     }
     void plan(const std::string& name = "scene.plan", const std::string& tolerance = "0.05") {
         succeed({"plan", "knot.ply", "-o", name, "--tolerance", tolerance, "--floor", "20", "-q"});
@@ -28,26 +28,25 @@ protected:
 TEST_F(PlanTest, AnyNumberOfPartsInAnyOrderMakesTheSameScene) {
     plan();
     succeed(part("1/1", "whole"));
-    succeed({"join", "whole", "-o", "one.prt", "-q"});
+    succeed("join whole -o one.prt -q");
     for (const char* which : {"3/4", "1/4", "4/4", "2/4"})
         succeed(part(which, std::string("part.") + which[0]));
     const nlohmann::json report =
-        succeed({"join", "part.4", "part.1", "part.3", "part.2", "-o", "four.prt", "--json"})
-            .json();
+        succeed("join part.4 part.1 part.3 part.2 -o four.prt --json").json();
     EXPECT_EQ(report["parts"], 4);
     EXPECT_EQ(read("one.prt"), read("four.prt"));
     std::vector<std::string> other_engine = part("2/2", "second");
     other_engine.insert(other_engine.end(), {"--engine", "embree", "--threads", "1"});
     succeed(other_engine);
     succeed(part("1/2", "first"));
-    succeed({"join", "first", "second", "-o", "two.prt", "-q"});
+    succeed("join first second -o two.prt -q");
     EXPECT_EQ(read("one.prt"), read("two.prt"));
-    succeed({"info", "four.prt", "--check"});
+    succeed("info four.prt --check");
 }
 
 TEST_F(PlanTest, BouncesAreTheSameFromAnyNumberOfParts) {
-    succeed({"plan", "knot.ply", "-o", "scene.plan", "--tolerance", "0.06", "--floor", "20",
-             "--bounces", "0.03", "--two-sided", "-q"});
+    succeed(
+        "plan knot.ply -o scene.plan --tolerance 0.06 --floor 20 --bounces 0.03 --two-sided -q");
     for (const int count : {1, 3}) {
         std::vector<std::string> join = {"join"};
         for (int i = 1; i <= count; ++i) {
@@ -59,20 +58,18 @@ TEST_F(PlanTest, BouncesAreTheSameFromAnyNumberOfParts) {
         succeed(join);
     }
     EXPECT_EQ(read("1.prt"), read("3.prt"));
-    succeed({"info", "3.prt", "--check"});
+    succeed("info 3.prt --check");
     write("sky.hdr", lamp_hdr(40));
-    succeed({"relight", "3.prt", "sky.hdr", "--only-bounces", "-o", "bounced.npy", "-q"});
-    fail({"relight", "3.prt", "sky.hdr", "--part", "1/2", "-o", "part"},
-         {"3.prt: expected a scene without bounces"});
+    succeed("relight 3.prt sky.hdr --only-bounces -o bounced.npy -q");
+    fail("relight 3.prt sky.hdr --part 1/2 -o part", {"3.prt: expected a scene without bounces"});
 }
 
 TEST_F(PlanTest, AJoinedSceneIsAsExactAsAPlainOne) {
     plan("scene.plan", "0.02");
     for (const char* which : {"1/2", "2/2"})
         succeed(part(which, std::string("part.") + which[0]));
-    succeed({"join", "part.1", "part.2", "-o", "joined.prt", "-q"});
-    succeed({"precompute", "knot.ply", "-o", "plain.prt", "--tolerance", "0.02", "--floor", "20",
-             "-q"});
+    succeed("join part.1 part.2 -o joined.prt -q");
+    succeed("precompute knot.ply -o plain.prt --tolerance 0.02 --floor 20 -q");
     write("sky.hdr", lamp_hdr(40));
     const auto error = [&](const std::string& scene) {
         return succeed({"verify", scene, "sky.hdr", "--samples", "0", "--clusters-only", "--json"})
@@ -93,7 +90,7 @@ TEST_F(PlanTest, PartsKnowTheRefinedAndTheSimplifiedMesh) {
     succeed(with({"plan", "-o", "scene.plan", "-q"}));
     for (const char* which : {"1/2", "2/2"})
         succeed(part(which, std::string("part.") + which[0]));
-    succeed({"join", "part.1", "part.2", "-o", "joined.prt", "-q"});
+    succeed("join part.1 part.2 -o joined.prt -q");
     succeed(with({"precompute", "-o", "plain.prt", "-q"}));
     const auto info = [&](const std::string& scene) {
         nlohmann::json facts = succeed({"info", scene, "--check", "--json"}).json();
@@ -114,10 +111,9 @@ TEST_F(PlanTest, PartsKnowTheRefinedAndTheSimplifiedMesh) {
 }
 
 TEST_F(PlanTest, LightOfPartsIsTheLightOfTheScene) {
-    succeed({"precompute", "knot.ply", "-o", "scene.prt", "--tolerance", "0.06", "--floor", "40",
-             "-q"});
+    succeed("precompute knot.ply -o scene.prt --tolerance 0.06 --floor 40 -q");
     write("sky.hdr", lamp_hdr(40));
-    succeed({"generate", "sun_sky", "-o", ".", "--face-resolution", "32", "-q"});
+    succeed("generate sun_sky -o . --face-resolution 32 -q");
     for (const std::string sky : {"sky.hdr", "sun_sky.exr"}) {
         succeed({"relight", "scene.prt", sky, "-o", "whole.npy", "--rotate", "20", "--bounces", "0",
                  "-q"});
@@ -133,10 +129,8 @@ TEST_F(PlanTest, LightOfPartsIsTheLightOfTheScene) {
             EXPECT_EQ(read("whole.npy"), read("joined.npy")) << sky << " in " << count;
         }
     }
-    succeed({"relight", "scene.prt", "sky.hdr", "--part", "1/2", "-o", "first", "--bounces", "0",
-             "-q"});
-    succeed({"relight", "scene.prt", "sun_sky.exr", "--part", "2/2", "-o", "other", "--bounces",
-             "0", "-q"});
+    succeed("relight scene.prt sky.hdr --part 1/2 -o first --bounces 0 -q");
+    succeed("relight scene.prt sun_sky.exr --part 2/2 -o other --bounces 0 -q");
     const auto join = [](std::vector<std::string> parts) {
         parts.insert(parts.begin(), "join");
         parts.insert(parts.end(), {"-o", "out.npy"});
@@ -146,38 +140,36 @@ TEST_F(PlanTest, LightOfPartsIsTheLightOfTheScene) {
     fail(join({"first", "other"}), {"other: expected a part of the same light as first"});
     fail(join({"first", "first"}), {"first: expected every part once"});
     fail(join({"scene.prt"}), {"scene.prt: expected a part that `relumine relight --part` wrote"});
-    fail({"join", "first", "-o", "out.prt"}, {"first: expected"});
-    fail({"relight", "first", "sky.hdr", "-o", "out.npy"}, {"first: expected a scene, got a part"});
-    fail({"relight", "first", "sky.hdr", "--part", "1/2", "-o", "out"},
+    fail("join first -o out.prt", {"first: expected"});
+    fail("relight first sky.hdr -o out.npy", {"first: expected a scene, got a part"});
+    fail("relight first sky.hdr --part 1/2 -o out",
          {"first: expected a scene, got a plan or a part"});
-    misuse({"relight", "scene.prt", "sky.hdr", "--part", "3/2", "-o", "out"}, "--part");
-    misuse({"relight", "scene.prt", "sky.hdr", "--part", "1/2", "-o", "out", "--exposure", "1"},
-           "--exposure");
-    misuse({"relight", "scene.prt", "--part", "1/2", "-o", "out"}, "ENV");
+    misuse("relight scene.prt sky.hdr --part 3/2 -o out", "--part");
+    misuse("relight scene.prt sky.hdr --part 1/2 -o out --exposure 1", "--exposure");
+    misuse("relight scene.prt --part 1/2 -o out", "ENV");
 }
 
 TEST_F(PlanTest, WrongUsageIsNamed) {
     plan();
-    misuse({"precompute", "--plan", "scene.plan", "-o", "part"}, "--part");
-    misuse({"precompute", "--part", "1/2", "-o", "part"}, "--plan");
-    misuse({"precompute", "-o", "scene.prt"}, "MESH");
+    misuse("precompute --plan scene.plan -o part", "--part");
+    misuse("precompute --part 1/2 -o part", "--plan");
+    misuse("precompute -o scene.prt", "MESH");
     for (const char* which : {"0/4", "5/4", "1", "a/b", "1/", "/2", "1/70000", "1/2/3"})
         misuse(part(which, "part"), "--part");
     std::vector<std::string> twice = part("1/2", "part");
     twice.insert(twice.end(), {"--tolerance", "0.1"});
     misuse(twice, "--tolerance");
-    misuse({"precompute", "knot.ply", "--plan", "scene.plan", "--part", "1/2", "-o", "part"},
-           "MESH");
-    misuse({"plan", "knot.ply", "-o", "scene.prt"}, "--output");
-    misuse({"plan", "knot.ply", "-o", "scene.plan", "--bounces", "7"}, "--bounces");
-    misuse({"plan", "knot.ply", "-o", "scene.plan", "--two-sided"}, "--two-sided");
+    misuse("precompute knot.ply --plan scene.plan --part 1/2 -o part", "MESH");
+    misuse("plan knot.ply -o scene.prt", "--output");
+    misuse("plan knot.ply -o scene.plan --bounces 7", "--bounces");
+    misuse("plan knot.ply -o scene.plan --two-sided", "--two-sided");
 }
 
 TEST_F(PlanTest, InfoSaysWhatAPlanAndItsPartsAre) {
     plan();
     succeed(part("1/2", "first"));
     succeed(part("2/2", "second.part"));
-    const nlohmann::json planned = succeed({"info", "scene.plan", "--json"}).json();
+    const nlohmann::json planned = succeed("info scene.plan --json").json();
     EXPECT_EQ(planned["kind"], "plan");
     EXPECT_EQ(planned["source"], "knot.ply");
     std::size_t num_receivers = 0;
@@ -199,16 +191,15 @@ TEST_F(PlanTest, InfoSaysWhatAPlanAndItsPartsAre) {
     said("first", "part                1 of 2 of a planned precompute");
     said("first", ", which this part carries");
     said("second.part", "part                2 of 2 of a planned precompute");
-    misuse({"info", "scene.plan", "--picture", "a.png"}, "--picture");
-    succeed({"join", "first", "second.part", "-o", "scene.prt", "-q"});
-    succeed({"generate", "sun_sky", "-o", ".", "--face-resolution", "16", "-q"});
-    succeed({"relight", "scene.prt", "sun_sky.exr", "--part", "1/3", "--bounces", "0", "-o",
-             "sky.part.1", "-q"});
-    EXPECT_EQ(succeed({"info", "sky.part.1", "--json"}).json()["kind"], "part of light");
+    misuse("info scene.plan --picture a.png", "--picture");
+    succeed("join first second.part -o scene.prt -q");
+    succeed("generate sun_sky -o . --face-resolution 16 -q");
+    succeed("relight scene.prt sun_sky.exr --part 1/3 --bounces 0 -o sky.part.1 -q");
+    EXPECT_EQ(succeed("info sky.part.1 --json").json()["kind"], "part of light");
     said("sky.part.1", "part                1 of 3 of a scene's light");
     // Cut short, as by a full disk elsewhere.
     write("second.part", read("second.part").substr(0, 1000));
-    fail({"info", "second.part"}, {"second.part: expected", "truncated"});
+    fail("info second.part", {"second.part: expected", "truncated"});
 }
 
 TEST_F(PlanTest, HighlightsJoinToTheSameFileFromAnyNumberOfParts) {
@@ -219,10 +210,10 @@ TEST_F(PlanTest, HighlightsJoinToTheSameFileFromAnyNumberOfParts) {
     plan.insert(plan.end(), shine.begin(), shine.end());
     succeed(plan);
     succeed(part("1/1", "one"));
-    succeed({"join", "one", "-o", "one.prt"});
+    succeed("join one -o one.prt");
     for (const char* i : {"1", "2", "3"})
         succeed(part(std::string(i) + "/3", std::string("three.") + i));
-    succeed({"join", "three.3", "three.1", "three.2", "-o", "three.prt"});
+    succeed("join three.3 three.1 three.2 -o three.prt");
     EXPECT_EQ(read("one.prt"), read("three.prt"));
     EXPECT_NE(read("one.prt").find("g_specular_b"), std::string::npos);
 }
@@ -259,7 +250,7 @@ TEST_F(PlanTest, APartThatIsMissingDoubledForeignOrDamagedIsNamed) {
     EXPECT_EQ(foreign.err, "relumine: expected all 2 parts, got none that is part 1\n");
     EXPECT_EQ(none.exit_code, 1);
     EXPECT_EQ(none.err, "relumine: expected parts that can be joined, got 1 that cannot\n");
-    misuse({"join", "first", "second"}, "--output");
+    misuse("join first second", "--output");
     std::string bytes = read("second");
     bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
     write("second", bytes);
@@ -269,7 +260,7 @@ TEST_F(PlanTest, APartThatIsMissingDoubledForeignOrDamagedIsNamed) {
     EXPECT_EQ(checked["faults"].size(), 2u);
     fail(part("1/2", "part", "first"), {"first: expected a plan, got a part"});
     std::filesystem::copy(folder() / "first", folder() / "first.prt");
-    fail({"info", "first.prt"}, {"first.prt: expected a scene, got a part"});
+    fail("info first.prt", {"first.prt: expected a scene, got a part"});
 }
 
 } // namespace

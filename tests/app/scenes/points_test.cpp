@@ -1,6 +1,5 @@
 // Points in space and grids: `relumine precompute --receivers points:FILE`, `relumine relight
 // --harmonics FILE`.
-#include <algorithm>
 #include <cmath>
 
 #include "tests/app/command.h"
@@ -32,7 +31,7 @@ TEST_F(PointsCommand, HaveTheMeanRadianceOfTheirSphere) {
     const Result result = precompute("points:points.ply");
     EXPECT_NE(result.out.find("1 of 3 points lie inside of objects"), std::string::npos)
         << result.described();
-    succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.npy", "--harmonics", "sh.npy", "-q"});
+    succeed("relight scene.prt white.hdr -o lit.npy --harmonics sh.npy -q");
     const auto values = npy_values(read("lit.npy"));
     ASSERT_EQ(values.size(), 3u);
     EXPECT_NEAR(values[0][1], 1.0f, 1e-3f);
@@ -48,16 +47,15 @@ TEST_F(PointsCommand, HaveTheMeanRadianceOfTheirSphere) {
 
 TEST_F(PointsCommand, GridsFillTheirBoxAndBecomePicturesAndProbes) {
     precompute("grid:3x2x2", {"--box", "-3,2,-3,3,4,3"});
-    const auto info = succeed({"info", "scene.prt", "--json"}).json();
+    const auto info = succeed("info scene.prt --json").json();
     EXPECT_EQ(info.at("layout").at("kind"), "grid") << info;
     EXPECT_EQ(info.at("layout").at("nx"), 3);
-    succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.exr", "--harmonics", "sh.exr", "-q"});
+    succeed("relight scene.prt white.hdr -o lit.exr --harmonics sh.exr -q");
     EXPECT_EQ(exr_size(read("lit.exr")), (Size{3, 4}));
     const auto channels = exr_channels(folder() / "sh.exr");
     ASSERT_TRUE(channels.contains("L2p2.B"));
     EXPECT_EQ(channels.at("L1m1.G").size(), 12u);
-    succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.png", "--harmonics", "sh.json",
-             "--harmonics-order", "2", "-q"});
+    succeed("relight scene.prt white.hdr -o lit.png --harmonics sh.json --harmonics-order 2 -q");
     const auto probes = nlohmann::json::parse(read("sh.json")).at("object");
     EXPECT_EQ(probes.at("type"), "Group");
     ASSERT_EQ(probes.at("children").size(), 12u);
@@ -83,22 +81,21 @@ TEST_F(PointsCommand, PartsAndThreadsMakeTheSameBytes) {
     EXPECT_EQ(read("one.prt"), read("two.prt"));
 
     succeed(with({"plan", "-o", "scene.plan"}));
-    succeed({"precompute", "--plan", "scene.plan", "--part", "1/1", "-o", "all.part", "-q"});
-    succeed({"join", "all.part", "-o", "all.prt", "-q"});
+    succeed("precompute --plan scene.plan --part 1/1 -o all.part -q");
+    succeed("join all.part -o all.prt -q");
     for (const char* part : {"1", "2"})
         succeed({"precompute", "--plan", "scene.plan", "--part", std::string(part) + "/2", "-o",
                  std::string(part) + ".part", "-q"});
-    succeed({"join", "1.part", "2.part", "-o", "joined.prt", "-q"});
+    succeed("join 1.part 2.part -o joined.prt -q");
     EXPECT_EQ(read("all.prt"), read("joined.prt"));
 
-    succeed({"relight", "one.prt", "white.hdr", "-o", "whole.npy", "--harmonics", "a.npy", "-q",
-             "--threads", "1"});
-    succeed({"relight", "one.prt", "white.hdr", "-o", "again.npy", "--harmonics", "b.npy", "-q"});
+    succeed("relight one.prt white.hdr -o whole.npy --harmonics a.npy -q --threads 1");
+    succeed("relight one.prt white.hdr -o again.npy --harmonics b.npy -q");
     EXPECT_EQ(read("a.npy"), read("b.npy"));
     for (const char* part : {"1", "2"})
         succeed({"relight", "one.prt", "white.hdr", "--part", std::string(part) + "/2", "-o",
                  std::string(part) + ".lit", "-q"});
-    succeed({"join", "1.lit", "2.lit", "-o", "parts.npy", "-q"});
+    succeed("join 1.lit 2.lit -o parts.npy -q");
     EXPECT_EQ(read("parts.npy"), read("whole.npy"));
 }
 
@@ -110,8 +107,7 @@ TEST_F(PointsCommand, PartsOfAFileOfPointsMakeTheSameBytes) {
         ply += std::to_string(0.11 * (i % 20) - 1.1) + " " + std::to_string(0.2 * (i / 200)) + " " +
                std::to_string(0.3 * (i / 20 % 10) - 1.5) + "\n";
     write("many.ply", ply);
-    succeed({"plan", "mesh.obj", "-o", "scene.plan", "--receivers", "points:many.ply",
-             "--face-resolution", "16", "-q"});
+    succeed("plan mesh.obj -o scene.plan --receivers points:many.ply --face-resolution 16 -q");
     for (const int count : {1, 3}) {
         std::vector<std::string> join = {"join"};
         for (int i = count; i >= 1; --i) {
@@ -128,17 +124,16 @@ TEST_F(PointsCommand, PartsOfAFileOfPointsMakeTheSameBytes) {
 TEST_F(PointsCommand, AnEnvironmentIsFittedToPoints) {
     precompute("grid:4x4x4", {"--box", "-3,2,-3,3,4,3"});
     write("lamp.hdr", lamp_hdr(40));
-    succeed({"relight", "scene.prt", "lamp.hdr", "-o", "lit.npy", "--clusters-only", "-q"});
-    const auto report = succeed({"fit", "scene.prt", "lit.npy", "-o", "env.exr",
-                                 "--face-resolution", "8", "--smooth", "0", "--json"})
-                            .json();
+    succeed("relight scene.prt lamp.hdr -o lit.npy --clusters-only -q");
+    const auto report =
+        succeed("fit scene.prt lit.npy -o env.exr --face-resolution 8 --smooth 0 --json").json();
     EXPECT_LT(report["relative_l2"], 0.005);
-    fail({"fit", "scene.prt", "lit.npy", "--lights", "1", "-o", "lamp.json"}, {"points in space"});
+    fail("fit scene.prt lit.npy --lights 1 -o lamp.json", {"points in space"});
 }
 
 TEST_F(PointsCommand, GetTheLightThatSurfacesSend) {
     precompute("points:points.ply", {"--bounces", "0.02", "--no-refine"});
-    const auto info = succeed({"info", "scene.prt", "--json"}).json();
+    const auto info = succeed("info scene.prt --json").json();
     EXPECT_EQ(info.at("receivers"), 3) << info;
     const auto lit = [&](const std::vector<std::string>& options) {
         std::vector<std::string> arguments = {"relight", "scene.prt", "white.hdr",   "-o",
@@ -159,16 +154,14 @@ TEST_F(PointsCommand, GetTheLightThatSurfacesSend) {
     EXPECT_NEAR(0.282095f * light[9][1], all[1][1], 1e-5f);
     EXPECT_EQ(all[2], all[1]);
     // Backwards, too.
-    const auto fitted = succeed({"fit", "scene.prt", "lit.npy", "-o", "env.exr",
-                                 "--face-resolution", "4", "--smooth", "0.01", "--json"})
-                            .json();
+    const auto fitted =
+        succeed("fit scene.prt lit.npy -o env.exr --face-resolution 4 --smooth 0.01 --json").json();
     EXPECT_LT(fitted["relative_l2"], 0.01);
 }
 
 TEST_F(PointsCommand, VerticesHaveHarmonicsToo) {
-    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "-q", "--no-refine"});
-    succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.npy", "--harmonics", "sh.npy",
-             "--harmonics-order", "2", "-q"});
+    succeed("precompute mesh.obj -o scene.prt -q --no-refine");
+    succeed("relight scene.prt white.hdr -o lit.npy --harmonics sh.npy --harmonics-order 2 -q");
     const auto light = npy_values(read("sh.npy"));
     ASSERT_EQ(light.size(), 6u * 4u);
     // The irradiance of vertex +X along its normal, c0 Y0 pi + c3 Y3 2 pi / 3, is that of its
@@ -176,8 +169,7 @@ TEST_F(PointsCommand, VerticesHaveHarmonicsToo) {
     const auto radiance = npy_values(read("lit.npy"));
     EXPECT_NEAR(radiance[0][0], 1.0, 2e-3);
     EXPECT_NEAR(0.886227 * light[0][0] + 1.023328 * light[3][0], 3.14159265 * radiance[0][0], 1e-5);
-    misuse({"relight", "scene.prt", "white.hdr", "-o", "x.png", "--harmonics", "sh.exr"},
-           "--harmonics");
+    misuse("relight scene.prt white.hdr -o x.png --harmonics sh.exr", "--harmonics");
 }
 
 TEST_F(PointsCommand, BadInput) {
@@ -198,18 +190,16 @@ TEST_F(PointsCommand, BadInput) {
     refuse("vertices", "--box", {"--box", "0,0,0,1,1,1"});
     write("nan.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                      "property float z\nend_header\n0 nan 0\n");
-    fail({"precompute", "mesh.obj", "-o", "new.prt", "--receivers", "points:nan.ply"},
+    fail("precompute mesh.obj -o new.prt --receivers points:nan.ply",
          {"nan.ply: expected points with finite coordinates, got (0, nan, 0)"});
-    fail({"precompute", "mesh.obj", "-o", "new.prt", "--receivers", "points:none.npy"},
-         {"none.npy"});
+    fail("precompute mesh.obj -o new.prt --receivers points:none.npy", {"none.npy"});
     precompute("points:points.ply", {"-q"});
     for (const char* order : {"1", "7"})
         misuse({"relight", "scene.prt", "white.hdr", "-o", "x.png", "--harmonics", "sh.npy",
                 "--harmonics-order", order},
                "--harmonics-order");
-    misuse({"relight", "scene.prt", "white.hdr", "-o", "x.png", "--harmonics", "sh.png"},
-           "--harmonics");
-    misuse({"relight", "scene.prt", "white.hdr", "-o", "x.ply"}, "--output");
+    misuse("relight scene.prt white.hdr -o x.png --harmonics sh.png", "--harmonics");
+    misuse("relight scene.prt white.hdr -o x.ply", "--output");
 }
 
 } // namespace

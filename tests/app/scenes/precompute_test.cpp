@@ -1,5 +1,4 @@
 // `relumine precompute`: options and what it refuses.
-#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include "tests/app/command.h"
@@ -56,7 +55,7 @@ TEST_F(Precompute, TheFloorHasTheVerticesAskedFor) {
                   .out.find("floor: 5 x 5 vertices over 8 x 8; one "
                             "spans 1.1 under the mesh"),
               std::string::npos);
-    EXPECT_EQ(succeed({"info", "new.prt", "--json"}).json()["floor"], 5);
+    EXPECT_EQ(succeed("info new.prt --json").json()["floor"], 5);
     // Without a number, last on the line or before another option.
     const nlohmann::json automatic = made({"--min-depth", "1", "--tolerance", "0.2", "--floor"});
     EXPECT_EQ(automatic["floor"]["vertices"], 25);
@@ -79,9 +78,9 @@ TEST_F(Precompute, ACoarseMeshGetsVerticesUnlessItMustNot) {
     const std::string refined = said({});
     EXPECT_NE(refined.find("refined: 8 vertices became "), std::string::npos) << refined;
     EXPECT_NE(refined.find("at most 45000 more for the mesh"), std::string::npos) << refined;
-    EXPECT_GT(succeed({"info", "by_itself.prt", "--json"}).json()["vertices"], 100);
+    EXPECT_GT(succeed("info by_itself.prt --json").json()["vertices"], 100);
     EXPECT_EQ(said({"--no-refine"}).find("refined"), std::string::npos);
-    EXPECT_EQ(succeed({"info", "by_itself.prt", "--json"}).json()["vertices"], 8);
+    EXPECT_EQ(succeed("info by_itself.prt --json").json()["vertices"], 8);
     // Who says how wants it so.
     EXPECT_EQ(said({"--max-edge", "100"}).find("at most"), std::string::npos);
 }
@@ -104,7 +103,7 @@ TEST_F(Precompute, SmoothNormalsReplaceTheFiles) {
                   const float sky = y < 16 ? 1.0f : 0.0f;
                   return Rgb{sky, sky, sky};
               }));
-        succeed({"relight", "new.prt", "sky.hdr", "-o", "lit.npy"});
+        succeed("relight new.prt sky.hdr -o lit.npy");
         return npy_values(read("lit.npy")).at(0)[0];
     };
     EXPECT_NEAR(radiance("smooth"), 1.0f, 0.01f);
@@ -142,7 +141,7 @@ TEST_F(Precompute, NumbersBeyondTheRaysRangeAreRefused) {
 }
 
 TEST_F(Precompute, WorkThatWouldTakeHoursIsRefused) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "20000", "-q"});
+    succeed("generate knot -o . --vertices 20000 -q");
     const std::vector<std::string> knot = {"precompute", "knot.ply", "-o", "new.prt"};
     const auto with = [&](std::vector<std::string> more) {
         more.insert(more.begin(), knot.begin(), knot.end());
@@ -157,7 +156,7 @@ TEST_F(Precompute, WorkThatWouldTakeHoursIsRefused) {
 }
 
 TEST_F(Precompute, OptionsThatAreOftenMistaken) {
-    misuse({"precompute", "--floor", "mesh.obj", "-o", "new.prt"},
+    misuse("precompute --floor mesh.obj -o new.prt",
            "--floor: expected auto or a number from 2 to 65535, got 'mesh.obj'; the mesh goes "
            "first: relumine "
            "precompute mesh.obj --floor");
@@ -180,34 +179,33 @@ TEST_F(Precompute, TheOutputIsNeverTheInputNorAnythingButAScene) {
         misuse({"precompute", "mesh.obj", "-o", name},
                "--output: expected a name that ends in .prt, got");
     fs::create_symlink("mesh.obj", folder() / "link.prt");
-    fail({"precompute", "mesh.obj", "-o", "link.prt"}, {"link.prt"});
+    fail("precompute mesh.obj -o link.prt", {"link.prt"});
     fs::create_hard_link(folder() / "mesh.obj", folder() / "hard.prt");
-    fail({"precompute", "mesh.obj", "-o", "hard.prt"}, {"hard.prt"});
+    fail("precompute mesh.obj -o hard.prt", {"hard.prt"});
     ASSERT_EQ(::mkfifo((folder() / "pipe.prt").c_str(), 0600), 0);
-    fail({"precompute", "mesh.obj", "-o", "pipe.prt"}, {"pipe.prt", "not a regular file"});
+    fail("precompute mesh.obj -o pipe.prt", {"pipe.prt", "not a regular file"});
 }
 
 TEST_F(Precompute, OutputsThatCannotBeWrittenAreFoundOutAtOnce) {
-    fail({"precompute", "mesh.obj", "-o", "missing/new.prt"}, {"missing/new.prt", "cannot write"});
-    fail({"precompute", "mesh.obj", "-o", "mesh.obj/new.prt"},
-         {"mesh.obj/new.prt", "cannot write"});
-    fail({"precompute", "mesh.obj", "-o", "/proc/new.prt"}, {"/proc/new.prt", "cannot write"});
+    fail("precompute mesh.obj -o missing/new.prt", {"missing/new.prt", "cannot write"});
+    fail("precompute mesh.obj -o mesh.obj/new.prt", {"mesh.obj/new.prt", "cannot write"});
+    fail("precompute mesh.obj -o /proc/new.prt", {"/proc/new.prt", "cannot write"});
     fs::create_directory(folder() / "folder.prt");
-    fail({"precompute", "mesh.obj", "-o", "folder.prt"}, {"folder.prt", "cannot write"});
+    fail("precompute mesh.obj -o folder.prt", {"folder.prt", "cannot write"});
     // Before the mesh is even looked at.
-    fail({"precompute", "missing.obj", "-o", "missing/new.prt"}, {"missing/new.prt"});
+    fail("precompute missing.obj -o missing/new.prt", {"missing/new.prt"});
 }
 
 TEST_F(Precompute, AFullDiskLeavesTheOldScene) {
     succeed(command({}));
     fail(command({"--tolerance", "0.001"}), {"new.prt", "cannot write"}, {.max_file_bytes = 200});
-    EXPECT_EQ(succeed({"info", "new.prt", "--json"}).json()["face_resolution"], 16);
+    EXPECT_EQ(succeed("info new.prt --json").json()["face_resolution"], 16);
 }
 
 TEST_F(Precompute, ASecondRunReplacesTheFirst) {
     EXPECT_EQ(made({"--floor", "3"})["vertices"], 15);
     EXPECT_EQ(made({})["vertices"], 6);
-    EXPECT_EQ(succeed({"info", "new.prt", "--json"}).json()["vertices"], 6);
+    EXPECT_EQ(succeed("info new.prt --json").json()["vertices"], 6);
     EXPECT_EQ(files().size(), 3u) << "the mesh, the environment and the scene";
 }
 
@@ -230,7 +228,7 @@ TEST_F(Precompute, StlHasZUpByCustomAndSaysSo) {
         write("top.hdr", hdr_file(64, 32, [](std::uint32_t, std::uint32_t y) {
                   return y < 2 ? Rgb{64.0f, 64.0f, 64.0f} : Rgb{0.0f, 0.0f, 0.0f};
               }));
-        succeed({"relight", "flat.prt", "top.hdr", "-o", "flat.npy"});
+        succeed("relight flat.prt top.hdr -o flat.npy");
         EXPECT_EQ(said.find("+Z is up, by the custom of .stl") != std::string::npos, up.empty());
         return npy_values(read("flat.npy")).at(0)[0] > 1.0f;
     };
@@ -247,7 +245,7 @@ TEST_F(Precompute, StlHasZUpByCustomAndSaysSo) {
     EXPECT_TRUE(top_is_lit({}));
     EXPECT_TRUE(top_is_lit({"--up", "z"}));
     EXPECT_FALSE(top_is_lit({"--up", "y"}));
-    misuse({"precompute", "flat.stl", "-o", "new.prt", "--up", "w"}, "--up");
+    misuse("precompute flat.stl -o new.prt --up w", "--up");
 }
 
 } // namespace

@@ -1,5 +1,4 @@
 // Scenes whose receivers are pixels or texels, from the mesh to the picture.
-#include <cmath>
 #include <string>
 
 #include "tests/app/command.h"
@@ -34,42 +33,40 @@ protected:
                  "0.05", "--receivers", receivers, "--view", "auto", "-q", "--no-refine"});
     }
     void make_texels() const {
-        succeed({"precompute", "square.ply", "-o", "tx.prt", "--face-resolution", "32",
-                 "--receivers", "texels:8x8", "-q"});
+        succeed("precompute square.ply -o tx.prt --face-resolution 32 --receivers texels:8x8 -q");
     }
 };
 
 TEST_F(Receivers, PixelsBecomeThePictureOfTheirView) {
     const nlohmann::json made =
-        succeed({"precompute", "mesh.obj", "-o", "px.prt", "--face-resolution", "16", "--tolerance",
-                 "0.05", "--receivers", "pixels:24x16:2", "--view", "0,1,5,0,0,0,40", "--json",
-                 "--no-refine"})
+        succeed("precompute mesh.obj -o px.prt --face-resolution 16 --tolerance 0.05 --receivers "
+                "pixels:24x16:2 --view 0,1,5,0,0,0,40 --json --no-refine")
             .json();
     EXPECT_EQ(made["layout"]["kind"], "pixels");
     EXPECT_EQ(made["vertices"], 6);
     const auto num_receivers = made["receivers"].get<std::size_t>();
     EXPECT_GT(num_receivers, 100u);
     EXPECT_LT(num_receivers, 24u * 16u * 4u);
-    succeed({"relight", "px.prt", "white.hdr", "-o", "lit.png"});
+    succeed("relight px.prt white.hdr -o lit.png");
     EXPECT_EQ(png_size(read("lit.png")), (Size{24, 16}));
-    succeed({"relight", "px.prt", "white.hdr", "-o", "lit.exr"});
+    succeed("relight px.prt white.hdr -o lit.exr");
     EXPECT_EQ(exr_size(read("lit.exr")), (Size{24, 16}));
-    succeed({"relight", "px.prt", "white.hdr", "-o", "cut.exr", "--transparent"});
+    succeed("relight px.prt white.hdr -o cut.exr --transparent");
     EXPECT_EQ(exr_size(read("cut.exr")), (Size{24, 16}));
-    succeed({"relight", "px.prt", "white.hdr", "-o", "lit.npy"});
+    succeed("relight px.prt white.hdr -o lit.npy");
     const auto values = npy_values(read("lit.npy"));
     EXPECT_EQ(values.size(), num_receivers);
     for (const auto& value :
          values) // a white furnace: flat faces under smooth normals see a little less
         EXPECT_LT(value[0], 1.01f);
 
-    const nlohmann::json info = succeed({"info", "px.prt", "--json"}).json();
+    const nlohmann::json info = succeed("info px.prt --json").json();
     EXPECT_EQ(info["receivers"], num_receivers);
     EXPECT_EQ(info["layout"]["samples_per_axis"], 2);
     EXPECT_EQ(info["layout"]["fov"], 40.0);
     EXPECT_NEAR(info["layout"]["coverage"].get<double>(),
                 static_cast<double>(num_receivers) / (24 * 16 * 4), 1e-9);
-    EXPECT_NE(succeed({"info", "px.prt"}).out.find("pixels 24 x 16, 2 x 2 samples each"),
+    EXPECT_NE(succeed("info px.prt").out.find("pixels 24 x 16, 2 x 2 samples each"),
               std::string::npos);
 }
 
@@ -77,40 +74,37 @@ TEST_F(Receivers, AllCommandsTakePixels) {
     make_pixels();
     write("frame.0001.hdr", lamp_hdr(32));
     write("frame.0002.hdr", lamp_hdr(64));
-    succeed({"animate", "px.prt", "frame.%04d.hdr", "-o", "lit.%04d.png", "--vertices", "all.npy",
-             "--exposure", "1"});
+    succeed("animate px.prt frame.%04d.hdr -o lit.%04d.png --vertices all.npy --exposure 1");
     EXPECT_EQ(png_size(read("lit.0002.png")), (Size{24, 16}));
-    succeed({"relight", "px.prt", "frame.0002.hdr", "-o", "one.png", "--exposure", "1"});
+    succeed("relight px.prt frame.0002.hdr -o one.png --exposure 1");
     EXPECT_EQ(read("lit.0002.png"), read("one.png"));
-    succeed({"edit", "px.prt", "white.hdr", "-o", "edited.png", "--disc", "0,1,0", "--gain", "3"});
+    succeed("edit px.prt white.hdr -o edited.png --disc 0,1,0 --gain 3");
     EXPECT_EQ(png_size(read("edited.png")), (Size{24, 16}));
-    succeed({"edit", "px.prt", "white.hdr", "-o", "who.exr", "--disc", "0,1,0", "--who", "0,1,0"});
-    const nlohmann::json verified = succeed({"verify", "px.prt", "white.hdr", "--face-resolution",
-                                             "16", "--samples", "50", "--json"})
-                                        .json();
+    succeed("edit px.prt white.hdr -o who.exr --disc 0,1,0 --who 0,1,0");
+    const nlohmann::json verified =
+        succeed("verify px.prt white.hdr --face-resolution 16 --samples 50 --json").json();
     EXPECT_LT(verified["relative_l2"], 0.05);
     EXPECT_TRUE(verified.contains("worst_receiver"));
-    const nlohmann::json lights = succeed({"lights", "white.hdr", "-o", "list.json", "-n", "16",
-                                           "--scene", "px.prt", "--json"})
-                                      .json();
+    const nlohmann::json lights =
+        succeed("lights white.hdr -o list.json -n 16 --scene px.prt --json").json();
     EXPECT_LT(lights["relative_l2"], 0.5);
-    succeed({"relight", "px.prt", "--lights", "list.json", "-o", "by_list.png"});
-    fail({"view", "px.prt", "white.hdr", "--screenshot", "window.png"}, {});
+    succeed("relight px.prt --lights list.json -o by_list.png");
+    fail("view px.prt white.hdr --screenshot window.png", {});
 }
 
 TEST_F(Receivers, TexelsBecomeALightmap) {
     make_texels();
-    succeed({"relight", "tx.prt", "white.hdr", "-o", "map.exr"});
+    succeed("relight tx.prt white.hdr -o map.exr");
     EXPECT_EQ(exr_size(read("map.exr")), (Size{8, 8}));
-    succeed({"relight", "tx.prt", "white.hdr", "-o", "map.png", "--gutter", "0"});
+    succeed("relight tx.prt white.hdr -o map.png --gutter 0");
     EXPECT_EQ(png_size(read("map.png")), (Size{8, 8}));
-    succeed({"relight", "tx.prt", "white.hdr", "-o", "map.npy"});
+    succeed("relight tx.prt white.hdr -o map.npy");
     const auto values = npy_values(read("map.npy"));
     ASSERT_EQ(values.size(), 64u);
     for (const auto& value : values) // nothing blocks: the white furnace
         EXPECT_NEAR(value[0], 1.0f, 2e-3f);
-    EXPECT_EQ(succeed({"info", "tx.prt", "--json"}).json()["layout"]["coverage"], 1.0);
-    EXPECT_LT(succeed({"verify", "tx.prt", "white.hdr", "--json"}).json()["relative_l2"], 2e-3);
+    EXPECT_EQ(succeed("info tx.prt --json").json()["layout"]["coverage"], 1.0);
+    EXPECT_LT(succeed("verify tx.prt white.hdr --json").json()["relative_l2"], 2e-3);
 }
 
 TEST_F(Receivers, OverlappingChartsAreAWarning) {
@@ -153,9 +147,9 @@ TEST_F(Receivers, OutputsThatDoNotFit) {
                "--size: expected no camera");
         fail({"view", scene, "white.hdr", "--screenshot", "new.png"}, {});
     }
-    misuse({"relight", "tx.prt", "white.hdr", "-o", "new.png", "--transparent"},
+    misuse("relight tx.prt white.hdr -o new.png --transparent",
            "--transparent: expected no background for a scene whose receivers are texels");
-    misuse({"relight", "px.prt", "white.hdr", "-o", "new.npy", "--albedo", "mesh"}, "--albedo");
+    misuse("relight px.prt white.hdr -o new.npy --albedo mesh", "--albedo");
 }
 
 TEST_F(Receivers, ReceiversThatCannotBe) {

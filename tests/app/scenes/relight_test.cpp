@@ -23,8 +23,7 @@ protected:
     Relight() {
         write("mesh.obj", octahedron_obj());
         write("white.hdr", white_hdr());
-        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "32", "-q",
-                 "--no-refine"});
+        succeed("precompute mesh.obj -o scene.prt --face-resolution 32 -q --no-refine");
     }
     /// Radiance of the six vertices.
     [[nodiscard]] Values lit(const std::string& environment,
@@ -169,8 +168,7 @@ TEST_F(Relight, ToneMapsAreForPngOnly) {
         return read(name);
     };
     const std::string neutral = bytes("new.png", "neutral");
-    succeed({"relight", "scene.prt", "white.hdr", "-o", "plain.png", "--size", "32x32",
-             "--exposure", "1"});
+    succeed("relight scene.prt white.hdr -o plain.png --size 32x32 --exposure 1");
     EXPECT_TRUE(read("plain.png") == neutral);
     for (const char* tone : {"agx", "aces", "none"}) {
         EXPECT_FALSE(bytes("new.png", tone) == neutral) << tone;
@@ -227,15 +225,15 @@ TEST_F(Relight, Backgrounds) {
 
 TEST_F(Relight, AlbedoOfTheMeshIsItsVertexColours) {
     write("red.obj", "v 0 0 0 1 0 0\nv 1 0 0 0.5 0.5 0.5\nv 0 0 -1 0 0 1\nf 1 2 3\n");
-    succeed({"precompute", "red.obj", "-o", "red.prt", "--face-resolution", "16", "--no-refine"});
-    succeed({"relight", "red.prt", "white.hdr", "-o", "red.npy", "--albedo", "mesh"});
+    succeed("precompute red.obj -o red.prt --face-resolution 16 --no-refine");
+    succeed("relight red.prt white.hdr -o red.npy --albedo mesh");
     const Values values = npy_values(read("red.npy"));
     ASSERT_EQ(values.size(), 3u);
     EXPECT_NEAR(values[0][0], 1.0f, 2e-3f);
     EXPECT_EQ(values[0][1], 0.0f);
     EXPECT_NEAR(values[1][1], 0.5f, 2e-3f);
     EXPECT_EQ(values[2][0], 0.0f);
-    misuse({"relight", "scene.prt", "white.hdr", "-o", "new.npy", "--albedo", "mesh"},
+    misuse("relight scene.prt white.hdr -o new.npy --albedo mesh",
            "--albedo: expected a mesh with vertex colours");
 }
 
@@ -247,8 +245,8 @@ TEST_F(Relight, PictureHasTheSizeAskedFor) {
         const Size got = png_size(read("lit.png"));
         EXPECT_EQ(std::to_string(got.width) + "x" + std::to_string(got.height), size);
     }
-    succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.exr", "--size", "20x10", "--eye",
-             "3,1,2", "--target", "0,0,0", "--fov", "60"});
+    succeed(
+        "relight scene.prt white.hdr -o lit.exr --size 20x10 --eye 3,1,2 --target 0,0,0 --fov 60");
     EXPECT_EQ(exr_size(read("lit.exr")), (Size{20, 10}));
 }
 
@@ -303,16 +301,13 @@ TEST_F(Relight, UnknownKindsOfOutputAreRefused) {
 }
 
 TEST_F(Relight, OutputsThatCannotBeWrittenAreFoundOutAndNothingIsLost) {
-    fail({"relight", "scene.prt", "white.hdr", "-o", "missing/new.npy"},
-         {"missing/new.npy", "cannot write"});
-    fail({"relight", "scene.prt", "white.hdr", "-o", "scene.prt/new.npy"},
-         {"scene.prt/new.npy", "cannot write"});
-    fail({"relight", "scene.prt", "white.hdr", "-o", "/proc/new.npy"},
-         {"/proc/new.npy", "cannot write"});
+    fail("relight scene.prt white.hdr -o missing/new.npy", {"missing/new.npy", "cannot write"});
+    fail("relight scene.prt white.hdr -o scene.prt/new.npy", {"scene.prt/new.npy", "cannot write"});
+    fail("relight scene.prt white.hdr -o /proc/new.npy", {"/proc/new.npy", "cannot write"});
     fail({"relight", "scene.prt", "white.hdr", "-o", std::string(300, 'a') + ".npy"},
          {"cannot write"});
     fs::create_directory(folder() / "folder.npy");
-    fail({"relight", "scene.prt", "white.hdr", "-o", "folder.npy"}, {"folder.npy", "cannot write"});
+    fail("relight scene.prt white.hdr -o folder.npy", {"folder.npy", "cannot write"});
 }
 
 TEST_F(Relight, AFullDiskLeavesTheOldFile) {
@@ -325,28 +320,27 @@ TEST_F(Relight, AFullDiskLeavesTheOldFile) {
 }
 
 TEST_F(Relight, InputsAreNotOverwritten) {
-    succeed({"generate", "constant", "-o", ".", "--face-resolution", "8", "-q"});
-    fail({"relight", "scene.prt", "constant.exr", "-o", "constant.exr"}, {"constant.exr"});
-    fail({"relight", "scene.prt", "constant.exr", "-o", "./constant.exr"}, {"constant.exr"});
+    succeed("generate constant -o . --face-resolution 8 -q");
+    fail("relight scene.prt constant.exr -o constant.exr", {"constant.exr"});
+    fail("relight scene.prt constant.exr -o ./constant.exr", {"constant.exr"});
     fs::create_symlink("constant.exr", folder() / "link.exr");
-    fail({"relight", "scene.prt", "link.exr", "-o", "constant.exr"}, {"constant.exr"});
-    fail({"relight", "scene.prt", "constant.exr", "-o", "link.exr"}, {"link.exr"});
+    fail("relight scene.prt link.exr -o constant.exr", {"constant.exr"});
+    fail("relight scene.prt constant.exr -o link.exr", {"link.exr"});
 }
 
 TEST_F(Relight, OnlyPlainFilesAreReplaced) {
     ASSERT_EQ(::mkfifo((folder() / "pipe.npy").c_str(), 0600), 0);
-    fail({"relight", "scene.prt", "white.hdr", "-o", "pipe.npy"}, {"pipe.npy"});
+    fail("relight scene.prt white.hdr -o pipe.npy", {"pipe.npy"});
 }
 
 TEST_F(Relight, InputsThatCannotBeReadAreNamed) {
-    fail({"relight", "missing.prt", "white.hdr", "-o", "new.npy"}, {"missing.prt", "cannot read"});
-    fail({"relight", "scene.prt", "missing.hdr", "-o", "new.npy"}, {"missing.hdr", "cannot read"});
-    fail({"relight", ".", "white.hdr", "-o", "new.npy"}, {"cannot read"});
-    fail({"relight", "scene.prt", ".", "-o", "new.npy"}, {"cannot read"});
-    fail({"relight", "scene.prt", "/dev/zero", "-o", "new.npy"},
-         {"/dev/zero", "not a regular file"});
+    fail("relight missing.prt white.hdr -o new.npy", {"missing.prt", "cannot read"});
+    fail("relight scene.prt missing.hdr -o new.npy", {"missing.hdr", "cannot read"});
+    fail("relight . white.hdr -o new.npy", {"cannot read"});
+    fail("relight scene.prt . -o new.npy", {"cannot read"});
+    fail("relight scene.prt /dev/zero -o new.npy", {"/dev/zero", "not a regular file"});
     ASSERT_EQ(::mkfifo((folder() / "pipe.hdr").c_str(), 0600), 0);
-    fail({"relight", "scene.prt", "pipe.hdr", "-o", "new.npy"}, {"pipe.hdr"});
+    fail("relight scene.prt pipe.hdr -o new.npy", {"pipe.hdr"});
 }
 
 TEST_F(Relight, AMeshIsPrecomputedOnceAndKept) {
@@ -367,50 +361,50 @@ TEST_F(Relight, AMeshIsPrecomputedOnceAndKept) {
     EXPECT_FALSE(first_picture({}));
     EXPECT_EQ(read("lit.png"), picture);
     // It is the scene that the options of precompute make by themselves, with a floor.
-    succeed({"precompute", "mesh.obj", "--floor", "-o", "own.prt", "-q"});
-    succeed({"relight", "own.prt", "white.hdr", "-o", "own.png", "-q"});
+    succeed("precompute mesh.obj --floor -o own.prt -q");
+    succeed("relight own.prt white.hdr -o own.png -q");
     EXPECT_EQ(read("own.png"), picture);
     write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
     EXPECT_FALSE(first_picture({"--no-cache"}));
     EXPECT_EQ(num_kept(), 1);
     EXPECT_NE(read("lit.png"), picture);
     write("broken.ply", "ply\nformat ascii 1.0\n");
-    fail({"relight", "broken.ply", "white.hdr", "-o", "lit.png"}, {"broken.ply"});
+    fail("relight broken.ply white.hdr -o lit.png", {"broken.ply"});
 }
 
 TEST_F(Relight, AnotherKindOfFileIsToldApart) {
-    misuse({"relight", "white.hdr", "scene.prt", "-o", "new.npy"},
+    misuse("relight white.hdr scene.prt -o new.npy",
            "SCENE: expected a scene, got the environment white.hdr: the scene stands first");
-    fail({"relight", "scene.prt", "mesh.obj", "-o", "new.npy"}, {"mesh.obj", "expected"});
-    fail({"relight", "scene.prt", "scene.prt", "-o", "new.npy"}, {"scene.prt", "expected"});
+    fail("relight scene.prt mesh.obj -o new.npy", {"mesh.obj", "expected"});
+    fail("relight scene.prt scene.prt -o new.npy", {"scene.prt", "expected"});
 }
 
 TEST_F(Relight, DamagedScenesAreRefused) {
     const std::string whole = read("scene.prt");
     for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 25) {
         write("short.prt", whole.substr(0, size));
-        fail({"relight", "short.prt", "white.hdr", "-o", "new.npy"}, {"short.prt"});
+        fail("relight short.prt white.hdr -o new.npy", {"short.prt"});
     }
     write("short.prt", whole.substr(0, whole.size() - 1));
-    fail({"relight", "short.prt", "white.hdr", "-o", "new.npy"}, {"short.prt"});
+    fail("relight short.prt white.hdr -o new.npy", {"short.prt"});
     write("long.prt", whole + "x");
-    fail({"relight", "long.prt", "white.hdr", "-o", "new.npy"}, {"long.prt"});
+    fail("relight long.prt white.hdr -o new.npy", {"long.prt"});
     // docs/prt-format.md: the version is a little-endian number at byte 12.
     std::string newer = whole;
     newer[12] = 77;
     write("newer.prt", newer);
-    fail({"relight", "newer.prt", "white.hdr", "-o", "new.npy"}, {"newer.prt", "version", "77"});
-    fail({"info", "newer.prt"}, {"newer.prt", "version", "77"});
-    fail({"verify", "newer.prt", "white.hdr"}, {"newer.prt", "version", "77"});
+    fail("relight newer.prt white.hdr -o new.npy", {"newer.prt", "version", "77"});
+    fail("info newer.prt", {"newer.prt", "version", "77"});
+    fail("verify newer.prt white.hdr", {"newer.prt", "version", "77"});
     std::string flipped = whole;
     flipped[whole.size() / 2] = static_cast<char>(flipped[whole.size() / 2] ^ 4);
     write("flipped.prt", flipped);
-    fail({"relight", "flipped.prt", "white.hdr", "-o", "new.npy"}, {"flipped.prt"});
+    fail("relight flipped.prt white.hdr -o new.npy", {"flipped.prt"});
 }
 
 TEST_F(Relight, AnEnvironmentAndALightListAreAdded) {
     write("lamp.hdr", lamp_hdr(32));
-    succeed({"lights", "lamp.hdr", "-n", "1", "-o", "lamp.json"});
+    succeed("lights lamp.hdr -n 1 -o lamp.json");
     const auto read_lit = [&](const std::vector<std::string>& light) {
         std::vector<std::string> arguments = {"relight", "scene.prt", "-o", "lit.npy"};
         arguments.insert(arguments.end(), light.begin(), light.end());
@@ -423,7 +417,7 @@ TEST_F(Relight, AnEnvironmentAndALightListAreAdded) {
     for (std::size_t i = 0; i < both.size(); ++i)
         for (std::size_t channel = 0; channel < 3; ++channel)
             EXPECT_FLOAT_EQ(both[i][channel], sky[i][channel] + lamp[i][channel]);
-    misuse({"relight", "scene.prt", "-o", "lit.npy"});
+    misuse("relight scene.prt -o lit.npy");
 }
 
 TEST_F(Relight, FlipAndTiltTurnTheEnvironment) {
@@ -450,17 +444,16 @@ TEST_F(Relight, AGroundBrighterThanTheSkyIsDoubted) {
     const std::string below = warnings("lamp.hdr", "--tilt", "90");
     EXPECT_NE(below.find("lamp.hdr: brighter below than above"), std::string::npos) << below;
     EXPECT_NE(below.find("--flip y"), std::string::npos);
-    EXPECT_NE(succeed({"env", "convert", "lamp.hdr", "-o", "down.exr", "--tilt", "90"})
-                  .err.find("--flip y"),
+    EXPECT_NE(succeed("env convert lamp.hdr -o down.exr --tilt 90").err.find("--flip y"),
               std::string::npos);
-    EXPECT_NE(succeed({"info", "down.exr"}).out.find("--flip y"), std::string::npos);
-    EXPECT_EQ(succeed({"info", "down.exr", "--json"}).json()["upside_down"], true);
+    EXPECT_NE(succeed("info down.exr").out.find("--flip y"), std::string::npos);
+    EXPECT_EQ(succeed("info down.exr --json").json()["upside_down"], true);
     EXPECT_EQ(warnings("down.exr", "--flip", "y"), "");
     // A map whose sun lies beside it is darker above, and stands upright all the same.
     write("down.sun.json", "{}");
     EXPECT_EQ(warnings("down.exr", "--rotate", "0"), "");
-    EXPECT_EQ(succeed({"info", "down.exr"}).out.find("--flip y"), std::string::npos);
-    EXPECT_EQ(succeed({"info", "down.exr", "--json"}).json()["upside_down"], false);
+    EXPECT_EQ(succeed("info down.exr").out.find("--flip y"), std::string::npos);
+    EXPECT_EQ(succeed("info down.exr --json").json()["upside_down"], false);
 }
 
 } // namespace

@@ -43,7 +43,7 @@ protected:
 };
 
 TEST_F(Resume, KilledAtTwentyMomentsTheFileIsTheSame) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "1500", "-q"});
+    succeed("generate knot -o . --vertices 1500 -q");
     const std::vector<std::string> scene = {"--tolerance", "0.03"};
     const double seconds = succeed(run(scene)).seconds;
     const std::string expected = read("scene.prt");
@@ -73,7 +73,7 @@ TEST_F(Resume, KilledAtTwentyMomentsTheFileIsTheSame) {
 }
 
 TEST_F(Resume, KilledWithACheckpointItIsTakenUp) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "6000", "-q"});
+    succeed("generate knot -o . --vertices 6000 -q");
     const std::vector<std::string> scene = {"--tolerance", "0.02"};
     succeed(run(scene));
     const std::string expected = read("scene.prt");
@@ -108,7 +108,7 @@ TEST_F(Resume, WithoutACheckpointItSaysThatItBeginsAnew) {
 }
 
 TEST_F(Resume, HighlightsAreTakenUpToo) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "1200", "-q"});
+    succeed("generate knot -o . --vertices 1200 -q");
     const std::vector<std::string> scene = {"--tolerance", "0.05",       "--view",
                                             "auto",        "--material", "ggx:roughness=0.4"};
     const double seconds = succeed(run(scene)).seconds;
@@ -125,7 +125,7 @@ TEST_F(Resume, HighlightsAreTakenUpToo) {
 }
 
 TEST_F(Resume, StoppedByASignalItSaysHowToGoOn) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "20000", "-q"});
+    succeed("generate knot -o . --vertices 20000 -q");
     const std::vector<std::string> endless = run({"--tolerance", "0.0005"});
     Process process(folder(), endless);
     const fs::path state = folder() / "scene.prt.checkpoint" / "clusters.state";
@@ -159,7 +159,7 @@ TEST_F(Resume, StoppedByASignalItSaysHowToGoOn) {
 }
 
 TEST_F(Resume, AFullDiskAtTheEndLosesNothing) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "6000", "-q"});
+    succeed("generate knot -o . --vertices 6000 -q");
     const std::vector<std::string> scene = {"--tolerance", "0.02"};
     succeed(run(scene));
     const std::string expected = read("scene.prt");
@@ -181,7 +181,7 @@ TEST_F(Resume, AFullDiskAtTheEndLosesNothing) {
 }
 
 TEST_F(Resume, TwoRunsOfOneSceneBothEndAndOneWinsWhole) {
-    succeed({"generate", "knot", "-o", ".", "--vertices", "3000", "-q"});
+    succeed("generate knot -o . --vertices 3000 -q");
     succeed(run({"--tolerance", "0.03"}));
     const std::string first = read("scene.prt");
     succeed(run({"--tolerance", "0.04"}));
@@ -204,11 +204,10 @@ TEST_F(Resume, AnOutputThatIsALinkIsWrittenThrough) {
     write("mesh.obj", octahedron_obj());
     fs::create_directory(folder() / "far");
     fs::create_symlink("far/scene.prt", folder() / "scene.prt");
-    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q",
-             "--no-refine"});
+    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 -q --no-refine");
     EXPECT_TRUE(fs::is_symlink(folder() / "scene.prt"));
     EXPECT_TRUE(fs::is_regular_file(folder() / "far" / "scene.prt"));
-    succeed({"info", "scene.prt"});
+    succeed("info scene.prt");
 }
 
 } // namespace

@@ -1,6 +1,5 @@
 // `relumine verify`: its figures and options.
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -15,14 +14,12 @@ protected:
     Verify() {
         write("mesh.obj", octahedron_obj());
         write("white.hdr", white_hdr());
-        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "32",
-                 "--no-refine", "-q"});
+        succeed("precompute mesh.obj -o scene.prt --face-resolution 32 --no-refine -q");
     }
 };
 
 TEST_F(Verify, AllKeysOfTheReport) {
-    const nlohmann::json report =
-        succeed({"verify", "scene.prt", "white.hdr", "--surface", "20", "--json"}).json();
+    const nlohmann::json report = succeed("verify scene.prt white.hdr --surface 20 --json").json();
     for (const char* key : {"relative_l2", "mean_abs", "max_abs", "samples"}) {
         ASSERT_TRUE(report.contains(key)) << key;
         EXPECT_TRUE(report[key].is_number()) << key;
@@ -62,20 +59,17 @@ TEST_F(Verify, SamplesAreChosenBySeed) {
     for (const int count : seen)
         EXPECT_LT(count, 12) << "another seed never chose another receiver";
     EXPECT_EQ(
-        succeed({"verify", "scene.prt", "white.hdr", "--samples", "0", "--surface", "0", "--json"})
-            .json()["samples"],
-        6);
+        succeed("verify scene.prt white.hdr --samples 0 --surface 0 --json").json()["samples"], 6);
 }
 
 TEST_F(Verify, ItIsTheSceneFileThatIsTested) {
     // A hundredfold tolerance must show.
-    succeed({"generate", "colonnade", "-o", ".", "--vertices", "1000", "-q"});
+    succeed("generate colonnade -o . --vertices 1000 -q");
     write("lamp.hdr", lamp_hdr(40));
     const auto error = [&](const std::string& tolerance) {
         succeed({"precompute", "colonnade.ply", "-o", "c.prt", "--tolerance", tolerance,
                  "--min-depth", "1", "--face-resolution", "64", "--no-refine"});
-        return succeed({"verify", "c.prt", "lamp.hdr", "--samples", "200", "--surface", "0",
-                        "--clusters-only", "--json"})
+        return succeed("verify c.prt lamp.hdr --samples 200 --surface 0 --clusters-only --json")
             .json()["relative_l2"]
             .get<double>();
     };
@@ -85,12 +79,12 @@ TEST_F(Verify, ItIsTheSceneFileThatIsTested) {
 TEST_F(Verify, BadOptionsAreRefused) {
     for (const char* samples : {"-5", "nan", "1.5", "all"})
         misuse({"verify", "scene.prt", "white.hdr", "--samples", samples}, "--samples");
-    misuse({"verify", "scene.prt", "white.hdr", "--surface", "4294967296"}, "--surface");
-    misuse({"verify", "scene.prt", "white.hdr", "--seed", "-1"}, "--seed");
-    fail({"verify", "missing.prt", "white.hdr"}, {"missing.prt"});
-    fail({"verify", "scene.prt", "missing.hdr"}, {"missing.hdr"});
-    fail({"verify", "scene.prt", "mesh.obj"}, {"mesh.obj"});
-    misuse({"verify", "scene.prt", "white.hdr", "--rotate", "nan"}, "--rotate");
+    misuse("verify scene.prt white.hdr --surface 4294967296", "--surface");
+    misuse("verify scene.prt white.hdr --seed -1", "--seed");
+    fail("verify missing.prt white.hdr", {"missing.prt"});
+    fail("verify scene.prt missing.hdr", {"missing.hdr"});
+    fail("verify scene.prt mesh.obj", {"mesh.obj"});
+    misuse("verify scene.prt white.hdr --rotate nan", "--rotate");
 }
 
 } // namespace

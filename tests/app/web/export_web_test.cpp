@@ -62,7 +62,7 @@ TEST_F(ExportWeb, WritesAFolderThatTheRuntimeReads) {
         prt::relighting_scene_of(prt::SectionReader(folder() / "site/scene.relight"));
     EXPECT_EQ(scene.scene.transfer.num_clusters(), report["clusters"]);
     EXPECT_TRUE(scene.scene.bounces);
-    succeed({"coarsen", "scene.prt", "--tolerance", "0.1", "-o", "coarse.prt", "-q"});
+    succeed("coarsen scene.prt --tolerance 0.1 -o coarse.prt -q");
     EXPECT_EQ(prt::load_scene(folder() / "coarse.prt").transfer.counts.counts,
               scene.scene.transfer.counts.counts);
 
@@ -75,16 +75,15 @@ TEST_F(ExportWeb, WritesAFolderThatTheRuntimeReads) {
     EXPECT_NEAR(page["environments"][0]["verified"]["relativeL2"], report["relative_l2"], 1e-9);
     EXPECT_THAT(page["tone"]["source"], HasSubstr("vec3 on_screen(int curve, vec3 radiance)"));
     // The environment is one that the program reads: white.
-    succeed({"relight", "coarse.prt", "site/environments/1.hdr", "-o", "light.npy", "-q"});
+    succeed("relight coarse.prt site/environments/1.hdr -o light.npy -q");
 
-    succeed({"export", "web", "scene.prt", "white.hdr", "-o", "site", "--force", "--samples", "0",
-             "--bounce-samples", "1"});
+    succeed("export web scene.prt white.hdr -o site --force --samples 0 --bounce-samples 1");
     EXPECT_GT(manifest()["bouncesError"], 0.0);
 }
 
 TEST_F(ExportWeb, PutsAllIntoASingleFile) {
     precompute({"--tolerance", "0.1"});
-    succeed({"export", "web", "scene.prt", "-o", "page.html", "--single-file", "--samples", "0"});
+    succeed("export web scene.prt -o page.html --single-file --samples 0");
     const std::string page = read("page.html");
     EXPECT_THAT(page, HasSubstr("data-relumine-file=\"relumine.wasm.gz\">d2FzbQ==</script>"));
     for (const char* name :
@@ -129,15 +128,14 @@ TEST_F(ExportWeb, KeepsTheColoursOfMaterials) {
     precompute({"--tolerance", "0.1", "--material", "ggx:albedo=0.2,f0=0.5,roughness=0.5"});
     EXPECT_NEAR(web_albedo(prt::load_scene(folder() / "scene.prt"))[0].g, 0.2 + 0.5 - 0.04, 1e-5)
         << "what is mirrored counts as colour";
-    EXPECT_THAT(succeed({"export", "web", "scene.prt", "-o", "site", "--samples", "0"}).err,
+    EXPECT_THAT(succeed("export web scene.prt -o site --samples 0").err,
                 testing::Not(HasSubstr("left out: highlights")))
         << "the page finds them";
 }
 
 TEST_F(ExportWeb, SaysWhatItLeavesOut) {
     precompute({"--view", "auto", "--material", "ggx:roughness=0.5", "--tolerance", "0.1"});
-    const auto run =
-        succeed({"export", "web", "scene.prt", "white.hdr", "-o", "site", "--samples", "0"});
+    const auto run = succeed("export web scene.prt white.hdr -o site --samples 0");
     EXPECT_THAT(run.err, HasSubstr("left out: highlights, which are for one eye"));
     EXPECT_EQ(manifest()["leftOut"][0], "highlights, which are for one eye");
 }
@@ -145,10 +143,9 @@ TEST_F(ExportWeb, SaysWhatItLeavesOut) {
 TEST_F(ExportWeb, SaysThatGlassIsOpaque) {
     write("glass.mtl", "newmtl glass\nKd 1 1 1\nd 0.5\n");
     write("glass.obj", "mtllib glass.mtl\nusemtl glass\n" + read("mesh.obj"));
-    succeed({"precompute", "glass.obj", "-o", "scene.prt", "--tolerance", "0.1", "--no-refine",
-             "--face-resolution", "32", "-q"});
-    const auto run =
-        succeed({"export", "web", "scene.prt", "white.hdr", "-o", "site", "--samples", "0"});
+    succeed(
+        "precompute glass.obj -o scene.prt --tolerance 0.1 --no-refine --face-resolution 32 -q");
+    const auto run = succeed("export web scene.prt white.hdr -o site --samples 0");
     EXPECT_THAT(run.err, HasSubstr("left out: alpha and glass: surfaces are opaque"));
     EXPECT_EQ(manifest()["leftOut"][0],
               "alpha and glass: surfaces are opaque, though light passes them");
@@ -162,20 +159,18 @@ TEST_F(ExportWeb, RefusesInOneLineAndWritesNothing) {
     write("site/mine.txt", "mine");
     fail(fine, {"site: the folder is not empty; --force writes into it"});
     EXPECT_FALSE(std::filesystem::exists(folder() / "site/index.html"));
-    fail({"export", "web", "scene.prt", "absent.hdr", "-o", "new"}, {"absent.hdr"});
+    fail("export web scene.prt absent.hdr -o new", {"absent.hdr"});
     write("broken.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n1234");
-    fail({"export", "web", "scene.prt", "broken.hdr", "-o", "new"}, {"broken.hdr: "});
-    fail({"export", "web", "mesh.obj", "white.hdr", "-o", "new"}, {"mesh.obj: expected"});
-    fail({"export", "web", "scene.prt", "white.hdr", "-o", "mesh.obj"},
-         {"mesh.obj: expected a folder"});
-    misuse({"export", "web", "scene.prt", "-o", "new", "--single-file"}, "--output");
-    succeed({"precompute", "mesh.obj", "-o", "pixels.prt", "--receivers", "pixels:8x8", "--view",
-             "auto", "--no-refine", "--face-resolution", "32", "-q"});
-    fail({"export", "web", "pixels.prt", "white.hdr", "-o", "new"},
+    fail("export web scene.prt broken.hdr -o new", {"broken.hdr: "});
+    fail("export web mesh.obj white.hdr -o new", {"mesh.obj: expected"});
+    fail("export web scene.prt white.hdr -o mesh.obj", {"mesh.obj: expected a folder"});
+    misuse("export web scene.prt -o new --single-file", "--output");
+    succeed("precompute mesh.obj -o pixels.prt --receivers pixels:8x8 --view auto --no-refine "
+            "--face-resolution 32 -q");
+    fail("export web pixels.prt white.hdr -o new",
          {"pixels.prt: expected a scene of vertices, got one of pixels"});
     ::setenv("RELUMINE_WEB", (folder() / "nowhere").c_str(), 1);
-    fail({"export", "web", "scene.prt", "white.hdr", "-o", "new"},
-         {"the page's parts are not installed"});
+    fail("export web scene.prt white.hdr -o new", {"the page's parts are not installed"});
     EXPECT_FALSE(std::filesystem::exists(folder() / "new"));
     ::setenv("RELUMINE_WEB", (folder() / "parts").c_str(), 1);
     std::vector<std::string> forced = fine;

@@ -1,7 +1,6 @@
 // The baselines do what their papers say: bases are orthonormal, nothing is lost where nothing is
 // left out, and what is left out is the least.
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <vector>
 

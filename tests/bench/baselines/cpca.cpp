@@ -1,7 +1,6 @@
 #include "tests/bench/baselines/cpca.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include <Eigen/Dense>

@@ -2,7 +2,6 @@
 
 #include <limits>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "tests/cubemap/test_images.h"

@@ -2,7 +2,6 @@
 #include "cubemap/resample/save_environment.h"
 
 #include <ctime>
-#include <fstream>
 #include <limits>
 
 #include <glm/geometric.hpp>

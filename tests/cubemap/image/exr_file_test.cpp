@@ -1,7 +1,6 @@
 #include <bit>
 #include <cmath>
 #include <fstream>
-#include <limits>
 
 #include <ImfChannelList.h>
 #include <ImfChromaticitiesAttribute.h>

@@ -17,6 +17,7 @@
 #include "cubemap/resample/resample.h"
 #include "cubemap/resample/save_environment.h"
 #include "files/output_file.h"
+#include "tests/own_folder.h"
 
 namespace relumine::cubemap {
 namespace {
@@ -25,14 +26,8 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class Frames : public testing::Test {
+class Frames : public tests::FolderTest {
 protected:
-    Frames() {
-        std::string name = (fs::temp_directory_path() / "relumine-frames-XXXXXX").string();
-        folder_ = ::mkdtemp(name.data());
-    }
-    ~Frames() override { fs::remove_all(folder_); }
-
     [[nodiscard]] std::string in(const std::string& name) const {
         return (folder_ / name).string();
     }
@@ -41,8 +36,6 @@ protected:
     void frame(const std::string& name, float radiance, std::uint32_t resolution = 2) const {
         save_environment(in(name), CubeMap(resolution, glm::vec3(radiance)), Layout::VerticalCross);
     }
-
-    fs::path folder_;
 };
 
 std::vector<std::int64_t> numbers(const std::vector<FrameFile>& frames) {
@@ -50,16 +43,6 @@ std::vector<std::int64_t> numbers(const std::vector<FrameFile>& frames) {
     for (const FrameFile& frame : frames)
         result.push_back(frame.number);
     return result;
-}
-
-template<typename Function>
-std::string refusal_of(const Function& function) {
-    try {
-        function();
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-    return "nothing was thrown";
 }
 
 TEST(FramePattern, NamesAndNumbersAreInverse) {
@@ -118,15 +101,15 @@ TEST_F(Frames, APatternTakesItsFramesInOrder) {
 TEST_F(Frames, GapsAreToldInOneLine) {
     for (const int number : {1, 2, 5, 6, 9})
         touch("f." + std::to_string(number) + ".exr");
-    EXPECT_EQ(refusal_of([&] { static_cast<void>(find_frames(in("f.%d.exr"))); }),
+    EXPECT_EQ(tests::message_of([&] { static_cast<void>(find_frames(in("f.%d.exr"))); }),
               in("f.%d.exr") + ": expected frames 1 to 9 without a gap, got none for 3-4, 7-8");
-    EXPECT_THAT(
-        refusal_of([&] { static_cast<void>(find_frames(in("f.%d.exr"), FrameRange{5, 8})); }),
-        HasSubstr("none for 7-8"));
+    EXPECT_THAT(tests::message_of(
+                    [&] { static_cast<void>(find_frames(in("f.%d.exr"), FrameRange{5, 8})); }),
+                HasSubstr("none for 7-8"));
     EXPECT_THAT(numbers(find_frames(in("f.%d.exr"), FrameRange{1, 9, 4})), ElementsAre(1, 5, 9));
-    EXPECT_THAT(refusal_of([&] { static_cast<void>(find_frames(in("g.%d.exr"))); }),
+    EXPECT_THAT(tests::message_of([&] { static_cast<void>(find_frames(in("g.%d.exr"))); }),
                 HasSubstr("no file of such a name"));
-    EXPECT_THAT(refusal_of([&] { static_cast<void>(find_frames(in("no/g.%d.exr"))); }),
+    EXPECT_THAT(tests::message_of([&] { static_cast<void>(find_frames(in("no/g.%d.exr"))); }),
                 HasSubstr("cannot read the folder"));
 }
 
@@ -184,7 +167,7 @@ TEST_F(Frames, SizesFromHeadersAreThoseOfTheImages) {
     EXPECT_THROW(static_cast<void>(read_image_size(in("text.exr"))), std::runtime_error);
     EXPECT_THROW(static_cast<void>(read_image_size(in("missing.exr"))), std::runtime_error);
     std::ofstream(in("empty.exr")).close();
-    EXPECT_THAT(refusal_of([&] { static_cast<void>(read_image_size(in("empty.exr"))); }),
+    EXPECT_THAT(tests::message_of([&] { static_cast<void>(read_image_size(in("empty.exr"))); }),
                 HasSubstr("an empty file"));
 }
 
@@ -204,7 +187,7 @@ TEST_F(Frames, AnotherSizeIsRefusedBeforeAnyFrameIsLoaded) {
     frame("f.0.exr", 1.0f);
     frame("f.1.exr", 1.0f, 3);
     int num_loaded = 0;
-    EXPECT_EQ(refusal_of([&] {
+    EXPECT_EQ(tests::message_of([&] {
                   const FrameSequence sequence(find_frames(in("f.%d.exr")),
                                                [&](const fs::path& path) {
                                                    ++num_loaded;
@@ -221,7 +204,8 @@ TEST_F(Frames, ADamagedFrameIsToldWhenItsTurnComes) {
     fs::resize_file(in("f.1.exr"), fs::file_size(in("f.1.exr")) - 30);
     FrameSequence sequence(find_frames(in("f.%d.exr")));
     static_cast<void>(sequence.load(0)); // begins to load the damaged one
-    EXPECT_THAT(refusal_of([&] { static_cast<void>(sequence.load(1)); }), HasSubstr(in("f.1.exr")));
+    EXPECT_THAT(tests::message_of([&] { static_cast<void>(sequence.load(1)); }),
+                HasSubstr(in("f.1.exr")));
     EXPECT_EQ(sequence.load(2).width, 96u); // and nothing of it is left
 }
 
@@ -279,9 +263,9 @@ TEST(ReadAhead, ThrowsForTheOneThatWasAskedForAlone) {
     });
     EXPECT_EQ(ahead.get(0), 0u);
     EXPECT_EQ(ahead.get(2), 2u); // 1 had been begun
-    EXPECT_EQ(refusal_of([&] { static_cast<void>(ahead.get(1)); }), "one");
+    EXPECT_EQ(tests::message_of([&] { static_cast<void>(ahead.get(1)); }), "one");
     EXPECT_EQ(ahead.get(0), 0u);
-    EXPECT_EQ(refusal_of([&] { static_cast<void>(ahead.get(1)); }), "one"); // made ahead
+    EXPECT_EQ(tests::message_of([&] { static_cast<void>(ahead.get(1)); }), "one"); // made ahead
     EXPECT_EQ(ahead.get(3), 3u);
 }
 

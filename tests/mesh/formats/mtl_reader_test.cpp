@@ -1,5 +1,4 @@
 // Materials, groups and textures of OBJ files.
-#include <cmath>
 
 #include "mesh/floor.h"
 #include "tests/mesh/mesh_files.h"

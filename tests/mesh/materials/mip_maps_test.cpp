@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 namespace relumine::mesh {

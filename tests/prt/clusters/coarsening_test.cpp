@@ -164,9 +164,8 @@ TEST_F(CoarseningTest, RefusesWhatIsNoTolerance) {
         EXPECT_THROW(static_cast<void>(coarsened(fine, to(bad))), std::invalid_argument);
     std::stop_source stop;
     stop.request_stop();
-    CoarsenOptions stopped = to(0.1f);
-    stopped.stop = stop.get_token();
-    EXPECT_THROW(static_cast<void>(coarsened(fine, stopped)), Cancelled);
+    EXPECT_THROW(static_cast<void>(coarsened(fine, to(0.1f), {.stop = stop.get_token()})),
+                 Cancelled);
 }
 
 } // namespace

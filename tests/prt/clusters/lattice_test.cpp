@@ -5,7 +5,6 @@
 #include <random>
 #include <set>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 namespace relumine::prt {

@@ -4,7 +4,6 @@
 #include <map>
 #include <numeric>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "files/parallel.h"

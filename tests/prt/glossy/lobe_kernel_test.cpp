@@ -1,6 +1,5 @@
 #include "prt/glossy/lobe_kernel.h"
 
-#include <cmath>
 #include <random>
 
 #include <glm/geometric.hpp>

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <stdexcept>
 #include <stop_token>
 #include <string>
@@ -19,6 +18,7 @@
 #include "prt/parts/team_checkpoint.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
+#include "tests/own_folder.h"
 #include "tests/prt/memory_checkpoint.h"
 #include "tests/prt/same_transfer.h"
 #include "tests/prt/scenes.h"
@@ -299,13 +299,9 @@ TEST(Parts, RefusesPartsThatAreNone) {
     EXPECT_EQ(counts({1, 2}).num_receivers, 0u);
 }
 
-class PartFiles : public testing::Test {
+class PartFiles : public tests::FolderTest {
 protected:
     void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) /
-                  testing::UnitTest::GetInstance()->current_test_info()->name();
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
         scene_.mesh = several_tiles();
         rays_.emplace(scene_.mesh);
         scene_.receivers = vertex_receivers(scene_.mesh);
@@ -317,7 +313,6 @@ protected:
                            .bias = options.bias};
         save_plan(folder_ / "scene.plan", {.scene = scene_, .has_clusters = true});
     }
-    void TearDown() override { fs::remove_all(folder_); }
 
     fs::path part(std::uint32_t index, std::uint32_t count, const std::string& name,
                   const std::string& of = "scene.plan") const {

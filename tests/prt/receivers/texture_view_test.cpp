@@ -1,7 +1,5 @@
 #include "prt/receivers/texture_view.h"
 
-#include <cmath>
-
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/own_folder.h"
 #include "tests/prt/damaged_file.h"
 #include "tests/prt/made_sections.h"
 
@@ -44,16 +45,14 @@ VisibleCounts random_counts() {
     return counts;
 }
 
-class CountSectionsTest : public testing::Test {
+class CountSectionsTest : public tests::FolderTest {
 protected:
     void SetUp() override {
-        fs::create_directories(folder_);
         NewSections sections;
         add_counts(sections, counts_);
         write_sections(file_, sections);
         good_ = read_sections(file_);
     }
-    void TearDown() override { fs::remove_all(folder_); }
 
     VisibleCounts read(Sections sections) const {
         const SectionReader reader = scenes::reader_of(file_, std::move(sections));
@@ -67,9 +66,6 @@ protected:
     }
 
     const VisibleCounts counts_ = random_counts();
-    fs::path folder_ = fs::path(testing::TempDir()) /
-                       ("count_sections_" +
-                        std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::path file_ = folder_ / "counts.prt";
     Sections good_;
 };

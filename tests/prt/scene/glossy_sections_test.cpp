@@ -3,7 +3,6 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
-#include <limits>
 
 #include <gtest/gtest.h>
 

@@ -20,6 +20,7 @@
 #include "prt/receivers/texel_receivers.h"
 #include "prt/scene/scene_file.h"
 #include "prt/visibility/ray_scene.h"
+#include "tests/own_folder.h"
 #include "tests/prt/damaged_file.h"
 #include "tests/prt/made_sections.h"
 #include "tests/prt/scenes.h"
@@ -106,11 +107,8 @@ void expect_same(const Receivers& a, const Receivers& b) {
     EXPECT_EQ(a.have_no_surface, b.have_no_surface);
 }
 
-class ReceiverSectionsTest : public testing::Test {
+class ReceiverSectionsTest : public tests::FolderTest {
 protected:
-    void SetUp() override { fs::create_directories(folder_); }
-    void TearDown() override { fs::remove_all(folder_); }
-
     void expect_round_trip(const Scene& scene) const {
         save_scene(file_, scene);
         const Scene loaded = load_scene(file_);
@@ -139,9 +137,6 @@ protected:
         });
     }
 
-    fs::path folder_ = fs::path(testing::TempDir()) /
-                       ("receiver_sections_" +
-                        std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::path file_ = folder_ / "scene.prt";
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <random>
@@ -22,6 +21,7 @@
 #include "prt/scene/section_file.h"
 #include "prt/scene/section_format.h"
 #include "prt/visibility/ray_scene.h"
+#include "tests/own_folder.h"
 #include "tests/prt/damaged_file.h"
 #include "tests/prt/scenes.h"
 
@@ -81,18 +81,12 @@ bool same(const Scene& a, const Scene& b) {
            s.source_hash == t.source_hash;
 }
 
-class SceneFileTest : public testing::Test {
+class SceneFileTest : public tests::FolderTest {
 protected:
-    void SetUp() override { fs::create_directories(folder_); }
-    void TearDown() override { fs::remove_all(folder_); }
-
     void expect_refused(const std::string& reason) const {
         scenes::expect_refused(file_, reason, [&] { static_cast<void>(load_scene(file_)); });
     }
 
-    fs::path folder_ = fs::path(testing::TempDir()) /
-                       ("scene_file_" +
-                        std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::path file_ = folder_ / "scene.prt";
 };
 

@@ -19,6 +19,7 @@
 #include "files/output_file.h"
 #include "prt/scene/packed_sections.h"
 #include "prt/scene/section_format.h"
+#include "tests/own_folder.h"
 #include "tests/prt/damaged_file.h"
 
 namespace relumine::prt {
@@ -26,11 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class SectionFileTest : public testing::Test {
+class SectionFileTest : public tests::FolderTest {
 protected:
-    void SetUp() override { fs::create_directories(folder_); }
-    void TearDown() override { fs::remove_all(folder_); }
-
     void write(const std::vector<std::byte>& bytes) const {
         std::ofstream(file_, std::ios::binary)
             .write(reinterpret_cast<const char*>(bytes.data()),
@@ -40,9 +38,6 @@ protected:
         scenes::expect_refused(file_, reason, [&] { static_cast<void>(read_sections(file_)); });
     }
 
-    fs::path folder_ = fs::path(testing::TempDir()) /
-                       ("section_file_" +
-                        std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::path file_ = folder_ / "scene.prt";
 };
 

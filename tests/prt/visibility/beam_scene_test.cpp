@@ -6,7 +6,6 @@
 #include <random>
 #include <string>
 
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 

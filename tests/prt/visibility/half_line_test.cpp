@@ -1,7 +1,6 @@
 #include "prt/visibility/half_line.h"
 
 #include <algorithm>
-#include <cmath>
 #include <random>
 
 #include <glm/common.hpp>

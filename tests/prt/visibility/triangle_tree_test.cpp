@@ -3,7 +3,6 @@
 #include <cmath>
 #include <set>
 
-#include <glm/common.hpp>
 #include <gtest/gtest.h>
 
 #include "files/parallel.h"

@@ -1,9 +1,7 @@
 #include "prt/visibility/triangle_verdict.h"
 
-#include <algorithm>
 #include <cmath>
 #include <random>
-#include <span>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 #include "relight/adjoint/contribution.h"
 
-#include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <vector>

@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "files/parallel.h"

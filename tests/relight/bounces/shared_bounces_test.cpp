@@ -1,10 +1,6 @@
 // Bounces whose rows are in several processes, here threads, against one process.
-#include <algorithm>
-#include <array>
 #include <filesystem>
-#include <map>
 #include <numeric>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>

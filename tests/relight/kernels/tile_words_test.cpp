@@ -1,7 +1,6 @@
 #include "relight/kernels/tile_words.h"
 
 #include <bit>
-#include <random>
 #include <vector>
 
 #include <glm/geometric.hpp>

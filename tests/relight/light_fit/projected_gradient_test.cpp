@@ -1,6 +1,5 @@
 #include "relight/light_fit/projected_gradient.h"
 
-#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -65,12 +64,13 @@ TEST(ProjectedGradient, StopsAndTellsHowFarItIs) {
     };
     std::stop_source source;
     source.request_stop();
-    EXPECT_THROW(minimise_non_negative(square, x, {.stop = source.get_token()}), prt::Cancelled);
+    EXPECT_THROW(minimise_non_negative(square, x, {}, {.stop = source.get_token()}),
+                 prt::Cancelled);
     double last = 0.0;
-    const GradientReport report =
-        minimise_non_negative(square, x, {.max_iterations = 4, .on_progress = [&](double fraction) {
-                                              last = fraction;
-                                          }});
+    const GradientReport report = minimise_non_negative(square, x, {.max_iterations = 4},
+                                                        {.on_progress = [&](double fraction) {
+                                                            last = fraction;
+                                                        }});
     EXPECT_LE(report.num_iterations, 4u);
     EXPECT_GT(last, 0.0);
     EXPECT_LE(x[0], 5.0);

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "files/output_file.h"
+#include "tests/own_folder.h"
 #include "tests/prt/damaged_file.h"
 
 namespace relumine::relight {
@@ -16,14 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class ArrayFileTest : public testing::Test {
-protected:
-    void SetUp() override { fs::create_directories(folder_); }
-    void TearDown() override { fs::remove_all(folder_); }
-    fs::path folder_ = fs::path(testing::TempDir()) /
-                       ("array_file_" +
-                        std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-};
+using ArrayFileTest = tests::FolderTest;
 
 // The layout is numpy's NEP 1: magic, version 1.0, 16-bit length, a Python dictionary padded with
 // spaces, the data.

@@ -1,8 +1,6 @@
 #include "relight/pictures/backdrop_pixels.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <random>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #include "relight/pictures/display_transform.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -12,6 +11,7 @@
 #include <unistd.h>
 
 #include "relight/pictures/picture.h"
+#include "tests/own_folder.h"
 
 namespace relumine::relight {
 namespace {
@@ -32,7 +32,7 @@ colorspaces:
     from_scene_reference: !<MatrixTransform> {matrix: [0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1]}
 )";
 
-class DisplayTransformTest : public testing::Test {
+class DisplayTransformTest : public tests::FolderTest {
 protected:
     DisplayTransformTest() {
         std::ofstream(path_) << Config;
@@ -44,18 +44,10 @@ protected:
                                             "-DRELUMINE_OCIO=ON)");
         }
     }
-    ~DisplayTransformTest() override { std::filesystem::remove(path_); }
     [[nodiscard]] std::string error(const DisplayView& view) const {
-        try {
-            const DisplayTransform transform(view);
-        } catch (const std::runtime_error& error) {
-            return error.what();
-        }
-        return "";
+        return tests::message_of([&] { const DisplayTransform transform(view); });
     }
-    std::string path_ = (std::filesystem::temp_directory_path() /
-                         ("relumine_display_" + std::to_string(::getpid()) + ".ocio"))
-                            .string();
+    const std::string path_ = (folder_ / "display.ocio").string();
     bool is_built_ = false;
 };
 

@@ -1,16 +1,10 @@
 #include "relight/pictures/picture.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <functional>
-#include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #define STB_IMAGE_STATIC
@@ -27,6 +21,7 @@
 
 #include "cubemap/image/image_file.h"
 #include "files/output_file.h"
+#include "tests/own_folder.h"
 #include "tests/prt/damaged_file.h"
 #include "tests/prt/scenes.h"
 
@@ -35,11 +30,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class SavePictureTest : public testing::Test {
+class SavePictureTest : public tests::FolderTest {
 protected:
-    void SetUp() override { fs::create_directories(folder_); }
-    void TearDown() override { fs::remove_all(folder_); }
-
     /// [height * width * 3] bytes of a PNG file.
     static std::vector<std::uint8_t> decoded(const fs::path& path, int& width, int& height) {
         int channels = 0;
@@ -53,9 +45,6 @@ protected:
         stbi_image_free(bytes);
         return result;
     }
-    fs::path folder_ =
-        fs::path(testing::TempDir()) /
-        ("picture_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
 TEST_F(SavePictureTest, PngHoldsTheSrgbCurve) {

@@ -1,9 +1,7 @@
 #include "relight/pictures/pixel_lights.h"
 
-#include <cmath>
 #include <vector>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
 #include "relight/pictures/plot.h"
 
-#include <cmath>
 #include <stdexcept>
 
 #include <gmock/gmock.h>

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <numeric>
 #include <set>
 #include <stop_token>
 
@@ -181,12 +180,12 @@ TEST(Exact, AnyNumberOfThreadsGivesTheSameBitsAndProgressEndsAtOne) {
     for (const std::size_t num_threads : {1u, 2u}) {
         const files::ThreadLimit threads(num_threads);
         std::vector<double> fractions;
-        ExactOptions options{.bias = scene.options.bias};
-        options.on_progress = [&](double fraction) {
+        const prt::Work work{.on_progress = [&](double fraction) {
             fractions.push_back(fraction);
-        };
+        }};
         results.push_back(exact_radiance(scene.receivers, all_of(scene.receivers.size()),
-                                         scene.rays, scenes::random_environment(8, 2), options));
+                                         scene.rays, scenes::random_environment(8, 2),
+                                         {.bias = scene.options.bias}, work));
         EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
         ASSERT_FALSE(fractions.empty());
         EXPECT_EQ(fractions.back(), 1.0);
@@ -197,16 +196,14 @@ TEST(Exact, AnyNumberOfThreadsGivesTheSameBitsAndProgressEndsAtOne) {
 TEST(Exact, Stops) {
     const scenes::RelitScene& scene = scenes::relit_scene();
     std::stop_source stop;
-    ExactOptions options;
-    options.stop = stop.get_token();
     int num_calls = 0;
-    options.on_progress = [&](double) {
-        ++num_calls;
-        stop.request_stop();
-    };
+    const prt::Work work{.stop = stop.get_token(), .on_progress = [&](double) {
+                             ++num_calls;
+                             stop.request_stop();
+                         }};
     EXPECT_THROW(
         static_cast<void>(exact_radiance(scene.receivers, all_of(scene.receivers.size()),
-                                         scene.rays, scenes::random_environment(64, 3), options)),
+                                         scene.rays, scenes::random_environment(64, 3), {}, work)),
         prt::Cancelled);
     EXPECT_LE(num_calls, 64) << "at most one row for each thread";
 }

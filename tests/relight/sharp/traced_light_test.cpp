@@ -1,6 +1,5 @@
 #include "relight/sharp/traced_light.h"
 
-#include <cmath>
 #include <random>
 #include <vector>
 

@@ -1,7 +1,5 @@
 #include "relumine/ask/questions.h"
 
-#include <optional>
-
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 

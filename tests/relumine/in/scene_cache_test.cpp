@@ -1,7 +1,6 @@
 #include "relumine/in/scene_cache.h"
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 

@@ -1,7 +1,6 @@
 // Processes that share a precompute and its light, and parts of a plan, against one process. Here
 // the processes are threads.
 #include <cmath>
-#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -279,8 +278,8 @@ TEST_F(SharedWork, ProcessesFindTheErrorOfOne) {
         LitScene lit(scene);
         lit.light(sun_and_sky(60.0f));
         lit.bounce({.albedo = bounce_albedo(*scene)});
-        return verify(lit,
-                      {.num_samples = 70, .num_surface_points = 30, .num_paths = 8, .team = team});
+        return verify(lit, {.num_samples = 70, .num_surface_points = 30, .num_paths = 8},
+                      {.team = team});
     };
     const Verification whole = verified(prt::alone());
     ASSERT_TRUE(whole.surface);

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "data_gen/environments.h"
-#include "mesh/materials/material.h"
+#include "mesh/materials/material_members.h"
 #include "relumine/in/precompute.h"
 #include "relumine/light/lit_scene.h"
 #include "relumine/out/output.h"
@@ -62,15 +62,18 @@ class Textures : public scenes::InFolder {};
 
 TEST_F(Textures, APictureFromTheFileIsThatFromMemory) {
     for (const bool is_grey : {false, true})
-        for (const mesh::SlotName& slot : mesh::TextureSlots) {
-            SCOPED_TRACE(slot.name);
+        for (const mesh::MaterialMember& member : mesh::MaterialMembers) {
+            const auto slot = member.texture();
+            if (slot == nullptr)
+                continue;
+            SCOPED_TRACE(member.name);
             mesh::TriangleMesh mesh = square(is_grey);
             mesh::Material& material = mesh.materials[0];
-            if (slot.slot == &mesh::Material::specular_texture)
+            if (slot == &mesh::Material::specular_texture)
                 material.model = mesh::MaterialModel::SpecularGlossiness;
             material.normal_texture.reset();
             const std::vector<glm::vec3> without = drawn(made(mesh));
-            material.*slot.slot = mesh::TextureSlot{.texture = 0};
+            material.*slot = mesh::TextureSlot{.texture = 0};
             const Scene scene = made(mesh);
             const std::vector<glm::vec3> from_memory = drawn(scene);
             EXPECT_NE(from_memory, without) << "the texture shows";

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <tuple>
 #include <vector>
 
 #include <glm/geometric.hpp>

@@ -1,6 +1,4 @@
 // Bounces of a lit scene: edits, steps, undo, and what lights what.
-#include <algorithm>
-#include <cmath>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

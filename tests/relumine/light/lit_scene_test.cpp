@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -205,9 +204,9 @@ TEST(LitScene, IsVerifiedByExactIntegration) {
     // Points of the surface, which may be far more than receivers, have their part of the progress.
     std::vector<double> told;
     static_cast<void>(
-        verify(scene, {.num_samples = 10, .num_surface_points = 90, .on_progress = [&](double f) {
-                           told.push_back(f);
-                       }}));
+        verify(scene, {.num_samples = 10, .num_surface_points = 90}, {.on_progress = [&](double f) {
+                   told.push_back(f);
+               }}));
     EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
     ASSERT_FALSE(told.empty());
     EXPECT_NEAR(told.back(), 1.0, 1e-9);
@@ -215,7 +214,7 @@ TEST(LitScene, IsVerifiedByExactIntegration) {
 
     std::stop_source stop;
     stop.request_stop();
-    EXPECT_THROW(static_cast<void>(verify(scene, {.stop = stop.get_token()})), Cancelled);
+    EXPECT_THROW(static_cast<void>(verify(scene, {}, {.stop = stop.get_token()})), Cancelled);
 }
 
 TEST(LitScene, BouncesUntilTheLightChanges) {

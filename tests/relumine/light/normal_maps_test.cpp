@@ -1,6 +1,5 @@
 // A plane with a normal map of one tilt: under any light that both horizons let pass, it is the
 // tilted plane.
-#include <cmath>
 #include <numbers>
 
 #include <glm/geometric.hpp>

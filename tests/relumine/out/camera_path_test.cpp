@@ -1,7 +1,5 @@
 #include "relumine/out/camera_path.h"
 
-#include <algorithm>
-#include <cmath>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -132,12 +130,8 @@ protected:
     }
     /// What is said of a file with these key frames.
     [[nodiscard]] std::string message(const std::string& frames) const {
-        try {
-            static_cast<void>(load("{\"version\": 1,\n\"frames\": [" + frames + "]}"));
-        } catch (const std::runtime_error& error) {
-            return error.what();
-        }
-        return "none";
+        return tests::message_of(
+            [&] { (void)load("{\"version\": 1,\n\"frames\": [" + frames + "]}"); });
     }
 };
 
