@@ -1,6 +1,7 @@
 #include "cubemap/turned_tile_kernels.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 
 #include <hwy/cache_control.h>
