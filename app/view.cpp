@@ -13,9 +13,9 @@
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
 #include "app/options/eye_options.h"
-#include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
+#include "app/scenes/lit_scene.h"
 #include "relumine/light/light_parts.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
@@ -115,7 +115,7 @@ void run(const Options& options, Session& session) {
     else if (!options.screenshot.empty())
         view.script = viewer::parse_script("wait 2", "--screenshot");
 
-    LitScene lit = lit_scene(options.scene);
+    LitScene lit = lit_scene(options.scene, session);
     const bool shows_points = lit.scene().receivers.num_points() != 0;
     if (!shows_points)
         require_vertices(lit.scene(), options.scene.path);

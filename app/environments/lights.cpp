@@ -11,7 +11,6 @@
 
 #include "app/commands.h"
 #include "app/options/environment_options.h"
-#include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
 #include "files/counted.h"
@@ -20,6 +19,7 @@
 #include "relumine/ask/reference.h"
 #include "relumine/light/light_lists.h"
 #include "relumine/light/light_parts.h"
+#include "relumine/light/lit_scene.h"
 #include "relumine/out/pictures.h"
 
 namespace relumine::app {

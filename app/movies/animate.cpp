@@ -14,8 +14,8 @@
 #include "app/movies/animate_options.h"
 #include "app/movies/frame_record.h"
 #include "app/movies/movie.h"
-#include "app/options/lit_scene.h"
 #include "app/options/receiver_options.h"
+#include "app/scenes/lit_scene.h"
 #include "files/output_file.h"
 #include "relumine/ask/environment_doctor.h"
 #include "relumine/ask/reference.h"
@@ -52,7 +52,7 @@ public:
     Animation(const AnimateOptions& options, const cubemap::FrameSequence& sequence,
               Session& session)
         : options_(options), sequence_(sequence), session_(session),
-          pattern_(options.output_pattern()), lit_(lit_scene(options.scene, session.team)),
+          pattern_(options.output_pattern()), lit_(lit_scene(options.scene, session)),
           binner_(relight::binner_of(lit_.relighter())),
           writer_(lit_, options.output.for_scene(scene())) {
         static_cast<void>(options.bounces.applies_to(scene(), options.scene.path));

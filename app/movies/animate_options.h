@@ -8,7 +8,7 @@
 
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
-#include "app/options/lit_scene.h"
+#include "app/scenes/lit_scene.h"
 #include "app/options/output_options.h"
 #include "relumine/in/environment_files.h"
 #include "relumine/out/camera_path.h"

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "app/command_line/command_line.h"
-#include "app/options/lit_scene.h"
 #include "app/session.h"
 #include "files/extension.h"
 #include "relumine/in/environment_files.h"
+#include "relumine/light/lit_scene.h"
 #include "relumine/out/output.h"
 
 namespace relumine::app {

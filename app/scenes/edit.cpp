@@ -15,9 +15,9 @@
 #include "app/file_watch.h"
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
-#include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/scenes/lit_by.h"
+#include "app/scenes/lit_scene.h"
 #include "files/counted.h"
 #include "relumine/in/environment_files.h"
 #include "relumine/light/layers.h"
@@ -99,7 +99,7 @@ class Edit {
 public:
     Edit(const EditArguments& options, cubemap::LightLayers layers, Session& session)
         : options_(options), session_(session), layers_(std::move(layers)),
-          lit_(lit_scene(options.scene)) {
+          lit_(lit_scene(options.scene, session)) {
         lit_.dim(options.output.for_scene(lit_.scene()).emission);
     }
 

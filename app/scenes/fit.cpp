@@ -13,8 +13,8 @@
 
 #include "app/commands.h"
 #include "app/options/bounce_option.h"
-#include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
+#include "app/scenes/lit_scene.h"
 #include "files/counted.h"
 #include "files/extension.h"
 #include "files/json_reader.h"
@@ -243,7 +243,7 @@ void run(FitArguments& options, const Command& command, Session& session) {
     // An environment changes from step to step, and with it what would be traced.
     options.scene.clusters_only =
         options.scene.clusters_only || (options.num_lights == 0 && options.given.empty());
-    LitScene lit = lit_scene(options.scene);
+    LitScene lit = lit_scene(options.scene, session);
     lit.dim({{.gain = glm::vec3(0.0f)}}); // what is looked for comes from outside
     Stopwatch watch;
     try {

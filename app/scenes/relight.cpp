@@ -15,12 +15,10 @@
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
 #include "app/options/eye_options.h"
-#include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/plan_option.h"
-#include "app/scenes/first_scene.h"
+#include "app/scenes/lit_scene.h"
 #include "files/counted.h"
-#include "relumine/in/mesh_files.h"
 #include "relumine/in/shared_work.h"
 #include "relumine/light/harmonics_file.h"
 #include "relumine/light/light_lists.h"
@@ -31,7 +29,7 @@ namespace relumine::app {
 namespace {
 
 struct RelightArguments {
-    SceneOptions scene{.mesh_too = true};
+    SceneOptions scene;
     EnvironmentOptions environment;
     /// A light list, alone or added to the environment
     std::string lights;
@@ -41,7 +39,6 @@ struct RelightArguments {
     /// A file for the arriving light; empty: none
     std::string harmonics;
     std::uint32_t harmonics_order = 3;
-    bool no_cache = false;
     /// count is 0 until --part is given.
     prt::Part part = {.index = 0, .count = 0};
 };
@@ -180,12 +177,7 @@ void report_light(const RelightArguments& options, Session& session, const Lit& 
 /// whose first one writes the output.
 void light_scene(const RelightArguments& options, Session& session) {
     Stopwatch watch;
-    const bool is_first_picture =
-        !options.environment.path.empty() && mesh::has_mesh_extension(options.scene.path);
-    LitScene lit = is_first_picture ? lit_scene(first_scene(options.scene.path, options.scene.pose,
-                                                            !options.no_cache, session),
-                                                options.scene)
-                                    : lit_scene(options.scene, session.team);
+    LitScene lit = lit_scene(options.scene, session);
     const Scene& scene = lit.scene();
     if (options.environment.path.empty() && options.lights.empty() && scene.lamps.empty())
         throw UsageError("relight", "expected ENV, --lights or both, or a scene with lamps");
@@ -304,9 +296,6 @@ void add_relight(Command& program, Session& session) {
                     "light part I of N of the receivers, from 1/N to N/N; -o names the part, and "
                     "`relumine join` makes the numbers (.npy) of all parts",
                     {.type = "I/N"}));
-    command.add(row("--no-cache", options->no_cache,
-                    "SCENE is a mesh: precompute it, whether it was before or not, and do not keep "
-                    "the scene"));
     command.add(row("--harmonics", options->harmonics,
                     "write the light that arrives at each receiver, for any normal, as spherical "
                     "harmonics: .npy, .exr (layers; not of vertices), .json (three.js; of points "
@@ -323,6 +312,7 @@ void add_relight(Command& program, Session& session) {
         if (!options->harmonics.empty())
             options->scene.harmonics = options->harmonics_order;
         options->scene.highlight_rays = options->output.picture.highlight_rays;
+        options->scene.lights_alone = options->environment.path.empty();
         run(*options, command, session);
     });
 }

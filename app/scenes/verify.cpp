@@ -7,7 +7,7 @@
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
 #include "app/options/eye_options.h"
-#include "app/options/lit_scene.h"
+#include "app/scenes/lit_scene.h"
 #include "relumine/in/shared_work.h"
 
 namespace relumine::app {
@@ -76,7 +76,7 @@ void say_receivers(const Verification& check, const Scene& scene, std::uint32_t 
 }
 
 void run(const VerifyArguments& options, Session& session) {
-    LitScene lit = lit_scene(options.scene);
+    LitScene lit = lit_scene(options.scene, session);
     if (options.eye)
         require_live_highlights(lit.scene(), options.scene.path);
     warn_of_eye_inside(lit, options.eye, session);

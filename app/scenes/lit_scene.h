@@ -1,4 +1,4 @@
-// A scene file ready to be lit: shared by relight, edit and verify.
+// What is lit: a scene file, or a mesh with the scene that it gets by itself.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/command_line/command_line.h"
+#include "app/session.h"
 #include "relumine/in/mesh.h"
 #include "relumine/light/lit_scene.h"
 
@@ -21,22 +22,23 @@ struct SceneOptions {
     std::uint32_t harmonics_of_points = 0;
     /// Rays that find a pixel's highlights; 0: none (LightOptions::highlight_rays)
     std::uint32_t highlight_rays = DefaultHighlightRays;
-    /// The argument may also be a mesh, which is lit without clusters.
-    bool mesh_too = false;
     /// The moment of a mesh's animation (MeshOptions::pose)
     std::optional<mesh::Pose> pose = {};
+    /// Precomputes a mesh whether it was before or not, and does not keep its scene.
+    bool no_cache = false;
+    /// Lights a mesh without a precompute, and so without an environment.
+    bool lights_alone = false;
     /// Colours of all surfaces, in place of those of the precompute
     SurfaceColors colors = {};
 
     void add_to(Command& command);
 };
 
-/// The scene, or the mesh, ready to be lit; of a scene file that processes share, this one's part.
-/// Throws std::runtime_error for a file that cannot be read or has no use for the options,
-/// UsageError for their wrong text.
-[[nodiscard]] LitScene lit_scene(const SceneOptions& options, prt::Team* team = nullptr);
-
-/// A scene that is there, ready to be lit; its path is for messages.
-[[nodiscard]] LitScene lit_scene(Scene scene, const SceneOptions& options);
+/// The scene ready to be lit; of a scene file that processes share (Session::team), this one's
+/// part. A mesh is precomputed first, as first_scene() does it.
+///
+/// Throws:  std::runtime_error for a file that cannot be read or has no use for the options;
+///          UsageError for their wrong text; as first_scene().
+[[nodiscard]] LitScene lit_scene(const SceneOptions& options, Session& session);
 
 } // namespace relumine::app

@@ -1,11 +1,11 @@
-#include "app/options/lit_scene.h"
+#include "app/scenes/lit_scene.h"
 
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "app/session.h"
+#include "app/scenes/first_scene.h"
 #include "files/extension.h"
 #include "relumine/in/mesh_files.h"
 
@@ -13,11 +13,12 @@ namespace relumine::app {
 
 void SceneOptions::add_to(Command& command) {
     command.add(row("SCENE", path,
-                    mesh_too ? "scene file from `relumine precompute`, or a mesh"
-                             : "scene file from `relumine precompute`",
+                    "scene file from `relumine precompute`, or a mesh, which is precomputed first",
                     {.file = true, .required = true}));
-    if (mesh_too)
-        command.add(pose_row(pose));
+    command.add(pose_row(pose));
+    command.add(row("--no-cache", no_cache,
+                    "SCENE is a mesh: precompute it, whether it was before or not, and do not keep "
+                    "the scene"));
     command.add(row("--clusters-only", clusters_only,
                     "light the sun through its cluster too, without shadow rays of its own"));
     command.add_all(options_of(colors));
@@ -25,18 +26,16 @@ void SceneOptions::add_to(Command& command) {
 
 namespace {
 
-Scene load(const SceneOptions& options) {
-    if (!options.mesh_too || !mesh::has_mesh_extension(options.path)) {
+Scene load(const SceneOptions& options, Session& session) {
+    if (!mesh::has_mesh_extension(options.path)) {
         if (options.pose)
             throw UsageError("--pose", fmt::format("expected a mesh (.glb, .gltf), got {}, which "
                                                    "has the pose of its precompute",
                                                    options.path));
-        if (mesh::has_mesh_extension(options.path))
-            throw std::runtime_error(fmt::format("{}: expected a scene, got a mesh: `relumine "
-                                                 "precompute` makes a scene of it",
-                                                 options.path));
         return load_scene(options.path);
     }
+    if (!options.lights_alone)
+        return first_scene(options.path, options.pose, !options.no_cache, session);
     if (options.clusters_only)
         throw std::runtime_error(fmt::format(
             "{}: expected a scene file with --clusters-only, got a mesh", options.path));
@@ -83,23 +82,24 @@ auto naming_scene(const std::string& path, const Make& make) {
 
 } // namespace
 
-LitScene lit_scene(const SceneOptions& options, prt::Team* team) {
+LitScene lit_scene(const SceneOptions& options, Session& session) {
     const std::string extension = files::extension_of(options.path);
     if (extension == ".hdr" || extension == ".exr" || extension == ".pic")
         throw UsageError("SCENE", fmt::format("expected a scene, got the environment {}: the scene "
                                               "stands first, the environment behind it",
                                               options.path));
-    if (team != nullptr && team->has_others()) {
-        prt::ScenePart part = prt::load_scene_part(options.path, team->part());
+    if (session.team != nullptr && session.team->has_others()) {
+        if (mesh::has_mesh_extension(options.path))
+            throw std::runtime_error(fmt::format("{}: expected a scene for processes to share, got "
+                                                 "a mesh: `relumine precompute` makes one",
+                                                 options.path));
+        prt::ScenePart part = prt::load_scene_part(options.path, session.team->part());
         recolour(part.scene, options);
         LightOptions light = light_options(options, part.scene);
-        light.team = team;
+        light.team = session.team;
         return LitScene(std::move(part), light);
     }
-    return lit_scene(load(options), options);
-}
-
-LitScene lit_scene(Scene scene, const SceneOptions& options) {
+    Scene scene = load(options, session);
     recolour(scene, options);
     const LightOptions light = light_options(options, scene);
     return naming_scene(options.path, [&] { return LitScene(std::move(scene), light); });
