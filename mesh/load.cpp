@@ -43,7 +43,8 @@ LoadedMesh load(const std::filesystem::path& path, const LoadOptions& options) {
         LoadedMesh result;
         result.hash = files::hash_of(bytes);
         result.camera = soup.camera;
-        static_cast<TriangleMesh&>(result) = to_mesh(std::move(soup), options.normals);
+        static_cast<TriangleMesh&>(result) =
+            to_mesh(std::move(soup), options.normals, options.colors);
         return result;
     } catch (const std::bad_alloc&) {
         throw std::runtime_error(

@@ -13,6 +13,7 @@
 #include "mesh/normals.h"
 #include "mesh/pose.h"
 #include "mesh/triangle_mesh.h"
+#include "mesh/vertex_colors.h"
 
 namespace relumine::mesh {
 
@@ -20,6 +21,9 @@ struct LoadOptions {
     NormalSource normals = NormalSource::File;
     /// A moment of an animation, in place of the pose that the nodes of a glTF file say
     std::optional<Pose> pose = {};
+    /// What colours of vertices and faces mean. Empty: sRGB for bytes and for text, linear for
+    /// floats of PLY and for glTF
+    std::optional<ColorCurve> colors = {};
 };
 
 /// A mesh, with what else its file says.
@@ -32,15 +36,19 @@ struct LoadedMesh : TriangleMesh {
 
 /// Reads a mesh. The extension tells the format (mesh_extensions(), any case).
 ///
-/// Vertices keep the file's count and order. STL has no shared vertices, so equal points are welded
-/// exactly. Polygons are triangulated, also concave and degenerate ones: n corners give n - 2
-/// triangles. Faces of one or two corners are skipped, with a warning.
+/// The file's vertices come first, in its order. STL has no shared vertices, so equal points are
+/// welded exactly. Polygons are triangulated, also concave and degenerate ones: n corners give n -
+/// 2 triangles. Faces of one or two corners are skipped, with a warning.
 ///
 /// A mesh of coordinates below 2^-40 is enlarged by a power of two, with a warning.
 ///
-/// Colours of vertices are kept as in the file, without alpha; bytes are divided by 255. Colours of
-/// faces are skipped. Colours and uvs are left out if some are not finite. An OBJ whose vertices
-/// have several uvs, or none, has corner_uvs instead.
+/// Vertices whose corners have several normals, or faces of several colours, are repeated behind
+/// all others (TriangleMesh). Faces of glTF without normals are flat, and those of OBJ where `s
+/// off` says so. Other faces without normals are smooth.
+///
+/// Colours become linear, without alpha. Numbers of 0 to 255 are recognised. A vertex without a
+/// colour is white where others have one. Uvs are left out if some are not finite. An OBJ whose
+/// vertices have several uvs, or none, and a PLY with uvs of wedges have corner_uvs instead.
 ///
 /// Materials, groups and textures come with OBJ and glTF (docs/materials.md). A missing material
 /// library or image does not stop the load; TriangleMesh::missing has its name. A broken one

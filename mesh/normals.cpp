@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "mesh/edge_uses.h"
+#include "mesh/vertex_copies.h"
 
 namespace relumine::mesh {
 
@@ -87,34 +88,22 @@ TriangleMesh with_creases(const TriangleMesh& mesh, float degrees) {
     });
 
     TriangleMesh result = mesh;
-    result.normals.assign(mesh.num_vertices(), glm::vec3(0.0f));
-    // The copies of each vertex: the set of corners that each serves, and where the next is.
+    VertexCopies copies(mesh.num_vertices());
     constexpr std::uint32_t None = 0xffffffff;
-    std::vector<std::uint32_t> set_of(mesh.num_vertices(), None), next(mesh.num_vertices(), None);
+    // The set of corners that each vertex serves.
+    std::vector<std::uint32_t> set_of(mesh.num_vertices(), None);
     for (std::uint32_t corner = 0; corner < 3 * mesh.num_triangles(); ++corner) {
         const std::uint32_t set = sets.first(corner);
-        std::uint32_t vertex = mesh.triangles[corner / 3][corner % 3];
-        while (set_of[vertex] != set && set_of[vertex] != None && next[vertex] != None)
-            vertex = next[vertex];
-        if (set_of[vertex] != set && set_of[vertex] != None) {
-            const auto copy = static_cast<std::uint32_t>(result.num_vertices());
-            next[vertex] = copy;
-            result.positions.push_back(result.positions[vertex]);
-            result.normals.emplace_back(0.0f);
-            if (!mesh.colors.empty())
-                result.colors.push_back(result.colors[vertex]);
-            if (!mesh.uvs.empty())
-                result.uvs.push_back(result.uvs[vertex]);
-            if (!mesh.second_uvs.empty())
-                result.second_uvs.push_back(result.second_uvs[vertex]);
-            set_of.push_back(None);
-            next.push_back(None);
-            vertex = copy;
-        }
+        std::uint32_t& vertex = result.triangles[corner / 3][corner % 3];
+        vertex = copies.find(vertex, [&](std::uint32_t copy) { return set_of[copy] == set; });
+        set_of.resize(copies.num_vertices());
         set_of[vertex] = set;
-        result.normals[vertex] = unit_or_none(sums[set]);
-        result.triangles[corner / 3][corner % 3] = vertex;
     }
+    for_each_vertex_array(result, [&](auto& values) { copies.append_to(values); });
+    result.normals.assign(result.num_vertices(), glm::vec3(0.0f));
+    for (std::size_t vertex = 0; vertex < set_of.size(); ++vertex)
+        if (set_of[vertex] != None)
+            result.normals[vertex] = unit_or_none(sums[set_of[vertex]]);
     return result;
 }
 

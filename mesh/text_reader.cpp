@@ -114,17 +114,4 @@ void TextReader::fail(std::string_view expected, std::string_view got) const {
         fmt::format("expected {} in line {}, got {}", expected, line_number_, got));
 }
 
-void normalize_text_colors(std::vector<glm::vec3>& colors) {
-    bool above_one = false;
-    for (const glm::vec3& color : colors)
-        for (int i = 0; i < 3; ++i) {
-            if (color[i] != std::floor(color[i]))
-                return;
-            above_one |= color[i] > 1.0f;
-        }
-    if (above_one)
-        for (glm::vec3& color : colors)
-            color /= 255.0f;
-}
-
 } // namespace relumine::mesh

@@ -57,8 +57,4 @@ private:
     std::size_t next_word_ = 0;
 };
 
-/// Brings colours of a text format to [0, 1]. If all numbers are whole and some are above 1, they
-/// are bytes and are divided by 255.
-void normalize_text_colors(std::vector<glm::vec3>& colors);
-
 } // namespace relumine::mesh

@@ -22,8 +22,9 @@ namespace relumine::mesh {
 /// Three indices into TriangleMesh::positions, counter-clockwise seen from outside.
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Indexed triangle mesh. Vertices have the count and the order of the file. Unreferenced vertices,
-/// holes and non-manifold edges are kept.
+/// Indexed triangle mesh. The vertices of the file come first, in its order. Behind them are copies
+/// of vertices that have several normals, or colours of faces. Unreferenced vertices, holes and
+/// non-manifold edges are kept.
 ///
 /// Axes:    right-handed, +Y up.
 /// Unit:    as in the file.
@@ -65,6 +66,8 @@ struct TriangleMesh {
     std::vector<std::string> missing;
     /// What the file holds and the mesh does not, a line each.
     std::vector<std::string> warnings;
+    /// How the file was read where that is a choice, a line each.
+    std::vector<std::string> notes;
 
     [[nodiscard]] std::size_t num_vertices() const { return positions.size(); }
     [[nodiscard]] std::size_t num_triangles() const { return triangles.size(); }

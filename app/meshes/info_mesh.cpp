@@ -100,9 +100,12 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
         require_extension("--picture", options.picture, {".png"});
         check_output(options.picture, {options.path});
     }
-    const mesh::TriangleMesh mesh = mesh::load(options.path, {.pose = options.pose});
+    mesh::TriangleMesh mesh = mesh::load(options.path, {.pose = options.pose});
     const mesh::Bounds box = mesh::bounds(mesh);
     const mesh::Diagnosis diagnosis = mesh::diagnose(mesh);
+    if (!options.picture.empty())
+        relight::save_mesh_picture(options.picture, mesh, diagnosis);
+    mesh::settle_normals(mesh); // its warnings are those of a first picture
     session.say(fmt::format("mesh                {} vertices, {}", mesh.num_vertices(),
                             files::counted(mesh.num_triangles(), "triangle")));
     session.say(fmt::format("box                 ({}, {}, {}) to ({}, {}, {})", box.min.x,
@@ -122,11 +125,11 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
     say_lamps(lamps, session);
     for (const std::string& name : mesh.missing)
         session.say(fmt::format("not found           {}", name));
+    for (const std::string& note : mesh.notes)
+        session.say(fmt::format("read                {}", note));
     for (const std::string& warning : mesh.warnings)
         session.say(fmt::format("left out            {}", warning));
     const Report faults = diagnosis_report(mesh, diagnosis, session);
-    if (!options.picture.empty())
-        relight::save_mesh_picture(options.picture, mesh, diagnosis);
     session.report({{"kind", "mesh"},
                     {"vertices", mesh.num_vertices()},
                     {"triangles", mesh.num_triangles()},
@@ -139,6 +142,7 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
                     {"groups", mesh.groups},
                     {"lamps", lamps},
                     {"missing", mesh.missing},
+                    {"notes", mesh.notes},
                     {"left_out", mesh.warnings}});
 }
 

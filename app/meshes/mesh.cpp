@@ -40,6 +40,8 @@ struct MeshFiles {
         mesh::TriangleMesh mesh = mesh::load(input);
         for (const std::string& warning : mesh.warnings)
             session.warn(fmt::format("{}: {}", input, warning));
+        for (const std::string& note : mesh.notes)
+            session.say(fmt::format("{}: {}", input, note));
         return mesh;
     }
 

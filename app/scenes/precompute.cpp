@@ -323,6 +323,8 @@ Mesh made_mesh(const PrecomputeArguments& options, Session& session) {
         session.say(fmt::format("{}: edges over {} degrees are sharp, by the custom of {}; "
                                 "--normals smooth where they are not",
                                 options.mesh, *crease, files::extension_of(options.mesh)));
+    for (const std::string& line : mesh.geometry.notes)
+        session.say(fmt::format("{}: {}", options.mesh, line));
     for (const std::string& line : mesh::left_out(mesh.geometry))
         session.warn(fmt::format("{}: {}", options.mesh, line));
     warn_of_winding(mesh.geometry, options.mesh, session);

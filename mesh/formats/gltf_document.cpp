@@ -238,17 +238,6 @@ std::vector<double> numbers(const Json& object, const char* key, std::vector<dou
     return result;
 }
 
-double clamped(const std::string& whose, const char* key, double value, double low, double high,
-               std::vector<std::string>& warnings) {
-    const double result = std::clamp(value, low, high);
-    constexpr double Rounding = 1e-4; // as is_fraction()
-    if (std::abs(value - result) > Rounding)
-        warnings.push_back(
-            fmt::format("the {}: expected {:g} to {:g} as \"{}\", got {:g}: it counts as {:g}",
-                        whose, low, high, key, value, result));
-    return result;
-}
-
 const Json& child(const Json& object, const char* key) {
     static const Json none = Json::Object{};
     const Json* value = find(object, key);

@@ -38,10 +38,6 @@ using files::Json;
 /// property is absent.
 [[nodiscard]] std::vector<double> numbers(const Json& object, const char* key,
                                           std::vector<double> fallback);
-/// Brings a value of `whose`, such as "light Key", into its range: one that is out of it costs no
-/// more than itself, and a warning. A rounding outside is not said.
-[[nodiscard]] double clamped(const std::string& whose, const char* key, double value, double low,
-                             double high, std::vector<std::string>& warnings);
 /// Returns the object or array of a name. Returns an empty one if it is absent.
 [[nodiscard]] const Json& child(const Json& object, const char* key);
 /// Returns the values of an array. Returns none if it is absent.

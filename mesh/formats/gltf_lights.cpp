@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "mesh/formats/clamped.h"
 #include "mesh/text_reader.h"
 
 namespace relumine::mesh::gltf {

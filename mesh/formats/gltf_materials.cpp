@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "mesh/formats/clamped.h"
 #include "mesh/materials/material_members.h"
 #include "mesh/text_reader.h"
 

@@ -10,18 +10,10 @@
 
 #include "mesh/formats/draco_decoder.h"
 #include "mesh/formats/gltf_accessors.h"
-#include "mesh/normals.h"
 
 namespace relumine::mesh::gltf {
 
 namespace {
-
-void take_normals_of_faces(Primitive& primitive) {
-    TriangleMesh plain;
-    plain.positions = primitive.positions;
-    plain.triangles = primitive.triangles;
-    primitive.normals = smooth_normals(plain);
-}
 
 template<class Vector>
 std::vector<Vector> vectors(const Floats& floats) {
@@ -202,9 +194,9 @@ std::optional<Primitive> PrimitiveReader::read(const Json& description) {
         result.triangles = triangles(description, mode, result.positions.size());
     }
     result.description = &description;
-    result.has_normals = !result.normals.empty();
-    if (!result.has_normals)
-        take_normals_of_faces(result);
+    // Faces without normals are flat, and their tangents do not count [glTF 2.0, 3.7.2.1].
+    if (result.normals.empty())
+        result.tangents.clear();
     return result;
 }
 
@@ -217,9 +209,10 @@ bool joined(Primitive& before, const Primitive& next) {
         return child(child(*primitive.description, "extensions"), "KHR_draco_mesh_compression")
                    .size() != 0;
     };
-    // What materials ask for may differ: which uvs, and tangents. Computed normals are the faces'.
-    if (!before.has_normals || !next.has_normals || is_compressed(before) || is_compressed(next) ||
-        text(before, "attributes") != text(next, "attributes") ||
+    // What materials ask for may differ: which uvs, and tangents. Vertices without normals are
+    // taken apart again.
+    if (before.normals.empty() || next.normals.empty() || is_compressed(before) ||
+        is_compressed(next) || text(before, "attributes") != text(next, "attributes") ||
         text(before, "targets") != text(next, "targets") || before.uvs != next.uvs ||
         before.second_uvs != next.second_uvs || before.tangents != next.tangents)
         return false;
@@ -241,10 +234,8 @@ std::optional<Primitive> morphed(Document& document, const Primitive& primitive,
     take_memory(document, primitive, 1);
     Primitive result = primitive;
     add_targets(document, *primitive.description, "POSITION", weights, result.positions);
-    if (result.has_normals)
+    if (!result.normals.empty())
         add_targets(document, *primitive.description, "NORMAL", weights, result.normals);
-    else
-        take_normals_of_faces(result);
     if (!result.tangents.empty())
         add_targets(document, *primitive.description, "TANGENT", weights, result.tangents);
     return result;
@@ -252,10 +243,12 @@ std::optional<Primitive> morphed(Document& document, const Primitive& primitive,
 
 void take_memory(Document& document, const Primitive& primitive, std::size_t num_times) {
     // A vertex and a triangle of a PolygonSoup take 44 and 28 bytes, of the TriangleMesh that it
-    // becomes 20 more, and vectors that grow have twice that.
+    // becomes 20 more, and vectors that grow have twice that. Each corner of a flat triangle may
+    // become a vertex.
     constexpr std::uint64_t Each = 128;
+    const std::size_t per_triangle = primitive.normals.empty() ? 4 : 1;
     document.take_memory(Each * num_times *
-                         (primitive.positions.size() + primitive.triangles.size()));
+                         (primitive.positions.size() + per_triangle * primitive.triangles.size()));
 }
 
 } // namespace relumine::mesh::gltf

@@ -24,6 +24,7 @@ namespace relumine::mesh::gltf {
 
 /// A primitive's arrays as the file has them, before any node places them.
 struct Primitive {
+    /// Without normals its faces are flat.
     std::vector<glm::vec3> positions, normals, colors;
     /// The sets that the material's textures use.
     std::vector<glm::vec2> uvs, second_uvs;
@@ -38,8 +39,6 @@ struct Primitive {
     };
     std::vector<LaterMaterial> later_materials;
     std::vector<Influences> influences;
-    /// False: the normals are the faces'.
-    bool has_normals = false;
     const Json* description = nullptr;
 };
 

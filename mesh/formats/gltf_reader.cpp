@@ -24,7 +24,6 @@
 #include "mesh/formats/gltf_nodes.h"
 #include "mesh/formats/gltf_primitives.h"
 #include "mesh/formats/polygon_soup.h"
-#include "mesh/normals.h"
 
 namespace relumine::mesh {
 
@@ -203,7 +202,9 @@ void GltfReader::append(const Primitive& primitive, const FrameOf& frame_of, std
     for (std::size_t i = 0; i < count; ++i) {
         const gltf::Frame& frame = frame_of(i);
         soup_.positions.emplace_back(frame.matrix * glm::dvec4(primitive.positions[i], 1.0));
-        soup_.normals.emplace_back(frame.normal(primitive.normals[i]));
+        soup_.normals.emplace_back(primitive.normals.empty()
+                                       ? glm::vec3(0.0f)
+                                       : glm::vec3(frame.normal(primitive.normals[i])));
         num_mirrored += frame.is_mirrored ? 1 : 0;
     }
     const bool is_mirrored = 2 * num_mirrored > count;
@@ -234,6 +235,7 @@ void GltfReader::append(const Primitive& primitive, const FrameOf& frame_of, std
         for (const std::uint32_t corner : {a, is_mirrored ? c : b, is_mirrored ? b : c})
             soup_.corners.push_back(static_cast<std::uint32_t>(first) + corner);
         soup_.end_face();
+        soup_.face_smoothing.push_back(primitive.normals.empty() ? 0 : 1);
         soup_.face_materials.push_back(material);
         soup_.face_groups.push_back(group);
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
@@ -11,6 +12,7 @@
 
 #include "files/joined.h"
 #include "files/output_file.h"
+#include "mesh/formats/clamped.h"
 #include "mesh/text_reader.h"
 
 namespace relumine::mesh {
@@ -22,33 +24,18 @@ bool is_file(const std::filesystem::path& path) {
     return std::filesystem::is_regular_file(path, error);
 }
 
+double finite(const TextReader& reader, std::string_view word) {
+    const double value = reader.number(word);
+    if (!std::isfinite(value))
+        reader.fail("a finite number", excerpt(word));
+    return value;
+}
+
 float number_between(const TextReader& reader, std::string_view word, double min, double max) {
     const double value = reader.number(word);
-    const bool is_allowed =
-        min == 0.0 && max == 1.0 ? is_fraction(value) : value >= min && value <= max;
-    if (!is_allowed)
+    if (!(value >= min && value <= max))
         reader.fail(fmt::format("a number of {} to {}", min, max), excerpt(word));
-    return static_cast<float>(std::clamp(value, min, max));
-}
-
-/// Reads one value of a line "Kd 0.5" or three of "Kd 0.5 0.5 0.5".
-glm::vec3 color(const TextReader& reader, double max = 1.0) {
-    const auto& words = reader.words();
-    if (words.size() != 2 && words.size() != 4)
-        reader.fail(fmt::format("1 or 3 numbers of {}", words[0]),
-                    fmt::format("{}", words.size() - 1));
-    glm::vec3 result(0.0f);
-    for (int i = 0; i < 3; ++i)
-        result[i] = number_between(
-            reader, words[words.size() == 2 ? 1 : static_cast<std::size_t>(i) + 1], 0.0, max);
-    return result;
-}
-
-float scalar(const TextReader& reader, double max) {
-    const auto& words = reader.words();
-    if (words.size() != 2)
-        reader.fail(fmt::format("1 number of {}", words[0]), fmt::format("{}", words.size() - 1));
-    return number_between(reader, words[1], 0.0, max);
+    return static_cast<float>(value);
 }
 
 std::string rest_of(std::span<const std::string_view> words) {
@@ -57,6 +44,40 @@ std::string rest_of(std::span<const std::string_view> words) {
 
 bool is_number(std::string_view word) {
     return !word.empty() && word.find_first_not_of("0123456789+-.eE") == std::string_view::npos;
+}
+
+std::string in_small_letters(std::string_view text) {
+    std::string result(text);
+    for (char& letter : result)
+        letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    return result;
+}
+
+/// Returns the entry of a folder with a name, whatever its capitals; of several the first by name.
+std::filesystem::path entry_named(const std::filesystem::path& folder, const std::string& name) {
+    std::error_code error;
+    if (name == ".." || std::filesystem::exists(folder / name, error))
+        return folder / name;
+    std::filesystem::path found;
+    for (const auto& entry : std::filesystem::directory_iterator(
+             folder.empty() ? std::filesystem::path(".") : folder, error)) {
+        const std::filesystem::path other = entry.path().filename();
+        if (in_small_letters(other.string()) == in_small_letters(name) &&
+            (found.empty() || other < found.filename()))
+            found = folder / other;
+    }
+    return found;
+}
+
+/// Returns the comments at the beginning of a library, which name the program that wrote it.
+std::string comments_of(std::string_view text) {
+    constexpr std::size_t Beginning = 1024;
+    std::string result;
+    TextReader reader(text.substr(0, std::min(text.find('\0'), Beginning)));
+    while (reader.next_line())
+        if (reader.words()[0].starts_with('#'))
+            result += in_small_letters(files::joined(reader.words(), " ")) + "\n";
+    return result;
 }
 
 } // namespace
@@ -68,19 +89,80 @@ std::filesystem::path find_file(const std::filesystem::path& folder, const std::
         return folder / name;
     std::string with_slashes = name;
     std::replace(with_slashes.begin(), with_slashes.end(), '\\', '/');
-    return is_file(folder / with_slashes) ? folder / with_slashes : std::filesystem::path();
+    if (is_file(folder / with_slashes))
+        return folder / with_slashes;
+    std::vector<std::string> parts;
+    for (const std::filesystem::path& part : std::filesystem::path(with_slashes))
+        if (part != "/" && part != "." && !part.empty())
+            parts.push_back(part.string());
+    for (std::size_t first = 0; first < parts.size(); ++first) {
+        std::filesystem::path path = folder;
+        for (std::size_t i = first; i < parts.size(); ++i) {
+            path = entry_named(path, parts[i]);
+            if (path.empty())
+                break;
+        }
+        if (!path.empty() && is_file(path))
+            return path;
+        // Only a path as it is written leads out of the folder.
+        while (first + 1 < parts.size() && parts[first + 1] == "..")
+            ++first;
+    }
+    return {};
+}
+
+/// Finds a file, and says where it is not the one that is named. Names it among the missing.
+std::optional<std::filesystem::path> MtlLibrary::find(const std::filesystem::path& folder,
+                                                      const std::string& name) {
+    const std::filesystem::path path = find_file(folder, name);
+    if (path.empty()) {
+        if (std::find(missing.begin(), missing.end(), name) == missing.end())
+            missing.push_back(name);
+        return std::nullopt;
+    }
+    std::string with_slashes = name;
+    std::replace(with_slashes.begin(), with_slashes.end(), '\\', '/');
+    const std::string note =
+        fmt::format("{} is read from {}", name, path.lexically_relative(folder_).string());
+    if (path != folder / name && path != folder / with_slashes &&
+        std::find(notes.begin(), notes.end(), note) == notes.end())
+        notes.push_back(note);
+    return path;
+}
+
+/// Reads one value of a line "Kd 0.5" or three of "Kd 0.5 0.5 0.5".
+glm::vec3 MtlLibrary::color(const Material& material, const TextReader& reader, double max) {
+    const auto& words = reader.words();
+    if (words.size() != 2 && words.size() != 4)
+        reader.fail(fmt::format("1 or 3 numbers of {}", words[0]),
+                    fmt::format("{}", words.size() - 1));
+    glm::vec3 result(0.0f);
+    std::vector<std::string> warnings;
+    for (std::size_t i = 0; i < 3; ++i)
+        result[static_cast<int>(i)] = static_cast<float>(
+            clamped("material " + material.name, words[0],
+                    finite(reader, words[words.size() == 2 ? 1 : i + 1]), 0.0, max, warnings));
+    if (!warnings.empty())
+        warnings_.push_back(warnings.front());
+    return result;
+}
+
+float MtlLibrary::scalar(const Material& material, const TextReader& reader, double max) {
+    const auto& words = reader.words();
+    if (words.size() != 2)
+        reader.fail(fmt::format("1 number of {}", words[0]), fmt::format("{}", words.size() - 1));
+    return static_cast<float>(clamped("material " + material.name, words[0],
+                                      finite(reader, words[1]), 0.0, max, warnings_));
 }
 
 void MtlLibrary::read(const std::string& name) {
-    const std::filesystem::path path = find_file(folder_, name);
-    if (path.empty()) {
-        missing.push_back(name);
+    const std::optional<std::filesystem::path> path = find(folder_, name);
+    if (!path)
         return;
-    }
     has_library_ = true;
-    const std::vector<std::byte> bytes = files::read(path);
+    const std::vector<std::byte> bytes = files::read(*path);
     try {
-        parse(bytes, name, path.parent_path());
+        parse(bytes, name, path->parent_path());
     } catch (const std::runtime_error& error) {
         is_broken_ = true;
         warnings_.push_back(
@@ -94,6 +176,7 @@ std::uint32_t MtlLibrary::add(const std::string& name) {
     if (is_new)
         materials.emplace_back();
     materials[place->second] = {.name = name};
+    unsettled_[place->second] = {};
     return place->second;
 }
 
@@ -145,13 +228,10 @@ std::optional<TextureSlot> MtlLibrary::texture(std::span<const std::string_view>
         reader.fail("the file name of a texture", "none");
     slot.uv_from_mesh_uv = glm::mat2(scale.x, 0.0f, 0.0f, scale.y);
     const std::string name = rest_of(words);
-    const std::filesystem::path path = find_file(folder, name);
-    if (path.empty()) {
-        if (std::find(missing.begin(), missing.end(), name) == missing.end())
-            missing.push_back(name);
+    const std::optional<std::filesystem::path> path = find(folder, name);
+    if (!path)
         return std::nullopt;
-    }
-    const std::optional<std::uint32_t> index = texture_of(path, name, is_alpha);
+    const std::optional<std::uint32_t> index = texture_of(*path, name, is_alpha);
     if (!index)
         return std::nullopt;
     slot.texture = *index;
@@ -288,15 +368,15 @@ bool MtlLibrary::read_physical(Material& material, const TextReader& reader,
             slot->is_srgb = false;
     };
     if (keyword == "Pr")
-        material.roughness = scalar(reader, 1.0);
+        material.roughness = scalar(material, reader);
     else if (keyword == "Pm")
-        material.metallic = scalar(reader, 1.0);
+        material.metallic = scalar(material, reader);
     else if (keyword == "Pc")
-        material.coat = scalar(reader, 1.0);
+        material.coat = scalar(material, reader);
     else if (keyword == "Pcr")
-        material.coat_roughness = scalar(reader, 1.0);
+        material.coat_roughness = scalar(material, reader);
     else if (keyword == "Ps")
-        material.sheen = glm::vec3(scalar(reader, 1.0));
+        material.sheen = glm::vec3(scalar(material, reader));
     else if (keyword == "map_Pr")
         map(material.roughness_texture);
     else if (keyword == "map_Pm")
@@ -316,15 +396,20 @@ void MtlLibrary::read_value(Material& material, const TextReader& reader,
         return texture(std::span(words).subspan(1), reader, folder);
     };
     if (keyword == "Kd")
-        material.base_color = color(reader);
+        material.base_color = color(material, reader);
     else if (keyword == "Ks")
-        material.specular = color(reader);
+        material.specular = color(material, reader);
     else if (keyword == "Ke")
-        material.emission = color(reader, 1e6);
+        material.emission = color(material, reader, 1e6);
     else if (keyword == "Ns")
-        material.exponent = scalar(reader, 1e6);
+        material.exponent = scalar(material, reader, 1e6);
     else if (keyword == "d" || keyword == "Tr")
-        material.alpha = keyword == "d" ? scalar(reader, 1.0) : 1.0f - scalar(reader, 1.0);
+        read_alpha(material, reader);
+    else if (keyword == "Ka")
+        unsettled_[index_of(material.name)].ambient = color(material, reader, 1e6).r;
+    else if (keyword == "illum")
+        unsettled_[index_of(material.name)].illumination =
+            static_cast<int>(scalar(material, reader, 100.0));
     else if (keyword == "map_Kd")
         material.base_color_texture = map();
     else if (keyword == "map_Ks")
@@ -341,10 +426,84 @@ void MtlLibrary::read_value(Material& material, const TextReader& reader,
         note_unread(words);
 }
 
+/// Reads d, d -halo, whose part that depends on the eye is left out, or Tr.
+void MtlLibrary::read_alpha(const Material& material, const TextReader& reader) {
+    const std::span<const std::string_view> words = reader.words();
+    Unsettled& own = unsettled_[index_of(material.name)];
+    if (words.size() == 3 && words[1] == "-halo") {
+        note("d -halo");
+        own.d = static_cast<float>(clamped("material " + material.name, "d",
+                                           finite(reader, words[2]), 0.0, 1.0, warnings_));
+        return;
+    }
+    (words[0] == "d" ? own.d : own.transparency) = scalar(material, reader);
+}
+
+/// Tr is 1 - d, but some programs write d there. So where only Tr stands, MeshLab's is d, and that
+/// of a library is which has 1 and never 0: 1 - d would be invisible.
+void MtlLibrary::settle_alphas(Writer writer) {
+    bool has_zero = false, has_one = false;
+    for (const auto& [index, own] : unsettled_) {
+        has_zero = has_zero || (!own.d && own.transparency == 0.0f);
+        has_one = has_one || (!own.d && own.transparency == 1.0f);
+    }
+    const bool is_opacity = writer == Writer::MeshLab || (has_one && !has_zero);
+    if (is_opacity && has_one)
+        notes.emplace_back(writer == Writer::MeshLab
+                               ? "Tr 1 is opaque, as MeshLab writes it"
+                               : "Tr 1 is taken as opaque: as transparency it would be invisible");
+    std::vector<std::string> invisible;
+    for (const auto& [index, own] : unsettled_) {
+        const float of_tr =
+            own.transparency ? is_opacity ? *own.transparency : 1.0f - *own.transparency : 1.0f;
+        Material& material = materials[index];
+        material.alpha = own.d.value_or(of_tr);
+        if (material.alpha == 0.0f && material.alpha_texture)
+            material.alpha = 1.0f; // the map says something
+        if (material.alpha == 0.0f)
+            invisible.push_back(material.name);
+        if (material.alpha < 1.0f && material.alpha_mode == AlphaMode::Opaque)
+            material.alpha_mode = AlphaMode::Blend;
+    }
+    if (!invisible.empty())
+        warnings_.push_back(fmt::format("{} invisible, since d is 0 or Tr 1: {}",
+                                        invisible.size() == 1 ? "a material is" : "materials are",
+                                        files::joined(invisible, ", ")));
+}
+
+/// Blender's exporter writes the Specular of its Principled BSDF into Ks, its roughness into Ns,
+/// and metallic into Ka. MeshLab writes Ks 1 whatever it shows.
+void MtlLibrary::settle_highlights(Writer writer) {
+    std::size_t num_read = 0;
+    for (const auto& [index, own] : unsettled_) {
+        Material& material = materials[index];
+        if (writer == Writer::Other || material.model != MaterialModel::Phong)
+            continue;
+        const float specular = material.specular.r;
+        if (specular == 0.0f && !material.specular_texture)
+            continue;
+        ++num_read;
+        material.specular = glm::vec3(0.0f);
+        if (writer == Writer::MeshLab)
+            continue;
+        // Specular 0.5 is an F0 of 0.04.
+        const float mirror = writer == Writer::Blender ? 1000.0f : 900.0f;
+        material.model = MaterialModel::MetallicRoughness;
+        material.roughness = 1.0f - std::sqrt(std::min(material.exponent / mirror, 1.0f));
+        material.metallic =
+            own.illumination == 3 || own.illumination == 6 ? std::min(own.ambient, 1.0f) : 0.0f;
+        material.specular_tint = glm::vec3(2.0f * specular);
+        material.exponent = 0.0f;
+    }
+    if (num_read != 0)
+        notes.emplace_back(
+            writer == Writer::MeshLab
+                ? "Ks is left out: MeshLab writes it whatever it shows"
+                : "Ks and Ns are read as Specular and roughness, as Blender writes them");
+}
+
 /// Settles what statements mean together.
 void MtlLibrary::finish(Material& material) {
-    if (material.alpha < 1.0f && material.alpha_mode == AlphaMode::Opaque)
-        material.alpha_mode = AlphaMode::Blend;
     // A map says something beside a factor of 0, which many programs write, and beside none.
     if (material.emission_texture && material.emission == glm::vec3(0.0f))
         material.emission = glm::vec3(1.0f);
@@ -367,31 +526,34 @@ void MtlLibrary::finish(Material& material) {
 
 void MtlLibrary::parse(std::span<const std::byte> bytes, const std::string& name,
                        const std::filesystem::path& folder) {
+    const std::string comments = comments_of(as_text(bytes));
+    // Those before 3.3 do not name their version, and have another scale of Ns.
+    const Writer writer = comments.find("meshlab") != std::string::npos         ? Writer::MeshLab
+                          : comments.find("# blender mtl") != std::string::npos ? Writer::BlenderOld
+                          : comments.find("# blender") != std::string::npos     ? Writer::Blender
+                                                                                : Writer::Other;
     TextReader reader(as_text(bytes), '#');
-    constexpr std::uint32_t None = 0xffffffffu;
-    // Statements of no material, and those behind one that cannot be read, are skipped.
-    std::uint32_t current = None;
+    unsettled_.clear();
+    std::optional<std::uint32_t> current;
     while (reader.next_line()) {
         const std::vector<std::string_view>& words = reader.words();
         if (words[0] == "newmtl") {
             current = add(rest_of(std::span(words).subspan(1)));
             continue;
         }
-        if (current == None)
+        if (!current) // of no material
             continue;
         try {
-            read_value(materials[current], reader, folder);
+            read_value(materials[*current], reader, folder);
         } catch (const std::runtime_error& error) {
-            const std::string material = materials[current].name;
-            materials[current] = unreadable_material(material);
-            current = None;
-            warnings_.push_back(
-                fmt::format("the material {} is grey, since it cannot be read: {}: {}", material,
-                            name, error.what()));
+            warnings_.push_back(fmt::format("{} of the material {} is left out: {}: {}", words[0],
+                                            materials[*current].name, name, error.what()));
         }
     }
-    for (Material& material : materials)
-        finish(material);
+    settle_alphas(writer);
+    settle_highlights(writer);
+    for (const auto& [index, own] : unsettled_)
+        finish(materials[index]);
 }
 
 } // namespace relumine::mesh

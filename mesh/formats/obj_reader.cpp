@@ -1,5 +1,5 @@
-// Reads Wavefront OBJ: v (with colours), vt, vn, f, o, g, mtllib and usemtl. The rest of the format
-// (lines, curves) is skipped.
+// Reads Wavefront OBJ: v (with colours), vt, vn, f, o, g, s, mtllib and usemtl. The rest of the
+// format (lines, curves) is skipped.
 //
 // The project has its own reader, because no library in Debian reads OBJ without silent changes:
 // - OpenMesh drops vertices with an unreadable or non-finite number, so later indices mean other
@@ -10,6 +10,8 @@
 // - CGAL refuses lines and points, misreads tabs, and does not know continued lines.
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -19,8 +21,10 @@
 #include <glm/geometric.hpp>
 
 #include "files/joined.h"
+#include "mesh/formats/corner_vertices.h"
 #include "mesh/formats/mtl_reader.h"
 #include "mesh/formats/polygon_soup.h"
+#include "mesh/formats/soup_colors.h"
 #include "mesh/text_reader.h"
 
 namespace relumine::mesh {
@@ -53,7 +57,10 @@ private:
     [[nodiscard]] std::uint32_t index(std::string_view word, std::size_t count) const;
     [[nodiscard]] Corner corner(std::string_view word) const;
     void check_indices();
-    void sum_normals();
+    [[nodiscard]] bool sum_normals();
+    void gather_normals();
+    void read_smoothing();
+    void gather_smoothing();
     void gather_uvs();
     void gather_corner_uvs();
     void gather_materials();
@@ -66,6 +73,8 @@ private:
     std::map<std::string, std::uint32_t> material_indices_, group_indices_;
     /// Material and group of the next faces.
     std::uint32_t material_ = NoIndex, group_ = NoIndex;
+    /// Smoothing group of the next faces. The groups of faces are gathered at each change.
+    std::uint32_t smoothing_ = 1;
     std::vector<std::string_view> words_;
     PolygonSoup soup_;
     std::vector<glm::vec2> uvs_;
@@ -97,8 +106,10 @@ void ObjReader::read_vertex() {
     std::array<float, 7> values{};
     for (std::size_t i = 0; i < num_values; ++i)
         values[i] = static_cast<float>(reader_.number(words_[i + 1]));
-    if (num_values >= 6 && soup_.colors.size() == soup_.positions.size())
+    if (num_values >= 6) {
+        soup_.colors.resize(soup_.positions.size(), no_color());
         soup_.colors.emplace_back(values[3], values[4], values[5]);
+    }
     soup_.positions.emplace_back(values[0], values[1], values[2]);
 }
 
@@ -191,17 +202,59 @@ void ObjReader::check_indices() {
     }
 }
 
-/// A vertex gets the sum of its corners' normals. If a corner has no normal, no vertex gets one.
-void ObjReader::sum_normals() {
-    std::vector<glm::vec3> sums(soup_.positions.size(), glm::vec3(0.0f));
+/// Reads the smoothing group of the next faces: a number, or off. The faces before the first such
+/// statement are smooth.
+void ObjReader::read_smoothing() {
+    soup_.face_smoothing.resize(soup_.face_ends.size(), smoothing_);
+    const std::string_view word = words_.size() > 1 ? words_[1] : "on";
+    if (word == "off")
+        smoothing_ = 0;
+    else if (std::from_chars(word.data(), word.data() + word.size(), smoothing_).ec != std::errc())
+        smoothing_ = 1;
+}
+
+/// A vertex whose corners have normals that are alike gets their sum. A corner without a normal
+/// takes what the others of its vertex have. Returns false if those of some vertex differ.
+bool ObjReader::sum_normals() {
+    std::vector<glm::vec3> sums(soup_.positions.size(), glm::vec3(0.0f)), first = sums;
     for (const Corner& corner : corners_) {
-        if (corner.normal == NoIndex)
-            return;
-        const glm::vec3 normal = normals_[corner.normal];
+        const glm::vec3 normal =
+            corner.normal == NoIndex ? glm::vec3(0.0f) : normals_[corner.normal];
         const float length = glm::length(normal);
-        sums[corner.position] += length > 0.0f ? normal / length : normal;
+        if (!(length > 0.0f))
+            continue;
+        glm::vec3& of_vertex = first[corner.position];
+        if (of_vertex == glm::vec3(0.0f))
+            of_vertex = normal / length;
+        if (!are_alike(of_vertex, normal / length))
+            return false;
+        sums[corner.position] += normal / length;
     }
-    soup_.normals = std::move(sums);
+    const auto is_one = [](const glm::vec3& normal) {
+        return normal != glm::vec3(0.0f);
+    };
+    if (std::any_of(first.begin(), first.end(), is_one))
+        soup_.normals = std::move(sums);
+    return true;
+}
+
+void ObjReader::gather_normals() {
+    if (normals_.empty() || sum_normals())
+        return;
+    soup_.corner_normals.reserve(corners_.size());
+    for (const Corner& corner : corners_)
+        soup_.corner_normals.push_back(corner.normal == NoIndex ? glm::vec3(0.0f)
+                                                                : normals_[corner.normal]);
+}
+
+/// One group for all is none.
+void ObjReader::gather_smoothing() {
+    std::vector<std::uint32_t>& groups = soup_.face_smoothing;
+    groups.resize(soup_.face_ends.size(), smoothing_);
+    if (groups.empty() ||
+        (groups.front() != 0 &&
+         std::adjacent_find(groups.begin(), groups.end(), std::not_equal_to<>()) == groups.end()))
+        groups.clear();
 }
 
 /// The mesh has uvs if every corner has a texture coordinate and the corners of each vertex agree.
@@ -253,6 +306,7 @@ void ObjReader::gather_materials() {
         soup_.textures = std::move(library_.textures);
     }
     soup_.missing = std::move(library_.missing);
+    soup_.notes = std::move(library_.notes);
     for (std::string& warning : library_.take_warnings())
         soup_.warnings.push_back(std::move(warning));
     if (soup_.groups.empty()) {
@@ -283,6 +337,8 @@ PolygonSoup ObjReader::read() {
             read_face();
         else if (keyword == "o" || keyword == "g")
             begin_group();
+        else if (keyword == "s")
+            read_smoothing();
         else if (keyword == "mtllib")
             read_libraries();
         else if (keyword == "usemtl") {
@@ -294,13 +350,17 @@ PolygonSoup ObjReader::read() {
         }
     }
     check_indices();
-    sum_normals();
+    gather_normals();
+    gather_smoothing();
     gather_uvs();
     gather_corner_uvs();
     gather_materials();
-    if (soup_.colors.size() != soup_.positions.size())
-        soup_.colors.clear();
-    normalize_text_colors(soup_.colors);
+    if (!soup_.colors.empty())
+        soup_.colors.resize(soup_.positions.size(), no_color());
+    // MeshLab, Blender and three.js read and write them so.
+    soup_.color_custom = {.curve = ColorCurve::Srgb,
+                          .may_be_whole = true,
+                          .reason = "as other programs write them into .obj"};
     return std::move(soup_);
 }
 

@@ -1,6 +1,10 @@
 #include "mesh/formats/obj_writer.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
+
+#include "mesh/materials/srgb.h"
 
 namespace relumine::mesh {
 
@@ -12,8 +16,9 @@ std::string obj(const TriangleMesh& mesh, const std::string& library) {
     for (std::size_t i = 0; i < mesh.num_vertices(); ++i) {
         const glm::vec3& p = mesh.positions[i];
         text += fmt::format("v {} {} {}", p.x, p.y, p.z);
-        if (!mesh.colors.empty())
-            text += fmt::format(" {} {} {}", mesh.colors[i].r, mesh.colors[i].g, mesh.colors[i].b);
+        if (!mesh.colors.empty()) // other programs have them as sRGB
+            for (int k = 0; k < 3; ++k)
+                text += fmt::format(" {}", srgb_of_linear(std::max(mesh.colors[i][k], 0.0f)));
         text += '\n';
     }
     for (const glm::vec3& n : mesh.normals)

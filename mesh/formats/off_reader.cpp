@@ -1,6 +1,7 @@
 // Reads the Object File Format (Geomview): [ST][C][N]OFF, ASCII, with one vertex or one face per
-// line, or binary. Comments may stand anywhere in ASCII. Faces may end in up to four colour values,
-// which are skipped. Colours of vertices have three or four values, in binary files four.
+// line, or binary. Comments may stand anywhere in ASCII. Faces may end in a colour of three or four
+// values, whole ones of 0 to 255 or fractions, or in the index of a colour map, which is skipped.
+// Colours of vertices have three or four values, in binary files four.
 //
 // The project has its own reader for these reasons:
 // - OpenMesh refuses comments, misreads polygons followed by colours and counts on the keyword's
@@ -10,12 +11,15 @@
 //   Boost and GMP for little more than the hundred lines below, which share their text reader with
 //   the other formats.
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "mesh/formats/polygon_soup.h"
+#include "mesh/formats/soup_colors.h"
 #include "mesh/text_reader.h"
 
 namespace relumine::mesh {
@@ -56,6 +60,55 @@ std::optional<Layout> take_keyword(std::string_view& word) {
     return layout;
 }
 
+/// Colours of faces while they are read: fractions, and whole numbers, which may be bytes.
+class FaceColors {
+public:
+    void add_fraction(const glm::vec3& color) { add(color, false); }
+    void add_whole(const glm::vec3& color) { add(color, true); }
+    void add_index() {
+        ++num_indices_;
+        add(no_color(), false);
+    }
+    void add_none() { add(no_color(), false); }
+    /// Gives them to a soup.
+    void move_to(PolygonSoup& soup);
+
+private:
+    void add(const glm::vec3& color, bool is_whole) {
+        colors_.push_back(color);
+        is_whole_.push_back(is_whole);
+    }
+
+    std::vector<glm::vec3> colors_;
+    std::vector<bool> is_whole_;
+    std::size_t num_indices_ = 0;
+};
+
+void FaceColors::move_to(PolygonSoup& soup) {
+    std::vector<glm::vec3> whole;
+    for (std::size_t i = 0; i < colors_.size(); ++i)
+        if (is_whole_[i])
+            whole.push_back(colors_[i]);
+    scale_to_one(whole);
+    auto next = whole.begin();
+    for (std::size_t i = 0; i < colors_.size(); ++i)
+        if (is_whole_[i])
+            colors_[i] = *next++;
+    if (num_indices_ != 0)
+        soup.warnings.push_back(
+            fmt::format("{} of {} faces have an index of a colour map, which is not read",
+                        num_indices_, colors_.size()));
+    const auto is_a_color = [](const glm::vec3& color) {
+        return !std::isnan(color.r);
+    };
+    if (std::any_of(colors_.begin(), colors_.end(), is_a_color))
+        soup.face_colors = std::move(colors_);
+    // MeshLab writes bytes of a screen.
+    soup.color_custom = {.curve = ColorCurve::Srgb,
+                         .may_be_whole = true,
+                         .reason = "as other programs write them into .off"};
+}
+
 class OffReader {
 public:
     explicit OffReader(std::string_view text) : reader_(text, '#'), num_bytes_(text.size()) {}
@@ -66,11 +119,13 @@ private:
     Counts read_counts();
     void read_vertex();
     void read_face(std::size_t num_vertices);
+    void read_face_color(std::span<const std::string_view> words);
 
     TextReader reader_;
     std::size_t num_bytes_;
     Layout layout_;
     PolygonSoup soup_;
+    FaceColors face_colors_;
 };
 
 /// Reads the optional keyword into the layout. Returns the words behind it on its line.
@@ -150,9 +205,26 @@ void OffReader::read_face(std::size_t num_vertices) {
                          excerpt(words[i]));
         soup_.corners.push_back(static_cast<std::uint32_t>(index));
     }
-    for (std::size_t i = static_cast<std::size_t>(num_corners) + 1; i < words.size(); ++i)
-        static_cast<void>(reader_.number(words[i]));
+    read_face_color(std::span(words).subspan(static_cast<std::size_t>(num_corners) + 1));
     soup_.end_face();
+}
+
+void OffReader::read_face_color(std::span<const std::string_view> words) {
+    std::array<float, 4> values{};
+    bool is_whole = true;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        values[i] = static_cast<float>(reader_.number(words[i]));
+        is_whole = is_whole && words[i].find_first_of(".eEnN") == std::string_view::npos;
+    }
+    const glm::vec3 color(values[0], values[1], values[2]);
+    if (words.size() == 1)
+        face_colors_.add_index();
+    else if (words.size() < 3)
+        face_colors_.add_none();
+    else if (is_whole)
+        face_colors_.add_whole(color);
+    else
+        face_colors_.add_fraction(color);
 }
 
 PolygonSoup OffReader::read() {
@@ -166,7 +238,7 @@ PolygonSoup OffReader::read() {
         reader_.fail(
             fmt::format("nothing after {} vertices and {} faces", counts.vertices, counts.faces),
             excerpt(reader_.words()[0]));
-    normalize_text_colors(soup_.colors);
+    face_colors_.move_to(soup_);
     return std::move(soup_);
 }
 
@@ -217,6 +289,7 @@ PolygonSoup BinaryOff::read(const Layout& layout) {
     const std::uint32_t num_faces = number("a number of faces", num_words / 2 + 1);
     static_cast<void>(word()); // edges
     PolygonSoup soup;
+    FaceColors face_colors;
     soup.positions.reserve(num_vertices);
     for (std::uint32_t i = 0; i < num_vertices; ++i) {
         soup.positions.push_back(vector());
@@ -236,10 +309,18 @@ PolygonSoup BinaryOff::read(const Layout& layout) {
         for (std::uint32_t corner = 0; corner < num_corners; ++corner)
             soup.corners.push_back(number("vertex indices", num_vertices));
         const std::uint32_t num_colors = number("a number of colour values", 5);
+        std::array<float, 4> color{};
         for (std::uint32_t j = 0; j < num_colors; ++j)
-            static_cast<void>(word());
+            color[j] = real();
+        if (num_colors == 1)
+            face_colors.add_index();
+        else if (num_colors < 3)
+            face_colors.add_none();
+        else
+            face_colors.add_fraction({color[0], color[1], color[2]});
         soup.end_face();
     }
+    face_colors.move_to(soup);
     if (!rest_.empty())
         throw std::runtime_error(fmt::format("expected nothing after {} vertices and {} faces, got "
                                              "{} bytes",

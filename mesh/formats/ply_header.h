@@ -31,6 +31,8 @@ struct Element {
 struct Header {
     std::string_view format;
     std::vector<Element> elements;
+    /// A comment says that save() wrote the file.
+    bool is_ours = false;
     /// Number of lines that the format does not have, which are skipped, and the first one's word.
     std::size_t num_unknown = 0;
     std::string_view unknown = {};

@@ -1,7 +1,7 @@
 // Reads the Polygon File Format (Greg Turk's PLY 1.0): ASCII and binary of both byte orders, with
-// any number type for any property and elements in any order. Faces are polygons or strips of
-// triangles ("tristrips", as trimesh2 writes them). Further elements, properties and lists are
-// skipped.
+// any number type for any property and elements in any order. Faces are polygons, with colours and
+// uvs of their corners ("texcoord", as MeshLab writes them), or strips of triangles ("tristrips",
+// as trimesh2 writes them). Further elements, properties and lists are skipped.
 //
 // The project has its own reader, because no library in Debian reads all valid files and refuses
 // all others:
@@ -20,6 +20,7 @@
 
 #include "mesh/formats/ply_header.h"
 #include "mesh/formats/polygon_soup.h"
+#include "mesh/formats/soup_colors.h"
 #include "mesh/text_reader.h"
 
 namespace relumine::mesh {
@@ -163,13 +164,28 @@ std::size_t slot_of(const Property& property) {
     return NumSlots;
 }
 
-/// Bytes and shorts are fractions of their largest value. Other types are the colour itself.
+/// Bytes and shorts are fractions of their largest value. Other types are the colour itself, or
+/// numbers of 0 to 255.
 double color_scale(Type type) {
     return type == Type::Uint8 ? 1.0 / 255.0 : type == Type::Uint16 ? 1.0 / 65535.0 : 1.0;
 }
 
+/// Says how programs write colours of this type. A file of ours says itself that its are linear.
+void set_color_custom(const Header& header, Type type, PolygonSoup& soup) {
+    if (header.is_ours)
+        return;
+    soup.color_custom.may_be_whole = color_scale(type) == 1.0;
+    if (ply_format::is_float(type)) {
+        soup.color_custom.reason = "since they are floats";
+        return;
+    }
+    soup.color_custom.curve = ColorCurve::Srgb;
+    soup.color_custom.reason = "as other programs write whole numbers into .ply";
+}
+
 template<class Values>
-void read_vertices(const Element& element, Values& values, PolygonSoup& soup) {
+void read_vertices(const Header& header, const Element& element, Values& values,
+                   PolygonSoup& soup) {
     std::vector<std::size_t> slots; // slot of each property; NumSlots: skipped
     std::array<bool, NumSlots + 1> has{};
     std::array<double, NumSlots + 1> scale;
@@ -179,8 +195,10 @@ void read_vertices(const Element& element, Values& values, PolygonSoup& soup) {
         const std::size_t slot = slot_of(property);
         slots.push_back(has[slot] ? NumSlots : slot);
         has[slot] = slot != NumSlots;
-        if (slots.back() >= Red && slots.back() <= Blue)
+        if (slots.back() >= Red && slots.back() <= Blue) {
             scale[slot] = color_scale(property.type);
+            set_color_custom(header, property.type, soup);
+        }
     }
     if (!has[X] || !has[Y] || !has[Z])
         throw std::runtime_error("expected vertices with the properties x, y and z, got others");
@@ -225,17 +243,18 @@ std::vector<Property>::const_iterator index_list(const Element& element) {
     return found;
 }
 
-/// Reads the elements' lists of vertex indices. Calls `add` with each index and `end` after each
-/// list. -1 is an index, too, where `least` is -1.
-template<class Values, class Add, class End>
+/// Reads the elements' lists of vertex indices. Calls `add` with each index, `other` with each
+/// other property, which it reads, and `end` after each element. -1 is an index, too, where `least`
+/// is -1.
+template<class Values, class Add, class Other, class End>
 void read_index_lists(const Element& element, std::uint64_t num_vertices, int least, Values& values,
-                      const Add& add, const End& end) {
+                      const Add& add, const Other& other, const End& end) {
     const auto indices = index_list(element);
     for (std::uint64_t i = 0; i < element.count; ++i) {
         for (auto property = element.properties.begin(); property != element.properties.end();
              ++property) {
             if (property != indices) {
-                skip(*property, values);
+                other(*property);
                 continue;
             }
             const std::uint32_t count = list_size(*property, values);
@@ -253,16 +272,71 @@ void read_index_lists(const Element& element, std::uint64_t num_vertices, int le
     }
 }
 
+/// Takes the uvs of a face's corners. Lists of another length than the face has corners are none.
+void add_wedges(const std::vector<float>& wedges, std::size_t num_corners, PolygonSoup& soup) {
+    for (std::size_t i = 0; i < num_corners; ++i)
+        soup.corner_uvs.push_back(wedges.size() == 2 * num_corners
+                                      ? glm::vec2(wedges[2 * i], wedges[2 * i + 1])
+                                      : glm::vec2(0.0f));
+}
+
 template<class Values>
-void read_faces(const Element& element, std::uint64_t num_vertices, Values& values,
-                PolygonSoup& soup) {
+void read_faces(const Header& header, const Element& element, std::uint64_t num_vertices,
+                Values& values, PolygonSoup& soup) {
     // Faces without properties take no bytes, however many there are.
     static_cast<void>(index_list(element));
     soup.face_ends.reserve(soup.face_ends.size() + element.count);
+    bool has_wedges = false;
+    std::array<bool, 3> has{};
+    for (const Property& property : element.properties) {
+        const std::size_t slot = slot_of(property);
+        if (slot >= Red && slot <= Blue) {
+            has[slot - Red] = true;
+            set_color_custom(header, property.type, soup);
+        }
+        has_wedges = has_wedges || (property.name == "texcoord" && property.size_type);
+    }
+    const bool has_colors = has[0] && has[1] && has[2];
+    // Strips may stand before.
+    if (has_colors)
+        soup.face_colors.resize(soup.face_ends.size(), no_color());
+    if (has_wedges)
+        soup.corner_uvs.resize(soup.corners.size(), glm::vec2(0.0f));
+    glm::vec3 color(0.0f);
+    std::vector<float> wedges;
+    std::size_t begin = soup.corners.size(), num_odd = 0;
+    const auto other = [&](const Property& property) {
+        const std::size_t slot = slot_of(property);
+        if (property.name == "texcoord" && property.size_type) {
+            wedges.resize(0);
+            for (std::uint32_t i = list_size(property, values); i > 0; --i)
+                wedges.push_back(static_cast<float>(values.next(property.type)));
+        } else if (slot >= Red && slot <= Blue) {
+            color[static_cast<int>(slot - Red)] =
+                static_cast<float>(values.next(property.type) * color_scale(property.type));
+        } else {
+            skip(property, values);
+        }
+    };
+    const auto end = [&] {
+        const std::size_t num_corners = soup.corners.size() - begin;
+        soup.end_face();
+        if (has_colors)
+            soup.face_colors.push_back(color);
+        if (has_wedges) {
+            add_wedges(wedges, num_corners, soup);
+            num_odd += wedges.size() == 2 * num_corners ? 0 : 1;
+        }
+        begin = soup.corners.size();
+    };
     read_index_lists(
         element, num_vertices, 0, values,
         [&](std::int64_t index) { soup.corners.push_back(static_cast<std::uint32_t>(index)); },
-        [&] { soup.end_face(); });
+        other, end);
+    if (num_odd != 0)
+        soup.warnings.push_back(
+            fmt::format("{} of {} faces have no uvs of their corners, or not two numbers for each",
+                        num_odd, element.count));
 }
 
 /// Reads lists of strips. -1 ends a strip. Every second triangle of a strip is turned.
@@ -285,7 +359,9 @@ void read_strips(const Element& element, std::uint64_t num_vertices, Values& val
         last = {last[1], vertex};
         ++length;
     };
-    read_index_lists(element, num_vertices, -1, values, add, [&] { length = 0; });
+    read_index_lists(
+        element, num_vertices, -1, values, add,
+        [&](const Property& property) { skip(property, values); }, [&] { length = 0; });
 }
 
 template<class Values>
@@ -301,15 +377,22 @@ PolygonSoup read_body(const Header& header, Values values) {
     PolygonSoup soup;
     for (const Element& element : header.elements) {
         if (element.name == "vertex" && element.count > 0)
-            read_vertices(element, values, soup);
+            read_vertices(header, element, values, soup);
         else if (element.name == "face" && element.count > 0)
-            read_faces(element, num_vertices, values, soup);
+            read_faces(header, element, num_vertices, values, soup);
         else if (element.name == "tristrips" && element.count > 0)
             read_strips(element, num_vertices, values, soup);
         else
             skip(element, values);
     }
     values.expect_end();
+    if (!soup.face_colors.empty()) {
+        if (!soup.colors.empty())
+            soup.notes.emplace_back("vertices and faces have colours: those of faces are taken");
+        soup.face_colors.resize(soup.face_ends.size(), no_color());
+    }
+    if (!soup.corner_uvs.empty())
+        soup.corner_uvs.resize(soup.corners.size(), glm::vec2(0.0f));
     return soup;
 }
 

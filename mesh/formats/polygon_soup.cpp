@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "mesh/formats/corner_vertices.h"
+#include "mesh/formats/soup_colors.h"
 #include "mesh/formats/triangulate.h"
 #include "mesh/normals.h"
 #include "mesh/tangents.h"
@@ -33,9 +35,15 @@ void check(const PolygonSoup& soup) {
         if (vertex >= num_vertices)
             throw std::runtime_error(
                 fmt::format("expected vertex indices below {}, got {}", num_vertices, vertex));
+    // A corner may become a vertex.
+    constexpr std::uint64_t Most = 0xfffffffe;
+    if (num_vertices + soup.corners.size() > Most)
+        throw std::runtime_error(fmt::format("expected at most {} vertices and corners, got {}",
+                                             Most, num_vertices + soup.corners.size()));
 }
 
-/// Cuts the faces. A triangle keeps the uvs of its corners, and the material and group of its face.
+/// Cuts the faces into triangles of places in soup.corners. A triangle keeps the uvs of its
+/// corners, and the material and group of its face.
 void triangulate(const PolygonSoup& soup, TriangleMesh& mesh) {
     mesh.triangles.reserve(soup.face_ends.size());
     Triangulator triangulator(soup.positions);
@@ -49,8 +57,9 @@ void triangulate(const PolygonSoup& soup, TriangleMesh& mesh) {
         else
             triangulator.cut(std::span(soup.corners).subspan(begin, end - begin), cut);
         for (const auto& [a, b, c] : cut) {
-            mesh.triangles.push_back(
-                {soup.corners[begin + a], soup.corners[begin + b], soup.corners[begin + c]});
+            mesh.triangles.push_back({static_cast<std::uint32_t>(begin + a),
+                                      static_cast<std::uint32_t>(begin + b),
+                                      static_cast<std::uint32_t>(begin + c)});
             if (!soup.corner_uvs.empty())
                 mesh.corner_uvs.push_back({soup.corner_uvs[begin + a], soup.corner_uvs[begin + b],
                                            soup.corner_uvs[begin + c]});
@@ -95,30 +104,34 @@ void enlarge(PolygonSoup& soup) {
         size, exponent));
 }
 
-/// Makes the normals unit length. Returns false if a vertex of some face has no usable normal.
-bool normalize_normals(TriangleMesh& mesh) {
-    std::vector<bool> is_used(mesh.num_vertices(), false);
-    for (const Triangle& triangle : mesh.triangles)
-        for (const std::uint32_t vertex : triangle)
-            is_used[vertex] = true;
-    for (std::size_t i = 0; i < mesh.num_vertices(); ++i) {
-        const glm::dvec3 normal(mesh.normals[i]);
-        const double length = is_finite(mesh.normals[i]) ? glm::length(normal) : 0.0;
-        if (length == 0.0 && is_used[i])
-            return false;
-        mesh.normals[i] = length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0f);
+/// Makes the normals unit length. One that has no direction is that of no face: zero.
+void normalize_normals(TriangleMesh& mesh) {
+    for (glm::vec3& one : mesh.normals) {
+        const glm::dvec3 normal(one);
+        const double length = is_finite(one) ? glm::length(normal) : 0.0;
+        one = length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0f);
     }
-    return true;
 }
 
 } // namespace
 
-TriangleMesh to_mesh(PolygonSoup soup, NormalSource source) {
+TriangleMesh to_mesh(PolygonSoup soup, NormalSource source, std::optional<ColorCurve> curve) {
     check(soup);
     enlarge(soup);
+    settle_colors(soup, curve);
     TriangleMesh mesh;
     mesh.warnings = std::move(soup.warnings);
     triangulate(soup, mesh);
+    const std::size_t num_of_file = soup.positions.size();
+    const std::size_t num_added = set_corner_vertices(soup, mesh.triangles, source);
+    if (num_added != 0)
+        soup.notes.push_back(fmt::format(
+            "{} {} added behind the {} of the file, where normals or colours of faces differ",
+            num_added, num_added == 1 ? "vertex is" : "vertices are", num_of_file));
+    for (Triangle& triangle : mesh.triangles)
+        for (std::uint32_t& corner : triangle)
+            corner = soup.corners[corner];
+    mesh.notes = std::move(soup.notes);
     mesh.positions = std::move(soup.positions);
     mesh.normals = std::move(soup.normals);
     mesh.colors = std::move(soup.colors);
@@ -129,10 +142,11 @@ TriangleMesh to_mesh(PolygonSoup soup, NormalSource source) {
     mesh.textures = std::move(soup.textures);
     mesh.missing = std::move(soup.missing);
     mesh.lights = std::move(soup.lights);
-    if (source == NormalSource::Smooth || mesh.normals.empty() || !normalize_normals(mesh))
+    const bool is_smooth = source == NormalSource::Smooth && soup.face_colors.empty();
+    if (is_smooth || mesh.normals.empty())
         mesh.normals = smooth_normals(mesh);
-    if (!std::all_of(mesh.colors.begin(), mesh.colors.end(), is_finite))
-        mesh.colors.clear();
+    else
+        normalize_normals(mesh);
     const auto is_finite_uv = [](const glm::vec2& uv) {
         return is_finite({uv, 0.0f});
     };

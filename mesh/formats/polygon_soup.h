@@ -18,8 +18,18 @@
 #include "mesh/normals.h"
 #include "mesh/pose.h"
 #include "mesh/triangle_mesh.h"
+#include "mesh/vertex_colors.h"
 
 namespace relumine::mesh {
+
+/// What colours of vertices and faces are by the custom of a format.
+struct ColorCustom {
+    ColorCurve curve = ColorCurve::Linear;
+    /// Numbers of 0 to 255, or to 65535, occur beside those of 0 to 1.
+    bool may_be_whole = false;
+    /// Why the curve is this one, where other programs may take another: "as ..."
+    std::string reason = {};
+};
 
 /// Vertices and faces as they stand in a file, not checked.
 struct PolygonSoup {
@@ -31,7 +41,7 @@ struct PolygonSoup {
     std::vector<std::size_t> face_ends;
     /// [num_vertices] of any length, or empty.
     std::vector<glm::vec3> normals;
-    /// [num_vertices], or empty.
+    /// [num_vertices] as `color_custom` says, or empty.
     std::vector<glm::vec3> colors;
     /// [num_vertices], or empty.
     std::vector<glm::vec2> uvs;
@@ -41,7 +51,16 @@ struct PolygonSoup {
     std::vector<glm::vec4> tangents;
     /// Parallel to `corners`, or empty.
     std::vector<glm::vec2> corner_uvs;
+    /// Parallel to `corners`, of any length, or empty. Zero: the corner has none, and takes that of
+    /// its vertex.
+    std::vector<glm::vec3> corner_normals;
 
+    /// [num_faces], or empty: all are in one group. What has no normals is smooth between the faces
+    /// of one group; those of group 0 are flat.
+    std::vector<std::uint32_t> face_smoothing;
+    /// [num_faces] as `color_custom` says, or empty. They count in place of `colors`.
+    std::vector<glm::vec3> face_colors;
+    ColorCustom color_custom = {};
     /// [num_faces] indices into materials, or empty.
     std::vector<std::uint32_t> face_materials;
     /// [num_faces] indices into groups, or empty.
@@ -51,16 +70,19 @@ struct PolygonSoup {
     std::vector<Texture> textures;
     std::vector<PunctualLight> lights;
     std::optional<Camera> camera = {};
-    /// Files that do not exist, and what the soup does not hold (TriangleMesh::missing, warnings).
-    std::vector<std::string> missing, warnings;
+    /// Files that do not exist, what the soup does not hold, and how it was read
+    /// (TriangleMesh::missing, warnings, notes).
+    std::vector<std::string> missing, warnings, notes;
 
     /// Closes the face whose corners were appended to `corners` since the last call.
     void end_face() { face_ends.push_back(corners.size()); }
 };
 
-/// Checks the soup, cuts its polygons into triangles and completes the normals, as load() promises.
+/// Checks the soup, cuts its polygons into triangles, completes the normals and makes the colours
+/// linear, as load() promises. `curve` counts in place of the custom for colours.
 /// Throws:  std::runtime_error "expected X, got Y".
-[[nodiscard]] TriangleMesh to_mesh(PolygonSoup soup, NormalSource source);
+[[nodiscard]] TriangleMesh to_mesh(PolygonSoup soup, NormalSource source,
+                                   std::optional<ColorCurve> curve = {});
 
 /// The readers, one per format. They take a whole file's bytes, never read outside them, and
 /// allocate no more than a small multiple of their size. Other files that a file names are looked

@@ -221,6 +221,7 @@ void copy_lists(const TriangleMesh& from, TriangleMesh& to) {
     to.lights = from.lights;
     to.missing = from.missing;
     to.warnings = from.warnings;
+    to.notes = from.notes;
 }
 
 } // namespace

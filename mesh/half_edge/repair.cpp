@@ -204,14 +204,10 @@ private:
         const Winding winding = find_winding(mesh_);
         for (std::size_t i = 0; i < mesh_.num_triangles(); ++i)
             if (winding.is_wrong[i]) {
-                std::swap(mesh_.triangles[i][1], mesh_.triangles[i][2]);
-                if (!mesh_.corner_uvs.empty())
-                    std::swap(mesh_.corner_uvs[i][1], mesh_.corner_uvs[i][2]);
-                if (!mesh_.corner_tangents.empty()) {
-                    std::swap(mesh_.corner_tangents[i][1], mesh_.corner_tangents[i][2]);
+                turn_triangle(mesh_, static_cast<std::uint32_t>(i));
+                if (!mesh_.corner_tangents.empty())
                     for (glm::vec4& tangent : mesh_.corner_tangents[i])
                         tangent.w = -tangent.w;
-                }
                 touch(mesh_.triangles[i]);
             }
         return winding.num_wrong;

@@ -2,7 +2,11 @@
 
 #include <array>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
 
+#include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -61,6 +65,15 @@ struct Patch {
     double volume = 0.0;
     double area = 0.0, turned_area = 0.0;
     Bounds box;
+    /// Closed patches around it.
+    std::vector<const Patch*> holders = {};
+    /// Whether it has to face outwards. Empty: it may do either.
+    std::optional<bool> outwards = {};
+
+    /// Whether most of it faces outwards, as it is wound in the file.
+    [[nodiscard]] bool faces_outwards() const {
+        return (volume > 0.0) != (2.0 * turned_area > area);
+    }
 };
 
 bool contains(const Bounds& outer, const Bounds& inner) {
@@ -144,30 +157,64 @@ void measure(const TriangleMesh& mesh, const std::vector<bool>& is_turned, Patch
                       std::abs(patch.volume) > LeastVolume * std::pow(patch.area, 1.5);
 }
 
+/// Decides which way closed patches have to face.
+void set_sides(const TriangleMesh& mesh, std::vector<Patch>& patches) {
+    for (Patch& patch : patches) {
+        if (!patch.is_closed)
+            continue;
+        const glm::dvec3 point(mesh.positions[mesh.triangles[patch.triangles.front()][0]]);
+        for (const Patch& other : patches)
+            if (&other != &patch && other.is_closed && contains(other.box, patch.box) &&
+                num_crossings(mesh, other, point) % 2 == 1)
+                patch.holders.push_back(&other);
+    }
+    // Closed patches in no other, or in one, by the outermost: the area that faces outwards within
+    // it, less that which faces inwards.
+    std::map<const Patch*, double> outward_inside;
+    for (const Patch& patch : patches)
+        if (patch.holders.size() == 1)
+            outward_inside[patch.holders.front()] +=
+                patch.faces_outwards() ? patch.area : -patch.area;
+    const auto is_room = [&](const Patch& patch) {
+        const auto found = outward_inside.find(&patch);
+        return !patch.faces_outwards() && found != outward_inside.end() && found->second > 0.0;
+    };
+    for (Patch& patch : patches)
+        if (patch.is_closed && patch.holders.empty())
+            patch.outwards = !is_room(patch);
+        else if (patch.holders.size() == 1 && is_room(*patch.holders.front()))
+            patch.outwards = true;
+}
+
+/// Finds the patches, and marks the triangles that are wound the wrong way round.
+std::vector<Patch> settled_patches(const TriangleMesh& mesh, std::span<const EdgeUse> uses,
+                                   std::vector<bool>& is_wrong) {
+    is_wrong.assign(mesh.num_triangles(), false);
+    std::vector<Patch> patches = patches_of(mesh, uses, is_wrong);
+    for (Patch& patch : patches)
+        measure(mesh, is_wrong, patch);
+    set_sides(mesh, patches);
+    for (const Patch& patch : patches) {
+        const bool turns = patch.outwards ? (patch.volume < 0.0) == *patch.outwards
+                                          : 2.0 * patch.turned_area > patch.area;
+        if (turns)
+            for (const std::uint32_t i : patch.triangles)
+                is_wrong[i] = !is_wrong[i];
+    }
+    return patches;
+}
+
+/// The triangles of vertices that are one where their positions are.
+std::vector<Triangle> welded_triangles(const TriangleMesh& mesh) {
+    return renamed(mesh.triangles, first_at_place(mesh.positions));
+}
+
 } // namespace
 
 Winding find_winding(const TriangleMesh& mesh) {
-    const std::vector<Triangle> welded = renamed(mesh.triangles, first_at_place(mesh.positions));
-    const std::vector<EdgeUse> uses = edge_uses(welded);
+    const std::vector<EdgeUse> uses = edge_uses(welded_triangles(mesh));
     Winding result;
-    result.is_wrong.resize(mesh.num_triangles());
-    std::vector<Patch> patches = patches_of(mesh, uses, result.is_wrong);
-    for (Patch& patch : patches)
-        measure(mesh, result.is_wrong, patch);
-    for (const Patch& patch : patches) {
-        bool turns = 2.0 * patch.turned_area > patch.area;
-        if (patch.is_closed) {
-            std::size_t depth = 0;
-            const glm::dvec3 point(mesh.positions[mesh.triangles[patch.triangles.front()][0]]);
-            for (const Patch& other : patches)
-                if (&other != &patch && other.is_closed && contains(other.box, patch.box))
-                    depth += num_crossings(mesh, other, point) % 2;
-            turns = (patch.volume < 0.0) != (depth % 2 == 1);
-        }
-        if (turns)
-            for (const std::uint32_t i : patch.triangles)
-                result.is_wrong[i] = !result.is_wrong[i];
-    }
+    static_cast<void>(settled_patches(mesh, uses, result.is_wrong));
     for (std::uint32_t i = static_cast<std::uint32_t>(result.is_wrong.size()); i-- > 0;)
         if (result.is_wrong[i]) {
             ++result.num_wrong;
@@ -188,6 +235,64 @@ bool faces_with_normals(const TriangleMesh& mesh, std::uint32_t triangle) {
     for (const std::uint32_t vertex : corners)
         sum += glm::dvec3(mesh.normals[vertex]);
     return glm::dot(sum, area_normal(mesh.positions, corners)) >= 0.0;
+}
+
+void turn_triangle(TriangleMesh& mesh, std::uint32_t triangle) {
+    std::swap(mesh.triangles[triangle][1], mesh.triangles[triangle][2]);
+    if (!mesh.corner_uvs.empty())
+        std::swap(mesh.corner_uvs[triangle][1], mesh.corner_uvs[triangle][2]);
+    if (!mesh.corner_tangents.empty())
+        std::swap(mesh.corner_tangents[triangle][1], mesh.corner_tangents[triangle][2]);
+}
+
+void settle_normals(TriangleMesh& mesh) {
+    std::vector<bool> is_against(mesh.num_triangles());
+    bool is_any = false;
+    for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i) {
+        is_against[i] = !faces_with_normals(mesh, i);
+        is_any = is_any || is_against[i];
+    }
+    if (!is_any)
+        return;
+    std::vector<bool> is_wrong, turns(mesh.num_vertices());
+    std::size_t num_triangles = 0, num_normals = 0;
+    for (const Patch& patch : settled_patches(mesh, edge_uses(welded_triangles(mesh)), is_wrong)) {
+        double against = 0.0, wrong = 0.0;
+        for (const std::uint32_t i : patch.triangles) {
+            const double area = glm::length(area_normal(mesh.positions, mesh.triangles[i]));
+            against += is_against[i] ? area : 0.0;
+            wrong += is_wrong[i] ? area : 0.0;
+        }
+        if (!(2.0 * against > patch.area))
+            continue;
+        const bool is_winding_wrong = !patch.outwards || 2.0 * wrong > patch.area;
+        for (const std::uint32_t i : patch.triangles) {
+            if (is_winding_wrong && is_against[i]) {
+                turn_triangle(mesh, i);
+                ++num_triangles;
+            }
+            if (!is_winding_wrong)
+                for (const std::uint32_t vertex : mesh.triangles[i])
+                    turns[vertex] = true;
+            if (!is_winding_wrong && !mesh.corner_tangents.empty())
+                for (glm::vec4& tangent : mesh.corner_tangents[i])
+                    tangent.w = -tangent.w; // v grows as before
+        }
+    }
+    for (std::size_t vertex = 0; vertex < turns.size(); ++vertex)
+        if (turns[vertex]) {
+            mesh.normals[vertex] = -mesh.normals[vertex];
+            ++num_normals;
+        }
+    if (num_normals != 0)
+        mesh.warnings.push_back(
+            fmt::format("{} of {} normals look into the mesh, against the winding of its "
+                        "triangles: they are turned around",
+                        num_normals, mesh.num_vertices()));
+    if (num_triangles != 0)
+        mesh.warnings.push_back(fmt::format("{} of {} triangles are wound against their normals: "
+                                            "they are turned around",
+                                            num_triangles, mesh.num_triangles()));
 }
 
 } // namespace relumine::mesh

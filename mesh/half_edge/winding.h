@@ -23,9 +23,10 @@ struct Winding {
 /// Finds the triangles that are wound the wrong way round.
 ///
 /// Triangles that share an edge with one another alone form a patch, in which one winding decides
-/// all others. A patch that is closed, or nearly so, faces outwards; inside an odd number of other
-/// closed patches it faces inwards, as the inner wall of a bottle does. An open patch keeps the
-/// winding that most of its area has.
+/// all others. A patch that is closed, or nearly so, faces outwards, unless it is a room: it faces
+/// inwards as a whole, and closed patches inside of it face outwards. Patches just inside of a room
+/// face outwards. All others, inside of closed ones or open, keep the winding that most of their
+/// area has: they may be the inner wall of a bottle, or a ball in a case.
 ///
 /// Vertices at equal positions count as one.
 ///
@@ -35,5 +36,15 @@ struct Winding {
 /// Whether the normals of a triangle's vertices stand on the side from which its corners run
 /// counter-clockwise, or at least not all of them on the other.
 [[nodiscard]] bool faces_with_normals(const TriangleMesh& mesh, std::uint32_t triangle);
+
+/// Winds a triangle the other way round.
+void turn_triangle(TriangleMesh& mesh, std::uint32_t triangle);
+
+/// Makes winding and normals agree in each patch that has them against each other on most of its
+/// area. Where find_winding() says which way the patch faces, whichever is wrong is turned. Else
+/// the triangles are, since normals decide the light. mesh.warnings has a line for either.
+///
+/// Cost:    as find_winding(), and O(n) where all agree.
+void settle_normals(TriangleMesh& mesh);
 
 } // namespace relumine::mesh

@@ -314,7 +314,8 @@ void bind_scenes(py::module_& module) {
     bind_mesh_arrays(mesh_type, [](const Mesh& mesh) -> const auto& { return mesh.geometry; });
     mesh_type.def_readonly("source", &Mesh::source)
         .def_readonly("floor", &Mesh::floor_vertices)
-        .def_property_readonly("warnings", [](const Mesh& mesh) { return mesh.geometry.warnings; });
+        .def_property_readonly("warnings", [](const Mesh& mesh) { return mesh.geometry.warnings; })
+        .def_property_readonly("notes", [](const Mesh& mesh) { return mesh.geometry.notes; });
 
     py::class_<Scene, std::shared_ptr<Scene>> scene_type(module, "Scene");
     bind_mesh_arrays(scene_type, [](const Scene& scene) -> const auto& { return scene.mesh; });

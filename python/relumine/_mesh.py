@@ -91,6 +91,7 @@ class Mesh:
         up: Optional[str] = None,
         normals: str = "file",
         crease: Optional[float] = None,
+        vertex_colors: Optional[str] = None,
         pose: Optional[str] = None,
         floor: Union[int, str, None] = None,
         floor_scale: float = 4.0,
@@ -101,6 +102,8 @@ class Mesh:
         normals  "file": the file's where it has them; "smooth": always from the faces
         crease   degrees: normals from the faces, smooth over edges up to this angle; vertices are
                  doubled at sharper ones
+        vertex_colors  "srgb" or "linear": what colours of vertices and faces mean; by default sRGB
+                 for .obj, .off and bytes of .ply, linear for floats of .ply and for glTF
         pose     glTF: "ANIMATION@SECONDS", the moment in which skins and morph targets stand; None:
                  as the file's nodes say
 
@@ -113,6 +116,7 @@ class Mesh:
             "up": up,
             "normals": normals,
             "crease": crease,
+            "vertex_colors": vertex_colors,
             "pose": pose,
             "floor": floor,
             "floor_scale": floor_scale,
@@ -131,6 +135,11 @@ class Mesh:
 
     def __deepcopy__(self, memo: Any) -> "Mesh":
         return self
+
+    @property
+    def notes(self) -> List[str]:
+        """How the file was read where that is a choice, a line each."""
+        return self._core.notes
 
     @property
     def vertices(self) -> Floats:

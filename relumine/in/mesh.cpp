@@ -11,6 +11,7 @@
 #include "mesh/customs.h"
 #include "mesh/floor.h"
 #include "mesh/half_edge/simplify.h"
+#include "mesh/half_edge/winding.h"
 #include "mesh/normals.h"
 #include "mesh/opacity.h"
 #include "prt/memory_estimate.h"
@@ -150,6 +151,10 @@ OptionTable options_of(MeshOptions& o) {
         row("--up", o.up, "the mesh's axis that points up (y; z for .stl, which comes from CAD)"),
         row("--normals", o.normals,
             "vertex normals: the file's where it has them, or always smooth"),
+        row("--vertex-colors", o.vertex_colors,
+            "what colours of vertices and faces mean (srgb for .obj, .off and bytes of .ply; "
+            "linear "
+            "for floats of .ply and for glTF)"),
         crease_row(o.crease),
         pose_row(o.pose)};
 }
@@ -172,7 +177,8 @@ OptionTable options_of(RefineOptions& o) {
 }
 
 Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
-    mesh::LoadedMesh loaded = mesh::load(path, {.normals = options.normals, .pose = options.pose});
+    mesh::LoadedMesh loaded = mesh::load(
+        path, {.normals = options.normals, .pose = options.pose, .colors = options.vertex_colors});
     Mesh mesh;
     mesh.source_hash = loaded.hash;
     mesh.camera = loaded.camera;
@@ -184,6 +190,7 @@ Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
             : mesh::customary_crease(path);
     if (crease)
         mesh.geometry = mesh::with_creases(mesh.geometry, *crease);
+    mesh::settle_normals(mesh.geometry);
     const mesh::UpAxis up = options.up.value_or(mesh::customary_up(path));
     mesh::turn_up(mesh.geometry, up);
     if (mesh.camera)

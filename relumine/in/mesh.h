@@ -19,11 +19,14 @@ namespace relumine {
 
 inline constexpr std::array<std::string_view, 3> AxisWords = {"x", "y", "z"};
 inline constexpr std::array<std::string_view, 2> NormalWords = {"file", "smooth"};
+inline constexpr std::array<std::string_view, 2> ColorCurveWords = {"srgb", "linear"};
 
 template<>
 inline constexpr std::span<const std::string_view> WordsOf<mesh::UpAxis> = AxisWords;
 template<>
 inline constexpr std::span<const std::string_view> WordsOf<mesh::NormalSource> = NormalWords;
+template<>
+inline constexpr std::span<const std::string_view> WordsOf<mesh::ColorCurve> = ColorCurveWords;
 
 /// A triangle mesh and its origin. A TriangleMesh made in code converts to it.
 struct Mesh {
@@ -74,7 +77,9 @@ struct MeshOptions {
     mesh::NormalSource normals = mesh::NormalSource::File;
     /// The moment of one of a glTF file's animations. Empty: as its nodes say.
     std::optional<mesh::Pose> pose = {};
-    /// Replaces them by mesh::with_creases() of so many degrees.
+    /// What colours of vertices and faces mean. Empty: by the custom of the format.
+    std::optional<mesh::ColorCurve> vertex_colors = {};
+    /// Replaces the normals by mesh::with_creases() of so many degrees.
     std::optional<float> crease = {};
     /// n: adds a floor of n x n vertices under the mesh; 193 gives the scenes of [JN].
     /// AutomaticFloor: a coarse one, which precompute() refines where shadows fall.
@@ -98,7 +103,8 @@ struct MeshOptions {
 /// Throws:  std::invalid_argument as mesh::require_consistent().
 [[nodiscard]] Mesh sound(Mesh mesh);
 
-/// Reads an .obj, .gltf, .glb, .ply, .off or .stl file, turns it upright and adds the floor.
+/// Reads an .obj, .gltf, .glb, .ply, .off or .stl file, makes its normals and winding agree
+/// (mesh::settle_normals()), turns it upright and adds the floor.
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y" for a file that cannot be read;
 ///          std::invalid_argument for a floor that does not fit (mesh::append_floor());

@@ -3,6 +3,7 @@
 #include <limits>
 #include <numbers>
 
+#include "mesh/edge_uses.h"
 #include "mesh/opacity.h"
 #include "mesh/save.h"
 #include "tests/mesh/encoders.h"
@@ -55,6 +56,39 @@ TEST_F(GltfTest, OurOwnFilesLoadAgain) {
                   {.name = "lit", .model = MaterialModel::Unlit, .times_vertex_color = true}}));
 }
 
+TEST_F(GltfTest, FacesWithoutNormalsAreFlat) {
+    // A tent of two squares that share an edge; the file has no normals [glTF 2.0, 3.7.2.1].
+    Model model = square();
+    const auto positions = model.add<glm::vec3>(
+        {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, -1}, {2, 1, -1}}, 5126, "VEC3");
+    const auto indices =
+        model.add<std::uint16_t>({0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2}, 5123, "SCALAR");
+    model.json["meshes"][0]["primitives"] = {
+        {{"attributes", {{"POSITION", positions}}}, {"indices", indices}}};
+    const TriangleMesh mesh = gltf(model.embedded());
+    EXPECT_EQ(defect(mesh), "");
+    ASSERT_EQ(mesh.num_vertices(), 8u) << "two on the edge are repeated";
+    for (const Triangle& t : mesh.triangles)
+        for (const std::uint32_t vertex : t)
+            EXPECT_NEAR(glm::distance(glm::dvec3(mesh.normals[vertex]),
+                                      glm::normalize(area_normal(mesh.positions, t))),
+                        0.0, 1e-6);
+    EXPECT_THAT(mesh.notes,
+                ElementsAre("4 faces without normals are flat; --normals smooth rounds them",
+                            "2 vertices are added behind the 6 of the file, where normals or "
+                            "colours of faces differ"));
+    EXPECT_EQ(gltf(model.embedded(), NormalSource::Smooth).num_vertices(), 6u);
+    EXPECT_TRUE(gltf(model.embedded(), NormalSource::Smooth).notes.empty());
+    // Beside a primitive with normals, which keeps them.
+    const auto normals =
+        model.add<glm::vec3>(std::vector<glm::vec3>(6, {0, 0.6f, 0.8f}), 5126, "VEC3");
+    model.json["meshes"][0]["primitives"].push_back(
+        {{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}, {"indices", indices}});
+    const TriangleMesh both = gltf(model.embedded());
+    ASSERT_EQ(both.num_vertices(), 14u);
+    EXPECT_EQ(both.normals[6], glm::vec3(0, 0.6f, 0.8f));
+}
+
 TEST_F(GltfTest, NodesPlaceMeshes) {
     Model model = square();
     const auto normals =
@@ -98,7 +132,7 @@ TEST_F(GltfTest, StripsFansPointsAndPrimitivesWithoutIndices) {
     primitive["mode"] = 5;
     primitive.erase("indices");
     primitives.push_back(primitive);
-    const TriangleMesh mesh = gltf(model.embedded());
+    const TriangleMesh mesh = gltf(model.embedded(), NormalSource::Smooth);
     EXPECT_EQ(mesh.num_vertices(), 12u);
     EXPECT_EQ(mesh.triangles,
               (std::vector<Triangle>{
@@ -299,6 +333,8 @@ TEST_F(GltfTest, Tangents) {
     Model model = square();
     Json& primitive = model.json["meshes"][0]["primitives"][0];
     const float nan = std::numeric_limits<float>::quiet_NaN();
+    primitive["attributes"]["NORMAL"] =
+        model.add<glm::vec3>(std::vector<glm::vec3>(4, {0, 0, 1}), 5126, "VEC3");
     primitive["attributes"]["TANGENT"] = model.add<glm::vec4>(
         {{0, 2, 0, 1}, {0, 1, 0, -1}, {0, 0, 0, 1}, {nan, 0, 0, 1}}, 5126, "VEC4");
     primitive["material"] = 0;
@@ -322,6 +358,11 @@ TEST_F(GltfTest, Tangents) {
                 ElementsAre(testing::HasSubstr("tangents are zero or not finite at ")));
     model.json["nodes"][0]["scale"] = {1, -1, 1};
     EXPECT_EQ(tangent_of(gltf(model.embedded()), 0), glm::vec4(0, -1, 0, -1));
+    // Those of flat faces do not count [glTF 2.0, 3.7.2.1].
+    model.json["nodes"][0].erase("scale");
+    model.json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
+    EXPECT_NEAR(std::abs(tangent_of(gltf(model.embedded()), 0).x), 1.0f, 1e-6f);
+    EXPECT_THAT(gltf(model.embedded()).warnings, ElementsAre());
     // Without a normal map they are not needed.
     model.json["materials"] = {Json::object()};
     EXPECT_TRUE(gltf(model.embedded()).corner_tangents.empty());
@@ -387,11 +428,13 @@ TEST_F(GltfTest, SparseAccessors) {
                          {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
                          {"values", {{"bufferView", bytes}}}};
     model.json["accessors"][0]["sparse"] = sparse;
-    EXPECT_THAT(gltf(model.embedded()).positions,
+    const auto positions = [&] { // flat faces repeat them
+        return gltf(model.embedded(), NormalSource::Smooth).positions;
+    };
+    EXPECT_THAT(positions(),
                 ElementsAre(glm::vec3(0, 0, 0), values[0], glm::vec3(1, 1, 0), values[1]));
     model.json["accessors"][0].erase("bufferView");
-    EXPECT_THAT(gltf(model.embedded()).positions,
-                ElementsAre(glm::vec3(0), values[0], glm::vec3(0), values[1]));
+    EXPECT_THAT(positions(), ElementsAre(glm::vec3(0), values[0], glm::vec3(0), values[1]));
 
     const auto refused = [&](const char* key, const char* inner, const Json& value,
                              const std::string& part) {

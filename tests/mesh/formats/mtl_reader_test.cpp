@@ -21,7 +21,7 @@ protected:
 
 TEST_F(MtlTest, MaterialsAsWritten) {
     static_cast<void>(
-        write("a.mtl", "# Blender\nnewmtl red wall\nKd 0.5 0.25 0.125\nKs 0 0 0\nNs 10\nillum 2\n\n"
+        write("a.mtl", "# By hand\nnewmtl red wall\nKd 0.5 0.25 0.125\nKs 0 0 0\nNs 10\nillum 2\n\n"
                        "newmtl shiny\nKa 1 1 1\nKd 0.25\nKs 0.5 0.5 0.75\nNs 96.5\nd 0.5\n"
                        "newmtl metal\nKd 1 0.75 0.5\nPr 0.25\nPm 1\n"));
     const TriangleMesh mesh =
@@ -139,26 +139,30 @@ TEST_F(MtlTest, TheFloorHasItsOwn) {
 }
 
 /// Neither a material nor an image ends the load: the surface is grey, or without its texture.
-TEST_F(MtlTest, WhatCannotBeReadIsGreyWithAWarning) {
-    const Material grey{.name = "m", .base_color = glm::vec3(0.5f)};
+TEST_F(MtlTest, WhatCannotBeReadCostsItselfAndAWarning) {
     const auto warns = [&](const std::string& mtl, const std::string& part) {
-        const TriangleMesh mesh = with_mtl(mtl + "newmtl n\nKd 0.25\n", "usemtl n\n");
+        const TriangleMesh mesh =
+            with_mtl("newmtl m\nNs 5\n" + mtl + "Kd 0.25\nnewmtl n\nKd 0.5\n", "usemtl n\n");
         EXPECT_THAT(mesh.warnings, ElementsAre(testing::HasSubstr(part))) << mtl;
-        EXPECT_THAT(mesh.materials, testing::Contains(grey)) << mtl;
+        for (const Material& material : mesh.materials)
+            EXPECT_EQ(material.base_color, glm::vec3(material.name == "m" ? 0.25f : 0.5f)) << mtl;
     };
-    warns("newmtl m\nKd 1 1\n",
-          "the material m is grey, since it cannot be read: a.mtl: expected 1 "
-          "or 3 numbers of Kd in line 2, got 2");
-    warns("newmtl m\nKd 1 x 1\nKs 1\nPm 1\n", "a number in line 2, got 'x'");
-    warns("newmtl m\nKd spectral file.rfl\n", "line 2");
-    warns("newmtl m\nKs 1 1 1.5\n", "a number of 0 to 1 in line 2, got '1.5'");
-    warns("newmtl m\nKd nan\n", "'nan'");
-    warns("newmtl m\nNs -1\n", "'-1'");
-    warns("newmtl m\nNs\n", "1 number of Ns");
-    warns("newmtl m\nPr 2\n", "'2'");
-    warns("newmtl m\nmap_Kd\n", "file name of a texture");
-    warns("newmtl m\nmap_Kd -o\n", "arguments of -o");
-    warns(std::string("newmtl m\0\n", 10), "a.mtl cannot be read, its materials are grey: ");
+    warns("Kd 1 1\n", "Kd of the material m is left out: a.mtl: expected 1 or 3 numbers of Kd in "
+                      "line 3, got 2");
+    warns("Ks 1 x 1\n", "a number in line 3, got 'x'");
+    warns("Kd spectral file.rfl\n", "line 3");
+    warns("Ks nan\n", "a finite number in line 3, got 'nan'");
+    warns("Ns\n", "1 number of Ns");
+    warns("map_Kd\n", "file name of a texture");
+    warns("map_Kd -o\n", "arguments of -o");
+    warns("Ks 1 1 1.5\n", "the material m: expected 0 to 1 as \"Ks\", got 1.5: it counts as 1");
+    warns("Ks 2 3 4\n", "as \"Ks\", got 2: it counts as 1");
+    warns("Ns -1\n", "as \"Ns\", got -1: it counts as 0");
+    warns("Pr 2\n", "as \"Pr\", got 2: it counts as 1");
+    warns("d -halo 0.5\n", "the materials have d -halo, which is not read");
+    EXPECT_EQ(with_mtl("newmtl m\nd -halo 0.5\n").materials[0].alpha, 0.5f);
+    EXPECT_THAT(with_mtl(std::string("newmtl m\0\n", 10)).warnings,
+                ElementsAre(testing::HasSubstr("a.mtl cannot be read, its materials are grey: ")));
 
     static_cast<void>(write("broken.png", four_colors().substr(0, 40)));
     const TriangleMesh mesh = with_mtl("newmtl m\nKd 0.25\nmap_Kd broken.png\n"
@@ -167,6 +171,79 @@ TEST_F(MtlTest, WhatCannotBeReadIsGreyWithAWarning) {
                 ElementsAre(testing::StartsWith("the image broken.png is left out: expected")));
     EXPECT_EQ(mesh.materials[0], (Material{.name = "m", .base_color = glm::vec3(0.25f)}));
     EXPECT_TRUE(mesh.textures.empty());
+}
+
+TEST_F(MtlTest, TransparencyThatMeansOpacity) {
+    const auto alpha = [&](const std::string& mtl) {
+        return with_mtl("newmtl m\nKd 0.5\n" + mtl).materials[0].alpha;
+    };
+    EXPECT_EQ(alpha("Tr 0.25\n"), 0.75f);
+    EXPECT_EQ(alpha("Tr 0\n"), 1.0f);
+    EXPECT_EQ(alpha("d 1\nTr 1\n"), 1.0f) << "d counts";
+    EXPECT_EQ(alpha("Tr 1\nd 1\n"), 1.0f);
+    EXPECT_EQ(alpha("Tr 0\nd 0.5\n"), 0.5f);
+    const TriangleMesh one = with_mtl("newmtl m\nTr 1.000000\nnewmtl n\nTr 0.75\n", "usemtl n\n");
+    for (const Material& material : one.materials)
+        EXPECT_EQ(material.alpha, material.name == "m" ? 1.0f : 0.75f);
+    EXPECT_THAT(one.notes, ElementsAre("Tr 1 is taken as opaque: as transparency it would be "
+                                       "invisible"));
+    // A library that has both says that 1 is invisible.
+    const TriangleMesh both = with_mtl("newmtl m\nTr 1\nnewmtl n\nTr 0\n", "usemtl n\n");
+    EXPECT_THAT(both.warnings, ElementsAre("a material is invisible, since d is 0 or Tr 1: m"));
+    EXPECT_THAT(with_mtl("newmtl m\nd 0\n").warnings,
+                ElementsAre("a material is invisible, since d is 0 or Tr 1: m"));
+}
+
+TEST_F(MtlTest, AsTheProgramsMeanThatWroteThem) {
+    const TriangleMesh meshlab =
+        with_mtl("#\n# Wavefront material file\n# Converted by Meshlab Group\n#\n\nnewmtl m\n"
+                 "Ka 0.2 0.2 0.2\nKd 1 1 1\nKs 1 1 1\nTr 1.000000\nillum 2\nNs 0.000000\n");
+    EXPECT_EQ(meshlab.materials[0], (Material{.name = "m"}));
+    EXPECT_THAT(meshlab.notes, ElementsAre("Tr 1 is opaque, as MeshLab writes it",
+                                           "Ks is left out: MeshLab writes it whatever it shows"));
+    const std::string principled = "newmtl m\nNs 250\nKa 1 1 1\nKd 0.8 0.8 0.8\nKs 0.5 0.5 0.5\n"
+                                   "Ke 0 0 0\nNi 1.45\nd 1\nillum 2\n";
+    Material plastic{.name = "m",
+                     .model = MaterialModel::MetallicRoughness,
+                     .base_color = glm::vec3(0.8f),
+                     .roughness = 0.5f};
+    const TriangleMesh blender =
+        with_mtl("# Blender 3.4.1 MTL File: 'None'\n# www.blender.org\n\n" + principled);
+    EXPECT_EQ(blender.materials[0], plastic);
+    EXPECT_THAT(blender.notes, ElementsAre("Ks and Ns are read as Specular and roughness, as "
+                                           "Blender writes them"));
+    const TriangleMesh old = with_mtl("# Blender MTL File: 'a.blend'\n# Material Count: 1\n" +
+                                      replace_all(principled, "Ns 250", "Ns 225"));
+    EXPECT_EQ(old.materials[0], plastic);
+    plastic.metallic = 0.25f;
+    EXPECT_EQ(with_mtl("# Blender 4.0.2 MTL File: 'a.blend'\n" +
+                       replace_all(replace_all(principled, "illum 2", "illum 3"), "Ka 1 1 1",
+                                   "Ka 0.25 0.25 0.25"))
+                  .materials[0],
+              plastic);
+    EXPECT_EQ(with_mtl(principled).materials[0].specular, glm::vec3(0.5f)) << "of others";
+}
+
+TEST_F(MtlTest, FilesOfOtherCapitalsAndOtherComputers) {
+    std::filesystem::create_directories(folder_ / "Textures");
+    static_cast<void>(write("Textures/Wood.PNG", four_colors()));
+    static_cast<void>(write("Scene.MTL", "newmtl m\nmap_Kd textures\\wood.png\n"
+                                         "newmtl n\nmap_Kd C:\\Users\\me\\Textures\\wood.png\n"
+                                         "newmtl o\nmap_Kd /home/me/../you/WOOD.png\n"
+                                         "newmtl p\nmap_Kd /home/me/plaster.png\n"));
+    const TriangleMesh mesh = load(write("mesh.obj", "mtllib scene.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
+                                                     "usemtl m\nf 1 2 3\nusemtl n\nf 1 2 3\n"));
+    EXPECT_TRUE(mesh.materials[0].base_color_texture);
+    EXPECT_TRUE(mesh.materials[1].base_color_texture);
+    EXPECT_EQ(mesh.textures.size(), 1u);
+    EXPECT_THAT(mesh.missing, ElementsAre("/home/me/../you/WOOD.png", "/home/me/plaster.png"));
+    EXPECT_THAT(mesh.notes,
+                ElementsAre("scene.mtl is read from Scene.MTL",
+                            "textures\\wood.png is read from Textures/Wood.PNG",
+                            "C:\\Users\\me\\Textures\\wood.png is read from Textures/Wood.PNG"));
+    // By the name alone, beside the mesh.
+    std::filesystem::rename(folder_ / "Textures/Wood.PNG", folder_ / "wood.png");
+    EXPECT_THAT(load(folder_ / "mesh.obj").missing, ElementsAre("/home/me/plaster.png"));
 }
 
 TEST_F(MtlTest, RoundingsAboveOneAreOne) {

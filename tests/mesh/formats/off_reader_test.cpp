@@ -1,5 +1,6 @@
 #include <bit>
 
+#include "mesh/materials/srgb.h"
 #include "tests/mesh/mesh_files.h"
 
 namespace relumine::mesh {
@@ -25,17 +26,39 @@ TEST(OffReader, LineEndsAndCommentsAnywhere) {
     expect_box(off("# first\n" + replace_all(text, "\n", " # 1 2 3\n\n# 4 5 6\n")));
 }
 
-TEST(OffReader, ColorsOfFacesAreSkipped) {
-    for (const char* color : {" 3", " 255 0 0", " 1.0 0.5 0 1", " 255 0 0 255"})
-        expect_box(off(box_off("OFF", "", color)));
+TEST(OffReader, ColorsOfFaces) {
+    const float half = linear_of_srgb(0.5f);
+    expect_box(off(box_off("OFF", "", " 1.0 0.5 0 1")));
+    EXPECT_EQ(off(box_off("OFF", "", " 1.0 0.5 0 1")).colors[0], glm::vec3(1.0f, half, 0.0f));
+    EXPECT_EQ(off(box_off("OFF", "", " 255 0 0")).colors[0], glm::vec3(1.0f, 0.0f, 0.0f));
+    EXPECT_EQ(off(box_off("OFF", "", " 255 0 0 255")).colors[0], glm::vec3(1.0f, 0.0f, 0.0f));
+    EXPECT_EQ(off(box_off("OFF", "", " 1 0 0")).colors[0], glm::vec3(1.0f, 0.0f, 0.0f));
+    const TriangleMesh indexed = off(box_off("OFF", "", " 3"));
+    expect_box(indexed);
+    EXPECT_TRUE(indexed.colors.empty());
+    EXPECT_THAT(indexed.warnings, testing::ElementsAre("7 of 7 faces have an index of a colour "
+                                                       "map, which is not read"));
+    // Bytes and fractions beside each other, and faces without a colour.
+    const TriangleMesh mixed = off("OFF\n4 3 0\n0 0 0\n1 0 0\n1 0 -1\n0 0 -1\n3 0 1 2 255 0 0\n"
+                                   "3 0 2 3 0.0 1.0 0.0\n3 3 2 0\n");
+    ASSERT_EQ(mixed.num_triangles(), 3u);
+    const std::vector<glm::vec3> colors = {{1, 0, 0}, {0, 1, 0}, {1, 1, 1}};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (const std::uint32_t vertex : mixed.triangles[i])
+            EXPECT_EQ(mixed.colors[vertex], colors[i]);
 }
 
 TEST(OffReader, EveryLayoutOfVertices) {
+    const auto near = [](const glm::vec3& a, const glm::vec3& b) {
+        return glm::distance(a, b) < 1e-6f;
+    };
+    const glm::vec3 orange(1.0f, linear_of_srgb(0.2f), 0.0f);
     const TriangleMesh bytes = off(box_off("COFF", " 255 51 0 255"));
     expect_box(bytes);
-    EXPECT_EQ(bytes.colors, std::vector<glm::vec3>(8, {1.0f, 0.2f, 0.0f}));
+    EXPECT_TRUE(near(bytes.colors[7], orange)) << "as other programs write them";
     EXPECT_EQ(off(box_off("COFF", " 255 51 0")).colors, bytes.colors);
-    EXPECT_EQ(off(box_off("COFF", " 1 0.5 0.25 1")).colors[7], glm::vec3(1.0f, 0.5f, 0.25f));
+    EXPECT_EQ(off(box_off("COFF", " 1 0.5 0.25 1")).colors[7],
+              glm::vec3(1.0f, linear_of_srgb(0.5f), linear_of_srgb(0.25f)));
     EXPECT_EQ(off(box_off("COFF", " 1 1 1 1")).colors[7], glm::vec3(1.0f));
     EXPECT_TRUE(off(box_off("COFF", " nan 0 0 1")).colors.empty());
 
@@ -47,9 +70,9 @@ TEST(OffReader, EveryLayoutOfVertices) {
     const TriangleMesh all = off(box_off("STCNOFF", " 0 1 0 255 51 0 255 0.25 0.5"));
     expect_box(all);
     EXPECT_EQ(all.normals[0], glm::vec3(0, 1, 0));
-    EXPECT_EQ(all.colors[0], glm::vec3(1.0f, 0.2f, 0.0f));
+    EXPECT_TRUE(near(all.colors[0], orange));
     EXPECT_EQ(all.uvs[0], glm::vec2(0.25f, 0.5f));
-    EXPECT_EQ(off(box_off("CNOFF", " 0 1 0 255 51 0")).colors[0], glm::vec3(1.0f, 0.2f, 0.0f));
+    EXPECT_TRUE(near(off(box_off("CNOFF", " 0 1 0 255 51 0")).colors[0], orange));
     EXPECT_EQ(off(box_off("STOFF", " 0.25 0.5")).uvs[0], glm::vec2(0.25f, 0.5f));
 }
 
@@ -97,7 +120,7 @@ TEST(OffReader, BinaryFiles) {
                        words({4, one, one, one, one})));
     expect_box(mesh);
     EXPECT_EQ(mesh.normals[3], glm::vec3(0, 1, 0));
-    EXPECT_EQ(mesh.colors[3], glm::vec3(1.0f, 0.5f, 0.0f));
+    EXPECT_EQ(mesh.colors[3], glm::vec3(1.0f)) << "those of faces";
     EXPECT_EQ(mesh.uvs[3], glm::vec2(0.5f, 0.0f));
     const std::string text = binary_off();
     for (std::size_t length = 11; length < text.size(); ++length)

@@ -1,3 +1,4 @@
+#include "mesh/materials/srgb.h"
 #include "tests/mesh/mesh_files.h"
 
 namespace relumine::mesh {
@@ -30,7 +31,7 @@ TEST_P(PlyReaderTest, ExtraPropertiesListsAndElements) {
                                            .faces_first = true,
                                            .other_element = true}));
     expect_box(mesh);
-    EXPECT_EQ(mesh.colors, std::vector<glm::vec3>(8, {1.0f, 0.2f, 0.0f}));
+    EXPECT_EQ(mesh.colors, std::vector<glm::vec3>(8, {1.0f, linear_of_srgb(0.2f), 0.0f}));
 }
 
 TEST_P(PlyReaderTest, LineEndsOfTheHeader) {
@@ -102,26 +103,112 @@ TEST(PlyReader, AttributesOfVertices) {
     EXPECT_EQ(ply(triangle_ply(normals, "0 0 0")).normals[0], glm::vec3(0, 0, 1));
     EXPECT_EQ(ply(triangle_ply(normals, "nan 0 0")).normals[0], glm::vec3(0, 0, 1));
 
-    const auto colors = [](const std::string& type) {
-        return fmt::format("property {} red\nproperty {} green\nproperty {} blue\n", type, type,
-                           type);
-    };
-    EXPECT_EQ(ply(triangle_ply(colors("uchar"), "255 51 0")).colors[2],
-              glm::vec3(1.0f, 0.2f, 0.0f));
-    EXPECT_EQ(ply(triangle_ply(colors("ushort"), "65535 13107 0")).colors[2],
-              glm::vec3(1.0f, 0.2f, 0.0f));
-    EXPECT_EQ(ply(triangle_ply(colors("float"), "7.5 0.25 0")).colors[2],
-              glm::vec3(7.5f, 0.25f, 0.0f))
-        << "HDR";
-    EXPECT_TRUE(ply(triangle_ply(colors("float"), "nan 0.25 0")).colors.empty());
-    EXPECT_TRUE(ply(triangle_ply("property uchar red\n", "255")).colors.empty());
-
     EXPECT_EQ(ply(triangle_ply("property float s\nproperty float t\n", "0.25 0.5")).uvs[2],
               glm::vec2(0.25f, 0.5f));
     EXPECT_EQ(
         ply(triangle_ply("property float u\nproperty float v\nproperty float s\n", "0.25 0.5 9"))
             .uvs[2],
         glm::vec2(0.25f, 0.5f));
+}
+
+TEST(PlyReader, ColorsOfVertices) {
+    const auto colored = [](const std::string& type, const std::string& values) {
+        return ply(triangle_ply(fmt::format("property {0} red\nproperty {0} green\nproperty {0} "
+                                            "blue\n",
+                                            type),
+                                values));
+    };
+    const auto near = [](const TriangleMesh& mesh, const glm::vec3& color) {
+        return mesh.colors.size() == 3 && glm::distance(mesh.colors[2], color) < 1e-6f;
+    };
+    // Whole numbers are a screen's, as in other programs.
+    const glm::vec3 linear(1.0f, linear_of_srgb(0.2f), 0.0f);
+    for (const auto& [type, values] : {std::pair{"uchar", "255 51 0"},
+                                       {"ushort", "65535 13107 0"},
+                                       {"int", "255 51 0"},
+                                       {"short", "255 51 0"}}) {
+        const TriangleMesh mesh = colored(type, values);
+        EXPECT_TRUE(near(mesh, linear)) << type;
+        EXPECT_THAT(mesh.notes, testing::Contains("colours are taken as sRGB, as other programs "
+                                                  "write whole numbers into .ply; --vertex-colors "
+                                                  "linear takes them otherwise"));
+    }
+    const TriangleMesh floats = colored("float", "7.5 0.25 0");
+    EXPECT_TRUE(near(floats, {7.5f, 0.25f, 0.0f})) << "HDR";
+    EXPECT_THAT(floats.notes,
+                testing::ElementsAre("colours are taken as linear, since they are floats; "
+                                     "--vertex-colors srgb takes them otherwise"));
+    EXPECT_TRUE(near(colored("float", "255 51 0"), {1.0f, 0.2f, 0.0f}));
+    EXPECT_TRUE(near(colored("float", "204 25.5 0"), {0.8f, 0.1f, 0.0f}));
+    EXPECT_TRUE(near(to_mesh(read_ply(bytes_of(triangle_ply("property uchar red\nproperty uchar "
+                                                            "green\nproperty uchar blue\n",
+                                                            "255 51 0"))),
+                             NormalSource::File, ColorCurve::Linear),
+                     {1.0f, 0.2f, 0.0f}));
+    EXPECT_TRUE(colored("float", "nan 0.25 0").colors.empty());
+    EXPECT_TRUE(ply(triangle_ply("property uchar red\n", "255")).colors.empty());
+}
+
+/// Two triangles over four vertices, with more properties and values of faces.
+std::string square_ply(const std::string& properties, const std::string& first,
+                       const std::string& second) {
+    return fmt::format("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float "
+                       "y\nproperty float z\nelement face 2\n{}end_header\n"
+                       "0 0 0\n1 0 0\n1 0 -1\n0 0 -1\n{}\n{}\n",
+                       properties, first, second);
+}
+
+TEST(PlyReader, ColorsOfFaces) {
+    const std::string list = "property list uchar int vertex_indices\n";
+    const std::string colors = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    for (const TriangleMesh& mesh :
+         {ply(square_ply(list + colors, "3 0 1 2 255 0 0", "3 0 2 3 0 255 0")),
+          ply(square_ply(colors + list, "255 0 0 3 0 1 2", "0 255 0 3 0 2 3"))}) {
+        EXPECT_EQ(defect(mesh), "");
+        ASSERT_EQ(mesh.num_vertices(), 6u) << "two corners are repeated";
+        for (std::size_t i = 0; i < 2; ++i)
+            for (const std::uint32_t vertex : mesh.triangles[i]) {
+                EXPECT_EQ(mesh.colors[vertex], i == 0 ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0));
+                EXPECT_EQ(mesh.normals[vertex], glm::vec3(0, 1, 0));
+            }
+    }
+    // The normals stay smooth across the border of colours.
+    const std::string bent = replace_all(
+        square_ply(list + colors, "3 0 1 2 255 0 0", "3 0 2 3 0 255 0"), "1 0 -1\n", "1 0.5 -1\n");
+    for (const NormalSource source : {NormalSource::File, NormalSource::Smooth}) {
+        const TriangleMesh mesh = ply(bent, source);
+        ASSERT_EQ(mesh.num_vertices(), 6u);
+        EXPECT_LT(glm::distance(mesh.normals[0], mesh.normals[4]), 1e-6f);
+    }
+    EXPECT_EQ(ply(square_ply(list + colors, "3 0 1 2 9 9 9", "3 0 2 3 9 9 9")).num_vertices(), 4u);
+}
+
+TEST(PlyReader, UvsOfWedges) {
+    const std::string properties =
+        "property list uchar int vertex_indices\nproperty list uchar float texcoord\nproperty int "
+        "texnumber\n";
+    const TriangleMesh mesh =
+        ply(square_ply(properties, "3 0 1 2 6 0 0 1 0 1 1 0", "3 0 2 3 6 0.5 0 0.5 1 0 1 0"));
+    ASSERT_EQ(mesh.corner_uvs.size(), 2u);
+    EXPECT_EQ(mesh.corner_uvs[0][2], glm::vec2(1, 1));
+    EXPECT_EQ(mesh.corner_uvs[1][0], glm::vec2(0.5f, 0));
+    EXPECT_EQ(mesh.num_vertices(), 4u);
+    const TriangleMesh odd = ply(square_ply(properties, "3 0 1 2 6 0 0 1 0 1 1 0", "3 0 2 3 0 0"));
+    EXPECT_EQ(odd.corner_uvs[1][0], glm::vec2(0, 0));
+    EXPECT_THAT(odd.warnings, testing::ElementsAre("1 of 2 faces have no uvs of their corners, or "
+                                                   "not two numbers for each"));
+}
+
+TEST(PlyReader, ANormalThatIsNoneCostsItAlone) {
+    const std::string text =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
+        "float z\nproperty float nx\nproperty float ny\nproperty float nz\nelement face 2\n"
+        "property list uchar int vertex_indices\nend_header\n"
+        "0 0 0 0 0 1\n1 0 0 nan 0 0\n1 0 -1 0 0 1\n0 0 -1 0 0 0\n3 0 1 2\n3 0 2 3\n";
+    const TriangleMesh mesh = ply(text);
+    EXPECT_EQ(mesh.normals, (std::vector<glm::vec3>{{0, 0, 1}, {0, 1, 0}, {0, 0, 1}, {0, 1, 0}}));
+    EXPECT_THAT(mesh.notes, testing::ElementsAre("2 corners without a normal take that of the "
+                                                 "faces around them"));
 }
 
 TEST(PlyReader, RefusesWhatItWouldMisread) {

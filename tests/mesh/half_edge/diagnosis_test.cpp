@@ -204,30 +204,99 @@ TEST(Winding, AMoebiusStripHasOneSide) {
     EXPECT_EQ(find_winding(box_mesh()).num_one_sided, 0u);
 }
 
-TEST(Winding, ClosedSurfacesFaceOutwardsAndInnerWallsInwards) {
-    const auto inside_out = [](TriangleMesh mesh) {
-        for (Triangle& t : mesh.triangles)
-            std::swap(t[0], t[1]);
-        return mesh;
-    };
-    EXPECT_EQ(find_winding(ball(8)).num_wrong, 0u);
-    EXPECT_EQ(find_winding(inside_out(ball(8))).num_wrong, ball(8).num_triangles());
-    // A bottle: a small ball inside of a large one. Its wall faces the cavity.
-    TriangleMesh bottle = ball(8);
-    const TriangleMesh inner = inside_out(ball(6));
-    for (const glm::vec3& p : inner.positions)
-        bottle.positions.push_back(0.5f * p);
-    for (const auto& [a, b, c] : inner.triangles) {
-        const auto n = static_cast<std::uint32_t>(ball(8).num_vertices());
-        bottle.triangles.push_back({a + n, b + n, c + n});
+TriangleMesh inside_out(TriangleMesh mesh) {
+    for (Triangle& t : mesh.triangles)
+        std::swap(t[0], t[1]);
+    return mesh;
+}
+
+/// The mesh, and another within, smaller by `scale`.
+TriangleMesh around(TriangleMesh mesh, const TriangleMesh& inner, float scale = 0.5f) {
+    const auto first = static_cast<std::uint32_t>(mesh.num_vertices());
+    for (std::size_t i = 0; i < inner.num_vertices(); ++i) {
+        mesh.positions.push_back(scale * inner.positions[i]);
+        mesh.normals.push_back(inner.normals[i]);
     }
-    EXPECT_EQ(find_winding(bottle).num_wrong, 0u);
+    for (const auto& [a, b, c] : inner.triangles)
+        mesh.triangles.push_back({a + first, b + first, c + first});
+    return mesh;
+}
+
+TEST(Winding, ClosedSurfacesFaceOutwardsButRooms) {
+    const TriangleMesh wrong = inside_out(ball(8));
+    EXPECT_EQ(find_winding(ball(8)).num_wrong, 0u);
+    EXPECT_EQ(find_winding(wrong).num_wrong, ball(8).num_triangles());
+    EXPECT_EQ(find_winding(around(ball(8), inside_out(ball(6)))).num_wrong, 0u) << "a bottle";
+    EXPECT_EQ(find_winding(around(ball(8), ball(6))).num_wrong, 0u) << "a ball in a case";
+    EXPECT_EQ(find_winding(around(wrong, ball(6))).num_wrong, 0u) << "a ball in a room";
+    EXPECT_EQ(find_winding(around(wrong, around(ball(6), inside_out(ball(5))))).num_wrong, 0u)
+        << "a bottle in a room";
+    EXPECT_EQ(find_winding(around(wrong, inside_out(ball(6)))).num_wrong, ball(8).num_triangles())
+        << "a bottle whose outer wall is turned";
+    TriangleMesh beside = around(wrong, ball(6), 0.4f);
+    const TriangleMesh turned = inside_out(ball(6));
+    const auto first = static_cast<std::uint32_t>(beside.num_triangles());
+    beside = around(beside, turned, 0.1f);
+    for (std::size_t i = beside.num_vertices() - turned.num_vertices(); i < beside.num_vertices();
+         ++i)
+        beside.positions[i].y += 0.7f;
+    EXPECT_EQ(find_winding(beside).num_wrong, turned.num_triangles()) << "turned in a right room";
+    EXPECT_EQ(find_winding(beside).first_wrong, first);
     // An open sheet keeps the winding that most of it has.
     TriangleMesh open = sheet(5);
     std::swap(open.triangles[7][0], open.triangles[7][2]);
     EXPECT_EQ(find_winding(open).num_wrong, 1u);
     EXPECT_EQ(find_winding(open).first_wrong, 7u);
     EXPECT_EQ(find_winding(inside_out(open)).first_wrong, 7u);
+}
+
+TriangleMesh with_normals_turned(TriangleMesh mesh) {
+    for (glm::vec3& normal : mesh.normals)
+        normal = -normal;
+    return mesh;
+}
+
+TEST(Winding, NormalsAndWindingSettleOnTheSideThatIsRight) {
+    const auto settled = [](TriangleMesh mesh) {
+        settle_normals(mesh);
+        for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i)
+            EXPECT_TRUE(faces_with_normals(mesh, i));
+        return mesh;
+    };
+    const TriangleMesh right = ball(8);
+    EXPECT_TRUE(settled(right).warnings.empty());
+    // The winding is right.
+    const TriangleMesh by_winding = settled(with_normals_turned(right));
+    EXPECT_EQ(by_winding.normals, right.normals);
+    EXPECT_EQ(by_winding.triangles, right.triangles);
+    EXPECT_THAT(by_winding.warnings,
+                testing::ElementsAre("114 of 114 normals look into the mesh, against the winding "
+                                     "of its triangles: they are turned around"));
+    // The normals are right.
+    const TriangleMesh by_normals = settled(inside_out(right));
+    EXPECT_EQ(by_normals.normals, right.normals);
+    EXPECT_GT(volume(by_normals), 0.0);
+    EXPECT_THAT(by_normals.warnings,
+                testing::ElementsAre("224 of 224 triangles are wound against their normals: they "
+                                     "are turned around"));
+    // In a room, both of the room.
+    const TriangleMesh room = around(with_normals_turned(inside_out(right)), right);
+    EXPECT_TRUE(settled(room).warnings.empty());
+    EXPECT_EQ(settled(around(inside_out(right), right)).normals, room.normals);
+    // Normals of what is open decide.
+    const TriangleMesh open = settled(inside_out(sheet(5)));
+    EXPECT_EQ(open.normals, sheet(5).normals);
+    // Uvs stay with their corners.
+    TriangleMesh textured = inside_out(sheet(2));
+    textured.corner_uvs = {{{{0, 0}, {1, 0}, {2, 0}}}, {{{3, 0}, {4, 0}, {5, 0}}}};
+    const Triangle before = textured.triangles[0];
+    const TriangleMesh turned = settled(textured);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto k = static_cast<std::size_t>(
+            std::find(before.begin(), before.end(), turned.triangles[0][i]) - before.begin());
+        ASSERT_LT(k, 3u);
+        EXPECT_EQ(turned.corner_uvs[0][i], textured.corner_uvs[0][k]);
+    }
 }
 
 TEST(Diagnosis, OfRealMeshesAsCountedPlainly) {
