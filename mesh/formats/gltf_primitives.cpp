@@ -163,7 +163,10 @@ std::optional<Primitive> PrimitiveReader::read(const Json& description) {
     };
     read("POSITION", result.positions);
     read("NORMAL", result.normals);
-    read("COLOR_0", result.colors);
+    // Our lit meshes have the light beside the colours that viewers show.
+    const bool is_lit = text(child(document_.root(), "asset"), "generator") == "Relumine" &&
+                        attributes.contains("_RADIANCE");
+    read(is_lit ? "_RADIANCE" : "COLOR_0", result.colors);
     if (description.find("material")) {
         const std::uint64_t material = whole(description, "material");
         static_cast<void>(document_.element("materials", material)); // checks the range

@@ -150,9 +150,9 @@ constexpr std::array<std::array<std::string_view, 4>, NumSlots> SlotNames = {
      {"nx"},
      {"ny"},
      {"nz"},
-     {"red", "r", "diffuse_red"},
-     {"green", "g", "diffuse_green"},
-     {"blue", "b", "diffuse_blue"},
+     {"radiance_red", "red", "r", "diffuse_red"},
+     {"radiance_green", "green", "g", "diffuse_green"},
+     {"radiance_blue", "blue", "b", "diffuse_blue"},
      {"s", "u", "texture_u", "texture_s"},
      {"t", "v", "texture_v", "texture_t"}}};
 
@@ -190,9 +190,15 @@ void read_vertices(const Header& header, const Element& element, Values& values,
     std::array<bool, NumSlots + 1> has{};
     std::array<double, NumSlots + 1> scale;
     scale.fill(1.0);
+    // Lit meshes have their light beside the colours that viewers show.
+    const bool is_lit = std::any_of(
+        element.properties.begin(), element.properties.end(),
+        [](const Property& property) { return property.name == SlotNames[Red].front(); });
     for (const Property& property : element.properties) {
         // If the same number has several names ("u" beside "s"), the first one counts.
-        const std::size_t slot = slot_of(property);
+        std::size_t slot = slot_of(property);
+        if (is_lit && slot >= Red && slot <= Blue && property.name != SlotNames[slot].front())
+            slot = NumSlots;
         slots.push_back(has[slot] ? NumSlots : slot);
         has[slot] = slot != NumSlots;
         if (slots.back() >= Red && slots.back() <= Blue) {

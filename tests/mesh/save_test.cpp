@@ -41,6 +41,7 @@ TEST_F(SaveTest, PlyLoadsAgainUnchanged) {
 TEST_F(SaveTest, LitPlyHoldsWhatViewersShowAndTheRadiance) {
     save_lit(folder_ / "box.ply", box_, radiance_);
     EXPECT_EQ(load(folder_ / "box.ply").triangles, box_.triangles);
+    EXPECT_EQ(load(folder_ / "box.ply").colors, radiance_);
 
     const std::vector<LitVertex> vertices = lit_ply(folder_ / "box.ply", 8);
     for (std::size_t i = 0; i < 8; ++i)
