@@ -3,7 +3,7 @@
 #   cmake -DPROGRAM=relumine -DPAGE=docs/command-line.md -P check_options.cmake
 #
 # Prints one line for each that is absent and fails when there is one.
-cmake_minimum_required(VERSION 3.24)
+cmake_minimum_required(VERSION ${CMAKE_VERSION})
 
 file(READ "${PAGE}" page)
 string(REPLACE ";" " " page "${page}")

@@ -5,7 +5,7 @@
 #   cmake -DROOT=FOLDER [-DFOLDERS="a;b"] -P check_paths.cmake
 #
 # Prints one line per fault and fails when there is one.
-cmake_minimum_required(VERSION 3.24)
+cmake_minimum_required(VERSION ${CMAKE_VERSION})
 
 if(NOT DEFINED FOLDERS)
     set(FOLDERS app cmake cubemap data_gen docs examples files integrations lights mesh prt python

@@ -1,6 +1,6 @@
 # The site has every page of a folder of documents: cmake -DROOT=FOLDER -P check_site.cmake
 # `./dev docs` would fail, but few run it.
-cmake_minimum_required(VERSION 3.24)
+cmake_minimum_required(VERSION ${CMAKE_VERSION})
 file(GLOB pages RELATIVE "${ROOT}/docs" "${ROOT}/docs/*.md")
 file(READ "${ROOT}/docs/site/index.md" index)
 set(missing "")

@@ -3,7 +3,7 @@
 #   cmake -DROWS=option_rows -DPAGE=docs/command-line.md [-DUPDATE=ON] -P option_rows.cmake
 #
 # Fails where the page says otherwise; with UPDATE, writes the page anew.
-cmake_minimum_required(VERSION 3.24)
+cmake_minimum_required(VERSION ${CMAKE_VERSION})
 
 set(begin "<!-- Options of pictures: `cmake --build --preset release --target update_docs` writes them. -->\n")
 set(end "<!-- End of options of pictures. -->\n")

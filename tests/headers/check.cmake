@@ -7,7 +7,7 @@
 # INSIDE:         users that include public headers of all folders.
 # A public header includes public headers, GLM and the standard library. A user includes public headers of the
 # library's door, and whatever else it likes.
-cmake_minimum_required(VERSION 3.24)
+cmake_minimum_required(VERSION ${CMAKE_VERSION})
 
 file(REAL_PATH "${ROOT}" ROOT)
 file(STRINGS "${PUBLIC_HEADERS}" public)

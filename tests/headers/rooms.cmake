@@ -3,7 +3,7 @@
 # ROOT:    the folder that include paths start at.
 # FOLDERS: folders under ROOT, separated by commas. A folder is a layer. A room is a folder inside of it; a file that
 #          stands in the layer itself is a room with its header.
-cmake_minimum_required(VERSION 3.24)
+cmake_minimum_required(VERSION ${CMAKE_VERSION})
 
 file(REAL_PATH "${ROOT}" ROOT)
 string(REPLACE "," ";" folders "${FOLDERS}")
