@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -110,6 +111,7 @@ public:
         if (layers_.rotate_degrees)
             full = set_rotation(lit_, *layers_.rotate_degrees);
         seconds_full_ = full.seconds;
+        expose();
         apply_one_by_one();
         bounce();
         write_output();
@@ -167,6 +169,19 @@ private:
                                           options_.output.picture.exposure_ev.value_or(0.0));
         else
             painter_->save(path, lit_.lighting());
+    }
+
+    /// Chooses the exposure by the light before the edits, so that a light which is added brightens
+    /// the picture, and parts of the light show their share of it. Not over a black environment.
+    void expose() {
+        if (!painter_ || !painter_->needs_light_for(options_.output.path))
+            return;
+        static_cast<void>(options_.bounces.bounce(lit_, options_.output.for_scene(lit_.scene()),
+                                                  options_.scene.path));
+        const std::span<const glm::vec3> radiance = lit_.radiance();
+        if (std::any_of(radiance.begin(), radiance.end(),
+                        [](const glm::vec3& own) { return own != glm::vec3(0.0f); }))
+            static_cast<void>(painter_->choose_exposure_ev(lit_.lighting()));
     }
 
     /// Edits are timed without their bounces, which come once, before anything is written.

@@ -189,6 +189,22 @@ TEST_F(Edit, LitByShowsWhatARegionLights) {
     EXPECT_FALSE(std::filesystem::exists(folder() / "bad.npy"));
 }
 
+TEST_F(Edit, KeepsTheExposureOfTheLightBefore) {
+    const auto exposure = [&](const std::string& command) {
+        return succeed(command + " -o new.png --size 32x32 --json").json()["exposure"];
+    };
+    const std::string brighter = " --disc 0,1,0 --radius 40 --gain 50";
+    const nlohmann::json before = exposure("relight scene.prt white.hdr");
+    EXPECT_EQ(exposure("edit scene.prt white.hdr" + brighter), before);
+    EXPECT_EQ(exposure("edit scene.prt white.hdr --lit-by 0,1,0,40" + brighter), before);
+    EXPECT_EQ(exposure("edit scene.prt white.hdr --exposure 1" + brighter), 1.0);
+    // Over nothing, what is added is all there is.
+    write("black.hdr",
+          hdr_file(64, 32, [](std::uint32_t, std::uint32_t) { return Rgb{0.0f, 0.0f, 0.0f}; }));
+    write("layers.json", Lamp);
+    EXPECT_GT(exposure("edit scene.prt black.hdr layers.json"), before);
+}
+
 /// The mixer's layers as a compositor reads them: channels by name.
 TEST_F(Edit, TheMixersLayersAddUpToThePicture) {
     write("mixed.json", R"({"version": 1, "layers": [
