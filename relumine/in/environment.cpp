@@ -177,6 +177,9 @@ std::vector<std::string> warnings_about(const cubemap::EnvironmentImage& image,
     if (image.fixed && bad.is_harmless())
         result.push_back(fmt::format("{} negative pixels became 0 ({:.2g} % of the light)",
                                      bad.num_negative, 100.0 * bad.negative_share));
+    if (image.num_transparent != 0)
+        result.push_back(fmt::format("{} of {} pixels have an alpha of 0: no light comes from them",
+                                     image.num_transparent, image.pixels.size()));
     if (const auto doubt = cubemap::upside_down(light_from_below))
         result.push_back(*doubt);
     return result;
