@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -106,6 +108,13 @@ prt::SceneFileKind kind_of(const std::string& path) {
     return prt::scene_file_kind(path);
 }
 
+/// Whether a file is an environment by its name, or a picture that people take for one.
+bool is_environment(const std::string& path) {
+    constexpr std::array Pictures = {".jpg", ".jpeg", ".png", ".webp"};
+    return cubemap::is_environment_name(path) ||
+           std::find(Pictures.begin(), Pictures.end(), extension_of(path)) != Pictures.end();
+}
+
 void run(const InfoArguments& options, const Session& session) {
     for (const std::filesystem::path& file : cubemap::environment_files(options.path))
         static_cast<void>(files::size(file)); // a name that is not there says so first
@@ -126,7 +135,7 @@ void run(const InfoArguments& options, const Session& session) {
         describe_plan(options.path, session);
     else if (is_of_prt)
         describe_part(options.path, session);
-    else if (cubemap::is_environment_name(options.path))
+    else if (is_environment(options.path))
         describe_environment({options.path, options.layout, options.picture}, session);
     else
         describe_mesh({options.path, options.picture, options.pose}, session);

@@ -7,6 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "mesh/opacity.h"
+#include "mesh/subject.h"
+
 namespace relumine::mesh {
 
 namespace {
@@ -96,7 +99,7 @@ void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
             fmt::format("floor: expected at most {} vertices in all, got {}", MaxVertices,
                         num_vertices + first));
 
-    const Bounds box = bounds(mesh);
+    const Bounds box = extent(mesh).box;
     const double horizontal =
         std::max(double{box.max.x} - box.min.x, double{box.max.z} - box.min.z);
     // Twice as high as wide, and a low sun's shadow would leave the floor.
@@ -111,6 +114,41 @@ void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
     append_floor_vertices(mesh, n, center, side,
                           static_cast<float>(height_below(box, center, side)));
     append_floor_triangles(mesh, n, first);
+}
+
+float floor_gap(const TriangleMesh& mesh, std::size_t first) {
+    constexpr float PartOfGap = 0.25f; // floats are sparse far from the origin
+    if (first >= mesh.num_vertices())
+        return 0.0f;
+    float lowest = std::numeric_limits<float>::infinity();
+    for (const Triangle& triangle : mesh.triangles)
+        if (triangle[0] < first)
+            for (const std::uint32_t vertex : triangle)
+                lowest = std::min(lowest, mesh.positions[vertex].y);
+    const float gap = lowest - mesh.positions[first].y;
+    const bool stands_flat =
+        gap > 0.0f &&
+        std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& triangle) {
+            return triangle[0] < first &&
+                   std::all_of(
+                       triangle.begin(), triangle.end(),
+                       [&](std::uint32_t vertex) {
+                           return mesh.positions[vertex].y <= lowest + PartOfGap * gap;
+                       });
+        });
+    return stands_flat && std::isfinite(gap) ? gap : 0.0f;
+}
+
+TriangleMesh with_raised_floor(const TriangleMesh& mesh, std::size_t first, float gap) {
+    TriangleMesh raised = blockers_of(mesh);
+    if (raised.materials.empty()) { // backs that are not shown
+        raised.triangle_materials = mesh.triangle_materials;
+        for (const Material& material : mesh.materials)
+            raised.materials.push_back(without_colors(material));
+    }
+    for (glm::vec3& position : std::span(raised.positions).subspan(first))
+        position.y += gap;
+    return raised;
 }
 
 FloorPlace floor_place(std::span<const glm::vec3> positions, std::uint32_t n) {

@@ -30,6 +30,15 @@ namespace relumine::mesh {
 ///          and a floor that needs more than 32-bit indices or float coordinates.
 void append_floor(TriangleMesh& mesh, std::uint32_t n = 193, float scale = 4.0f);
 
+/// Returns how far an added floor, whose vertices begin at `first`, lies below what stands flat on
+/// it; 0 where nothing does. Eyes that look down on the floor see it raised by so much: they would
+/// look into the gap.
+[[nodiscard]] float floor_gap(const TriangleMesh& mesh, std::size_t first);
+
+/// Returns what an eye's rays need of a mesh, with its added floor raised.
+[[nodiscard]] TriangleMesh with_raised_floor(const TriangleMesh& mesh, std::size_t first,
+                                             float gap);
+
 /// Where an added floor lies.
 struct FloorPlace {
     /// x and z.

@@ -24,7 +24,7 @@ glm::dmat3 diagonal(double x, double y, double z) {
 /// A quarter turn about +Y. It carries +Z, the middle of OpenEXR's lat-long, to +X.
 const glm::dmat3 QuarterTurn = {{0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}, {1.0, 0.0, 0.0}};
 
-const std::array<Convention, 9> Conventions = {
+const std::array<Convention, 10> Conventions = {
     // Source:  ImfEnvmap.h.
     Convention{
         .name = "openexr",
@@ -64,6 +64,13 @@ const std::array<Convention, 9> Conventions = {
                .world_from_lat_long = QuarterTurn,
                .world_from_faces = diagonal(-1.0, 1.0, -1.0),
                .swaps_z_faces = true},
+    // Source:  measured with Babylon.js 9.31: the middle is +Z and the left quarter -X in its
+    //          left-handed scenes, and the middle -Z in right-handed ones.
+    Convention{.name = "babylonjs",
+               .mathematics = "u = 1/2 + atan2(x, -z) / 2 pi, v = acos(y) / pi (right-handed "
+                              "scenes; left-handed ones have our (x, y, -z))",
+               .layouts = LatLongOnly,
+               .world_from_lat_long = diagonal(-1.0, 1.0, -1.0)},
     // Source:  OpenGL 4.6, table 8.19. With the world direction as the texture coordinate, sc,
     //          tc = (-z, -y) (z, -y) (x, z) (x, -z) (x, -y) (-x, -y).
     Convention{.name = "opengl",

@@ -178,6 +178,8 @@ EnvironmentImage understood(ImageFile file, const LoadOptions& options, const st
     const float least_infinity = file.is_half ? MostOfHalves : 0.0f;
     static_cast<Picture&>(image) = static_cast<Picture&&>(file);
     interpret(file, options, path, image);
+    if (image.layout == Layout::LatLong) // of others some pixels show no direction
+        image.num_transparent = file.num_transparent;
     image.bad_pixels = find_bad_pixels(image);
     BadPixels& bad = image.bad_pixels;
     if (bad.count() == 0)

@@ -97,6 +97,8 @@ struct EnvironmentImage : Picture {
     std::string assumptions;
     /// Bad pixels as they were in the file.
     BadPixels bad_pixels;
+    /// Pixels of alpha 0 in the file: no light comes from them.
+    std::size_t num_transparent = 0;
     /// True if bad pixels were replaced: all of them, or the few negative ones that every file may
     /// have.
     bool fixed = false;

@@ -1,5 +1,6 @@
 // Reads OpenEXR pictures in memory.
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <cstring>
 #include <set>
@@ -229,6 +230,9 @@ private:
         const std::uint32_t band_height =
             header.hasTileDescription() ? std::max(256U, header.tileDescription().ySize) : 256U;
         const std::uint32_t num_bands = (window_.height + band_height - 1) / band_height;
+        const std::string alpha_name = channels_.layer + (channels_.names[0] == "r" ? "a" : "A");
+        const bool has_alpha = header.channels().findChannel(alpha_name.c_str()) != nullptr;
+        std::atomic<std::size_t> num_transparent = 0;
         files::parallel_for(0U, num_bands, [&](std::uint32_t band) {
             MemoryInput stream(bytes_);
             Imf::MultiPartInputFile file(stream, 0);
@@ -243,12 +247,23 @@ private:
                     Imf::Slice::Make(Imf::FLOAT, reinterpret_cast<float*>(image.pixels.data()) + i,
                                      {window_.x, window_.y}, window_.width, window_.height,
                                      sizeof(glm::vec3), sizeof(glm::vec3) * window_.width));
-            part.setFrameBuffer(buffer);
             const std::uint32_t first = band * band_height;
             const std::uint32_t last = std::min(first + band_height, window_.height) - 1;
-            part.readPixels(window_.y + static_cast<int>(first),
-                            window_.y + static_cast<int>(last));
+            const int top = window_.y + static_cast<int>(first);
+            std::vector<float> alpha;
+            if (has_alpha) {
+                alpha.resize(std::size_t{window_.width} * (last - first + 1));
+                buffer.insert(alpha_name,
+                              Imf::Slice::Make(Imf::FLOAT, alpha.data(), {window_.x, top},
+                                               window_.width, last - first + 1, sizeof(float),
+                                               sizeof(float) * window_.width));
+            }
+            part.setFrameBuffer(buffer);
+            part.readPixels(top, window_.y + static_cast<int>(last));
+            num_transparent +=
+                static_cast<std::size_t>(std::count(alpha.begin(), alpha.end(), 0.0f));
         });
+        image.num_transparent = num_transparent;
         if (channels_.kind == Channels::Kind::Luminance) {
             for (glm::vec3& pixel : image.pixels)
                 pixel = glm::vec3(pixel.x);

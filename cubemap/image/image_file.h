@@ -25,6 +25,8 @@ struct ImageFile : Picture {
     bool is_half = false;
     /// What a user may want to know, for example "luminance only".
     std::vector<std::string> remarks;
+    /// Pixels of alpha 0.
+    std::size_t num_transparent = 0;
 };
 
 /// More pixels than any environment has: a cube of 6 x 9459^2. A larger file is refused as damaged

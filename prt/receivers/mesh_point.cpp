@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <glm/geometric.hpp>
@@ -21,11 +22,12 @@ glm::vec3 unit_or_zero(const glm::dvec3& v) {
     return length > 0.0 ? glm::vec3(v / length) : glm::vec3(0.0f);
 }
 
-/// Whether a lift leads to the smooth surface. Lifts along the surface lead a vertex out of another
-/// solid, and points beside it do not follow.
+/// The least cosine between a normal and a lift that leads outwards or inwards.
+constexpr float CosineOfLift = 0.8f;
+
+/// Whether a lift leads to the smooth surface. Points beside a vertex do not follow other lifts.
 bool leads_outwards(const glm::vec3& lift, const glm::vec3& normal) {
-    constexpr float LeastCosine = 0.8f;
-    return glm::dot(lift, normal) > LeastCosine * glm::length(lift);
+    return glm::dot(lift, normal) > CosineOfLift * glm::length(lift);
 }
 
 /// Returns a component of a normal map's vector. Bytes of 127 and 128 both mean 0, so that a flat
@@ -44,6 +46,52 @@ glm::vec3 value_at(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> va
     const float first = 1.0f - point.barycentric.x - point.barycentric.y;
     return first * values[triangle[0]] + point.barycentric.x * values[triangle[1]] +
            point.barycentric.y * values[triangle[2]];
+}
+
+namespace {
+
+using Weights = std::array<double, 3>;
+
+Weights weights_of(const MeshPoint& point) {
+    const glm::dvec2 at(point.barycentric);
+    return {1.0 - at.x - at.y, at.x, at.y};
+}
+
+/// Returns the heights of a triangle over its sides, each across from its corner.
+Weights heights(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
+    std::array<glm::dvec3, 3> at{};
+    for (std::size_t k = 0; k < 3; ++k)
+        at[k] = glm::dvec3(mesh.positions[mesh.triangles[triangle][k]]);
+    const double area = glm::length(glm::cross(at[1] - at[0], at[2] - at[0]));
+    return {area / glm::distance(at[1], at[2]), area / glm::distance(at[2], at[0]),
+            area / glm::distance(at[0], at[1])};
+}
+
+} // namespace
+
+unsigned sides_at(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
+    constexpr double Roundings = 4.0 * std::numeric_limits<float>::epsilon();
+    const Weights weights = weights_of(point), over = heights(mesh, point.triangle);
+    double largest = 0.0;
+    for (const std::uint32_t corner : mesh.triangles[point.triangle])
+        largest = std::max(largest, glm::length(glm::dvec3(mesh.positions[corner])));
+    unsigned sides = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        if (weights[k] * over[k] <= Roundings * largest)
+            sides |= 1u << k;
+    return sides;
+}
+
+MeshPoint off_sides(const mesh::TriangleMesh& mesh, const MeshPoint& point, unsigned sides,
+                    float step) {
+    constexpr double LargestPart = 1.0 / 12.0; // of a height: a quarter of the way to the centre
+    const Weights over = heights(mesh, point.triangle);
+    Weights weights = weights_of(point);
+    for (std::size_t k = 0; k < 3; ++k)
+        if ((sides >> k & 1u) != 0 && over[k] > 0.0)
+            weights[k] = std::min(double{step} / over[k], LargestPart);
+    const double sum = weights[0] + weights[1] + weights[2];
+    return {.triangle = point.triangle, .barycentric = {weights[1] / sum, weights[2] / sum}};
 }
 
 glm::vec2 uv_at(const mesh::TriangleMesh& mesh, const MeshPoint& point, std::uint32_t uv_set) {
@@ -142,6 +190,10 @@ glm::vec3 smooth_position(const mesh::TriangleMesh& mesh, const MeshPoint& point
     constexpr float Edge = 0.6f, Smooth = 0.75f;
     const float part = std::clamp((least_cosine - Edge) / (Smooth - Edge), 0.0f, 1.0f);
     return value_at(mesh, mesh.positions, point) + lift + part * moved;
+}
+
+bool leads_along(const glm::vec3& lift, const glm::vec3& normal) {
+    return !(std::abs(glm::dot(lift, normal)) >= CosineOfLift * glm::length(lift));
 }
 
 std::vector<MeshPoint> random_points(const mesh::TriangleMesh& mesh, std::size_t count,

@@ -25,6 +25,14 @@ struct MeshPoint {
 [[nodiscard]] glm::vec3 value_at(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> values,
                                  const MeshPoint& point);
 
+/// Returns the sides of its triangle that a point lies on: bit k for the side across from corner k.
+[[nodiscard]] unsigned sides_at(const mesh::TriangleMesh& mesh, const MeshPoint& point);
+
+/// Returns the point moved off some sides of its triangle, to `step` inside of it. On a side it
+/// would lie in the plane of a surface that meets the triangle there, and look past it.
+[[nodiscard]] MeshPoint off_sides(const mesh::TriangleMesh& mesh, const MeshPoint& point,
+                                  unsigned sides, float step);
+
 /// Returns the mesh's uv at a point, of a set; 0 where it has none.
 [[nodiscard]] glm::vec2 uv_at(const mesh::TriangleMesh& mesh, const MeshPoint& point,
                               std::uint32_t uv_set);
@@ -51,6 +59,10 @@ struct MeshPoint {
 ///
 /// Based on: J. Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021.
 [[nodiscard]] glm::vec3 smooth_position(const mesh::TriangleMesh& mesh, const MeshPoint& point);
+
+/// Whether a vertex's lift leads along its surface, out of a solid that hides it. All others lead
+/// to the smooth surface, or back from what touches the vertex.
+[[nodiscard]] bool leads_along(const glm::vec3& lift, const glm::vec3& normal);
 
 /// Returns `count` points of the surface chosen at random, evenly by area; none for a mesh without
 /// an area. The same seed gives the same points. They are sorted by triangle.

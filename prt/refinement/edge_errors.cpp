@@ -4,6 +4,7 @@
 #include <array>
 
 #include "files/parallel.h"
+#include "mesh/subject.h"
 #include "prt/refinement/large_triangles.h"
 
 namespace relumine::prt {
@@ -28,8 +29,8 @@ constexpr std::size_t PartsWithBounds = 16;
 EdgeErrors::EdgeErrors(LitSurface& surface, const HiddenVertices& hidden,
                        const RefineOptions& options)
     : surface_(surface), hidden_(hidden), large_(large_side(surface.mesh())),
-      min_edge_(options.min_edge.value_or(ShortestEdge * mesh::bounds(surface.mesh()).diagonal())),
-      is_curved_(options.curved) {}
+      min_edge_(options.min_edge.value_or(ShortestEdge * mesh::scale(surface.mesh()))),
+      is_curved_(options.curved), subject_(mesh::subject_bounds(surface.mesh())) {}
 
 void EdgeErrors::add_new_edges() {
     bound_new_edges();
@@ -131,9 +132,16 @@ void EdgeErrors::ask_large_triangles() {
     std::vector<Inside> points;
     for (const std::uint32_t triangle : surface_.split().changed_triangles()) {
         const std::uint32_t edge = surface_.split().longest_edge(triangle);
-        if (surface_.split().length(edge) > large_ && may_split(edge))
-            for (const glm::vec2& at : points_inside(surface_.split().length(edge) / large_))
+        const float parts = surface_.split().length(edge) / large_;
+        if (!(parts > 1.0f) || !may_split(edge))
+            continue;
+        const auto add = [&](const std::vector<glm::vec2>& inside) {
+            for (const glm::vec2& at : inside)
                 points.push_back({triangle, {1.0f - at.x - at.y, at.x, at.y}});
+        };
+        add(points_inside(parts));
+        if (parts > MostParts)
+            add(points_near(surface_.mesh(), surface_.mesh().triangles[triangle], subject_));
     }
     for (std::size_t first = 0; first < points.size(); first += PointsPerStep)
         ask_inside(

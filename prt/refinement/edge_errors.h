@@ -65,6 +65,7 @@ private:
     const HiddenVertices& hidden_;
     float large_, min_edge_;
     bool is_curved_;
+    mesh::Bounds subject_;
     /// [num_edges]. Of edges that were not asked, a bound.
     std::vector<float> errors_;
     std::vector<bool> is_asked_, is_candidate_;

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "prt/receivers/mesh_point.h"
+#include "prt/visibility/ray_scene.h"
 
 namespace relumine::prt {
 
@@ -87,28 +88,82 @@ std::vector<HiddenVertices::Way> HiddenVertices::ways_out() {
             if (!is_movable_[a])
                 add(triangle[(k + 2) % 3]);
         }
+    std::vector<float> parts(ways.size());
     for (int i = 0; i < Bisections; ++i) {
-        Receivers receivers;
-        for (const Way& way : ways) {
-            const float part = 0.5f * (way.hidden + way.lit);
-            surface_.add_mean(std::array{way.vertex, way.towards}, std::array{1.0f - part, part},
-                              receivers);
-            receivers.positions.back() +=
-                (1.0f - part) * surface_.lift(way.vertex) + part * surface_.lift(way.towards);
-        }
-        const std::vector<Bits> bits = surface_.trace(receivers);
+        for (std::size_t j = 0; j < ways.size(); ++j)
+            parts[j] = 0.5f * (ways[j].hidden + ways[j].lit);
+        const std::vector<int> counts = num_lit_at(ways, parts);
         for (std::size_t j = 0; j < ways.size(); ++j) {
             // Beside a solid half of the light is left. Gaps between solids let in little.
             const int least =
                 std::max(CoarseDirections::FewestDirections,
                          CoarseDirections::num_lit(surface_.bits(ways[j].towards)) / 4);
-            const int num_lit = CoarseDirections::num_lit(bits[j]);
-            const bool is_dark = num_lit < least;
-            (is_dark ? ways[j].hidden : ways[j].lit) = 0.5f * (ways[j].hidden + ways[j].lit);
-            (is_dark ? ways[j].num_hidden : ways[j].num_lit) = num_lit;
+            const bool is_dark = counts[j] < least;
+            (is_dark ? ways[j].hidden : ways[j].lit) = parts[j];
+            (is_dark ? ways[j].num_hidden : ways[j].num_lit) = counts[j];
         }
     }
+    leave_gaps(ways);
+    std::erase_if(ways, [this](const Way& way) { return passes_a_sheet(way); });
     return ways;
+}
+
+/// Returns how many directions light each way at some part of it.
+std::vector<int> HiddenVertices::num_lit_at(std::span<const Way> ways,
+                                            std::span<const float> parts) {
+    Receivers receivers;
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+        surface_.add_mean(std::array{ways[i].vertex, ways[i].towards},
+                          std::array{1.0f - parts[i], parts[i]}, receivers);
+        receivers.positions.back() += (1.0f - parts[i]) * surface_.lift(ways[i].vertex) +
+                                      parts[i] * surface_.lift(ways[i].towards);
+    }
+    std::vector<int> counts;
+    for (const Bits& bits : surface_.trace(receivers))
+        counts.push_back(CoarseDirections::num_lit(bits));
+    return counts;
+}
+
+/// Under a solid that stands a hair above the surface, light ends within some hairs, not at once.
+/// Where there is more light a little farther along a way, it ends there.
+void HiddenVertices::leave_gaps(std::vector<Way>& ways) {
+    constexpr float Hairs = 8.0f; // of the bias; an added floor lies two below
+    const std::vector<glm::vec3>& positions = surface_.mesh().positions;
+    std::vector<float> parts(ways.size());
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+        const float length = glm::distance(positions[ways[i].vertex], positions[ways[i].towards]);
+        parts[i] = std::min(ways[i].lit + Hairs * surface_.bias() / length, 1.0f);
+    }
+    const std::vector<int> counts = num_lit_at(ways, parts);
+    for (std::size_t i = 0; i < ways.size(); ++i)
+        if (8 * counts[i] > 9 * ways[i].num_lit) {
+            ways[i].lit = parts[i];
+            ways[i].num_lit = counts[i];
+        }
+}
+
+/// Whether the lit end lies beyond a surface that is no solid around the hidden vertex: from there
+/// the first surface on the way is met from its front, or from the lit end from its back.
+bool HiddenVertices::passes_a_sheet(const Way& way) const {
+    const RayScene* const rays = surface_.blockers().ray_scene();
+    if (rays == nullptr)
+        return false;
+    Receivers ends;
+    for (const float part : {0.0f, way.lit}) {
+        surface_.add_mean(std::array{way.vertex, way.towards}, std::array{1.0f - part, part}, ends);
+        ends.positions.back() =
+            ray_origin(ends.positions.back() + (1.0f - part) * surface_.lift(way.vertex) +
+                           part * surface_.lift(way.towards),
+                       ends.normals.back(), surface_.bias());
+    }
+    std::vector<RayScene::Crossing> crossings;
+    rays->crossings(ends.positions[0], ends.positions[1], crossings);
+    if (crossings.empty())
+        return false;
+    const auto [first, last] =
+        std::minmax_element(crossings.begin(), crossings.end(),
+                            [](const auto& a, const auto& b) { return a.part < b.part; });
+    return first->is_front || last->is_front;
 }
 
 mesh::TriangleMesh HiddenVertices::moved_out() {

@@ -42,6 +42,10 @@ private:
         return CoarseDirections::is_hidden(surface_.bits(vertex));
     }
     [[nodiscard]] std::vector<Way> ways_out();
+    void leave_gaps(std::vector<Way>& ways);
+    [[nodiscard]] std::vector<int> num_lit_at(std::span<const Way> ways,
+                                              std::span<const float> parts);
+    [[nodiscard]] bool passes_a_sheet(const Way& way) const;
     static void look_from_the_end(mesh::TriangleMesh& mesh, const Way& way);
     static bool move(mesh::TriangleMesh& mesh, const Way& way,
                      const std::vector<std::uint32_t>& triangles);

@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "mesh/subject.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/refinement/large_triangles.h"
 #include "prt/visibility/ray_scene.h"
@@ -47,7 +48,7 @@ LitSurface::LitSurface(const mesh::TriangleMesh& base, const Blockers& blockers,
                        const RefineOptions& options, const Progress& progress)
     : base_(base), blockers_(blockers), progress_(progress), split_(without_lifts(base)),
       directions_(options.light ? &*options.light : nullptr), step_(automatic_bias(base)),
-      bias_(options.bias.value_or(step_)), fine_(FineEdge * mesh::bounds(base).diagonal()),
+      bias_(options.bias.value_or(step_)), fine_(FineEdge * mesh::scale(base)),
       is_curved_(options.curved), is_refined_(triangles_to_refine(base, options.coarse_edge)),
       lifts_(base.lifts) {}
 

@@ -31,6 +31,8 @@ public:
     [[nodiscard]] const mesh::SplitMesh& split() const { return split_; }
     [[nodiscard]] const mesh::TriangleMesh& mesh() const { return split_.mesh(); }
     [[nodiscard]] const CoarseDirections& directions() const { return directions_; }
+    [[nodiscard]] const Blockers& blockers() const { return blockers_; }
+    [[nodiscard]] float bias() const { return bias_; }
     /// Points that were traced so far.
     [[nodiscard]] std::size_t num_points() const { return num_points_; }
 

@@ -66,6 +66,7 @@ public:
     void clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
                        std::span<std::uint64_t> rays) const override;
     [[nodiscard]] const Blockers* settled() const override { return settled_.get(); }
+    [[nodiscard]] const RayScene* ray_scene() const override { return exact_->ray_scene(); }
 
 private:
     struct Trees;

@@ -5,8 +5,8 @@
 
 namespace relumine::prt {
 
-/// Returns the bias to use where none is given: 1e-4 of the blockers' bounding-box diagonal. It is
-/// a thousand times the spacing of floats at the box's size, and well below the edge length of a
+/// Returns the bias to use where none is given: 1e-4 of the blockers' mesh::scale(). It is
+/// a thousand times the spacing of floats at that size, and well below the edge length of a
 /// mesh of a million triangles.
 ///
 /// Far from the origin floats are so sparse that such a bias would be rounded away, and every

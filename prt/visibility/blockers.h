@@ -10,6 +10,8 @@
 
 namespace relumine::prt {
 
+class RayScene;
+
 /// Rays of a packet: directions that one receiver looks into together.
 inline constexpr std::size_t PacketSize = 16;
 
@@ -85,6 +87,10 @@ public:
     /// Returns the same blockers with no surface that light passes by chance
     /// (prt/visibility/see_through.h). Null: they have none. As long-lived as this object.
     [[nodiscard]] virtual const Blockers* settled() const { return nullptr; }
+
+    /// Returns what finds the surfaces on single rays. Null: nothing does. As long-lived as this
+    /// object.
+    [[nodiscard]] virtual const RayScene* ray_scene() const { return nullptr; }
 
 protected:
     Blockers(const Blockers&) = default;

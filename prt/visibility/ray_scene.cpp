@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -14,6 +16,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "prt/visibility/coplanar_faces.h"
 #include "prt/visibility/embree.h"
 #include "prt/visibility/half_line.h"
 #include "prt/visibility/triangle_verdict.h"
@@ -79,6 +82,10 @@ struct Query {
     Nearest* nearest = nullptr;
     /// The layer whose successor is looked for; null: the first is.
     const Nearest* behind = nullptr;
+    /// Decides between surfaces in one plane; null: the nearest is taken.
+    const CoplanarFaces* coplanar = nullptr;
+    /// Where all that the ray crosses is asked for
+    std::vector<RayScene::Crossing>* crossings = nullptr;
 
     explicit Query(bool packet, RayOf whose = RayOf::Light) : is_packet(packet), of(whose) {
         embree::begin(context);
@@ -145,6 +152,14 @@ struct Candidate {
                       glm::dot(corners[2], corners[2])}));
     }
 
+    [[nodiscard]] RayScene::Crossing crossing() const {
+        const auto& [a, b, c] = buffers.triangles[triangle];
+        return {.part = static_cast<float>(meeting_of(corners, direction).distance),
+                .is_front = glm::dot(glm::cross(corners[1] - corners[0], corners[2] - corners[0]),
+                                     direction) < 0.0,
+                .corners = {buffers.positions[a], buffers.positions[b], buffers.positions[c]}};
+    }
+
     [[nodiscard]] bool is_in_doubt(const Query& query) const {
         return query.is_packet && !hits_for_certain(corners, direction);
     }
@@ -189,6 +204,11 @@ void keep_nearest(const RTCFilterFunctionNArguments* hits) {
             hits->valid[i] = 0;
             continue;
         }
+        if (query.crossings != nullptr) {
+            query.crossings->push_back(candidate.crossing());
+            hits->valid[i] = 0;
+            continue;
+        }
         if (candidate.is_in_doubt(query))
             query.doubtful |= 1u << candidate.ray;
         const Meeting meeting = meeting_of(candidate.corners, candidate.direction);
@@ -205,8 +225,16 @@ void keep_nearest(const RTCFilterFunctionNArguments* hits) {
             continue;
         }
         Nearest& nearest = query.nearest[candidate.ray];
-        if (std::tie(order, candidate.triangle) < std::tie(nearest.order, nearest.triangle))
+        const bool is_nearer =
+            std::tie(order, candidate.triangle) < std::tie(nearest.order, nearest.triangle);
+        const bool is_tie =
+            query.coplanar != nullptr && std::abs(order - nearest.order) <= about &&
+            query.coplanar->covers(is_nearer ? nearest.triangle : candidate.triangle,
+                                   is_nearer ? candidate.triangle : nearest.triangle);
+        const double least = std::min(nearest.order, order);
+        if (is_nearer != is_tie)
             nearest = {meeting, order, candidate.triangle, nearest.reach};
+        nearest.order = least;
         reach = nearest.reach = std::min(nearest.reach, static_cast<float>(order + about));
     }
 }
@@ -247,7 +275,13 @@ struct RayScene::Impl {
     SceneHandle scene;
     embree::Flags packets = embree::Coherent;
     std::unique_ptr<const Blockers> settled;
+    /// Of Embree's triangles
+    std::optional<const CoplanarFaces> coplanar;
 
+    /// What decides for rays between surfaces in one plane.
+    [[nodiscard]] const CoplanarFaces* coplanar_for(RayOf of) const {
+        return is_eye(of) ? &*coplanar : nullptr;
+    }
     std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
                            std::span<const float, PacketSize> distances, std::uint32_t active,
                            RayOf of) const;
@@ -301,6 +335,8 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
         .positions = fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions),
         .triangles = fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles),
         .see_through = std::move(see_through)};
+    impl_->coplanar.emplace(std::span(impl_->buffers.positions, positions.size()),
+                            std::span(impl_->buffers.triangles, triangles.size()));
     rtcSetGeometryUserData(geometry, &impl_->buffers);
     rtcSetGeometryOccludedFilterFunction(geometry, keep_blockers);
     rtcSetGeometryIntersectFilterFunction(geometry, keep_nearest);
@@ -434,11 +470,24 @@ RayScene::Stops RayScene::stops(std::uint32_t triangle) const {
 std::optional<Hit> RayScene::closest_hit(const glm::vec3& origin, const glm::vec3& direction,
                                          RayOf of) const {
     Query query(false, of);
+    query.coplanar = impl_->coplanar_for(of);
     Nearest nearest;
     query.nearest = &nearest;
     if (!impl_->trace(origin, direction, query))
         return std::nullopt;
     return hit_of(nearest);
+}
+
+void RayScene::crossings(const glm::vec3& from, const glm::vec3& to,
+                         std::vector<Crossing>& crossings) const {
+    crossings.clear();
+    Query query(false, RayOf::SettledLight);
+    query.crossings = &crossings;
+    RTCRayHit ray{};
+    ray.ray = ray_of(from, to - from);
+    ray.ray.tfar = 1.0f;
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    embree::intersect(impl_->scene.get(), query.context, ray);
 }
 
 void RayScene::layers(const glm::vec3& origin, const glm::vec3& direction,
@@ -468,6 +517,7 @@ std::uint32_t RayScene::closest_hits(const glm::vec3& origin, const DirectionPac
     fill_rays(origin, directions, active, valid, rays.ray);
     std::fill(std::begin(rays.hit.geomID), std::end(rays.hit.geomID), RTC_INVALID_GEOMETRY_ID);
     Query query(true, of);
+    query.coplanar = impl_->coplanar_for(of);
     std::array<Nearest, PacketSize> nearest;
     query.nearest = nearest.data();
     embree::intersect(impl_->scene.get(), query.context,

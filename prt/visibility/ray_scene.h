@@ -1,6 +1,7 @@
 // Rays against blockers. The only user of Embree.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -81,6 +82,19 @@ public:
                                std::uint32_t active, std::span<Hit, PacketSize> hits,
                                RayOf of = RayOf::Light) const;
 
+    /// A surface that lies between two points.
+    struct Crossing {
+        /// Part of the way
+        float part = 0.0f;
+        /// The way meets its front.
+        bool is_front = false;
+        std::array<glm::vec3, 3> corners{};
+    };
+    /// Finds all that lies on the way from one point to another, in any order. Thin surfaces count
+    /// as for RayOf::SettledLight.
+    void crossings(const glm::vec3& from, const glm::vec3& to,
+                   std::vector<Crossing>& crossings) const;
+
     /// A surface that the eye meets, and what it leaves of the light behind it.
     struct Layer {
         Hit hit;
@@ -98,6 +112,7 @@ public:
     [[nodiscard]] Stops stops(std::uint32_t triangle) const;
 
     [[nodiscard]] const Blockers* settled() const override;
+    [[nodiscard]] const RayScene* ray_scene() const override { return this; }
     /// What rays pass; never null.
     [[nodiscard]] const std::shared_ptr<const SeeThrough>& see_through() const;
 

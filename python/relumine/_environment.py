@@ -22,8 +22,8 @@ class Environment:
     pixels    (H, 2 H, 3): a lat-long. (6, R, R, 3): the cube faces +X -X +Y -Y +Z -Z. Any other
               (H, W, 3) with `layout`. Linear RGB radiance.
     layout    latlong, cube, strip, cross, hcross, angular, mirrorball or octahedral
-    convention  whose axes the picture has: openexr, usd, mitsuba, blender, threejs, opengl,
-              directx, pbrt, pbrt-v2
+    convention  whose axes the picture has: openexr, usd, mitsuba, blender, threejs, babylonjs,
+              opengl, directx, pbrt, pbrt-v2
     face_resolution  R of the cube map that it becomes; 0: as fine as the picture, and finer where
               single pixels hold much of the light
     fix_env   replaces NaN and negative radiance by 0, infinite by the largest finite; otherwise

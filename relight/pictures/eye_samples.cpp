@@ -15,16 +15,15 @@ constexpr std::size_t TrianglesPerRay = 4;
 
 } // namespace
 
-EyeSamples::EyeSamples(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
-                       const glm::vec3& eye, const prt::PictureRays& grid,
-                       const PictureTiles& tiles, std::size_t max_bytes,
-                       const std::stop_token& stop)
-    : rays_(rays), eye_(eye), grid_(grid), tiles_(tiles),
-      twins_(std::make_unique<const prt::TwinTriangles>(mesh)) {
+EyeSamples::EyeSamples(const SeenMesh& mesh, const prt::RayScene& rays, const glm::vec3& eye,
+                       const prt::PictureRays& grid, const PictureTiles& tiles,
+                       std::size_t max_bytes, const std::stop_token& stop)
+    : mesh_(mesh), eye_(eye), grid_(grid), tiles_(tiles),
+      twins_(std::make_unique<const prt::TwinTriangles>(mesh.mesh())) {
     const std::size_t per_pixel = grid.samples_per_pixel();
     const std::size_t num_samples = std::size_t{tiles.width} * tiles.height * per_pixel;
-    if (mesh.num_triangles() <= TrianglesPerRay * num_samples)
-        raster_.emplace(mesh, rays, *twins_, eye, grid, tiles);
+    if (mesh.mesh().num_triangles() <= TrianglesPerRay * num_samples)
+        raster_.emplace(mesh.mesh(), rays, *twins_, eye, grid, tiles);
     if (num_samples > max_bytes / sizeof(EyeSample))
         return;
     std::vector<EyeSample> samples(num_samples);
@@ -62,6 +61,7 @@ void EyeSamples::find(std::uint32_t tile, const PixelRectangle& pixels,
 }
 
 void EyeSamples::trace(const PixelRectangle& pixels, std::span<EyeSample> samples) const {
+    const prt::RayScene& rays = mesh_.rays();
     prt::DirectionPacket packet;
     std::array<prt::Hit, prt::PacketSize> hits;
     std::size_t done = 0;
@@ -70,7 +70,7 @@ void EyeSamples::trace(const PixelRectangle& pixels, std::span<EyeSample> sample
         for (std::size_t lane = num; lane < prt::PacketSize; ++lane)
             packet.set(lane, {packet.x[0], packet.y[0], packet.z[0]});
         const std::uint32_t found =
-            rays_.closest_hits(eye_, packet, (1u << num) - 1u, hits, prt::RayOf::Eye);
+            rays.closest_hits(eye_, packet, (1u << num) - 1u, hits, prt::RayOf::Eye);
         for (std::uint32_t lane = 0; lane < num; ++lane, ++done) {
             samples[done] = {};
             if ((found >> lane & 1u) == 0)

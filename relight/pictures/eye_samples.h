@@ -17,6 +17,7 @@
 #include "prt/visibility/ray_scene.h"
 #include "prt/visibility/twin_triangles.h"
 #include "relight/pictures/raster.h"
+#include "relight/pictures/seen_mesh.h"
 
 namespace relumine::relight {
 
@@ -55,10 +56,10 @@ private:
 class EyeSamples {
 public:
     /// Keeps what is found, 12 bytes a sample, if it comes to at most `max_bytes`; finds it anew
-    /// each time otherwise. The mesh and rays must outlive this object.
+    /// each time otherwise. `rays` say where an eye's rays stop. Both must outlive this object.
     ///
     /// Cost:    O(triangles), and of all samples where they are kept.
-    EyeSamples(const mesh::TriangleMesh& mesh, const prt::RayScene& rays, const glm::vec3& eye,
+    EyeSamples(const SeenMesh& mesh, const prt::RayScene& rays, const glm::vec3& eye,
                const prt::PictureRays& grid, const PictureTiles& tiles, std::size_t max_bytes,
                const std::stop_token& stop);
 
@@ -73,7 +74,7 @@ private:
     void find(std::uint32_t tile, const PixelRectangle& pixels, std::span<EyeSample> samples) const;
     void trace(const PixelRectangle& pixels, std::span<EyeSample> samples) const;
 
-    const prt::RayScene& rays_;
+    const SeenMesh& mesh_;
     glm::vec3 eye_;
     prt::PictureRays grid_;
     PictureTiles tiles_;

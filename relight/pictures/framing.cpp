@@ -8,83 +8,11 @@
 
 #include <glm/geometric.hpp>
 
+#include "mesh/subject.h"
+
 namespace relumine::relight {
 
 namespace {
-
-/// The box around marked vertices, and whether there are any.
-struct MarkedBox {
-    mesh::Bounds box;
-    bool any = false;
-};
-
-MarkedBox box_of(const mesh::TriangleMesh& mesh, const std::vector<bool>& is_marked) {
-    MarkedBox result;
-    for (std::size_t v = 0; v < mesh.num_vertices(); ++v) {
-        if (!is_marked[v])
-            continue;
-        const glm::vec3& position = mesh.positions[v];
-        result.box.min = result.any ? glm::min(result.box.min, position) : position;
-        result.box.max = result.any ? glm::max(result.box.max, position) : position;
-        result.any = true;
-    }
-    return result;
-}
-
-/// Marks the vertices of triangles among `of` that rise above a height.
-std::vector<bool> above(const mesh::TriangleMesh& mesh, const std::vector<bool>& of, float height) {
-    std::vector<bool> marks(mesh.num_vertices(), false);
-    for (const mesh::Triangle& triangle : mesh.triangles)
-        if (of[triangle[0]] && std::any_of(triangle.begin(), triangle.end(), [&](std::uint32_t v) {
-                return mesh.positions[v].y > height;
-            }))
-            for (const std::uint32_t v : triangle)
-                marks[v] = true;
-    return marks;
-}
-
-/// Marks the vertices of triangles among `of` that stay within the sides of a box.
-std::vector<bool> inside(const mesh::TriangleMesh& mesh, const std::vector<bool>& of,
-                         const mesh::Bounds& box) {
-    const glm::vec3 margin = 0.1f * box.size();
-    std::vector<bool> marks(mesh.num_vertices(), false);
-    for (const mesh::Triangle& triangle : mesh.triangles)
-        if (of[triangle[0]] && std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t v) {
-                const glm::vec3& at = mesh.positions[v];
-                return at.x >= box.min.x - margin.x && at.x <= box.max.x + margin.x &&
-                       at.z >= box.min.z - margin.z && at.z <= box.max.z + margin.z;
-            }))
-            for (const std::uint32_t v : triangle)
-                marks[v] = true;
-    return marks;
-}
-
-/// Marks the vertices of the objects on the ground: triangles wholly in the lowest horizontal plane
-/// are left out, and a wide plate under all the rest, unless there is nothing else.
-std::vector<bool> subject(const mesh::TriangleMesh& mesh, const mesh::Bounds& all) {
-    constexpr float Wider = 1.5f;
-    std::vector<bool> used(mesh.num_vertices(), false);
-    for (const mesh::Triangle& triangle : mesh.triangles)
-        for (const std::uint32_t v : triangle)
-            used[v] = true;
-    std::vector<bool> stands = above(mesh, used, all.min.y + 1e-3f * all.size().y);
-    const MarkedBox whole = box_of(mesh, stands);
-    if (!whole.any)
-        return used;
-    const auto width = [](const mesh::Bounds& box) {
-        return std::max(box.size().x, box.size().z);
-    };
-    // From thin plates to thick ones, so that little of the rest is cut off.
-    for (const float thickness : {0.001f, 0.003f, 0.01f, 0.02f}) {
-        const float height = whole.box.min.y + thickness * width(whole.box);
-        const MarkedBox upper = box_of(mesh, above(mesh, stands, height));
-        if (!upper.any)
-            return stands;
-        if (width(whole.box) > Wider * width(upper.box))
-            return inside(mesh, stands, upper.box);
-    }
-    return stands;
-}
 
 /// The largest and the smallest of values.
 struct Extent {
@@ -116,8 +44,9 @@ Camera framed(const mesh::TriangleMesh& mesh, const Framing& framing) {
     const double across = Filled * static_cast<double>(glm::length(axes.right));
     const double upwards = Filled * static_cast<double>(glm::length(axes.up));
 
-    const mesh::Bounds all = mesh::bounds(mesh);
-    const std::vector<bool> is_subject = subject(mesh, all);
+    const mesh::Extent extent = mesh::extent(mesh);
+    const mesh::Bounds& all = extent.box;
+    const std::vector<bool> is_subject = mesh::subject(mesh, extent);
     const glm::dvec3 middle = 0.5 * (glm::dvec3(all.min) + glm::dvec3(all.max));
     // A point at x, depth z is inside of two planes through the eye at (X, Z) where
     // |x - X| <= slope (z - Z): x - slope z <= X - slope Z, and -x - slope z <= -X - slope Z.
@@ -157,10 +86,6 @@ Camera framed(const mesh::TriangleMesh& mesh, const Framing& framing) {
     return {.eye = at(eye_z), .target = at(target_z), .fov_degrees = framing.fov_degrees};
 }
 
-mesh::Bounds subject_bounds(const mesh::TriangleMesh& mesh) {
-    return box_of(mesh, subject(mesh, mesh::bounds(mesh))).box;
-}
-
 namespace {
 
 /// What a ray meets first, and last.
@@ -172,11 +97,21 @@ struct Meeting {
     bool is_closed = false;
 };
 
+/// A mesh that may be a room, and which of its triangles are seen (mesh::Extent).
+struct Room {
+    const mesh::TriangleMesh& mesh;
+    const std::vector<bool>& counts;
+};
+
 /// Finds what rays from one point meet, triangle by triangle.
-std::vector<Meeting> meetings(const mesh::TriangleMesh& mesh, const glm::dvec3& from,
+std::vector<Meeting> meetings(const Room& room, const glm::dvec3& from,
                               const std::vector<glm::dvec3>& ways) {
+    const mesh::TriangleMesh& mesh = room.mesh;
     std::vector<Meeting> result(ways.size());
-    for (const mesh::Triangle& triangle : mesh.triangles) {
+    for (std::size_t t = 0; t < mesh.num_triangles(); ++t) {
+        if (!room.counts.empty() && !room.counts[t])
+            continue;
+        const mesh::Triangle& triangle = mesh.triangles[t];
         const glm::dvec3 a = glm::dvec3(mesh.positions[triangle[0]]) - from;
         const glm::dvec3 b = glm::dvec3(mesh.positions[triangle[1]]) - from;
         const glm::dvec3 c = glm::dvec3(mesh.positions[triangle[2]]) - from;
@@ -238,11 +173,11 @@ double way_out(const mesh::Bounds& box, const glm::dvec3& from, const glm::dvec3
 }
 
 /// Whether most rays from a point meet fronts, far away in the box. Strictness 1 takes many rays.
-bool is_inside_room(const mesh::TriangleMesh& mesh, const mesh::Bounds& box, const glm::dvec3& from,
+bool is_inside_room(const Room& room, const mesh::Bounds& box, const glm::dvec3& from,
                     std::uint32_t num_around, double strictness) {
     constexpr double Met = 0.7, Fronts = 0.65, NearBox = 0.55, Closed = 0.6, Height = 0.5;
     const std::vector<glm::dvec3> ways = ways_around(num_around, false);
-    const std::vector<Meeting> around = meetings(mesh, from, ways);
+    const std::vector<Meeting> around = meetings(room, from, ways);
     double met = 0.0, fronts = 0.0, near_box = 0.0, closed = 0.0, level_or_up = 0.0;
     double height = 0.0;
     for (std::size_t i = 0; i < ways.size(); ++i) {
@@ -273,17 +208,19 @@ std::optional<Camera> inside_room(const mesh::TriangleMesh& mesh, const Framing&
     constexpr double FromWall = 0.04;
     constexpr float FovDegrees = 60.0f;
     constexpr std::uint32_t NumAround = 32;
-    const mesh::Bounds box = subject_bounds(mesh);
+    const mesh::Extent extent = mesh::extent(mesh);
+    const Room room{mesh, extent.counts};
+    const mesh::Bounds box = mesh::bounds_of(mesh, mesh::subject(mesh, extent));
     const glm::dvec3 size(box.size());
     glm::dvec3 middle(box.center());
     middle.y = double{box.min.y} + EyeHeight * size.y;
     // Few rays tell most objects.
-    if (!is_inside_room(mesh, box, middle, 3, 0.7) || !is_inside_room(mesh, box, middle, 16, 1.0))
+    if (!is_inside_room(room, box, middle, 3, 0.7) || !is_inside_room(room, box, middle, 16, 1.0))
         return std::nullopt;
 
     // The eye is where the view is longest; of equal ones, to the front.
     const std::vector<glm::dvec3> level = ways_around(NumAround, true);
-    const std::vector<Meeting> walls = meetings(mesh, middle, level);
+    const std::vector<Meeting> walls = meetings(room, middle, level);
     double best = 0.0, back = 0.0;
     glm::dvec3 to_eye(framing.front);
     for (std::size_t i = 0; i < level.size(); ++i) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "mesh/subject.h"
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/camera.h"
 
@@ -32,14 +33,12 @@ struct Framing {
 
 /// Returns a camera that looks at the mesh, from the front, a little from the right and from above
 /// unless told otherwise. What stands on the ground fills two thirds of the picture's width or
-/// height and is in its middle. Triangles in the lowest horizontal plane are the ground, and so is
-/// a plate under all the rest that is half as wide again, unless there is nothing else.
+/// height and is in its middle (mesh::subject()).
 ///
 /// Cost:    O(vertices + triangles).
 [[nodiscard]] Camera framed(const mesh::TriangleMesh& mesh, const Framing& framing = {});
 
-/// Returns the box around what stands on the ground.
-[[nodiscard]] mesh::Bounds subject_bounds(const mesh::TriangleMesh& mesh);
+using mesh::subject_bounds;
 
 /// Returns a camera inside of a mesh that is a room, at eye height, with its back to an open side
 /// or the farthest wall; nothing for other meshes. In a room most rays from the middle meet the

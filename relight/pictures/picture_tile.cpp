@@ -186,8 +186,8 @@ std::span<const PictureTile::Layer> PictureTile::layers(std::uint32_t x, std::ui
     layers_.assign(1, {first});
     if (!scene_.rays.is_thin(first.triangle))
         return layers_;
-    scene_.rays.layers(scene_.eye, scene_.grid.direction(x, y, static_cast<std::uint32_t>(i)),
-                       found_);
+    scene_.seen.rays().layers(scene_.eye,
+                              scene_.grid.direction(x, y, static_cast<std::uint32_t>(i)), found_);
     layers_.clear();
     for (const prt::RayScene::Layer& layer : found_)
         layers_.push_back({{layer.hit.triangle, layer.hit.barycentric.x, layer.hit.barycentric.y},

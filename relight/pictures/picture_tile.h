@@ -18,6 +18,7 @@
 #include "relight/pictures/pixel_lights.h"
 #include "relight/pictures/refractions.h"
 #include "relight/pictures/sample_shading.h"
+#include "relight/pictures/seen_mesh.h"
 #include "relight/sharp/light_packets.h"
 #include "relight/sharp/shadow_rays.h"
 
@@ -27,6 +28,7 @@ namespace relumine::relight {
 struct TileScene {
     const mesh::TriangleMesh& mesh;
     const prt::RayScene& rays;
+    const SeenMesh& seen;
     const glm::vec3& eye;
     const prt::PictureRays& grid;
     const FadingFloor& floor;

@@ -10,6 +10,7 @@
 #include "relight/pictures/eye_samples.h"
 #include "relight/pictures/picture_tile.h"
 #include "relight/pictures/pixel_lights.h"
+#include "relight/pictures/seen_mesh.h"
 #include "relight/sharp/light_packets.h"
 
 namespace relumine::relight {
@@ -37,7 +38,8 @@ PictureView::PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& ra
                          const FadingFloor& floor, std::size_t max_bytes)
     : mesh_(mesh), rays_(rays), eye_(camera.eye), options_(options), floor_(floor),
       grid_(camera, options.width, options.height, options.samples_per_axis),
-      samples_(std::make_unique<const EyeSamples>(mesh, rays, camera.eye, grid_,
+      seen_(std::make_unique<const SeenMesh>(mesh, rays, floor, camera.eye)),
+      samples_(std::make_unique<const EyeSamples>(*seen_, rays, camera.eye, grid_,
                                                   PictureTiles{options.width, options.height},
                                                   max_bytes, options.work.stop)) {}
 PictureView::~PictureView() = default;
@@ -62,8 +64,8 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
     if (light.blockers != nullptr)
         light.blockers->prepare(picture.pixels.size() * light.lights.size());
     const PictureTiles tiles{options_.width, options_.height};
-    const TileScene scene{mesh_, rays_, eye_,    grid_, floor_,  *samples_,
-                          tiles, light, packets, beams, backdrop};
+    const TileScene scene{mesh_,     rays_, *seen_, eye_,    grid_, floor_,
+                          *samples_, tiles, light,  packets, beams, backdrop};
     std::mutex mutex;
     std::uint32_t num_drawn = 0;
     files::parallel_for(std::uint32_t{0}, tiles.count(), [&](std::uint32_t tile) {

@@ -48,6 +48,8 @@ struct FadingFloor {
     glm::vec2 center{0.0f};
     /// Opaque up to the first, gone from the second on, in between smooth.
     float opaque_radius = 0.0f, end_radius = 0.0f;
+    /// mesh::floor_gap().
+    float gap = 0.0f;
 
     [[nodiscard]] bool has(const mesh::Triangle& triangle) const {
         return triangle[0] >= first_vertex;
@@ -107,6 +109,7 @@ struct MeshLight {
 [[nodiscard]] glm::vec3 caught(const glm::vec3& radiance, const glm::vec3& open, float opacity);
 
 class EyeSamples;
+class SeenMesh;
 
 /// A camera's view of a still scene, traced once and drawn in any light.
 class PictureView {
@@ -146,6 +149,7 @@ private:
     PictureOptions options_;
     FadingFloor floor_;
     prt::PictureRays grid_;
+    std::unique_ptr<const SeenMesh> seen_;
     std::unique_ptr<const EyeSamples> samples_;
 };
 

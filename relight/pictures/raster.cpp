@@ -83,8 +83,8 @@ struct RowCutter {
 /// The nearest triangle of each sample of a rectangle.
 class Raster::Depths {
 public:
-    Depths(std::int32_t width, std::int32_t height)
-        : width_(width), height_(height),
+    Depths(std::int32_t width, std::int32_t height, const prt::CoplanarFaces& coplanar)
+        : width_(width), height_(height), coplanar_(coplanar),
           nearest_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
           triangles_(nearest_.size(), EyeSample::NoTriangle) {}
 
@@ -122,9 +122,17 @@ public:
             for (std::int32_t x = span.begin; x < span.end; ++x) {
                 const float near = start + static_cast<float>(x) * change;
                 float& nearest = nearest_[row + static_cast<std::size_t>(x)];
-                if (near > nearest) {
+                // Hundredfold what roundings make of equal depths.
+                constexpr float AboutAsNear = 1.0f - 0x1p-17f;
+                if (near <= AboutAsNear * nearest)
+                    continue;
+                std::uint32_t& seen = triangles_[row + static_cast<std::size_t>(x)];
+                const bool is_nearer = near > nearest;
+                if (AboutAsNear * near <= nearest ? is_nearer != covers(is_nearer ? seen : triangle,
+                                                                        is_nearer ? triangle : seen)
+                                                  : is_nearer) {
                     nearest = near;
-                    triangles_[row + static_cast<std::size_t>(x)] = triangle;
+                    seen = triangle;
                 }
             }
         }
@@ -137,7 +145,19 @@ public:
     [[nodiscard]] std::int32_t height() const { return height_; }
 
 private:
+    /// As CoplanarFaces has it; neighbouring samples ask the same.
+    [[nodiscard]] bool covers(std::uint32_t triangle, std::uint32_t other) {
+        if (triangle != asked_[0] || other != asked_[1]) {
+            asked_ = {triangle, other};
+            is_covered_ = coplanar_.covers(triangle, other);
+        }
+        return is_covered_;
+    }
+
     std::int32_t width_, height_;
+    const prt::CoplanarFaces& coplanar_;
+    std::array<std::uint32_t, 2> asked_{EyeSample::NoTriangle, EyeSample::NoTriangle};
+    bool is_covered_ = false;
     /// 1 over the depth; 0: nothing.
     std::vector<float> nearest_;
     std::vector<std::uint32_t> triangles_;
@@ -147,7 +167,8 @@ Raster::Raster(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
                const prt::TwinTriangles& twins, const glm::vec3& eye, const prt::PictureRays& grid,
                const PictureTiles& tiles)
     : mesh_(mesh), rays_(rays), twins_(twins), tiles_(tiles), per_axis_(grid.samples_per_axis()),
-      eye_(eye), forward_(grid.forward()), right_(grid.right()), down_(grid.down()) {
+      eye_(eye), forward_(grid.forward()), right_(grid.right()), down_(grid.down()),
+      coplanar_(mesh.positions, mesh.triangles) {
     first_ = glm::dvec3(grid.corner()) + 0.5 * (right_ + down_);
     over_right_ = 1.0 / glm::dot(right_, right_);
     over_down_ = 1.0 / glm::dot(down_, down_);
@@ -273,7 +294,7 @@ bool Raster::find(std::uint32_t tile, const PixelRectangle& pixels,
             return false;
     const auto per_axis = static_cast<std::int32_t>(per_axis_);
     Depths depths(static_cast<std::int32_t>(pixels.width()) * per_axis,
-                  static_cast<std::int32_t>(pixels.bottom - pixels.top) * per_axis);
+                  static_cast<std::int32_t>(pixels.bottom - pixels.top) * per_axis, coplanar_);
     const double left = static_cast<double>(pixels.left) * per_axis,
                  top = static_cast<double>(pixels.top) * per_axis;
     for (const std::uint32_t triangle : triangles) {

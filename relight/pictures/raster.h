@@ -16,6 +16,7 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/camera.h"
 #include "prt/receivers/mesh_point.h"
+#include "prt/visibility/coplanar_faces.h"
 #include "prt/visibility/ray_scene.h"
 #include "prt/visibility/twin_triangles.h"
 
@@ -65,7 +66,7 @@ struct PictureTiles {
 /// The triangles before a camera, dealt out to the tiles of its picture.
 ///
 /// Finds the nearest triangle of each sample as rays do, but for samples that an edge passes within
-/// a few thousandths of a sample's width, and for surfaces that are equally far but for rounding.
+/// a few thousandths of a sample's width.
 class Raster {
 public:
     /// All must outlive this object.
@@ -110,6 +111,7 @@ private:
     glm::dvec3 first_, right_, down_;
     /// 1 over the squares of the steps' lengths.
     double over_right_ = 0.0, over_down_ = 0.0;
+    prt::CoplanarFaces coplanar_;
     /// [num_tiles + 1] where each tile's triangles begin, and the triangles, ascending.
     std::vector<std::size_t> begins_;
     std::vector<std::uint32_t> triangles_;

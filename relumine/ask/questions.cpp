@@ -14,6 +14,7 @@
 #include "cubemap/layers/layer_composite.h"
 #include "files/parallel.h"
 #include "prt/receivers/lit_position.h"
+#include "prt/receivers/mesh_point.h"
 #include "prt/receivers/pixel_receivers.h"
 #include "prt/receivers/point_receivers.h"
 #include "relight/adjoint/adjoint.h"
@@ -194,6 +195,26 @@ std::optional<Verification::Surface> verify_picture(const LitScene& lit, std::si
                          work);
 }
 
+/// Returns the receivers where they stand. Vertices that a solid hides look from outside of it, and
+/// are not seen: they are taken out of `indices`. Others that look from elsewhere are asked at
+/// their own places.
+prt::Receivers at_own_places(const LitScene& lit, std::vector<std::uint32_t>& indices) {
+    constexpr double PartInSolid = 0.75;
+    const Scene& scene = lit.scene();
+    prt::Receivers result = scene.receivers;
+    if (!prt::on_vertices(scene.layout) || scene.mesh.lifts.empty())
+        return result;
+    std::erase_if(indices, [&](std::uint32_t i) {
+        const glm::vec3 &lift = scene.mesh.lifts[i], &normal = result.normals[i];
+        if (!prt::leads_along(lift, normal))
+            return false;
+        result.positions[i] -= lift;
+        return prt::part_of_backs(prt::ray_origin(result.positions[i], normal, scene.settings.bias),
+                                  scene.mesh, lit.rays().of_mesh()) > PartInSolid;
+    });
+    return result;
+}
+
 double sum_of(std::span<const glm::vec3> radiance) {
     double sum = 0.0;
     for (const glm::vec3& value : radiance)
@@ -233,6 +254,7 @@ Verification verify(const LitScene& lit, const VerifyOptions& options, const prt
                                                  scene.receivers.num_own());
     const bool is_traced = !lit.bounces().bounced().empty() || !scene.lamps.empty();
     const bool has_surface = options.num_surface_points != 0 && prt::on_vertices(scene.layout);
+    const prt::Receivers receivers = at_own_places(lit, result.receivers);
     const auto num_receivers = static_cast<double>(result.receivers.size());
     const double num_points = has_surface ? static_cast<double>(options.num_surface_points) : 0.0;
     const double all = (is_traced ? 2.0 : 1.0) * num_receivers + 2.0 * num_points;
@@ -242,7 +264,7 @@ Verification verify(const LitScene& lit, const VerifyOptions& options, const prt
     };
     result.of_file = file_of(lit) != nullptr;
     std::vector<glm::dvec3> exact =
-        exact_radiance(lit, scene.receivers, result.receivers, next(num_receivers));
+        exact_radiance(lit, receivers, result.receivers, next(num_receivers));
     if (is_traced)
         result.noise = add_traced(lit, result.receivers, options, next(num_receivers), exact);
     result.error = relight::compare(result.receivers, exact, lit.radiance());

@@ -183,6 +183,9 @@ std::vector<std::string> warnings_about(const cubemap::EnvironmentImage& image,
                         bad.num_infinite, image.infinity_became,
                         image.infinity_became == 65504.0f ? "the most that 16-bit floats hold"
                                                           : "the largest radiance of the others"));
+    if (image.num_transparent != 0)
+        result.push_back(fmt::format("{} of {} pixels have an alpha of 0: no light comes from them",
+                                     image.num_transparent, image.pixels.size()));
     if (const auto doubt = cubemap::upside_down(light_from_below))
         result.push_back(*doubt);
     return result;

@@ -14,6 +14,7 @@
 #include "mesh/half_edge/winding.h"
 #include "mesh/normals.h"
 #include "mesh/opacity.h"
+#include "mesh/subject.h"
 #include "prt/memory_estimate.h"
 #include "prt/refinement/lit_backs.h"
 #include "prt/visibility/beam_scene.h"
@@ -193,6 +194,8 @@ Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
     mesh::settle_normals(mesh.geometry);
     const mesh::UpAxis up = options.up.value_or(mesh::customary_up(path));
     mesh::turn_up(mesh.geometry, up);
+    for (std::string& line : mesh::doubts_of_size(mesh.geometry))
+        mesh.geometry.warnings.push_back(std::move(line));
     if (mesh.camera)
         mesh::turn_up(*mesh.camera, up);
     add_floor(mesh, options);
@@ -349,7 +352,7 @@ Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& wo
     const std::size_t first_of_floor =
         mesh.geometry.num_vertices() - (n == 0 ? 0 : n * n + mesh.floor_added);
     const mesh::TriangleMesh own = part_of(mesh.geometry, 0, first_of_floor);
-    const float size = mesh::bounds(own).diagonal();
+    const float size = mesh::scale(own);
     const bool is_coarse =
         mesh.is_open && size > 0.0f && prt::has_coarse_triangles(own, CoarseEdge * size);
     if (!is_coarse && !mesh.is_floor_open)
@@ -418,7 +421,7 @@ void stand_on_floor(Mesh& mesh) {
     const auto width = [](const mesh::Bounds& box) {
         return std::max(box.max.x - box.min.x, box.max.z - box.min.z);
     };
-    if (width(mesh::bounds(mesh.geometry)) <=
+    if (width(mesh::extent(mesh.geometry).box) <=
         WiderThanSubject * width(relight::subject_bounds(mesh.geometry)))
         add_floor(mesh, {.floor_vertices = AutomaticFloor});
 }

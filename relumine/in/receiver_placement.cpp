@@ -13,6 +13,7 @@
 #include <glm/vec3.hpp>
 
 #include "files/extension.h"
+#include "mesh/floor.h"
 #include "mesh/load.h"
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/lit_position.h"
@@ -44,6 +45,10 @@ public:
           report_(report) {}
 
     void place() {
+        const bool are_vertices = std::holds_alternative<Vertices>(options_.receivers);
+        const bool adds_vertices = !are_vertices && options_.bounce_tolerance.value_or(0.0f) > 0.0f;
+        if ((are_vertices || adds_vertices) && options_.blockers == nullptr)
+            prt::leave_obstacles(rays_, scene_.settings.bias, scene_.mesh);
         try {
             if (const auto* pixels = std::get_if<Pixels>(&options_.receivers)) {
                 place_pixels(*pixels);
@@ -62,8 +67,7 @@ public:
                 scene_.settings.view = own ? *own : camera_of(scene_);
                 prt::look_from(scene_.receivers, scene_.settings.view->eye);
             }
-            if (options_.bounce_tolerance.value_or(0.0f) > 0.0f &&
-                !std::holds_alternative<Vertices>(options_.receivers)) {
+            if (adds_vertices) {
                 prt::add_vertices(scene_.receivers, scene_.mesh);
                 note(work_, fmt::format("and {} vertices, from which light bounces",
                                         scene_.receivers.num_added));
@@ -74,11 +78,20 @@ public:
     }
 
 private:
-    /// What is seen from an eye or from a point: the mesh, also where others block its light.
+    /// What is seen from a point: the mesh, also where others block its light.
     const prt::RayScene& mesh_rays() {
         if (!scene_.blockers)
             return rays_;
         return own_rays_.emplace(ray_scene(scene_.mesh, prefix_));
+    }
+    /// What is seen from an eye: there is no gap between the mesh and its floor.
+    const prt::RayScene& eye_rays(const glm::vec3& eye) {
+        const std::size_t first = first_floor_vertex(scene_).value_or(scene_.mesh.num_vertices());
+        const float gap = mesh::floor_gap(scene_.mesh, first);
+        if (!(gap > 0.0f && eye.y > scene_.mesh.positions[first].y + gap))
+            return mesh_rays();
+        return own_rays_.emplace(
+            ray_scene(mesh::with_raised_floor(scene_.mesh, first, gap), prefix_));
     }
 
     void leave_obstacles() {
@@ -131,7 +144,7 @@ private:
                                        : camera_of(scene_, static_cast<float>(size.width) /
                                                                static_cast<float>(size.height));
         prt::PixelReceivers pixels =
-            prt::pixel_receivers(scene_.mesh, mesh_rays(),
+            prt::pixel_receivers(scene_.mesh, eye_rays(camera.eye),
                                  {.camera = camera,
                                   .width = size.width,
                                   .height = size.height,

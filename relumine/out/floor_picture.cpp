@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "mesh/floor.h"
 #include "mesh/triangle_mesh.h"
 
 namespace relumine {
@@ -22,7 +23,8 @@ relight::FadingFloor picture_floor(const Scene& scene, const OutputOptions& opti
             .center = 0.5f * glm::vec2(floor.min.x + floor.max.x, floor.min.z + floor.max.z),
             // Without a fade, the corners are opaque, too.
             .opaque_radius = (fade > 0.0f ? 1.0f - std::min(fade, 1.0f) : 2.0f) * half_side,
-            .end_radius = (fade > 0.0f ? 1.0f : 2.0f) * half_side};
+            .end_radius = (fade > 0.0f ? 1.0f : 2.0f) * half_side,
+            .gap = mesh::floor_gap(scene.mesh, *first)};
 }
 
 relight::Ground picture_ground(const Scene& scene, const OutputOptions& options) {

@@ -265,6 +265,9 @@ struct Painter::Impl {
                      const relight::Backdrop* behind);
     /// Returns the exposure that suits what was metered, or this light where nothing was.
     double exposure(const Lighting& lighting);
+    /// Returns the exposure that makes white of a 4096th of a floor in the open. What is darker
+    /// gets no light but what roundings let through.
+    [[nodiscard]] double most_exposure(const Lighting& lighting) const;
     [[nodiscard]] relight::PictureOptions small_size() const;
 
     std::vector<glm::vec3> exposed(std::span<const glm::vec3> radiance,

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -112,16 +113,27 @@ relight::PictureOptions Painter::Impl::small_size() const {
     return {.width = side(width), .height = side(width / size().aspect()), .samples_per_axis = 1};
 }
 
+double Painter::Impl::most_exposure(const Lighting& lighting) const {
+    constexpr double LeastPart = 0x1p-12;
+    if (!lighting.open_floor || !scene.lamps.empty())
+        return std::numeric_limits<double>::infinity();
+    const glm::vec3& open = *lighting.open_floor;
+    return std::round(-100.0 * std::log2(LeastPart *
+                                         static_cast<double>(std::max({open.r, open.g, open.b})))) /
+           100.0;
+}
+
 double Painter::Impl::exposure(const Lighting& lighting) {
     if (options.exposure_ev)
         return *options.exposure_ev;
     if (!chosen_ev) {
         if (metered.colors.empty() && metered.behind.empty())
             meter(lighting);
-        chosen_ev = static_cast<double>(relight::suitable_exposure_ev(
+        const auto suitable = static_cast<double>(relight::suitable_exposure_ev(
             metered.colors, metered.weights, metered.behind,
             {.colors = metered.floor,
              .share = metered.num_pixels > 0.0 ? 1.0 / metered.num_pixels : 0.0}));
+        chosen_ev = std::min(suitable, most_exposure(lighting));
         metered = {};
         small.reset();
     }

@@ -107,5 +107,26 @@ TEST(Floor, RefusesWhatIsNoFloor) {
     EXPECT_THROW(append_floor(empty), std::invalid_argument);
 }
 
+TEST(Floor, HasAGapBelowWhatStandsFlatOnIt) {
+    TriangleMesh mesh = box();
+    EXPECT_EQ(floor_gap(mesh, mesh.num_vertices()), 0.0f) << "there is no floor";
+    append_floor(mesh, 5, 4.0f);
+    const float gap = floor_gap(mesh, 8);
+    EXPECT_GT(gap, 0.0f);
+    const TriangleMesh raised = with_raised_floor(mesh, 8, gap);
+    EXPECT_EQ(raised.triangles, mesh.triangles);
+    EXPECT_NEAR(raised.positions[8].y, bounds(std::span(mesh.positions).first(8)).min.y, 1e-6f);
+    EXPECT_EQ(raised.positions[0], mesh.positions[0]);
+    // One that stands on a corner has none.
+    for (std::size_t i = 0; i < 8; ++i)
+        mesh.positions[i].y += 0.1f * (mesh.positions[i].x + mesh.positions[i].z);
+    const TriangleMesh tilted{.positions = {mesh.positions.begin(), mesh.positions.begin() + 8},
+                              .triangles = {mesh.triangles.begin(), mesh.triangles.begin() + 12},
+                              .normals = std::vector<glm::vec3>(8, glm::vec3(0, 1, 0))};
+    TriangleMesh on_floor = tilted;
+    append_floor(on_floor, 5, 4.0f);
+    EXPECT_EQ(floor_gap(on_floor, 8), 0.0f);
+}
+
 } // namespace
 } // namespace relumine::mesh

@@ -127,6 +127,14 @@ std::vector<Known> known() {
                                std::cos(std::numbers::pi * v),
                                std::sin(std::numbers::pi * v) * std::sin(angle));
          }},
+        // Right-handed scenes: the middle is -Z, the left quarter -X.
+        {"babylonjs", Layout::LatLong,
+         [](double u, double v) {
+             const double angle = 2.0 * std::numbers::pi * (u - 0.5);
+             return glm::dvec3(std::sin(std::numbers::pi * v) * std::sin(angle),
+                               std::cos(std::numbers::pi * v),
+                               -std::sin(std::numbers::pi * v) * std::cos(angle));
+         }},
         // Cube textures are looked up at (flipEnvMap x, y, z) with flipEnvMap = -1.
         {"threejs", Layout::Cube,
          stacked([](const glm::dvec3& w) { return glm::dvec3(-w.x, w.y, w.z); })},

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <fstream>
@@ -437,6 +438,24 @@ TEST(ExrFile, RoundTripIsExact) {
     EXPECT_EQ(back.envmap, Layout::Cube);
     image.sampling = Sampling::TexelCentres;
     EXPECT_EQ(decode_exr(encode_exr(image), "name").envmap, std::nullopt);
+}
+
+TEST(ExrFile, PixelsOfAlphaZeroAreCounted) {
+    const TemporaryFolder folder;
+    EnvironmentImage image = black_image(Layout::LatLong, Sampling::TexelCentres, 1200, 600);
+    image.alpha.assign(image.pixels.size(), 1.0f);
+    std::fill_n(image.alpha.begin(), 1300, 0.0f);
+    image.alpha.back() = 0.0f;
+    const auto num_transparent = [&](const EnvironmentImage& of) {
+        const std::vector<std::byte> bytes = encode_exr(of);
+        std::ofstream(folder / "a.exr", std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()),
+                   static_cast<std::streamsize>(bytes.size()));
+        return load_environment(folder / "a.exr").num_transparent;
+    };
+    EXPECT_EQ(num_transparent(image), 1301u);
+    image.alpha.clear();
+    EXPECT_EQ(num_transparent(image), 0u);
 }
 
 TEST(ExrFile, OpenExrReadsWhatIsWritten) {

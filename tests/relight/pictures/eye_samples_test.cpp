@@ -1,11 +1,15 @@
 #include "relight/pictures/eye_samples.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "mesh/floor.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine::relight {
@@ -23,7 +27,8 @@ Difference difference_from_rays(const mesh::TriangleMesh& mesh, const prt::Camer
     const prt::RayScene rays(mesh);
     const PictureTiles tiles{.width = 70, .height = 45};
     const prt::PictureRays grid(camera, tiles.width, tiles.height, 3);
-    const EyeSamples samples(mesh, rays, camera.eye, grid, tiles, max_bytes, {});
+    const SeenMesh seen_mesh(mesh, rays, {}, camera.eye);
+    const EyeSamples samples(seen_mesh, rays, camera.eye, grid, tiles, max_bytes, {});
     Difference difference;
     for (std::uint32_t tile = 0; tile < tiles.count(); ++tile) {
         const SampleRectangle seen = samples.of(tile, ring);
@@ -114,7 +119,8 @@ TEST(EyeSamples, SeeTheFrontOfSurfacesThatAreThereTwice) {
     const prt::RayScene rays(mesh);
     const PictureTiles tiles{.width = 40, .height = 30};
     const prt::PictureRays grid(Above, tiles.width, tiles.height, 2);
-    const EyeSamples samples(mesh, rays, Above.eye, grid, tiles, 0, {});
+    const SeenMesh seen_mesh(mesh, rays, {}, Above.eye);
+    const EyeSamples samples(seen_mesh, rays, Above.eye, grid, tiles, 0, {});
     std::size_t num_hits = 0;
     for (std::uint32_t tile = 0; tile < tiles.count(); ++tile) {
         const SampleRectangle seen = samples.of(tile, 0);
@@ -127,6 +133,66 @@ TEST(EyeSamples, SeeTheFrontOfSurfacesThatAreThereTwice) {
                     }
     }
     EXPECT_GT(num_hits, 500u);
+}
+
+/// What the samples of a picture of 70 x 45 pixels see.
+std::vector<EyeSample> seen_samples(const mesh::TriangleMesh& mesh, const prt::Camera& camera,
+                                    const FadingFloor& floor) {
+    const prt::RayScene rays(mesh);
+    const PictureTiles tiles{.width = 70, .height = 45};
+    const prt::PictureRays grid(camera, tiles.width, tiles.height, 3);
+    const SeenMesh seen_mesh(mesh, rays, floor, camera.eye);
+    const EyeSamples samples(seen_mesh, rays, camera.eye, grid, tiles, 0, {});
+    std::vector<EyeSample> result;
+    for (std::uint32_t tile = 0; tile < tiles.count(); ++tile) {
+        const SampleRectangle seen = samples.of(tile, 0);
+        for (std::uint32_t y = seen.pixels().top; y < seen.pixels().bottom; ++y)
+            for (std::uint32_t x = seen.pixels().left; x < seen.pixels().right; ++x)
+                for (const EyeSample& sample : seen.pixel(x, y))
+                    if (sample.hits())
+                        result.push_back(sample);
+    }
+    return result;
+}
+
+TEST(EyeSamples, OfSurfacesInOnePlaneTheFirstIsSeenEverywhere) {
+    mesh::TriangleMesh mesh =
+        scenes::joined(scenes::floor_grid(29, 3.0f), scenes::floor_grid(7, 1.7f));
+    const glm::vec3 slope(0.13f, 0.0f, 0.29f);
+    for (glm::vec3& at : mesh.positions)
+        at.y += glm::dot(slope, at);
+    const auto of_second = [&](const mesh::TriangleMesh& of, std::uint32_t first) {
+        const std::vector<EyeSample> seen = seen_samples(of, Above, {});
+        EXPECT_GT(seen.size(), 1000u);
+        return std::count_if(seen.begin(), seen.end(),
+                             [&](const EyeSample& sample) { return sample.triangle >= first; });
+    };
+    EXPECT_EQ(of_second(mesh, 2 * 28 * 28), 0);
+    // The order of the triangles decides, not their size.
+    mesh = scenes::joined(scenes::floor_grid(7, 1.7f), scenes::floor_grid(29, 3.0f));
+    const auto num_open = of_second(mesh, 2 * 6 * 6);
+    mesh = scenes::joined(scenes::floor_grid(7, 1.7f, 1e-4f), scenes::floor_grid(29, 3.0f));
+    EXPECT_EQ(of_second(mesh, 2 * 6 * 6), num_open);
+}
+
+TEST(EyeSamples, NoGapIsSeenBetweenABoxAndItsFloor) {
+    mesh::TriangleMesh mesh = scenes::box({-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f});
+    mesh::append_floor(mesh, 25);
+    const FadingFloor with_gap{.first_vertex = 8},
+        without{.first_vertex = 8, .gap = mesh::floor_gap(mesh, 8)};
+    ASSERT_GT(without.gap, 0.0f);
+    const prt::Camera near{
+        .eye = {0.9f, 0.05f, 1.1f}, .target = {0.0f, 0.0f, 0.4f}, .fov_degrees = 8.0f};
+    const auto num_under = [&](const FadingFloor& floor) {
+        const std::vector<EyeSample> seen = seen_samples(mesh, near, floor);
+        return std::count_if(seen.begin(), seen.end(), [&](const EyeSample& sample) {
+            const glm::vec3 at = prt::value_at(mesh, mesh.positions, sample.point());
+            return mesh.triangles[sample.triangle][0] >= 8 &&
+                   std::max(std::abs(at.x), std::abs(at.z)) < 0.499f;
+        });
+    };
+    EXPECT_GT(num_under(with_gap), 0);
+    EXPECT_EQ(num_under(without), 0);
 }
 
 } // namespace

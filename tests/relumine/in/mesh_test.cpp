@@ -275,6 +275,104 @@ TEST(RefinedByItself, AFineMeshAndChosenVerticesStay) {
               wall_behind_posts().num_vertices());
 }
 
+/// A box whose faces share no vertices and look inwards or outwards. Each has a sixth of the atlas.
+mesh::TriangleMesh box_of_faces(const glm::vec3& low, const glm::vec3& high, bool inwards) {
+    mesh::TriangleMesh mesh;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const int side : {0, 1}) {
+            const auto first = static_cast<std::uint32_t>(mesh.num_vertices());
+            const glm::vec2 corner(static_cast<float>(axis) / 3.0f,
+                                   static_cast<float>(side) / 2.0f);
+            for (const glm::ivec2 at : {glm::ivec2(0, 0), {1, 0}, {1, 1}, {0, 1}}) {
+                glm::vec3 part(0.0f), normal(0.0f);
+                part[axis] = static_cast<float>(side);
+                part[(axis + 1) % 3] = static_cast<float>(at.x);
+                part[(axis + 2) % 3] = static_cast<float>(at.y);
+                normal[axis] = (side == 1) == inwards ? -1.0f : 1.0f;
+                mesh.positions.push_back(low + part * (high - low));
+                mesh.normals.push_back(normal);
+                mesh.uvs.push_back(corner + glm::vec2(0.03f) +
+                                   glm::vec2(at) * glm::vec2(0.27f, 0.44f));
+            }
+            const bool turns = (side == 1) == inwards;
+            const std::uint32_t second = first + (turns ? 3 : 1), last = first + (turns ? 1 : 3);
+            mesh.triangles.push_back({first, second, first + 2});
+            mesh.triangles.push_back({first, first + 2, last});
+        }
+    return mesh;
+}
+
+/// Light on backs is not asked.
+mesh::TriangleMesh of_one_side(mesh::TriangleMesh mesh) {
+    mesh.materials = {{.is_double_sided = false}};
+    mesh.triangle_materials.assign(mesh.num_triangles(), 0);
+    return mesh;
+}
+
+/// A room without a window; a ball and a crate stand on its floor, which is a single sheet.
+mesh::TriangleMesh closed_room() {
+    mesh::TriangleMesh ball = scenes::icosphere(2, 0.6f, {-0.8f, 0, 0});
+    float lowest = 0.0f;
+    for (const glm::vec3& at : ball.positions)
+        lowest = std::min(lowest, at.y);
+    for (glm::vec3& at : ball.positions)
+        at.y -= lowest;
+    mesh::TriangleMesh mesh = box_of_faces({-2, 0, -2.5f}, {2, 3, 2.5f}, true);
+    const mesh::TriangleMesh crate = box_of_faces({0.6f, 0, -1.4f}, {1.4f, 0.8f, -0.6f}, false);
+    mesh.uvs.clear();
+    return of_one_side(scenes::joined(scenes::joined(mesh, ball), crate));
+}
+
+bool is_black(const glm::vec3& value) {
+    return value == glm::vec3(0.0f);
+}
+
+TEST(ClosedRoom, IsBlackToTheLastBit) {
+    for (const bool is_refined : {true, false}) {
+        PrecomputeOptions options = small_work();
+        options.no_refine = !is_refined;
+        LitScene lit(precompute(Mesh(closed_room()), options));
+        lit.light(cubemap::CubeMap(16, glm::vec3(1.0f)));
+        EXPECT_TRUE(std::all_of(lit.radiance().begin(), lit.radiance().end(), is_black));
+    }
+}
+
+TEST(ClosedRoom, TexelsOnTheVeryEdgeOfAWallSeeNothingBehindTheNext) {
+    PrecomputeOptions options = small_work();
+    options.receivers = Texels{.width = 96, .height = 96};
+    LitScene lit(
+        precompute(Mesh(box_of_faces({-2, -1.5f, -2.5f}, {2, 1.5f, 2.5f}, true)), options));
+    lit.light(cubemap::CubeMap(16, glm::vec3(1.0f)));
+    EXPECT_GT(lit.radiance().size(), 5000u);
+    EXPECT_TRUE(std::all_of(lit.radiance().begin(), lit.radiance().end(), is_black));
+}
+
+TEST(RefinedByItself, NoLightIsLentThroughASheet) {
+    // A ball that touches a sheet with its lowest vertex. From below, the sheet is lit.
+    mesh::TriangleMesh mesh = scenes::icosphere(3, 1.0f, {0, 0, 0});
+    float lowest = 0.0f;
+    for (const glm::vec3& at : mesh.positions)
+        lowest = std::min(lowest, at.y);
+    for (glm::vec3& at : mesh.positions)
+        at.y -= lowest;
+    mesh::TriangleMesh sheet = box_of_faces({-4, -1, -4}, {4, 0, 4}, false);
+    sheet.uvs.clear();
+    // Of the box only its upper face is there.
+    sheet.triangles = {sheet.triangles[6], sheet.triangles[7]};
+    LitScene lit(precompute(Mesh(of_one_side(scenes::joined(mesh, sheet))), small_work()));
+    lit.light(cubemap::CubeMap(16, glm::vec3(1.0f)));
+    const std::vector<glm::vec3>& at = lit.scene().mesh.positions;
+    std::size_t num_near = 0;
+    for (std::size_t i = 0; i < at.size(); ++i)
+        if (at[i].y < 0.02f && std::max(std::abs(at[i].x), std::abs(at[i].z)) < 0.15f) {
+            ++num_near;
+            EXPECT_LT(lit.radiance()[i].g, 0.1f) << at[i].x << " " << at[i].y << " " << at[i].z;
+        }
+    EXPECT_GT(num_near, 3u);
+    // What is asked without lifts agrees.
+    EXPECT_LT(verify(lit, {.num_samples = 0, .num_surface_points = 0}).error.max_abs, 0.1);
+}
+
 TEST_F(MeshFile, LiftsOfRefinedVerticesStandInTheScene) {
     mesh::TriangleMesh tent;
     tent.positions = {{-1, 0, -1}, {-1, 0, 1}, {0, 0.5f, -1}, {0, 0.5f, 1}, {1, 0, -1}, {1, 0, 1}};

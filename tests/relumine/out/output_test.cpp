@@ -297,6 +297,19 @@ TEST_F(Output, ExposureIsThatOfTheMeshAndNotOfItsFloor) {
     EXPECT_EQ(exposure(0.05f), exposure(5.0f));
 }
 
+TEST_F(Output, ExposureBrightensNoRoundings) {
+    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
+    lit.light(cubemap::CubeMap(8, glm::vec3(4.0f)));
+    const auto exposure = [&](float albedo) {
+        return Painter(lit, {.albedo = glm::vec3(albedo), .background = glm::vec3(0.0f)})
+            .choose_exposure_ev(lit.lighting());
+    };
+    // Black that gets no light but what roundings let through stays black.
+    EXPECT_NEAR(exposure(1e-7f), 12.0 - 2.0, 0.02);
+    EXPECT_LT(exposure(1e-2f), 8.0);
+    EXPECT_GT(exposure(1e-2f), exposure(1.0f) + 5.0);
+}
+
 const Camera LookingDown{
     .eye = {1.0f, 2.0f, 4.0f}, .target = {0.0f, 0.2f, 0.0f}, .fov_degrees = 30};
 
