@@ -14,6 +14,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <fmt/format.h>
@@ -364,6 +365,20 @@ void read_strips(const Element& element, std::uint64_t num_vertices, Values& val
         [&](const Property& property) { skip(property, values); }, [&] { length = 0; });
 }
 
+/// Of colours of vertices and of faces those of faces count, unless they are all the same.
+void choose_colors(PolygonSoup& soup) {
+    if (soup.colors.empty())
+        return;
+    const auto are_one = [](const std::vector<glm::vec3>& colors) {
+        return std::adjacent_find(colors.begin(), colors.end(), std::not_equal_to<>()) ==
+               colors.end();
+    };
+    const bool takes_vertices = are_one(soup.face_colors) && !are_one(soup.colors);
+    (takes_vertices ? soup.face_colors : soup.colors).clear();
+    soup.notes.emplace_back(fmt::format("vertices and faces have colours: those of {} are taken",
+                                        takes_vertices ? "vertices" : "faces"));
+}
+
 template<class Values>
 PolygonSoup read_body(const Header& header, Values values) {
     check_sizes(header, values.num_bytes(), Values::IsBinary);
@@ -387,9 +402,8 @@ PolygonSoup read_body(const Header& header, Values values) {
     }
     values.expect_end();
     if (!soup.face_colors.empty()) {
-        if (!soup.colors.empty())
-            soup.notes.emplace_back("vertices and faces have colours: those of faces are taken");
         soup.face_colors.resize(soup.face_ends.size(), no_color());
+        choose_colors(soup);
     }
     if (!soup.corner_uvs.empty())
         soup.corner_uvs.resize(soup.corners.size(), glm::vec2(0.0f));
