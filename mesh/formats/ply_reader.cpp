@@ -427,6 +427,11 @@ PolygonSoup read_ply(std::span<const std::byte> bytes) {
         throw std::runtime_error(fmt::format(
             "expected the format ascii, binary_little_endian or binary_big_endian, got {}",
             excerpt(header.format)));
+    if (!header.image.empty())
+        soup.warnings.push_back(fmt::format(
+            "the image {}, which a comment names, is left out: textures of .ply are not "
+            "read",
+            excerpt(header.image)));
     if (header.num_unknown > 0)
         soup.warnings.push_back(
             fmt::format("{} of the header that PLY does not have {} skipped, the first of {}",

@@ -153,9 +153,7 @@ private:
         if (!scene_.mesh.second_uvs.empty()) {
             prt::TexelReceivers second = prt::texel_receivers(scene_.mesh, size, 1);
             if (second.report.num_outside == 0 && second.report.num_overlapping == 0) {
-                note(work_, prefix_ +
-                                "the lightmap takes the second set of uvs, which is an unwrap; "
-                                "--uv-set 0 takes the first");
+                report_.takes_second_uvs = true;
                 return second;
             }
         }

@@ -202,25 +202,24 @@ TEST(Precompute, ALightmapTakesSecondUvsThatAreAnUnwrap) {
     mesh.geometry.second_uvs = mesh.geometry.uvs;
     for (glm::vec2& uv : mesh.geometry.uvs)
         uv *= 4.0f; // tiles
-    std::vector<std::string> notes;
+    PrecomputeReport report;
     const auto lit = [&](const Mesh& given) {
-        notes.clear();
         return precompute(given, {.tolerance = 0.2f, .receivers = Texels{.width = 8, .height = 4}},
-                          {.on_warning = [](Warning, const std::string&) {},
-                           .on_note =
-                               [&](const std::string& text) {
-                                   notes.push_back(text);
-                               }});
+                          {.on_warning =
+                               [](Warning, const std::string&) {
+                               }},
+                          &report);
     };
     const auto layout = [&](std::uint32_t uv_set) {
         return prt::texel_receivers(mesh.geometry, Size, uv_set).layout;
     };
     const Scene second = lit(mesh);
     EXPECT_EQ(std::get<prt::TexelLayout>(second.layout), layout(1));
-    EXPECT_THAT(notes, testing::Contains(testing::HasSubstr("takes the second set of uvs")));
+    EXPECT_TRUE(report.takes_second_uvs);
     EXPECT_TRUE(second.mesh.second_uvs.empty()) << "no texture uses them";
     mesh.lightmap_uvs = 0;
     EXPECT_EQ(std::get<prt::TexelLayout>(lit(mesh).layout), layout(0));
+    EXPECT_FALSE(report.takes_second_uvs);
     // They overlap.
     mesh.lightmap_uvs.reset();
     for (std::size_t vertex = 4; vertex < 8; ++vertex)
