@@ -1,5 +1,6 @@
 #include "mesh/load.h"
 
+#include <algorithm>
 #include <new>
 #include <stdexcept>
 #include <string_view>
@@ -26,6 +27,18 @@ bool has_mesh_extension(const std::filesystem::path& path) {
     return format_of(path) != nullptr;
 }
 
+namespace {
+
+bool has_normals(const PolygonSoup& soup) {
+    const auto is_one = [](const glm::vec3& normal) {
+        return normal != glm::vec3(0.0f);
+    };
+    return !soup.corner_normals.empty() ||
+           std::any_of(soup.normals.begin(), soup.normals.end(), is_one);
+}
+
+} // namespace
+
 LoadedMesh load(const std::filesystem::path& path, const LoadOptions& options) {
     // A name that is not there says so first.
     static_cast<void>(files::size(path));
@@ -39,10 +52,12 @@ LoadedMesh load(const std::filesystem::path& path, const LoadOptions& options) {
         if (options.pose && !format->has_animations)
             throw std::runtime_error(
                 fmt::format("expected .glb or .gltf for a pose, got '{}'", format->extension));
-        PolygonSoup soup = format->read({bytes, path.parent_path(), options.pose});
+        PolygonSoup soup =
+            format->read({bytes, path.parent_path(), options.pose, options.lightmap_uvs});
         LoadedMesh result;
         result.hash = files::hash_of(bytes);
         result.camera = soup.camera;
+        result.has_normals = options.normals == NormalSource::File && has_normals(soup);
         static_cast<TriangleMesh&>(result) =
             to_mesh(std::move(soup), options.normals, options.colors);
         return result;

@@ -24,13 +24,17 @@ struct LoadOptions {
     /// What colours of vertices and faces mean. Empty: sRGB for bytes and for text, linear for
     /// floats of PLY and for glTF
     std::optional<ColorCurve> colors = {};
+    /// glTF: the set of uvs, TEXCOORD_n, that becomes second_uvs where no texture uses another one
+    std::optional<std::uint32_t> lightmap_uvs = {};
 };
 
 /// A mesh, with what else its file says.
 struct LoadedMesh : TriangleMesh {
     /// xxHash64 of the file's bytes
     std::uint64_t hash = 0;
-    /// The first perspective camera of a glTF scene
+    /// Some normals are the file's
+    bool has_normals = false;
+    /// The first perspective camera of a glTF scene, or its first orthographic one, from afar
     std::optional<Camera> camera = {};
 };
 

@@ -1,5 +1,7 @@
 #include "mesh/up_axis.h"
 
+#include <glm/geometric.hpp>
+
 namespace relumine::mesh {
 
 namespace {
@@ -25,8 +27,13 @@ void turn_up(TriangleMesh& mesh, UpAxis axis) {
 }
 
 void turn_up(Camera& camera, UpAxis axis) {
+    if (axis == UpAxis::Y)
+        return;
+    const glm::vec3 forward = glm::normalize(camera.target - camera.eye);
+    const glm::vec3 up = rolled_axes(forward, camera.roll_degrees).up;
     camera.eye = turned(camera.eye, axis);
     camera.target = turned(camera.target, axis);
+    camera.roll_degrees = roll_of(turned(forward, axis), turned(up, axis));
 }
 
 } // namespace relumine::mesh

@@ -100,12 +100,13 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
         require_extension("--picture", options.picture, {".png"});
         check_output(options.picture, {options.path});
     }
-    mesh::TriangleMesh mesh = mesh::load(options.path, {.pose = options.pose});
+    mesh::LoadedMesh mesh = mesh::load(options.path, {.pose = options.pose});
     const mesh::Bounds box = mesh::bounds(mesh);
     const mesh::Diagnosis diagnosis = mesh::diagnose(mesh);
     if (!options.picture.empty())
         relight::save_mesh_picture(options.picture, mesh, diagnosis);
-    mesh::settle_normals(mesh); // its warnings are those of a first picture
+    if (mesh.has_normals)
+        mesh::settle_normals(mesh); // its warnings are those of a first picture
     session.say(fmt::format("mesh                {} vertices, {}", mesh.num_vertices(),
                             files::counted(mesh.num_triangles(), "triangle")));
     session.say(fmt::format("box                 ({}, {}, {}) to ({}, {}, {})", box.min.x,

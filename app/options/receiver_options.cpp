@@ -7,6 +7,25 @@
 
 namespace relumine::app {
 
+namespace {
+
+/// Puts the members of a layout into a report.
+struct MembersIn {
+    Report& report;
+
+    template<class Value>
+    void operator()(std::string_view name, const Value& value) const {
+        report.set(name == "fov_degrees" ? "fov" : name, value);
+    }
+    template<class Value>
+    void unusual(std::string_view name, const Value& value, const Value& usual) const {
+        if (value != usual)
+            (*this)(name, value);
+    }
+};
+
+} // namespace
+
 Report layout_json(const prt::Scene& scene) {
     if (prt::on_vertices(scene.layout))
         return {};
@@ -15,9 +34,7 @@ Report layout_json(const prt::Scene& scene) {
     prt::ReceiverLayout layout = scene.layout;
     std::visit(
         [&](auto& own) {
-            auto member = [&](std::string_view name, const auto& value) {
-                report.set(name == "fov_degrees" ? "fov" : name, value);
-            };
+            MembersIn member{report};
             own.members(member);
         },
         layout);

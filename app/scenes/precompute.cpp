@@ -347,6 +347,10 @@ void write_report(const PrecomputeArguments& options, const PrecomputeOptions& w
                                    ? ""
                                    : fmt::format(", {} receivers ({})", scene.receivers.num_own(),
                                                  prt::description(scene.layout));
+    if (facts.takes_second_uvs)
+        session.say(fmt::format("{}: the lightmap takes the second set of uvs, which is an unwrap; "
+                                "--uv-set 0 takes the first",
+                                options.mesh));
     const prt::PrecomputeStatistics& clusters = facts.clusters;
     session.say(fmt::format("{}: {} vertices, {}{} -> {} clusters in {:.1f} s ({}; "
                             "{:.1f} M rays/s), {:.1f} MB",

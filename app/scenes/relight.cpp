@@ -196,8 +196,9 @@ void light_scene(const RelightArguments& options, Session& session) {
     if (session.is_first()) {
         options.output.warn_of_picture(scene, session);
         warn_of_eye_inside(lit, options.output.picture.eye, session);
-        for (const std::string& line : scene.settings.left_out)
-            session.warn(fmt::format("{}: {}", scene.settings.source, line));
+        if (!is_first_picture) // which has said so
+            for (const std::string& line : scene.settings.left_out)
+                session.warn(fmt::format("{}: {}", scene.settings.source, line));
     }
     const std::optional<BounceReport> bounces =
         options.bounces.bounce(lit, output, options.scene.path);

@@ -424,7 +424,7 @@ std::span<const std::byte> Document::view(std::uint64_t index) {
     return *view;
 }
 
-std::optional<std::vector<std::byte>> Document::fetch(const std::string& uri) const {
+std::optional<std::vector<std::byte>> Document::fetch(const std::string& uri) {
     if (uri.starts_with("data:")) {
         const std::size_t comma = uri.find(',');
         if (comma == std::string::npos ||
@@ -438,6 +438,14 @@ std::optional<std::vector<std::byte>> Document::fetch(const std::string& uri) co
         path = find_file(folder_, latin1_bytes(name));
     if (path.empty())
         return std::nullopt;
+    const auto is_as_written = [&](std::string other) {
+        const bool is_whole = path == folder_ / other;
+        std::replace(other.begin(), other.end(), '\\', '/');
+        return is_whole || path == folder_ / other;
+    };
+    if (!is_as_written(name) && !is_as_written(latin1_bytes(name)))
+        warnings_.push_back(
+            fmt::format("{} is read from {}", uri, path.lexically_relative(folder_).string()));
     return files::read(path);
 }
 

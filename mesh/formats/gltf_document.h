@@ -71,7 +71,7 @@ public:
     [[nodiscard]] std::span<const std::byte> view(std::uint64_t index);
 
     /// Returns the content of a URI: a data: URI or a file. Nothing if there is no such file.
-    [[nodiscard]] std::optional<std::vector<std::byte>> fetch(const std::string& uri) const;
+    [[nodiscard]] std::optional<std::vector<std::byte>> fetch(const std::string& uri);
 
 private:
     void split_glb(std::span<const std::byte> file);

@@ -195,20 +195,29 @@ glm::dmat4 local_transform(const Json& node, const NodePose& moved) {
          .scale = moved.scale.value_or(numbers(node, "scale", none.scale))});
 }
 
-std::optional<Camera> camera_at(const Json& camera, const glm::dmat4& transform) {
+std::optional<FileCamera> camera_at(const Json& camera, const glm::dmat4& transform) {
     const Json* perspective = camera.find("perspective");
-    if (perspective == nullptr)
+    const Json* orthographic = camera.find("orthographic");
+    if (perspective == nullptr && orthographic == nullptr)
         return std::nullopt;
-    const double fov = number(*perspective, "yfov", 0.0);
+    const double fov = perspective != nullptr ? number(*perspective, "yfov", 0.0) : 0.5;
+    const double half_height =
+        perspective != nullptr ? 0.0 : std::abs(number(*orthographic, "ymag", 0.0));
     const glm::dvec3 eye(transform[3]), ahead = -glm::dvec3(transform[2]);
     const double length = glm::length(ahead);
     constexpr double Farthest = 1e18;
     if (!(fov > 0.0 && fov < std::numbers::pi) || !(length > 0.0 && length < Farthest) ||
-        !(glm::length(eye) < Farthest))
+        !(glm::length(eye) < Farthest) ||
+        (perspective == nullptr && !(half_height > 0.0 && half_height < Farthest)))
         return std::nullopt;
-    return Camera{.eye = glm::vec3(eye),
-                  .target = glm::vec3(eye + ahead / length),
-                  .fov_degrees = static_cast<float>(fov * 180.0 / std::numbers::pi)};
+    const glm::vec3 up(transform[1]);
+    return FileCamera{Camera{.eye = glm::vec3(eye),
+                             .target = glm::vec3(eye + ahead / length),
+                             .fov_degrees = static_cast<float>(fov * 180.0 / std::numbers::pi),
+                             .roll_degrees = glm::length(up) > 0.0f
+                                                 ? roll_of(glm::vec3(ahead / length), up)
+                                                 : 0.0f},
+                      half_height};
 }
 
 } // namespace relumine::mesh::gltf

@@ -41,8 +41,14 @@ using NodePoses = std::map<std::uint64_t, NodePose>;
 /// Returns the node's place in its parent.
 [[nodiscard]] glm::dmat4 local_transform(const Json& node, const NodePose& moved);
 
-/// Returns a perspective camera at a node, with a target one unit ahead; nothing for others, and
-/// for values that no picture can have.
-[[nodiscard]] std::optional<Camera> camera_at(const Json& camera, const glm::dmat4& transform);
+struct FileCamera {
+    /// Where the node is, with a target one unit ahead.
+    Camera camera;
+    /// Half the height of an orthographic camera's picture; 0: it is a perspective camera.
+    double half_height = 0.0;
+};
+
+/// Returns the camera at a node; nothing for values that no picture can have.
+[[nodiscard]] std::optional<FileCamera> camera_at(const Json& camera, const glm::dmat4& transform);
 
 } // namespace relumine::mesh::gltf

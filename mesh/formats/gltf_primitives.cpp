@@ -142,6 +142,25 @@ void PrimitiveReader::check_counts(const Json& description, const DracoMesh& mes
                         mesh.num_vertices, num_corners, vertices, corners));
 }
 
+/// Colours of whole numbers have to be normalized [glTF 2.0, 3.7.2.1]. Those of some exporters are
+/// without the mark.
+void PrimitiveReader::scale_colors(const Json& description, std::vector<glm::vec3>& colors) {
+    const Json& accessor =
+        document_.element("accessors", whole(child(description, "attributes"), "COLOR_0"));
+    const std::uint64_t type = whole(accessor, "componentType");
+    constexpr std::uint64_t Byte = 5121, Short = 5123;
+    if (flag(accessor, "normalized") || (type != Byte && type != Short))
+        return;
+    for (glm::vec3& color : colors)
+        color /= type == Byte ? 255.0f : 65535.0f;
+    const std::string warning =
+        fmt::format("COLOR_0 has whole numbers that are not marked as normalized: {} counts as 1",
+                    type == Byte ? 255 : 65535);
+    auto& warnings = materials_.warnings;
+    if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end())
+        warnings.push_back(warning);
+}
+
 std::optional<Primitive> PrimitiveReader::read(const Json& description) {
     const std::uint64_t mode = whole(description, "mode", 4);
     if (mode > 6)
@@ -167,6 +186,8 @@ std::optional<Primitive> PrimitiveReader::read(const Json& description) {
     const bool is_lit = text(child(document_.root(), "asset"), "generator") == "Relumine" &&
                         attributes.contains("_RADIANCE");
     read(is_lit ? "_RADIANCE" : "COLOR_0", result.colors);
+    if (!result.colors.empty())
+        scale_colors(description, result.colors);
     if (description.find("material")) {
         const std::uint64_t material = whole(description, "material");
         static_cast<void>(document_.element("materials", material)); // checks the range
@@ -176,8 +197,11 @@ std::optional<Primitive> PrimitiveReader::read(const Json& description) {
     }
     const auto& sets = materials_.uv_sets[result.material];
     read(fmt::format("TEXCOORD_{}", sets[0].value_or(0)), result.uvs);
-    if (sets[1])
-        read(fmt::format("TEXCOORD_{}", *sets[1]), result.second_uvs);
+    const std::uint32_t first = sets[0].value_or(0);
+    if (const auto second = sets[1] ? sets[1] : lightmap_uvs_; second == first)
+        result.second_uvs = result.uvs;
+    else if (second)
+        read(fmt::format("TEXCOORD_{}", *second), result.second_uvs);
     if (materials_.materials[result.material].normal_texture)
         read("TANGENT", result.tangents);
     for (std::size_t set = 0; attributes.contains(fmt::format("JOINTS_{}", set)) &&

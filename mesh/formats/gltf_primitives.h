@@ -42,12 +42,13 @@ struct Primitive {
     const Json* description = nullptr;
 };
 
-/// Reads primitives. Both arguments must outlive it; a primitive without a material adds the
-/// format's default one.
+/// Reads primitives. Document and materials must outlive it; a primitive without a material adds
+/// the format's default one. `lightmap_uvs`: LoadOptions.
 class PrimitiveReader {
 public:
-    PrimitiveReader(Document& document, Materials& materials)
-        : document_(document), materials_(materials) {}
+    PrimitiveReader(Document& document, Materials& materials,
+                    std::optional<std::uint32_t> lightmap_uvs)
+        : document_(document), materials_(materials), lightmap_uvs_(lightmap_uvs) {}
 
     /// Returns nothing for points and lines. `description` must outlive the result.
     /// Throws:  std::runtime_error "expected X, got Y".
@@ -57,10 +58,12 @@ private:
     [[nodiscard]] std::vector<Triangle> triangles(const Json& description, std::uint64_t mode,
                                                   std::size_t num_vertices);
     [[nodiscard]] std::uint32_t default_material();
+    void scale_colors(const Json& description, std::vector<glm::vec3>& colors);
     void check_counts(const Json& description, const DracoMesh& mesh);
 
     Document& document_;
     Materials& materials_;
+    std::optional<std::uint32_t> lightmap_uvs_;
     std::optional<std::uint32_t> default_material_;
 };
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -32,25 +33,43 @@ namespace {
 using gltf::Json;
 using gltf::Primitive;
 
-/// Puts a camera's target as far ahead as the middle of the mesh is.
-Camera looking_at(const std::vector<glm::vec3>& positions, Camera camera) {
+/// An orthographic camera is drawn from so many diagonals of the mesh away: what is one diagonal
+/// nearer looks 2 % larger.
+constexpr double FarInDiagonals = 50.0;
+
+/// Puts a camera's target as far ahead as the middle of the mesh is. An orthographic camera goes
+/// far back.
+Camera looking_at(const std::vector<glm::vec3>& positions, const gltf::FileCamera& of_file) {
+    Camera camera = of_file.camera;
     if (positions.empty())
         return camera;
     const auto& [low, high] = bounds(positions);
-    const glm::dvec3 eye(camera.eye), ahead = glm::dvec3(camera.target) - eye;
+    glm::dvec3 eye(camera.eye);
+    const glm::dvec3 ahead = glm::dvec3(camera.target) - eye;
     double distance = glm::dot(0.5 * (glm::dvec3(low) + glm::dvec3(high)) - eye, ahead);
     if (!(distance > 0.0) || !std::isfinite(distance))
         distance = 0.5 * glm::distance(glm::dvec3(low), glm::dvec3(high));
-    if (distance > 0.0 && std::isfinite(distance))
-        camera.target = glm::vec3(eye + distance * ahead);
+    if (!(distance > 0.0 && std::isfinite(distance)))
+        return camera;
+    camera.target = glm::vec3(eye + distance * ahead);
+    if (of_file.half_height > 0.0) {
+        const double far =
+            FarInDiagonals *
+            std::max(glm::distance(glm::dvec3(low), glm::dvec3(high)), 2.0 * of_file.half_height);
+        camera.eye = glm::vec3(eye + (distance - far) * ahead);
+        camera.fov_degrees = static_cast<float>(2.0 * std::atan(of_file.half_height / far) * 180.0 /
+                                                std::numbers::pi);
+    }
     return camera;
 }
 
 class GltfReader {
 public:
     GltfReader(std::span<const std::byte> bytes, const std::filesystem::path& folder,
-               const std::optional<Pose>& pose, std::uint64_t max_bytes)
-        : document_(bytes, folder, max_bytes), pose_(pose) {}
+               const std::optional<Pose>& pose, std::uint64_t max_bytes,
+               std::optional<std::uint32_t> lightmap_uvs)
+        : document_(bytes, folder, max_bytes), pose_(pose),
+          primitives_(document_, materials_, lightmap_uvs) {}
     PolygonSoup read();
 
 private:
@@ -62,6 +81,7 @@ private:
     void append(const Primitive& primitive, const FrameOf& frame_of, std::uint32_t group);
     void append_skinned(const Primitive& primitive, const gltf::Skin& skin, std::uint32_t group);
     void append_node(std::uint64_t index);
+    void add_camera(const Json& camera, const glm::dmat4& world);
     void add_light(const Json& node, const glm::dmat4& world);
     [[nodiscard]] std::vector<std::uint64_t> place(const std::vector<std::uint64_t>& roots);
     [[nodiscard]] std::vector<double> weights(std::uint64_t node) const;
@@ -73,9 +93,9 @@ private:
     gltf::NodePoses moved_;
     /// [nodes] in the scene; empty: not met yet.
     std::vector<std::optional<glm::dmat4>> worlds_;
-    std::optional<Camera> camera_;
+    std::optional<gltf::FileCamera> camera_;
     gltf::Materials materials_;
-    gltf::PrimitiveReader primitives_{document_, materials_};
+    gltf::PrimitiveReader primitives_;
     std::vector<std::optional<std::vector<Primitive>>> meshes_;
     std::map<std::string, std::uint32_t> group_indices_;
     PolygonSoup soup_;
@@ -319,8 +339,13 @@ std::vector<std::uint64_t> GltfReader::place(const std::vector<std::uint64_t>& r
 
 /// Puts together what was read, and says what was not.
 void GltfReader::finish() {
-    if (camera_)
+    if (camera_) {
         soup_.camera = looking_at(soup_.positions, *camera_);
+        if (camera_->half_height > 0.0)
+            soup_.notes.emplace_back(
+                "the camera of the file is orthographic: it looks from afar, so "
+                "that sizes hardly depend on the distance");
+    }
     if (!has_colors_)
         soup_.colors.clear();
     if (!has_uvs_)
@@ -345,6 +370,15 @@ void GltfReader::finish() {
     soup_.warnings.insert(soup_.warnings.begin(), warnings.begin(), warnings.end());
 }
 
+/// The first perspective camera counts. Without any it is the first one.
+void GltfReader::add_camera(const Json& camera, const glm::dmat4& world) {
+    if (camera_ && camera_->half_height == 0.0)
+        return;
+    const auto found = gltf::camera_at(camera, world);
+    if (found && (!camera_ || found->half_height == 0.0))
+        camera_ = found;
+}
+
 /// One light never stops an asset.
 void GltfReader::add_light(const Json& node, const glm::dmat4& world) {
     try {
@@ -366,9 +400,8 @@ PolygonSoup GltfReader::read() {
         if (node.find("mesh"))
             append_node(index);
         add_light(node, *worlds_[index]);
-        if (!camera_ && node.find("camera"))
-            camera_ = gltf::camera_at(document_.element("cameras", gltf::whole(node, "camera")),
-                                      *worlds_[index]);
+        if (node.find("camera"))
+            add_camera(document_.element("cameras", gltf::whole(node, "camera")), *worlds_[index]);
     }
     finish();
     return std::move(soup_);
@@ -377,9 +410,10 @@ PolygonSoup GltfReader::read() {
 } // namespace
 
 PolygonSoup read_gltf(std::span<const std::byte> bytes, const std::filesystem::path& folder,
-                      const std::optional<Pose>& pose, std::uint64_t max_bytes) {
+                      const std::optional<Pose>& pose, std::uint64_t max_bytes,
+                      std::optional<std::uint32_t> lightmap_uvs) {
     try {
-        return GltfReader(bytes, folder, pose, max_bytes).read();
+        return GltfReader(bytes, folder, pose, max_bytes, lightmap_uvs).read();
     } catch (const files::JsonError&) {
         throw std::runtime_error("expected glTF's JSON, got a value of another type");
     }

@@ -17,6 +17,8 @@ struct MeshFile {
     std::filesystem::path folder = {};
     /// For formats that have animations
     std::optional<Pose> pose = {};
+    /// As LoadOptions has it
+    std::optional<std::uint32_t> lightmap_uvs = {};
 };
 
 struct MeshFormat {

@@ -91,6 +91,9 @@ Header read_header(std::string_view text) {
         const std::vector<std::string_view>& words = reader.words();
         if (words[0] == "comment" && words.size() > 1 && words[1].starts_with("Relumine"))
             header.is_ours = true;
+        if (words[0] == "comment" && words.size() > 2 && words[1] == "TextureFile" &&
+            header.image.empty())
+            header.image = words[2];
         if (words[0] == "comment" || words[0] == "obj_info")
             continue;
         if (words[0] == "format" && words.size() == 3 && words[2] == "1.0")

@@ -33,6 +33,8 @@ struct Header {
     std::vector<Element> elements;
     /// A comment says that save() wrote the file.
     bool is_ours = false;
+    /// The first image that a comment names, as MeshLab does.
+    std::string_view image = {};
     /// Number of lines that the format does not have, which are skipped, and the first one's word.
     std::size_t num_unknown = 0;
     std::string_view unknown = {};

@@ -14,6 +14,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <fmt/format.h>
@@ -370,6 +371,20 @@ void read_strips(const Element& element, std::uint64_t num_vertices, Values& val
         [&](const Property& property) { skip(property, values); }, [&] { length = 0; });
 }
 
+/// Of colours of vertices and of faces those of faces count, unless they are all the same.
+void choose_colors(PolygonSoup& soup) {
+    if (soup.colors.empty())
+        return;
+    const auto are_one = [](const std::vector<glm::vec3>& colors) {
+        return std::adjacent_find(colors.begin(), colors.end(), std::not_equal_to<>()) ==
+               colors.end();
+    };
+    const bool takes_vertices = are_one(soup.face_colors) && !are_one(soup.colors);
+    (takes_vertices ? soup.face_colors : soup.colors).clear();
+    soup.notes.emplace_back(fmt::format("vertices and faces have colours: those of {} are taken",
+                                        takes_vertices ? "vertices" : "faces"));
+}
+
 template<class Values>
 PolygonSoup read_body(const Header& header, Values values) {
     check_sizes(header, values.num_bytes(), Values::IsBinary);
@@ -393,9 +408,8 @@ PolygonSoup read_body(const Header& header, Values values) {
     }
     values.expect_end();
     if (!soup.face_colors.empty()) {
-        if (!soup.colors.empty())
-            soup.notes.emplace_back("vertices and faces have colours: those of faces are taken");
         soup.face_colors.resize(soup.face_ends.size(), no_color());
+        choose_colors(soup);
     }
     if (!soup.corner_uvs.empty())
         soup.corner_uvs.resize(soup.corners.size(), glm::vec2(0.0f));
@@ -419,6 +433,11 @@ PolygonSoup read_ply(std::span<const std::byte> bytes) {
         throw std::runtime_error(fmt::format(
             "expected the format ascii, binary_little_endian or binary_big_endian, got {}",
             excerpt(header.format)));
+    if (!header.image.empty())
+        soup.warnings.push_back(fmt::format(
+            "the image {}, which a comment names, is left out: textures of .ply are not "
+            "read",
+            excerpt(header.image)));
     if (header.num_unknown > 0)
         soup.warnings.push_back(
             fmt::format("{} of the header that PLY does not have {} skipped, the first of {}",

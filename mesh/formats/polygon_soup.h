@@ -88,11 +88,13 @@ struct PolygonSoup {
 /// allocate no more than a small multiple of their size. Other files that a file names are looked
 /// up from its `folder`. A glTF mesh of several nodes is repeated for each node, up to `max_bytes`
 /// in all; its skins and morph targets are as its nodes say, or in the `pose` of an animation.
+/// `lightmap_uvs`: LoadOptions.
 /// Throws:  std::runtime_error "expected X, got Y"; load() puts the path in front.
 [[nodiscard]] PolygonSoup read_gltf(std::span<const std::byte> bytes,
                                     const std::filesystem::path& folder,
                                     const std::optional<Pose>& pose = {},
-                                    std::uint64_t max_bytes = files::free_memory() / 2);
+                                    std::uint64_t max_bytes = files::free_memory() / 2,
+                                    std::optional<std::uint32_t> lightmap_uvs = {});
 [[nodiscard]] PolygonSoup read_obj(std::span<const std::byte> bytes,
                                    const std::filesystem::path& folder = {});
 [[nodiscard]] PolygonSoup read_off(std::span<const std::byte> bytes);

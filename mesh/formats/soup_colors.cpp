@@ -70,6 +70,16 @@ void settle_colors(PolygonSoup& soup, std::optional<ColorCurve> curve) {
     whiten(soup.face_colors, "faces", soup);
     if (soup.colors.empty() && soup.face_colors.empty())
         return;
+    float largest = 0.0f;
+    for (const std::vector<glm::vec3>* colors : {&soup.colors, &soup.face_colors})
+        for (const glm::vec3& color : *colors)
+            largest = std::max({largest, color.r, color.g, color.b});
+    constexpr float Rounding = 1e-4f;
+    if (custom.may_be_whole && largest > 1.0f + Rounding)
+        soup.warnings.push_back(fmt::format(
+            "colours are up to {:.4g}: such surfaces send back more light than arrives, "
+            "and bounces may be refused",
+            largest));
     const bool is_srgb = curve.value_or(custom.curve) == ColorCurve::Srgb;
     for (std::vector<glm::vec3>* colors : {&soup.colors, &soup.face_colors})
         for (glm::vec3& color : *colors) {

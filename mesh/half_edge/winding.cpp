@@ -209,6 +209,21 @@ std::vector<Triangle> welded_triangles(const TriangleMesh& mesh) {
     return renamed(mesh.triangles, first_at_place(mesh.positions));
 }
 
+/// Marks the patches that have a vertex of another one.
+std::vector<bool> patches_that_share(const TriangleMesh& mesh, std::span<const Patch> patches) {
+    constexpr std::size_t None = ~std::size_t{0};
+    std::vector<std::size_t> owners(mesh.num_vertices(), None);
+    std::vector<bool> result(patches.size());
+    for (std::size_t place = 0; place < patches.size(); ++place)
+        for (const std::uint32_t i : patches[place].triangles)
+            for (const std::uint32_t vertex : mesh.triangles[i]) {
+                if (owners[vertex] != None && owners[vertex] != place)
+                    result[place] = result[owners[vertex]] = true;
+                owners[vertex] = place;
+            }
+    return result;
+}
+
 } // namespace
 
 Winding find_winding(const TriangleMesh& mesh) {
@@ -256,7 +271,13 @@ void settle_normals(TriangleMesh& mesh) {
         return;
     std::vector<bool> is_wrong, turns(mesh.num_vertices());
     std::size_t num_triangles = 0, num_normals = 0;
-    for (const Patch& patch : settled_patches(mesh, edge_uses(welded_triangles(mesh)), is_wrong)) {
+    const std::vector<Patch> patches =
+        settled_patches(mesh, edge_uses(welded_triangles(mesh)), is_wrong);
+    const std::vector<bool> is_joined = patches_that_share(mesh, patches);
+    for (std::size_t place = 0; place < patches.size(); ++place) {
+        const Patch& patch = patches[place];
+        if (is_joined[place])
+            continue;
         double against = 0.0, wrong = 0.0;
         for (const std::uint32_t i : patch.triangles) {
             const double area = glm::length(area_normal(mesh.positions, mesh.triangles[i]));

@@ -41,8 +41,9 @@ struct Winding {
 void turn_triangle(TriangleMesh& mesh, std::uint32_t triangle);
 
 /// Makes winding and normals agree in each patch that has them against each other on most of its
-/// area. Where find_winding() says which way the patch faces, whichever is wrong is turned. Else
-/// the triangles are, since normals decide the light. mesh.warnings has a line for either.
+/// area, and shares no vertex with another one. Where find_winding() says which way the patch
+/// faces, whichever is wrong is turned. Else the triangles are, since normals decide the light.
+/// mesh.warnings has a line for either.
 ///
 /// Cost:    as find_winding(), and O(n) where all agree.
 void settle_normals(TriangleMesh& mesh);

@@ -19,6 +19,8 @@ CameraAxes axes_of(const Camera& camera, float aspect) {
                 throw std::invalid_argument(
                     fmt::format("expected a camera within {} of the origin, got {}",
                                 LargestCoordinate, point[axis]));
+    if (!std::isfinite(camera.roll_degrees))
+        throw std::invalid_argument("expected a finite roll of a camera");
     const glm::vec3 to_target = camera.target - camera.eye;
     if (!(glm::length(to_target) > 0.0f) || !std::isfinite(glm::length(to_target)))
         throw std::invalid_argument("expected a camera target apart from its eye");
@@ -26,13 +28,9 @@ CameraAxes axes_of(const Camera& camera, float aspect) {
         throw std::invalid_argument(fmt::format(
             "expected a field of view between 0 and 180 degrees, got {}", camera.fov_degrees));
     const glm::vec3 forward = glm::normalize(to_target);
-    const glm::vec3 world_up =
-        std::abs(forward.y) < 0.9999f ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, -1);
-    const glm::vec3 right = glm::normalize(glm::cross(forward, world_up));
+    const auto [right, up] = mesh::rolled_axes(forward, camera.roll_degrees);
     const float half_height = std::tan(0.5f * camera.fov_degrees * RadiansPerDegree);
-    return {.right = right * half_height * aspect,
-            .up = glm::cross(right, forward) * half_height,
-            .forward = forward};
+    return {.right = right * half_height * aspect, .up = up * half_height, .forward = forward};
 }
 
 PictureRays::PictureRays(const Camera& camera, std::uint32_t width, std::uint32_t height,

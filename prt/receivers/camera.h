@@ -18,11 +18,10 @@ struct CameraAxes {
     glm::vec3 right, up, forward;
 };
 
-/// Returns the axes of a camera. `aspect` is width over height. A camera that looks straight up or
-/// down has -Z as its picture's up.
+/// Returns the axes of a camera: mesh::rolled_axes(). `aspect` is width over height.
 ///
-/// Throws:  std::invalid_argument for a camera whose target is its eye, or a field of view outside
-///          (0, 180).
+/// Throws:  std::invalid_argument for a camera whose target is its eye, a field of view outside
+///          (0, 180), or a roll that is not finite.
 [[nodiscard]] CameraAxes axes_of(const Camera& camera, float aspect);
 
 /// The most pixels a picture has on a side, and the most samples a pixel has on a side.

@@ -102,6 +102,7 @@ struct PixelLayout {
         member("eye", camera.eye);
         member("target", camera.target);
         member("fov_degrees", camera.fov_degrees);
+        member.unusual("roll_degrees", camera.roll_degrees, 0.0f);
     }
 };
 

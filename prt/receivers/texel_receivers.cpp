@@ -11,6 +11,7 @@
 #include <glm/vec2.hpp>
 
 #include "files/parallel.h"
+#include "mesh/tangents.h"
 
 namespace relumine::prt {
 
@@ -24,10 +25,10 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) {
 /// 1] x [y, y + 1].
 class Chart {
 public:
-    Chart(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const AtlasSize& size) {
+    Chart(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const AtlasSize& size,
+          std::uint32_t uv_set) {
         for (std::size_t i = 0; i < 3; ++i) {
-            const glm::dvec2 uv(mesh.corner_uvs.empty() ? mesh.uvs[mesh.triangles[triangle][i]]
-                                                        : mesh.corner_uvs[triangle][i]);
+            const glm::dvec2 uv(mesh::corner_uv(mesh, triangle, i, uv_set));
             corners_[i] = {uv.x * size.width, (1.0 - uv.y) * size.height};
         }
         double longest = 0.0;
@@ -124,8 +125,9 @@ struct Texel {
 
 class Atlas {
 public:
-    Atlas(const mesh::TriangleMesh& mesh, const AtlasSize& size)
-        : mesh_(mesh), size_(size), texels_(std::size_t{size.width} * size.height) {}
+    Atlas(const mesh::TriangleMesh& mesh, const AtlasSize& size, std::uint32_t uv_set)
+        : mesh_(mesh), size_(size), uv_set_(uv_set),
+          texels_(std::size_t{size.width} * size.height) {}
 
     void draw() {
         for (std::uint32_t triangle = 0; triangle < mesh_.num_triangles(); ++triangle)
@@ -137,7 +139,7 @@ public:
 
 private:
     void draw(std::uint32_t triangle) {
-        const Chart chart(mesh_, triangle, size_);
+        const Chart chart(mesh_, triangle, size_, uv_set_);
         if (chart.is_flat()) {
             ++num_flat_;
             return;
@@ -192,6 +194,7 @@ private:
 
     const mesh::TriangleMesh& mesh_;
     AtlasSize size_;
+    std::uint32_t uv_set_;
     std::vector<Texel> texels_;
     std::size_t num_flat_ = 0;
     std::size_t num_outside_ = 0;
@@ -199,7 +202,8 @@ private:
 
 } // namespace
 
-TexelReceivers texel_receivers(const mesh::TriangleMesh& mesh, const AtlasSize& size) {
+TexelReceivers texel_receivers(const mesh::TriangleMesh& mesh, const AtlasSize& size,
+                               std::uint32_t uv_set) {
     const auto is_size = [](std::uint32_t side) {
         return side >= 1 && side <= MaxPictureSize;
     };
@@ -208,10 +212,10 @@ TexelReceivers texel_receivers(const mesh::TriangleMesh& mesh, const AtlasSize& 
         throw std::invalid_argument(
             fmt::format("expected a lightmap of 1 to {} texels a side and {} in all, got {} x {}",
                         MaxPictureSize, MaxTexels, size.width, size.height));
-    if (mesh.uvs.empty() && mesh.corner_uvs.empty())
+    if (uv_set == 0 ? mesh.uvs.empty() && mesh.corner_uvs.empty() : mesh.second_uvs.empty())
         throw std::invalid_argument("expected a mesh with uvs for a lightmap, got one without");
 
-    Atlas atlas(mesh, size);
+    Atlas atlas(mesh, size, uv_set);
     atlas.draw();
     TexelReceivers result{
         .receivers = {},

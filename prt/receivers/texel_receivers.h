@@ -46,9 +46,12 @@ struct TexelReceivers {
 /// touch the texel; the first of equally near ones counts. The normal is the interpolated vertex
 /// normal.
 ///
+/// `uv_set` 1: the mesh's second uvs count.
+///
 /// Cost:    O(texels in the boxes around the triangles).
 /// Throws:  std::invalid_argument for a mesh without uvs; for a size of 0, above MaxPictureSize a
 ///          side or above MaxTexels in all; for uvs that touch no texel.
-[[nodiscard]] TexelReceivers texel_receivers(const mesh::TriangleMesh& mesh, const AtlasSize& size);
+[[nodiscard]] TexelReceivers texel_receivers(const mesh::TriangleMesh& mesh, const AtlasSize& size,
+                                             std::uint32_t uv_set = 0);
 
 } // namespace relumine::prt

@@ -16,12 +16,15 @@ void camera_member(JsonMembers& member, const char* name, std::optional<Camera>&
     if (camera)
         values = {camera->eye.x,    camera->eye.y,    camera->eye.z,      camera->target.x,
                   camera->target.y, camera->target.z, camera->fov_degrees};
+    if (camera && camera->roll_degrees != 0.0f)
+        values.push_back(camera->roll_degrees);
     member.unusual(name, values, {});
     if (values.empty())
         return;
     camera = Camera{.eye = {values.at(0), values.at(1), values.at(2)},
                     .target = {values.at(3), values.at(4), values.at(5)},
-                    .fov_degrees = values.at(6)};
+                    .fov_degrees = values.at(6),
+                    .roll_degrees = values.size() > 7 ? values[7] : 0.0f};
     // Throws for a camera without a direction.
     static_cast<void>(axes_of(*camera, 1.0f));
 }

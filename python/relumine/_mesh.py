@@ -92,6 +92,7 @@ class Mesh:
         normals: str = "file",
         crease: Optional[float] = None,
         vertex_colors: Optional[str] = None,
+        uv_set: Optional[int] = None,
         pose: Optional[str] = None,
         floor: Union[int, str, None] = None,
         floor_scale: float = 4.0,
@@ -104,6 +105,8 @@ class Mesh:
                  doubled at sharper ones
         vertex_colors  "srgb" or "linear": what colours of vertices and faces mean; by default sRGB
                  for .obj, .off and bytes of .ply, linear for floats of .ply and for glTF
+        uv_set   glTF: the set of uvs that a lightmap takes, n of TEXCOORD_n; by default 1 where it
+                 is within 0 to 1 and does not overlap
         pose     glTF: "ANIMATION@SECONDS", the moment in which skins and morph targets stand; None:
                  as the file's nodes say
 
@@ -117,6 +120,7 @@ class Mesh:
             "normals": normals,
             "crease": crease,
             "vertex_colors": vertex_colors,
+            "uv_set": uv_set,
             "pose": pose,
             "floor": floor,
             "floor_scale": floor_scale,

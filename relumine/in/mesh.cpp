@@ -156,6 +156,11 @@ OptionTable options_of(MeshOptions& o) {
             "what colours of vertices and faces mean (srgb for .obj, .off and bytes of .ply; "
             "linear "
             "for floats of .ply and for glTF)"),
+        row("--uv-set", o.uv_set,
+            "glTF: the set of uvs that a lightmap takes, n of TEXCOORD_n (1 where it is within 0 "
+            "to "
+            "1 and does not overlap, or 0)",
+            {.min = 0, .max = 255, .type = "N"}),
         crease_row(o.crease),
         pose_row(o.pose)};
 }
@@ -178,20 +183,30 @@ OptionTable options_of(RefineOptions& o) {
 }
 
 Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
-    mesh::LoadedMesh loaded = mesh::load(
-        path, {.normals = options.normals, .pose = options.pose, .colors = options.vertex_colors});
+    mesh::LoadedMesh loaded = mesh::load(path, {.normals = options.normals,
+                                                .pose = options.pose,
+                                                .colors = options.vertex_colors,
+                                                .lightmap_uvs = options.uv_set.value_or(1)});
     Mesh mesh;
     mesh.source_hash = loaded.hash;
     mesh.camera = loaded.camera;
+    const bool has_normals = loaded.has_normals;
     mesh.geometry = std::move(loaded);
     mesh.source = path.string();
+    if (options.uv_set)
+        mesh.lightmap_uvs = mesh.geometry.second_uvs.empty() ? 0 : 1;
+    if (mesh.lightmap_uvs == 0u && *options.uv_set != 0)
+        throw std::runtime_error(fmt::format("{}: expected a set of uvs TEXCOORD_{} for a "
+                                             "lightmap, got none",
+                                             mesh.source, *options.uv_set));
     const std::optional<float> crease =
         options.crease || options.normals == mesh::NormalSource::Smooth
             ? options.crease
             : mesh::customary_crease(path);
     if (crease)
         mesh.geometry = mesh::with_creases(mesh.geometry, *crease);
-    mesh::settle_normals(mesh.geometry);
+    if (has_normals && !crease)
+        mesh::settle_normals(mesh.geometry);
     const mesh::UpAxis up = options.up.value_or(mesh::customary_up(path));
     mesh::turn_up(mesh.geometry, up);
     for (std::string& line : mesh::doubts_of_size(mesh.geometry))

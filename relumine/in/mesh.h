@@ -45,6 +45,9 @@ struct Mesh {
     bool is_floor_open = false, is_open = true;
     /// The file's own camera.
     std::optional<prt::Camera> camera = {};
+    /// Which uvs a lightmap takes: 0, or 1 for the mesh's second ones. Empty: the second ones where
+    /// they are within 0 to 1 and do not overlap.
+    std::optional<std::uint32_t> lightmap_uvs = {};
     /// The triangles that block light, where they are not those of `geometry`.
     std::optional<mesh::TriangleMesh> blockers = {};
 
@@ -79,6 +82,8 @@ struct MeshOptions {
     std::optional<mesh::Pose> pose = {};
     /// What colours of vertices and faces mean. Empty: by the custom of the format.
     std::optional<mesh::ColorCurve> vertex_colors = {};
+    /// The set of uvs that a lightmap takes, TEXCOORD_n of glTF. Empty: 1 where it is an unwrap.
+    std::optional<std::uint32_t> uv_set = {};
     /// Replaces the normals by mesh::with_creases() of so many degrees.
     std::optional<float> crease = {};
     /// n: adds a floor of n x n vertices under the mesh; 193 gives the scenes of [JN].

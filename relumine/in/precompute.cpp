@@ -103,6 +103,7 @@ public:
         mesh = with_vertices(sound(std::move(mesh)));
         scene_.blockers = std::move(mesh.blockers);
         scene_.mesh = std::move(mesh.geometry);
+        lightmap_uvs_ = mesh.lightmap_uvs;
         scene_.settings = {
             .tolerance = options.tolerance.value_or(are_in_space(options) ? ToleranceOfPoints
                                                     : report_.refined || are_pixels(options)
@@ -205,7 +206,7 @@ private:
         report_.bias = scene_.settings.bias;
         stages().check_scene();
         prt::RayScene rays = ray_scene(scene_.blocking_mesh(), prefix_);
-        place_receivers(scene_, options_, work_, rays, prefix_, report_);
+        place_receivers(scene_, options_, work_, rays, prefix_, lightmap_uvs_, report_);
         require_few_clusters();
         report_.num_receivers = scene_.receivers.size();
         if (!options_.tolerance && !options_.epsilon)
@@ -473,6 +474,7 @@ private:
     const PrecomputeOptions& options_;
     const PrecomputeWork& work_;
     bool is_plan_ = false;
+    std::optional<std::uint32_t> lightmap_uvs_;
     PrecomputeReport& report_;
     std::string prefix_;
     prt::Plan plan_;

@@ -250,6 +250,8 @@ struct PrecomputeReport {
     prt::PrecomputeStatistics clusters = {};
     /// Only of texels: how the uvs fit the atlas
     std::optional<prt::AtlasReport> atlas = {};
+    /// Only of texels: the lightmap takes the mesh's second uvs, since they are an unwrap
+    bool takes_second_uvs = false;
     /// Only with a memory limit
     std::optional<prt::MemoryEstimate> memory = {};
 

@@ -1,5 +1,6 @@
 #include "relumine/in/receiver_placement.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <numeric>
 #include <optional>
@@ -40,9 +41,10 @@ std::vector<glm::vec3> load_points(const std::filesystem::path& path) {
 class Placement {
 public:
     Placement(Scene& scene, const PrecomputeOptions& options, const PrecomputeWork& work,
-              const prt::RayScene& rays, const std::string& prefix, PrecomputeReport& report)
+              const prt::RayScene& rays, const std::string& prefix,
+              std::optional<std::uint32_t> lightmap_uvs, PrecomputeReport& report)
         : scene_(scene), options_(options), work_(work), rays_(rays), prefix_(prefix),
-          report_(report) {}
+          lightmap_uvs_(lightmap_uvs), report_(report) {}
 
     void place() {
         const bool are_vertices = std::holds_alternative<Vertices>(options_.receivers);
@@ -157,9 +159,22 @@ private:
                                 scene_.receivers.size()));
     }
 
+    /// Second uvs that are an unwrap were made for a lightmap.
+    prt::TexelReceivers texels_of(const prt::AtlasSize& size) {
+        if (lightmap_uvs_)
+            return prt::texel_receivers(scene_.mesh, size, *lightmap_uvs_);
+        if (!scene_.mesh.second_uvs.empty()) {
+            prt::TexelReceivers second = prt::texel_receivers(scene_.mesh, size, 1);
+            if (second.report.num_outside == 0 && second.report.num_overlapping == 0) {
+                report_.takes_second_uvs = true;
+                return second;
+            }
+        }
+        return prt::texel_receivers(scene_.mesh, size);
+    }
+
     void place_texels(const Texels& size) {
-        prt::TexelReceivers texels =
-            prt::texel_receivers(scene_.mesh, {.width = size.width, .height = size.height});
+        prt::TexelReceivers texels = texels_of({.width = size.width, .height = size.height});
         const prt::AtlasReport& atlas = texels.report;
         if (atlas.num_overlapping > 0)
             warn(work_, Warning::ChartsOverlap,
@@ -185,6 +200,7 @@ private:
     const PrecomputeWork& work_;
     const prt::RayScene& rays_;
     const std::string& prefix_;
+    std::optional<std::uint32_t> lightmap_uvs_;
     PrecomputeReport& report_;
     std::optional<prt::RayScene> own_rays_;
 };
@@ -193,8 +209,17 @@ private:
 
 void place_receivers(Scene& scene, const PrecomputeOptions& options, const PrecomputeWork& work,
                      const prt::RayScene& rays, const std::string& prefix,
-                     PrecomputeReport& report) {
-    Placement(scene, options, work, rays, prefix, report).place();
+                     std::optional<std::uint32_t> lightmap_uvs, PrecomputeReport& report) {
+    Placement(scene, options, work, rays, prefix, lightmap_uvs, report).place();
+    const auto is_used = [](const mesh::Material& material) {
+        return std::any_of(mesh::TextureSlots.begin(), mesh::TextureSlots.end(),
+                           [&](const mesh::SlotName& entry) {
+                               const auto& slot = material.*entry.slot;
+                               return slot && slot->uv_set == 1;
+                           });
+    };
+    if (std::none_of(scene.mesh.materials.begin(), scene.mesh.materials.end(), is_used))
+        scene.mesh.second_uvs.clear();
 }
 
 } // namespace relumine

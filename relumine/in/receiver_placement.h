@@ -1,6 +1,8 @@
 // Where the light of a precompute is received. Private.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "prt/visibility/ray_scene.h"
@@ -10,11 +12,12 @@
 namespace relumine {
 
 /// Gives the scene the receivers that the options name, with their layout and the eye that sees
-/// them. `rays`: of what blocks light. `prefix` begins messages.
+/// them. `rays`: of what blocks light. `prefix` begins messages. `lightmap_uvs`: those of Mesh.
+/// Second uvs that nothing uses go.
 ///
 /// Throws:  std::runtime_error for receivers that the mesh or a file cannot give.
 void place_receivers(Scene& scene, const PrecomputeOptions& options, const PrecomputeWork& work,
                      const prt::RayScene& rays, const std::string& prefix,
-                     PrecomputeReport& report);
+                     std::optional<std::uint32_t> lightmap_uvs, PrecomputeReport& report);
 
 } // namespace relumine

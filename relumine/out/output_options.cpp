@@ -192,6 +192,8 @@ Camera camera_of(const Scene& scene, const OutputOptions& options) {
         camera.fov_degrees =
             options.fov_degrees.value_or(is_chosen ? framing.fov_degrees : camera.fov_degrees);
     }
+    if (options.target || options.eye)
+        camera.roll_degrees = 0.0f; // that of the file's own view
     if (options.target) {
         camera.eye += *options.target - camera.target;
         camera.target = *options.target;

@@ -101,13 +101,32 @@ TEST_F(Info, MaterialsOfAMesh) {
           "not found           gone.png"})
         EXPECT_NE(told.out.find(part), std::string::npos) << part << told.described();
     write("a.mtl", "newmtl shiny\nKd 2\n");
-    EXPECT_NE(succeed("info parts.obj")
-                  .out.find("left out            the material shiny is grey, since it cannot be "
-                            "read: a.mtl: expected a number of 0 to 1 in line 2, got '2'"),
-              std::string::npos);
+    EXPECT_NE(
+        succeed({"info", "parts.obj"})
+            .out.find("left out            the material shiny: expected 0 to 1 as \"Kd\", got "
+                      "2: it counts as 1"),
+        std::string::npos);
     write("a.gltf", "{\"asset\": {\"version\": \"2.0\"}");
     fail("info a.gltf", {"a.gltf: expected glTF's JSON, got a syntax error"});
     EXPECT_TRUE(succeed("info mesh.obj --json").json()["materials"].empty());
+}
+
+TEST_F(Info, HowAMeshIsReadIsSaidAsByTheFirstPicture) {
+    // A pyramid without its floor, its normals inward; one normal for each face.
+    write("tent.obj", "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv 0 1 0\n"
+                      "vn 0 0.7 -0.7\nvn 0.7 0.7 0\nvn 0 0.7 0.7\nvn -0.7 0.7 0\n"
+                      "f 1//1 2//1 5//1\nf 2//2 3//2 5//2\nf 3//3 4//3 5//3\nf 4//4 1//4 5//4\n");
+    const nlohmann::json info = succeed({"info", "tent.obj", "--json"}).json();
+    const std::string note = "7 vertices are added behind the 5 of the file, where normals or "
+                             "colours of faces differ";
+    const std::string warning =
+        "4 of 4 triangles are wound against their normals: they are turned around";
+    EXPECT_EQ(info["notes"], nlohmann::json{note});
+    EXPECT_EQ(info["left_out"], nlohmann::json{warning});
+    const Result first = succeed({"precompute", "tent.obj", "-o", "tent.prt", "--face-resolution",
+                                  "8", "--no-refine", "--bounces", "0"});
+    EXPECT_NE(first.out.find("tent.obj: " + note), std::string::npos) << first.described();
+    EXPECT_NE(first.err.find("tent.obj: " + warning), std::string::npos) << first.described();
 }
 
 TEST_F(Info, ExtensionsInCapitals) {

@@ -3,6 +3,8 @@
 #include <limits>
 #include <numbers>
 
+#include <glm/trigonometric.hpp>
+
 #include "mesh/edge_uses.h"
 #include "mesh/opacity.h"
 #include "mesh/save.h"
@@ -54,6 +56,15 @@ TEST_F(GltfTest, OurOwnFilesLoadAgain) {
     EXPECT_EQ(loaded.materials,
               (std::vector<Material>{
                   {.name = "lit", .model = MaterialModel::Unlit, .times_vertex_color = true}}));
+}
+
+TEST_F(GltfTest, FilesOfOtherCapitals) {
+    const Model model = square();
+    static_cast<void>(write("Data.BIN", model.buffer));
+    const TriangleMesh mesh = load(write("a.gltf", model.external("data.bin")));
+    EXPECT_EQ(mesh.num_triangles(), 2u);
+    EXPECT_THAT(mesh.warnings, ElementsAre("data.bin is read from Data.BIN"));
+    EXPECT_THAT(load(write("b.gltf", model.external("Data.BIN"))).warnings, ElementsAre());
 }
 
 TEST_F(GltfTest, FacesWithoutNormalsAreFlat) {
@@ -159,6 +170,13 @@ TEST_F(GltfTest, QuantizedAttributesAndColors) {
     EXPECT_EQ(mesh.uvs[0], glm::vec2(0, 1));
     EXPECT_EQ(mesh.positions[0], glm::vec3(-5, 0, 0));
     EXPECT_EQ(mesh.positions[3], glm::vec3(0, 300, 0));
+    EXPECT_THAT(mesh.warnings, ElementsAre());
+    // Without the mark they are parts of 255, too.
+    model.json["accessors"][attributes["COLOR_0"].get<std::size_t>()]["normalized"] = false;
+    const TriangleMesh unmarked = gltf(model.embedded());
+    EXPECT_EQ(unmarked.colors, mesh.colors);
+    EXPECT_THAT(unmarked.warnings, ElementsAre("COLOR_0 has whole numbers that are not marked as "
+                                               "normalized: 255 counts as 1"));
 }
 
 TEST_F(GltfTest, MaterialsAsWritten) {
@@ -842,8 +860,52 @@ TEST_F(GltfTest, TheFirstPerspectiveCameraIsKept) {
     // As far ahead as the middle of the square, at x = 0.5, is.
     EXPECT_LT(glm::distance(camera->target, {0.5f, 2, 0}), 1e-5f);
     EXPECT_NEAR(camera->fov_degrees, 28.64789f, 1e-4f);
+    EXPECT_EQ(camera->roll_degrees, 0.0f);
+    model.json["cameras"][0]["orthographic"]["ymag"] = 0;
     model.json["cameras"][1]["perspective"]["yfov"] = 0;
     EXPECT_FALSE(load(write("b.gltf", model.embedded())).camera);
+}
+
+TEST_F(GltfTest, CamerasMayBeTurnedAboutTheirView) {
+    const auto camera_with = [&](const Json& rotation) {
+        Model model = square();
+        model.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}}}}};
+        model.json["nodes"].push_back(
+            {{"camera", 0}, {"translation", {0.5, 0.5, 5}}, {"rotation", rotation}});
+        model.json["scenes"][0]["nodes"].push_back(1);
+        return load(write("a.gltf", model.embedded())).camera.value();
+    };
+    const auto near = [](const glm::vec3& a, const glm::vec3& b) {
+        return glm::distance(a, b) < 1e-5f;
+    };
+    const double h = std::sqrt(0.5), e = std::numbers::pi / 8;
+    const Camera rolled = camera_with({0, 0, std::sin(e), std::cos(e)});
+    EXPECT_NEAR(rolled.roll_degrees, 45.0f, 1e-4f);
+    const auto axes = rolled_axes({0, 0, -1}, rolled.roll_degrees);
+    EXPECT_TRUE(near(axes.up, {-h, h, 0})) << "+Y of the node";
+    EXPECT_TRUE(near(axes.right, {h, h, 0}));
+    // Straight down: level is -Z, and a quarter of a turn more is -X.
+    EXPECT_EQ(camera_with({-h, 0, 0, h}).roll_degrees, 0.0f);
+    const Camera down = camera_with({-0.5, 0.5, 0.5, 0.5});
+    EXPECT_NEAR(down.roll_degrees, 90.0f, 1e-3f);
+    EXPECT_TRUE(near(rolled_axes({0, -1, 0}, down.roll_degrees).up, {-1, 0, 0}));
+}
+
+TEST_F(GltfTest, OrthographicCamerasLookFromAfar) {
+    Model model = square();
+    model.json["cameras"] = {
+        {{"type", "orthographic"},
+         {"orthographic", {{"xmag", 3}, {"ymag", 2}, {"zfar", 9}, {"znear", 1}}}}};
+    model.json["nodes"].push_back({{"camera", 0}, {"translation", {0.5, 0.25, 5}}});
+    model.json["scenes"][0]["nodes"].push_back(1);
+    const LoadedMesh mesh = load(write("a.gltf", model.embedded()));
+    ASSERT_TRUE(mesh.camera);
+    const float distance = glm::distance(mesh.camera->eye, mesh.camera->target);
+    EXPECT_GT(distance, 100.0f);
+    EXPECT_LT(glm::distance(mesh.camera->target, {0.5f, 0.25f, 0.0f}), 1e-4f);
+    // Half of the picture's height, at the square.
+    EXPECT_NEAR(distance * std::tan(glm::radians(0.5f * mesh.camera->fov_degrees)), 2.0f, 1e-3f);
+    EXPECT_THAT(mesh.notes, testing::Contains(testing::HasSubstr("is orthographic")));
 }
 
 /// A square with a node that has a light.

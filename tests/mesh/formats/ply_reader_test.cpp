@@ -135,6 +135,7 @@ TEST(PlyReader, ColorsOfVertices) {
     }
     const TriangleMesh floats = colored("float", "7.5 0.25 0");
     EXPECT_TRUE(near(floats, {7.5f, 0.25f, 0.0f})) << "HDR";
+    EXPECT_THAT(floats.warnings, testing::ElementsAre(testing::HasSubstr("colours are up to 7.5")));
     EXPECT_THAT(floats.notes,
                 testing::ElementsAre("colours are taken as linear, since they are floats; "
                                      "--vertex-colors srgb takes them otherwise"));
@@ -181,6 +182,19 @@ TEST(PlyReader, ColorsOfFaces) {
         EXPECT_LT(glm::distance(mesh.normals[0], mesh.normals[4]), 1e-6f);
     }
     EXPECT_EQ(ply(square_ply(list + colors, "3 0 1 2 9 9 9", "3 0 2 3 9 9 9")).num_vertices(), 4u);
+    // Beside colours of vertices.
+    const auto both = [&](const std::string& first, const std::string& second) {
+        std::string text =
+            replace_all(square_ply(list + colors, first, second), "0 0 0\n", "0 0 0 0 0 255\n");
+        for (const char* other : {"1 0 0\n", "1 0 -1\n", "0 0 -1\n"})
+            text = replace_all(text, other, replace_all(other, "\n", " 0 255 0\n"));
+        return ply(replace_all(text, "float z\n", "float z\n" + colors));
+    };
+    EXPECT_EQ(both("3 0 1 2 255 0 0", "3 0 2 3 0 0 255").colors[0], glm::vec3(1, 0, 0));
+    const TriangleMesh of_vertices = both("3 0 1 2 255 0 0", "3 0 2 3 255 0 0");
+    EXPECT_EQ(of_vertices.colors[0], glm::vec3(0, 0, 1));
+    EXPECT_THAT(of_vertices.notes, testing::Contains("vertices and faces have colours: those of "
+                                                     "vertices are taken"));
 }
 
 TEST(PlyReader, UvsOfWedges) {
@@ -192,6 +206,12 @@ TEST(PlyReader, UvsOfWedges) {
     ASSERT_EQ(mesh.corner_uvs.size(), 2u);
     EXPECT_EQ(mesh.corner_uvs[0][2], glm::vec2(1, 1));
     EXPECT_EQ(mesh.corner_uvs[1][0], glm::vec2(0.5f, 0));
+    const std::string named = replace_all(
+        square_ply(properties, "3 0 1 2 6 0 0 1 0 1 1 0", "3 0 2 3 6 0.5 0 0.5 1 0 1 0"),
+        "element vertex", "comment TextureFile tex.png\nelement vertex");
+    EXPECT_THAT(ply(named).warnings,
+                testing::ElementsAre("the image 'tex.png', which a comment names, is left out: "
+                                     "textures of .ply are not read"));
     EXPECT_EQ(mesh.num_vertices(), 4u);
     const TriangleMesh odd = ply(square_ply(properties, "3 0 1 2 6 0 0 1 0 1 1 0", "3 0 2 3 0 0"));
     EXPECT_EQ(odd.corner_uvs[1][0], glm::vec2(0, 0));

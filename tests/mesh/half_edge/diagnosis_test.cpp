@@ -286,6 +286,13 @@ TEST(Winding, NormalsAndWindingSettleOnTheSideThatIsRight) {
     // Normals of what is open decide.
     const TriangleMesh open = settled(inside_out(sheet(5)));
     EXPECT_EQ(open.normals, sheet(5).normals);
+    // A patch that shares a vertex is part of a surface that is not manifold.
+    TriangleMesh fan;
+    fan.positions = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-1, 0, 0.1f}, {-1, 0, -0.1f}};
+    fan.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}};
+    fan.normals = std::vector<glm::vec3>(5, {0, 0, -1});
+    settle_normals(fan);
+    EXPECT_TRUE(fan.warnings.empty());
     // Uvs stay with their corners.
     TriangleMesh textured = inside_out(sheet(2));
     textured.corner_uvs = {{{{0, 0}, {1, 0}, {2, 0}}}, {{{3, 0}, {4, 0}, {5, 0}}}};

@@ -196,6 +196,39 @@ TEST(Precompute, LightsTexelsOfALightmap) {
                            "charts overlap, the first triangle of the mesh wins");
 }
 
+TEST(Precompute, ALightmapTakesSecondUvsThatAreAnUnwrap) {
+    constexpr prt::AtlasSize Size{.width = 8, .height = 4};
+    Mesh mesh(two_squares());
+    mesh.geometry.second_uvs = mesh.geometry.uvs;
+    for (glm::vec2& uv : mesh.geometry.uvs)
+        uv *= 4.0f; // tiles
+    PrecomputeReport report;
+    const auto lit = [&](const Mesh& given) {
+        return precompute(given, {.tolerance = 0.2f, .receivers = Texels{.width = 8, .height = 4}},
+                          {.on_warning =
+                               [](Warning, const std::string&) {
+                               }},
+                          &report);
+    };
+    const auto layout = [&](std::uint32_t uv_set) {
+        return prt::texel_receivers(mesh.geometry, Size, uv_set).layout;
+    };
+    const Scene second = lit(mesh);
+    EXPECT_EQ(std::get<prt::TexelLayout>(second.layout), layout(1));
+    EXPECT_TRUE(report.takes_second_uvs);
+    EXPECT_TRUE(second.mesh.second_uvs.empty()) << "no texture uses them";
+    mesh.lightmap_uvs = 0;
+    EXPECT_EQ(std::get<prt::TexelLayout>(lit(mesh).layout), layout(0));
+    EXPECT_FALSE(report.takes_second_uvs);
+    // They overlap.
+    mesh.lightmap_uvs.reset();
+    for (std::size_t vertex = 4; vertex < 8; ++vertex)
+        mesh.geometry.second_uvs[vertex].x -= 0.5f;
+    EXPECT_EQ(std::get<prt::TexelLayout>(lit(mesh).layout), layout(0));
+    mesh.lightmap_uvs = 1;
+    EXPECT_EQ(std::get<prt::TexelLayout>(lit(mesh).layout), layout(1));
+}
+
 TEST(Precompute, NamesTheMeshThatHasNoUvs) {
     Mesh mesh(boulder());
     mesh.geometry.uvs.clear();
