@@ -6,15 +6,29 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
-#include "lights/frame_lights.h"
 #include "lights/frame_samples.h"
 #include "lights/k_means.h"
+#include "lights/light_list.h"
 
 namespace relumine::lights {
+
+/// Distant lights for every frame of a sequence. A light that lives over several frames appears in
+/// each of them.
+struct FrameLights {
+    /// [num_frames], the lights of each frame.
+    std::vector<std::vector<DistantLight>> frames;
+
+    [[nodiscard]] std::size_t num_frames() const { return frames.size(); }
+    /// Returns the lights of a frame, 0 <= frame < num_frames().
+    [[nodiscard]] std::span<const DistantLight> at(std::size_t frame) const {
+        return frames[frame];
+    }
+};
 
 /// A light with its span of frames [S, Section 3.3].
 struct LightCluster {

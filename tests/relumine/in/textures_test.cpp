@@ -58,28 +58,40 @@ Scene made(const mesh::TriangleMesh& mesh) {
     return precompute(mesh, options);
 }
 
-class Textures : public scenes::InFolder {};
+class Textures : public scenes::InFolder {
+protected:
+    /// A picture from the file is that from memory.
+    void is_kept(bool is_grey, mesh::MaterialModel model,
+                 std::optional<mesh::TextureSlot> mesh::Material::* slot) const {
+        mesh::TriangleMesh mesh = square(is_grey);
+        mesh::Material& material = mesh.materials[0];
+        material.model = model;
+        const std::vector<glm::vec3> without = drawn(made(mesh));
+        material.*slot = mesh::TextureSlot{.texture = 0};
+        const Scene scene = made(mesh);
+        const std::vector<glm::vec3> from_memory = drawn(scene);
+        EXPECT_NE(from_memory, without) << "the texture shows";
+        save_scene(file("scene.prt"), scene);
+        EXPECT_EQ(drawn(load_scene(file("scene.prt"))), from_memory);
+    }
+};
 
-TEST_F(Textures, APictureFromTheFileIsThatFromMemory) {
+TEST_F(Textures, OfEachKindAreInTheFile) {
+    using enum mesh::MaterialModel;
     for (const bool is_grey : {false, true})
-        for (const mesh::MaterialMember& member : mesh::MaterialMembers) {
-            const auto slot = member.texture();
-            if (slot == nullptr)
-                continue;
-            SCOPED_TRACE(member.name);
-            mesh::TriangleMesh mesh = square(is_grey);
-            mesh::Material& material = mesh.materials[0];
-            if (slot == &mesh::Material::specular_texture)
-                material.model = mesh::MaterialModel::SpecularGlossiness;
-            material.normal_texture.reset();
-            const std::vector<glm::vec3> without = drawn(made(mesh));
-            material.*slot = mesh::TextureSlot{.texture = 0};
-            const Scene scene = made(mesh);
-            const std::vector<glm::vec3> from_memory = drawn(scene);
-            EXPECT_NE(from_memory, without) << "the texture shows";
-            save_scene(file("scene.prt"), scene);
-            EXPECT_EQ(drawn(load_scene(file("scene.prt"))), from_memory);
-        }
+        for (const mesh::MaterialMember& member : mesh::MaterialMembers)
+            if (const auto slot = member.texture()) {
+                SCOPED_TRACE(member.name);
+                is_kept(is_grey,
+                        slot == &mesh::Material::specular_texture ? SpecularGlossiness
+                                                                  : MetallicRoughness,
+                        slot);
+            }
+}
+
+TEST_F(Textures, OfGlossinessAreInTheFile) {
+    is_kept(true, mesh::MaterialModel::SpecularGlossiness,
+            &mesh::Material::metallic_roughness_texture);
 }
 
 } // namespace
