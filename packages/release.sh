@@ -81,20 +81,18 @@ done
 for folder in files mesh cubemap lights prt relight relumine; do libraries+=:$work/cmake/$folder; done
 PATH="$work/tools/bin:$PATH" LD_LIBRARY_PATH="$libraries" auditwheel repair --strip -z 9 -w dist "$work"/made/*.whl
 
-# Blender's extension has the wheels of all Pythons inside.
+# Blender's extension, one for each Python: two wheels in one would be too large to pass around.
 extension=$work/extension
-rm -rf "$extension"
-mkdir -p "$extension/wheels"
-cp integrations/blender/relumine_lights/{*.py,blender_manifest.toml} LICENSE "$extension"
-cp dist/*.whl "$extension/wheels"
-{
-    echo 'wheels = ['
-    for wheel in dist/*.whl; do echo "    \"./wheels/$(basename "$wheel")\","; done
-    echo ']'
-} >"$work/list"
-sed -i '/^platforms = /r '"$work/list" "$extension/blender_manifest.toml"
-version=$(sed -n 's/^version = "\(.*\)"/\1/p' "$extension/blender_manifest.toml")
-(cd "$extension" && "$work/tools/bin/python" -m zipfile -c "$here/dist/relumine_lights-$version.zip" .)
+for wheel in dist/*.whl; do
+    rm -rf "$extension"
+    mkdir -p "$extension/wheels"
+    cp integrations/blender/relumine_lights/{*.py,blender_manifest.toml} LICENSE "$extension"
+    cp "$wheel" "$extension/wheels"
+    sed -i '/^platforms = /a wheels = ["./wheels/'"$(basename "$wheel")"'"]' "$extension/blender_manifest.toml"
+    version=$(sed -n 's/^version = "\(.*\)"/\1/p' "$extension/blender_manifest.toml")
+    abi=$(sed -E 's/.*-(cp3[0-9]+)-cp3.*/\1/' <<<"$wheel")
+    (cd "$extension" && "$work/tools/bin/python" -m zipfile -c "$here/dist/relumine_lights-$version-$abi.zip" .)
+done
 
 # The npm package has a scene to begin with, which the first wheel's program makes.
 package=$work/npm
