@@ -7,6 +7,13 @@
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
+foreach(target fmt::fmt glm::glm)
+    get_target_property(is_imported ${target} IMPORTED)
+    if(RELUMINE_BUILD_LIBRARY AND NOT is_imported)
+        message(FATAL_ERROR "RELUMINE_INSTALL: expected an installed ${target}, got a target of this project; OFF builds without an install")
+    endif()
+endforeach()
+
 # Static libraries need the libraries that they were compiled with: what CMake finds them with, how they are linked
 # without CMake, and their Debian packages. A library that is headers only stands in $<BUILD_INTERFACE:...> where it is linked, and is not needed.
 set(relumine_find_TBB_tbb "find_dependency(TBB)" -ltbb libtbb-dev)
@@ -16,16 +23,15 @@ set(relumine_find_embree "find_dependency(embree ${RELUMINE_EMBREE})" -lembree${
 set(relumine_find_OpenEXR_OpenEXR "set(CMAKE_MESSAGE_LOG_LEVEL WARNING)\nfind_dependency(OpenEXR)\nunset(CMAKE_MESSAGE_LOG_LEVEL)" "-lOpenEXR -lIex -lImath" libopenexr-dev)
 set(relumine_find_draco_draco "find_dependency(draco)" -ldraco libdraco-dev)
 set(relumine_find_OpenMeshCore "find_dependency(OpenMesh)" -lOpenMeshCore libopenmesh-dev)
-set(relumine_find_OpenMeshTools "find_dependency(OpenMesh)" -lOpenMeshTools libopenmesh-dev)
 set(relumine_find_JPEG_JPEG "find_dependency(JPEG)" -ljpeg libjpeg-dev)
 set(relumine_find_ZLIB_ZLIB "find_dependency(ZLIB)" -lz zlib1g-dev)
-set(relumine_find_PkgConfig_deflate "relumine_find_module(deflate)" -ldeflate libdeflate-dev pkg-config)
+set(relumine_find_relumine_needs_deflate "relumine_needs_library(deflate libdeflate.h deflate)" -ldeflate libdeflate-dev)
 set(relumine_find_meshoptimizer_meshoptimizer "find_dependency(meshoptimizer)" -lmeshoptimizer libmeshoptimizer-dev)
-set(relumine_find_PkgConfig_webp "relumine_find_module(webp)" -lwebp libwebp-dev pkg-config)
-set(relumine_find_PkgConfig_hwy "relumine_find_module(hwy)" -lhwy libhwy-dev pkg-config)
-set(relumine_find_PkgConfig_OpenColorIO "relumine_find_module(OpenColorIO)" -lOpenColorIO libopencolorio-dev pkg-config)
-set(relumine_find_PkgConfig_zstd "relumine_find_module(zstd)" -lzstd libzstd-dev pkg-config)
-set(relumine_find_PkgConfig_xxhash "relumine_find_module(xxhash)" -lxxhash libxxhash-dev pkg-config)
+set(relumine_find_relumine_needs_webp "relumine_needs_library(webp webp/decode.h webp)" -lwebp libwebp-dev)
+set(relumine_find_relumine_needs_hwy "relumine_needs_library(hwy hwy/highway.h hwy)" -lhwy libhwy-dev)
+set(relumine_find_PkgConfig_OpenColorIO "find_dependency(PkgConfig)\npkg_check_modules(OpenColorIO REQUIRED IMPORTED_TARGET OpenColorIO)" -lOpenColorIO libopencolorio-dev pkg-config)
+set(relumine_find_relumine_needs_zstd "relumine_needs_library(zstd zstd.h zstd)" -lzstd libzstd-dev)
+set(relumine_find_relumine_needs_xxhash "relumine_needs_library(xxhash xxhash.h xxhash)" -lxxhash libxxhash-dev)
 set(RELUMINE_FIND_LINKED "")
 set(RELUMINE_LINKED "")
 set(development_depends libglm-dev)
@@ -56,7 +62,10 @@ configure_package_config_file(cmake/relumineConfig.cmake.in ${PROJECT_BINARY_DIR
     INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/relumineConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/relumineConfig.cmake ${PROJECT_BINARY_DIR}/relumineConfigVersion.cmake
-    DESTINATION ${package_dir} COMPONENT development)
+    ${CMAKE_CURRENT_LIST_DIR}/find_library.cmake DESTINATION ${package_dir} COMPONENT development)
+if(NOT RELUMINE_BUILD_LIBRARY)
+    return()
+endif()
 install(EXPORT relumine NAMESPACE relumine:: FILE relumineTargets.cmake DESTINATION ${package_dir} COMPONENT development)
 
 get_property(folders GLOBAL PROPERTY RELUMINE_LIBRARIES)
@@ -89,7 +98,6 @@ foreach(component IN LISTS components)
 endforeach()
 
 if(NOT PROJECT_IS_TOP_LEVEL)
-    relumine_copy_public_headers()
     return()
 endif()
 

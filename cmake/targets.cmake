@@ -24,16 +24,33 @@ endif()
 include(GNUInstallDirs)
 include(${CMAKE_CURRENT_LIST_DIR}/public_header.cmake)
 
+# relumine_link_options(TARGET OPTION...): those that the linker knows.
+include(CheckLinkerFlag)
+function(relumine_link_options target)
+    foreach(option ${ARGN})
+        string(MAKE_C_IDENTIFIER "RELUMINE_LINKS_${option}" known)
+        check_linker_flag(CXX ${option} ${known})
+        if(${known})
+            target_link_options(${target} PRIVATE ${option})
+        endif()
+    endforeach()
+endfunction()
+
 add_library(relumine_warnings INTERFACE)
-target_compile_options(relumine_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion)
+target_compile_options(relumine_warnings INTERFACE "$<${is_gnu_or_clang}:-Wall;-Wextra;-Wshadow;-Wconversion>")
 if(RELUMINE_WARNINGS_AS_ERRORS)
-    target_compile_options(relumine_warnings INTERFACE -Werror)
+    target_compile_options(relumine_warnings INTERFACE $<${is_gnu_or_clang}:-Werror>)
 endif()
 
-# Compiles each header by itself.
-add_custom_target(verify_headers)
+# Compiles each header by itself, where Relumine is the top project.
+if(PROJECT_IS_TOP_LEVEL)
+    add_custom_target(verify_headers)
+endif()
 
 function(relumine_verify_headers name)
+    if(NOT PROJECT_IS_TOP_LEVEL)
+        return()
+    endif()
     set(sources "")
     foreach(header IN LISTS ARGN)
         set(source ${CMAKE_CURRENT_BINARY_DIR}/verified_headers/${header}.cpp)
@@ -91,10 +108,10 @@ function(relumine_library name)
         # Python's module is a shared object that holds the static libraries.
         POSITION_INDEPENDENT_CODE ON)
     # Nobody replaces their functions, so calls are as direct, and as often inlined, as in a program.
-    target_compile_options(relumine_${name} PRIVATE -fno-semantic-interposition)
+    target_compile_options(relumine_${name} PRIVATE $<${is_gnu_or_clang}:-fno-semantic-interposition>)
     target_link_libraries(relumine_${name} PRIVATE $<BUILD_INTERFACE:relumine_warnings>)
     # A shared library depends on no more than it uses.
-    target_link_options(relumine_${name} PRIVATE LINKER:--as-needed)
+    relumine_link_options(relumine_${name} LINKER:--as-needed)
 
     relumine_verify_headers(${name} ${arg_HEADERS} ${arg_PRIVATE_HEADERS})
     if(NOT arg_INTERNAL)
@@ -104,17 +121,19 @@ function(relumine_library name)
             file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include/relumine)
             file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/relumine/${name} SYMBOLIC)
         endif()
-        foreach(header IN LISTS arg_HEADERS)
-            cmake_path(GET header PARENT_PATH room)
-            install(FILES ${header} DESTINATION ${root}/${room} COMPONENT development)
-        endforeach()
+        if(RELUMINE_INSTALL)
+            foreach(header IN LISTS arg_HEADERS)
+                cmake_path(GET header PARENT_PATH room)
+                install(FILES ${header} DESTINATION ${root}/${room} COMPONENT development)
+            endforeach()
+            install(TARGETS relumine_${name} EXPORT relumine
+                RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime
+                LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development
+                ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+        endif()
         list(TRANSFORM arg_HEADERS PREPEND ${name}/)
         set_property(GLOBAL APPEND PROPERTY RELUMINE_PUBLIC_HEADERS ${arg_HEADERS})
         set_property(GLOBAL APPEND PROPERTY RELUMINE_LIBRARIES ${name})
-        install(TARGETS relumine_${name} EXPORT relumine
-            RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime
-            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development
-            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
     endif()
     if(NOT arg_LEVEL)
         set(arg_LEVEL -O2)

@@ -19,9 +19,13 @@ option(RELUMINE_UNITY "Compile the sources of a folder together" ON)
 set(RELUMINE_UNITY_SIZE 24 CACHE STRING "How many sources are compiled together at most")
 mark_as_advanced(RELUMINE_UNITY_SIZE)
 
+# Options are given to compilers that know them.
+set(is_gnu_or_clang $<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>)
+set(kernel_options $<$<AND:$<CONFIG:Release>,${is_gnu_or_clang}>:-O3>)
+
 # Release is compiled on this level.
 function(relumine_optimise target level)
-    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${level}>)
+    target_compile_options(${target} PRIVATE $<$<AND:$<CONFIG:Release>,${is_gnu_or_clang}>:${level}>)
 endfunction()
 
 function(relumine_compile target level)
@@ -31,7 +35,7 @@ function(relumine_compile target level)
         relumine_join_kernels(${target} ${arg_KERNELS})
         relumine_compile_together(${target} "${arg_SIZE}" ${arg_ROOMS_TOGETHER})
     else()
-        set_property(SOURCE ${arg_KERNELS} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O3>)
+        set_property(SOURCE ${arg_KERNELS} APPEND PROPERTY COMPILE_OPTIONS ${kernel_options})
         set_property(SOURCE ${arg_KERNELS} PROPERTY SKIP_PRECOMPILE_HEADERS ON)
     endif()
     if(NOT arg_PRECOMPILED)
@@ -83,7 +87,7 @@ function(relumine_join_kernels target)
         # Kernels read headers between pragmas that choose an instruction set. Precompiled, inline functions would be made
         # for another one, and round otherwise.
         set_source_files_properties(${joined} PROPERTIES
-            COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_PRECOMPILE_HEADERS ON)
+            COMPILE_OPTIONS ${kernel_options} SKIP_PRECOMPILE_HEADERS ON)
     endforeach()
 endfunction()
 
@@ -93,7 +97,7 @@ function(relumine_compile_together target size rooms_together)
     endif()
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
     # g++ warns of types in unnamed namespaces that a class holds, as if the class stood in a header.
-    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+    target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
     get_target_property(sources ${target} SOURCES)
     list(FILTER sources INCLUDE REGEX "\\.cpp$")
     set(rooms "")

@@ -1,12 +1,15 @@
 #!/usr/bin/env bash
-# Makes dist/: a source distribution, a wheel for each Python that is named, Blender's extension with these wheels, and
-# checksums. `./dev release [PYTHON...]`.
-# Wheels hold the program and all libraries that they need, but for what every Linux of their age has.
+# Makes dist/: a source distribution, a wheel for each Python that is named, Blender's extension with these wheels, the npm
+# package, and checksums. `./dev release [PYTHON...]`, which builds the web's part before.
+# Wheels hold the program, the page of `relumine export web` and all libraries that they need, but for what every Linux of
+# their age has.
 #
-# release.sh --try: installs each wheel of dist/ in an empty environment of its Python and lights a scene there.
+# release.sh --try: installs each wheel and the npm package of dist/ in an empty environment and lights a scene there.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 here=$PWD
+work=$here/build/wheels
+web=$here/build/release/web
 
 # environment PYTHON FOLDER: an empty virtual environment.
 environment() {
@@ -21,50 +24,89 @@ python_of() {
     command -v "python$version" || { echo "release: expected python$version on the PATH for $1" >&2; return 1; }
 }
 
+# tried FILE WHERE: a line on what works.
+tried() {
+    echo "$(basename "$1"): works in an empty $2, $(stat -c %s "$1" | awk '{ printf "%.1f MB", $1 / 1e6 }')"
+}
+
+# The folder build/wheels/try is empty but for what each needs to install.
+try_wheel() {
+    local python
+    python=$(python_of "$1")
+    environment "$python" "$work/try"
+    "$work/try/bin/pip" install -q "$1"
+    (cd "$work/try"
+        bin/relumine --version
+        bin/python -m relumine generate knot -o . --vertices 4000 -q
+        bin/relumine generate soft_boxes -o . -q
+        bin/relumine precompute knot.ply -o knot.prt -q
+        bin/relumine relight knot.prt soft_boxes_latlong.exr -o program.npy --bounces 0 -q
+        bin/relumine export web knot.prt soft_boxes_latlong.exr -o site -q
+        bin/python "$here/packages/try_wheel.py")
+    tried "$1" "environment of $("$python" --version)"
+}
+try_npm() {
+    rm -rf "$work/try_npm"
+    mkdir -p "$work/try_npm"
+    (cd "$work/try_npm"
+        npm init -y >/dev/null
+        npm install --no-audit --no-fund --loglevel=error "$here/$1" three@0.187.0
+        node node_modules/relumine/example/gltf.mjs
+        node "$here/packages/try_npm.mjs")
+    tried "$1" "npm folder"
+}
+
 if [ "${1:-}" = --try ]; then
     compgen -G 'dist/*.whl' >/dev/null || { echo "release: expected wheels in dist/; ./dev release makes them" >&2; exit 1; }
-    for wheel in dist/*.whl; do
-        python=$(python_of "$wheel")
-        environment "$python" build/wheels/try
-        build/wheels/try/bin/pip install -q "$wheel"
-        (cd build/wheels/try
-            bin/relumine --version
-            bin/python -m relumine generate knot -o . --vertices 4000 -q
-            bin/relumine generate soft_boxes -o . -q
-            bin/relumine precompute knot.ply -o knot.prt -q
-            bin/relumine relight knot.prt soft_boxes_latlong.exr -o program.npy --bounces 0 -q
-            bin/python "$here/packages/try_wheel.py")
-        echo "$(basename "$wheel"): works in an empty environment of $("$python" --version), $(stat -c %s "$wheel" | awk '{ printf "%.1f MB", $1 / 1e6 }')"
-    done
+    for wheel in dist/*.whl; do try_wheel "$wheel"; done
+    for package in dist/*.tgz; do try_npm "$package"; done
     exit
 fi
 
 [ $# -gt 0 ] || set -- python3
-environment "$1" build/wheels/tools
-build/wheels/tools/bin/pip install -q -r packages/release.pip
-rm -rf dist build/wheels/made
-mkdir -p dist build/wheels/made
-build/wheels/tools/bin/python -m build --sdist -o dist . >build/wheels/sdist.log
-# From the source distribution, so that what is missing in it is seen.
+environment "$1" "$work/tools"
+"$work/tools/bin/pip" install -q -r packages/release.pip
+rm -rf dist "$work/made" "$work/source"
+mkdir -p dist "$work/made" "$work/source"
+"$work/tools/bin/python" -m build --sdist -o dist . >"$work/sdist.log"
+# From the source distribution, so that what is missing in it is seen. The libraries are compiled once, for all Pythons,
+# and shared by the program and the package.
+tar -xf dist/*.tar.gz -C "$work/source" --strip-components 1
+libraries=$work/cmake
 for python in "$@"; do
-    environment "$python" build/wheels/maker
-    build/wheels/maker/bin/pip wheel -q --no-deps -w build/wheels/made dist/*.tar.gz
+    environment "$python" "$work/maker"
+    "$work/maker/bin/pip" wheel -q --no-deps -w "$work/made" "$work/source" -C build-dir="$work/cmake" \
+        -C cmake.define.BUILD_SHARED_LIBS=ON -C cmake.define.RELUMINE_PAGE="$web/page"
 done
-PATH="$PWD/build/wheels/tools/bin:$PATH" auditwheel repair --strip -z 9 -w dist build/wheels/made/*.whl
+for folder in files mesh cubemap lights prt relight relumine; do libraries+=:$work/cmake/$folder; done
+PATH="$work/tools/bin:$PATH" LD_LIBRARY_PATH="$libraries" auditwheel repair --strip -z 9 -w dist "$work"/made/*.whl
 
-# Blender's extension has the wheels of all Pythons inside.
-extension=build/wheels/extension
-rm -rf "$extension"
-mkdir -p "$extension/wheels"
-cp integrations/blender/relumine_lights/{*.py,blender_manifest.toml} LICENSE "$extension"
-cp dist/*.whl "$extension/wheels"
-{
-    echo 'wheels = ['
-    for wheel in dist/*.whl; do echo "    \"./wheels/$(basename "$wheel")\","; done
-    echo ']'
-} >build/wheels/list
-sed -i '/^platforms = /r build/wheels/list' "$extension/blender_manifest.toml"
-version=$(sed -n 's/^version = "\(.*\)"/\1/p' "$extension/blender_manifest.toml")
-(cd "$extension" && "$OLDPWD/build/wheels/tools/bin/python" -m zipfile -c "$OLDPWD/dist/relumine_lights-$version.zip" .)
+# Blender's extension, one for each Python: two wheels in one would be too large to pass around.
+extension=$work/extension
+for wheel in dist/*.whl; do
+    rm -rf "$extension"
+    mkdir -p "$extension/wheels"
+    cp integrations/blender/relumine_lights/{*.py,blender_manifest.toml} LICENSE "$extension"
+    cp "$wheel" "$extension/wheels"
+    sed -i '/^platforms = /a wheels = ["./wheels/'"$(basename "$wheel")"'"]' "$extension/blender_manifest.toml"
+    version=$(sed -n 's/^version = "\(.*\)"/\1/p' "$extension/blender_manifest.toml")
+    abi=$(sed -E 's/.*-(cp3[0-9]+)-cp3.*/\1/' <<<"$wheel")
+    (cd "$extension" && "$work/tools/bin/python" -m zipfile -c "$here/dist/relumine_lights-$version-$abi.zip" .)
+done
+
+# The npm package has a scene to begin with, which the first wheel's program makes.
+package=$work/npm
+rm -rf "$package"
+cp -r "$web/package" "$package"
+environment "$1" "$work/maker"
+wheels=(dist/*"$("$1" -c 'import sys; print("cp%d%d" % sys.version_info[:2])')"-*.whl)
+"$work/maker/bin/pip" install -q "${wheels[0]}"
+"$work/maker/bin/relumine" generate still_life -o "$package/example" --vertices 6000 -q
+(cd "$package/example"
+    "$work/maker/bin/relumine" precompute still_life.glb -o scene.prt --no-refine --tolerance 0.05 -q
+    "$work/maker/bin/relumine" export runtime scene.prt -o scene.relight -q
+    mv still_life.glb scene.glb
+    rm scene.prt)
+(cd dist && npm pack --silent "$package")
 (cd dist && sha256sum -- * >SHA256SUMS)
 ls -l dist

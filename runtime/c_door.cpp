@@ -122,7 +122,6 @@ RelumineResult open(const RelumineOpenOptions* options, RelumineScene** scene,
                     const MakeReader& reader) noexcept {
     return run([&] {
         require(scene, "scene");
-        *scene = nullptr;
         const RelumineOpenOptions own = taken(options, "options");
         const RelumineJobs jobs = taken(own.jobs, "jobs");
         if (own.jobs != nullptr)
@@ -241,6 +240,8 @@ RelumineResult relumine_open(const char* path, const RelumineOpenOptions* option
                              RelumineScene** scene) {
     if (path == nullptr)
         return run([&] { require(path, "path"); });
+    if (*path == '\0')
+        return run([] { throw WrongFile{"path: expected a name, got an empty one"}; });
     return open(options, scene, [&] { return prt::SectionReader(path); });
 }
 

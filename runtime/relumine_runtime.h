@@ -153,7 +153,7 @@ RELUMINE_API RelumineResult relumine_light_cube_map(RelumineScene* scene, uint32
 RELUMINE_API RelumineResult relumine_light_lat_long(RelumineScene* scene, uint32_t width,
                                                     uint32_t height, uint32_t resolution,
                                                     const float* rgb);
-/* Distant lights in place of an environment. */
+/* Distant lights in place of an environment; none of them: darkness. */
 RELUMINE_API RelumineResult relumine_light_list(RelumineScene* scene, const RelumineLight* lights,
                                                 size_t count);
 /* Turns the environment about +Y, from how it stood before its first turn: light from +Z comes from

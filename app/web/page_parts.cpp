@@ -16,7 +16,9 @@ std::vector<std::filesystem::path> page_part_folders() {
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
     if (!error) {
         const std::filesystem::path above = program.parent_path().parent_path();
-        folders = {above / "share/relumine/web/page", above / "web/page"};
+        // Of an install, a build folder, and a wheel.
+        folders = {above / "share/relumine/web/page", above / "web/page",
+                   above / "relumine/web/page"};
     }
     return folders;
 }

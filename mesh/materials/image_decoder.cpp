@@ -37,7 +37,7 @@ void* limited_realloc(void* bytes, std::size_t size) {
 #define STBI_ONLY_BMP
 #define STBI_ONLY_PNG
 #define STBI_ONLY_TGA
-#include <stb/stb_image.h>
+#include <stb_image.h>
 
 #include "mesh/materials/jpeg_decoder.h"
 #include "mesh/materials/texture.h"

@@ -153,7 +153,7 @@ struct Target {
         std::optional<cubemap::Layout> asked;
         std::optional<std::uint32_t> resolution;
         take({row<ConventionText>("--to", name, ""), row<LayoutText>("--layout", asked, ""),
-              size_row(size.width, size.height, ""), row("--face-resolution", resolution, "")},
+              size_row(size.width, size.height, "", {}), row("--face-resolution", resolution, "")},
              given);
         to = cubemap::find_convention(name);
         layout = six_files           ? cubemap::Layout::Cube

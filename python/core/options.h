@@ -3,6 +3,8 @@
 
 #include <pybind11/pybind11.h>
 
+#include "relumine/in/precompute_table.h"
+#include "relumine/options/option_table.h"
 #include "relumine/relumine.h"
 
 namespace relumine::python {

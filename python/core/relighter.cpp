@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "files/one_of_each.h"
 #include "lights.h"
 #include "options.h"
+#include "relumine/ask/fit.h"
 #include "relumine/light/harmonics_file.h"
 #include "relumine/light/layers.h"
 #include "relumine/light/light_lists.h"
@@ -290,6 +292,20 @@ Array adjoint(const LitPointer& own, const py::buffer& weights) {
     return owned(std::move(map));
 }
 
+/// `texels` is [6, R, R, 3]; returns [height, width, 3].
+Array lat_long_adjoint(const py::buffer& texels, std::uint32_t resolution, std::uint32_t width,
+                       std::uint32_t height) {
+    cubemap::CubeMap map(resolution);
+    const std::vector<glm::vec3> values = vec3s(texels);
+    std::copy(values.begin(), values.end(), map.texels.begin());
+    std::vector<glm::vec3> pixels;
+    {
+        const Release release;
+        pixels = relumine::lat_long_adjoint(map, width, height);
+    }
+    return owned(std::move(pixels), {height, width});
+}
+
 /// `weights` is [num_receivers * order^2, 3].
 Array harmonics_adjoint(const LitPointer& own, const py::buffer& weights) {
     const std::vector<glm::vec3> values = vec3s(weights);
@@ -443,6 +459,68 @@ py::tuple bounce(Lit& own, const std::optional<std::uint32_t>& bounces, const py
     return py::make_tuple(report.num_bounces, report.error, report.seconds);
 }
 
+/// The receivers' light as it should be: numbers of each, or a picture with these options.
+std::function<FitTarget(const LitScene&)> target_from(const py::object& target, std::uint32_t width,
+                                                      std::uint32_t height, const py::dict& given) {
+    const OutputOptions options = options_from<OutputOptions>(given);
+    if (width == 0)
+        return [values = vec3s(target.cast<py::buffer>())](const LitScene& lit) {
+            return target_of_values(lit.scene(), values,
+                                    std::vector(values.size(), glm::vec3(1.0f)));
+        };
+    return [picture = picture_of(target.cast<py::buffer>(), width, height, py::none()),
+            options](const LitScene& lit) {
+        return target_of_picture(lit, picture, options);
+    };
+}
+
+/// Runs `fit(LitScene&, FitTarget, FitWork)`, and returns what it gives and the distance that is
+/// left.
+template<typename Fit>
+auto fitted(const LitPointer& own, std::function<FitTarget(const LitScene&)> target,
+            const py::object& progress, Fit fit) {
+    own->refuse_reentry();
+    const Lit::Caller caller(*own);
+    return in_background(
+        progress, [own, target = std::move(target), fit = std::move(fit)](const Reins& reins) {
+            return own->change([&](LitScene& lit) {
+                const FitTarget wanted = target(lit);
+                auto found =
+                    fit(lit, wanted, FitWork{.stop = reins.stop, .on_progress = reins.on_progress});
+                return std::pair(std::move(found), distance_to(wanted, lit));
+            });
+        });
+}
+
+void bind_fits(py::class_<Lit, LitPointer>& type) {
+    type.def("fit_environment",
+             [](const LitPointer& own, const py::object& target, std::uint32_t width,
+                std::uint32_t height, const py::dict& given, std::uint32_t face_resolution,
+                double smoothness, double sparsity, std::size_t iterations,
+                const py::object& progress) {
+                 const EnvironmentFit options{.face_resolution = face_resolution,
+                                              .smoothness = smoothness,
+                                              .sparsity = sparsity,
+                                              .max_iterations = iterations};
+                 auto [map, distance] =
+                     fitted(own, target_from(target, width, height, given), progress,
+                            [=](LitScene& lit, const FitTarget& wanted, const FitWork& work) {
+                                return fit_environment(lit, wanted, options, work);
+                            });
+                 return py::make_tuple(owned(std::move(map)), distance);
+             })
+        .def("fit_lights", [](const LitPointer& own, const py::object& target, std::uint32_t width,
+                              std::uint32_t height, const py::dict& given, std::size_t count,
+                              const py::object& progress) {
+            const auto [lights, distance] =
+                fitted(own, target_from(target, width, height, given), progress,
+                       [=](LitScene& lit, const FitTarget& wanted, const FitWork& work) {
+                           return fit_lights(lit, wanted, count, work);
+                       });
+            return py::make_tuple(arrays_of(lights), distance);
+        });
+}
+
 } // namespace
 
 void bind_relighters(py::module_& module) {
@@ -509,6 +587,16 @@ void bind_relighters(py::module_& module) {
                      return true;
                  });
              })
+        .def("base",
+             [](Lit& own) {
+                 auto [map, degrees] = quickly(own, [](LitScene& lit) {
+                     const LightState& state = lit.state();
+                     const bool is_edited = state.base && state.base->map();
+                     return std::pair(is_edited ? *state.base->map() : environment_of(lit),
+                                      state.rotation_degrees);
+                 });
+                 return py::make_tuple(owned(std::move(map)), degrees);
+             })
         .def("environment", [](Lit& own) {
             cubemap::CubeMap map = quickly(own, [](LitScene& lit) { return environment_of(lit); });
             return owned(std::move(map));
@@ -516,6 +604,8 @@ void bind_relighters(py::module_& module) {
     bind_editing(type);
     bind_questions(type);
     bind_pictures(module, type);
+    bind_fits(type);
+    module.def("lat_long_adjoint", &lat_long_adjoint);
     module.def("layer_shapes", &layer_shapes);
     module.def("load_layers", [](const Path& path, const std::optional<double>& frame) {
         const cubemap::LightLayers file = cubemap::load_layers(path);

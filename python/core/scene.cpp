@@ -313,6 +313,7 @@ void bind_scenes(py::module_& module) {
     py::class_<Mesh, std::shared_ptr<Mesh>> mesh_type(module, "Mesh");
     bind_mesh_arrays(mesh_type, [](const Mesh& mesh) -> const auto& { return mesh.geometry; });
     mesh_type.def_readonly("source", &Mesh::source)
+        .def_readonly("source_hash", &Mesh::source_hash)
         .def_readonly("floor", &Mesh::floor_vertices)
         .def_property_readonly("warnings", [](const Mesh& mesh) { return mesh.geometry.warnings; })
         .def_property_readonly("notes", [](const Mesh& mesh) { return mesh.geometry.notes; });

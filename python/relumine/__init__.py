@@ -32,6 +32,8 @@ from ._picture import Picture
 from ._relighter import (
     FACES,
     Bounces,
+    FittedEnvironment,
+    FittedLights,
     Frame,
     Relighter,
     RelightTimes,
@@ -43,7 +45,7 @@ from ._scene import Blinn, Ggx, Lambert, Scene, join, plan, precompute, precompu
 
 __version__: str = _core.__version__
 __all__ = [
-    "FACES", "Blinn", "Bounces", "Brdf", "Emit", "Environment", "FileError", "Frame", "Gain", "Ggx",
+    "FACES", "Blinn", "Bounces", "Brdf", "Emit", "Environment", "FileError", "FittedEnvironment", "FittedLights", "Frame", "Gain", "Ggx",
     "Image", "Lambert", "Layer", "LightList", "Mesh", "Picture",
     "RelightTimes", "Relighter", "RelumineWarning", "Scene", "Share", "Update",
     "Verification", "irradiance", "join", "load_layers", "plan", "precompute", "precompute_part", "save_layers",

@@ -20,7 +20,8 @@ class Environment:
     """Measured light from all directions, ready to light any scene. It never changes.
 
     pixels    (H, 2 H, 3): a lat-long. (6, R, R, 3): the cube faces +X -X +Y -Y +Z -Z. Any other
-              (H, W, 3) with `layout`. Linear RGB radiance.
+              (H, W, 3) with `layout`. Linear RGB radiance; bytes of a screen are refused, and alpha,
+              a fourth channel, is left out with a warning.
     layout    latlong, cube, strip, cross, hcross, angular, mirrorball or octahedral
     convention  whose axes the picture has: openexr, usd, mitsuba, blender, threejs, babylonjs,
               opengl, directx, pbrt, pbrt-v2
@@ -51,6 +52,7 @@ class Environment:
         rotate: float = 0.0,
     ) -> None:
         options = _options(layout, convention, face_resolution, fix_env, flip, tilt, rotate)
+        pixels = _radiance(pixels)
         if np.ndim(pixels) == 4:
             side = np.shape(pixels)[1]
             array = floats("pixels", pixels, 6, side, side, 3, finite=False)
@@ -257,6 +259,20 @@ class Environment:
             f"<relumine.Environment: {self.layout} {width} x {height}, "
             f"lights as 6 x {r} x {r}{''.join(', ' + turn for turn in turns)}>"
         )
+
+
+def _radiance(pixels: ArrayLike) -> ArrayLike:
+    """Pixels without alpha. Refuses those of a screen, whose numbers are no radiance."""
+    kind = getattr(pixels, "dtype", None)
+    if kind in (np.uint8, np.uint16):
+        raise ValueError(
+            f"pixels: expected linear radiance, got {kind} as screens have it: "
+            f"(pixels / {np.iinfo(kind).max}) ** 2.2 is nearly what it shows"
+        )
+    if np.ndim(pixels) in (3, 4) and np.shape(pixels)[-1] == 4:
+        warn(["pixels: expected red, green and blue, got a fourth channel, which is left out"])
+        pixels = np.asarray(pixels)[..., :3]
+    return pixels
 
 
 def _options(

@@ -6,7 +6,7 @@ import errno
 import os
 import re
 from contextlib import contextmanager
-from typing import Iterator, Union
+from typing import Iterator, Optional, Union
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -48,15 +48,17 @@ def in_python(text: str) -> str:
 
 
 @contextmanager
-def errors(path: Path = "", *, only: bool = False) -> Iterator[None]:
+def errors(path: Optional[Path] = None, *, only: bool = False) -> Iterator[None]:
     """Turns errors about a file into OSError, and names options as Python does.
 
     With `only`, errors that do not begin with the path stay what they are.
     """
     try:
-        name = os.fspath(path)
+        name = None if path is None else os.fspath(path)
     except TypeError:
         raise TypeError(f"path: expected a path, got {type(path).__name__}") from None
+    if name == "":
+        raise FileNotFoundError(errno.ENOENT, "expected the name of a file, got an empty one", name)
     try:
         yield
     except RuntimeError as error:

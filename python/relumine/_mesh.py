@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import warnings
 from typing import Any, Callable, Dict, List, Optional, Tuple, Union
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Floats, Indices, floats, indices, view, whole
+from ._arrays import Floats, Indices, expect, floats, indices, view, whole
 from ._core import Mesh as CoreMesh
-from ._files import Path, errors, in_python
+from ._files import FileError, Path, errors, in_python
 
 
 class RelumineWarning(UserWarning):
@@ -22,6 +24,18 @@ class RelumineWarning(UserWarning):
 def warn(texts: List[str]) -> None:
     for text in texts:
         warnings.warn(in_python(text), RelumineWarning, stacklevel=3)
+
+
+def _screen_colors(mesh: Any, count: int) -> Optional[NDArray[Any]]:
+    """Linear colours of trimesh's visual.vertex_colors or Open3D's vertex_colors."""
+    visual = getattr(mesh, "visual", None)
+    if visual is not None and getattr(visual, "kind", None) != "vertex":
+        return None
+    given = np.asarray(getattr(mesh if visual is None else visual, "vertex_colors", ()))
+    if given.shape not in ((count, 3), (count, 4)):
+        return None
+    values = given[:, :3] / (255.0 if given.dtype == np.uint8 else 1.0)
+    return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
 
 
 class Mesh:
@@ -38,8 +52,8 @@ class Mesh:
                coarse one, which precompute() refines where shadows fall
     floor_scale  side of the floor over the mesh's width, or half its height if that is more
 
-    Arrays may have any numeric type, order and byte order; they are converted once. Raises
-    ValueError for other shapes, numbers that are not finite, and indices out of range.
+    Arrays may have any numeric type, order and byte order; they are converted once. A pickle holds
+    them, or the path of the file that was loaded, which is read again. Raises ValueError for other shapes, numbers that are not finite, and indices out of range.
 
     >>> mesh = relumine.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     >>> mesh
@@ -47,6 +61,8 @@ class Mesh:
     """
 
     _core: CoreMesh
+    #: How to make it again: a function and its arguments.
+    _made: Tuple[Callable[..., "Mesh"], Tuple[Any, ...], Dict[str, Any]]
     #: Figures of refined(); empty for any other mesh.
     report: Dict[str, Any]
 
@@ -82,6 +98,12 @@ class Mesh:
             others,
             {"up": up, "floor": floor, "floor_scale": floor_scale},
         )
+        given = {"normals": normals, "colors": colors, "uvs": uvs}
+        options: Dict[str, Any] = {
+            name: None if value is None else np.array(value) for name, value in given.items()
+        }
+        options.update(blockers=others, up=up, floor=floor, floor_scale=floor_scale)
+        self._made = Mesh, (points, corners), options
 
     @classmethod
     def load(
@@ -128,17 +150,49 @@ class Mesh:
         with errors(path):
             core = _core.load_mesh(os.fspath(path), options)
         warn(core.warnings)
-        return cls._of(core)
+        return cls._of(core, _loaded, os.path.abspath(path), core.source_hash, **options)
 
     @classmethod
-    def _of(cls, core: CoreMesh) -> "Mesh":
+    def of(cls, mesh: Any, **options: Any) -> "Mesh":
+        """A mesh of trimesh, of Open3D, or of any object with `vertices` and `faces` or `triangles`.
+
+        options  those of Mesh(), such as floor="auto"
+
+        Vertex colours are taken as a screen shows them. Normals are computed unless Open3D has
+        some. precompute() takes such objects as they are.
+        """
+        if isinstance(mesh, cls):
+            if options:
+                raise ValueError(f"{next(iter(options))}: expected none beside a relumine.Mesh")
+            return mesh
+        faces = getattr(mesh, "faces", None)
+        triangles = getattr(mesh, "triangles", None) if faces is None else faces
+        is_ours = type(mesh).__module__.partition(".")[0] == "relumine"
+        if triangles is None or is_ours or not hasattr(mesh, "vertices"):
+            hint = "; Mesh.load() reads a file, an array of vertices needs triangles"
+            expect("mesh", mesh, cls, "" if is_ours else hint)
+        vertices = np.asarray(mesh.vertices)
+        colors = _screen_colors(mesh, len(vertices))
+        if colors is not None:
+            options.setdefault("colors", colors)
+        normals = np.asarray(getattr(mesh, "vertex_normals", ()) if faces is None else ())
+        if len(normals) == len(vertices):
+            options.setdefault("normals", normals)
+        return cls(vertices, np.asarray(triangles), **options)
+
+    @classmethod
+    def _of(cls, core: CoreMesh, made: Callable[..., "Mesh"], *given: Any, **options: Any) -> "Mesh":
         mesh = cls.__new__(cls)
         mesh._core = core
+        mesh._made = made, given, options
         mesh.report = {}
         return mesh
 
     def __deepcopy__(self, memo: Any) -> "Mesh":
         return self
+
+    def __reduce__(self) -> Any:
+        return _again, self._made
 
     @property
     def notes(self) -> List[str]:
@@ -234,7 +288,7 @@ class Mesh:
                 raise ValueError(f"{name}: expected more than 0, got {value}")
         with errors():
             core, report = _core.refined(self._core, options, progress)
-        mesh = Mesh._of(core)
+        mesh = Mesh._of(core, Mesh.refined, self, **options)
         mesh.report = report
         return mesh
 
@@ -246,7 +300,8 @@ class Mesh:
         """
         num_vertices = whole("num_vertices", num_vertices, 3, len(self.vertices))
         with errors():
-            return Mesh._of(_core.simplified(self._core, num_vertices))
+            core = _core.simplified(self._core, num_vertices)
+        return Mesh._of(core, Mesh.simplified, self, num_vertices)
 
     def __repr__(self) -> str:
         floor = f", floor of {self.floor} x {self.floor}" if self.floor else ""
@@ -254,3 +309,15 @@ class Mesh:
             f"<relumine.Mesh: {len(self.vertices)} vertices, "
             f"{len(self.triangles)} triangles{floor}>"
         )
+
+
+def _loaded(path: str, expected_hash: int, **options: Any) -> Mesh:
+    """The mesh of a file that was loaded before: what pickles call."""
+    mesh = Mesh.load(path, **options)
+    if mesh._core.source_hash != expected_hash:
+        raise FileError(errno.EINVAL, "expected the file of the pickled mesh, got another", path)
+    return mesh
+
+
+def _again(made: Callable[..., Mesh], given: Tuple[Any, ...], options: Dict[str, Any]) -> Mesh:
+    return made(*given, **options)

@@ -86,6 +86,22 @@ class Share(NamedTuple):
     share: float
 
 
+class FittedEnvironment(NamedTuple):
+    """The environment under which a scene comes nearest to how it should look."""
+
+    environment: Environment
+    #: How far the scene's light then is from what is wanted: relative L2.
+    distance: float
+
+
+class FittedLights(NamedTuple):
+    """The lights under which a scene comes nearest to how it should look."""
+
+    lights: LightList
+    #: How far the scene's light then is from what is wanted: relative L2.
+    distance: float
+
+
 class Frame(NamedTuple):
     """One frame of an animation."""
 
@@ -112,7 +128,7 @@ class Relighter:
     surface_albedo, surface_specular, surface_roughness  as Scene.recolored()
 
     Calls release Python's lock, so that threads relight at the same time; two threads on one
-    Relighter take turns.
+    Relighter take turns. A pickle holds the scene and its light as it is, without marks.
 
     >>> relighter = relumine.Relighter(scene)
     >>> relighter.set_environment(environment).seconds_relight < 1
@@ -141,6 +157,12 @@ class Relighter:
                 surface_roughness=surface_roughness,
             )
         self._scene = scene
+        self._clusters_only = clusters_only
+        self._highlight_rays = highlight_rays
+        # What lights it, where it is more than a map: an environment, or a list.
+        self._given: Union[Environment, LightList, None] = None
+        # The last bounce() of the present light.
+        self._bouncing: Optional[Dict[str, Any]] = None
         if harmonics not in (0, 2, 3):
             raise ValueError(f"harmonics: expected 0, 2 or 3, got {harmonics!r}")
         self._order = harmonics
@@ -180,6 +202,21 @@ class Relighter:
         """Frees the memory. A `with` statement does so at its end."""
         self._lit = None
 
+    def __reduce__(self) -> Any:
+        options = {
+            "clusters_only": self._clusters_only,
+            "harmonics": self._order,
+            "highlight_rays": self._highlight_rays,
+            "blockers_function": self._blockers,
+        }
+        light, layers, degrees = self._given, "[]", 0.0
+        if self._core.is_lit and not isinstance(light, LightList):
+            base, degrees = self._core.base()
+            cube: Floats = view(base)
+            light = light or Environment(cube, face_resolution=cube.shape[1])
+            layers = self._core.layers()
+        return _relighter_from, (self._scene, options, light, layers, degrees, self._bouncing)
+
     def __enter__(self) -> "Relighter":
         return self
 
@@ -190,16 +227,22 @@ class Relighter:
 
     def set_environment(self, environment: Environment) -> RelightTimes:
         """Lights the scene with an environment. Layers stay over it."""
-        return RelightTimes(*self._core.set_environment(_environment(environment)))
+        times = RelightTimes(*self._core.set_environment(_environment(environment)))
+        self._given, self._bouncing = environment, None
+        return times
 
     def update_environment(self, environment: Environment) -> Update:
         """Replaces the environment and updates what differs; all where the resolution does."""
-        return Update(*self._core.update_environment(_environment(environment)))
+        update = Update(*self._core.update_environment(_environment(environment)))
+        self._given = environment
+        return update
 
     def set_lights(self, lights: LightList) -> RelightTimes:
         """Lights the scene with distant lights alone, each with a shadow ray per receiver."""
         expect("lights", lights, LightList)
-        return RelightTimes(*self._core.set_lights(*lights._arrays()))
+        times = RelightTimes(*self._core.set_lights(*lights._arrays()))
+        self._given, self._bouncing = lights, None
+        return times
 
     def update_region(
         self, face: Union[int, str], x: int, y: int, radiance: ArrayLike
@@ -221,7 +264,9 @@ class Relighter:
         values = floats("radiance", radiance, None, None, 3)
         height, width, _ = values.shape
         face, x, y = whole("face", face, most=5), whole("x", x), whole("y", y)
-        return Update(*self._core.update_region(face, x, y, width, height, values))
+        update = Update(*self._core.update_region(face, x, y, width, height, values))
+        self._given = None
+        return update
 
     @property
     def radiance(self) -> Floats:
@@ -262,7 +307,9 @@ class Relighter:
         if bounces is not None:
             bounces = whole("bounces", bounces)
         with errors():
-            return Bounces(*self._core.bounce(bounces, options))
+            result = Bounces(*self._core.bounce(bounces, options))
+        self._bouncing = {"bounces": bounces, **options}
+        return result
 
     @property
     def bounced(self) -> Floats:
@@ -361,10 +408,12 @@ class Relighter:
 
     def undo(self) -> Update:
         """Goes back to the mark before. The radiance is what it was, bit by bit."""
+        self._given = None
         return Update(*self._core.undo())
 
     def redo(self) -> Update:
         """Goes to the mark after."""
+        self._given = None
         return Update(*self._core.redo())
 
     @property
@@ -452,11 +501,13 @@ class Relighter:
             out[first : first + _BATCH] = view(core)
         return out
 
-    def adjoint(self, weights: ArrayLike) -> Floats:
+    def adjoint(self, weights: ArrayLike, *, size: Optional[Tuple[int, int]] = None) -> Floats:
         """The transpose of a relight: (6, R, R, 3), the derivative of a loss by each texel.
 
         weights  (num_receivers, 3), or (num_receivers,) for all channels alike: the derivative of
                  the loss by `radiance`
+        size     (width, height): the derivative by the pixels of a lat-long in the world's axes,
+                 (height, width, 3). Give its Environment a face_resolution: it keeps R
 
         It takes two to three relights. After bounce() light that bounces counts. For the
         present environment, (environment * adjoint(w)).sum() is (radiance * w).sum().
@@ -472,8 +523,13 @@ class Relighter:
         values = floats("weights", weights, count, 3)
         self._require_light()
         with errors():
-            result: Floats = view(self._core.adjoint(values))
-        return result
+            gradient = self._core.adjoint(values)
+        result: Floats = view(gradient)
+        if size is None:
+            return result
+        width, height = (whole("size", side, 1, 2**15) for side in size)
+        pixels: Floats = view(_core.lat_long_adjoint(gradient, result.shape[1], width, height))
+        return pixels
 
     @with_picture_options
     def picture_adjoint(self, weights: ArrayLike, **options: Any) -> Floats:
@@ -514,6 +570,82 @@ class Relighter:
         with errors():
             result: Floats = view(self._core.harmonics_adjoint(values))
         return result
+
+    @with_picture_options
+    def fit_environment(
+        self,
+        wanted: ArrayLike,
+        *,
+        face_resolution: int = 16,
+        smoothness: float = 1e-3,
+        sparsity: float = 0.0,
+        iterations: int = 300,
+        progress: Optional[Progress] = None,
+        **options: Any,
+    ) -> FittedEnvironment:
+        """Finds the environment whose light comes nearest to what is wanted; it lights the scene.
+
+        wanted           (num_receivers, 3): the `radiance` that receivers should have; or a picture
+                         (height, width, 3) of linear pixels, made with the picture's options
+        face_resolution  R of the environment
+        smoothness       how much neighbouring texels resist to differ; 0: not at all
+        sparsity         how much each texel resists to shine
+        iterations       at most
+
+        Nothing shines below zero. A relighter with clusters_only=True suits it best.
+
+        >>> with relumine.Relighter(scene, clusters_only=True) as lit:
+        ...     _ = lit.set_environment(environment)
+        ...     lit.fit_environment(lit.radiance.copy(), face_resolution=8).distance < 0.1
+        True
+        """
+        numbers, width, height, shown = self._wanted(wanted, options)
+        self._given = None
+        with errors():
+            cube, distance = self._core.fit_environment(
+                numbers,
+                width,
+                height,
+                shown,
+                whole("face_resolution", face_resolution, 1, 2**12),
+                real("smoothness", smoothness),
+                real("sparsity", sparsity),
+                whole("iterations", iterations),
+                progress,
+            )
+        environment = Environment(view(cube), face_resolution=face_resolution)
+        return FittedEnvironment(environment, distance)
+
+    @with_picture_options
+    def fit_lights(
+        self,
+        wanted: ArrayLike,
+        number: int,
+        *,
+        progress: Optional[Progress] = None,
+        **options: Any,
+    ) -> FittedLights:
+        """Finds so many distant lights, or fewer, as fit_environment() finds an environment.
+
+        Not with clusters_only: lights cast shadows of their own.
+        """
+        numbers, width, height, shown = self._wanted(wanted, options)
+        number = whole("number", number, 1)
+        with errors():
+            arrays, distance = self._core.fit_lights(
+                numbers, width, height, shown, number, progress
+            )
+        lights = LightList(*(view(each) for each in arrays), method="fit")
+        self._given, self._bouncing = lights, None
+        return FittedLights(lights, distance)
+
+    def _wanted(self, wanted: ArrayLike, options: Dict[str, Any]) -> Tuple[Floats, int, int, Dict[str, Any]]:
+        """Its numbers, a picture's width and height or 0, and its options."""
+        if np.ndim(wanted) == 3:
+            pixels = floats("wanted", wanted, None, None, 3)
+            height, width, _ = pixels.shape
+            return pixels.reshape(-1, 3), width, height, _output(options)
+        return floats("wanted", wanted, self._scene.num_receivers, 3), 0, 0, {}
 
     def sees(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Whether the way from each receiver to points in space is free: (num_receivers, K).
@@ -618,6 +750,7 @@ class Relighter:
                 environment = sequence.load(index)
             warn(environment.warnings)
             self._core.set_frame(environment)
+            self._given, self._bouncing = None, None
             yield Frame(sequence.number(index), path, self.radiance.copy())
 
     def __repr__(self) -> str:
@@ -635,3 +768,26 @@ def _output(options: Dict[str, Any]) -> Dict[str, Any]:
     if options.get("blur") is not None:
         others["background"] = f"blur={options['blur']}"
     return others
+
+
+def _relighter_from(
+    scene: Scene,
+    options: Dict[str, Any],
+    light: Union[Environment, LightList, None],
+    layers: str,
+    degrees: float,
+    bouncing: Optional[Dict[str, Any]],
+) -> Relighter:
+    """The relighter in its light: what pickles call."""
+    relighter = Relighter(scene, **options)
+    if isinstance(light, LightList):
+        relighter.set_lights(light)
+    elif light is not None:
+        relighter.set_environment(light)
+        if layers != "[]":
+            relighter.set_layers(parsed(layers))
+        if degrees != 0.0:
+            relighter.set_rotation(degrees)
+    if bouncing is not None:
+        relighter.bounce(**bouncing)
+    return relighter

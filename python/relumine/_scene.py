@@ -87,7 +87,7 @@ def _bounces(bounces: Union[bool, float, None]) -> Union[bool, float, None]:
 
 
 def precompute(
-    mesh: Union[Mesh, ArrayLike],
+    mesh: Any,
     triangles: Optional[ArrayLike] = None,
     *,
     tolerance: Optional[float] = None,
@@ -115,7 +115,8 @@ def precompute(
 ) -> "Scene":
     """Finds how much light from every direction reaches every receiver: once per mesh.
 
-    mesh       a Mesh, or an array of vertices (N, 3) with `triangles` (M, 3)
+    mesh       a Mesh, a mesh of trimesh or Open3D (Mesh.of()), or an array of vertices (N, 3) with
+               `triangles` (M, 3)
     tolerance  RMS error of the transfer allowed within a cluster, in 1/sr (0.0135; 0.025 where
                vertices were added; 0.1 for points)
     epsilon    the paper's form of it; excludes `tolerance`
@@ -149,19 +150,17 @@ def precompute(
     >>> scene
     <relumine.Scene: vertices, 6912 receivers, 384 clusters>
     """
-    if not isinstance(mesh, Mesh):
-        if triangles is None:
-            if np.ndim(mesh) < 2:
-                expect(
-                    "mesh",
-                    mesh,
-                    Mesh,
-                    "; Mesh.load() reads a file, an array of vertices needs triangles",
-                )
-            raise ValueError("triangles: expected an array beside an array of vertices, got None")
+    is_array = np.ndim(mesh) >= 2
+    if not is_array:
+        mesh = Mesh.of(mesh)
+    if is_array != (triangles is not None):
+        raise ValueError(
+            "triangles: expected "
+            + ("an array beside an array of vertices" if is_array else "none beside a mesh")
+            + f", got {'None' if triangles is None else 'an array'}"
+        )
+    if triangles is not None:
         mesh = Mesh(mesh, triangles)
-    elif triangles is not None:
-        raise ValueError("triangles: expected none beside a Mesh, got an array")
     options: Dict[str, Any] = {
         "tolerance": tolerance,
         "epsilon": epsilon,
@@ -184,7 +183,7 @@ def precompute(
         "checkpoint_seconds": checkpoint_seconds,
         "resume": resume,
     }
-    with errors(output or "", only=True):
+    with errors(output, only=True):
         core, report, warnings = _core.precompute(
             mesh._core, options, asked(blockers_function), progress
         )
@@ -234,9 +233,8 @@ def plan(
         "view": view,
         "output": os.fspath(output),
     }
-    expect("mesh", mesh, Mesh)
     with errors(output, only=True):
-        report, warnings = _core.plan(mesh._core, options, progress)
+        report, warnings = _core.plan(Mesh.of(mesh)._core, options, progress)
     warn(warnings)
     return report
 
@@ -304,8 +302,7 @@ class Scene:
     @classmethod
     def unclustered(cls, mesh: Mesh) -> "Scene":
         """A scene without a precompute: light lists light it, environments cannot."""
-        expect("mesh", mesh, Mesh)
-        return cls._of(_core.unclustered_scene(mesh._core))
+        return cls._of(_core.unclustered_scene(Mesh.of(mesh)._core))
 
     def __deepcopy__(self, memo: Any) -> "Scene":
         return self

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -12,6 +13,7 @@
 #include <glm/geometric.hpp>
 
 #include "cubemap/layers/layer_composite.h"
+#include "cubemap/resample/resample.h"
 #include "files/parallel.h"
 #include "prt/receivers/lit_position.h"
 #include "prt/receivers/mesh_point.h"
@@ -300,6 +302,26 @@ cubemap::CubeMap adjoint(const LitScene& lit, std::span<const glm::vec3> weights
             "expected receivers without highlights, got some with; highlight_rays of 0 leave them "
             "out");
     return relight::adjoint(lit.relighter(), weights, surfaces_of(lit));
+}
+
+std::vector<glm::vec3> lat_long_adjoint(const cubemap::CubeMap& by_texels, std::uint32_t width,
+                                        std::uint32_t height) {
+    // A texel is the mean of pixels by the overlaps: overlap / texel. The means over pixels, which
+    // to_image() takes, are by the same overlaps: overlap / pixel.
+    const std::vector<double> texels = cubemap::texel_solid_angles(by_texels.resolution);
+    cubemap::CubeMap map = by_texels;
+    for (std::size_t i = 0; i < map.texels.size(); ++i)
+        map.texels[i] /= static_cast<float>(texels[i % texels.size()]);
+    const cubemap::EnvironmentImage image =
+        cubemap::to_image(map, cubemap::Layout::LatLong, width, height);
+    std::vector<glm::vec3> result(image.pixels.begin(), image.pixels.end());
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        const double row = std::numbers::pi / height, top = static_cast<double>(i / width) * row;
+        const double solid_angle =
+            2.0 * std::numbers::pi / width * (std::cos(top) - std::cos(top + row));
+        result[i] *= static_cast<float>(solid_angle);
+    }
+    return result;
 }
 
 cubemap::CubeMap picture_adjoint(const LitScene& lit, std::span<const glm::vec3> weights,

@@ -124,6 +124,14 @@ struct Share {
 ///          receivers with highlights; std::logic_error unless an environment lights the scene.
 [[nodiscard]] cubemap::CubeMap adjoint(const LitScene& lit, std::span<const glm::vec3> weights);
 
+/// Returns the derivative by the pixels of a lat-long in the world's axes, which becomes a cube
+/// map, given the derivative by the map's texels: the transpose of cubemap::resample().
+///
+/// Shape:   [height * width].
+/// Throws:  std::invalid_argument for a width or height of 0.
+[[nodiscard]] std::vector<glm::vec3> lat_long_adjoint(const cubemap::CubeMap& by_texels,
+                                                      std::uint32_t width, std::uint32_t height);
+
 /// Returns adjoint(), given the derivative by the pixels of a scene of pixels: of draw() before
 /// nothing, as linear radiance. The radiance of the receivers and the albedo of the options make
 /// the picture.

@@ -8,6 +8,7 @@
 
 #include "files/joined.h"
 #include "prt/lamps/lamps.h"
+#include "relumine/options/option_table.h"
 
 namespace relumine {
 

@@ -14,6 +14,7 @@
 #include "cubemap/resample/resample.h"
 #include "files/joined.h"
 #include "lights/sun_split.h"
+#include "relumine/options/option_table.h"
 
 namespace relumine {
 

@@ -18,7 +18,7 @@
 #include "relight/pictures/backdrop.h"
 #include "relight/reference/exact.h"
 #include "relumine/in/mesh.h"
-#include "relumine/options/option_table.h"
+#include "relumine/options/option_words.h"
 
 namespace relumine {
 
@@ -50,8 +50,11 @@ struct LayoutText {
     static cubemap::Layout read(const std::string& text);
     static std::string show(cubemap::Layout layout);
 };
-struct ConventionText : ValueText<std::string> {
+struct ConventionText {
+    static constexpr const char* Type = "TEXT";
     static std::span<const std::string_view> choices();
+    static std::string read(const std::string& text) { return text; }
+    static std::string show(const std::string& name) { return name; }
 };
 struct FlipText {
     static constexpr const char* Type = "TEXT";

@@ -21,6 +21,7 @@
 #include "prt/visibility/ray_scene.h"
 #include "relight/pictures/framing.h"
 #include "relumine/in/stages.h"
+#include "relumine/options/option_table.h"
 
 namespace relumine {
 

@@ -13,7 +13,7 @@
 #include "mesh/up_axis.h"
 #include "prt/receivers/camera.h"
 #include "prt/refinement/refine.h"
-#include "relumine/options/option_table.h"
+#include "relumine/options/option_words.h"
 
 namespace relumine {
 

@@ -13,6 +13,7 @@
 #include "prt/glossy/surface_sampling.h"
 #include "prt/tolerance.h"
 #include "prt/visibility/ray_scene.h"
+#include "relumine/options/option_table.h"
 
 namespace relumine {
 

@@ -11,7 +11,7 @@
 #include "prt/transfer/transfer.h"
 #include "relight/pictures/framing.h"
 #include "relumine/in/mesh.h"
-#include "relumine/options/option_table.h"
+#include "relumine/options/option_words.h"
 
 namespace relumine {
 

@@ -5,6 +5,21 @@
 
 namespace relumine {
 
+void LightHistory::restart(const LightState& first) {
+    marks_.assign(1, first);
+    at_ = 0;
+}
+
+bool LightHistory::is_unmarked(const LightState& now) const {
+    return !marks_.empty() && marks_[at_] != now;
+}
+
+const LightState* LightHistory::undo(const LightState& now) {
+    if (is_unmarked(now))
+        return &marks_[at_];
+    return at_ > 0 ? &marks_[--at_] : nullptr;
+}
+
 void LightHistory::mark(const LightState& state) {
     marks_.resize(std::min(at_ + 1, marks_.size()));
     if (!marks_.empty() && marks_[at_] == state)

@@ -112,20 +112,13 @@ struct LightState {
 class LightHistory {
 public:
     /// Forgets all marks but this one.
-    void restart(const LightState& first) {
-        marks_.assign(1, first);
-        at_ = 0;
-    }
+    void restart(const LightState& first);
     /// Forgets the marks after the present one, and adds one of another state.
     void mark(const LightState& state);
     /// Returns the state to go back to: the present mark where `now` is another state, as after an
     /// edit without a mark; otherwise the mark before, which becomes the present one. Null where
     /// there is none.
-    const LightState* undo(const LightState& now) {
-        if (is_unmarked(now))
-            return &marks_[at_];
-        return at_ > 0 ? &marks_[--at_] : nullptr;
-    }
+    const LightState* undo(const LightState& now);
     /// Makes the mark after the present one that, and returns it; null where there is none.
     const LightState* redo() { return can_redo() ? &marks_[++at_] : nullptr; }
     /// Whether undo() would return a mark.
@@ -135,9 +128,7 @@ public:
     void limit(std::size_t bytes) { max_bytes_ = bytes; }
 
 private:
-    [[nodiscard]] bool is_unmarked(const LightState& now) const {
-        return !marks_.empty() && marks_[at_] != now;
-    }
+    [[nodiscard]] bool is_unmarked(const LightState& now) const;
 
     std::vector<LightState> marks_;
     /// Index of the present mark.

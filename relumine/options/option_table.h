@@ -17,6 +17,8 @@
 
 #include <glm/vec3.hpp>
 
+#include "relumine/options/option_words.h"
+
 namespace relumine {
 
 /// An option that does not fit: "--fov: expected 0.01 to 179, got '200'".
@@ -101,14 +103,8 @@ struct OptionRow : OptionFacts {
     void set(const std::string& text) const { set(std::span(&text, 1)); }
 };
 
-using OptionTable = std::vector<OptionRow>;
-
 /// Returns all options as one text, to tell whether files were made with the same.
 [[nodiscard]] std::string settings_of(const OptionTable& table);
-
-/// The words of an enumeration, in the order of its values. Specialised beside the enumeration.
-template<typename Enum>
-inline constexpr std::span<const std::string_view> WordsOf = {};
 
 /// A number and nothing else, as options read it: "1.5", "-2e3". None for other text.
 [[nodiscard]] std::optional<double> parse_number(const std::string& text);

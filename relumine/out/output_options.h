@@ -1,5 +1,5 @@
-// What pictures, coloured meshes and numbers of a lit scene are made with. An option is a field and
-// its row in options_of(), both here.
+// What pictures, coloured meshes and numbers of a lit scene are made with. An option is a field
+// here and its row in options_of().
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 #include "relumine/in/emission.h"
 #include "relumine/in/scene.h"
 #include "relumine/light/mirrors.h"
-#include "relumine/options/option_table.h"
+#include "relumine/options/option_words.h"
 
 namespace relumine {
 
@@ -167,74 +167,11 @@ struct CameraText {
 };
 /// --size WIDTHxHEIGHT, each side from `min` (1) to prt::MaxPictureSize.
 [[nodiscard]] OptionRow size_row(std::uint32_t& width, std::uint32_t& height, std::string help,
-                                 OptionFacts facts = {});
+                                 OptionFacts facts);
 /// --transparent, another word for a background of none.
 [[nodiscard]] OptionRow transparent_row(Background& background, OptionFacts facts);
 
 /// All options of a picture.
-inline OptionTable options_of(OutputOptions& o) {
-    constexpr unsigned OnVertices = OptionFacts::OnVertices;
-    constexpr unsigned NoTexels = OptionFacts::OnVertices | OptionFacts::OnPixels;
-    return {
-        row<AlbedoText>("--albedo", o.albedo,
-                        "reflectance: a number, R,G,B, `mesh` for the mesh's vertex colours, or "
-                        "auto: the mesh's own, else 0.5 in pictures and 1 in .npy",
-                        {.example = "0.25"}),
-        row("--floor", o.floor,
-            "what an added floor looks like: the photographed ground with shadows, a studio's "
-            "plain floor, a grey disc; auto: as the environment suggests",
-            {.receivers = NoTexels, .part = "floor"}),
-        row("--photo-height", o.photo_height,
-            "height above the floor from which the environment was photographed, in the mesh's "
-            "unit (the mesh's longest side)",
-            {.min = 1e-6,
-             .max = LargestPosition,
-             .type = "LENGTH",
-             .receivers = NoTexels,
-             .part = "floor"}),
-        row<ColorText>("--floor-albedo", o.floor_albedo,
-                       "reflectance of the floor of --floor: a number or R,G,B (0.3; 1 in .npy)",
-                       {.example = "0.7,0.6,0.5"}),
-        row<EmissionText>("--emission", o.emission,
-                          "factor on the light that lamps, screens and unlit surfaces give of "
-                          "their own: a number or R,G,B; NAME=GAIN[,R,G,B] for one group that "
-                          "glows or one light of the mesh's file",
-                          {.example = "0.5"}),
-        row("--floor-fade", o.floor_fade,
-            "outer part of the floor's radius over which it fades into the background",
-            {.min = 0, .max = 1}),
-        row<ExposureText>("--exposure", o.exposure_ev,
-                          "stops that brighten pictures and colours, or auto: what suits what is "
-                          "seen; 0 for .exr and .npy",
-                          {.example = "1.5"}),
-        row("--tone-map", o.tone,
-            "how a screen shows what is brighter than white, in .png and the window"),
-        row<CameraText>("--camera", o.camera_place,
-                        "AZIMUTH,ELEVATION[,DISTANCE][,FOV]: degrees to the right of the "
-                        "front and above the horizon (24,20), distance (fills two thirds)",
-                        {.example = "30,40", .receivers = OnVertices, .part = "camera"}),
-        row("--front", o.front, "the side that the mesh shows a camera of azimuth 0",
-            {.receivers = OnVertices, .part = "camera"}),
-        row<PointText>("--eye", o.eye, "camera position X,Y,Z in place of --camera",
-                       {.example = "1,2,3", .receivers = OnVertices, .part = "camera"}),
-        row<PointText>("--target", o.target, "point that the camera looks at, X,Y,Z (automatic)",
-                       {.example = "0,0.1,0", .receivers = OnVertices, .part = "camera"}),
-        row("--fov", o.fov_degrees, "vertical field of view in degrees (35)",
-            {.min = 0.01, .max = 179, .receivers = OnVertices, .part = "camera"}),
-        size_row(o.width, o.height, "picture size WIDTHxHEIGHT",
-                 {.receivers = OnVertices, .part = "camera"}),
-        row<BackgroundText>("--background", o.background,
-                            "behind the mesh: sharp or blur=DEG (the environment), none (alpha; "
-                            "premultiplied in .exr), a number or R,G,B",
-                            {.example = "blur=5", .receivers = NoTexels, .part = "background"}),
-        transparent_row(o.background, {.receivers = NoTexels, .part = "background"}),
-        row("--sun", o.sun, "pictures of vertices: where shadows of the sun are traced"),
-        row("--highlight-rays", o.highlight_rays,
-            "rays a pixel that find what glossy surfaces mirror, where the scene stores no "
-            "highlights; 0: none, all is matte (of pixels: relight, edit and animate)",
-            {.min = 0, .max = 4096, .receivers = NoTexels, .part = "highlights"}),
-        row("--gutter", o.gutter, "lightmaps: texels filled around the charts",
-            {.min = 0, .max = 16384})};
-}
+[[nodiscard]] OptionTable options_of(OutputOptions& o);
 
 } // namespace relumine

@@ -1,6 +1,7 @@
 // Prints the options of pictures as the table of docs/command-line.md.
 #include <fmt/format.h>
 
+#include "relumine/options/option_table.h"
 #include "relumine/relumine.h"
 
 int main() {

@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# Builds the consumer against an installed Relumine and runs it: run.sh prefix|deb|folder BUILD WORK [CMAKE_ARGS...]
+# Builds the consumer against an installed Relumine and runs it: run.sh prefix|deb|folder|engine BUILD WORK [CMAKE_ARGS...]
 #   prefix  what `cmake --install` puts into a folder
 #   deb     the Debian packages that cpack makes, unpacked
 #   folder  the source as a folder of the consumer's project: its own part of that is compiled, not linked
+#   engine  the same in an engine with libraries of its own: all is configured, the runtime alone is built, shared and
+#           static, and lights a frame
 # BUILD is a finished build of Relumine, WORK a folder to be made anew. Fails where the consumer includes a header
 # that is not Relumine's, GLM's, the compiler's or the C library's.
 set -euo pipefail
@@ -34,6 +36,27 @@ if [ "$kind" = folder ]; then
         { cat "$work/configure.log" >&2; exit 1; }
     cmake --build "$work/build" --target CMakeFiles/consumer.dir/main.cpp.o >"$work/build.log" || { cat "$work/build.log" >&2; exit 1; }
     check_headers "$work/build" "$(realpath "$work")/build/relumine/public"
+    exit
+fi
+if [ "$kind" = engine ]; then
+    configure() { # configure FOLDER [CMAKE_ARGS...]
+        cmake -S "$source/../engine" -B "$work/$1" -G Ninja -DRELUMINE_FOLDER="$(realpath "$source/../../..")" "${@:2}" \
+            >"$work/configure.log" 2>&1 || { cat "$work/configure.log" >&2; exit 1; }
+    }
+    configure all "$@"
+    "$build/app/relumine" generate sphere -o "$work" --vertices 1000 -q
+    "$build/app/relumine" precompute "$work/sphere.ply" -o "$work/sphere.prt" --tolerance 0.1 --bounces 0 -q
+    for shared in ON OFF; do
+        # None of what the runtime does not need is looked for, and no pkg-config.
+        without=()
+        for package in CLI11 draco embree GTest JPEG meshoptimizer OpenEXR OpenMesh PkgConfig TBB ZLIB; do
+            without+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON")
+        done
+        configure "$shared" "$@" -DRELUMINE_BUILD_LIBRARY=OFF -DRELUMINE_BUILD_RUNTIME=ON -DRELUMINE_RUNTIME_SHARED=$shared \
+            "${without[@]}"
+        cmake --build "$work/$shared" >"$work/build.log" || { cat "$work/build.log" >&2; exit 1; }
+        "$work/$shared/frame" "$work/sphere.prt"
+    done
     exit
 fi
 case $kind in

@@ -144,11 +144,44 @@ def test_wrong_classes_are_named(relighter, scene):
         relumine.Environment(pixels[..., 0])
 
 
+class OfTrimesh:
+    """What trimesh has of a mesh, with vertex colours as a screen shows them."""
+
+    class visual:
+        kind = "vertex"
+        vertex_colors = np.array([[255, 188, 0, 255]] * 4, np.uint8)
+
+    vertices, faces = map(np.asarray, tetrahedron())
+
+
+class OfOpen3d:
+    """What Open3D has of a mesh: vectors, empty where there are none."""
+
+    vertices, triangles = map(np.asarray, tetrahedron())
+    vertex_normals = np.zeros((0, 3))
+    vertex_colors = np.full((4, 3), 0.5)
+
+
+def test_meshes_of_other_libraries_are_taken():
+    vertices, triangles = map(np.asarray, tetrahedron())
+    for other, color in [(OfTrimesh(), (1.0, 0.5029, 0.0)), (OfOpen3d(), (0.214, 0.214, 0.214))]:
+        mesh = relumine.Mesh.of(other)
+        assert (mesh.vertices == vertices.astype(np.float32)).all()
+        assert (mesh.triangles == triangles).all()
+        assert mesh.colors[3] == pytest.approx(color, abs=1e-3)
+        scene = relumine.precompute(other, tolerance=0.1, refine=False)
+        assert scene.num_receivers == 4
+    assert relumine.Mesh.of(OfOpen3d(), floor=5).floor == 5
+    assert relumine.Mesh.of(mesh) is mesh
+    with pytest.raises(TypeError, match="mesh: expected a relumine.Mesh, got str; Mesh.load"):
+        relumine.precompute("mesh.ply")
+
+
 def test_triangles_alone_are_refused():
     vertices, triangles = tetrahedron()
     with pytest.raises(ValueError, match="^triangles: expected an array beside"):
         relumine.precompute(vertices)
-    with pytest.raises(ValueError, match="^triangles: expected none beside a Mesh"):
+    with pytest.raises(ValueError, match="^triangles: expected none beside a mesh"):
         relumine.precompute(relumine.Mesh(vertices, triangles), triangles)
 
 

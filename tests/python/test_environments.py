@@ -37,6 +37,20 @@ def test_the_middle_of_a_lat_long_is_plus_z():
     assert np.argmax([blender.irradiance(a)[0] for a in AXES]) == 0
 
 
+def test_bytes_of_a_screen_are_no_radiance():
+    for kind in (np.uint8, np.uint16):
+        with pytest.raises(ValueError, match="pixels: expected linear radiance, got uint"):
+            relumine.Environment(np.full((8, 16, 3), 200, kind))
+    assert relumine.Environment(np.full((8, 16, 3), 2)).cube.max() == pytest.approx(2)
+
+
+def test_alpha_is_left_out_with_a_word():
+    for shape in [(8, 16, 4), (6, 8, 8, 4)]:
+        with pytest.warns(relumine.RelumineWarning, match="a fourth channel, which is left out"):
+            environment = relumine.Environment(np.ones(shape))
+        assert environment.pixels.shape[-1] == 3
+
+
 def test_turned_counts_from_the_picture(sky):
     assert (sky.turned(rotate=90).turned(rotate=10).cube == sky.turned(rotate=10).cube).all()
     assert (sky.turned().cube == sky.cube).all()

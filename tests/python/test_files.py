@@ -37,6 +37,14 @@ def test_meshes_come_from_files(relighter, folder, arrays):
     assert mesh.colors[:-100] == pytest.approx(relighter.radiance, abs=1e-6)
 
 
+def test_empty_names_are_told_as_such(relighter, scene, arrays):
+    loads = (relumine.Mesh.load, relumine.Environment.load, relumine.Scene.load, relumine.load_layers)
+    saves = (scene.save, relighter.save, relighter.picture(size=(8, 8)).save)
+    for call in (*loads, *saves, lambda path: relumine.precompute(*arrays, output=path)):
+        with pytest.raises(FileNotFoundError, match="expected the name of a file, got an empty one"):
+            call("")
+
+
 def missing(path):
     return pytest.raises(FileNotFoundError, match=f"No such file.*{path}")
 

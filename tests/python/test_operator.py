@@ -26,6 +26,112 @@ def test_the_adjoint_is_the_transpose(scene):
         assert inner(relighter.environment, gradient) == pytest.approx(forward, rel=1e-5)
 
 
+@pytest.mark.parametrize("size", [(16, 8), (32, 16), (96, 48)])
+def test_the_adjoint_by_lat_long_pixels_is_the_transpose(scene, size):
+    random = np.random.default_rng(4)
+    relighter = relumine.Relighter(scene, clusters_only=True)
+    width, height = size
+    for brightest in (1.0, 1e4):
+        # A bright pixel would choose a finer map, if the environment chose one.
+        pixels = random.random((height, width, 3))
+        pixels[1, 2] = brightest
+        relighter.set_environment(relumine.Environment(pixels, face_resolution=16))
+        weights = random.uniform(-0.5, 1, (scene.num_receivers, 3))
+        gradient = relighter.adjoint(weights, size=size)
+        assert gradient.shape == pixels.shape
+        assert inner(pixels, gradient) == pytest.approx(inner(relighter.radiance, weights), rel=1e-4)
+    with pytest.raises(ValueError, match="size: expected a whole number from 1"):
+        relighter.adjoint(weights, size=(0, 4))
+
+
+def test_light_is_found_again(scene, sky):
+    relighter = relumine.Relighter(scene, clusters_only=True)
+    relighter.set_environment(sky)
+    target = relighter.radiance.copy()
+    found = relighter.fit_environment(target, face_resolution=8)
+    assert found.distance < 0.05
+    assert found.environment.face_resolution == 8
+    relighter.set_environment(found.environment)
+    error = np.linalg.norm(relighter.radiance - target) / np.linalg.norm(target)
+    assert error == pytest.approx(found.distance, rel=1e-2)
+    coarse = relighter.fit_environment(target, face_resolution=1, iterations=20)
+    assert coarse.distance > found.distance
+
+    with pytest.raises(ValueError, match="expected a relighter with shadow rays"):
+        relighter.fit_lights(target, 1)
+    relighter = relumine.Relighter(scene)
+    relighter.set_lights(relumine.LightList([(0.6, 0.8, 0.0)], [(3.0, 2.0, 1.0)]))
+    lights = relighter.fit_lights(relighter.radiance.copy(), 1)
+    assert lights.distance < 0.3 and len(lights.lights) == 1
+    with pytest.raises(ValueError, match="wanted: expected shape"):
+        relighter.fit_environment(target[:5])
+    with pytest.raises(ValueError, match="number: expected a whole number from 1"):
+        relighter.fit_lights(target, 0)
+
+
+def test_light_is_found_in_a_picture(scene, sky):
+    relighter = relumine.Relighter(scene, clusters_only=True)
+    relighter.set_environment(sky)
+    options = dict(camera=(30, 20), albedo=0.5, background="none")
+    picture = np.asarray(relighter.picture(size=(96, 64), **options))[..., :3]
+    found = relighter.fit_environment(picture, face_resolution=4, **options)
+    assert found.distance < 0.2
+
+
+def test_torch_differentiates_a_relight(scene):
+    torch = pytest.importorskip("torch")
+    from relumine.torch import relight
+
+    relighter = relumine.Relighter(scene, clusters_only=True)
+    for shape in [(6, 8, 8, 3), (16, 32, 3)]:
+        pixels = torch.rand(shape, dtype=torch.float64, requires_grad=True)
+        radiance = relight(relighter, pixels)
+        other = relight(relighter, torch.ones(6, 4, 4, 3))  # whose derivative comes first
+        weights = torch.rand(radiance.shape, dtype=torch.float64)
+        (radiance * weights).sum().backward()
+        total = (pixels * pixels.grad).sum().item()
+        assert total == pytest.approx((radiance * weights).sum().item(), rel=1e-4)
+        assert other.shape == radiance.shape
+
+
+def test_meshes_are_pickled(arrays, folder):
+    vertices, triangles = arrays
+    mesh = relumine.Mesh(vertices, triangles, colors=np.full((len(vertices), 3), 0.5), floor=4)
+    (folder / "mesh.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 0 -1\nv 0 1 0\nf 1 2 3\nf 1 2 4\n")
+    loaded = relumine.Mesh.load("mesh.obj", floor=3)
+    for each in (mesh, loaded, mesh.simplified(500), loaded.refined(max_edge=0.4)):
+        again = pickle.loads(pickle.dumps(each))
+        for name in ("vertices", "triangles", "normals", "colors", "floor"):
+            assert np.array_equal(getattr(again, name), getattr(each, name)), name
+    kept = pickle.dumps(loaded)
+    (folder / "mesh.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 0 -2\nf 1 2 3\n")
+    with pytest.raises(relumine.FileError, match="expected the file of the pickled mesh"):
+        pickle.loads(kept)
+
+
+def test_relighters_are_pickled(arrays, scene, sky):
+    relighter = relumine.Relighter(scene, harmonics=2, clusters_only=True)
+    assert pickle.loads(pickle.dumps(relighter)).scene.num_receivers == scene.num_receivers
+    layer = relumine.Layer("key", relumine.Disc((1, 1, 1), 20), relumine.Emit((4, 4, 4)))
+
+    def light():
+        yield relighter.set_environment(sky)
+        yield relighter.set_layers([layer])
+        yield relighter.set_rotation(30)
+        yield relighter.update_region("+x", 2, 2, np.full((3, 3, 3), 5.0))
+        yield relighter.set_lights(relumine.LightList([(0, 1, 0)], [(1, 2, 3)]))
+
+    for step in light():
+        again = pickle.loads(pickle.dumps(relighter))
+        assert step is not None
+        assert again.radiance == pytest.approx(relighter.radiance, rel=1e-4, abs=1e-5)
+        assert again.layers == relighter.layers
+        assert again.harmonics.shape == relighter.harmonics.shape
+    relighter.close()
+    with pytest.raises(RuntimeError, match="got one that was closed"):
+        pickle.dumps(relighter)
+
+
 def test_the_adjoint_refuses_wrong_weights(scene):
     relighter = relumine.Relighter(scene)
     with pytest.raises(RuntimeError, match="expected a scene that is lit"):

@@ -276,6 +276,18 @@ TEST(Runtime, WrongCallsChangeNothing) {
     EXPECT_EQ(opened.radiance(), before);
 }
 
+TEST(Runtime, NoLightsAreDarkness) {
+    const Opened opened;
+    const RelumineLight light{.direction = {0.0f, 1.0f, 0.0f}, .irradiance = {1.0f, 1.0f, 1.0f}};
+    ASSERT_EQ(relumine_light_list(opened.scene, &light, 1), RELUMINE_OK);
+    EXPECT_GT(opened.radiance().at(0).g, 0.0f);
+    for (const RelumineLight* none : {&light, static_cast<const RelumineLight*>(nullptr)}) {
+        ASSERT_EQ(relumine_light_list(opened.scene, none, 0), RELUMINE_OK);
+        for (const glm::vec3& radiance : opened.radiance())
+            ASSERT_EQ(radiance, glm::vec3(0.0f));
+    }
+}
+
 TEST(Runtime, BrokenFilesAreRefusedFromMemoryToo) {
     std::ifstream in(stored().path, std::ios::binary);
     std::vector<char> bytes{std::istreambuf_iterator<char>(in), {}};
@@ -283,11 +295,16 @@ TEST(Runtime, BrokenFilesAreRefusedFromMemoryToo) {
     ASSERT_EQ(relumine_open_bytes(bytes.data(), bytes.size(), nullptr, &scene), RELUMINE_OK)
         << relumine_last_error();
     relumine_close(scene);
+    EXPECT_EQ(relumine_open("", nullptr, &scene), RELUMINE_WRONG_FILE);
+    EXPECT_STREQ(relumine_last_error(), "path: expected a name, got an empty one");
+    // A call that fails leaves the caller's scene alone.
+    RelumineScene* const own = reinterpret_cast<RelumineScene*>(&bytes);
+    scene = own;
     for (const std::size_t size :
          {std::size_t{0}, std::size_t{20}, bytes.size() / 2, bytes.size() - 1}) {
         EXPECT_EQ(relumine_open_bytes(bytes.data(), size, nullptr, &scene), RELUMINE_WRONG_FILE)
             << size;
-        EXPECT_EQ(scene, nullptr);
+        EXPECT_EQ(scene, own);
     }
     for (std::size_t at = 5; at < bytes.size(); at += bytes.size() / 50) {
         bytes[at] = static_cast<char>(bytes[at] ^ 0x10);

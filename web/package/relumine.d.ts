@@ -1,6 +1,6 @@
 // Axes are right-handed with +Y up. Colours are linear red, green, blue. docs/web.md tells more.
 
-/** A file: its URL, a response that has it, or its bytes. */
+/** A file: its URL, a response that has it, or its bytes; in node also its path. */
 export type Source = string | URL | Response | ArrayBuffer | ArrayBufferView;
 export type Numbers = Float32Array | number[];
 

@@ -12,9 +12,11 @@ export class RelumineError extends Error {
 }
 
 const codes = ['OK', 'WRONG_ARGUMENT', 'WRONG_FILE', 'OUT_OF_MEMORY', 'NOT_LIT', 'NOT_THERE', 'FAILED'];
-const isFile = (url) => url instanceof URL && url.protocol === 'file:';
+const isNode = typeof process !== 'undefined' && process.versions?.node !== undefined;
+/** A letter and a colon begin a path of Windows. */
+const isFile = (source) => source instanceof URL ? source.protocol === 'file:' : !/^[a-z][a-z0-9+.-]+:/i.test(source);
 
-/** Takes a URL (or its text), a Response, an ArrayBuffer or a view of one; returns bytes. */
+/** Takes a URL (or its text), a Response, an ArrayBuffer or a view of one, in node also the path of a file; returns bytes. */
 export async function bytesOf(source) {
     if (source instanceof ArrayBuffer)
         return new Uint8Array(source);
@@ -22,8 +24,12 @@ export async function bytesOf(source) {
         return new Uint8Array(source.buffer, source.byteOffset, source.byteLength);
     if (typeof source === 'string' && source.startsWith('file:'))
         source = new URL(source);
-    if (isFile(source) && typeof process !== 'undefined')
-        return new Uint8Array(await (await import('node:fs/promises')).readFile(source));
+    if (isNode && (typeof source === 'string' || source instanceof URL) && isFile(source))
+        try {
+            return new Uint8Array(await (await import('node:fs/promises')).readFile(source));
+        } catch (error) {
+            throw new RelumineError('WRONG_FILE', `${source}: cannot read: ${error.code}`);
+        }
     if (typeof source === 'string' || source instanceof URL)
         source = await fetch(source);
     if (typeof Response === 'undefined' || !(source instanceof Response))
