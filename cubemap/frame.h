@@ -3,6 +3,9 @@
 
 #include <cmath>
 
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
 namespace relumine::cubemap {
 
 /// Returns a right-handed frame of unit vectors whose third axis is a unit vector.
