@@ -1,0 +1,20 @@
+# relumine_least(NAME RESULT): the least version of a library that packages/versions.txt names.
+function(relumine_least name result)
+    file(STRINGS ${PROJECT_SOURCE_DIR}/packages/versions.txt line REGEX "^(library|optional) ${name} ")
+    if(NOT line)
+        message(FATAL_ERROR "packages/versions.txt: expected a least version of ${name}, got none")
+    endif()
+    string(REGEX REPLACE ".* " "" line "${line}")
+    set(${result} ${line} PARENT_SCOPE)
+endfunction()
+
+# CMake and pip read theirs before anything else, so they stand there as well.
+relumine_least(CMake least)
+if(NOT CMAKE_MINIMUM_REQUIRED_VERSION VERSION_EQUAL least)
+    message(FATAL_ERROR "CMakeLists.txt: expected cmake_minimum_required(VERSION ${least}), as packages/versions.txt has it")
+endif()
+relumine_least(Python least)
+file(STRINGS ${PROJECT_SOURCE_DIR}/pyproject.toml line REGEX "^requires-python = ")
+if(NOT line STREQUAL "requires-python = \">=${least}\"")
+    message(FATAL_ERROR "pyproject.toml: expected requires-python = \">=${least}\", as packages/versions.txt has it")
+endif()
