@@ -142,8 +142,8 @@ void HiddenVertices::leave_gaps(std::vector<Way>& ways) {
         }
 }
 
-/// Whether the lit end lies beyond a surface that is no solid around the hidden vertex: from there
-/// the first surface on the way is met from its front, or from the lit end from its back.
+/// Whether the lit end lies beyond a sheet: from the lit end, the first surface on the way is met
+/// from its back. A way out of a solid leaves it through its front.
 bool HiddenVertices::passes_a_sheet(const Way& way) const {
     const RayScene* const rays = surface_.blockers().ray_scene();
     if (rays == nullptr)
@@ -158,12 +158,10 @@ bool HiddenVertices::passes_a_sheet(const Way& way) const {
     }
     std::vector<RayScene::Crossing> crossings;
     rays->crossings(ends.positions[0], ends.positions[1], crossings);
-    if (crossings.empty())
-        return false;
-    const auto [first, last] =
-        std::minmax_element(crossings.begin(), crossings.end(),
-                            [](const auto& a, const auto& b) { return a.part < b.part; });
-    return first->is_front || last->is_front;
+    const auto last =
+        std::max_element(crossings.begin(), crossings.end(),
+                         [](const auto& a, const auto& b) { return a.part < b.part; });
+    return last != crossings.end() && last->is_front;
 }
 
 mesh::TriangleMesh HiddenVertices::moved_out() {

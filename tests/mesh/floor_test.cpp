@@ -120,10 +120,10 @@ TEST(Floor, HasAGapBelowWhatStandsFlatOnIt) {
     // One that stands on a corner has none.
     for (std::size_t i = 0; i < 8; ++i)
         mesh.positions[i].y += 0.1f * (mesh.positions[i].x + mesh.positions[i].z);
-    const TriangleMesh tilted{.positions = {mesh.positions.begin(), mesh.positions.begin() + 8},
-                              .triangles = {mesh.triangles.begin(), mesh.triangles.begin() + 12},
-                              .normals = std::vector<glm::vec3>(8, glm::vec3(0, 1, 0))};
-    TriangleMesh on_floor = tilted;
+    TriangleMesh on_floor;
+    on_floor.positions.assign(mesh.positions.begin(), mesh.positions.begin() + 8);
+    on_floor.triangles.assign(mesh.triangles.begin(), mesh.triangles.begin() + 12);
+    on_floor.normals.assign(8, glm::vec3(0, 1, 0));
     append_floor(on_floor, 5, 4.0f);
     EXPECT_EQ(floor_gap(on_floor, 8), 0.0f);
 }
