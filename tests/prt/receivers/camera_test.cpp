@@ -37,6 +37,14 @@ TEST(PictureRays, SamplesAreARegularGridRowByRow) {
     expect_near(on_plane(rays.direction(7, 3, 3)), {3.75f, -1.75f, 0.0f});
 }
 
+TEST(PictureRays, ARollTurnsThePicture) {
+    Camera camera = FrontCamera;
+    camera.roll_degrees = 90.0f; // the camera's right goes up
+    const PictureRays rays(camera, 4, 4, 1);
+    expect_near(on_plane(rays.direction(0, 0, 0)), {-1.5f, -1.5f, 0.0f});
+    expect_near(on_plane(rays.direction(3, 1, 0)), {-0.5f, 1.5f, 0.0f});
+}
+
 TEST(PictureRays, LookingDownMinusZIsUp) {
     const PictureRays rays({.eye = {0, 5, 0}}, 2, 2, 1);
     EXPECT_LT(rays.direction(0, 0, 0).z, 0.0f);
@@ -52,6 +60,8 @@ TEST(PictureRays, RefusesWhatIsNoCamera) {
     for (const float fov : {0.0f, -20.0f, 180.0f, nan})
         EXPECT_THROW(PictureRays({.eye = {1, 2, 3}, .fov_degrees = fov}, 2, 2, 1),
                      std::invalid_argument);
+    EXPECT_THROW(PictureRays({.eye = {1, 2, 3}, .roll_degrees = nan}, 2, 2, 1),
+                 std::invalid_argument);
     EXPECT_THROW(PictureRays(FrontCamera, 0, 2, 1), std::invalid_argument);
     EXPECT_THROW(PictureRays(FrontCamera, 2, MaxPictureSize + 1, 1), std::invalid_argument);
     EXPECT_THROW(PictureRays(FrontCamera, 2, 2, 0), std::invalid_argument);

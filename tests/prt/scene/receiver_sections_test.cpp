@@ -43,12 +43,12 @@ Scene pixel_scene(const mesh::Material& material = {},
     scene.mesh = scenes::box(glm::vec3(-1.0f), glm::vec3(1.0f));
     scene.mesh.materials = {material};
     scene.mesh.triangle_materials.assign(scene.mesh.num_triangles(), 0);
-    PixelReceivers pixels =
-        pixel_receivers(scene.mesh, RayScene(scene.mesh),
-                        {.camera = {.eye = {3.1f, 2.2f, 4.3f}, .fov_degrees = 33.3f},
-                         .width = 11,
-                         .height = 7,
-                         .samples_per_axis = samples_per_axis});
+    PixelReceivers pixels = pixel_receivers(
+        scene.mesh, RayScene(scene.mesh),
+        {.camera = {.eye = {3.1f, 2.2f, 4.3f}, .fov_degrees = 33.3f, .roll_degrees = 7.5f},
+         .width = 11,
+         .height = 7,
+         .samples_per_axis = samples_per_axis});
     scene.receivers = std::move(pixels.receivers);
     scene.layout = std::move(pixels.layout);
     precompute(scene);

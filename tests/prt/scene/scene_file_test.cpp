@@ -329,7 +329,8 @@ Scene glossy_scene() {
     set_surfaces(scene.transfer, scene.receivers);
     scene.settings.glossy_tolerance = 0.3f;
     scene.settings.view = Camera{.eye = {0.0f, 1.0f, 4.0f}};
-    scene.settings.camera = Camera{.eye = {1.0f, 2.0f, 3.0f}, .fov_degrees = 50.0f};
+    scene.settings.camera =
+        Camera{.eye = {1.0f, 2.0f, 3.0f}, .fov_degrees = 50.0f, .roll_degrees = 12.5f};
     return scene;
 }
 
