@@ -13,4 +13,4 @@ stripped=$(mktemp)
 trap 'rm -f "$stripped"' EXIT
 strip -o "$stripped" "$library"
 size=$(stat -c %s "$stripped")
-[ "$size" -le 1500000 ] || { echo "expected 1.5 MB at most without symbols, got $size bytes"; exit 1; }
+[ "$size" -le 1400000 ] || { echo "expected 1.4 MB at most without symbols, got $size bytes"; exit 1; }

@@ -337,7 +337,6 @@ protected:
         }
     }
 
-    fs::path folder_;
     Scene scene_;
     std::optional<RayScene> rays_;
 };
