@@ -16,6 +16,7 @@
 #include "files/extension.h"
 #include "mesh/floor.h"
 #include "mesh/load.h"
+#include "mesh/materials/material_members.h"
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/lit_position.h"
 #include "prt/receivers/pixel_receivers.h"
@@ -212,10 +213,11 @@ void place_receivers(Scene& scene, const PrecomputeOptions& options, const Preco
                      std::optional<std::uint32_t> lightmap_uvs, PrecomputeReport& report) {
     Placement(scene, options, work, rays, prefix, lightmap_uvs, report).place();
     const auto is_used = [](const mesh::Material& material) {
-        return std::any_of(mesh::TextureSlots.begin(), mesh::TextureSlots.end(),
-                           [&](const mesh::SlotName& entry) {
-                               const auto& slot = material.*entry.slot;
-                               return slot && slot->uv_set == 1;
+        return std::any_of(mesh::MaterialMembers.begin(), mesh::MaterialMembers.end(),
+                           [&](const mesh::MaterialMember& member) {
+                               const auto slot = member.texture();
+                               return slot != nullptr && material.*slot &&
+                                      (material.*slot)->uv_set == 1;
                            });
     };
     if (std::none_of(scene.mesh.materials.begin(), scene.mesh.materials.end(), is_used))

@@ -54,8 +54,7 @@ TEST_F(LightFile, ReadsBackBitByBit) {
 }
 
 TEST_F(LightFile, AFileByHandNeedsLittle) {
-    EXPECT_EQ(with_light(R"({"direction": [0, 0.7071, 0.7071], "irradiance": [1, 2, 3]})"),
-              "");
+    EXPECT_EQ(with_light(R"({"direction": [0, 0.7071, 0.7071], "irradiance": [1, 2, 3]})"), "");
     const LightList list = load_lights(path_);
     ASSERT_EQ(list.lights.size(), 1u);
     EXPECT_NEAR(glm::length(list.lights[0].direction), 1.0, 1e-15);
