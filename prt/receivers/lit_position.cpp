@@ -27,10 +27,11 @@ bool has_corner(const Crossing& crossing, const glm::vec3& at) {
            crossing.corners.end();
 }
 
-/// Whether two triangles are the two sides of one.
-bool are_twins(const Crossing& a, const Crossing& b) {
-    return std::all_of(a.corners.begin(), a.corners.end(),
-                       [&](const glm::vec3& corner) { return has_corner(b, corner); });
+/// Whether two triangles are the two sides of a sheet, which may be cut along other diagonals: two
+/// corners or more are the same.
+bool are_sides_of_one(const Crossing& a, const Crossing& b) {
+    return std::count_if(a.corners.begin(), a.corners.end(),
+                         [&](const glm::vec3& corner) { return has_corner(b, corner); }) >= 2;
 }
 
 /// What lies on a way from a surface.
@@ -69,7 +70,7 @@ WayOut way_out(const RayScene& rays, const glm::vec3& own, const glm::vec3& orig
                                  return !other.is_front && distance(other) <= touching;
                              }) &&
                  std::none_of(crossings.begin(), crossings.end(), [&](const Crossing& other) {
-                     return !other.is_front && are_twins(crossing, other);
+                     return !other.is_front && are_sides_of_one(crossing, other);
                  }));
     }
     return result;
