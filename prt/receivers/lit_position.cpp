@@ -36,7 +36,7 @@ bool are_sides_of_one(const Crossing& a, const Crossing& b) {
 
 /// What lies on a way from a surface.
 struct WayOut {
-    /// How far the first surface is that is not touched
+    /// How far the first front is that is not touched
     float nearest = std::numeric_limits<float>::infinity();
     /// The front of another surface lies on the own one.
     bool touches = false;
@@ -56,11 +56,12 @@ WayOut way_out(const RayScene& rays, const glm::vec3& own, const glm::vec3& orig
     };
     WayOut result;
     for (const Crossing& crossing : crossings) {
-        if (vertex != nullptr && has_corner(crossing, *vertex))
+        // A way through a back leaves a solid that the point is in.
+        if (!crossing.is_front || (vertex != nullptr && has_corner(crossing, *vertex)))
             continue;
         if (distance(crossing) > touching)
             result.nearest = std::min(result.nearest, distance(crossing));
-        else if (crossing.is_front)
+        else
             // The own surface is met from behind. Where it has two sides, the other is no surface
             // before it, and a ray from the other side meets no back.
             result.touches =
