@@ -27,15 +27,16 @@ bool has_corner(const Crossing& crossing, const glm::vec3& at) {
            crossing.corners.end();
 }
 
-/// Whether two triangles are the two sides of one.
-bool are_twins(const Crossing& a, const Crossing& b) {
-    return std::all_of(a.corners.begin(), a.corners.end(),
-                       [&](const glm::vec3& corner) { return has_corner(b, corner); });
+/// Whether two triangles are the two sides of a sheet, which may be cut along other diagonals: two
+/// corners or more are the same.
+bool are_sides_of_one(const Crossing& a, const Crossing& b) {
+    return std::count_if(a.corners.begin(), a.corners.end(),
+                         [&](const glm::vec3& corner) { return has_corner(b, corner); }) >= 2;
 }
 
 /// What lies on a way from a surface.
 struct WayOut {
-    /// How far the first surface is that is not touched
+    /// How far the first front is that is not touched
     float nearest = std::numeric_limits<float>::infinity();
     /// The front of another surface lies on the own one.
     bool touches = false;
@@ -55,11 +56,12 @@ WayOut way_out(const RayScene& rays, const glm::vec3& own, const glm::vec3& orig
     };
     WayOut result;
     for (const Crossing& crossing : crossings) {
-        if (vertex != nullptr && has_corner(crossing, *vertex))
+        // A way through a back leaves a solid that the point is in.
+        if (!crossing.is_front || (vertex != nullptr && has_corner(crossing, *vertex)))
             continue;
         if (distance(crossing) > touching)
             result.nearest = std::min(result.nearest, distance(crossing));
-        else if (crossing.is_front)
+        else
             // The own surface is met from behind. Where it has two sides, the other is no surface
             // before it, and a ray from the other side meets no back.
             result.touches =
@@ -69,7 +71,7 @@ WayOut way_out(const RayScene& rays, const glm::vec3& own, const glm::vec3& orig
                                  return !other.is_front && distance(other) <= touching;
                              }) &&
                  std::none_of(crossings.begin(), crossings.end(), [&](const Crossing& other) {
-                     return !other.is_front && are_twins(crossing, other);
+                     return !other.is_front && are_sides_of_one(crossing, other);
                  }));
     }
     return result;

@@ -12,10 +12,10 @@ namespace relumine::prt {
 
 /// Returns smooth_position(), but the point's own place where something stands between the two: a
 /// low-poly wall with smooth normals pretends to bulge through the beams before it. Rays start at
-/// ray_origin() of the position, and never beyond another surface: before one that is nearer than
-/// the bias they start halfway to it. Where a point touches a surface that faces it, no light gets
-/// between the two, and rays start inside of its own solid. A point on a side of its triangle
-/// stands a little inside.
+/// ray_origin() of the position, and never beyond the front of another surface: before one that is
+/// nearer than the bias they start halfway to it. Where a point touches a surface that faces it, no
+/// light gets between the two, and rays start inside of its own solid. A point on a side of its
+/// triangle stands a little inside.
 [[nodiscard]] glm::vec3 lit_position(const mesh::TriangleMesh& mesh, const RayScene& rays,
                                      const MeshPoint& at, const glm::vec3& normal, float bias);
 

@@ -104,13 +104,26 @@ TEST(LitPosition, VerticesThatTouchASheetDoNotLookFromBeyondIt) {
 
 TEST(LitPosition, VerticesThatTouchNothingStay) {
     // Farther than the bias; faces of one plane that face alike; both sides of a sheet.
+    mesh::TriangleMesh other_diagonal = sheet(false);
+    other_diagonal.triangles = {{0, 1, 2}, {1, 3, 2}};
     for (mesh::TriangleMesh mesh :
-         {scenes::joined(sheet(true), crate(2e-3f)), scenes::joined(sheet(true), sheet(true)),
-          scenes::joined(sheet(true), sheet(false)), scenes::icosphere(3, 1.0f, {0, 0, 0})}) {
+         {scenes::joined(sheet(true), other_diagonal), scenes::joined(sheet(true), crate(2e-3f)),
+          scenes::joined(sheet(true), sheet(true)), scenes::joined(sheet(true), sheet(false)),
+          scenes::icosphere(3, 1.0f, {0, 0, 0})}) {
         const RayScene rays(mesh);
         leave_obstacles(rays, 1e-3f, mesh);
         EXPECT_TRUE(mesh.lifts.empty());
     }
+}
+
+TEST(LitPosition, RefinedVerticesOfASheetWithTwoSidesStay) {
+    // Rays meet the sheet as it was, cut along another diagonal on each side.
+    mesh::TriangleMesh below = sheet(false);
+    below.triangles = {{0, 1, 2}, {1, 3, 2}};
+    const RayScene rays(scenes::joined(sheet(true), below));
+    mesh::TriangleMesh fine = scenes::floor_grid(6, 2.0f);
+    leave_obstacles(rays, 1e-3f, fine);
+    EXPECT_TRUE(fine.lifts.empty());
 }
 
 TEST(LitPosition, ABallOnASheetIsDarkAtTheContact) {
