@@ -50,15 +50,15 @@ glm::vec3 value_at(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> va
 
 namespace {
 
-using Weights = std::array<double, 3>;
+using Barycentric = std::array<double, 3>;
 
-Weights weights_of(const MeshPoint& point) {
+Barycentric weights_of(const MeshPoint& point) {
     const glm::dvec2 at(point.barycentric);
     return {1.0 - at.x - at.y, at.x, at.y};
 }
 
 /// Returns the heights of a triangle over its sides, each across from its corner.
-Weights heights(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
+Barycentric heights(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
     std::array<glm::dvec3, 3> at{};
     for (std::size_t k = 0; k < 3; ++k)
         at[k] = glm::dvec3(mesh.positions[mesh.triangles[triangle][k]]);
@@ -71,7 +71,7 @@ Weights heights(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
 
 unsigned sides_at(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
     constexpr double Roundings = 4.0 * std::numeric_limits<float>::epsilon();
-    const Weights weights = weights_of(point), over = heights(mesh, point.triangle);
+    const Barycentric weights = weights_of(point), over = heights(mesh, point.triangle);
     double largest = 0.0;
     for (const std::uint32_t corner : mesh.triangles[point.triangle])
         largest = std::max(largest, glm::length(glm::dvec3(mesh.positions[corner])));
@@ -85,8 +85,8 @@ unsigned sides_at(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
 MeshPoint off_sides(const mesh::TriangleMesh& mesh, const MeshPoint& point, unsigned sides,
                     float step) {
     constexpr double LargestPart = 1.0 / 12.0; // of a height: a quarter of the way to the centre
-    const Weights over = heights(mesh, point.triangle);
-    Weights weights = weights_of(point);
+    const Barycentric over = heights(mesh, point.triangle);
+    Barycentric weights = weights_of(point);
     for (std::size_t k = 0; k < 3; ++k)
         if ((sides >> k & 1u) != 0 && over[k] > 0.0)
             weights[k] = std::min(double{step} / over[k], LargestPart);

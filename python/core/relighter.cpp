@@ -474,7 +474,7 @@ std::function<FitTarget(const LitScene&)> target_from(const py::object& target, 
     };
 }
 
-/// Runs `fit(LitScene&, FitTarget, FitWork)`, and returns what it gives and the distance that is
+/// Runs `fit(LitScene&, FitTarget, Reins)`, and returns what it gives and the distance that is
 /// left.
 template<typename Fit>
 auto fitted(const LitPointer& own, std::function<FitTarget(const LitScene&)> target,
@@ -485,8 +485,7 @@ auto fitted(const LitPointer& own, std::function<FitTarget(const LitScene&)> tar
         progress, [own, target = std::move(target), fit = std::move(fit)](const Reins& reins) {
             return own->change([&](LitScene& lit) {
                 const FitTarget wanted = target(lit);
-                auto found =
-                    fit(lit, wanted, FitWork{.stop = reins.stop, .on_progress = reins.on_progress});
+                auto found = fit(lit, wanted, reins);
                 return std::pair(std::move(found), distance_to(wanted, lit));
             });
         });
@@ -504,7 +503,7 @@ void bind_fits(py::class_<Lit, LitPointer>& type) {
                                               .max_iterations = iterations};
                  auto [map, distance] =
                      fitted(own, target_from(target, width, height, given), progress,
-                            [=](LitScene& lit, const FitTarget& wanted, const FitWork& work) {
+                            [=](LitScene& lit, const FitTarget& wanted, const Reins& work) {
                                 return fit_environment(lit, wanted, options, work);
                             });
                  return py::make_tuple(owned(std::move(map)), distance);
@@ -514,7 +513,7 @@ void bind_fits(py::class_<Lit, LitPointer>& type) {
                               const py::object& progress) {
             const auto [lights, distance] =
                 fitted(own, target_from(target, width, height, given), progress,
-                       [=](LitScene& lit, const FitTarget& wanted, const FitWork& work) {
+                       [=](LitScene& lit, const FitTarget& wanted, const Reins& work) {
                            return fit_lights(lit, wanted, count, work);
                        });
             return py::make_tuple(arrays_of(lights), distance);
