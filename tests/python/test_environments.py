@@ -92,7 +92,7 @@ def test_bad_pixels(sky):
 
 
 def test_wrong_arrays_are_named():
-    for shape in [(8, 16), (8, 16, 4), (5, 8, 8, 3), (6, 8, 4, 3), (0, 0, 3)]:
+    for shape in [(8, 16), (8, 16, 5), (5, 8, 8, 3), (6, 8, 4, 3), (0, 0, 3)]:
         with pytest.raises(ValueError, match="^pixels: expected"):
             relumine.Environment(np.ones(shape))
     with pytest.raises(ValueError, match="layout angular"):
