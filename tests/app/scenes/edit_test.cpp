@@ -191,7 +191,7 @@ TEST_F(Edit, LitByShowsWhatARegionLights) {
 
 TEST_F(Edit, KeepsTheExposureOfTheLightBefore) {
     const auto exposure = [&](const std::string& command) {
-        return succeed(command + " -o new.png --size 32x32 --json").json()["exposure"];
+        return succeed((command + " -o new.png --size 32x32 --json").c_str()).json()["exposure"];
     };
     const std::string brighter = " --disc 0,1,0 --radius 40 --gain 50";
     const nlohmann::json before = exposure("relight scene.prt white.hdr");

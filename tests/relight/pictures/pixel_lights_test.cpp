@@ -35,7 +35,8 @@ TEST(PixelLights, AreThoseOfRaysOneByOne) {
     const prt::Camera camera{.eye = {2.5f, 2.0f, 3.5f}, .target = {0.0f, 0.4f, 0.0f}};
     const PictureTiles tiles{.width = 96, .height = 64};
     const prt::PictureRays grid(camera, tiles.width, tiles.height, 3);
-    const EyeSamples samples(mesh, rays, camera.eye, grid, tiles, 0, {});
+    const SeenMesh seen_mesh(mesh, rays, {}, camera.eye);
+    const EyeSamples samples(seen_mesh, rays, camera.eye, grid, tiles, 0, {});
     PixelLights pixel_lights(mesh, rays, rays, Bias, beams);
     std::vector<std::uint16_t> expected(packets.num_packets());
     std::size_t num_even = 0, num_uneven = 0, num_wrong = 0, num_rays = 0;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "relumine/in/precompute_table.h"
 #include "relumine/relumine.h"
 #include "tests/relumine/options/other_value.h"
 
