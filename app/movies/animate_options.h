@@ -8,8 +8,8 @@
 
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
-#include "app/scenes/lit_scene.h"
 #include "app/options/output_options.h"
+#include "app/scenes/lit_scene.h"
 #include "relumine/in/environment_files.h"
 #include "relumine/out/camera_path.h"
 

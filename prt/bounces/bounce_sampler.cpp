@@ -85,6 +85,12 @@ std::uint64_t BounceSampler::look(const PartReceiver& of_part, std::uint32_t num
     const glm::vec3& normal = transfer_.normals[of_part.place];
     const CosineDirections directions(normal, receiver);
     const glm::vec3 origin = ray_origin(receivers_.positions[receiver], normal, options_.bias);
+    // A receiver that touches another surface looks from inside of its own solid, and gets no
+    // light: it must not meet the other surface from there (lit_position.h).
+    const glm::vec3 own = receivers_.points.empty()
+                              ? mesh_.positions[receiver]
+                              : value_at(mesh_, mesh_.positions, receivers_.points[receiver]);
+    const bool is_inside = glm::dot(origin - own, normal) < 0.0f;
     std::uint64_t num_rays = 0;
     for (std::uint32_t i = begin; i < num_directions; ++i) {
         const glm::dvec3 direction = directions[i];
@@ -96,7 +102,8 @@ std::uint64_t BounceSampler::look(const PartReceiver& of_part, std::uint32_t num
         if (!met)
             continue;
         const Hit hit = twins_.facing(*met, glm::vec3(direction));
-        hits.halves[i % 2].push_back(emitter_of(hit, glm::vec3(direction), choice_of(receiver, i)));
+        hits.halves[i % 2].push_back(
+            is_inside ? NoEmitter : emitter_of(hit, glm::vec3(direction), choice_of(receiver, i)));
         const MeshPoint at{hit.triangle, hit.barycentric};
         const auto distance =
             static_cast<double>(glm::distance(value_at(mesh_, mesh_.positions, at), origin));
