@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 
 #include "mesh/normals.h"
+#include "prt/receivers/lit_position.h"
 #include "prt/receivers/pixel_receivers.h"
 #include "prt/receivers/texel_receivers.h"
 #include "prt/visibility/ray_scene.h"
@@ -35,10 +36,12 @@ TEST(Precompute, IsItsStepsInOneCall) {
 
     const prt::RayScene rays(mesh);
     const float bias = prt::automatic_bias(mesh);
-    prt::expect_same(scene.transfer, prt::precompute(prt::vertex_receivers(mesh), rays,
+    mesh::TriangleMesh free = mesh;
+    prt::leave_obstacles(rays, bias, free);
+    prt::expect_same(scene.transfer, prt::precompute(prt::vertex_receivers(free), rays,
                                                      {.tolerance = Tolerance, .bias = bias}));
     EXPECT_EQ(scene.mesh.positions, mesh.positions);
-    EXPECT_EQ(scene.receivers.positions, prt::vertex_receivers(mesh).positions);
+    EXPECT_EQ(scene.receivers.positions, prt::vertex_receivers(free).positions);
     EXPECT_EQ(scene.settings.tolerance, Tolerance);
     EXPECT_EQ(scene.settings.bias, bias);
     EXPECT_EQ(scene.settings.min_level, 3u);
