@@ -3,8 +3,8 @@
 #   prefix  what `cmake --install` puts into a folder
 #   deb     the Debian packages that cpack makes, unpacked
 #   folder  the source as a folder of the consumer's project: its own part of that is compiled, not linked
-#   engine  the same in an engine with libraries of its own: all is configured, the runtime alone is built, shared and
-#           static, and lights a frame
+#   engine  the same in an engine with libraries of its own: all is configured, and the runtime alone, shared and
+#           static; the static one is built and lights a frame
 # BUILD is a finished build of Relumine, WORK a folder to be made anew. Fails where the consumer includes a header
 # that is not Relumine's, GLM's, the compiler's or the C library's.
 set -euo pipefail
@@ -54,9 +54,9 @@ if [ "$kind" = engine ]; then
         done
         configure "$shared" "$@" -DRELUMINE_BUILD_LIBRARY=OFF -DRELUMINE_BUILD_RUNTIME=ON -DRELUMINE_RUNTIME_SHARED=$shared \
             "${without[@]}"
-        cmake --build "$work/$shared" >"$work/build.log" || { cat "$work/build.log" >&2; exit 1; }
-        "$work/$shared/frame" "$work/sphere.prt"
     done
+    cmake --build "$work/OFF" >"$work/build.log" || { cat "$work/build.log" >&2; exit 1; }
+    "$work/OFF/frame" "$work/sphere.prt"
     exit
 fi
 case $kind in
