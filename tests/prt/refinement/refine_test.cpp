@@ -274,7 +274,8 @@ TEST(Refine, OnlyEdgesWhoseEndsDifferAreAskedInTheMiddle) {
     RefineReport report;
     const mesh::TriangleMesh fine = refined(mesh, {.error = 0.02f}, &report);
     EXPECT_GT(fine.num_vertices(), mesh.num_vertices() + 100);
-    EXPECT_LT(report.num_points, 9 * fine.num_vertices() / 4) << "there are three times as many edges";
+    EXPECT_LT(report.num_points, 9 * fine.num_vertices() / 4)
+        << "there are three times as many edges";
     refined(mesh, {.error = 0.0f, .max_vertices = mesh.num_vertices() + 500}, &report);
     EXPECT_LT(report.num_points, 9 * fine.num_vertices() / 4);
 }
