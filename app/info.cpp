@@ -30,6 +30,16 @@ void say_file(std::uintmax_t num_bytes, const Session& session) {
                             static_cast<double>(num_bytes) * 1e-6));
 }
 
+/// What the reports of scenes and of plans begin with.
+Report facts_of(const prt::Scene& scene) {
+    return {{"vertices", scene.mesh.num_vertices()},
+            {"triangles", scene.mesh.num_triangles()},
+            {"receivers", scene.receivers.num_own()},
+            {"clusters", scene.transfer.num_clusters()},
+            {"source", scene.settings.source},
+            {"source_hash", fmt::format("{:016x}", scene.settings.source_hash)}};
+}
+
 /// Says what a plan plans.
 ///
 /// Throws:  as prt::load_plan().
@@ -56,15 +66,9 @@ void describe_plan(const std::string& path, const Session& session) {
                             "{} --part I/N` does one, `relumine join` makes the scene",
                             path));
     say_file(file_bytes, session);
-    Report result = {{"kind", "plan"},
-                     {"plan", name},
-                     {"vertices", scene.mesh.num_vertices()},
-                     {"triangles", scene.mesh.num_triangles()},
-                     {"receivers", scene.receivers.num_own()},
-                     {"clusters", scene.transfer.num_clusters()},
-                     {"source", settings.source},
-                     {"source_hash", fmt::format("{:016x}", settings.source_hash)},
-                     {"file_bytes", file_bytes}};
+    Report result = {{"kind", "plan"}, {"plan", name}};
+    files::update(result, facts_of(scene));
+    result.set("file_bytes", file_bytes);
     if (settings.epsilon)
         result.set("epsilon", *settings.epsilon);
     else
@@ -151,20 +155,15 @@ void describe_scene(const InfoArguments& options, const Session& session) {
     session.say(fmt::format("file                {:.1f} MB{}",
                             static_cast<double>(file_bytes) * 1e-6,
                             options.check ? ", checked: whole and sound" : ""));
-    Report result = {{"kind", "scene"},
-                     {"vertices", scene.mesh.num_vertices()},
-                     {"triangles", scene.mesh.num_triangles()},
-                     {"receivers", scene.receivers.num_own()},
-                     {"clusters", scene.transfer.num_clusters()},
-                     {"source", settings.source},
-                     {"source_hash", fmt::format("{:016x}", settings.source_hash)},
-                     {"min_depth", settings.min_level},
-                     {"face_resolution", settings.face_resolution},
-                     {"bias", settings.bias},
-                     {"floor", settings.floor_vertices},
-                     {"lamps", scene.lamps.names()},
-                     {"left_out", settings.left_out},
-                     {"file_bytes", file_bytes}};
+    Report result = {{"kind", "scene"}};
+    files::update(result, facts_of(scene));
+    files::update(result, {{"min_depth", settings.min_level},
+                           {"face_resolution", settings.face_resolution},
+                           {"bias", settings.bias},
+                           {"floor", settings.floor_vertices},
+                           {"lamps", scene.lamps.names()},
+                           {"left_out", settings.left_out},
+                           {"file_bytes", file_bytes}});
     if (options.check)
         result.set("checked", true);
     if (settings.epsilon)

@@ -24,6 +24,10 @@ void SceneOptions::add_to(Command& command) {
     command.add_all(options_of(colors));
 }
 
+bool SceneOptions::is_first_picture() const {
+    return mesh::has_mesh_extension(path) && !lights_alone;
+}
+
 namespace {
 
 Scene load(const SceneOptions& options, Session& session) {
@@ -34,7 +38,7 @@ Scene load(const SceneOptions& options, Session& session) {
                                                    options.path));
         return load_scene(options.path);
     }
-    if (!options.lights_alone)
+    if (options.is_first_picture())
         return first_scene(options.path, options.pose, !options.no_cache, session);
     if (options.clusters_only)
         throw std::runtime_error(fmt::format(

@@ -32,6 +32,8 @@ struct SceneOptions {
     SurfaceColors colors = {};
 
     void add_to(Command& command);
+    /// SCENE is a mesh that is precomputed first, which says what its file leaves out.
+    [[nodiscard]] bool is_first_picture() const;
 };
 
 /// The scene ready to be lit; of a scene file that processes share (Session::team), this one's

@@ -19,7 +19,6 @@
 #include "app/options/plan_option.h"
 #include "app/scenes/lit_scene.h"
 #include "files/counted.h"
-#include "relumine/in/mesh_files.h"
 #include "relumine/in/shared_work.h"
 #include "relumine/light/harmonics_file.h"
 #include "relumine/light/light_lists.h"
@@ -197,9 +196,7 @@ void light_scene(const RelightArguments& options, Session& session) {
     if (session.is_first()) {
         options.output.warn_of_picture(scene, session);
         warn_of_eye_inside(lit, options.output.picture.eye, session);
-        const bool is_first_picture =
-            mesh::has_mesh_extension(options.scene.path) && !options.scene.lights_alone;
-        if (!is_first_picture) // which has said so
+        if (!options.scene.is_first_picture()) // which has said so
             for (const std::string& line : scene.settings.left_out)
                 session.warn(fmt::format("{}: {}", scene.settings.source, line));
     }
