@@ -19,6 +19,9 @@ namespace relumine {
 struct Lighting {
     /// [num_receivers], as LitScene::radiance().
     std::span<const glm::vec3> radiance;
+    /// [num_receivers] what arrives of it without a bounce, as radiance for albedo 1, for light
+    /// meters. Empty: unknown.
+    std::span<const glm::vec3> arriving = {};
     /// Must outlive this object. Null: there is nothing behind the mesh but black.
     const cubemap::CubeMap* environment = nullptr;
     /// What is seen of it behind the mesh. Null: all of it.

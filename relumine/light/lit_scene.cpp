@@ -451,6 +451,8 @@ Lighting LitScene::lighting(bool is_drawn) const {
         own.gather(result);
         if (!own.receivers.is_first())
             return {};
+    } else if (own.relighter) {
+        result.arriving = own.relighter->diffuse_radiance();
     }
     if (!own.has_environment())
         return result;

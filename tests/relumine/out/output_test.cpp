@@ -8,6 +8,7 @@
 
 #include "cubemap/image/environment.h"
 #include "mesh/floor.h"
+#include "relight/pictures/exposure.h"
 #include "tests/mesh/lit_ply.h"
 #include "tests/prt/scenes.h"
 #include "tests/prt/textured_square.h"
@@ -297,21 +298,46 @@ TEST_F(Output, ExposureIsThatOfTheMeshAndNotOfItsFloor) {
     EXPECT_EQ(exposure(0.05f), exposure(5.0f));
 }
 
-TEST_F(Output, ExposureBrightensNoRoundings) {
+const Camera LookingDown{
+    .eye = {1.0f, 2.0f, 4.0f}, .target = {0.0f, 0.2f, 0.0f}, .fov_degrees = 30};
+
+TEST_F(Output, ExposureMetersTheLightOfADarkAsset) {
     LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
     lit.light(cubemap::CubeMap(8, glm::vec3(4.0f)));
     const auto exposure = [&](float albedo) {
         return Painter(lit, {.albedo = glm::vec3(albedo), .background = glm::vec3(0.0f)})
             .choose_exposure_ev(lit.lighting());
     };
-    // Black that gets no light but what roundings let through stays black.
-    EXPECT_NEAR(exposure(1e-7f), 12.0 - 2.0, 0.02);
-    EXPECT_LT(exposure(1e-2f), 8.0);
-    EXPECT_GT(exposure(1e-2f), exposure(1.0f) + 5.0);
+    const double least = exposure(relight::LeastMeteredAlbedo);
+    EXPECT_NEAR(least, exposure(1.0f) + 2.0, 0.02);
+    for (const float dark : {0.1f, 1e-2f, 1e-7f, 0.0f})
+        EXPECT_EQ(exposure(dark), least) << dark;
 }
 
-const Camera LookingDown{
-    .eye = {1.0f, 2.0f, 4.0f}, .target = {0.0f, 0.2f, 0.0f}, .fov_degrees = 30};
+TEST_F(Output, ExposureBrightensNoRoundings) {
+    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
+    lit.light(cubemap::CubeMap(8, glm::vec3(4.0f)));
+    // As inside of a room that lets no more light through than roundings do.
+    const std::vector<glm::vec3> rounded(lit.radiance().size(), glm::vec3(1e-7f));
+    Lighting lighting = lit.lighting();
+    lighting.radiance = lighting.arriving = rounded;
+    lighting.lights.clear();
+    EXPECT_NEAR(Painter(lit, {.background = glm::vec3(0.0f)}).choose_exposure_ev(lighting),
+                12.0 - 2.0, 0.02);
+}
+
+TEST_F(Output, PixelsOfADarkAssetAreMeteredAsItsVertices) {
+    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f,
+                                             .receivers = Pixels{.width = 40, .height = 30},
+                                             .view = View{.camera = LookingDown}}));
+    lit.light(cubemap::CubeMap(8, glm::vec3(4.0f)));
+    const auto exposure = [&](float albedo) {
+        return Painter(lit, {.albedo = glm::vec3(albedo), .background = glm::vec3(0.0f)})
+            .choose_exposure_ev(lit.lighting());
+    };
+    EXPECT_EQ(exposure(1e-3f), exposure(relight::LeastMeteredAlbedo));
+    EXPECT_NEAR(exposure(1e-3f), exposure(1.0f) + 2.0, 0.02);
+}
 
 /// A dark post on a floor, under a lamp that the picture does not show.
 Scene post_under_lamp(const ReceiverChoice& receivers) {
