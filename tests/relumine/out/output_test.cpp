@@ -1,6 +1,7 @@
 #include "relumine/out/output.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "cubemap/image/environment.h"
 #include "mesh/floor.h"
 #include "relight/pictures/exposure.h"
+#include "relumine/out/floor_picture.h"
 #include "tests/mesh/lit_ply.h"
 #include "tests/prt/scenes.h"
 #include "tests/prt/textured_square.h"
@@ -271,6 +273,54 @@ TEST_F(Output, AFloorCatchesShadows) {
             const glm::vec3 left = on_white.pixels[i];
             EXPECT_NEAR((left.r + left.g + left.b) / 3.0f, 1.0f - alone.alpha[i], 1e-5f);
         }
+}
+
+/// What a picture shows of the ground below an eye and of the sky above it.
+std::array<glm::vec3, 2> ground_and_sky(const LitScene& lit) {
+    const Lighting lighting = lit.lighting();
+    const relight::Backdrop seen =
+        on_floor(relight::map_backdrop(lighting.behind()), lit.scene(), lighting, FloorLook::Photo,
+                 glm::vec3(0.0f, 3.0f, 4.0f));
+    return {seen(glm::normalize(glm::vec3(0.2f, -1.0f, -0.3f))),
+            seen(glm::normalize(glm::vec3(0.2f, 0.5f, -1.0f)))};
+}
+
+TEST_F(Output, ThePhotographedGroundTakesTheLightOfLayersAndLists) {
+    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
+    lit.light(sunny());
+    const glm::vec3 open = *lit.lighting().open_floor;
+    std::array<glm::vec3, 2> before{};
+    const auto expect_factors = [&](float ground, float sky) {
+        const std::array<glm::vec3, 2> now = ground_and_sky(lit);
+        EXPECT_NEAR(now[0].g, ground * before[0].g, 3e-3f * ground * before[0].g);
+        EXPECT_NEAR(now[1].g, sky * before[1].g, 1e-4f * before[1].g);
+    };
+    for (const double turn : {90.0, 0.0}) {
+        set_layers(lit, {});
+        set_rotation(lit, turn);
+        before = ground_and_sky(lit);
+        // The sun is flagged: the ground lies in the shade as the asset does.
+        cubemap::LightLayer flag;
+        flag.region =
+            cubemap::Disc{.direction = cubemap::texel_direction(cubemap::Face::PositiveY, 3, 4, 16),
+                          .radius_degrees = 25.0};
+        flag.effect = cubemap::Gain{.factor = 0.0f};
+        set_layers(lit, {flag});
+        const float shade = lit.lighting().open_floor->g / open.g;
+        EXPECT_LT(shade, 0.8f);
+        expect_factors(shade, 1.0f);
+        // What dims the ground itself is seen once.
+        flag.region = cubemap::Disc{.direction = {0, 1, 0}, .radius_degrees = 180.0};
+        flag.effect = cubemap::Gain{.factor = 0.5f};
+        set_layers(lit, {flag});
+        expect_factors(0.5f, 0.5f);
+    }
+    set_layers(lit, {});
+    Light both{sunny()};
+    both.lights = {{.direction = {0, 1, 0}, .irradiance = glm::dvec3(3.0)}};
+    lit.light(std::move(both));
+    EXPECT_GT(lit.lighting().open_gain.g, 1.0f);
+    expect_factors(lit.lighting().open_floor->g / open.g, 1.0f);
 }
 
 TEST_F(Output, TheFloorIsGreyWhereNoGroundIsKnown) {
