@@ -171,7 +171,7 @@ Mesh standing(float floor_scale) {
 
 /// A ground, a sky and a sun of one texel.
 cubemap::CubeMap sunny() {
-    cubemap::CubeMap map = scenes::random_environment(16, 3);
+    cubemap::CubeMap map = scenes::random_environment(16, 3, 1.0f);
     map.at(cubemap::Face::PositiveY, 3, 4) = glm::vec3(300.0f, 200.0f, 100.0f);
     return map;
 }
