@@ -174,7 +174,7 @@ private:
 };
 
 /// Rays for all dim pixels of an image together, at most about.
-constexpr std::size_t MaxDimRays = 1 << 19;
+constexpr std::size_t MaxDimRays = 1 << 17;
 /// A ray stands for this part of the image's power at most, unless its pixel is cut as finely as
 /// can be.
 constexpr double LargestShare = 1e-4;
