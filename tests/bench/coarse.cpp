@@ -36,6 +36,8 @@ struct Settings {
     std::string only;
     std::uint32_t width = 320, height = 240;
     std::optional<float> tolerance = {}, bounce_tolerance = {};
+    /// The floor gets more vertices, too.
+    bool refined_floor = true;
     bool direct = false, generated = false;
 };
 
@@ -251,6 +253,7 @@ LitScene lit_by(const std::shared_ptr<const Scene>& scene, const Environment& en
 void compare(const std::string& name, Mesh mesh, std::span<const Map> lights,
              const Settings& settings) {
     stand_on_floor(mesh);
+    mesh.is_floor_open = mesh.is_floor_open && settings.refined_floor;
     const std::size_t before = mesh.geometry.num_vertices();
     PrecomputeOptions options{.tolerance = settings.tolerance,
                               .bounce_tolerance = settings.bounce_tolerance};
@@ -354,6 +357,7 @@ int main(int argc, char** argv) {
             settings.width = settings.height = 16;
             settings.tolerance = 0.1f;
             settings.bounce_tolerance = 0.2f;
+            settings.refined_floor = false;
         }
         if (lights.empty()) {
             lights.emplace_back().name = "soft_boxes";
