@@ -17,7 +17,7 @@ mesh = relumine.Mesh.load(mesh_path, floor=49)
 environment = relumine.Environment.load(environment_path)
 tolerances, errors, clusters = [0.16, 0.08, 0.04, 0.02], [], []
 for tolerance in tolerances:
-    scene = relumine.precompute(mesh, tolerance=tolerance, min_depth=1)
+    scene = relumine.precompute(mesh, tolerance=tolerance, min_depth=1, bounces=False)
     # Without shadow rays of the sun's own, so that the clusters alone are measured.
     relighter = relumine.Relighter(scene, clusters_only=True)
     relighter.set_environment(environment)

@@ -34,7 +34,12 @@ a, b, c, d = (corner.ravel() for corner in corners)
 triangles = np.concatenate([np.stack([a, b, c], -1), np.stack([a, c, d], -1)])
 
 scene = relumine.precompute(
-    vertices, triangles, blockers_function=blocked, refine=False, bounces=False
+    vertices,
+    triangles,
+    tolerance=0.05,
+    blockers_function=blocked,
+    refine=False,
+    bounces=False,
 )
 relighter = relumine.Relighter(scene)  # its sharp lights ask `blocked`, too
 

@@ -173,8 +173,12 @@ private:
     std::vector<prt::Lobes<glm::dvec3>> sums_;
 };
 
-/// Rays for all dim pixels of an image together, at most about.
-constexpr std::size_t MaxDimRays = 1 << 19;
+/// Rays for all dim pixels of an image together, at most about. On the bunny under four maps, four
+/// times as many change no relative L2 by more than 2e-6. A mirror ball takes as many: its pixels
+/// near the rim show much of the sphere.
+constexpr std::size_t max_dim_rays(cubemap::Layout layout) {
+    return layout == cubemap::Layout::MirrorBall ? 1 << 19 : 1 << 17;
+}
 /// A ray stands for this part of the image's power at most, unless its pixel is cut as finely as
 /// can be.
 constexpr double LargestShare = 1e-4;
@@ -189,7 +193,8 @@ public:
         : image_(image), turn_(turn), parts_(cubemap::shape_of(image)) {
         const std::size_t num_pixels =
             std::size_t{parts_.num_panels()} * parts_.panel_width() * parts_.panel_height();
-        const double per_ray = static_cast<double>(num_pixels) / static_cast<double>(MaxDimRays);
+        const double per_ray =
+            static_cast<double>(num_pixels) / static_cast<double>(max_dim_rays(image.layout));
         group_ = static_cast<std::uint32_t>(std::max(1.0, std::ceil(std::sqrt(per_ray))));
         cut_ = static_cast<std::uint32_t>(
             std::clamp(std::floor(std::sqrt(1.0 / per_ray)), 1.0, double{FinestCut}));

@@ -66,11 +66,11 @@ TEST_F(ProcessorsTest, BouncesToPixels) {
 TEST_F(ProcessorsTest, HighlightsWithEitherEngine) {
     for (const char* engine : {"beam", "embree"})
         expect_the_same({"colonnade.ply", "--view", "auto", "--material", "ggx:roughness=0.4",
-                         "--engine", engine});
+                         "--engine", engine, "--bounces", "0"});
 }
 
 TEST_F(ProcessorsTest, OfOtherKindsShareNoWork) {
-    succeed("plan colonnade.ply -o scene.plan --tolerance 0.06 -q");
+    succeed("plan colonnade.ply -o scene.plan --tolerance 0.06 --no-refine --bounces 0 -q");
     const std::vector<std::string> part = {"precompute", "--plan", "scene.plan", "--part",
                                            "1/2",        "-o",     "part",       "-q"};
     succeed(part);

@@ -73,7 +73,7 @@ TEST_F(Signals, WorkOfLibrariesThatDoNotPollStopsAtOnce) {
                "large.exr", "-q"},
               {SIGINT}, std::chrono::milliseconds(1000));
     succeed("generate blob -o . --vertices 2000 -q");
-    succeed("precompute blob.ply -o scene.prt --tolerance 0.1 -q");
+    succeed("precompute blob.ply -o scene.prt --tolerance 0.1 --no-refine --bounces 0 -q");
     interrupt(
         {"relight", "scene.prt", "white.hdr", "--size", "12000x12000", "-o", "large.png", "-q"},
         {SIGTERM}, std::chrono::milliseconds(1000));
@@ -82,7 +82,7 @@ TEST_F(Signals, WorkOfLibrariesThatDoNotPollStopsAtOnce) {
 TEST_F(Signals, VerifyStopsAtOnce) {
     succeed("generate blob -o . --vertices 20000 -q");
     write("white.hdr", white_hdr());
-    succeed("precompute blob.ply -o scene.prt --tolerance 0.05 -q");
+    succeed("precompute blob.ply -o scene.prt --tolerance 0.05 --bounces 0 -q");
     interrupt(
         {"verify", "scene.prt", "white.hdr", "--samples", "0", "--face-resolution", "512", "-q"},
         {SIGINT}, std::chrono::milliseconds(1500));
@@ -90,7 +90,8 @@ TEST_F(Signals, VerifyStopsAtOnce) {
 
 TEST_F(Signals, ProgressIsPlainLinesWithTheTimeLeft) {
     succeed("generate knot -o . --vertices 15000 -q");
-    const Result result = succeed("precompute knot.ply -o scene.prt --tolerance 0.0135 --json");
+    const Result result =
+        succeed("precompute knot.ply -o scene.prt --tolerance 0.0135 --bounces 0 --json");
     ASSERT_FALSE(result.json().empty());
     EXPECT_EQ(result.err.find('\r'), std::string::npos) << result.described();
     // Five seconds after it began, work tells of its next tenth.
@@ -127,10 +128,10 @@ TEST_F(FullDisk, LeavesTheOldFile) {
     fail("generate blob -o disk --vertices 3000", no_space);
 
     succeed("generate blob -o . --vertices 7000 -q");
-    succeed("precompute blob.ply -o scene.prt --no-refine --face-resolution 16");
+    succeed("precompute blob.ply -o scene.prt --no-refine --bounces 0 --face-resolution 16");
     for (const char* name : {"disk/lit.npy", "disk/lit.ply", "disk/lit.glb"})
         fail({"relight", "scene.prt", "white.hdr", "-o", name}, no_space);
-    fail("precompute blob.ply -o disk/scene.prt --no-refine --face-resolution 16 -q", no_space);
+    fail("precompute blob.ply -o disk/scene.prt --no-refine --bounces 0 --face-resolution 16 -q", no_space);
     succeed("info disk/scene.prt");
 }
 

@@ -121,7 +121,7 @@ int main(int argc, char** argv) {
     return program.run(argc, argv, [&] {
         if (program.is_tiny()) {
             settings.paths = 64;
-            settings.samples = 50;
+            settings.samples = 10;
             settings.probes.resize(1);
         }
         run(settings, inputs);

@@ -35,6 +35,9 @@ struct Settings {
     std::vector<std::string> files;
     std::string only;
     std::uint32_t width = 320, height = 240;
+    std::optional<float> tolerance = {}, bounce_tolerance = {};
+    /// The floor gets more vertices, too.
+    bool refined_floor = true;
     bool direct = false, generated = false;
 };
 
@@ -250,15 +253,19 @@ LitScene lit_by(const std::shared_ptr<const Scene>& scene, const Environment& en
 void compare(const std::string& name, Mesh mesh, std::span<const Map> lights,
              const Settings& settings) {
     stand_on_floor(mesh);
+    mesh.is_floor_open = mesh.is_floor_open && settings.refined_floor;
     const std::size_t before = mesh.geometry.num_vertices();
-    PrecomputeOptions options;
+    PrecomputeOptions options{.tolerance = settings.tolerance,
+                              .bounce_tolerance = settings.bounce_tolerance};
     if (settings.direct)
         options.bounce_tolerance = 0.0f;
     const auto start = std::chrono::steady_clock::now();
     const auto vertices = std::make_shared<const Scene>(precompute(mesh, options));
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    options.bounce_tolerance = vertices->bounces ? prt::BounceOptions{}.tolerance : 0.0f;
-    options.tolerance = prt::PrecomputeOptions{}.tolerance;
+    options.bounce_tolerance =
+        vertices->bounces ? settings.bounce_tolerance.value_or(prt::BounceOptions{}.tolerance)
+                          : 0.0f;
+    options.tolerance = settings.tolerance.value_or(prt::PrecomputeOptions{}.tolerance);
     options.receivers = Pixels{settings.width, settings.height, 1}; // one sample a pixel
     Shot first;
     first.camera = camera_of(*vertices, static_cast<float>(settings.width) /
@@ -346,8 +353,12 @@ int main(int argc, char** argv) {
             if (!program.is_tiny() && fs::exists(settings.data / file))
                 lights.push_back(
                     {fs::path(file).stem().string(), load_environment(settings.data / file)});
-        if (program.is_tiny())
+        if (program.is_tiny()) {
             settings.width = settings.height = 16;
+            settings.tolerance = 0.1f;
+            settings.bounce_tolerance = 0.2f;
+            settings.refined_floor = false;
+        }
         if (lights.empty()) {
             lights.emplace_back().name = "soft_boxes";
             lights.back().environment.map = data_gen::two_soft_boxes(64);

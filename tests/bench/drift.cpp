@@ -32,6 +32,8 @@ struct Settings {
     std::size_t num_vertices = 20'000;
     std::uint32_t resolution = 256;
     fs::path json = "drift.json";
+    /// As many vertices as that, with --tiny
+    bool no_refine = false;
 };
 
 /// Memory that the process holds now, in MB.
@@ -109,7 +111,8 @@ Times times_of(std::vector<double> seconds) {
 }
 
 void run(const Settings& settings) {
-    LitScene lit(precompute(data_gen::blob(settings.num_vertices), {.tolerance = 0.02f}));
+    LitScene lit(precompute(data_gen::blob(settings.num_vertices),
+                            {.tolerance = 0.02f, .no_refine = settings.no_refine}));
     const prt::Transfer& transfer = lit.scene().transfer;
     const cubemap::CubeMap base = data_gen::two_soft_boxes(settings.resolution);
     lit.light(base);
@@ -192,6 +195,7 @@ int main(int argc, char** argv) {
             settings.num_edits = 40;
             settings.num_environments = 10;
             settings.num_vertices = 1000;
+            settings.no_refine = true;
             settings.resolution = 16;
         }
         if (settings.num_edits == 0 || settings.num_environments == 0)

@@ -172,10 +172,10 @@ int main(int argc, char** argv) {
     return program.run(argc, argv, [&] {
         if (inputs.is_tiny()) {
             settings.roughness = {0.6f};
-            settings.tolerance = 0.06f;
+            settings.tolerance = 0.1f;
             settings.glossy_tolerance = 0.3f;
             settings.resolution = 32;
-            settings.num_samples = 50;
+            settings.num_samples = 10;
         }
         run(settings, inputs);
     });

@@ -26,10 +26,16 @@ using namespace relumine;
 /// With --tiny
 bool is_tiny = false;
 
+/// R of a map.
+std::uint32_t resolution_of(std::int64_t full) {
+    return static_cast<std::uint32_t>(is_tiny ? full / 16 : full);
+}
+
 /// A boulder of 20,000 vertices, precomputed once for all benchmarks.
 struct Fixture {
     std::shared_ptr<const Scene> scene = std::make_shared<const Scene>(
-        precompute(data_gen::blob(is_tiny ? 1000 : 20000), {.tolerance = is_tiny ? 0.1f : 0.02f}));
+        precompute(data_gen::blob(is_tiny ? 1000 : 20000),
+                   {.tolerance = is_tiny ? 0.1f : 0.02f, .no_refine = is_tiny}));
     const prt::Transfer& transfer = scene->transfer;
 
     static const Fixture& instance() {
@@ -40,7 +46,7 @@ struct Fixture {
 
 void BM_Bin(benchmark::State& state) {
     const Fixture& fixture = Fixture::instance();
-    const auto resolution = static_cast<std::uint32_t>(state.range(0));
+    const std::uint32_t resolution = resolution_of(state.range(0));
     const cubemap::CubeMap map(resolution, glm::vec3(1.0f));
     const relight::LightBinning binning(resolution);
     for (auto _ : state)
@@ -52,8 +58,7 @@ BENCHMARK(BM_Bin)->Arg(256)->Arg(1024)->Unit(benchmark::kMillisecond)->UseRealTi
 
 /// By an angle about no axis of the faces.
 void BM_Turn(benchmark::State& state) {
-    const auto resolution = static_cast<std::uint32_t>(state.range(0));
-    const cubemap::CubeMap map(is_tiny ? 64 : resolution, glm::vec3(1.0f));
+    const cubemap::CubeMap map(resolution_of(state.range(0)), glm::vec3(1.0f));
     const glm::dmat3 turn = cubemap::turn_about_x(20.0) * cubemap::turn_about_y(33.0);
     for (auto _ : state)
         benchmark::DoNotOptimize(cubemap::turned(map, turn));
@@ -81,7 +86,7 @@ void BM_Edit(benchmark::State& state) {
 }
 void BM_CubeFromLatLong(benchmark::State& state) {
     cubemap::EnvironmentImage image;
-    image.width = is_tiny ? 64 : 4096;
+    image.width = resolution_of(4096);
     image.height = image.width / 2;
     image.pixels.assign(std::size_t{image.width} * image.height, glm::vec3(1.0f));
     for (auto _ : state)
@@ -95,7 +100,7 @@ BENCHMARK(BM_Edit)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 /// 64 lights for a lat-long twice as wide as range(1), by method range(0).
 void BM_PlaceLights(benchmark::State& state) {
-    const auto height = static_cast<std::uint32_t>(state.range(1)) / (is_tiny ? 16 : 1);
+    const std::uint32_t height = resolution_of(state.range(1));
     const cubemap::EnvironmentImage map = lights::lat_long_of(data_gen::two_soft_boxes(height / 2));
     const auto method = lights::AllMethods.at(static_cast<std::size_t>(state.range(0)));
     for (auto _ : state)
@@ -138,7 +143,7 @@ cubemap::LightLayer painted(const cubemap::Region& region) {
 /// Compositing alone, where the region lies.
 template<cubemap::Region (*Shape)(double)>
 void BM_Composite(benchmark::State& state) {
-    const cubemap::CubeMap base(static_cast<std::uint32_t>(state.range(0)), glm::vec3(1.0f));
+    const cubemap::CubeMap base(resolution_of(state.range(0)), glm::vec3(1.0f));
     const cubemap::LightLayer layer = painted(Shape(0.0));
     const std::vector<cubemap::TexelRectangle> touched =
         cubemap::touched_texels(layer, base.resolution);
@@ -152,7 +157,7 @@ BENCHMARK(BM_Composite<lasso>)->Arg(256)->Arg(1024)->Unit(benchmark::kMillisecon
 void BM_Touched(benchmark::State& state) {
     const cubemap::LightLayer layer = painted(stroke());
     for (auto _ : state)
-        benchmark::DoNotOptimize(cubemap::touched_texels(layer, 1024));
+        benchmark::DoNotOptimize(cubemap::touched_texels(layer, resolution_of(1024)));
 }
 BENCHMARK(BM_Touched)->Unit(benchmark::kMillisecond)->UseRealTime();
 
@@ -160,7 +165,7 @@ BENCHMARK(BM_Touched)->Unit(benchmark::kMillisecond)->UseRealTime();
 template<cubemap::Region (*Shape)(double)>
 void BM_Drag(benchmark::State& state) {
     LitScene editor(Fixture::instance().scene, {.clusters_only = true});
-    editor.light(cubemap::CubeMap(1024, glm::vec3(1.0f)));
+    editor.light(cubemap::CubeMap(resolution_of(1024), glm::vec3(1.0f)));
     set_layers(editor, {painted(Shape(0.0))});
     bool there = false;
     for (auto _ : state) {
@@ -174,7 +179,7 @@ BENCHMARK(BM_Drag<lasso>)->Unit(benchmark::kMillisecond)->UseRealTime();
 /// A brush that paints on: one more point of the stroke.
 void BM_Paint(benchmark::State& state) {
     LitScene editor(Fixture::instance().scene, {.clusters_only = true});
-    editor.light(cubemap::CubeMap(1024, glm::vec3(1.0f)));
+    editor.light(cubemap::CubeMap(resolution_of(1024), glm::vec3(1.0f)));
     const cubemap::LightLayer whole = painted(stroke());
     cubemap::LightLayer shorter = whole;
     std::get<cubemap::Stroke>(shorter.region).points.pop_back();

@@ -398,7 +398,7 @@ int main(int argc, char** argv) {
     return program.run(argc, argv, [&] {
         if (inputs.is_tiny()) {
             settings.roughness = {0.3f};
-            settings.transfer_tolerance = 0.06f;
+            settings.transfer_tolerance = 0.1f;
             settings.resolution = 32;
             settings.num_eyes = 3;
             settings.num_drags = 2;

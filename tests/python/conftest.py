@@ -1,12 +1,16 @@
 """A boulder, a sky, and the scene of both: small, and made anew in each run."""
 
 import os
+import signal
 import subprocess
 
 import numpy as np
 import pytest
 
 import relumine
+
+# A shell that starts the tests in the background has Ctrl-C ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def boulder_arrays(n=48):

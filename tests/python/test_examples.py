@@ -17,7 +17,8 @@ EXAMPLES = os.path.join(os.path.dirname(__file__), "../../examples/python")
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("examples")
-    scene = relumine.precompute(*boulder_arrays(24), tolerance=0.1)
+    # Fine enough to be kept as it is: fewer vertices than a coarse mesh gets.
+    scene = relumine.precompute(*boulder_arrays(40), tolerance=0.1)
     sky = relumine.Environment(sky_pixels())
     relighter = relumine.Relighter(scene)
     relighter.set_environment(sky)

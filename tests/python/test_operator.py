@@ -192,7 +192,7 @@ def test_the_adjoint_of_a_picture_is_the_transpose(arrays):
         assert backward == pytest.approx(inner(picture, weights), rel=1e-4)
     with pytest.raises(ValueError, match=r"weights: expected shape \(18, 24, 3\)"):
         relighter.picture_adjoint(weights.transpose(1, 0, 2))
-    vertices = relumine.Relighter(relumine.precompute(*arrays))
+    vertices = relumine.Relighter(relumine.precompute(*arrays, tolerance=0.5, bounces=False))
     vertices.set_environment(relumine.Environment(np.ones((6, 4, 4, 3))))
     with pytest.raises(ValueError, match="expected a scene of pixels, got vertices"):
         vertices.picture_adjoint(weights)

@@ -154,7 +154,7 @@ def test_threads_that_wait_are_no_progress_functions(relighter, sky):
         try:
             for _ in range(10):
                 relighter.set_environment(sky)
-                relighter.picture(size=(16, 12))
+                relighter.picture(size=(16, 12), sun="vertex")
         except RuntimeError as error:
             errors.append(str(error))
 
@@ -171,16 +171,21 @@ def test_threads_relight_while_python_runs(scene, sky):
     relighters = [relumine.Relighter(scene) for _ in range(2)]
     done = [0, 0]
 
+    # Until all have got on. The limit is one of work: other programs may take the processors.
+    ticks = 0
+    limit = time.process_time() + 10
+
+    def has_to_go_on():
+        return (min(done) <= 2 or ticks <= 50) and time.process_time() < limit
+
     def work(index):
-        end = time.perf_counter() + 0.5
-        while time.perf_counter() < end:
+        while has_to_go_on():
             relighters[index].set_environment(sky)
             done[index] += 1
 
     threads = [threading.Thread(target=work, args=(index,)) for index in range(2)]
     for thread in threads:
         thread.start()
-    ticks = 0
     while any(thread.is_alive() for thread in threads):
         time.sleep(0.001)
         ticks += 1
@@ -206,7 +211,7 @@ def test_a_forked_process_works(folder):
     def work(path):
         relumine.Scene.load(path).save("again.prt")
 
-    scene = relumine.precompute(*boulder_arrays(12), tolerance=0.2)
+    scene = relumine.precompute(*boulder_arrays(12), tolerance=0.2, refine=False)
     scene.save("small.prt")
     child = multiprocessing.get_context("fork").Process(target=work, args=("small.prt",))
     child.start()
@@ -232,7 +237,7 @@ def test_nothing_leaks(tmp_path):
 
 def relight_and_load():
     """4,000 relights and 400 loads of everything: within 1 % of the memory."""
-    scene = relumine.precompute(*boulder_arrays(12), tolerance=0.2)
+    scene = relumine.precompute(*boulder_arrays(12), tolerance=0.2, refine=False)
     sky = relumine.Environment(sky_pixels(8), face_resolution=4)
     scene.save("small.prt")
     sky.save("small.exr")

@@ -320,7 +320,7 @@ TEST_F(WindowTest, NoToolIsCutOffInANarrowWindow) {
         const PixelRectangle tools = panel_layout(width, Height).scene_tools;
         std::string script;
         for (int y = tools.y + 42; y < tools.y + tools.height; y += 25)
-            for (int x = tools.x + 16; x < tools.x + tools.width && x < 260; x += 20)
+            for (int x = tools.x + 16; x < tools.x + tools.width && x < 260; x += 40)
                 script += fmt::format("click {} {}\n", x, y);
         std::filesystem::remove(folder_ / "picture-1.png");
         ASSERT_EQ(play(script + fmt::format("screenshot {}.png\n", width), width), 0)

@@ -78,7 +78,7 @@ TEST_F(Bounces, AgreeWithAPathTracer) {
     precompute("scene.prt", {"--bounces", "0.01", "--tolerance", "0.01"});
     const auto verify = [&](const std::vector<std::string>& more) {
         std::vector<std::string> arguments = {"verify", "scene.prt", "white.hdr", "--samples",
-                                              "120",    "--albedo",  "0.8",       "--paths",
+                                              "40",     "--albedo",  "0.8",       "--paths",
                                               "1000",   "--surface", "0",         "--json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return succeed(arguments).json();
@@ -201,7 +201,7 @@ TEST_F(Bounces, PixelsAndTexelsGetThemFromTheVertices) {
     EXPECT_EQ(npy_values(read("lit.00.npy")), all);
     succeed("relight pixels.prt white.hdr -o picture.png -q");
     succeed("relight pixels.prt white.hdr -o only.exr --only-bounces -q");
-    const nlohmann::json check = succeed("verify pixels.prt lamp.hdr --samples 300 --albedo 0.8 "
+    const nlohmann::json check = succeed("verify pixels.prt lamp.hdr --samples 100 --albedo 0.8 "
                                          "--paths 500 --bounces all --json")
                                      .json();
     EXPECT_GT(check["bounces"], 1);
@@ -212,7 +212,7 @@ TEST_F(Bounces, PixelsAndTexelsGetThemFromTheVertices) {
 TEST_F(Bounces, KilledAtManyMomentsTheFileIsTheSame) {
     const std::vector<std::string> run = {
         "precompute", "colonnade.ply", "--no-refine", "-o", "scene.prt", "--tolerance",
-        "0.2",        "--bounces",     "0.001",       "-q", "--resume",  "--checkpoint-seconds",
+        "0.2",        "--bounces",     "0.003",       "-q", "--resume",  "--checkpoint-seconds",
         "0.001"};
     const double seconds = succeed(run).seconds;
     const std::string expected = read("scene.prt");

@@ -62,8 +62,8 @@ TEST_F(MaxMemory, EnoughOfItChangesNothing) {
 TEST_F(MaxMemory, HoldsForHighlights) {
     succeed("generate knot -o . --vertices 5000 -q");
     const auto glossy = [](std::vector<std::string> more) {
-        more.insert(more.end(), {"--tolerance", "0.05", "--view", "auto", "--material",
-                                 "ggx:roughness=0.3,f0=0.04"});
+        more.insert(more.end(), {"--tolerance", "0.05", "--bounces", "0", "--view", "auto",
+                                 "--material", "ggx:roughness=0.3,f0=0.04"});
         return more;
     };
     // Room for the clusters, but not for some megabytes of highlights.

@@ -16,7 +16,8 @@ protected:
         succeed("generate knot -o . --vertices 4000 -q");
     }
     void plan(const std::string& name = "scene.plan", const std::string& tolerance = "0.05") {
-        succeed({"plan", "knot.ply", "-o", name, "--tolerance", tolerance, "--floor", "20", "-q"});
+        succeed({"plan", "knot.ply", "-o", name, "--tolerance", tolerance, "--floor", "20",
+                 "--bounces", "0", "-q"});
     }
     [[nodiscard]] static std::vector<std::string> part(const std::string& which,
                                                        const std::string& output,
@@ -69,10 +70,11 @@ TEST_F(PlanTest, AJoinedSceneIsAsExactAsAPlainOne) {
     for (const char* which : {"1/2", "2/2"})
         succeed(part(which, std::string("part.") + which[0]));
     succeed("join part.1 part.2 -o joined.prt -q");
-    succeed("precompute knot.ply -o plain.prt --tolerance 0.02 --floor 20 -q");
+    succeed("precompute knot.ply -o plain.prt --tolerance 0.02 --floor 20 --bounces 0 -q");
     write("sky.hdr", lamp_hdr(40));
     const auto error = [&](const std::string& scene) {
-        return succeed({"verify", scene, "sky.hdr", "--samples", "0", "--clusters-only", "--json"})
+        return succeed({"verify", scene, "sky.hdr", "--samples", "0", "--surface", "0",
+                        "--clusters-only", "--json"})
             .json()["relative_l2"]
             .get<double>();
     };
@@ -80,9 +82,9 @@ TEST_F(PlanTest, AJoinedSceneIsAsExactAsAPlainOne) {
 }
 
 TEST_F(PlanTest, PartsKnowTheRefinedAndTheSimplifiedMesh) {
-    const std::vector<std::string> work = {"knot.ply", "--floor",     "2",   "--simplify",
-                                           "3000",     "--refine",    "0",   "--max-vertices",
-                                           "3500",     "--tolerance", "0.05"};
+    const std::vector<std::string> work = {
+        "knot.ply",       "--floor", "2",           "--simplify", "3000",      "--refine", "0",
+        "--max-vertices", "3500",    "--tolerance", "0.05",       "--bounces", "0"};
     const auto with = [&](std::vector<std::string> arguments) {
         arguments.insert(arguments.begin() + 1, work.begin(), work.end());
         return arguments;
@@ -101,7 +103,8 @@ TEST_F(PlanTest, PartsKnowTheRefinedAndTheSimplifiedMesh) {
     EXPECT_GT(info("joined.prt")[0], 3400);
     write("sky.hdr", lamp_hdr(40));
     const auto error = [&](const std::string& scene) {
-        return succeed({"verify", scene, "sky.hdr", "--samples", "200", "--json"})
+        return succeed(
+                   {"verify", scene, "sky.hdr", "--samples", "200", "--surface", "100", "--json"})
             .json()["relative_l2"]
             .get<double>();
     };
@@ -111,7 +114,7 @@ TEST_F(PlanTest, PartsKnowTheRefinedAndTheSimplifiedMesh) {
 }
 
 TEST_F(PlanTest, LightOfPartsIsTheLightOfTheScene) {
-    succeed("precompute knot.ply -o scene.prt --tolerance 0.06 --floor 40 -q");
+    succeed("precompute knot.ply -o scene.prt --tolerance 0.06 --floor 40 --bounces 0 -q");
     write("sky.hdr", lamp_hdr(40));
     succeed("generate sun_sky -o . --face-resolution 32 -q");
     for (const std::string sky : {"sky.hdr", "sun_sky.exr"}) {
@@ -205,7 +208,8 @@ TEST_F(PlanTest, InfoSaysWhatAPlanAndItsPartsAre) {
 TEST_F(PlanTest, HighlightsJoinToTheSameFileFromAnyNumberOfParts) {
     const std::vector<std::string> shine = {
         "--view",      "auto", "--material",         "ggx:roughness=0.4,f0=0.04",
-        "--tolerance", "0.06", "--glossy-tolerance", "0.3"};
+        "--tolerance", "0.06", "--glossy-tolerance", "0.3",
+        "--bounces",   "0"};
     std::vector<std::string> plan = {"plan", "knot.ply", "-o", "scene.plan"};
     plan.insert(plan.end(), shine.begin(), shine.end());
     succeed(plan);

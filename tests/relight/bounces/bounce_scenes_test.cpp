@@ -275,12 +275,12 @@ TEST(BounceScenes, AKilledRunThatIsTakenUpFindsTheSameRows) {
     // More blocks than are done between two looks at the checkpoint.
     const mesh::TriangleMesh mesh = scenes::joined(scenes::floor_grid(100, 4.0f),
                                                    scenes::icosphere(3, 0.5f, {0.0f, 0.6f, 0.0f}));
-    const BouncingScene scene(mesh, 0.005f, 0.1f);
+    const BouncingScene scene(mesh, 0.02f, 0.1f);
     const auto probes = probe_radiance(scene.transfer);
     prt::BounceStatistics found;
     const auto rows = [&](prt::Checkpoint& checkpoint) {
         return prt::precompute_bounces(scene.mesh, scene.receivers, scene.transfer, probes,
-                                       scene.rays, {.tolerance = 0.005f, .bias = scene.bias},
+                                       scene.rays, {.tolerance = 0.02f, .bias = scene.bias},
                                        {.checkpoint = &checkpoint}, &found);
     };
     std::size_t num_saves = 0;
@@ -313,7 +313,7 @@ TEST(BounceScenes, AKilledRunThatIsTakenUpFindsTheSameRows) {
         }};
     EXPECT_THROW(static_cast<void>(prt::precompute_bounces(
                      scene.mesh, scene.receivers, scene.transfer, probes, scene.rays,
-                     {.tolerance = 0.005f, .bias = scene.bias}, work)),
+                     {.tolerance = 0.02f, .bias = scene.bias}, work)),
                  prt::Cancelled);
     EXPECT_GT(checkpoint.parts.at("more_bounces").records.size(), 0u);
     EXPECT_EQ(rows(checkpoint), scene.matrix);

@@ -4,12 +4,15 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <random>
 #include <set>
 #include <stop_token>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "cubemap/image/image_layout.h"
+#include "cubemap/resample/pixel_parts.h"
 #include "files/parallel.h"
 #include "relight/relighter.h"
 #include "tests/prt/analytic_blockers.h"
@@ -120,6 +123,35 @@ TEST(ExactOfFile, ABrightPixelIsASmallAreaWhereItIs) {
                                cubemap::EnvironmentFile{.image = shared})[0]
                     .r,
                 0.25 * expected, 0.01 * expected);
+}
+
+TEST(ExactOfFile, PixelsThatShareARayGiveTheLightOfAll) {
+    // Four pixels to a ray, each of its own radiance, behind edges of a mesh.
+    cubemap::EnvironmentImage image = flat_image(cubemap::Layout::LatLong, 256);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> radiance(0.0f, 1.0f);
+    for (glm::vec3& pixel : image.pixels)
+        pixel = glm::vec3(radiance(random), radiance(random), radiance(random));
+    const scenes::RelitScene& scene = scenes::relit_scene();
+    const std::vector<std::uint32_t> some = {5, 60, 120, 200, 280};
+    const auto shared = std::make_shared<const cubemap::EnvironmentImage>(image);
+    const auto found =
+        exact_radiance(scene.receivers, some, scene.rays, cubemap::EnvironmentFile{.image = shared},
+                       {.bias = scene.options.bias});
+    for (std::size_t i = 0; i < some.size(); ++i) {
+        const glm::vec3& normal = scene.receivers.normals[some[i]];
+        const glm::vec3 origin =
+            prt::ray_origin(scene.receivers.positions[some[i]], normal, scene.options.bias);
+        glm::dvec3 expected(0.0);
+        cubemap::for_each_pixel(
+            cubemap::shape_of(image), [&](std::size_t pixel, const cubemap::PixelPlace& place) {
+                const double cosine = glm::dot(glm::dvec3(normal), place.direction);
+                if (cosine > 0.0 && !scene.rays.occluded(origin, glm::vec3(place.direction)))
+                    expected += glm::dvec3(image.pixels[pixel]) *
+                                (cosine * place.solid_angle / std::numbers::pi);
+            });
+        EXPECT_LT(glm::length(found[i] - expected), 5e-4 * glm::length(expected)) << some[i];
+    }
 }
 
 TEST(Exact, WhiteFurnaceOfAFloor) {

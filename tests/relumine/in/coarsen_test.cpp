@@ -13,7 +13,7 @@ namespace {
 constexpr float Fine = 0.02f, Coarse = 0.06f;
 
 Scene made_with(float tolerance) {
-    Mesh mesh(scenes::boulder());
+    Mesh mesh = scenes::boulder();
     mesh.floor_vertices = 24;
     mesh::append_floor(mesh.geometry, mesh.floor_vertices);
     return precompute(std::move(mesh), {.tolerance = tolerance, .face_resolution = 128});

@@ -30,7 +30,7 @@ using scenes::two_squares;
 class PrecomputeFile : public scenes::InFolder {};
 
 TEST(Precompute, IsItsStepsInOneCall) {
-    const mesh::TriangleMesh mesh = boulder();
+    const mesh::TriangleMesh mesh = boulder().geometry;
     PrecomputeReport report;
     const Scene scene = precompute(mesh, {.tolerance = Tolerance, .no_refine = true}, {}, &report);
 
@@ -137,7 +137,7 @@ TEST(Precompute, RefusesAMeshThatContradictsItself) {
 }
 
 TEST(Precompute, GivesAMeshWithoutNormalsSmoothOnes) {
-    mesh::TriangleMesh mesh = boulder();
+    mesh::TriangleMesh mesh = boulder().geometry;
     const PrecomputeOptions options{.tolerance = Tolerance, .no_refine = true};
     mesh.normals = mesh::smooth_normals(mesh);
     const Scene expected = precompute(mesh, options);
@@ -156,7 +156,7 @@ TEST(Precompute, OfBothEnginesIsTheSame) {
 }
 
 TEST(Precompute, LightsPixelsOfAView) {
-    const mesh::TriangleMesh mesh = boulder();
+    const mesh::TriangleMesh mesh = boulder().geometry;
     const Camera camera{.eye = {0, 3, 6}, .target = {0, 0.5f, 0}};
     const Scene scene = precompute(mesh, {.tolerance = Tolerance,
                                           .receivers = Pixels{.width = 12, .height = 8},
@@ -233,7 +233,7 @@ TEST(Precompute, ALightmapTakesSecondUvsThatAreAnUnwrap) {
 }
 
 TEST(Precompute, NamesTheMeshThatHasNoUvs) {
-    Mesh mesh(boulder());
+    Mesh mesh = boulder();
     mesh.geometry.uvs.clear();
     mesh.source = "folder/boulder.ply";
     try {

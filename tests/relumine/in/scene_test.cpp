@@ -44,7 +44,7 @@ TEST(SetColors, ReachesTheTransfer) {
 }
 
 TEST(SetColors, LeavesTheFloorAlone) {
-    Mesh mesh(scenes::boulder());
+    Mesh mesh = scenes::boulder();
     mesh::append_floor(mesh.geometry, 4);
     mesh.floor_vertices = 4;
     Scene scene = precompute(std::move(mesh), {.tolerance = scenes::Tolerance,

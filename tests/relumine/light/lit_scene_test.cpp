@@ -21,7 +21,7 @@ namespace {
 
 const Scene& boulder_scene() {
     static const Scene Boulder =
-        precompute(scenes::boulder(), {.tolerance = scenes::Tolerance, .no_refine = true});
+        precompute(scenes::boulder(), {.tolerance = scenes::Tolerance, .bounce_tolerance = 0.0f});
     return Boulder;
 }
 

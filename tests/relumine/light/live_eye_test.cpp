@@ -25,7 +25,7 @@ prt::Surface shiny(float roughness) {
 }
 
 Scene shiny_scene(float roughness) {
-    Mesh mesh(scenes::boulder());
+    Mesh mesh = scenes::boulder();
     mesh::append_floor(mesh.geometry, 4);
     mesh.floor_vertices = 4;
     return precompute(std::move(mesh),

@@ -22,7 +22,7 @@ namespace {
 
 class Output : public scenes::InFolder {
 protected:
-    static LitScene lit(const PrecomputeOptions& options = {.tolerance = 0.2f}) {
+    static LitScene lit(const PrecomputeOptions& options = {.tolerance = 0.2f, .no_refine = true}) {
         LitScene scene(precompute(scenes::two_squares(), options));
         scene.light(scenes::random_environment(8, 1));
         return scene;
@@ -197,7 +197,7 @@ TEST_F(Output, AFloorWithoutShadowsIsThePhotograph) {
     const Camera camera{
         .eye = {far, 3.0f, 0.0f}, .target = {far, 0.0f, 6.0f}, .fov_degrees = 60.0f};
     for (const bool on_pixels : {false, true}) {
-        PrecomputeOptions how{.tolerance = 0.1f};
+        PrecomputeOptions how{.tolerance = 0.1f, .no_refine = true};
         if (on_pixels) {
             how.receivers = Pixels{.width = 20, .height = 15, .samples_per_axis = 1};
             how.view = View{.camera = camera};
@@ -286,7 +286,7 @@ std::array<glm::vec3, 2> ground_and_sky(const LitScene& lit) {
 }
 
 TEST_F(Output, ThePhotographedGroundTakesTheLightOfLayersAndLists) {
-    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
+    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f, .no_refine = true}));
     lit.light(sunny());
     const glm::vec3 open = *lit.lighting().open_floor;
     std::array<glm::vec3, 2> before{};
@@ -324,7 +324,7 @@ TEST_F(Output, ThePhotographedGroundTakesTheLightOfLayersAndLists) {
 }
 
 TEST_F(Output, TheFloorIsGreyWhereNoGroundIsKnown) {
-    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
+    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f, .no_refine = true}));
     lit.light(sunny());
     EXPECT_EQ(floor_look(lit.scene(), lit.lighting()), FloorLook::Photo);
     EXPECT_EQ(floor_look(lit.scene(), lit.lighting(), {.floor = FloorLook::Grey}), FloorLook::Grey);
@@ -337,7 +337,7 @@ TEST_F(Output, TheFloorIsGreyWhereNoGroundIsKnown) {
 }
 
 TEST_F(Output, ExposureIsThatOfTheMeshAndNotOfItsFloor) {
-    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
+    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f, .no_refine = true}));
     lit.light(sunny());
     const auto exposure = [&](float albedo) {
         return Painter(lit, {.floor = FloorLook::Grey,
@@ -352,7 +352,7 @@ const Camera LookingDown{
     .eye = {1.0f, 2.0f, 4.0f}, .target = {0.0f, 0.2f, 0.0f}, .fov_degrees = 30};
 
 TEST_F(Output, ExposureMetersTheLightOfADarkAsset) {
-    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
+    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f, .no_refine = true}));
     lit.light(cubemap::CubeMap(8, glm::vec3(4.0f)));
     const auto exposure = [&](float albedo) {
         return Painter(lit, {.albedo = glm::vec3(albedo), .background = glm::vec3(0.0f)})
@@ -365,7 +365,7 @@ TEST_F(Output, ExposureMetersTheLightOfADarkAsset) {
 }
 
 TEST_F(Output, ExposureBrightensNoRoundings) {
-    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
+    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f, .no_refine = true}));
     lit.light(cubemap::CubeMap(8, glm::vec3(4.0f)));
     // As inside of a room that lets no more light through than roundings do.
     const std::vector<glm::vec3> rounded(lit.radiance().size(), glm::vec3(1e-7f));
@@ -461,7 +461,8 @@ TEST_F(Output, ExposureOfARoomIsThatOfItsWalls) {
         lit.light(white);
         return Painter(lit, {.background = background}).choose_exposure_ev(lit.lighting());
     };
-    const Scene vertices = precompute(room, {.tolerance = 0.1f, .no_refine = true});
+    const Scene vertices =
+        precompute(room, {.tolerance = 0.1f, .no_refine = true, .bounce_tolerance = 0.0f});
     const double of_walls = exposure(vertices, glm::vec3(0.0f));
     EXPECT_EQ(exposure(vertices, EnvironmentBehind{}), of_walls);
     EXPECT_GT(of_walls, 0.6);
@@ -469,7 +470,8 @@ TEST_F(Output, ExposureOfARoomIsThatOfItsWalls) {
         precompute(room, {.tolerance = 0.1f,
                           .receivers = Pixels{.width = 32, .height = 24},
                           .no_refine = true,
-                          .view = View{.camera = camera_of(vertices, OutputOptions{})}});
+                          .view = View{.camera = camera_of(vertices, OutputOptions{})},
+                          .bounce_tolerance = 0.0f});
     EXPECT_EQ(exposure(pixels, EnvironmentBehind{}), exposure(pixels, glm::vec3(0.0f)));
 }
 
