@@ -29,30 +29,15 @@ tried() {
     echo "$(basename "$1"): works in an empty $2, $(stat -c %s "$1" | awk '{ printf "%.1f MB", $1 / 1e6 }')"
 }
 
-# The folder build/wheels/try is empty but for what each needs to install.
 try_wheel() {
     local python
     python=$(python_of "$1")
-    environment "$python" "$work/try"
-    "$work/try/bin/pip" install -q "$1"
-    (cd "$work/try"
-        bin/relumine --version
-        bin/python -m relumine generate knot -o . --vertices 4000 -q
-        bin/relumine generate soft_boxes -o . -q
-        bin/relumine precompute knot.ply -o knot.prt -q
-        bin/relumine relight knot.prt soft_boxes_latlong.exr -o program.npy --bounces 0 -q
-        bin/relumine export web knot.prt soft_boxes_latlong.exr -o site -q
-        bin/python "$here/packages/try_wheel.py")
+    packages/try_wheel.sh "$1" "$python" "$work/try"
+    (cd "$work/try" && bin/relumine export web knot.prt soft_boxes_latlong.exr -o site -q)
     tried "$1" "environment of $("$python" --version)"
 }
 try_npm() {
-    rm -rf "$work/try_npm"
-    mkdir -p "$work/try_npm"
-    (cd "$work/try_npm"
-        npm init -y >/dev/null
-        npm install --no-audit --no-fund --loglevel=error "$here/$1" three@0.187.0
-        node node_modules/relumine/example/gltf.mjs
-        node "$here/packages/try_npm.mjs")
+    packages/try_npm.sh "$1" "$work/try_npm"
     tried "$1" "npm folder"
 }
 
@@ -75,8 +60,8 @@ tar -xf dist/*.tar.gz -C "$work/source" --strip-components 1
 libraries=$work/cmake
 for python in "$@"; do
     environment "$python" "$work/maker"
-    "$work/maker/bin/pip" wheel -q --no-deps -w "$work/made" "$work/source" -C build-dir="$work/cmake" \
-        -C cmake.define.BUILD_SHARED_LIBS=ON -C cmake.define.RELUMINE_PAGE="$web/page"
+    "$work/maker/bin/pip" wheel -q --no-deps -w "$work/made" "$work/source" --config-settings=build-dir="$work/cmake" \
+        --config-settings=cmake.define.BUILD_SHARED_LIBS=ON --config-settings=cmake.define.RELUMINE_PAGE="$web/page"
 done
 for folder in files mesh cubemap lights prt relight relumine; do libraries+=:$work/cmake/$folder; done
 PATH="$work/tools/bin:$PATH" LD_LIBRARY_PATH="$libraries" auditwheel repair --strip -z 9 -w dist "$work"/made/*.whl
@@ -95,18 +80,9 @@ for wheel in dist/*.whl; do
 done
 
 # The npm package has a scene to begin with, which the first wheel's program makes.
-package=$work/npm
-rm -rf "$package"
-cp -r "$web/package" "$package"
 environment "$1" "$work/maker"
 wheels=(dist/*"$("$1" -c 'import sys; print("cp%d%d" % sys.version_info[:2])')"-*.whl)
 "$work/maker/bin/pip" install -q "${wheels[0]}"
-"$work/maker/bin/relumine" generate still_life -o "$package/example" --vertices 6000 -q
-(cd "$package/example"
-    "$work/maker/bin/relumine" precompute still_life.glb -o scene.prt --no-refine --tolerance 0.05 -q
-    "$work/maker/bin/relumine" export runtime scene.prt -o scene.relight -q
-    mv still_life.glb scene.glb
-    rm scene.prt)
-(cd dist && npm pack --silent "$package")
+packages/npm_package.sh "$web/package" "$work/maker/bin/relumine" "$work/npm" dist
 (cd dist && sha256sum -- * >SHA256SUMS)
 ls -l dist
