@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Makes dist/: a source distribution, a wheel for each Python that is named, Blender's extension with these wheels, the npm
-# package, and checksums. `./dev release [PYTHON...]`, which builds the web's part before.
+# package, Debian packages of this system, and checksums. `./dev release [PYTHON...]`, which builds build/release before.
 # Wheels hold the program, the page of `relumine export web` and all libraries that they need, but for what every Linux of
 # their age has.
 #
-# release.sh --try: installs each wheel and the npm package of dist/ in an empty environment and lights a scene there.
+# release.sh --try: installs each wheel, the npm package and the Debian packages of dist/ in an empty environment and lights
+# a scene there. Debian packages need root, for a bare root file system.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 here=$PWD
@@ -45,13 +46,14 @@ if [ "${1:-}" = --try ]; then
     compgen -G 'dist/*.whl' >/dev/null || { echo "release: expected wheels in dist/; ./dev release makes them" >&2; exit 1; }
     for wheel in dist/*.whl; do try_wheel "$wheel"; done
     for package in dist/*.tgz; do try_npm "$package"; done
+    packages/try_deb.sh dist
     exit
 fi
 
 [ $# -gt 0 ] || set -- python3
 environment "$1" "$work/tools"
 "$work/tools/bin/pip" install -q -r packages/release.pip
-rm -rf dist "$work/made" "$work/source"
+rm -rf dist "$work/made" "$work/source" "$work/deb"
 mkdir -p dist "$work/made" "$work/source"
 "$work/tools/bin/python" -m build --sdist -o dist . >"$work/sdist.log"
 # From the source distribution, so that what is missing in it is seen. The libraries are compiled once, for all Pythons,
@@ -84,5 +86,10 @@ environment "$1" "$work/maker"
 wheels=(dist/*"$("$1" -c 'import sys; print("cp%d%d" % sys.version_info[:2])')"-*.whl)
 "$work/maker/bin/pip" install -q "${wheels[0]}"
 packages/npm_package.sh "$web/package" "$work/maker/bin/relumine" "$work/npm" dist
+# Of what is built: nothing else, as tests, is compiled for it.
+cmake -DCMAKE_SKIP_INSTALL_ALL_DEPENDENCY=ON build/release >"$work/cmake.log"
+cpack -G DEB --config build/release/CPackConfig.cmake -B "$work/deb" >"$work/cpack.log"
+cp "$work"/deb/*.deb dist
+lintian --fail-on error dist/*.deb
 (cd dist && sha256sum -- * >SHA256SUMS)
 ls -l dist
