@@ -1,9 +1,12 @@
-# What `cmake --install` and `cpack -G DEB` make beside the libraries and the program, whose targets install
-# themselves: the CMake package that find_package(relumine) reads, the licence, the Debian packages.
+# What `cmake --install` makes beside the libraries and the program, whose targets install themselves: the CMake package
+# that find_package(relumine) reads, the documents. cmake/debian.cmake makes Debian packages of the same components.
 #
-# Component runtime:     the program, shared libraries, the licence.
-# Component python:      the Python package (python/CMakeLists.txt).
-# Component development: headers, static libraries, the CMake package.
+# Component runtime:       the program, shared libraries.
+# Component engine:        librelumine_runtime (runtime/CMakeLists.txt).
+# Component python:        the Python package (python/CMakeLists.txt).
+# Component development:   headers, static libraries, the CMake package.
+# Component documentation: the documents.
+# Component licence:       the licence.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
@@ -84,66 +87,11 @@ install(CODE "set(relumine_folders \"${folders}\")\nset(relumine_headers \"${CMA
     COMPONENT development)
 install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/one_root.cmake COMPONENT development)
 
-set(components runtime development)
-if(RELUMINE_BUILD_PYTHON)
-    list(APPEND components python)
+install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation
+    PATTERN "site" EXCLUDE PATTERN "*.sh" EXCLUDE PATTERN "CMakeLists.txt" EXCLUDE)
+install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
+# Debian's packages name the licence in a file of their own.
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT licence)
+if(PROJECT_IS_TOP_LEVEL)
+    include(cmake/debian.cmake)
 endif()
-set(package_runtime relumine)
-set(package_development relumine-dev)
-set(package_python python3-relumine)
-foreach(component IN LISTS components)
-    set(name ${package_${component}})
-    install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name}
-        RENAME copyright COMPONENT ${component})
-endforeach()
-
-if(NOT PROJECT_IS_TOP_LEVEL)
-    return()
-endif()
-
-# The Debian packages: relumine_VERSION_ARCHITECTURE.deb is the program, relumine-dev_... the library for programs of
-# one's own, python3-relumine_... the Python package. dpkg-shlibdeps finds what programs and shared libraries depend on.
-set(CPACK_GENERATOR DEB)
-set(CPACK_PACKAGE_NAME relumine)
-set(CPACK_PACKAGE_CONTACT "Relumine developers <developers@relumine.invalid>")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
-set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
-set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL development)
-if(RELUMINE_BUILD_APP OR BUILD_SHARED_LIBS)
-    list(PREPEND CPACK_COMPONENTS_ALL runtime)
-endif()
-set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME relumine)
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION graphics)
-set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
-    "Relights 3D assets under measured environment light
-A precompute finds out how much light from every direction reaches each vertex of
-a mesh, blockers included. After that any HDR environment lights the mesh in
-milliseconds, all shadows in place.")
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME relumine-dev)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
-    "Relights 3D assets under measured environment light (library)
-Headers, libraries and a CMake package: find_package(relumine).")
-if(RELUMINE_BUILD_PYTHON)
-    list(APPEND CPACK_COMPONENTS_ALL python)
-    set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-relumine)
-    set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-    set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-        "python3 (>= ${RELUMINE_PYTHON_VERSION}), python3 (<< ${RELUMINE_PYTHON_NEXT_VERSION}), python3-numpy")
-    set(CPACK_COMPONENT_PYTHON_DESCRIPTION
-        "Relights 3D assets under measured environment light (Python)
-The Python package: import relumine.")
-endif()
-if(BUILD_SHARED_LIBS)
-    list(APPEND development_depends "relumine (= ${PROJECT_VERSION})")
-    set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
-    get_property(folders GLOBAL PROPERTY RELUMINE_LIBRARIES)
-    list(TRANSFORM folders PREPEND ${PROJECT_BINARY_DIR}/)
-    set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${folders})
-endif()
-list(JOIN development_depends ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
-include(CPack)

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Makes dist/: a source distribution, a wheel for each Python that is named, Blender's extension with these wheels, the npm
-# package, and checksums. `./dev release [PYTHON...]`, which builds the web's part before.
+# package, Debian packages of this system, and checksums. `./dev release [PYTHON...]`, which builds build/release before.
 # Wheels hold the program, the page of `relumine export web` and all libraries that they need, but for what every Linux of
 # their age has.
 #
-# release.sh --try: installs each wheel and the npm package of dist/ in an empty environment and lights a scene there.
+# release.sh --try: installs each wheel, the npm package and the Debian packages of dist/ in an empty environment and lights
+# a scene there. Debian packages need root, for a bare root file system.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 here=$PWD
@@ -29,30 +30,15 @@ tried() {
     echo "$(basename "$1"): works in an empty $2, $(stat -c %s "$1" | awk '{ printf "%.1f MB", $1 / 1e6 }')"
 }
 
-# The folder build/wheels/try is empty but for what each needs to install.
 try_wheel() {
     local python
     python=$(python_of "$1")
-    environment "$python" "$work/try"
-    "$work/try/bin/pip" install -q "$1"
-    (cd "$work/try"
-        bin/relumine --version
-        bin/python -m relumine generate knot -o . --vertices 4000 -q
-        bin/relumine generate soft_boxes -o . -q
-        bin/relumine precompute knot.ply -o knot.prt -q
-        bin/relumine relight knot.prt soft_boxes_latlong.exr -o program.npy --bounces 0 -q
-        bin/relumine export web knot.prt soft_boxes_latlong.exr -o site -q
-        bin/python "$here/packages/try_wheel.py")
+    packages/try_wheel.sh "$1" "$python" "$work/try"
+    (cd "$work/try" && bin/relumine export web knot.prt soft_boxes_latlong.exr -o site -q)
     tried "$1" "environment of $("$python" --version)"
 }
 try_npm() {
-    rm -rf "$work/try_npm"
-    mkdir -p "$work/try_npm"
-    (cd "$work/try_npm"
-        npm init -y >/dev/null
-        npm install --no-audit --no-fund --loglevel=error "$here/$1" three@0.187.0
-        node node_modules/relumine/example/gltf.mjs
-        node "$here/packages/try_npm.mjs")
+    packages/try_npm.sh "$1" "$work/try_npm"
     tried "$1" "npm folder"
 }
 
@@ -60,13 +46,14 @@ if [ "${1:-}" = --try ]; then
     compgen -G 'dist/*.whl' >/dev/null || { echo "release: expected wheels in dist/; ./dev release makes them" >&2; exit 1; }
     for wheel in dist/*.whl; do try_wheel "$wheel"; done
     for package in dist/*.tgz; do try_npm "$package"; done
+    packages/try_deb.sh dist
     exit
 fi
 
 [ $# -gt 0 ] || set -- python3
 environment "$1" "$work/tools"
 "$work/tools/bin/pip" install -q -r packages/release.pip
-rm -rf dist "$work/made" "$work/source"
+rm -rf dist "$work/made" "$work/source" "$work/deb"
 mkdir -p dist "$work/made" "$work/source"
 "$work/tools/bin/python" -m build --sdist -o dist . >"$work/sdist.log"
 # From the source distribution, so that what is missing in it is seen. The libraries are compiled once, for all Pythons,
@@ -75,8 +62,8 @@ tar -xf dist/*.tar.gz -C "$work/source" --strip-components 1
 libraries=$work/cmake
 for python in "$@"; do
     environment "$python" "$work/maker"
-    "$work/maker/bin/pip" wheel -q --no-deps -w "$work/made" "$work/source" -C build-dir="$work/cmake" \
-        -C cmake.define.BUILD_SHARED_LIBS=ON -C cmake.define.RELUMINE_PAGE="$web/page"
+    "$work/maker/bin/pip" wheel -q --no-deps -w "$work/made" "$work/source" --config-settings=build-dir="$work/cmake" \
+        --config-settings=cmake.define.BUILD_SHARED_LIBS=ON --config-settings=cmake.define.RELUMINE_PAGE="$web/page"
 done
 for folder in files mesh cubemap lights prt relight relumine; do libraries+=:$work/cmake/$folder; done
 PATH="$work/tools/bin:$PATH" LD_LIBRARY_PATH="$libraries" auditwheel repair --strip -z 9 -w dist "$work"/made/*.whl
@@ -95,18 +82,14 @@ for wheel in dist/*.whl; do
 done
 
 # The npm package has a scene to begin with, which the first wheel's program makes.
-package=$work/npm
-rm -rf "$package"
-cp -r "$web/package" "$package"
 environment "$1" "$work/maker"
 wheels=(dist/*"$("$1" -c 'import sys; print("cp%d%d" % sys.version_info[:2])')"-*.whl)
 "$work/maker/bin/pip" install -q "${wheels[0]}"
-"$work/maker/bin/relumine" generate still_life -o "$package/example" --vertices 6000 -q
-(cd "$package/example"
-    "$work/maker/bin/relumine" precompute still_life.glb -o scene.prt --no-refine --tolerance 0.05 -q
-    "$work/maker/bin/relumine" export runtime scene.prt -o scene.relight -q
-    mv still_life.glb scene.glb
-    rm scene.prt)
-(cd dist && npm pack --silent "$package")
+packages/npm_package.sh "$web/package" "$work/maker/bin/relumine" "$work/npm" dist
+# Of what is built: nothing else, as tests, is compiled for it.
+cmake -DCMAKE_SKIP_INSTALL_ALL_DEPENDENCY=ON build/release >"$work/cmake.log"
+cpack -G DEB --config build/release/CPackConfig.cmake -B "$work/deb" >"$work/cpack.log"
+cp "$work"/deb/*.deb dist
+lintian --fail-on error dist/*.deb
 (cd dist && sha256sum -- * >SHA256SUMS)
 ls -l dist

@@ -202,13 +202,17 @@ class Relighter:
         """Frees the memory. A `with` statement does so at its end."""
         self._lit = None
 
-    def __reduce__(self) -> Any:
-        options = {
+    def _options(self) -> Dict[str, Any]:
+        """What another relighter of the scene is made with to be like this one."""
+        return {
             "clusters_only": self._clusters_only,
             "harmonics": self._order,
             "highlight_rays": self._highlight_rays,
             "blockers_function": self._blockers,
         }
+
+    def __reduce__(self) -> Any:
+        options = self._options()
         light, layers, degrees = self._given, "[]", 0.0
         if self._core.is_lit and not isinstance(light, LightList):
             base, degrees = self._core.base()
@@ -483,22 +487,52 @@ class Relighter:
         >>> relighter.relight_batch(np.ones((2, 6, 8, 8, 3))).shape
         (2, 6912, 3)
         """
-        shape = np.shape(environments)
-        if len(shape) != 5 or shape[2] != shape[3]:
-            raise ValueError(f"environments: expected shape (B, 6, R, R, 3), got {shape}")
-        result_shape = (shape[0], self._scene.num_receivers, 3)
-        if out is None:
-            out = np.empty(result_shape, np.float32)
-        elif not isinstance(out, np.ndarray) or out.dtype.kind != "f":
-            raise ValueError(f"out: expected an array of floats, got {type(out).__name__}")
-        elif out.shape != result_shape:
-            raise ValueError(f"out: expected shape {result_shape}, got {out.shape}")
-        for first in range(0, shape[0], _BATCH):
+        count, resolution = _batch_of(environments)
+        out = _output_array(out, (count, self._scene.num_receivers, 3))
+        for first in range(0, count, _BATCH):
             part = np.asarray(environments)[first : first + _BATCH]
-            cubes = floats("environments", part, None, 6, shape[2], shape[2], 3)
+            cubes = floats("environments", part, None, 6, resolution, resolution, 3)
             with errors():
-                core = self._core.relight_batch(cubes, len(cubes), shape[2])
+                core = self._core.relight_batch(cubes, len(cubes), resolution)
             out[first : first + _BATCH] = view(core)
+        return out
+
+    @with_picture_options
+    def picture_batch(
+        self,
+        environments: ArrayLike,
+        out: Optional[NDArray[Any]] = None,
+        *,
+        bounces: Optional[int] = 0,
+        **options: Any,
+    ) -> NDArray[Any]:
+        """The pictures under many environments: (B, H, W, 3 or 4) float32, as picture() gives them.
+
+        environments  (B, 6, R, R, 3): cube faces as Environment.cube has them
+        out           an array of that shape to write to, float32, float16 or any other float
+        bounces       as bounce() takes them; 0: direct light
+
+        The relighter's own light stays as it is, and layers do not count.
+
+        >>> relighter.picture_batch(np.ones((2, 6, 8, 8, 3)), size=(32, 24)).shape
+        (2, 24, 32, 3)
+        """
+        count, resolution = _batch_of(environments)
+        with Relighter(self._scene, **self._options()) as own:
+            for i in range(count):
+                cube = np.asarray(environments[i])  # type: ignore[index]
+                own.set_environment(Environment(cube, face_resolution=resolution))
+                if bounces != 0:
+                    own.bounce(
+                        bounces,
+                        albedo=options.get("albedo"),
+                        floor_albedo=options.get("floor_albedo"),
+                    )
+                picture = np.asarray(own.picture(**options))
+                if i == 0:
+                    out = _output_array(out, (count, *picture.shape))
+                out[i] = picture  # type: ignore[index]
+        assert out is not None
         return out
 
     def adjoint(self, weights: ArrayLike, *, size: Optional[Tuple[int, int]] = None) -> Floats:
@@ -760,6 +794,24 @@ class Relighter:
             f"<relumine.Relighter: {self._scene.num_receivers} receivers, "
             f"{self._scene.num_clusters} clusters, {'lit' if self._core.is_lit else 'no light'}>"
         )
+
+
+def _batch_of(environments: ArrayLike) -> Tuple[int, int]:
+    """How many environments there are, and R."""
+    shape = np.shape(environments)
+    if len(shape) != 5 or shape[0] == 0 or shape[1] != 6 or shape[2] != shape[3] or shape[4] != 3:
+        raise ValueError(f"environments: expected shape (B, 6, R, R, 3), got {shape}")
+    return shape[0], shape[2]
+
+
+def _output_array(out: Optional[NDArray[Any]], shape: Tuple[int, ...]) -> NDArray[Any]:
+    if out is None:
+        return np.empty(shape, np.float32)
+    if not isinstance(out, np.ndarray) or out.dtype.kind != "f":
+        raise ValueError(f"out: expected an array of floats, got {type(out).__name__}")
+    if out.shape != shape:
+        raise ValueError(f"out: expected shape {shape}, got {out.shape}")
+    return out
 
 
 def _output(options: Dict[str, Any]) -> Dict[str, Any]:

@@ -73,7 +73,7 @@ deb)
         name=$(dpkg-deb -f "$package" Package)
         depends=$(dpkg-deb -f "$package" Depends)
         echo "$(basename "$package") depends on $depends"
-        [ -s "$root/share/doc/$name/copyright" ] || fail "$package: no licence"
+        [ -s "$root/share/doc/$name/copyright" ] && [ -s "$root/share/doc/$name/changelog.gz" ] || fail "$package: no licence"
         # The program needs libraries to run, and nothing to compile with; compiling with ours needs GLM.
         case $name in
         python3-relumine)
@@ -82,6 +82,8 @@ deb)
             ;;
         relumine) [[ "$depends" != *-dev* && "$depends" == *libembree* ]] || fail "$package: wrong dependencies" ;;
         relumine-dev) [[ ", $depends," == *", libglm-dev,"* ]] || fail "$package: no libglm-dev" ;;
+        relumine-doc) [ -z "$depends" ] && [ -s "$root/share/doc/relumine/docs/library.md" ] || fail "$package: wrong" ;;
+        librelumine-runtime*) [[ "$depends" == *libzstd1* && "$depends" != *libembree* ]] || fail "$package: wrong dependencies" ;;
         *) fail "$package: unknown" ;;
         esac
     done

@@ -94,6 +94,34 @@ def test_torch_differentiates_a_relight(scene):
         assert other.shape == radiance.shape
 
 
+def test_jax_differentiates_a_relight(scene):
+    jax = pytest.importorskip("jax")
+    from relumine.jax import relight
+
+    relighter = relumine.Relighter(scene, clusters_only=True)
+    random = np.random.default_rng(6)
+    weights = random.random((scene.num_receivers, 3)).astype(np.float32)
+
+    def loss(pixels):
+        return (relight(relighter, pixels) * weights).sum()
+
+    for shape in [(6, 8, 8, 3), (16, 32, 3)]:
+        pixels = random.random(shape, np.float32)
+        relighter.set_environment(relumine.Environment(pixels, face_resolution=8))
+        expected = inner(relighter.radiance, weights)
+        for gradient_of in (jax.grad(loss), jax.jit(jax.grad(loss))):
+            gradient = gradient_of(pixels)
+            assert gradient.shape == shape and gradient.dtype == np.float32
+            assert inner(pixels, gradient) == pytest.approx(expected, rel=1e-4)
+        many = jax.vmap(lambda each: relight(relighter, each))(np.stack([pixels, 2 * pixels]))
+        assert np.allclose(2 * many[0], many[1], rtol=1e-4)
+        assert inner(many[0], weights) == pytest.approx(expected, rel=1e-5)
+    with pytest.raises(jax.errors.JaxRuntimeError, match="expected finite radiance >= 0"):
+        relight(relighter, np.full((6, 8, 8, 3), -1.0, np.float32)).block_until_ready()
+    with pytest.raises(ValueError, match=r"pixels: expected shape .*, got \(6, 8, 7, 3\)"):
+        relight(relighter, np.ones((6, 8, 7, 3), np.float32))
+
+
 def test_meshes_are_pickled(arrays, folder):
     vertices, triangles = arrays
     mesh = relumine.Mesh(vertices, triangles, colors=np.full((len(vertices), 3), 0.5), floor=4)
@@ -220,6 +248,43 @@ def test_a_batch_refuses_other_shapes(scene):
         relighter.relight_batch(np.ones((2, 6, 8, 8, 3)), out=np.empty((1, 2, 3)))
     with pytest.raises(ValueError, match="out: expected an array of floats"):
         relighter.relight_batch(np.ones((1, 6, 8, 8, 3)), out=[])
+
+
+def test_a_batch_of_pictures_is_what_single_pictures_give(arrays):
+    random = np.random.default_rng(5)
+    cubes = random.random((3, 6, 8, 8, 3)).astype(np.float32)
+    pixels = relumine.precompute(
+        *arrays, receivers="pixels:24x18:2", view="auto", tolerance=0.05, bounces=0.05
+    )
+    vertices = relumine.precompute(*arrays, tolerance=0.05, bounces=0.05)
+    for scene, options in (
+        (pixels, dict(background="none", albedo=0.8)),
+        (pixels, dict(bounces=2)),
+        (vertices, dict(camera=(30, 20), size=(32, 24), floor_albedo=0.3, bounces=None)),
+    ):
+        relighter = relumine.Relighter(scene)
+        pictures = relighter.picture_batch(cubes, **options)
+        assert not relighter._core.is_lit
+        half = np.empty(pictures.shape, np.float16)
+        assert relighter.picture_batch(cubes, half, **options) is half
+        bounces = options.pop("bounces", 0)
+        surfaces = {name: options[name] for name in ("albedo", "floor_albedo") if name in options}
+        for i, cube in enumerate(cubes):
+            relighter.set_environment(relumine.Environment(cube, face_resolution=8))
+            if bounces != 0:
+                relighter.bounce(bounces, **surfaces)
+            assert np.array_equal(pictures[i], relighter.picture(**options))
+            assert np.array_equal(half[i], pictures[i].astype(np.float16))
+        assert not np.array_equal(pictures[0], pictures[1])
+
+
+def test_a_batch_of_pictures_refuses_other_shapes(scene):
+    relighter = relumine.Relighter(scene)
+    for wrong in [np.ones((6, 8, 8, 3)), np.ones((0, 6, 8, 8, 3)), np.ones((1, 5, 8, 8, 3))]:
+        with pytest.raises(ValueError, match="environments: expected shape"):
+            relighter.picture_batch(wrong)
+    with pytest.raises(ValueError, match="out: expected shape"):
+        relighter.picture_batch(np.ones((2, 6, 4, 4, 3)), np.empty((1, 24, 32, 3)), size=(32, 24))
 
 
 def mean_radiance(arguments):

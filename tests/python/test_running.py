@@ -79,6 +79,12 @@ def test_progress_rises_to_one_in_the_callers_thread(arrays):
     assert threads == {threading.get_ident()}
 
 
+def test_verify_tells_how_far_it_is(relighter):
+    told = []
+    relighter.verify(300, surface=60, progress=told.append)
+    assert told == sorted(told) and told[-1] == 1.0 and len(told) > 1
+
+
 def test_progress_that_fails_stops_the_work():
     def progress(fraction):
         raise LookupError("enough")

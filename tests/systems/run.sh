@@ -2,8 +2,8 @@
 # Tries the tree as on a fresh machine: a bare root file system with nothing but git, a clone of HEAD, README's two
 # commands. Prints their minutes on the clock and of the processors, and what they closed with. `./dev test --system NAME`.
 #
-# The bare system is made once, in $RELUMINE_SYSTEMS (~/.cache/relumine/systems), and unpacked anew each time; it is left
-# there for a look until the next time. Real meshes of $RELUMINE_DATA are seen inside.
+# The bare system (tests/systems/bare.sh) is left for a look until the next time. Real meshes of $RELUMINE_DATA are seen
+# inside.
 set -euo pipefail
 name=${1:-}
 root=$PWD
@@ -11,32 +11,14 @@ grep -q "^system $name " packages/versions.txt && [ -n "$name" ] || {
     echo "dev: expected --system with one of: $(awk '$1 == "system" { print $2 }' packages/versions.txt | xargs), got '$name'" >&2
     exit 2
 }
-[ "$(id -u)" -eq 0 ] || { echo "dev: --system: expected root, for debootstrap and chroot" >&2; exit 1; }
-command -v debootstrap >/dev/null || { echo "dev: --system: expected debootstrap (apt-get install debootstrap)" >&2; exit 1; }
 [ -z "$(git status --porcelain)" ] || echo "dev: --system: what is not committed is not tried" >&2
 
-cache=${RELUMINE_SYSTEMS:-${XDG_CACHE_HOME:-$HOME/.cache}/relumine/systems}
-mkdir -p "$cache"
-cache=$(cd "$cache" && pwd)
-if [ ! -f "$cache/$name.tar" ]; then
-    rm -rf "$cache/$name.new"
-    debootstrap --variant=minbase --include=git,ca-certificates "$name" "$cache/$name.new" >"$cache/$name.log" 2>&1 ||
-        { tail -n 5 "$cache/$name.log" >&2; exit 1; }
-    tar -C "$cache/$name.new" -cf "$cache/$name.part" .
-    mv "$cache/$name.part" "$cache/$name.tar"
-    rm -rf "$cache/$name.new"
-fi
-rm -rf "${cache:?}/$name"
-mkdir "$cache/$name"
-tar -C "$cache/$name" -xf "$cache/$name.tar"
-# The way out to the packages is this machine's.
-cp /etc/resolv.conf "$cache/$name/etc/resolv.conf"
-cp -r /etc/apt/apt.conf.d/. "$cache/$name/etc/apt/apt.conf.d/"
-git clone -q --no-hardlinks "$root" "$cache/$name/relumine"
-mkdir -p "$cache/$name/data"
+system=$(tests/systems/bare.sh "$name")
+git clone -q --no-hardlinks "$root" "$system/relumine"
+mkdir -p "$system/data"
 
 # The mounts go with the process that made them.
-exec unshare --mount --pid --fork --kill-child bash -s -- "$cache/$name" "${RELUMINE_DATA:-}" <<'INSIDE'
+exec unshare --mount --pid --fork --kill-child bash -s -- "$system" "${RELUMINE_DATA:-}" <<'INSIDE'
 set -euo pipefail
 system=$1
 mount -t proc proc "$system/proc"
