@@ -22,4 +22,5 @@ tar -C "$cache/$name" -xf "$cache/$name.tar"
 # The way out to the packages is this machine's.
 cp /etc/resolv.conf "$cache/$name/etc/resolv.conf"
 cp -r /etc/apt/apt.conf.d/. "$cache/$name/etc/apt/apt.conf.d/"
+[ ! -f /etc/pip.conf ] || cp /etc/pip.conf "$cache/$name/etc/"
 echo "$cache/$name"
