@@ -102,7 +102,7 @@ struct Share {
 /// Throws:  std::logic_error unless an environment lights the scene; Cancelled;
 ///          std::invalid_argument for an eye where there are no live highlights, or other light
 ///          than the environment's.
-/// Cost:    half a million rays for each receiver, or 6 R^2: seconds for 2000 of them.
+/// Cost:    130,000 rays for each receiver, or 6 R^2: seconds for 2000 of them.
 [[nodiscard]] Verification verify(const LitScene& lit, const VerifyOptions& options = {},
                                   const prt::Work& work = {});
 

@@ -131,7 +131,8 @@ TEST_F(FullDisk, LeavesTheOldFile) {
     succeed("precompute blob.ply -o scene.prt --no-refine --bounces 0 --face-resolution 16");
     for (const char* name : {"disk/lit.npy", "disk/lit.ply", "disk/lit.glb"})
         fail({"relight", "scene.prt", "white.hdr", "-o", name}, no_space);
-    fail("precompute blob.ply -o disk/scene.prt --no-refine --bounces 0 --face-resolution 16 -q", no_space);
+    fail("precompute blob.ply -o disk/scene.prt --no-refine --bounces 0 --face-resolution 16 -q",
+         no_space);
     succeed("info disk/scene.prt");
 }
 

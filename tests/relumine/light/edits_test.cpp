@@ -115,7 +115,7 @@ TEST(LightEdits, RegionsThatComeBackAreFoundInBasesOfAnySize) {
 }
 
 TEST(LightEdits, TenThousandEditsLeaveNoDrift) {
-    const cubemap::CubeMap base = scenes::random_environment(8, 5);
+    const cubemap::CubeMap base = scenes::random_environment(16, 5);
     LitScene editor = scenes::relit_clusters();
     editor.light(base);
     std::mt19937 random(3);
