@@ -56,6 +56,7 @@ struct LitScene::Impl {
     void take_apart(Lighting& lighting) const;
     void gather(Lighting& lighting) const;
     void show_environment(Lighting& lighting) const;
+    [[nodiscard]] glm::vec3 open_gain(const glm::vec3& open_floor) const;
     [[nodiscard]] bool has_environment() const {
         return relighter && relighter->environment().resolution != 0;
     }
@@ -72,6 +73,9 @@ struct LitScene::Impl {
     bool is_lit = false;
 
     EditedEnvironment environment;
+    /// The light of a level floor in the open under a base alone.
+    mutable std::shared_ptr<const LightBase> open_of;
+    mutable glm::dvec3 open_of_base{0.0};
     /// The environment's light, or a list's alone. Null without clusters.
     std::unique_ptr<relight::Relighter> relighter;
     ListedLight listed;
@@ -437,6 +441,25 @@ void LitScene::Impl::show_environment(Lighting& lighting) const {
             relight::edited_backdrop(state.base->backdrop(), *state.base->map(), lighting.behind());
 }
 
+/// What layers and lists make of the light of a floor in the open.
+glm::vec3 LitScene::Impl::open_gain(const glm::vec3& open_floor) const {
+    constexpr glm::vec3 Up(0.0f, 1.0f, 0.0f);
+    const LightState& state = environment.state();
+    glm::dvec3 base(0.0);
+    if (!environment.is_edited() || state.layers.empty()) {
+        base = relighter->open_radiance(Up);
+    } else {
+        if (std::exchange(open_of, state.base) != state.base)
+            open_of_base = cubemap::irradiance(*state.base->map(), Up) / std::numbers::pi;
+        base = open_of_base;
+    }
+    glm::vec3 gain(1.0f);
+    for (int channel = 0; channel < 3; ++channel)
+        if (base[channel] > 0.0)
+            gain[channel] = open_floor[channel] / static_cast<float>(base[channel]);
+    return gain;
+}
+
 Lighting LitScene::lighting(bool is_drawn) const {
     const Impl& own = *impl_;
     own.require_lit();
@@ -451,12 +474,17 @@ Lighting LitScene::lighting(bool is_drawn) const {
         own.gather(result);
         if (!own.receivers.is_first())
             return {};
+    } else if (own.relighter) {
+        result.arriving = own.relighter->diffuse_radiance();
     }
     if (!own.has_environment())
         return result;
     result.environment = &own.relighter->environment();
-    if (is_drawn)
+    if (is_drawn) {
         own.show_environment(result);
+        result.state = &own.environment.state();
+        result.open_gain = own.open_gain(*result.open_floor);
+    }
     return result;
 }
 
