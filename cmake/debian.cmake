@@ -56,6 +56,8 @@ if(RELUMINE_BUILD_RUNTIME AND RELUMINE_RUNTIME_SHARED)
     list(APPEND development_depends "${engine} (= ${PROJECT_VERSION})")
     relumine_debian(engine ${engine} libs "" "The library that relights alone, for programs that embed it.")
     set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/debian/triggers CONTENT "activate-noawait ldconfig\n")
+    set(CPACK_DEBIAN_ENGINE_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian/triggers)
 endif()
 if(RELUMINE_BUILD_PYTHON)
     relumine_debian(python python3-relumine python
