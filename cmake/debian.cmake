@@ -56,11 +56,18 @@ if(RELUMINE_BUILD_RUNTIME AND RELUMINE_RUNTIME_SHARED)
     list(APPEND development_depends "${engine} (= ${PROJECT_VERSION})")
     relumine_debian(engine ${engine} libs "" "The library that relights alone, for programs that embed it.")
     set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/debian/triggers CONTENT "activate-noawait ldconfig\n")
+    set(CPACK_DEBIAN_ENGINE_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian/triggers)
 endif()
 if(RELUMINE_BUILD_PYTHON)
     relumine_debian(python python3-relumine python
         "python3 (>= ${RELUMINE_PYTHON_VERSION}), python3 (<< ${RELUMINE_PYTHON_NEXT_VERSION}), python3-numpy"
         "The Python package: import relumine.")
+    # What Python compiled goes with its sources.
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/debian/prerm CONTENT "#!/bin/sh\nset -e\npy3clean -p python3-relumine\n")
+    file(CHMOD ${PROJECT_BINARY_DIR}/debian/prerm FILE_PERMISSIONS
+        OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian/prerm)
 endif()
 if(BUILD_SHARED_LIBS)
     list(APPEND development_depends "relumine (= ${PROJECT_VERSION})")
