@@ -103,14 +103,14 @@ void ObjReader::read_vertex() {
     const std::size_t num_values = words_.size() - 1;
     if (num_values < 3 || num_values == 5 || num_values > 7)
         reader_.fail("3, 4, 6 or 7 numbers of a vertex", fmt::format("{}", num_values));
-    std::array<float, 7> values{};
+    std::array<double, 7> values{};
     for (std::size_t i = 0; i < num_values; ++i)
-        values[i] = static_cast<float>(reader_.number(words_[i + 1]));
+        values[i] = reader_.number(words_[i + 1]);
     if (num_values >= 6) {
         soup_.colors.resize(soup_.positions.size(), no_color());
-        soup_.colors.emplace_back(values[3], values[4], values[5]);
+        soup_.colors.emplace_back(glm::dvec3(values[3], values[4], values[5]));
     }
-    soup_.positions.emplace_back(values[0], values[1], values[2]);
+    soup_.add_position({values[0], values[1], values[2]});
 }
 
 void ObjReader::read_uv() {
