@@ -16,10 +16,12 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "files/extension.h"
 #include "files/joined.h"
 #include "mesh/formats/corner_vertices.h"
 #include "mesh/formats/mtl_reader.h"
@@ -162,15 +164,19 @@ std::string ObjReader::rest_of_statement() const {
     return files::joined(std::span(words_).subspan(1), " ");
 }
 
-/// Reads one name with blanks, or several names. Both occur.
+/// Reads one name with blanks, or several names, with blanks or without. All occur.
 void ObjReader::read_libraries() {
     const std::string whole = rest_of_statement();
     if (words_.size() == 2 || !find_file(folder_, whole).empty()) {
         library_.read(whole);
         return;
     }
-    for (std::size_t i = 1; i < words_.size(); ++i)
-        library_.read(std::string(words_[i]));
+    std::string name;
+    for (std::size_t i = 1; i < words_.size(); ++i) {
+        name += (name.empty() ? "" : " ") + std::string(words_[i]);
+        if (i + 1 == words_.size() || files::extension_of(words_[i]) == ".mtl")
+            library_.read(std::exchange(name, {}));
+    }
 }
 
 /// Begins an object or a group. The newest o or g names the next faces.
