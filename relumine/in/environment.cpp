@@ -207,13 +207,31 @@ relight::Backdrop backdrop_of(std::shared_ptr<const cubemap::EnvironmentImage> i
     return relight::image_backdrop(std::move(image), turn);
 }
 
+namespace {
+
+/// Puts a map and what is known of its image together.
+Environment told_of(const std::shared_ptr<const cubemap::EnvironmentImage>& image,
+                    cubemap::CubeMap map, const glm::dmat3& turn) {
+    Environment result{.map = std::move(map),
+                       .file = {.image = image, .turn = turn},
+                       .assumptions = image->assumptions};
+    result.num_fixed_pixels = image->fixed ? image->bad_pixels.count() : 0;
+    result.warnings = warnings_about(*image, cubemap::light_from_below(result.map));
+    return result;
+}
+
+} // namespace
+
 Environment environment_of(const std::shared_ptr<const cubemap::EnvironmentImage>& image,
                            const EnvironmentOptions& options) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
-    const cubemap::CubeMap resampled = unturned_cube_map_of(*image, options);
+    cubemap::CubeMap resampled = unturned_cube_map_of(*image, options);
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    Environment result = environment_of(image, resampled, options);
+    // Maps take hundreds of megabytes: one that stays as it is is not copied.
+    Environment result = world_from_image(image->layout, options) == glm::dmat3(1.0)
+                             ? told_of(image, std::move(resampled), glm::dmat3(1.0))
+                             : environment_of(image, resampled, options);
     result.seconds_resample += seconds;
     return result;
 }
@@ -223,11 +241,7 @@ Environment environment_of(const std::shared_ptr<const cubemap::EnvironmentImage
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     const glm::dmat3 turn = world_from_image(image->layout, options);
-    Environment result{.map = cubemap::turned(resampled, turn),
-                       .file = {.image = image, .turn = turn},
-                       .assumptions = image->assumptions};
-    result.num_fixed_pixels = image->fixed ? image->bad_pixels.count() : 0;
-    result.warnings = warnings_about(*image, cubemap::light_from_below(result.map));
+    Environment result = told_of(image, cubemap::turned(resampled, turn), turn);
     result.seconds_resample = std::chrono::duration<double>(Clock::now() - start).count();
     return result;
 }

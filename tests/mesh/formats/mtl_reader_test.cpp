@@ -1,5 +1,7 @@
 // Materials, groups and textures of OBJ files.
 
+#include <fmt/format.h>
+
 #include "mesh/floor.h"
 #include "tests/mesh/mesh_files.h"
 #include "tests/mesh/texture_files.h"
