@@ -226,13 +226,11 @@ Environment environment_of(const std::shared_ptr<const cubemap::EnvironmentImage
                            const EnvironmentOptions& options) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
-    cubemap::CubeMap resampled = unturned_cube_map_of(*image, options);
-    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    // Maps take hundreds of megabytes: one that stays as it is is not copied.
-    Environment result = world_from_image(image->layout, options) == glm::dmat3(1.0)
-                             ? told_of(image, std::move(resampled), glm::dmat3(1.0))
-                             : environment_of(image, resampled, options);
-    result.seconds_resample += seconds;
+    // A map that is not turned is not copied either: it takes hundreds of megabytes.
+    const glm::dmat3 turn = world_from_image(image->layout, options);
+    Environment result =
+        told_of(image, cubemap::turned(unturned_cube_map_of(*image, options), turn), turn);
+    result.seconds_resample = std::chrono::duration<double>(Clock::now() - start).count();
     return result;
 }
 
