@@ -70,10 +70,17 @@ LoadedMesh load(const std::filesystem::path& path, const LoadOptions& options) {
     }
 }
 
-std::vector<glm::vec3> load_points(const std::filesystem::path& path) {
+std::vector<glm::vec3> load_points(const std::filesystem::path& path, const glm::dvec3& offset) {
     const std::vector<std::byte> bytes = files::read(path);
     try {
-        return read_ply(bytes).positions;
+        PolygonSoup soup = read_ply(bytes);
+        if (offset == glm::dvec3(0.0))
+            return std::move(soup.positions);
+        soup.remainders.resize(soup.positions.size(), glm::vec3(0.0f));
+        for (std::size_t i = 0; i < soup.positions.size(); ++i)
+            soup.positions[i] =
+                glm::vec3(glm::dvec3(soup.positions[i]) - offset + glm::dvec3(soup.remainders[i]));
+        return std::move(soup.positions);
     } catch (const std::runtime_error& reason) {
         throw std::runtime_error(fmt::format("{}: {}", path.string(), reason.what()));
     }

@@ -67,10 +67,12 @@ struct LoadedMesh : TriangleMesh {
 ///          the animation.
 [[nodiscard]] LoadedMesh load(const std::filesystem::path& path, const LoadOptions& options = {});
 
-/// Reads the vertices of a .ply file, which need not have faces or be finite.
+/// Reads the vertices of a .ply file, which need not have faces or be finite. `offset` is taken off
+/// them: that of a mesh among whose coordinates they are.
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y".
-[[nodiscard]] std::vector<glm::vec3> load_points(const std::filesystem::path& path);
+[[nodiscard]] std::vector<glm::vec3> load_points(const std::filesystem::path& path,
+                                                 const glm::dvec3& offset = glm::dvec3(0.0));
 
 /// Returns ".glb, .gltf, .obj, .off, .ply or .stl".
 [[nodiscard]] std::string mesh_extensions();

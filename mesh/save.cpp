@@ -38,18 +38,19 @@ std::uint8_t srgb_byte(float linear) {
 
 std::string ply(const TriangleMesh& mesh, const std::string& comment, const PlyVertices& vertices) {
     const auto& [colors, uvs, radiance] = vertices;
+    const bool is_far = mesh.offset != glm::dvec3(0.0);
     std::string content = fmt::format(
         "ply\n"
         "format binary_little_endian 1.0\n"
-        "comment {}\n"
-        "element vertex {}\n"
-        "property float x\nproperty float y\nproperty float z\n"
+        "comment {1}\n"
+        "element vertex {2}\n"
+        "property {0} x\nproperty {0} y\nproperty {0} z\n"
         "property float nx\nproperty float ny\nproperty float nz\n"
-        "{}{}{}"
-        "element face {}\n"
+        "{3}{4}{5}"
+        "element face {6}\n"
         "property list uchar uint vertex_indices\n"
         "end_header\n",
-        comment, mesh.num_vertices(),
+        is_far ? "double" : "float", comment, mesh.num_vertices(),
         colors.empty() ? "" : "property float red\nproperty float green\nproperty float blue\n",
         uvs.empty() ? "" : "property float s\nproperty float t\n",
         radiance.empty() ? ""
@@ -62,7 +63,10 @@ std::string ply(const TriangleMesh& mesh, const std::string& comment, const PlyV
     };
     content.reserve(content.size() + mesh.num_vertices() * 48 + mesh.num_triangles() * 13);
     for (std::size_t i = 0; i < mesh.num_vertices(); ++i) {
-        append(mesh.positions[i]);
+        if (is_far)
+            append(mesh.offset + glm::dvec3(mesh.positions[i]));
+        else
+            append(mesh.positions[i]);
         append(i < mesh.normals.size() ? mesh.normals[i] : glm::vec3(0.0f));
         if (!colors.empty())
             append(colors[i]);

@@ -13,8 +13,9 @@ namespace relumine::mesh {
 /// Writes the mesh with the light of its vertices: the colours in which viewers show it, radiance
 /// above 1 as 1, and beside them the linear radiance itself. The extension tells the format: .ply
 /// (binary little-endian; red, green and blue are bytes of sRGB; floats radiance_red, _green and
-/// _blue) or .glb (an unlit material, COLOR_0 and _RADIANCE are linear floats). The file appears
-/// whole or not at all.
+/// _blue) or .glb (an unlit material, COLOR_0 and _RADIANCE are linear floats). Vertices are at
+/// their place in the file that was read: .ply has doubles for a mesh with an offset, .glb a node
+/// that moves it. The file appears whole or not at all.
 ///
 /// Shape:   `radiance` is [num_vertices].
 /// Throws:  std::runtime_error naming the path.

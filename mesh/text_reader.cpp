@@ -103,10 +103,12 @@ std::int64_t TextReader::integer(std::string_view word) const {
     return value;
 }
 
+glm::dvec3 TextReader::exact_vector(std::size_t first) const {
+    return {number(words_[first]), number(words_[first + 1]), number(words_[first + 2])};
+}
+
 glm::vec3 TextReader::vector(std::size_t first) const {
-    return {static_cast<float>(number(words_[first])),
-            static_cast<float>(number(words_[first + 1])),
-            static_cast<float>(number(words_[first + 2]))};
+    return glm::vec3(exact_vector(first));
 }
 
 void TextReader::fail(std::string_view expected, std::string_view got) const {

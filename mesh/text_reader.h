@@ -46,6 +46,7 @@ public:
     [[nodiscard]] std::int64_t integer(std::string_view word) const;
     /// Returns three numbers of the current line, from words()[first] on. The words must exist.
     [[nodiscard]] glm::vec3 vector(std::size_t first) const;
+    [[nodiscard]] glm::dvec3 exact_vector(std::size_t first) const;
 
     [[noreturn]] void fail(std::string_view expected, std::string_view got) const;
 

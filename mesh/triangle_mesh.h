@@ -29,8 +29,11 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// Axes:    right-handed, +Y up.
 /// Unit:    as in the file.
 struct TriangleMesh {
-    /// [num_vertices].
+    /// [num_vertices], from `offset` on.
     std::vector<glm::vec3> positions;
+    /// What was taken off the file's coordinates before they became floats, which far from the
+    /// origin round shapes away. Files that are written have it again.
+    glm::dvec3 offset{0.0};
     /// [num_triangles], every index < num_vertices.
     std::vector<Triangle> triangles;
     /// [num_vertices] of unit length. Zero for a vertex without a face of positive area.

@@ -6,10 +6,11 @@ namespace relumine::mesh {
 
 namespace {
 
-glm::vec3 turned(const glm::vec3& v, UpAxis axis) {
+template<typename Vector>
+Vector turned(const Vector& v, UpAxis axis) {
     return axis == UpAxis::Y   ? v
-           : axis == UpAxis::Z ? glm::vec3(v.x, v.z, -v.y)
-                               : glm::vec3(-v.y, v.x, v.z);
+           : axis == UpAxis::Z ? Vector(v.x, v.z, -v.y)
+                               : Vector(-v.y, v.x, v.z);
 }
 
 } // namespace
@@ -20,6 +21,7 @@ void turn_up(TriangleMesh& mesh, UpAxis axis) {
     for (std::vector<glm::vec3>* vectors : {&mesh.positions, &mesh.normals})
         for (glm::vec3& v : *vectors)
             v = turned(v, axis);
+    mesh.offset = turned(mesh.offset, axis);
     for (PunctualLight& light : mesh.lights) {
         light.position = turned(light.position, axis);
         light.direction = turned(light.direction, axis);

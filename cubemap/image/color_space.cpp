@@ -85,37 +85,6 @@ float linear(float value, Transfer transfer) {
     }
 }
 
-/// Returns in how many pixels a colour was outside.
-std::size_t multiply(const glm::dmat3& matrix, Transfer transfer, Picture& picture) {
-    const glm::mat3 m(matrix);
-    std::atomic<std::size_t> num_outside = 0;
-    const std::size_t height = picture.height, width = picture.width;
-    files::parallel_for(std::size_t{0}, height, [&](std::size_t row) {
-        std::size_t outside = 0;
-        for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
-            glm::vec3& pixel = picture.pixels[i];
-            if (transfer != Transfer::Linear)
-                for (int channel = 0; channel < 3; ++channel)
-                    pixel[channel] = linear(pixel[channel], transfer);
-            const bool was_light = pixel.x >= 0.0f && pixel.y >= 0.0f && pixel.z >= 0.0f;
-            pixel = m * pixel;
-            if (was_light && (pixel.x < 0.0f || pixel.y < 0.0f || pixel.z < 0.0f)) {
-                pixel = glm::max(pixel, glm::vec3(0.0f));
-                ++outside;
-            }
-        }
-        num_outside += outside;
-    });
-    return num_outside;
-}
-
-std::string remark(const std::string& from, std::size_t num_outside) {
-    return num_outside == 0
-               ? fmt::format("{} converted to Rec. 709", from)
-               : fmt::format("{} converted to Rec. 709, which cannot show the colour of {}", from,
-                             files::counted(num_outside, "pixel"));
-}
-
 } // namespace
 
 glm::dmat3 to_rec709(const Primaries& primaries) {
@@ -165,19 +134,50 @@ std::optional<ColorSpace> space_of_id(std::string_view id) {
     return std::nullopt;
 }
 
-std::string convert_to_rec709(const ColorSpace& space, Picture& picture) {
-    const std::string name = space.name.empty() ? "the header's primaries" : space.name;
-    glm::dmat3 matrix;
+ColorConversion::ColorConversion(const ColorSpace& from)
+    : transfer_(from.transfer), from_(from.name.empty() ? "the header's primaries" : from.name) {
     try {
-        matrix = to_rec709(space.primaries);
-    } catch (const std::invalid_argument&) {
-        return fmt::format("{} span no colours: passed over", name);
+        matrix_ = to_rec709(from.primaries);
+    } catch (const std::invalid_argument&) { // said by the remark
     }
-    return remark(name, multiply(matrix, space.transfer, picture));
 }
 
-std::string convert_from_xyz(Picture& picture) {
-    return remark("CIE XYZ", multiply(rec709_from_xyz(), Transfer::Linear, picture));
+ColorConversion::ColorConversion() : matrix_(rec709_from_xyz()), from_("CIE XYZ") {}
+
+std::size_t ColorConversion::convert(std::span<glm::vec3> pixels) const {
+    std::size_t num_outside = 0;
+    if (!matrix_)
+        return num_outside;
+    for (glm::vec3& pixel : pixels) {
+        if (transfer_ != Transfer::Linear)
+            for (int channel = 0; channel < 3; ++channel)
+                pixel[channel] = linear(pixel[channel], transfer_);
+        const bool was_light = pixel.x >= 0.0f && pixel.y >= 0.0f && pixel.z >= 0.0f;
+        pixel = *matrix_ * pixel;
+        if (was_light && (pixel.x < 0.0f || pixel.y < 0.0f || pixel.z < 0.0f)) {
+            pixel = glm::max(pixel, glm::vec3(0.0f));
+            ++num_outside;
+        }
+    }
+    return num_outside;
+}
+
+std::string ColorConversion::remark(std::size_t num_outside) const {
+    if (!matrix_)
+        return fmt::format("{} span no colours: passed over", from_);
+    return num_outside == 0
+               ? fmt::format("{} converted to Rec. 709", from_)
+               : fmt::format("{} converted to Rec. 709, which cannot show the colour of {}", from_,
+                             files::counted(num_outside, "pixel"));
+}
+
+std::string convert(const ColorConversion& conversion, Picture& picture) {
+    std::atomic<std::size_t> num_outside = 0;
+    files::parallel_for(std::size_t{0}, std::size_t{picture.height}, [&](std::size_t row) {
+        num_outside += conversion.convert(
+            std::span(picture.pixels).subspan(row * picture.width, picture.width));
+    });
+    return conversion.remark(num_outside);
 }
 
 } // namespace relumine::cubemap

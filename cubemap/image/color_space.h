@@ -1,12 +1,15 @@
 // Colour spaces that files of pictures state, and their way to linear Rec. 709.
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "cubemap/image/picture.h"
 
@@ -42,12 +45,28 @@ struct ColorSpace {
 /// Empty for linear Rec. 709, and for names that say nothing of colours or are not known.
 [[nodiscard]] std::optional<ColorSpace> space_of_id(std::string_view id);
 
-/// Turns a picture's colours into linear Rec. 709. What Rec. 709 cannot show, a negative number,
-/// becomes 0 where it was not negative before. Returns a remark: what was done, and to how many
-/// pixels that happened. Primaries that span no colours leave the picture as it is, which the
-/// remark says.
-std::string convert_to_rec709(const ColorSpace& space, Picture& picture);
-/// Does the same for CIE XYZ.
-std::string convert_from_xyz(Picture& picture);
+/// The way of a file's colours to linear Rec. 709. What Rec. 709 cannot show, a negative number,
+/// becomes 0 where it was not negative before.
+class ColorConversion {
+public:
+    /// Primaries that span no colours leave pixels as they are, which the remark says.
+    explicit ColorConversion(const ColorSpace& from);
+    /// From CIE XYZ.
+    ColorConversion();
+
+    /// Returns in how many of the pixels Rec. 709 could not show the colour.
+    std::size_t convert(std::span<glm::vec3> pixels) const;
+    /// Says what was done, and to how many pixels that happened.
+    [[nodiscard]] std::string remark(std::size_t num_outside) const;
+
+private:
+    /// Empty: pixels stay as they are
+    std::optional<glm::mat3> matrix_;
+    Transfer transfer_ = Transfer::Linear;
+    std::string from_;
+};
+
+/// Converts a picture, and returns the remark.
+std::string convert(const ColorConversion& conversion, Picture& picture);
 
 } // namespace relumine::cubemap

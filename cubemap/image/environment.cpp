@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "cubemap/image/environment_checks.h"
 #include "cubemap/image/image_file.h"
 #include "cubemap/image/image_layout.h"
 #include "cubemap/luminance.h"
@@ -40,7 +41,10 @@ std::string proportions(Layout layout) {
     return layout == Layout::LatLong ? "2:1" : "1:1";
 }
 
-/// Decides on layout and sampling, and records the reason.
+} // namespace
+
+namespace detail {
+
 void interpret(const ImageFile& file, const LoadOptions& options, const std::string& path,
                EnvironmentImage& image) {
     const std::string size = fmt::format("{}x{}", image.width, image.height);
@@ -79,29 +83,74 @@ void interpret(const ImageFile& file, const LoadOptions& options, const std::str
                                     files::joined(file.remarks, ", "));
 }
 
+void count_if_bad(const glm::vec3& pixel, std::uint32_t x, std::uint32_t y, BadPixels& bad) {
+    if (pixel.x >= 0.0f && pixel.y >= 0.0f && pixel.z >= 0.0f &&
+        std::max({pixel.x, pixel.y, pixel.z}) <= BadPixels::MostRadiance)
+        return;
+    const auto any = [&](auto test) {
+        return test(pixel.x) || test(pixel.y) || test(pixel.z);
+    };
+    if (bad.count() == 0) {
+        bad.first_x = x;
+        bad.first_y = y;
+    }
+    if (any([](float value) { return std::isnan(value); }))
+        ++bad.num_nan;
+    else if (any([](float value) { return std::abs(value) > BadPixels::MostRadiance; }))
+        ++bad.num_infinite;
+    else
+        ++bad.num_negative;
+}
+
+bool are_fixed(const BadPixels& bad, const LoadOptions& options, const std::string& path) {
+    if (bad.count() == 0)
+        return false;
+    if (options.fix_bad_pixels || (bad.is_harmless() && options.refuse_bad_pixels))
+        return true;
+    if (options.refuse_bad_pixels)
+        throw std::runtime_error(fmt::format(
+            "{}: expected finite radiance >= 0, got {} NaN/Inf and {} negative pixels{}, first at "
+            "({}, {}); use --fix-env",
+            path, bad.num_nan + bad.num_infinite, bad.num_negative,
+            bad.num_negative == 0
+                ? ""
+                : fmt::format(" ({:.2g} % of the light)", 100.0 * bad.negative_share),
+            bad.first_x, bad.first_y));
+    return false;
+}
+
+float least_infinity(const ImageFile& file) {
+    constexpr float MostOfHalves = 65504.0f;
+    return file.is_half ? MostOfHalves : 0.0f;
+}
+
+float largest_finite(const glm::vec3& pixel, float largest) {
+    for (int channel = 0; channel < 3; ++channel)
+        if (pixel[channel] <= BadPixels::MostRadiance)
+            largest = std::max(largest, pixel[channel]);
+    return largest;
+}
+
+glm::vec3 fixed(const glm::vec3& pixel, float infinity) {
+    glm::vec3 result = pixel;
+    for (int channel = 0; channel < 3; ++channel)
+        if (!(result[channel] >= 0.0f))
+            result[channel] = 0.0f; // NaN too
+        else if (result[channel] > BadPixels::MostRadiance)
+            result[channel] = infinity;
+    return result;
+}
+
+} // namespace detail
+
+namespace {
+
 BadPixels find_bad_pixels(const EnvironmentImage& image) {
     BadPixels bad;
-    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-        const glm::vec3& pixel = image.pixels[i];
-        if (pixel.x >= 0.0f && pixel.y >= 0.0f && pixel.z >= 0.0f &&
-            std::max({pixel.x, pixel.y, pixel.z}) <= BadPixels::MostRadiance)
-            continue;
-        const auto any = [&](auto test) {
-            return test(pixel.x) || test(pixel.y) || test(pixel.z);
-        };
-        std::size_t* count = nullptr;
-        if (any([](float value) { return std::isnan(value); }))
-            count = &bad.num_nan;
-        else if (any([](float value) { return std::abs(value) > BadPixels::MostRadiance; }))
-            count = &bad.num_infinite;
-        else
-            count = &bad.num_negative;
-        if (bad.count() == 0) {
-            bad.first_x = static_cast<std::uint32_t>(i % image.width);
-            bad.first_y = static_cast<std::uint32_t>(i / image.width);
-        }
-        ++*count;
-    }
+    std::size_t index = 0;
+    for (std::uint32_t y = 0; y < image.height; ++y)
+        for (std::uint32_t x = 0; x < image.width; ++x)
+            detail::count_if_bad(image.pixels[index++], x, y, bad);
     return bad;
 }
 
@@ -122,21 +171,10 @@ double negative_share(const EnvironmentImage& image) {
 /// what is known of it.
 void fix_bad_pixels(EnvironmentImage& image, float least_infinity) {
     float largest = least_infinity;
-    for (const glm::vec3& pixel : image.pixels) {
-        for (int channel = 0; channel < 3; ++channel) {
-            if (pixel[channel] <= BadPixels::MostRadiance)
-                largest = std::max(largest, pixel[channel]);
-        }
-    }
-    for (glm::vec3& pixel : image.pixels) {
-        for (int channel = 0; channel < 3; ++channel) {
-            float& value = pixel[channel];
-            if (!(value >= 0.0f))
-                value = 0.0f; // NaN too
-            else if (value > BadPixels::MostRadiance)
-                value = largest;
-        }
-    }
+    for (const glm::vec3& pixel : image.pixels)
+        largest = detail::largest_finite(pixel, largest);
+    for (glm::vec3& pixel : image.pixels)
+        pixel = detail::fixed(pixel, largest);
     image.fixed = true;
     image.infinity_became = largest;
 }
@@ -173,11 +211,10 @@ ImageFile decode_faces(const std::vector<std::filesystem::path>& paths) {
 /// Finds out the layout, and looks at every pixel.
 EnvironmentImage understood(ImageFile file, const LoadOptions& options, const std::string& path) {
     EnvironmentImage image;
-    // A sun that was brighter than halves can say.
-    constexpr float MostOfHalves = 65504.0f;
-    const float least_infinity = file.is_half ? MostOfHalves : 0.0f;
+    const float least_infinity = detail::least_infinity(file);
     static_cast<Picture&>(image) = static_cast<Picture&&>(file);
-    interpret(file, options, path, image);
+    image.num_file_pixels = image.pixels.size();
+    detail::interpret(file, options, path, image);
     if (image.layout == Layout::LatLong) // of others some pixels show no direction
         image.num_transparent = file.num_transparent;
     image.bad_pixels = find_bad_pixels(image);
@@ -186,17 +223,8 @@ EnvironmentImage understood(ImageFile file, const LoadOptions& options, const st
         return image;
     if (bad.num_negative > 0)
         bad.negative_share = negative_share(image);
-    if (options.fix_bad_pixels || (bad.is_harmless() && options.refuse_bad_pixels))
+    if (detail::are_fixed(bad, options, path))
         fix_bad_pixels(image, least_infinity);
-    else if (options.refuse_bad_pixels)
-        throw std::runtime_error(fmt::format(
-            "{}: expected finite radiance >= 0, got {} NaN/Inf and {} negative pixels{}, first at "
-            "({}, {}); use --fix-env",
-            path, bad.num_nan + bad.num_infinite, bad.num_negative,
-            bad.num_negative == 0
-                ? ""
-                : fmt::format(" ({:.2g} % of the light)", 100.0 * bad.negative_share),
-            bad.first_x, bad.first_y));
     return image;
 }
 

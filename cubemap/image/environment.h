@@ -95,8 +95,10 @@ struct EnvironmentImage : Picture {
     /// One sentence on why this layout and sampling were chosen: "2:1 image without envmap
     /// attribute".
     std::string assumptions;
-    /// Bad pixels as they were in the file.
+    /// Bad pixels as they were in the file, with their places there.
     BadPixels bad_pixels;
+    /// Pixels of the file. More than the picture's where they were averaged as they were read.
+    std::size_t num_file_pixels = 0;
     /// Pixels of alpha 0 in the file: no light comes from them.
     std::size_t num_transparent = 0;
     /// True if bad pixels were replaced: all of them, or the few negative ones that every file may

@@ -3,6 +3,8 @@
 #include <atomic>
 #include <cctype>
 #include <cstring>
+#include <functional>
+#include <memory>
 #include <set>
 #include <stdexcept>
 
@@ -119,15 +121,28 @@ struct Window {
     std::uint32_t width = 0, height = 0;
 };
 
+/// Bytes of a file, in memory or on a disk. Each stream has its own place in them.
+struct Source {
+    std::function<std::unique_ptr<Imf::IStream>()> open;
+    std::uint64_t num_bytes;
+};
+
+Source source_of(std::span<const std::byte> bytes) {
+    return {[bytes] { return std::make_unique<MemoryInput>(bytes); }, bytes.size()};
+}
+Source source_of(const std::filesystem::path& path) {
+    return {[path] { return std::make_unique<Imf::StdIFStream>(path.c_str()); }, files::size(path)};
+}
+
 class ExrDecoder {
 public:
-    ExrDecoder(std::span<const std::byte> bytes, const std::string& name)
-        : bytes_(bytes), name_(name) {}
+    ExrDecoder(Source source, std::string name)
+        : source_(std::move(source)), name_(std::move(name)) {}
 
     ImageFile decode() {
-        MemoryInput stream(bytes_);
-        check_exr_header(stream, bytes_.size());
-        Imf::MultiPartInputFile file(stream, 0);
+        const auto stream = source_.open();
+        check_exr_header(*stream, source_.num_bytes);
+        Imf::MultiPartInputFile file(*stream, 0);
         choose_part(file);
         const Imf::Header& header = file.header(part_);
         window_ = window(header.dataWindow());
@@ -142,17 +157,71 @@ public:
             read_luminance_chroma(image);
         else
             read_bands(header, image);
-        const Imf::Channel* first = header.channels().findChannel(channels_.names[0]);
-        image.is_half = first != nullptr && first->type == Imf::HALF;
         describe(header, file.parts(), image);
+        if (const auto colors = colors_of(header))
+            image.remarks.push_back(convert(*colors, image));
+        show_display_window(header, image);
         return image;
     }
 
+    /// Returns what decode() would give without pixels. Empty where rows cannot be read alone.
+    std::optional<ImageFile> begin_rows(std::optional<ColorConversion>& colors) {
+        const auto stream = source_.open();
+        check_exr_header(*stream, source_.num_bytes);
+        Imf::MultiPartInputFile file(*stream, 0);
+        choose_part(file);
+        const Imf::Header& header = file.header(part_);
+        window_ = window(header.dataWindow());
+        check_size(header);
+        if (channels_.kind == Channels::Kind::LuminanceChroma || shows_display_window(header) ||
+            (header.hasTileDescription() && header.tileDescription().ySize > BandHeight))
+            return std::nullopt;
+        ImageFile head;
+        head.width = window_.width;
+        head.height = window_.height;
+        describe(header, file.parts(), head);
+        colors = colors_of(header);
+        return head;
+    }
+
+    /// Decodes rows of the data window, with colours as the file has them. Returns how many pixels
+    /// have an alpha of 0.
+    std::size_t read_rows(std::uint32_t first, std::span<glm::vec3> pixels) const {
+        const auto height = static_cast<std::uint32_t>(pixels.size() / window_.width);
+        const auto stream = source_.open();
+        Imf::MultiPartInputFile file(*stream, 0);
+        Imf::InputPart part(file, part_);
+        const int top = window_.y + static_cast<int>(first);
+        // The data window's coordinates address the frame buffer, so its base lies before the
+        // pixels, perhaps before all memory. OpenEXR works out where.
+        const auto slice = [&](void* data, std::size_t size) {
+            return Imf::Slice::Make(Imf::FLOAT, data, {window_.x, top}, window_.width, height, size,
+                                    size * window_.width);
+        };
+        Imf::FrameBuffer buffer;
+        const std::size_t num_channels = channels_.kind == Channels::Kind::Luminance ? 1 : 3;
+        for (std::size_t i = 0; i < num_channels; ++i)
+            buffer.insert(channels_.names[i],
+                          slice(reinterpret_cast<float*>(pixels.data()) + i, sizeof(glm::vec3)));
+        const std::string alpha_name = channels_.layer + (channels_.names[0] == "r" ? "a" : "A");
+        std::vector<float> alpha;
+        if (part.header().channels().findChannel(alpha_name.c_str()) != nullptr) {
+            alpha.resize(pixels.size());
+            buffer.insert(alpha_name, slice(alpha.data(), sizeof(float)));
+        }
+        part.setFrameBuffer(buffer);
+        part.readPixels(top, top + static_cast<int>(height) - 1);
+        if (channels_.kind == Channels::Kind::Luminance)
+            for (glm::vec3& pixel : pixels)
+                pixel = glm::vec3(pixel.x);
+        return static_cast<std::size_t>(std::count(alpha.begin(), alpha.end(), 0.0f));
+    }
+
     /// Returns the size that decode() would give. Reads the header only.
-    ImageSize size(const std::filesystem::path& path) {
-        Imf::StdIFStream stream(path.c_str());
-        check_exr_header(stream, files::size(path));
-        Imf::MultiPartInputFile file(stream, 0);
+    ImageSize size() {
+        const auto stream = source_.open();
+        check_exr_header(*stream, source_.num_bytes);
+        Imf::MultiPartInputFile file(*stream, 0);
         choose_part(file);
         const Imf::Header& header = file.header(part_);
         const Window inner = window(header.dataWindow());
@@ -212,8 +281,9 @@ private:
                             header.compression() == Imf::DWAB_COMPRESSION;
         const std::uint64_t largest_ratio = is_dwa ? 50000 : 4000;
         constexpr std::uint64_t AlwaysAllowed = std::uint64_t{64} << 20;
-        if (num_pixels * 12 > std::max(AlwaysAllowed, bytes_.size() * largest_ratio))
-            fail(fmt::format("data for {} pixels", size), fmt::format("{} bytes", bytes_.size()));
+        if (num_pixels * 12 > std::max(AlwaysAllowed, source_.num_bytes * largest_ratio))
+            fail(fmt::format("data for {} pixels", size),
+                 fmt::format("{} bytes", source_.num_bytes));
         if (header.hasTileDescription()) {
             const Imf::TileDescription& tiles = header.tileDescription();
             if (std::uint64_t{tiles.xSize} * tiles.ySize >
@@ -223,58 +293,33 @@ private:
         }
     }
 
+    /// A multiple of the rows per block of every compression (1, 16, 32 or 256).
+    static constexpr std::uint32_t BandHeight = 256;
+
     /// Reads bands of rows in parallel, each through its own reader of the same bytes. OpenEXR's
     /// own threads would have to be switched on for the whole program.
     void read_bands(const Imf::Header& header, ImageFile& image) const {
-        // A multiple of the rows per block of every compression (1, 16, 32 or 256).
-        const std::uint32_t band_height =
-            header.hasTileDescription() ? std::max(256U, header.tileDescription().ySize) : 256U;
+        const std::uint32_t band_height = header.hasTileDescription()
+                                              ? std::max(BandHeight, header.tileDescription().ySize)
+                                              : BandHeight;
         const std::uint32_t num_bands = (window_.height + band_height - 1) / band_height;
-        const std::string alpha_name = channels_.layer + (channels_.names[0] == "r" ? "a" : "A");
-        const bool has_alpha = header.channels().findChannel(alpha_name.c_str()) != nullptr;
         std::atomic<std::size_t> num_transparent = 0;
         files::parallel_for(0U, num_bands, [&](std::uint32_t band) {
-            MemoryInput stream(bytes_);
-            Imf::MultiPartInputFile file(stream, 0);
-            Imf::InputPart part(file, part_);
-            // The data window's coordinates address the frame buffer, so its base lies before the
-            // pixels, perhaps before all memory. OpenEXR works out where.
-            Imf::FrameBuffer buffer;
-            const std::size_t num_channels = channels_.kind == Channels::Kind::Luminance ? 1 : 3;
-            for (std::size_t i = 0; i < num_channels; ++i)
-                buffer.insert(
-                    channels_.names[i],
-                    Imf::Slice::Make(Imf::FLOAT, reinterpret_cast<float*>(image.pixels.data()) + i,
-                                     {window_.x, window_.y}, window_.width, window_.height,
-                                     sizeof(glm::vec3), sizeof(glm::vec3) * window_.width));
             const std::uint32_t first = band * band_height;
-            const std::uint32_t last = std::min(first + band_height, window_.height) - 1;
-            const int top = window_.y + static_cast<int>(first);
-            std::vector<float> alpha;
-            if (has_alpha) {
-                alpha.resize(std::size_t{window_.width} * (last - first + 1));
-                buffer.insert(alpha_name,
-                              Imf::Slice::Make(Imf::FLOAT, alpha.data(), {window_.x, top},
-                                               window_.width, last - first + 1, sizeof(float),
-                                               sizeof(float) * window_.width));
-            }
-            part.setFrameBuffer(buffer);
-            part.readPixels(top, window_.y + static_cast<int>(last));
+            const std::uint32_t last = std::min(first + band_height, window_.height);
             num_transparent +=
-                static_cast<std::size_t>(std::count(alpha.begin(), alpha.end(), 0.0f));
+                read_rows(first, std::span(image.pixels)
+                                     .subspan(std::size_t{first} * window_.width,
+                                              std::size_t{last - first} * window_.width));
         });
         image.num_transparent = num_transparent;
-        if (channels_.kind == Channels::Kind::Luminance) {
-            for (glm::vec3& pixel : image.pixels)
-                pixel = glm::vec3(pixel.x);
-        }
     }
 
     void read_luminance_chroma(ImageFile& image) const {
         if (part_ != 0)
             fail("luminance and chroma in the first part", fmt::format("part {}", part_));
-        MemoryInput stream(bytes_);
-        Imf::RgbaInputFile file(stream, 0);
+        const auto stream = source_.open();
+        Imf::RgbaInputFile file(*stream, 0);
         std::vector<Imf::Rgba> row(image.width);
         for (std::uint32_t y = 0; y < image.height; ++y) {
             const int line = window_.y + static_cast<int>(y);
@@ -287,6 +332,8 @@ private:
     }
 
     void describe(const Imf::Header& header, int num_parts, ImageFile& image) const {
+        const Imf::Channel* first = header.channels().findChannel(channels_.names[0]);
+        image.is_half = first != nullptr && first->type == Imf::HALF;
         if (Imf::hasEnvmap(header)) {
             if (Imf::envmap(header) == Imf::ENVMAP_LATLONG)
                 image.envmap = Layout::LatLong;
@@ -302,19 +349,15 @@ private:
             image.remarks.emplace_back("luminance only");
         if (channels_.kind == Channels::Kind::LuminanceChroma)
             image.remarks.emplace_back("luminance and chroma");
-        convert_colors(header, image);
-        show_display_window(header, image);
     }
 
     /// What the header says of colours holds: its chromaticities, and the `colorInteropID` that
     /// Blender writes since version 5.
-    void convert_colors(const Imf::Header& header, ImageFile& image) const {
-        if (channels_.kind == Channels::Kind::Xyz) {
-            image.remarks.push_back(convert_from_xyz(image));
-            return;
-        }
+    [[nodiscard]] std::optional<ColorConversion> colors_of(const Imf::Header& header) const {
+        if (channels_.kind == Channels::Kind::Xyz)
+            return ColorConversion();
         if (channels_.kind == Channels::Kind::Luminance)
-            return;
+            return std::nullopt;
         const auto* id = header.findTypedAttribute<Imf::StringAttribute>("colorInteropID");
         std::optional<ColorSpace> space = id != nullptr ? space_of_id(id->value()) : std::nullopt;
         if (Imf::hasChromaticities(header)) {
@@ -329,8 +372,7 @@ private:
             else if (stated)
                 space = stated;
         }
-        if (space)
-            image.remarks.push_back(convert_to_rec709(*space, image));
+        return space ? std::optional<ColorConversion>(*space) : std::nullopt;
     }
 
     /// Whether the picture is the display window, an environment's, and not the data window: what
@@ -389,8 +431,8 @@ private:
             image.remarks.emplace_back("black outside the data window");
     }
 
-    std::span<const std::byte> bytes_;
-    const std::string& name_;
+    Source source_;
+    std::string name_;
     int part_ = 0;
     Channels channels_;
     Window window_;
@@ -426,12 +468,49 @@ auto with_own_messages(const std::string& name, const Read& read) {
 } // namespace
 
 ImageFile decode_exr(std::span<const std::byte> bytes, const std::string& name) {
-    return with_own_messages(name, [&] { return ExrDecoder(bytes, name).decode(); });
+    return with_own_messages(name, [&] { return ExrDecoder(source_of(bytes), name).decode(); });
 }
 
 ImageSize exr_size(const std::filesystem::path& path) {
     const std::string name = path.string();
-    return with_own_messages(name, [&] { return ExrDecoder({}, name).size(path); });
+    return with_own_messages(name, [&] { return ExrDecoder(source_of(path), name).size(); });
+}
+
+namespace {
+
+class ExrRows : public ImageRows {
+public:
+    explicit ExrRows(const std::filesystem::path& path)
+        : name_(path.string()), decoder_(source_of(path), name_) {}
+
+    bool begin() {
+        return with_own_messages(name_, [&] {
+            std::optional<ImageFile> head = decoder_.begin_rows(colors_);
+            if (head)
+                head_ = std::move(*head);
+            return head.has_value();
+        });
+    }
+
+    Counts read(std::uint32_t first, std::span<glm::vec3> pixels) const override {
+        return with_own_messages(name_, [&] {
+            Counts counts{.num_transparent = decoder_.read_rows(first, pixels)};
+            if (colors_)
+                counts.num_outside = colors_->convert(pixels);
+            return counts;
+        });
+    }
+
+private:
+    std::string name_;
+    ExrDecoder decoder_;
+};
+
+} // namespace
+
+std::unique_ptr<ImageRows> exr_rows(const std::filesystem::path& path) {
+    auto rows = std::make_unique<ExrRows>(path);
+    return rows->begin() ? std::move(rows) : nullptr;
 }
 
 } // namespace relumine::cubemap

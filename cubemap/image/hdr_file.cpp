@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -16,6 +17,7 @@
 #include "cubemap/image/color_space.h"
 #include "cubemap/image/image_file.h"
 #include "files/large_vector.h"
+#include "files/output_file.h"
 #include "files/printable.h"
 
 namespace relumine::cubemap {
@@ -28,6 +30,18 @@ using Rgbe = std::array<std::uint8_t, 4>;
 bool can_be_run_length_encoded(std::uint32_t width) {
     return width >= 8 && width <= 0x7fff;
 }
+
+/// What the mantissas of each exponent are multiplied by: std::ldexp(1.0, exponent - 136). A
+/// function call for each of 134 million pixels takes seconds.
+constexpr auto PowersOfTwo = [] {
+    std::array<double, 256> powers{};
+    double power = 0x1p-136;
+    for (double& each : powers) {
+        each = power;
+        power *= 2.0;
+    }
+    return powers;
+}();
 
 class HdrDecoder {
 public:
@@ -43,28 +57,82 @@ public:
     }
 
     ImageFile decode() {
+        ImageFile image = begin();
+        image.pixels = files::large_vector<glm::vec3>(static_cast<std::size_t>(width_) * height_);
+        std::vector<Rgbe> scanline(width_);
+        for (std::uint32_t row = 0; row < height_; ++row) {
+            read_scanline(scanline, row);
+            show(scanline, std::span(image.pixels).subspan(place_of(row) * width_, width_));
+        }
+        if (space_)
+            image.remarks.push_back(convert(ColorConversion(*space_), image));
+        return image;
+    }
+
+    /// Reads what stands before the pixels. Returns the picture without them.
+    ImageFile begin() {
         read_header();
         read_size();
         ImageFile image;
         image.width = width_;
         image.height = height_;
-        image.pixels = files::large_vector<glm::vec3>(static_cast<std::size_t>(width_) * height_);
-        std::vector<Rgbe> scanline(width_);
-        for (std::uint32_t row = 0; row < height_; ++row) {
-            read_scanline(scanline, row);
-            const std::size_t y = bottom_up_ ? height_ - 1 - row : row;
-            for (std::uint32_t column = 0; column < width_; ++column) {
-                const std::size_t x = right_to_left_ ? width_ - 1 - column : column;
-                image.pixels[y * width_ + x] = radiance(scanline[column]);
-            }
-        }
         if (exposure_ != glm::dvec3(1.0))
             image.remarks.emplace_back("exposure of the header divided out");
         if (has_zero_exposure_)
             image.remarks.emplace_back("EXPOSURE=0 of the header counts as 1");
-        if (space_)
-            image.remarks.push_back(convert_to_rec709(*space_, image));
         return image;
+    }
+
+    [[nodiscard]] std::optional<ColorConversion> colors() const {
+        return space_ ? std::optional<ColorConversion>(*space_) : std::nullopt;
+    }
+
+    /// Reads on from other bytes of the file, which begin with a row.
+    void go_on(std::span<const std::byte> bytes) {
+        bytes_ = {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+        position_ = 0;
+    }
+    [[nodiscard]] std::size_t position() const { return position_; }
+    /// Returns the bytes of a row at most: each value with a code of its own.
+    [[nodiscard]] std::size_t most_row_bytes() const { return 8 * std::size_t{width_} + 4; }
+
+    /// Returns where row `row` of the file stands in the picture.
+    [[nodiscard]] std::size_t place_of(std::uint32_t row) const {
+        return bottom_up_ ? height_ - 1 - row : row;
+    }
+
+    void read_scanline(std::vector<Rgbe>& scanline, std::uint32_t row) {
+        const Rgbe start = next_pixel(row);
+        if (!can_be_run_length_encoded(width_) || start[0] != 2 || start[1] != 2 ||
+            (start[2] & 0x80) != 0) {
+            read_old_scanline(scanline, start, row);
+            return;
+        }
+        if ((start[2] << 8 | start[3]) != static_cast<int>(width_))
+            fail(fmt::format("{} pixels in row {}", width_, row),
+                 std::to_string(start[2] << 8 | start[3]));
+        for (std::size_t channel = 0; channel < 4; ++channel) {
+            for (std::uint32_t x = 0; x < width_;) {
+                const std::uint32_t code = next(row);
+                const std::uint32_t count = code > 128 ? code - 128 : code;
+                if (count == 0 || count > width_ - x)
+                    fail(fmt::format("runs that fill row {}", row), "a damaged one");
+                if (code > 128) {
+                    const std::uint8_t value = next(row);
+                    for (std::uint32_t i = 0; i < count; ++i)
+                        scanline[x++][channel] = value;
+                } else {
+                    for (std::uint32_t i = 0; i < count; ++i)
+                        scanline[x++][channel] = next(row);
+                }
+            }
+        }
+    }
+
+    /// Puts a row into the picture.
+    void show(const std::vector<Rgbe>& scanline, std::span<glm::vec3> pixels) const {
+        for (std::uint32_t column = 0; column < width_; ++column)
+            pixels[right_to_left_ ? width_ - 1 - column : column] = radiance(scanline[column]);
     }
 
 private:
@@ -189,34 +257,6 @@ private:
 
     Rgbe next_pixel(std::uint32_t row) { return {next(row), next(row), next(row), next(row)}; }
 
-    void read_scanline(std::vector<Rgbe>& scanline, std::uint32_t row) {
-        const Rgbe start = next_pixel(row);
-        if (!can_be_run_length_encoded(width_) || start[0] != 2 || start[1] != 2 ||
-            (start[2] & 0x80) != 0) {
-            read_old_scanline(scanline, start, row);
-            return;
-        }
-        if ((start[2] << 8 | start[3]) != static_cast<int>(width_))
-            fail(fmt::format("{} pixels in row {}", width_, row),
-                 std::to_string(start[2] << 8 | start[3]));
-        for (std::size_t channel = 0; channel < 4; ++channel) {
-            for (std::uint32_t x = 0; x < width_;) {
-                const std::uint32_t code = next(row);
-                const std::uint32_t count = code > 128 ? code - 128 : code;
-                if (count == 0 || count > width_ - x)
-                    fail(fmt::format("runs that fill row {}", row), "a damaged one");
-                if (code > 128) {
-                    const std::uint8_t value = next(row);
-                    for (std::uint32_t i = 0; i < count; ++i)
-                        scanline[x++][channel] = value;
-                } else {
-                    for (std::uint32_t i = 0; i < count; ++i)
-                        scanline[x++][channel] = next(row);
-                }
-            }
-        }
-    }
-
     /// Reads flat pixels. (1, 1, 1, n) repeats the pixel before n times; right after another
     /// repetition it repeats n * 256 times.
     void read_old_scanline(std::vector<Rgbe>& scanline, Rgbe pixel, std::uint32_t row) {
@@ -241,8 +281,8 @@ private:
     [[nodiscard]] glm::vec3 radiance(const Rgbe& pixel) const {
         if (pixel[3] == 0)
             return glm::vec3(0.0f);
-        return glm::vec3(glm::dvec3(pixel[0], pixel[1], pixel[2]) *
-                         std::ldexp(1.0, pixel[3] - 136) / exposure_);
+        return glm::vec3(glm::dvec3(pixel[0], pixel[1], pixel[2]) * PowersOfTwo[pixel[3]] /
+                         exposure_);
     }
 
     std::span<const std::uint8_t> bytes_;
@@ -324,6 +364,75 @@ ImageFile decode_hdr(std::span<const std::byte> bytes, const std::string& name) 
 ImageSize hdr_size(std::span<const std::byte> head, std::size_t num_bytes,
                    const std::string& name) {
     return HdrDecoder(head, num_bytes, name).size();
+}
+
+namespace {
+
+class HdrRows : public ImageRows {
+public:
+    explicit HdrRows(const std::filesystem::path& path)
+        : path_(path), name_(path.string()), num_bytes_(files::size(path)) {
+        const std::size_t num_head_bytes = std::min(num_bytes_, MaxHeadBytes);
+        std::vector<std::byte> bytes = files::read(path_, 0, num_head_bytes);
+        HdrDecoder decoder(bytes, num_bytes_, name_);
+        head_ = decoder.begin();
+        colors_ = decoder.colors();
+        std::uint64_t at = decoder.position();
+        // Rows begin where those before them end. All are looked at once, some megabytes at a time.
+        constexpr std::size_t PieceBytes = std::size_t{16} << 20;
+        std::vector<Rgbe> scanline(head_.width);
+        std::uint64_t begin = 0;
+        bytes.clear();
+        for (std::uint32_t row = 0; row < head_.height; ++row) {
+            offsets_.push_back(at);
+            if (at + decoder.most_row_bytes() > begin + bytes.size() &&
+                begin + bytes.size() < num_bytes_) {
+                begin = at;
+                bytes = files::read(
+                    path_, begin,
+                    std::min<std::uint64_t>(std::max(PieceBytes, decoder.most_row_bytes()),
+                                            num_bytes_ - begin));
+            }
+            decoder.go_on(std::span(bytes).subspan(at - begin));
+            decoder.read_scanline(scanline, row);
+            at += decoder.position();
+        }
+        offsets_.push_back(at);
+        decoder_.emplace(std::move(decoder));
+    }
+
+    Counts read(std::uint32_t first, std::span<glm::vec3> pixels) const override {
+        const std::size_t width = head_.width;
+        const auto height = static_cast<std::uint32_t>(pixels.size() / width);
+        HdrDecoder decoder = *decoder_;
+        // The rows of the file's order, from the first in the picture or from the last.
+        const auto begin = static_cast<std::uint32_t>(
+            std::min(decoder.place_of(first), decoder.place_of(first + height - 1)));
+        const std::vector<std::byte> bytes =
+            files::read(path_, offsets_[begin], offsets_[begin + height] - offsets_[begin]);
+        decoder.go_on(bytes);
+        std::vector<Rgbe> scanline(width);
+        for (std::uint32_t row = begin; row < begin + height; ++row) {
+            decoder.read_scanline(scanline, row);
+            decoder.show(scanline, pixels.subspan((decoder.place_of(row) - first) * width, width));
+        }
+        return {.num_outside = colors_ ? colors_->convert(pixels) : 0};
+    }
+
+private:
+    std::filesystem::path path_;
+    std::string name_;
+    std::size_t num_bytes_;
+    /// Of the file's rows, and where the last one ends
+    std::vector<std::uint64_t> offsets_;
+    /// After the header
+    std::optional<HdrDecoder> decoder_;
+};
+
+} // namespace
+
+std::unique_ptr<ImageRows> hdr_rows(const std::filesystem::path& path) {
+    return std::make_unique<HdrRows>(path);
 }
 
 std::vector<std::byte> encode_hdr(const EnvironmentImage& image) {

@@ -31,6 +31,7 @@ constexpr ImageFormat Formats[] = {
      .marks = is_exr,
      .decode = decode_exr,
      .size = size_of_exr,
+     .rows = exr_rows,
      .write = write_plain_exr,
      .has_envmap = true},
     {.extension = ".hdr",
@@ -38,6 +39,7 @@ constexpr ImageFormat Formats[] = {
      .marks = is_hdr,
      .decode = decode_hdr,
      .size = size_of_hdr,
+     .rows = hdr_rows,
      .write = write_hdr},
 };
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "cubemap/image/color_space.h"
 #include "cubemap/image/environment.h"
 #include "files/output_file.h"
 
@@ -28,6 +30,42 @@ struct ImageFile : Picture {
     /// Pixels of alpha 0.
     std::size_t num_transparent = 0;
 };
+
+/// A file whose pixels are not held: bands of rows are read when they are asked for.
+///
+/// Threads: read() may be called from several at once.
+class ImageRows {
+public:
+    virtual ~ImageRows() = default;
+
+    struct Counts {
+        /// Pixels of alpha 0
+        std::size_t num_transparent = 0;
+        /// Pixels whose colour Rec. 709 cannot show
+        std::size_t num_outside = 0;
+    };
+    /// Decodes the rows [first, first + pixels.size() / width) as the format's decode() does.
+    ///
+    /// Throws:  std::runtime_error "name: expected X, got Y".
+    virtual Counts read(std::uint32_t first, std::span<glm::vec3> pixels) const = 0;
+
+    /// What decode() returns, without pixels and transparent ones, and without the remark on
+    /// colours.
+    [[nodiscard]] const ImageFile& head() const { return head_; }
+    /// Null: colours stay as they are.
+    [[nodiscard]] const ColorConversion* colors() const { return colors_ ? &*colors_ : nullptr; }
+
+protected:
+    ImageFile head_;
+    std::optional<ColorConversion> colors_;
+};
+
+/// Returns the rows of a file; null for one that is only read whole: with luminance and chroma, a
+/// display window of its own, or tiles of many rows.
+///
+/// Throws:  std::runtime_error "path: expected X, got Y".
+[[nodiscard]] std::unique_ptr<ImageRows> exr_rows(const std::filesystem::path& path);
+[[nodiscard]] std::unique_ptr<ImageRows> hdr_rows(const std::filesystem::path& path);
 
 /// More pixels than any environment has: a cube of 6 x 9459^2. A larger file is refused as damaged
 /// before memory is allocated.
@@ -90,6 +128,7 @@ struct ImageFormat {
     bool (*marks)(std::span<const std::byte> bytes);
     ImageFile (*decode)(std::span<const std::byte> bytes, const std::string& name);
     ImageSize (*size)(const FileHead& head);
+    std::unique_ptr<ImageRows> (*rows)(const std::filesystem::path& path);
     void (*write)(files::OutputFile& file, const EnvironmentImage& image);
     /// Files state by an attribute that samples lie on the borders
     bool has_envmap = false;

@@ -138,17 +138,21 @@ std::size_t append_indices(Arrays& arrays, std::span<const Triangle> triangles) 
                          3 * triangles.size());
 }
 
-/// A file with one mesh. `extensions` are the names of those that its materials use.
-std::string file_of(const Arrays& arrays, files::Json materials, files::Json primitives,
-                    const std::set<std::string>& extensions) {
+/// A file with one mesh, moved by its offset. `extensions` are the names of those that its
+/// materials use.
+std::string file_of(const Arrays& arrays, const TriangleMesh& mesh, files::Json materials,
+                    files::Json primitives, const std::set<std::string>& extensions) {
     using files::Json;
+    Json node = {{"mesh", 0}};
+    if (const glm::dvec3& offset = mesh.offset; offset != glm::dvec3(0.0))
+        node.set("translation", Json::Array{offset.x, offset.y, offset.z});
     Json document = {{"asset", {{"generator", "Relumine"}, {"version", "2.0"}}},
                      {"buffers", Json::Array{{{"byteLength", arrays.bytes.size()}}}},
                      {"bufferViews", arrays.views},
                      {"accessors", arrays.accessors},
                      {"materials", std::move(materials)},
                      {"meshes", Json::Array{{{"primitives", std::move(primitives)}}}},
-                     {"nodes", Json::Array{{{"mesh", 0}}}},
+                     {"nodes", Json::Array{std::move(node)}},
                      {"scenes", Json::Array{{{"nodes", Json::Array{0}}}}},
                      {"scene", 0}};
     if (!extensions.empty())
@@ -229,7 +233,7 @@ std::string lit_glb(const TriangleMesh& mesh, std::span<const glm::vec3> radianc
     attributes.set("_RADIANCE", arrays.append(radiance));
     using files::Json;
     const std::size_t indices = append_indices(arrays, mesh.triangles);
-    return file_of(arrays,
+    return file_of(arrays, mesh,
                    Json::Array{{{"name", "lit"},
                                 {"doubleSided", true},
                                 {"extensions", {{"KHR_materials_unlit", Json::Object{}}}}}},
@@ -256,7 +260,7 @@ std::string glb(const TriangleMesh& mesh) {
         if (!by_material[i].empty())
             primitives.push_back(primitive(attributes, append_indices(arrays, by_material[i]), i));
     }
-    return file_of(arrays, std::move(descriptions), std::move(primitives), extensions);
+    return file_of(arrays, mesh, std::move(descriptions), std::move(primitives), extensions);
 }
 
 } // namespace relumine::mesh

@@ -217,7 +217,7 @@ std::optional<FileCamera> camera_at(const Json& camera, const glm::dmat4& transf
                              .roll_degrees = glm::length(up) > 0.0f
                                                  ? roll_of(glm::vec3(ahead / length), up)
                                                  : 0.0f},
-                      half_height};
+                      eye, ahead / length, half_height};
 }
 
 } // namespace relumine::mesh::gltf

@@ -44,6 +44,8 @@ using NodePoses = std::map<std::uint64_t, NodePose>;
 struct FileCamera {
     /// Where the node is, with a target one unit ahead.
     Camera camera;
+    /// Eye and view, of unit length, without rounding.
+    glm::dvec3 eye{0.0}, ahead{0.0};
     /// Half the height of an orthographic camera's picture; 0: it is a perspective camera.
     double half_height = 0.0;
 };

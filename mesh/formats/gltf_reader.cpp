@@ -221,7 +221,7 @@ void GltfReader::append(const Primitive& primitive, const FrameOf& frame_of, std
     std::size_t num_mirrored = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const gltf::Frame& frame = frame_of(i);
-        soup_.positions.emplace_back(frame.matrix * glm::dvec4(primitive.positions[i], 1.0));
+        soup_.add_position(glm::dvec3(frame.matrix * glm::dvec4(primitive.positions[i], 1.0)));
         soup_.normals.emplace_back(primitive.normals.empty()
                                        ? glm::vec3(0.0f)
                                        : glm::vec3(frame.normal(primitive.normals[i])));
@@ -339,7 +339,10 @@ std::vector<std::uint64_t> GltfReader::place(const std::vector<std::uint64_t>& r
 
 /// Puts together what was read, and says what was not.
 void GltfReader::finish() {
+    centre(soup_);
     if (camera_) {
+        camera_->camera.eye = glm::vec3(camera_->eye - soup_.offset);
+        camera_->camera.target = glm::vec3(camera_->eye - soup_.offset + camera_->ahead);
         soup_.camera = looking_at(soup_.positions, *camera_);
         if (camera_->half_height > 0.0)
             soup_.notes.emplace_back(
@@ -382,8 +385,10 @@ void GltfReader::add_camera(const Json& camera, const glm::dmat4& world) {
 /// One light never stops an asset.
 void GltfReader::add_light(const Json& node, const glm::dmat4& world) {
     try {
-        if (auto light = gltf::light_at(document_, node, world, soup_.warnings))
+        if (auto light = gltf::light_at(document_, node, world, soup_.warnings)) {
             soup_.lights.push_back(std::move(*light));
+            soup_.light_positions.emplace_back(world[3]);
+        }
     } catch (const std::runtime_error& reason) {
         soup_.warnings.push_back(fmt::format("a light is left out: {}", reason.what()));
     }

@@ -519,7 +519,7 @@ void MtlLibrary::finish(Material& material) {
     if (material.sheen != glm::vec3(0.0f))
         material.sheen_roughness = RoughnessOfCloth;
     if (material.specular_texture) {
-        note("map_Ks beside Pr or Pm");
+        note("map_Ks of materials with a roughness");
         material.specular_texture.reset();
     }
 }

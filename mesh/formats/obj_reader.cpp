@@ -16,10 +16,12 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "files/extension.h"
 #include "files/joined.h"
 #include "mesh/formats/corner_vertices.h"
 #include "mesh/formats/mtl_reader.h"
@@ -103,14 +105,14 @@ void ObjReader::read_vertex() {
     const std::size_t num_values = words_.size() - 1;
     if (num_values < 3 || num_values == 5 || num_values > 7)
         reader_.fail("3, 4, 6 or 7 numbers of a vertex", fmt::format("{}", num_values));
-    std::array<float, 7> values{};
+    std::array<double, 7> values{};
     for (std::size_t i = 0; i < num_values; ++i)
-        values[i] = static_cast<float>(reader_.number(words_[i + 1]));
+        values[i] = reader_.number(words_[i + 1]);
     if (num_values >= 6) {
         soup_.colors.resize(soup_.positions.size(), no_color());
-        soup_.colors.emplace_back(values[3], values[4], values[5]);
+        soup_.colors.emplace_back(glm::dvec3(values[3], values[4], values[5]));
     }
-    soup_.positions.emplace_back(values[0], values[1], values[2]);
+    soup_.add_position({values[0], values[1], values[2]});
 }
 
 void ObjReader::read_uv() {
@@ -162,15 +164,19 @@ std::string ObjReader::rest_of_statement() const {
     return files::joined(std::span(words_).subspan(1), " ");
 }
 
-/// Reads one name with blanks, or several names. Both occur.
+/// Reads one name with blanks, or several names, with blanks or without. All occur.
 void ObjReader::read_libraries() {
     const std::string whole = rest_of_statement();
     if (words_.size() == 2 || !find_file(folder_, whole).empty()) {
         library_.read(whole);
         return;
     }
-    for (std::size_t i = 1; i < words_.size(); ++i)
-        library_.read(std::string(words_[i]));
+    std::string name;
+    for (std::size_t i = 1; i < words_.size(); ++i) {
+        name += (name.empty() ? "" : " ") + std::string(words_[i]);
+        if (i + 1 == words_.size() || files::extension_of(words_[i]) == ".mtl")
+            library_.read(std::exchange(name, {}));
+    }
 }
 
 /// Begins an object or a group. The newest o or g names the next faces.

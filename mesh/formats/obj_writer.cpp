@@ -15,7 +15,12 @@ std::string obj(const TriangleMesh& mesh, const std::string& library) {
         text += fmt::format("mtllib {}\n", library);
     for (std::size_t i = 0; i < mesh.num_vertices(); ++i) {
         const glm::vec3& p = mesh.positions[i];
-        text += fmt::format("v {} {} {}", p.x, p.y, p.z);
+        if (mesh.offset == glm::dvec3(0.0)) {
+            text += fmt::format("v {} {} {}", p.x, p.y, p.z);
+        } else {
+            const glm::dvec3 far = mesh.offset + glm::dvec3(p);
+            text += fmt::format("v {} {} {}", far.x, far.y, far.z);
+        }
         if (!mesh.colors.empty()) // other programs have them as sRGB
             for (int k = 0; k < 3; ++k)
                 text += fmt::format(" {}", srgb_of_linear(std::max(mesh.colors[i][k], 0.0f)));

@@ -174,7 +174,7 @@ void OffReader::read_vertex() {
         reader_.fail(fmt::format("{} numbers of a vertex", num_values),
                      fmt::format("{}", num_words));
     std::size_t next = 3;
-    soup_.positions.push_back(reader_.vector(0));
+    soup_.add_position(reader_.exact_vector(0));
     if (layout_.has_normal) {
         soup_.normals.push_back(reader_.vector(next));
         next += 3;

@@ -1,6 +1,7 @@
 #include "mesh/formats/ply_header.h"
 
 #include <array>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -93,7 +94,7 @@ Header read_header(std::string_view text) {
             header.is_ours = true;
         if (words[0] == "comment" && words.size() > 2 && words[1] == "TextureFile" &&
             header.image.empty())
-            header.image = words[2];
+            header.image = files::joined(std::span(words).subspan(2), " ");
         if (words[0] == "comment" || words[0] == "obj_info")
             continue;
         if (words[0] == "format" && words.size() == 3 && words[2] == "1.0")

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -34,7 +35,7 @@ struct Header {
     /// A comment says that save() wrote the file.
     bool is_ours = false;
     /// The first image that a comment names, as MeshLab does.
-    std::string_view image = {};
+    std::string image = {};
     /// Number of lines that the format does not have, which are skipped, and the first one's word.
     std::size_t num_unknown = 0;
     std::string_view unknown = {};

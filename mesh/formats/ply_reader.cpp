@@ -225,7 +225,7 @@ void read_vertices(const Header& header, const Element& element, Values& values,
             else
                 row[slots[p]] = values.next(element.properties[p].type) * scale[slots[p]];
         }
-        soup.positions.emplace_back(value(X), value(Y), value(Z));
+        soup.add_position({row[X], row[Y], row[Z]});
         if (has_normals)
             soup.normals.emplace_back(value(NormalX), value(NormalY), value(NormalZ));
         if (has_colors)

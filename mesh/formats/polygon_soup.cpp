@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "mesh/formats/corner_vertices.h"
@@ -104,6 +106,23 @@ void enlarge(PolygonSoup& soup) {
         size, exponent));
 }
 
+/// Returns the value that half of the others are below.
+double median(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Returns a round number near a coordinate that is far for a mesh of such a size, and 0 for
+/// others.
+double offset_of(double coordinate, double size) {
+    constexpr double Far = 16.0;
+    if (!(std::abs(coordinate) > Far * size))
+        return 0.0;
+    const double step = size > 0.0 ? std::exp2(std::floor(std::log2(size))) : 0.0;
+    return step > 0.0 ? std::round(coordinate / step) * step : coordinate;
+}
+
 /// Makes the normals unit length. One that has no direction is that of no face: zero.
 void normalize_normals(TriangleMesh& mesh) {
     for (glm::vec3& one : mesh.normals) {
@@ -115,8 +134,60 @@ void normalize_normals(TriangleMesh& mesh) {
 
 } // namespace
 
+void PolygonSoup::add_position(const glm::dvec3& position) {
+    const glm::vec3 rounded(position);
+    const glm::vec3 rest(position - glm::dvec3(rounded));
+    if (rest != glm::vec3(0.0f) && is_finite(rounded)) {
+        remainders.resize(positions.size(), glm::vec3(0.0f));
+        remainders.push_back(rest);
+    }
+    positions.push_back(rounded);
+}
+
+void centre(PolygonSoup& soup) {
+    const auto is_one = [](const glm::vec3& position) {
+        return is_finite(position);
+    };
+    if (soup.remainders.empty() ||
+        !std::all_of(soup.positions.begin(), soup.positions.end(), is_one))
+        return;
+    const std::size_t count = soup.positions.size();
+    soup.remainders.resize(count, glm::vec3(0.0f));
+    // A few vertices may lie anywhere.
+    std::vector<double> values(count);
+    glm::dvec3 middle;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (std::size_t i = 0; i < count; ++i)
+            values[i] = double{soup.positions[i][axis]};
+        middle[axis] = median(values);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::dvec3 away = glm::abs(glm::dvec3(soup.positions[i]) - middle);
+        values[i] = std::max({away.x, away.y, away.z});
+    }
+    const auto nearly_all = values.begin() + static_cast<std::ptrdiff_t>(count - 1 - count / 10);
+    std::nth_element(values.begin(), nearly_all, values.end());
+    glm::dvec3 offset;
+    for (int axis = 0; axis < 3; ++axis)
+        offset[axis] = offset_of(middle[axis], *nearly_all);
+    const std::vector<glm::vec3> remainders = std::exchange(soup.remainders, {});
+    if (offset == glm::dvec3(0.0))
+        return;
+    soup.offset = offset;
+    for (std::size_t i = 0; i < count; ++i)
+        soup.positions[i] =
+            glm::vec3(glm::dvec3(soup.positions[i]) - offset + glm::dvec3(remainders[i]));
+    for (std::size_t i = 0; i < soup.light_positions.size(); ++i)
+        soup.lights[i].position = glm::vec3(soup.light_positions[i] - offset);
+    soup.notes.push_back(fmt::format(
+        "coordinates are far from the origin: ({}, {}, {}) is taken off them, and put back into "
+        "meshes that are written; places of options count without it",
+        offset.x, offset.y, offset.z));
+}
+
 TriangleMesh to_mesh(PolygonSoup soup, NormalSource source, std::optional<ColorCurve> curve) {
     check(soup);
+    centre(soup);
     enlarge(soup);
     settle_colors(soup, curve);
     TriangleMesh mesh;
@@ -133,6 +204,7 @@ TriangleMesh to_mesh(PolygonSoup soup, NormalSource source, std::optional<ColorC
             corner = soup.corners[corner];
     mesh.notes = std::move(soup.notes);
     mesh.positions = std::move(soup.positions);
+    mesh.offset = soup.offset;
     mesh.normals = std::move(soup.normals);
     mesh.colors = std::move(soup.colors);
     mesh.uvs = std::move(soup.uvs);

@@ -35,6 +35,10 @@ struct ColorCustom {
 struct PolygonSoup {
     /// [num_vertices]. Values may be infinite or NaN; load() checks them.
     std::vector<glm::vec3> positions;
+    /// What floats rounded off the positions, of the first vertices; the rest have nothing.
+    std::vector<glm::vec3> remainders;
+    /// TriangleMesh::offset, once centre() was called.
+    glm::dvec3 offset{0.0};
     /// Vertex indices of all faces, one face after the other. They may be out of range.
     std::vector<std::uint32_t> corners;
     /// [num_faces], the end of each face in `corners`.
@@ -69,17 +73,26 @@ struct PolygonSoup {
     std::vector<std::string> groups;
     std::vector<Texture> textures;
     std::vector<PunctualLight> lights;
+    /// [lights], or empty: their positions are exact.
+    std::vector<glm::dvec3> light_positions;
     std::optional<Camera> camera = {};
     /// Files that do not exist, what the soup does not hold, and how it was read
     /// (TriangleMesh::missing, warnings, notes).
     std::vector<std::string> missing, warnings, notes;
 
+    /// Appends a vertex of a file that has more digits than floats.
+    void add_position(const glm::dvec3& position);
     /// Closes the face whose corners were appended to `corners` since the last call.
     void end_face() { face_ends.push_back(corners.size()); }
 };
 
-/// Checks the soup, cuts its polygons into triangles, completes the normals and makes the colours
-/// linear, as load() promises. `curve` counts in place of the custom for colours.
+/// Takes an offset off all coordinates, those of lights among them, if most vertices lie nearer to
+/// each other than a sixteenth of their distance from the origin, and floats rounded them. A second
+/// call does nothing.
+void centre(PolygonSoup& soup);
+
+/// Checks the soup, centres it, cuts its polygons into triangles, completes the normals and makes
+/// the colours linear, as load() promises. `curve` counts in place of the custom for colours.
 /// Throws:  std::runtime_error "expected X, got Y".
 [[nodiscard]] TriangleMesh to_mesh(PolygonSoup soup, NormalSource source,
                                    std::optional<ColorCurve> curve = {});

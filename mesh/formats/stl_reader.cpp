@@ -22,10 +22,10 @@ constexpr std::size_t HeaderBytes = 84; // 80 bytes of text and the number of fa
 constexpr std::size_t FacetBytes = 50;  // a normal, three corners and two bytes of attributes
 
 struct PositionHash {
-    std::size_t operator()(const glm::vec3& p) const {
+    std::size_t operator()(const glm::dvec3& p) const {
         std::uint64_t hash = 0;
         for (int i = 0; i < 3; ++i)
-            hash = std::rotl((hash ^ std::bit_cast<std::uint32_t>(p[i])) * 0x9e3779b97f4a7c15u, 29);
+            hash = std::rotl((hash ^ std::bit_cast<std::uint64_t>(p[i])) * 0x9e3779b97f4a7c15u, 29);
         return hash;
     }
 };
@@ -33,12 +33,12 @@ struct PositionHash {
 /// Turns facets into vertices and triangles.
 class Welder {
 public:
-    void add_corner(const glm::vec3& point) {
-        const glm::vec3 key = point + 0.0f; // -0 equals 0 but hashes differently
+    void add_corner(const glm::dvec3& point) {
+        const glm::dvec3 key = point + 0.0; // -0 equals 0 but hashes differently
         const auto [entry, is_new] =
             vertex_at_.try_emplace(key, static_cast<std::uint32_t>(soup_.positions.size()));
         if (is_new)
-            soup_.positions.push_back(key);
+            soup_.add_position(key);
         soup_.corners.push_back(entry->second);
     }
     void end_facet() { soup_.end_face(); }
@@ -46,7 +46,7 @@ public:
 
 private:
     PolygonSoup soup_;
-    std::unordered_map<glm::vec3, std::uint32_t, PositionHash> vertex_at_;
+    std::unordered_map<glm::dvec3, std::uint32_t, PositionHash> vertex_at_;
 };
 
 std::uint32_t little_endian(const std::byte* bytes) {
@@ -85,7 +85,7 @@ public:
 
 private:
     void expect(std::string_view keyword);
-    glm::vec3 read_vector();
+    glm::dvec3 read_vector();
     void read_facet();
 
     TextReader reader_;
@@ -98,10 +98,10 @@ void AsciiReader::expect(std::string_view keyword) {
         reader_.fail(fmt::format("'{}'", keyword), excerpt(word));
 }
 
-glm::vec3 AsciiReader::read_vector() {
-    glm::vec3 vector;
+glm::dvec3 AsciiReader::read_vector() {
+    glm::dvec3 vector;
     for (int i = 0; i < 3; ++i)
-        vector[i] = static_cast<float>(reader_.number(reader_.next_word("a number")));
+        vector[i] = reader_.number(reader_.next_word("a number"));
     return vector;
 }
 

@@ -215,6 +215,7 @@ namespace {
 
 /// Copies what belongs to no vertex and no triangle.
 void copy_lists(const TriangleMesh& from, TriangleMesh& to) {
+    to.offset = from.offset;
     to.materials = from.materials;
     to.groups = from.groups;
     to.textures = from.textures;

@@ -55,6 +55,8 @@ void add_settings(NewSections& sections, const Scene& scene) {
     SceneSettings settings = scene.settings;
     JsonMembers members;
     settings_members(members, settings);
+    if (const glm::dvec3& offset = scene.mesh.offset; offset != glm::dvec3(0.0))
+        members.json.set("offset", files::Json::Array{offset.x, offset.y, offset.z});
     sections[Settings] = bytes_of(members.json.text(2));
 }
 
@@ -63,6 +65,10 @@ void read_settings(const SectionReader& reader, Scene& scene) {
     try {
         JsonMembers members(json);
         settings_members(members, scene.settings);
+        if (const files::Json* offset = json.find("offset"))
+            for (int axis = 0; axis < 3; ++axis)
+                scene.mesh.offset[axis] =
+                    offset->values().at(static_cast<std::size_t>(axis)).number();
     } catch (const std::exception&) {
         reader.fail(Settings, "JSON with the settings");
     }
@@ -88,6 +94,10 @@ void check_settings(const SceneCheck& check, const Scene& scene) {
     check.that(floor <= scene.mesh.num_vertices(),
                fmt::format("a floor among {} vertices", scene.mesh.num_vertices()),
                fmt::format("one of {}", floor));
+    constexpr double FarthestOffset = 1e30;
+    for (int axis = 0; axis < 3; ++axis)
+        check.that(std::abs(scene.mesh.offset[axis]) <= FarthestOffset, "an offset within 1e30",
+                   fmt::format("{}", scene.mesh.offset[axis]));
     for (const std::optional<Camera>& camera : {settings.view, settings.camera})
         if (camera)
             check_camera(check, scene, *camera);

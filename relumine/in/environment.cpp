@@ -11,6 +11,7 @@
 
 #include "cubemap/doctor/upside_down.h"
 #include "cubemap/image/convention.h"
+#include "cubemap/resample/load_averaged.h"
 #include "cubemap/resample/resample.h"
 #include "files/joined.h"
 #include "lights/sun_split.h"
@@ -139,6 +140,14 @@ OptionTable options_of(EnvironmentOptions& o) {
                 {.min = 0, .max = 16384})};
 }
 
+namespace {
+
+/// Texels of 0.06 degrees light a scene whose sharp lights are 0.2 degrees wide, and a picture of
+/// 768 pixels over 35 degrees shows no finer ones behind the scene.
+constexpr std::uint32_t FinestResolution = 2048;
+
+} // namespace
+
 cubemap::EnvironmentImage load_environment_image(const std::filesystem::path& path,
                                                  const EnvironmentOptions& options) {
     return as_convention_has_it(cubemap::load_environment(path, load_options(options)),
@@ -186,7 +195,7 @@ std::vector<std::string> warnings_about(const cubemap::EnvironmentImage& image,
                                                           : "the largest radiance of the others"));
     if (image.num_transparent != 0)
         result.push_back(fmt::format("{} of {} pixels have an alpha of 0: no light comes from them",
-                                     image.num_transparent, image.pixels.size()));
+                                     image.num_transparent, image.num_file_pixels));
     if (const auto doubt = cubemap::upside_down(light_from_below))
         result.push_back(*doubt);
     return result;
@@ -198,14 +207,30 @@ relight::Backdrop backdrop_of(std::shared_ptr<const cubemap::EnvironmentImage> i
     return relight::image_backdrop(std::move(image), turn);
 }
 
+namespace {
+
+/// Puts a map and what is known of its image together.
+Environment told_of(const std::shared_ptr<const cubemap::EnvironmentImage>& image,
+                    cubemap::CubeMap map, const glm::dmat3& turn) {
+    Environment result{.map = std::move(map),
+                       .file = {.image = image, .turn = turn},
+                       .assumptions = image->assumptions};
+    result.num_fixed_pixels = image->fixed ? image->bad_pixels.count() : 0;
+    result.warnings = warnings_about(*image, cubemap::light_from_below(result.map));
+    return result;
+}
+
+} // namespace
+
 Environment environment_of(const std::shared_ptr<const cubemap::EnvironmentImage>& image,
                            const EnvironmentOptions& options) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
-    const cubemap::CubeMap resampled = unturned_cube_map_of(*image, options);
-    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    Environment result = environment_of(image, resampled, options);
-    result.seconds_resample += seconds;
+    // A map that is not turned is not copied either: it takes hundreds of megabytes.
+    const glm::dmat3 turn = world_from_image(image->layout, options);
+    Environment result =
+        told_of(image, cubemap::turned(unturned_cube_map_of(*image, options), turn), turn);
+    result.seconds_resample = std::chrono::duration<double>(Clock::now() - start).count();
     return result;
 }
 
@@ -214,11 +239,7 @@ Environment environment_of(const std::shared_ptr<const cubemap::EnvironmentImage
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     const glm::dmat3 turn = world_from_image(image->layout, options);
-    Environment result{.map = cubemap::turned(resampled, turn),
-                       .file = {.image = image, .turn = turn},
-                       .assumptions = image->assumptions};
-    result.num_fixed_pixels = image->fixed ? image->bad_pixels.count() : 0;
-    result.warnings = warnings_about(*image, cubemap::light_from_below(result.map));
+    Environment result = told_of(image, cubemap::turned(resampled, turn), turn);
     result.seconds_resample = std::chrono::duration<double>(Clock::now() - start).count();
     return result;
 }
@@ -226,8 +247,9 @@ Environment environment_of(const std::shared_ptr<const cubemap::EnvironmentImage
 Environment load_environment(const std::filesystem::path& path, const EnvironmentOptions& options) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
-    const auto image =
-        std::make_shared<const cubemap::EnvironmentImage>(load_environment_image(path, options));
+    const std::uint32_t most_width = 4 * std::max(FinestResolution, options.face_resolution);
+    const auto image = std::make_shared<const cubemap::EnvironmentImage>(as_convention_has_it(
+        cubemap::load_averaged(path, load_options(options), most_width), path.string(), options));
     const double seconds_load = std::chrono::duration<double>(Clock::now() - start).count();
     Environment result = environment_of(image, options);
     if (lights::has_sun_file(path)) // what is left may well be darker above

@@ -137,6 +137,8 @@ environment_of(const std::shared_ptr<const cubemap::EnvironmentImage>& image,
                const cubemap::CubeMap& resampled, const EnvironmentOptions& options = {});
 
 /// Reads an .exr or .hdr file, or six of them where the path holds `{face}`, resamples and turns.
+/// A lat-long wider than 8,192 pixels, and than 4 `face_resolution`, is averaged down as it is
+/// read: cubemap::load_averaged().
 ///
 /// Throws:  as load_environment_image().
 [[nodiscard]] Environment load_environment(const std::filesystem::path& path,

@@ -29,9 +29,9 @@ namespace relumine {
 
 namespace {
 
-std::vector<glm::vec3> load_points(const std::filesystem::path& path) {
+std::vector<glm::vec3> load_points(const std::filesystem::path& path, const glm::dvec3& offset) {
     if (files::extension_of(path) == ".ply")
-        return mesh::load_points(path);
+        return mesh::load_points(path, offset);
     relight::VectorArray array = relight::load_npy(path);
     if (array.shape.size() != 1)
         throw std::runtime_error(fmt::format("{}: expected an array of [count, 3], got {} axes",
@@ -105,7 +105,7 @@ private:
         const std::string name = points.file.empty() ? "" : points.file.string() + ": ";
         std::vector<glm::vec3> of_file;
         if (!points.file.empty())
-            of_file = load_points(points.file);
+            of_file = load_points(points.file, scene_.mesh.offset);
         try {
             add_points(points.file.empty() ? points.positions : of_file);
         } catch (const std::invalid_argument& error) {

@@ -48,7 +48,8 @@ TEST(ColorSpace, PrimariesOnALineAreRefused) {
 
 TEST(ColorSpace, ConversionKeepsBadPixelsAndCutsOthers) {
     Picture picture{.width = 3, .height = 1, .pixels = {{0, 1, 0}, {-1, 0, 0}, {1, 1, 1}}};
-    const std::string remark = convert_to_rec709({.primaries = AcesCg, .name = "ACEScg"}, picture);
+    const std::string remark =
+        convert(ColorConversion({.primaries = AcesCg, .name = "ACEScg"}), picture);
     EXPECT_EQ(picture.pixels[0].r, 0.0f);
     EXPECT_LT(picture.pixels[1].r, -1.0f) << "what was negative stays for those who judge it";
     EXPECT_LT(glm::distance(picture.pixels[2], glm::vec3(1.0f)), 1e-5f);

@@ -1,5 +1,7 @@
 // Materials, groups and textures of OBJ files.
 
+#include <fmt/format.h>
+
 #include "mesh/floor.h"
 #include "tests/mesh/mesh_files.h"
 #include "tests/mesh/texture_files.h"
@@ -246,6 +248,19 @@ TEST_F(MtlTest, FilesOfOtherCapitalsAndOtherComputers) {
     EXPECT_THAT(load(folder_ / "mesh.obj").missing, ElementsAre("/home/me/plaster.png"));
 }
 
+TEST_F(MtlTest, SeveralLibrariesWithBlanksInTheirNames) {
+    for (const char* color : {"red", "green", "blue"})
+        static_cast<void>(write(fmt::format("box {}.mtl", color),
+                                fmt::format("newmtl {}\nKd 0.5 0.5 0.5\n", color)));
+    const TriangleMesh mesh =
+        load(write("mesh.obj", "mtllib box red.mtl\nmtllib box green.mtl box blue.mtl gone 1\n"
+                               "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n"
+                               "usemtl green\nf 1 2 3\nusemtl blue\nf 1 2 3\n"));
+    for (const Material& material : mesh.materials)
+        EXPECT_EQ(material.base_color, glm::vec3(0.5f)) << material.name;
+    EXPECT_THAT(mesh.missing, ElementsAre("gone 1"));
+}
+
 TEST_F(MtlTest, RoundingsAboveOneAreOne) {
     const TriangleMesh mesh = with_mtl("newmtl m\nKd 1.00000012 1.0001 -0.00001\n");
     EXPECT_EQ(mesh.materials[0], (Material{.name = "m", .base_color = {1, 1, 0}}));
@@ -284,8 +299,9 @@ TEST_F(MtlTest, SaysWhatIsNotRead) {
         with_mtl("newmtl m\nmap_Ns a.png\nmap_Bump a.png\nTf 1 0 0\nnewmtl n\nPr 0.5\n"
                  "map_Ks a.png\naniso 0.5\nmap_Ns a.png\n")
             .warnings,
-        ElementsAre("the materials have map_Ns, map_Bump, Tf, aniso, map_Ks beside Pr or Pm, "
-                    "which are not read"));
+        ElementsAre(
+            "the materials have map_Ns, map_Bump, Tf, aniso, map_Ks of materials with a roughness, "
+            "which are not read"));
 }
 
 TEST_F(MtlTest, EmissionAndItsMap) {

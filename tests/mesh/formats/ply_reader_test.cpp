@@ -208,9 +208,9 @@ TEST(PlyReader, UvsOfWedges) {
     EXPECT_EQ(mesh.corner_uvs[1][0], glm::vec2(0.5f, 0));
     const std::string named = replace_all(
         square_ply(properties, "3 0 1 2 6 0 0 1 0 1 1 0", "3 0 2 3 6 0.5 0 0.5 1 0 1 0"),
-        "element vertex", "comment TextureFile tex.png\nelement vertex");
+        "element vertex", "comment TextureFile   tex 1.png\nelement vertex");
     EXPECT_THAT(ply(named).warnings,
-                testing::ElementsAre("the image 'tex.png', which a comment names, is left out: "
+                testing::ElementsAre("the image 'tex 1.png', which a comment names, is left out: "
                                      "textures of .ply are not read"));
     EXPECT_EQ(mesh.num_vertices(), 4u);
     const TriangleMesh odd = ply(square_ply(properties, "3 0 1 2 6 0 0 1 0 1 1 0", "3 0 2 3 0 0"));

@@ -331,6 +331,7 @@ Scene glossy_scene() {
     scene.settings.view = Camera{.eye = {0.0f, 1.0f, 4.0f}};
     scene.settings.camera =
         Camera{.eye = {1.0f, 2.0f, 3.0f}, .fov_degrees = 50.0f, .roll_degrees = 12.5f};
+    scene.mesh.offset = {691234.1, -520.0, 5334567.7};
     return scene;
 }
 
@@ -342,6 +343,7 @@ TEST_F(SceneFileTest, RefusesValuesThatCannotBeLitOrDrawn) {
     const Scene loaded = load_scene(file_);
     EXPECT_EQ(loaded.settings.view, good.settings.view);
     EXPECT_EQ(loaded.settings.camera, good.settings.camera);
+    EXPECT_EQ(loaded.mesh.offset, good.mesh.offset);
     const auto refused = [&](const std::string& reason, const std::function<void(Scene&)>& how) {
         Scene scene = good;
         how(scene);
@@ -372,6 +374,7 @@ TEST_F(SceneFileTest, RefusesValuesThatCannotBeLitOrDrawn) {
     // Embree aborts for rays from beyond 1.8e18.
     for (const float value : {NaN, Infinity, 1e19f, -1.9e18f}) {
         refused("coordinates", [&](Scene& s) { s.mesh.positions[7].z = value; });
+        refused("an offset within", [&](Scene& s) { s.mesh.offset.y = 1e30 * double{value}; });
         refused("coordinates within", [&](Scene& s) { s.settings.view->eye.x = value; });
         refused("coordinates within", [&](Scene& s) { s.settings.camera->eye.x = value; });
     }
