@@ -121,4 +121,6 @@ def picture(state, samples):
     pixels = np.zeros(state.size * state.size * 3, np.float32)
     session.GetFilm().GetOutputFloat(pyluxcore.FilmOutputType.RGB, pixels, 0)
     session.Stop()
-    return pixels.reshape(state.size, state.size, 3)[::-1].copy()
+    # The picture lies one row lower than the camera says. Its lowest row is missing, and that above stands in for it.
+    rows = pixels.reshape(state.size, state.size, 3)[::-1]
+    return np.concatenate([rows[1:], rows[-1:]])

@@ -132,7 +132,7 @@ def picture(state, samples):
     rays = np.concatenate([np.broadcast_to(origin, directions.shape), directions], axis=2).reshape(-1, 6)
     each = max(1, samples // per_axis**2)
     # No ambient cache (-aa 0), no limit by weight, no end by Russian roulette before the last bounce.
-    words = ["-h", "-fff", "-ab", state.ambient, "-aa", 0, "-ad", each, "-as", 0, "-lr", 64, "-lw", 1e-7, "-ss", each, "-st", 0, "-dj", 0, "-ds", 0, "-dt", 0, "-n", 2]
+    words = ["-h", "-fff", "-ab", state.ambient, "-aa", 0, "-ad", each, "-as", 0, "-lr", 64, "-lw", 1e-7, "-ss", each, "-st", 0, "-dj", 0, "-ds", 0.05, "-dt", 0, "-n", 2]
     found = np.frombuffer(run("rtrace", *words, state.path("scene.oct"), data=rays.astype(np.float32).tobytes()), np.float32)
     size = state.camera["size"]
     return found.reshape(size, per_axis, size, per_axis, 3).mean((1, 3))
