@@ -22,7 +22,7 @@ set(relumine_find_embree "find_dependency(embree ${RELUMINE_EMBREE})" -lembree${
 # The level hides what Debian's Imath says (cmake/needs.cmake).
 set(relumine_find_OpenEXR_OpenEXR "set(CMAKE_MESSAGE_LOG_LEVEL WARNING)\nfind_dependency(OpenEXR)\nunset(CMAKE_MESSAGE_LOG_LEVEL)" "-lOpenEXR -lIex -lImath" libopenexr-dev)
 set(relumine_find_draco_draco "find_dependency(draco)" -ldraco libdraco-dev)
-set(relumine_find_OpenMeshCore "find_dependency(OpenMesh)" -lOpenMeshCore libopenmesh-dev)
+set(relumine_find_OpenMeshTools "find_dependency(OpenMesh)" "-lOpenMeshTools -lOpenMeshCore" libopenmesh-dev)
 set(relumine_find_JPEG_JPEG "find_dependency(JPEG)" -ljpeg libjpeg-dev)
 set(relumine_find_ZLIB_ZLIB "find_dependency(ZLIB)" -lz zlib1g-dev)
 set(relumine_find_relumine_needs_deflate "relumine_needs_library(deflate libdeflate.h deflate)" -ldeflate libdeflate-dev)

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -27,18 +28,20 @@ struct VerifyArguments {
     EyeOptions eye_options;
 };
 
-/// One sentence that says what a picture has to expect.
+/// One sentence that says what a picture has to expect, and how much worse it is elsewhere.
 std::string headline(const Verification& check, std::string_view receiver) {
-    const WorstError worst = worst_of(check);
-    const bool is_coarse = check.surface && worst.place != VerifiedPlaces[0] &&
-                           worst.relative_l2 > 2.0 * check.error.relative_l2;
     constexpr double Large = 0.05;
-    return fmt::format(
-        "the light is off by {:.3g} % where it is worst: {}{}", 100.0 * worst.relative_l2,
-        check.surface ? std::string(worst.place) : fmt::format("at each {}", receiver),
-        worst.relative_l2 <= Large ? ""
-        : is_coarse ? "; the triangles are too large for what the vertices see, --refine adds more"
-                    : "; a smaller --tolerance makes it better");
+    const double shown = check.picture ? check.picture->error.relative_l2 : check.error.relative_l2;
+    std::string line = fmt::format("the light is off by {:.3g} % {}", 100.0 * shown,
+                                   check.picture ? std::string(VerifiedPlaces[2])
+                                                 : fmt::format("at each {}", receiver));
+    if (shown > Large)
+        line += check.picture && shown > 2.0 * check.error.relative_l2
+                    ? "; the triangles are too large for what the vertices see, --refine adds more"
+                    : "; a smaller --tolerance makes it better";
+    if (const WorstError worst = worst_of(check); worst.relative_l2 > std::max(Large, 2.0 * shown))
+        line += fmt::format("; elsewhere by {:.3g} % {}", 100.0 * worst.relative_l2, worst.place);
+    return line;
 }
 
 /// The error at points of the surface, for people and for --json.

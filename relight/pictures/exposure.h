@@ -7,6 +7,10 @@
 
 namespace relumine::relight {
 
+/// What is lit is metered as if it reflected at least this part of the light: a dark asset stays
+/// dark, and does not make day of a night.
+inline constexpr float LeastMeteredAlbedo = 0.25f;
+
 /// What a picture shows of a floor that lies under what is lit.
 struct MeteredFloor {
     std::span<const glm::vec3> colors = {};

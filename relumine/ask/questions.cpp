@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <set>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -184,17 +185,33 @@ std::vector<prt::MeshPoint> points_of_picture(const LitScene& lit, std::size_t m
     return result;
 }
 
-/// Pictures trace sharp lights by themselves, unless the scene has highlights, whose part of them
-/// is not diffuse.
+/// Returns the diffuse light of vertices. Of those around the points that of sharp lights is left
+/// out, which pictures trace by themselves.
+std::vector<glm::vec3> soft_around(const LitScene& lit, std::span<const prt::MeshPoint> points) {
+    const Scene& scene = lit.scene();
+    const relight::Relighter& relighter = lit.relighter();
+    const std::span<const glm::vec3> all = relighter.diffuse_radiance();
+    std::vector<glm::vec3> soft(all.begin(), all.end());
+    const relight::ShadowRays& rays = relighter.shadow_rays();
+    if (rays.blockers == nullptr)
+        return soft;
+    const relight::LightPackets packets(relighter.sharp_lights());
+    std::set<std::uint32_t> vertices;
+    for (const prt::MeshPoint& point : points) {
+        const mesh::Triangle& triangle = scene.mesh.triangles[point.triangle];
+        vertices.insert(triangle.begin(), triangle.end());
+    }
+    for (const std::uint32_t vertex : vertices)
+        soft[vertex] -= glm::vec3(packets.radiance(scene.receivers.positions[vertex],
+                                                   scene.receivers.normals[vertex], rays));
+    return soft;
+}
+
 std::optional<Verification::Surface> verify_picture(const LitScene& lit, std::size_t most,
                                                     const prt::Work& work) {
-    const relight::Relighter& relighter = lit.relighter();
-    std::vector<prt::MeshPoint> points = points_of_picture(lit, most);
-    const auto lights = relight::picture_lights(relighter);
-    if (lights.empty() || lit.scene().transfer.glossy)
-        return verify_points(lit, std::move(points), relighter.diffuse_radiance(), {}, work);
-    return verify_points(lit, std::move(points), relighter.receiver_light().soft_radiance(), lights,
-                         work);
+    const std::vector<prt::MeshPoint> points = points_of_picture(lit, most);
+    return verify_points(lit, points, soft_around(lit, points),
+                         relight::picture_lights(lit.relighter()), work);
 }
 
 /// Returns the receivers where they stand. Vertices that a solid hides look from outside of it, and
@@ -237,6 +254,12 @@ Verification verify_eye(const LitScene& lit, const glm::vec3& eye, const VerifyO
     prt::look_from(seen, eye);
     Verification result;
     result.receivers = relight::random_receivers(scene.transfer, options.num_samples, options.seed);
+    // Backs are not seen.
+    std::erase_if(result.receivers, [&](std::uint32_t i) {
+        return !(glm::dot(seen.normals[i], seen.to_eye[i]) > 0.0f);
+    });
+    if (result.receivers.empty())
+        throw std::invalid_argument("expected an eye that sees a front of the mesh");
     result.of_file = file_of(lit) != nullptr;
     result.num_too_smooth = live.num_too_smooth();
     const std::vector<glm::dvec3> exact = exact_radiance(lit, seen, result.receivers, work);

@@ -12,6 +12,7 @@
 #include "prt/glossy/lobes.h"
 #include "relight/pictures/backdrop.h"
 #include "relight/sharp/sharp_lights.h"
+#include "relumine/light/light.h"
 
 namespace relumine {
 
@@ -19,6 +20,9 @@ namespace relumine {
 struct Lighting {
     /// [num_receivers], as LitScene::radiance().
     std::span<const glm::vec3> radiance;
+    /// [num_receivers] what arrives of it without a bounce, as radiance for albedo 1, for light
+    /// meters. Empty: unknown.
+    std::span<const glm::vec3> arriving = {};
     /// Must outlive this object. Null: there is nothing behind the mesh but black.
     const cubemap::CubeMap* environment = nullptr;
     /// What is seen of it behind the mesh. Null: all of it.
@@ -41,6 +45,11 @@ struct Lighting {
     /// The radiance, for albedo 1, of a level floor that nothing shades. Empty: unknown, and floors
     /// catch no shadows.
     std::optional<glm::vec3> open_floor = {};
+    /// What layers and added lights make of that: its factor over the light of the base alone.
+    glm::vec3 open_gain{1.0f};
+    /// The environment's state, whose layers make `open_gain`. Must outlive this object; null:
+    /// none.
+    const LightState* state = nullptr;
     /// What `radiance` points to, where it was gathered from several processes.
     std::shared_ptr<const std::vector<glm::vec3>> gathered = {};
 

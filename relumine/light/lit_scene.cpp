@@ -2,17 +2,31 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "relight/harmonics/harmonics.h"
+#include "relight/receiver_light.h"
+#include "relight/sharp/light_packets.h"
 #include "relight/sharp/shadow_rays.h"
+#include "relumine/light/layer_compositor.h"
+#include "relumine/light/listed_light.h"
+#include "relumine/light/rays.h"
+#include "relumine/light/shared_receivers.h"
+#include "relumine/light/terms.h"
 
 namespace relumine {
 
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// Returns the map of a light, or null.
 const cubemap::CubeMap* map_of(const Light& light) {
@@ -26,181 +40,452 @@ const cubemap::CubeMap* map_of(const Light& light) {
 
 } // namespace
 
-LitScene::LitScene(Scene scene, const LightOptions& options)
-    : LitScene(std::make_shared<Scene>(std::move(scene)), options) {}
+/// Stays in its place, so that its parts can refer to each other.
+struct LitScene::Impl {
+    Impl(std::shared_ptr<const Scene> whole, std::unique_ptr<prt::ScenePart> part,
+         const LightOptions& options);
 
-LitScene::LitScene(const std::shared_ptr<Scene>& own, const LightOptions& options)
-    : LitScene(std::shared_ptr<const Scene>(own), nullptr, options) {
-    own_scene_ = own.get();
+    /// Throws where there are no clusters.
+    [[nodiscard]] relight::Relighter& clusters() const;
+    void require_lit() const;
+    void require_same(const Light& light) const;
+    BounceReport find_bounces(bool is_step);
+    void forget_bounces();
+    void finish(UpdateReport& report);
+    void bind_sent(ArrivingLight& arriving) const;
+    void take_apart(Lighting& lighting) const;
+    void gather(Lighting& lighting) const;
+    void show_environment(Lighting& lighting) const;
+    [[nodiscard]] glm::vec3 open_gain(const glm::vec3& open_floor) const;
+    [[nodiscard]] bool has_environment() const {
+        return relighter && relighter->environment().resolution != 0;
+    }
+
+    std::shared_ptr<const Scene> scene;
+    /// The same, where nobody else has it.
+    Scene* own_scene = nullptr;
+    SceneRays rays;
+    SharedReceivers receivers;
+    std::uint32_t harmonics;
+    /// LightOptions::blockers
+    std::shared_ptr<const prt::Blockers> own_blockers;
+    relight::ShadowRays shadow_rays;
+    bool is_lit = false;
+
+    EditedEnvironment environment;
+    /// The light of a level floor in the open under a base alone.
+    mutable std::shared_ptr<const LightBase> open_of;
+    mutable glm::dvec3 open_of_base{0.0};
+    /// The environment's light, or a list's alone. Null without clusters.
+    std::unique_ptr<relight::Relighter> relighter;
+    ListedLight listed;
+    SceneBounces bounces;
+    SceneLamps lamps;
+    SceneMirrors mirrors;
+    /// In the order in which they are added. Where there are clusters, theirs is the first.
+    std::vector<std::unique_ptr<const LightTerm>> terms;
+    /// [receivers of this process] the sum; empty where the clusters' term is all.
+    std::vector<glm::vec3> total;
+};
+
+LitScene::Impl::Impl(std::shared_ptr<const Scene> whole, std::unique_ptr<prt::ScenePart> part,
+                     const LightOptions& options)
+    : scene(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(whole)),
+      rays(*scene), receivers(*scene, std::move(part), options.team, options.path),
+      harmonics(options.harmonics), own_blockers(options.blockers), lamps(*scene, rays),
+      mirrors(*scene, rays, options.highlight_rays) {
+    if (harmonics != 0)
+        relight::require_order(harmonics);
+    const bool has_clusters = relumine::has_clusters(*scene);
+    if (has_clusters && scene->receivers.size() != scene->transfer.num_receivers())
+        throw std::invalid_argument(fmt::format("expected the transfer of {} receivers, got {}",
+                                                scene->receivers.size(),
+                                                scene->transfer.num_receivers()));
+    if (!options.clusters_only)
+        shadow_rays = {.blockers = own_blockers ? own_blockers.get() : &rays.for_moving_lights(),
+                       .positions = receivers.positions(),
+                       .bias = scene->settings.bias,
+                       .tolerance = rms_tolerance(*scene)};
+    if (has_clusters) {
+        relighter = std::make_unique<relight::Relighter>(
+            receivers.transfer(), shadow_rays,
+            harmonics == 0 && has_mapped_vertices(*scene) ? relight::MaxHarmonicOrder : harmonics);
+        terms.push_back(std::make_unique<ClusterTerm>(*relighter));
+    } else if (options.clusters_only) {
+        static_cast<void>(clusters());
+    }
+    terms.push_back(std::make_unique<BounceTerm>(bounces, receivers));
+    terms.push_back(std::make_unique<LampTerm>(lamps, receivers));
+    terms.push_back(std::make_unique<ListTerm>(listed));
+    if (has_clusters)
+        terms.push_back(
+            std::make_unique<MirrorTerm>(mirrors, *relighter, bounces, lamps, receivers));
 }
 
-void LitScene::set_roughness(float roughness) {
-    if (own_scene_ == nullptr)
-        throw std::logic_error("expected a scene that is not shared, to set its roughness");
-    relumine::set_roughness(*own_scene_, roughness);
+LitScene::LitScene(Scene scene, const LightOptions& options) {
+    auto own = std::make_shared<Scene>(std::move(scene));
+    impl_ = std::make_unique<Impl>(own, nullptr, options);
+    impl_->own_scene = own.get();
 }
 
 LitScene::LitScene(std::shared_ptr<const Scene> scene, const LightOptions& options)
-    : LitScene(std::move(scene), nullptr, options) {}
+    : impl_(std::make_unique<Impl>(std::move(scene), nullptr, options)) {}
 
 LitScene::LitScene(prt::ScenePart part, const LightOptions& options)
-    : LitScene(nullptr, std::make_unique<prt::ScenePart>(std::move(part)), options) {}
+    : impl_(std::make_unique<Impl>(nullptr, std::make_unique<prt::ScenePart>(std::move(part)),
+                                   options)) {}
 
-LitScene::LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::ScenePart> part,
-                   const LightOptions& options)
-    : scene_(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(scene)),
-      rays_(std::make_unique<const SceneRays>(*scene_)),
-      receivers_(*scene_, std::move(part), options.team, options.path),
-      harmonics_(options.harmonics), own_blockers_(options.blockers), lamps_(*scene_, *rays_),
-      mirrors_(*scene_, *rays_, options.highlight_rays) {
-    if (harmonics_ != 0)
-        relight::require_order(harmonics_);
-    const bool has_clusters = relumine::has_clusters(*scene_);
-    if (has_clusters && scene_->receivers.size() != scene_->transfer.num_receivers())
-        throw std::invalid_argument(fmt::format("expected the transfer of {} receivers, got {}",
-                                                scene_->receivers.size(),
-                                                scene_->transfer.num_receivers()));
-    if (!options.clusters_only)
-        shadow_rays_ = {.blockers =
-                            own_blockers_ ? own_blockers_.get() : &rays_->for_moving_lights(),
-                        .positions = receivers_.positions(),
-                        .bias = scene_->settings.bias,
-                        .tolerance = rms_tolerance(*scene_)};
-    if (has_clusters)
-        relighter_ = std::make_unique<relight::Relighter>(
-            receivers_.transfer(), shadow_rays_,
-            harmonics_ == 0 && has_mapped_vertices(*scene_) ? relight::MaxHarmonicOrder
-                                                            : harmonics_);
-    else if (options.clusters_only)
-        static_cast<void>(relighter());
+LitScene::LitScene(LitScene&&) noexcept = default;
+LitScene& LitScene::operator=(LitScene&&) noexcept = default;
+LitScene::~LitScene() = default;
+
+// Parts
+
+const Scene& LitScene::scene() const {
+    return *impl_->scene;
+}
+
+const SceneRays& LitScene::rays() const {
+    return impl_->rays;
 }
 
 const relight::Relighter& LitScene::relighter() const {
-    if (!relighter_)
-        throw std::invalid_argument("expected a precomputed scene, got a mesh without clusters");
-    return *relighter_;
+    return impl_->clusters();
 }
 
-std::span<const glm::vec3> LitScene::radiance() const {
-    if (!is_lit_ || !total_.empty() || !relighter_)
-        return total_;
-    return relighter_->radiance();
+const LightState& LitScene::state() const {
+    return impl_->environment.state();
+}
+
+LightHistory& LitScene::history() {
+    return impl_->environment.history();
+}
+
+const SceneBounces& LitScene::bounces() const {
+    return impl_->bounces;
+}
+
+const SceneLamps& LitScene::lamps() const {
+    return impl_->lamps;
+}
+
+const SceneMirrors& LitScene::mirrors() const {
+    return impl_->mirrors;
+}
+
+std::uint32_t LitScene::harmonic_order() const {
+    return impl_->harmonics;
 }
 
 // Light
 
+relight::Relighter& LitScene::Impl::clusters() const {
+    if (!relighter)
+        throw std::invalid_argument("expected a precomputed scene, got a mesh without clusters");
+    return *relighter;
+}
+
+void LitScene::Impl::require_lit() const {
+    if (!is_lit)
+        throw std::logic_error("expected a scene that is lit");
+}
+
 /// Throws where the first process has other light.
-void LitScene::require_same(const Light& light) const {
+void LitScene::Impl::require_same(const Light& light) const {
     if (const cubemap::CubeMap* map = map_of(light))
-        receivers_.require_same(std::as_bytes(std::span(map->texels)));
-    receivers_.require_same(std::as_bytes(std::span(light.lights)));
+        receivers.require_same(std::as_bytes(std::span(map->texels)));
+    receivers.require_same(std::as_bytes(std::span(light.lights)));
+}
+
+void LitScene::Impl::forget_bounces() {
+    bounces.forget();
+    lamps.forget_bounces();
+}
+
+BounceReport LitScene::Impl::find_bounces(bool is_step) {
+    std::span<const glm::vec3> direct = relighter->diffuse_radiance();
+    std::vector<glm::vec3> sum;
+    if (!listed.diffuse.empty() || receivers.are_in_others()) {
+        sum.assign(direct.begin(), direct.end());
+        for (std::size_t i = 0; i < listed.diffuse.size(); ++i)
+            sum[i] += listed.diffuse[i];
+        sum = receivers.of_all(sum);
+        direct = sum;
+    }
+    return is_step ? bounces.step(direct) : bounces.find(direct);
+}
+
+/// Sums the terms.
+void LitScene::Impl::finish(UpdateReport& report) {
+    const auto start = Clock::now();
+    lamps.find();
+    report.seconds_lamps = seconds_since(start);
+    total.clear();
+    if (relighter && std::none_of(terms.begin() + 1, terms.end(),
+                                  [](const auto& term) { return term->is_lit(); }))
+        return;
+    total.assign(receivers.positions().size(), glm::vec3(0.0f));
+    Clock::time_point start_term;
+    for (const auto& term : terms) {
+        start_term = Clock::now();
+        if (term->is_lit())
+            term->add_radiance(total);
+    }
+    // The last term is that of the highlights.
+    if (mirrors.is_needed())
+        report.seconds_highlights = seconds_since(start_term);
 }
 
 UpdateReport LitScene::light(Light light) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
+    Impl& own = *impl_;
     const bool has_environment = !std::holds_alternative<std::monostate>(light.environment);
     if (has_environment)
         static_cast<void>(relighter());
-    require_same(light);
+    own.require_same(light);
     UpdateReport report;
     ListedLight listed;
-    if (!relighter_) {
-        listed = listed_light(light.lights, scene_->receivers.normals, shadow_rays_);
+    if (!own.relighter) {
+        listed = listed_light(light.lights, own.scene->receivers.normals, own.shadow_rays);
     } else if (!has_environment) {
-        report = relighter_->set_lights(light.lights);
+        report = own.relighter->set_lights(light.lights);
     } else if (!light.lights.empty()) {
         if (!std::holds_alternative<BinnedEnvironment>(light.environment))
             relight::require_radiance(map_of(light)->texels);
-        listed = listed_light(light.lights, *relighter_, harmonics_ != 0);
+        listed = listed_light(light.lights, *own.relighter, own.harmonics != 0);
     }
     if (has_environment)
-        report = environment_.light(std::move(light), *relighter_);
+        report = own.environment.light(std::move(light), *own.relighter);
     else
-        environment_.clear();
-    listed_ = std::move(listed);
-    bounces_.forget();
-    lamps_.forget_bounces();
-    is_lit_ = true;
-    const FinishTimes times = finish();
-    report.seconds_lamps = times.seconds_lamps;
-    report.seconds_highlights = times.seconds_highlights;
-    report.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        own.environment.clear();
+    own.listed = std::move(listed);
+    own.forget_bounces();
+    own.is_lit = true;
+    own.finish(report);
+    report.seconds = seconds_since(start);
     return report;
 }
 
 UpdateReport LitScene::edit(LightState next, Ending ending) {
     require_valid(next);
     static_cast<void>(relighter());
-    if (environment_.begin(*relighter_)) {
-        if (bounces_.bounced().empty()) {
-            bounces_.unset();
-            lamps_.forget_bounces();
+    Impl& own = *impl_;
+    if (own.environment.begin(*own.relighter)) {
+        if (own.bounces.bounced().empty()) {
+            own.bounces.unset();
+            own.lamps.forget_bounces();
         } else {
-            find_bounces(false);
+            own.find_bounces(false);
         }
     }
-    const EditedEnvironment::Change change =
-        environment_.change(std::move(next), ending, *relighter_);
-    if (change.is_whole) {
-        bounces_.forget();
-        lamps_.forget_bounces();
-    } else if (change.is_other) {
-        bounces_.unsettle();
-    }
-    is_lit_ = true;
+    EditedEnvironment::Change change =
+        own.environment.change(std::move(next), ending, *own.relighter);
+    if (change.is_whole)
+        own.forget_bounces();
+    else if (change.is_other)
+        own.bounces.unsettle();
+    own.is_lit = true;
     if (ending == Ending::Exact) {
         if (!change.is_whole)
-            relighter_->resum();
-        if (bounces_.is_set())
-            find_bounces(false);
+            own.relighter->resum();
+        if (own.bounces.is_set())
+            own.find_bounces(false);
     }
-    finish();
+    own.finish(change.report);
     return change.report;
 }
 
 UpdateReport LitScene::update_region(const cubemap::TexelRectangle& rectangle,
                                      std::span<const glm::vec3> radiance) {
-    if (environment_.is_edited())
-        return edit(environment_.with_region(rectangle, radiance));
+    Impl& own = *impl_;
+    if (own.environment.is_edited())
+        return edit(own.environment.with_region(rectangle, radiance));
     static_cast<void>(relighter());
-    const UpdateReport report = relight::update_region(*relighter_, rectangle, radiance);
-    environment_.forget_file();
-    bounces_.unsettle();
-    finish();
+    UpdateReport report = relight::update_region(*own.relighter, rectangle, radiance);
+    own.environment.forget_file();
+    own.bounces.unsettle();
+    own.finish(report);
     return report;
 }
 
-// Bounces
-
 BounceReport LitScene::bounce(const Bouncing& how) {
+    Impl& own = *impl_;
     std::optional<relight::SurfaceBounces> surfaces;
-    if (!scene_->bounces)
+    if (!own.scene->bounces)
         throw std::invalid_argument("expected a scene with bounces, got one without");
     if (!how.albedo.empty())
-        surfaces = bounces_of(*scene_, how.albedo, how.limits);
-    if (!is_lit_)
-        throw std::logic_error("expected a scene that is lit");
-    if (!surfaces && !bounces_.is_set())
+        surfaces = bounces_of(*own.scene, how.albedo, how.limits);
+    own.require_lit();
+    if (!surfaces && !own.bounces.is_set())
         throw std::logic_error("expected an albedo, as bounce_albedo() returns it");
-    const relight::SharedRows rows = receivers_.rows();
+    const relight::SharedRows rows = own.receivers.rows();
     if (surfaces)
-        bounces_.set(*scene_, std::move(*surfaces), rows);
-    lamps_.set_bounces(bounces_.surfaces(), rows);
-    BounceReport report = find_bounces(how.is_step);
-    finish();
-    report.num_bounces = std::max(report.num_bounces, lamps_.report().num_bounces);
-    report.error = std::max(report.error, lamps_.report().error);
-    report.seconds += lamps_.report().seconds;
+        own.bounces.set(*own.scene, std::move(*surfaces), rows);
+    own.lamps.set_bounces(own.bounces.surfaces(), rows);
+    BounceReport report = own.find_bounces(how.is_step);
+    UpdateReport update;
+    own.finish(update);
+    const BounceReport& of_lamps = own.lamps.report();
+    report.num_bounces = std::max(report.num_bounces, of_lamps.num_bounces);
+    report.error = std::max(report.error, of_lamps.error);
+    report.seconds += of_lamps.seconds;
     return report;
 }
 
 void LitScene::dim(std::vector<EmissionGain> gains) {
-    if (gains == lamps_.gains())
+    if (gains == impl_->lamps.gains())
         return;
-    lamps_.set(std::move(gains));
-    if (is_lit_)
-        finish();
+    impl_->lamps.set(std::move(gains));
+    UpdateReport report;
+    if (impl_->is_lit)
+        impl_->finish(report);
+}
+
+void LitScene::set_roughness(float roughness) {
+    if (impl_->own_scene == nullptr)
+        throw std::logic_error("expected a scene that is not shared, to set its roughness");
+    relumine::set_roughness(*impl_->own_scene, roughness);
+}
+
+// What it gives
+
+std::span<const glm::vec3> LitScene::radiance() const {
+    const Impl& own = *impl_;
+    if (!own.is_lit || !own.total.empty() || !own.relighter)
+        return own.total;
+    return own.relighter->radiance();
+}
+
+/// Lets the harmonics of surfaces have the irradiance that they send, too.
+void LitScene::Impl::bind_sent(ArrivingLight& arriving) const {
+    const prt::Transfer& transfer = relighter->transfer();
+    const std::size_t width = relight::num_harmonics(arriving.order);
+    for (std::size_t place = transfer.num_points; place < transfer.num_receivers(); ++place) {
+        const std::uint32_t receiver = transfer.order[place];
+        glm::dvec3 sent(arriving.sent[receiver]);
+        // Before the surfaces' colours.
+        for (int channel = 0; channel < 3 && !transfer.surfaces.empty(); ++channel) {
+            const float albedo = transfer.surfaces[place].albedo[channel];
+            sent[channel] = albedo > 0.0f ? sent[channel] / albedo : 0.0;
+        }
+        const std::span<glm::vec3> light =
+            std::span(arriving.harmonics).subspan(receiver * width, width);
+        const glm::vec3& normal = transfer.normals[place];
+        relight::bind_irradiance(light, normal,
+                                 relight::irradiance(light, normal) + std::numbers::pi * sent);
+    }
+}
+
+std::vector<glm::vec3> LitScene::harmonics() const {
+    const Impl& own = *impl_;
+    if (!own.is_lit || own.harmonics == 0)
+        throw std::logic_error("expected a scene that is lit, with LightOptions::harmonics");
+    const std::size_t width = relight::num_harmonics(own.harmonics);
+    ArrivingLight arriving{.order = own.harmonics,
+                           .harmonics = std::vector<glm::vec3>(
+                               relighter().transfer().num_receivers() * width, glm::vec3(0.0f))};
+    for (const auto& term : own.terms)
+        if (term->is_lit())
+            term->add_harmonics(arriving);
+    if (!arriving.sent.empty())
+        own.bind_sent(arriving);
+    return own.receivers.are_in_others() ? own.receivers.gathered(arriving.harmonics, width)
+                                         : std::move(arriving.harmonics);
+}
+
+/// Adds what pictures draw with: the lights that are traced one by one, and the rest of the light.
+void LitScene::Impl::take_apart(Lighting& lighting) const {
+    std::vector<relight::SharpLight>& lights = lighting.lights;
+    const std::size_t num_own = relighter ? terms.front()->lights().size() : 0;
+    if (has_environment())
+        lighting.num_environment_lights = num_own;
+    for (const auto& term : terms) {
+        const std::vector<relight::SharpLight> further = term->lights();
+        lights.insert(lights.end(), further.begin(), further.end());
+    }
+    if (relighter && scene->transfer.glossy && !scene->mesh.textures.empty())
+        lighting.lobes = relighter->receiver_light().lobes(num_own == 0);
+    if (relighter && has_mapped_vertices(*scene))
+        lighting.harmonics = relighter->receiver_light().harmonics(num_own == 0);
+    if (lights.empty())
+        return;
+    lighting.soft.assign(lighting.radiance.size(), glm::vec3(0.0f));
+    for (const auto& term : terms)
+        if (term->is_lit())
+            term->add_soft(lighting.soft);
+}
+
+/// Gives the first process what all have.
+void LitScene::Impl::gather(Lighting& lighting) const {
+    lighting.gathered =
+        std::make_shared<const std::vector<glm::vec3>>(receivers.gathered(lighting.radiance));
+    lighting.radiance = *lighting.gathered;
+    if (!lighting.lights.empty())
+        lighting.soft = receivers.gathered(lighting.soft);
+    if (!lighting.harmonics.empty())
+        lighting.harmonics = receivers.gathered(
+            lighting.harmonics,
+            relight::num_harmonics(relighter->receiver_light().harmonic_order()));
+}
+
+/// Adds what is seen of the environment behind the mesh.
+void LitScene::Impl::show_environment(Lighting& lighting) const {
+    const LightState& state = environment.state();
+    lighting.seen = seen_environment(state);
+    if (!state.base || !state.base->backdrop())
+        return;
+    if (!environment.is_edited())
+        lighting.sharp = state.base->backdrop();
+    else if (state.shows_base())
+        lighting.sharp =
+            relight::edited_backdrop(state.base->backdrop(), *state.base->map(), lighting.behind());
+}
+
+/// What layers and lists make of the light of a floor in the open.
+glm::vec3 LitScene::Impl::open_gain(const glm::vec3& open_floor) const {
+    constexpr glm::vec3 Up(0.0f, 1.0f, 0.0f);
+    const LightState& state = environment.state();
+    glm::dvec3 base(0.0);
+    if (!environment.is_edited() || state.layers.empty()) {
+        base = relighter->open_radiance(Up);
+    } else {
+        if (std::exchange(open_of, state.base) != state.base)
+            open_of_base = cubemap::irradiance(*state.base->map(), Up) / std::numbers::pi;
+        base = open_of_base;
+    }
+    glm::vec3 gain(1.0f);
+    for (int channel = 0; channel < 3; ++channel)
+        if (base[channel] > 0.0)
+            gain[channel] = open_floor[channel] / static_cast<float>(base[channel]);
+    return gain;
+}
+
+Lighting LitScene::lighting(bool is_drawn) const {
+    const Impl& own = *impl_;
+    own.require_lit();
+    Lighting result{.radiance = radiance()};
+    glm::dvec3 open_floor(0.0);
+    for (const auto& term : own.terms)
+        open_floor += term->open_floor();
+    result.open_floor = open_floor;
+    if (is_drawn)
+        own.take_apart(result);
+    if (own.receivers.are_in_others()) {
+        own.gather(result);
+        if (!own.receivers.is_first())
+            return {};
+    } else if (own.relighter) {
+        result.arriving = own.relighter->diffuse_radiance();
+    }
+    if (!own.has_environment())
+        return result;
+    result.environment = &own.relighter->environment();
+    if (is_drawn) {
+        own.show_environment(result);
+        result.state = &own.environment.state();
+        result.open_gain = own.open_gain(*result.open_floor);
+    }
+    return result;
 }
 
 bool has_environment(const LitScene& lit) {
@@ -212,6 +497,15 @@ const cubemap::CubeMap& environment_of(const LitScene& lit) {
     if (has_environment(lit))
         return lit.relighter().environment();
     return lit.radiance().empty() ? Nothing : Black;
+}
+
+std::vector<glm::vec3> bounced(const LitScene& lit) {
+    const std::span<const glm::vec3> of_lamps = lit.lamps().bounced();
+    std::vector<glm::vec3> result(lit.bounces().bounced().begin(), lit.bounces().bounced().end());
+    if (!result.empty())
+        for (std::size_t i = 0; i < of_lamps.size(); ++i)
+            result[i] += of_lamps[i];
+    return result;
 }
 
 BinnedEnvironment bin(const LitScene& lit, cubemap::CubeMap environment) {

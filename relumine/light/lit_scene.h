@@ -57,8 +57,8 @@ struct Bouncing {
     bool is_step = false;
 };
 
-/// Owns a scene, its ray accelerators and its light, so that nothing can dangle. Movable;
-/// references to its parts stay valid when it is moved.
+/// Owns a scene, its ray accelerators and its light, so that nothing can dangle. The light is a sum
+/// of terms (relumine/light/terms.h). Movable; references to its parts stay valid when it is moved.
 ///
 ///     relumine::LitScene lit(relumine::load_scene("bunny.prt"));
 ///     lit.light(relumine::load_environment("grace.exr"));
@@ -86,19 +86,23 @@ public:
     /// Throws:  also std::runtime_error where the first process has another scene.
     explicit LitScene(prt::ScenePart part, const LightOptions& options = {});
 
-    [[nodiscard]] const Scene& scene() const { return *scene_; }
-    [[nodiscard]] const SceneRays& rays() const { return *rays_; }
+    LitScene(LitScene&&) noexcept;
+    LitScene& operator=(LitScene&&) noexcept;
+    ~LitScene();
+
+    [[nodiscard]] const Scene& scene() const;
+    [[nodiscard]] const SceneRays& rays() const;
     /// The direct light of this process's receivers, without added lights.
     ///
     /// Throws:  std::invalid_argument for a scene without clusters.
     [[nodiscard]] const relight::Relighter& relighter() const;
     /// The environment with its layers and its turn.
-    [[nodiscard]] const LightState& state() const { return environment_.state(); }
+    [[nodiscard]] const LightState& state() const;
     /// Marks of states; see mark().
-    [[nodiscard]] LightHistory& history() { return environment_.history(); }
-    [[nodiscard]] const SceneBounces& bounces() const { return bounces_; }
-    [[nodiscard]] const SceneLamps& lamps() const { return lamps_; }
-    [[nodiscard]] const SceneMirrors& mirrors() const { return mirrors_; }
+    [[nodiscard]] LightHistory& history();
+    [[nodiscard]] const SceneBounces& bounces() const;
+    [[nodiscard]] const SceneLamps& lamps() const;
+    [[nodiscard]] const SceneMirrors& mirrors() const;
 
     /// Lights the scene [JN, Eq. 8]. Layers and the turn of set_rotation() stay: a new environment
     /// is turned as well. A list without one takes the layers away, with the history. Bounces go
@@ -168,7 +172,7 @@ public:
     /// Throws:  std::logic_error before the first light() and without LightOptions::harmonics.
     [[nodiscard]] std::vector<glm::vec3> harmonics() const;
     /// LightOptions::harmonics
-    [[nodiscard]] std::uint32_t harmonic_order() const { return harmonics_; }
+    [[nodiscard]] std::uint32_t harmonic_order() const;
 
     /// Returns what a picture is drawn of, or its radiance alone. It points into this object, and
     /// is good until the light changes. Of processes that share the light, all call it; the first
@@ -178,44 +182,8 @@ public:
     [[nodiscard]] Lighting lighting(bool is_drawn = true) const;
 
 private:
-    LitScene(const std::shared_ptr<Scene>& own, const LightOptions& options);
-    LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::ScenePart> part,
-             const LightOptions& options);
-    void require_same(const Light& light) const;
-    void take_apart(Lighting& lighting) const;
-    void gather(Lighting& lighting) const;
-    void show_environment(Lighting& lighting) const;
-    BounceReport find_bounces(bool is_step);
-    void add_surfaces(std::span<glm::vec3> own) const;
-    void add_to_points(std::span<glm::vec3> harmonics) const;
-    void add_mirrored();
-    /// Where a time went.
-    struct FinishTimes {
-        double seconds_lamps = 0.0;
-        double seconds_highlights = 0.0;
-    };
-    FinishTimes finish();
-
-    std::shared_ptr<const Scene> scene_;
-    /// The same, where nobody else has it.
-    Scene* own_scene_ = nullptr;
-    std::unique_ptr<const SceneRays> rays_;
-    SharedReceivers receivers_;
-    std::uint32_t harmonics_;
-    /// LightOptions::blockers
-    std::shared_ptr<const prt::Blockers> own_blockers_;
-    relight::ShadowRays shadow_rays_;
-    /// Null without clusters.
-    std::unique_ptr<relight::Relighter> relighter_;
-    bool is_lit_ = false;
-    // The terms of the light, beside the relighter's, which has the environment or a list alone.
-    EditedEnvironment environment_;
-    ListedLight listed_;
-    SceneBounces bounces_;
-    SceneLamps lamps_;
-    SceneMirrors mirrors_;
-    /// [receivers of this process] their sum; empty where the relighter's is all.
-    std::vector<glm::vec3> total_;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 /// What lights the scene, layers included; black under a light list, without texels before the

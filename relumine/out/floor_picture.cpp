@@ -1,12 +1,17 @@
 #include "relumine/out/floor_picture.h"
 
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
+
+#include "cubemap/layers/layer_composite.h"
 #include "mesh/floor.h"
 #include "mesh/triangle_mesh.h"
 
@@ -74,6 +79,35 @@ glm::vec3 studio_color(const Lighting& lighting, const OutputOptions& options) {
            options.floor_albedo.value_or(glm::vec3(FloorAlbedo));
 }
 
+namespace {
+
+/// Shows what layers and added lights make of the ground in a photograph, as of the floor on it.
+/// Where a layer lies over the ground itself, what it makes of that is seen already.
+relight::Backdrop relit_ground(relight::Backdrop photograph, const Lighting& lighting) {
+    constexpr std::uint32_t Resolution = 64;
+    constexpr float Horizon = 0.1f; // sine of the depth at which all is ground
+    const LightState& state = *lighting.state;
+    auto gains = std::make_shared<cubemap::CubeMap>(Resolution, lighting.open_gain);
+    for (const cubemap::LightLayer& layer : state.layers) {
+        if (!layer.on || !layer.camera)
+            continue;
+        const std::vector<float> covered = cubemap::coverage_map(layer.region, Resolution);
+        for (std::size_t i = 0; i < covered.size(); ++i)
+            gains->texels[i] = glm::mix(gains->texels[i], glm::vec3(1.0f), covered[i]);
+    }
+    const glm::mat3 to_layers(glm::transpose(cubemap::turn_about_y(state.rotation_degrees)));
+    return [photograph = std::move(photograph), gains, to_layers,
+            gain = relight::map_backdrop(*gains)](const glm::vec3& direction) {
+        const glm::vec3 seen = photograph(direction);
+        if (!(direction.y < 0.0f))
+            return seen;
+        return seen * glm::mix(glm::vec3(1.0f), gain(to_layers * direction),
+                               glm::smoothstep(0.0f, Horizon, -direction.y));
+    };
+}
+
+} // namespace
+
 relight::Backdrop on_floor(relight::Backdrop backdrop, const Scene& scene, const Lighting& lighting,
                            FloorLook look, const glm::vec3& eye, const OutputOptions& options) {
     if (look == FloorLook::Grey)
@@ -82,6 +116,11 @@ relight::Backdrop on_floor(relight::Backdrop backdrop, const Scene& scene, const
     if (look == FloorLook::Studio)
         return relight::sweep_backdrop(std::move(backdrop), studio_color(lighting, options), ground,
                                        eye);
+    constexpr float Visible = 1e-3f;
+    if (lighting.state != nullptr && !cubemap::has_solo(lighting.state->layers) &&
+        std::holds_alternative<EnvironmentBehind>(options.background) &&
+        glm::any(glm::greaterThan(glm::abs(lighting.open_gain - 1.0f), glm::vec3(Visible))))
+        backdrop = relit_ground(std::move(backdrop), lighting);
     return relight::grounded_backdrop(std::move(backdrop), ground, eye);
 }
 

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "relight/pictures/exposure.h"
@@ -44,7 +45,10 @@ double Painter::Impl::meter_receivers(const Lighting& lighting) {
         if (is_floor.empty() || !is_floor[i]) {
             const double weight =
                 pixels == nullptr ? 1.0 : static_cast<double>(pixels->num_shown(i)) / per_receiver;
-            metered.colors.push_back(colors[i]);
+            metered.colors.push_back(
+                lighting.arriving.empty()
+                    ? colors[i]
+                    : glm::max(colors[i], relight::LeastMeteredAlbedo * lighting.arriving[i]));
             metered.weights.push_back(static_cast<float>(weight));
             covered += weight;
         } else if (pixels != nullptr && !scene.lamps.empty() &&
@@ -69,10 +73,17 @@ double Painter::Impl::meter_picture(const Lighting& lighting) {
     if (!small)
         small.emplace(scene.mesh, rays, camera(), small_size(), gone);
     const Picture seen = drawn(*small, lighting, nullptr);
+    Picture arriving;
+    if (!lighting.arriving.empty())
+        arriving = small->cut_out({.radiance = lighting.arriving});
     double covered = 0.0;
     for (std::size_t i = 0; i < seen.pixels.size(); ++i)
         if (seen.alpha[i] > 0.0f) {
-            metered.colors.push_back(seen.pixels[i] / seen.alpha[i]);
+            glm::vec3 color = seen.pixels[i] / seen.alpha[i];
+            if (!arriving.pixels.empty() && arriving.alpha[i] > 0.0f)
+                color = glm::max(color, relight::LeastMeteredAlbedo * arriving.pixels[i] /
+                                            arriving.alpha[i]);
+            metered.colors.push_back(color);
             metered.weights.push_back(seen.alpha[i]);
             covered += static_cast<double>(seen.alpha[i]);
         }

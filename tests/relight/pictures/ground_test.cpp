@@ -85,5 +85,19 @@ TEST(Ground, IsFoundWhereTheMapShowsOne) {
     EXPECT_FALSE(has_ground(sky_over(0.3f, 0.3f), glm::vec3(1.0f)));
 }
 
+TEST(Ground, ALampThatStandsOnItIsNoneOfIt) {
+    const auto with_lamp = [](double height) {
+        cubemap::CubeMap map = sky_over(0.2f, 0.3f);
+        for (std::uint32_t y = 0; y < 16; ++y)
+            for (std::uint32_t x = 6; x < 10; ++x)
+                if (std::abs(cubemap::texel_direction(cubemap::Face::PositiveZ, x, y, 16).y -
+                             height) < 0.1)
+                    map.at(cubemap::Face::PositiveZ, x, y) = glm::vec3(4.0f);
+        return has_ground(map, glm::vec3(1.0f));
+    };
+    EXPECT_FALSE(with_lamp(-0.1));
+    EXPECT_TRUE(with_lamp(0.4)) << "it hangs over the ground";
+}
+
 } // namespace
 } // namespace relumine::relight

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/prt/scenes.h"
+#include "tests/relumine/small_scenes.h"
 
 namespace relumine {
 namespace {
@@ -35,6 +36,46 @@ TEST(LightDirection, IsOnTheSideThatIsSeenAndNoneBesideTheMesh) {
     ASSERT_TRUE(inside);
     EXPECT_GT(inside->z, 0.99f);
     EXPECT_FALSE(light_direction(ball(), Eye, {0, 1, 0}, Aim::Mirrored));
+}
+
+prt::Surface shiny(float roughness) {
+    return {.albedo = glm::vec3(0.3f),
+            .specular = glm::vec3(0.5f),
+            .highlight = prt::Highlight::GgxWhole,
+            .roughness_or_exponent = roughness};
+}
+
+TEST(Verify, OfAnEyeCountsTheFrontsThatItSees) {
+    const glm::vec3 eye(2.0f, 3.0f, 4.0f);
+    LitScene lit(precompute(
+        Mesh(scenes::icosphere(3, 0.5f, glm::vec3(0.0f))),
+        {.tolerance = scenes::Tolerance, .no_refine = true, .surface = everywhere(shiny(0.4f))}));
+    lit.light(cubemap::CubeMap(16, glm::vec3(1.0f)));
+    const Verification check = verify(lit, {.num_samples = 0, .eye = eye});
+    const prt::Receivers& receivers = lit.scene().receivers;
+    EXPECT_LT(check.receivers.size(), receivers.size());
+    for (const std::uint32_t i : check.receivers)
+        EXPECT_GT(glm::dot(receivers.normals[i], eye - receivers.positions[i]), 0.0f);
+    EXPECT_LT(check.error.relative_l2, 0.03);
+    EXPECT_THROW(static_cast<void>(verify(lit, {.num_samples = 0, .eye = glm::vec3(0.0f)})),
+                 std::invalid_argument);
+}
+
+// The sun's shadows are as sharp in a picture of a glossy mesh as in one of a matt mesh.
+TEST(Verify, OfAPictureTracesLightsOfGlossyMeshesToo) {
+    const auto error = [](const std::optional<prt::Surface>& surface) {
+        PrecomputeOptions options{.tolerance = scenes::Tolerance, .no_refine = true};
+        if (surface) {
+            options.surface = everywhere(*surface);
+            options.view = View{.camera = Camera{.eye = {1, 1, 4}, .target = {0, 0, 0}}};
+        }
+        LitScene lit(precompute(Mesh(scenes::boulder()), options));
+        lit.light(scenes::sun_and_sky());
+        EXPECT_EQ(lit.scene().transfer.glossy.has_value(), surface.has_value());
+        return verify(lit, {.num_samples = 1, .num_surface_points = 200})
+            .picture->error.relative_l2;
+    };
+    EXPECT_NEAR(error(shiny(0.4f)), error({}), 1e-4);
 }
 
 } // namespace

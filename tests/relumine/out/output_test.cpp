@@ -1,6 +1,7 @@
 #include "relumine/out/output.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -8,6 +9,8 @@
 
 #include "cubemap/image/environment.h"
 #include "mesh/floor.h"
+#include "relight/pictures/exposure.h"
+#include "relumine/out/floor_picture.h"
 #include "tests/mesh/lit_ply.h"
 #include "tests/prt/scenes.h"
 #include "tests/prt/textured_square.h"
@@ -272,6 +275,54 @@ TEST_F(Output, AFloorCatchesShadows) {
         }
 }
 
+/// What a picture shows of the ground below an eye and of the sky above it.
+std::array<glm::vec3, 2> ground_and_sky(const LitScene& lit) {
+    const Lighting lighting = lit.lighting();
+    const relight::Backdrop seen =
+        on_floor(relight::map_backdrop(lighting.behind()), lit.scene(), lighting, FloorLook::Photo,
+                 glm::vec3(0.0f, 3.0f, 4.0f));
+    return {seen(glm::normalize(glm::vec3(0.2f, -1.0f, -0.3f))),
+            seen(glm::normalize(glm::vec3(0.2f, 0.5f, -1.0f)))};
+}
+
+TEST_F(Output, ThePhotographedGroundTakesTheLightOfLayersAndLists) {
+    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
+    lit.light(sunny());
+    const glm::vec3 open = *lit.lighting().open_floor;
+    std::array<glm::vec3, 2> before{};
+    const auto expect_factors = [&](float ground, float sky) {
+        const std::array<glm::vec3, 2> now = ground_and_sky(lit);
+        EXPECT_NEAR(now[0].g, ground * before[0].g, 3e-3f * ground * before[0].g);
+        EXPECT_NEAR(now[1].g, sky * before[1].g, 1e-4f * before[1].g);
+    };
+    for (const double turn : {90.0, 0.0}) {
+        set_layers(lit, {});
+        set_rotation(lit, turn);
+        before = ground_and_sky(lit);
+        // The sun is flagged: the ground lies in the shade as the asset does.
+        cubemap::LightLayer flag;
+        flag.region =
+            cubemap::Disc{.direction = cubemap::texel_direction(cubemap::Face::PositiveY, 3, 4, 16),
+                          .radius_degrees = 25.0};
+        flag.effect = cubemap::Gain{.factor = 0.0f};
+        set_layers(lit, {flag});
+        const float shade = lit.lighting().open_floor->g / open.g;
+        EXPECT_LT(shade, 0.8f);
+        expect_factors(shade, 1.0f);
+        // What dims the ground itself is seen once.
+        flag.region = cubemap::Disc{.direction = {0, 1, 0}, .radius_degrees = 180.0};
+        flag.effect = cubemap::Gain{.factor = 0.5f};
+        set_layers(lit, {flag});
+        expect_factors(0.5f, 0.5f);
+    }
+    set_layers(lit, {});
+    Light both{sunny()};
+    both.lights = {{.direction = {0, 1, 0}, .irradiance = glm::dvec3(3.0)}};
+    lit.light(std::move(both));
+    EXPECT_GT(lit.lighting().open_gain.g, 1.0f);
+    expect_factors(lit.lighting().open_floor->g / open.g, 1.0f);
+}
+
 TEST_F(Output, TheFloorIsGreyWhereNoGroundIsKnown) {
     LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
     lit.light(sunny());
@@ -297,21 +348,46 @@ TEST_F(Output, ExposureIsThatOfTheMeshAndNotOfItsFloor) {
     EXPECT_EQ(exposure(0.05f), exposure(5.0f));
 }
 
-TEST_F(Output, ExposureBrightensNoRoundings) {
+const Camera LookingDown{
+    .eye = {1.0f, 2.0f, 4.0f}, .target = {0.0f, 0.2f, 0.0f}, .fov_degrees = 30};
+
+TEST_F(Output, ExposureMetersTheLightOfADarkAsset) {
     LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
     lit.light(cubemap::CubeMap(8, glm::vec3(4.0f)));
     const auto exposure = [&](float albedo) {
         return Painter(lit, {.albedo = glm::vec3(albedo), .background = glm::vec3(0.0f)})
             .choose_exposure_ev(lit.lighting());
     };
-    // Black that gets no light but what roundings let through stays black.
-    EXPECT_NEAR(exposure(1e-7f), 12.0 - 2.0, 0.02);
-    EXPECT_LT(exposure(1e-2f), 8.0);
-    EXPECT_GT(exposure(1e-2f), exposure(1.0f) + 5.0);
+    const double least = exposure(relight::LeastMeteredAlbedo);
+    EXPECT_NEAR(least, exposure(1.0f) + 2.0, 0.02);
+    for (const float dark : {0.1f, 1e-2f, 1e-7f, 0.0f})
+        EXPECT_EQ(exposure(dark), least) << dark;
 }
 
-const Camera LookingDown{
-    .eye = {1.0f, 2.0f, 4.0f}, .target = {0.0f, 0.2f, 0.0f}, .fov_degrees = 30};
+TEST_F(Output, ExposureBrightensNoRoundings) {
+    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f}));
+    lit.light(cubemap::CubeMap(8, glm::vec3(4.0f)));
+    // As inside of a room that lets no more light through than roundings do.
+    const std::vector<glm::vec3> rounded(lit.radiance().size(), glm::vec3(1e-7f));
+    Lighting lighting = lit.lighting();
+    lighting.radiance = lighting.arriving = rounded;
+    lighting.lights.clear();
+    EXPECT_NEAR(Painter(lit, {.background = glm::vec3(0.0f)}).choose_exposure_ev(lighting),
+                12.0 - 2.0, 0.02);
+}
+
+TEST_F(Output, PixelsOfADarkAssetAreMeteredAsItsVertices) {
+    LitScene lit(precompute(standing(4.0f), {.tolerance = 0.1f,
+                                             .receivers = Pixels{.width = 40, .height = 30},
+                                             .view = View{.camera = LookingDown}}));
+    lit.light(cubemap::CubeMap(8, glm::vec3(4.0f)));
+    const auto exposure = [&](float albedo) {
+        return Painter(lit, {.albedo = glm::vec3(albedo), .background = glm::vec3(0.0f)})
+            .choose_exposure_ev(lit.lighting());
+    };
+    EXPECT_EQ(exposure(1e-3f), exposure(relight::LeastMeteredAlbedo));
+    EXPECT_NEAR(exposure(1e-3f), exposure(1.0f) + 2.0, 0.02);
+}
 
 /// A dark post on a floor, under a lamp that the picture does not show.
 Scene post_under_lamp(const ReceiverChoice& receivers) {
