@@ -13,7 +13,7 @@ NAME = "Cycles"
 #: Blender's world has +Z up: rows of what takes our directions to its.
 WORLD = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
 #: The middle of a lat-long is +X of Blender's world, and +Z (Blender's -Y) of ours.
-DOME = np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]])
+DOME = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
 
 
 def version():

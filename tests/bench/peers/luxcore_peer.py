@@ -105,7 +105,7 @@ def look(state, camera):
 
 def picture(state, samples):
     state.seed += 1
-    # At the last vertex of a path highlights miss what their own rays would find: one vertex more.
+    # At the last vertex of a path lights alone are sampled, and highlights are noise: one vertex more.
     depth = 64 if state.bounces is None or state.has_glass else state.bounces + (1 if state.is_matte else 2)
     depths = {f"path.pathdepth.{name}": depth for name in ("total", "diffuse", "glossy", "specular")}
     config = pyluxcore.RenderConfig(_properties({
