@@ -78,9 +78,9 @@ def build(scene):
         text += f"material{number} mesh shape{number} 1 {state.path(f'{number}.rtm')} 0 0\n"
     with open(state.path("shapes.rad"), "w") as file:
         file.write(text)
-    state.bounces = 64 if scene["bounces"] is None else scene["bounces"]
+    state.bounces = 16 if scene["bounces"] is None else scene["bounces"]
+    state.is_glass = any(each["material"]["kind"] == "glass" for each in scene["shapes"])
     state.camera = scene["camera"]
-    state.oct = None
     relight(state, scene["light"])
     return state
 
@@ -131,8 +131,9 @@ def picture(state, samples):
     origin, directions = rays_of(state.camera, per_axis)
     rays = np.concatenate([np.broadcast_to(origin, directions.shape), directions], axis=2).reshape(-1, 6)
     each = max(1, samples // per_axis**2)
-    # No ambient cache (-aa 0), no limit by weight, no end by Russian roulette before the last bounce.
-    words = ["-h", "-fff", "-ab", state.ambient, "-aa", 0, "-ad", each, "-as", 0, "-lr", 64, "-lw", 1e-7, "-ss", each, "-st", 0, "-dj", 0, "-ds", 0.05, "-dt", 0, "-n", 2]
+    # No ambient cache (-aa 0); of what bounces, rays of little weight go on by chance (-lr < 0), or they would be too many.
+    ends = ["-lr", 64, "-lw", 1e-7] if state.bounces == 0 or state.is_glass else ["-lr", -64, "-lw", 1 / each]
+    words = ["-h", "-fff", "-ab", state.ambient, "-aa", 0, "-ad", each, "-as", 0, *ends, "-ss", each, "-st", 0, "-dj", 0, "-ds", 0.05, "-dt", 0, "-n", 2]
     found = np.frombuffer(run("rtrace", *words, state.path("scene.oct"), data=rays.astype(np.float32).tobytes()), np.float32)
     size = state.camera["size"]
     return found.reshape(size, per_axis, size, per_axis, 3).mean((1, 3))
