@@ -6,12 +6,33 @@ import struct
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 import relumine
 from conftest import boulder_arrays, sky_pixels
 
 EXAMPLES = os.path.join(os.path.dirname(__file__), "../../examples/python")
+
+#: A June morning of Milan in an EPW file: (hour, direct, diffuse).
+HOURS = [(6, 210, 60), (9, 640, 110), (10, 0, 240), (12, 780, 130)]
+WEATHER = "LOCATION,Milan,-,ITA,made,160800,45.0,8.0,1.0,103.0\n" + "-\n" * 7 + "".join(
+    f"2025,6,21,{hour},60,-,20.0,11.0,60,101000,0,0,300,0,{direct},{diffuse}\n"
+    for hour, direct, diffuse in HOURS
+)
+#: Two squares, one above the other.
+TABLE = (
+    "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+    "-2 0 -2\n-2 0 2\n2 0 2\n2 0 -2\n-1 1 -1\n-1 1 1\n1 1 1\n1 1 -1\n4 0 1 2 3\n4 4 5 6 7\n"
+)
+#: cd/m2 of Radiance's gendaymtx 6.0a for these hours: the zenith; 42 degrees high in the north, east, south and west.
+RADIANCE = [
+    [1263, 2059, 3352, 1584, 1510],
+    [2512, 2781, 23928, 2950, 2303],
+    [10265, 8484, 11230, 9137, 7879],
+    [5915, 2321, 4652, 6304, 2533],
+]
 
 
 @pytest.fixture(scope="module")
@@ -25,6 +46,8 @@ def files(tmp_path_factory):
     relighter.save(folder / "boulder.ply")
     scene.save(folder / "boulder.prt")
     sky.save(folder / "sky.exr")
+    (folder / "weather.epw").write_text(WEATHER)
+    (folder / "table.ply").write_text(TABLE)
     return folder
 
 
@@ -38,11 +61,12 @@ def files(tmp_path_factory):
         (["torch_gradient.py", "boulder.prt", "out.png"], (320, 240)),
         (["own_blockers.py", "out.png"], (640, 480)),
         (["error_plot.py", "boulder.ply", "sky.exr", "out.png", "20"], (720, 480)),
+        (["daylight.py", "table.ply", "weather.epw", "out.png"], (960, 720)),
     ],
     ids=lambda value: value[0] if isinstance(value[0], str) else "",
 )
 def test_runs(files, arguments, size):
-    if arguments[0] == "error_plot.py":
+    if arguments[0] in ("error_plot.py", "daylight.py"):
         pytest.importorskip("matplotlib")
     if arguments[0] == "torch_gradient.py":
         pytest.importorskip("torch")
@@ -60,6 +84,28 @@ def test_says_its_usage(name):
         [sys.executable, os.path.join(EXAMPLES, name)], capture_output=True, text=True
     )
     assert done.returncode == 1 and done.stderr.startswith(name), done.stderr
+
+
+def test_daylight_of_an_open_floor(files):
+    # Without walls a floor gets what the sky and the sun send to the ground.
+    sys.path.insert(0, EXAMPLES)
+    try:
+        import daylight
+    finally:
+        sys.path.remove(EXAMPLES)
+    sky = daylight.Sky(*daylight.read_epw(files / "weather.epw"))
+    scene = relumine.precompute([[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [1, 0, -1]], [[0, 1, 2], [0, 2, 3]])
+    lux = daylight.relit(relumine.Relighter(scene), sky, bounces=False)
+    lux = lux[:, scene.normals[:, 1] > 0]  # it has a back, too
+    assert len(lux) == len(HOURS)
+    np.testing.assert_allclose(lux.mean(axis=1), sky.diffuse + sky.direct * sky.sun[:, 1], rtol=0.03)
+    # Luminances at the zenith and 42 degrees high in the four quarters.
+    directions = [[0, 1, 0], *([np.cos(0.733) * x, np.sin(0.733), np.cos(0.733) * z] for x, z in ((0, -1), (1, 0), (0, 1), (-1, 0)))]
+    grid, areas = daylight.cube_directions(64)
+    near = [np.unravel_index((grid @ np.asarray(each)).argmax(), areas.shape) for each in directions]
+    for hour, wanted in enumerate(RADIANCE):
+        found = sky.luminance(hour, grid, areas)
+        np.testing.assert_allclose([found[place] for place in near], wanted, rtol=0.05)
 
 
 def test_the_notebook_runs():

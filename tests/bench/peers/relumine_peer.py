@@ -1,0 +1,137 @@
+"""Relumine, through its Python package; the scene goes in as a glTF file, as from any modeller."""
+import base64
+import json
+import os
+import tempfile
+import warnings
+
+import numpy as np
+import relumine
+from relumine import _core
+
+NAME = "Relumine"
+warnings.simplefilter("ignore", relumine.RelumineWarning)
+
+
+def version():
+    return relumine.__version__
+
+
+def _material(given):
+    kind, color = given["kind"], list(given["color"])
+    pbr = {"baseColorFactor": color + [1.0], "metallicFactor": 1.0 if kind == "metal" else 0.0, "roughnessFactor": given["roughness"]}
+    result = {"pbrMetallicRoughness": pbr, "extensions": {}, "doubleSided": True}
+    extensions = result["extensions"]
+    if kind == "matte":  # no highlight at all
+        pbr["roughnessFactor"] = 1.0
+        extensions["KHR_materials_specular"] = {"specularFactor": 0.0}
+    if kind == "glass":
+        pbr["roughnessFactor"] = 0.0
+        extensions["KHR_materials_transmission"] = {"transmissionFactor": 1.0}
+        extensions["KHR_materials_volume"] = {"thicknessFactor": 1.0}
+        extensions["KHR_materials_ior"] = {"ior": given["ior"]}
+        result["doubleSided"] = False
+    if given["coat"]:
+        extensions["KHR_materials_clearcoat"] = {"clearcoatFactor": given["coat"], "clearcoatRoughnessFactor": 0.0}
+    if any(given["sheen"]):
+        extensions["KHR_materials_sheen"] = {"sheenColorFactor": list(given["sheen"]), "sheenRoughnessFactor": given["sheen_roughness"]}
+    if any(given["glow"]):
+        strength = max(given["glow"])
+        result["emissiveFactor"] = [each / strength for each in given["glow"]]
+        extensions["KHR_materials_emissive_strength"] = {"emissiveStrength": strength}
+    return result
+
+
+def write_gltf(path, shapes, lamps=()):
+    """Writes shapes and point lights as one .gltf file."""
+    binary, views, accessors, meshes, nodes, materials = bytearray(), [], [], [], [], []
+
+    def accessor(array, kind, target):
+        views.append({"buffer": 0, "byteOffset": len(binary), "byteLength": array.nbytes, "target": target})
+        binary.extend(array.tobytes())
+        accessors.append({
+            "bufferView": len(views) - 1, "count": array.size if kind == "SCALAR" else len(array), "type": kind,
+            "componentType": 5125 if array.dtype == np.uint32 else 5126,
+            **({} if kind == "SCALAR" else {"min": array.min(0).tolist(), "max": array.max(0).tolist()}),
+        })  # fmt: skip
+        return len(accessors) - 1
+
+    for number, each in enumerate(shapes):
+        attributes = {"POSITION": accessor(each["vertices"].astype(np.float32), "VEC3", 34962)}
+        if each["normals"] is not None:
+            attributes["NORMAL"] = accessor(each["normals"].astype(np.float32), "VEC3", 34962)
+        corners = accessor(each["triangles"].astype(np.uint32).ravel(), "SCALAR", 34963)
+        meshes.append({"primitives": [{"attributes": attributes, "indices": corners, "material": number}]})
+        materials.append(_material(each["material"]))
+        nodes.append({"mesh": number, "name": f"shape{number}"})
+    lights = []
+    for lamp in lamps:
+        strength = max(lamp["intensity"])
+        lights.append({"type": "point", "color": [each / strength for each in lamp["intensity"]], "intensity": strength})
+        nodes.append({"translation": list(lamp["position"]), "name": f"lamp{len(lights)}",
+                      "extensions": {"KHR_lights_punctual": {"light": len(lights) - 1}}})  # fmt: skip
+    used = {name for each in materials for name in each["extensions"]} | ({"KHR_lights_punctual"} if lights else set())
+    document = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": list(range(len(nodes)))}], "nodes": nodes,
+        "meshes": meshes, "materials": materials, "accessors": accessors, "bufferViews": views,
+        "buffers": [{"byteLength": len(binary), "uri": "data:application/octet-stream;base64," + base64.b64encode(binary).decode()}],
+        **({"extensionsUsed": sorted(used)} if used else {}),
+        **({"extensions": {"KHR_lights_punctual": {"lights": lights}}} if lights else {}),
+    }  # fmt: skip
+    with open(path, "w") as file:
+        json.dump(document, file)
+
+
+class State:
+    pass
+
+
+def build(scene):
+    state = State()
+    state.bounces = scene["bounces"]
+    state.camera = scene["camera"]
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "scene.gltf")
+        write_gltf(path, scene["shapes"], scene["light"]["lamps"])
+        mesh = relumine.Mesh.load(path)
+        view = state.camera
+        pixels = {"receivers": f"pixels:{view['size']}x{view['size']}:16", "view": (view["eye"], view["target"], view["fov"]), "material": relumine.Lambert()} if scene.get("pixels") else {}
+        state.scene = relumine.precompute(mesh, bounces=state.bounces != 0, **pixels)
+    state.relighter = relumine.Relighter(state.scene, **({"highlight_rays": 0} if pixels else {}))
+    state.pixels = bool(pixels)
+    relight(state, scene["light"])
+    return state
+
+
+def relight(state, light):
+    if light["suns"]:
+        suns = light["suns"]
+        state.relighter.set_lights(relumine.LightList([sun["direction"] for sun in suns], [sun["irradiance"] for sun in suns]))
+    else:
+        dome = np.zeros((16, 32, 3), np.float32) if light["dome"] is None else light["dome"]
+        environment = relumine.Environment(dome, face_resolution=64 if state.pixels else 0)
+        state.relighter.set_environment(environment.turned(turn=light["turn"]))
+    if state.bounces != 0:
+        state.relighter.bounce(state.bounces)
+
+
+def look(state, camera):
+    state.camera = camera
+
+
+def picture(state, samples):
+    """`samples` are those of highlights; what is matte has no noise."""
+    if state.pixels:
+        return np.asarray(state.relighter.picture(albedo=1.0, background="none"))[..., :3]
+    view = state.camera
+    drawn = state.relighter.picture(
+        size=(view["size"], view["size"]), eye=view["eye"], target=view["target"], fov=view["fov"], albedo=1.0,
+        background="sharp", highlight_rays=samples,
+    )  # fmt: skip
+    return np.asarray(drawn)[..., :3]
+
+
+def gradient(state, weights, height):
+    """The derivative of sum(weights * picture) by the pixels of the dome, (height, 2 height, 3); of a scene of pixels."""
+    cube = state.relighter.picture_adjoint(weights, albedo=1.0, background="none")
+    return np.asarray(_core.lat_long_adjoint(cube, cube.shape[1], 2 * height, height))
