@@ -33,8 +33,8 @@ struct Ground {
                                       const Ground& ground, const glm::vec3& eye);
 
 /// Whether an environment shows a ground: its part below the horizon is neither black, below 2 % of
-/// what a white ground would send, nor even, within 1 % of its mean, and no lamp or window stands on
-/// it: what is three times as bright as a white ground, and 3 to 17 degrees below the horizon.
+/// what a white ground would send, nor even, within 1 % of its mean, and no lamp or window stands
+/// on it: what is three times as bright as a white ground, and 3 to 17 degrees below the horizon.
 ///
 /// Shape:   open_ground is the radiance of a level white surface that nothing shades.
 /// Cost:    O(texels).
