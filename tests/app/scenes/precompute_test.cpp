@@ -134,7 +134,7 @@ TEST_F(Precompute, NumbersBeyondTheRaysRangeAreRefused) {
     misuse(command({"--view", "1e19,0,0,0,0,0"}), "--view: expected");
     misuse(command({"--view", "0,0,3,0,1e19,0"}), "--view: expected");
     // A mesh so large that the lift leads out of the range.
-    write("mesh.obj", "v 1.8e18 0 0\nv 1.8e18 1e17 0\nv 1.8e18 0 1e17\nf 1 2 3\n");
+    write("mesh.obj", "v 1.8e18 0 0\nv -1.8e18 1e17 0\nv 1.8e18 0 1e17\nf 1 2 3\n");
     fail(command({"--bias", "1e17"}), {"expected receivers and bias within 1.844e+18"});
     write("mesh.obj", "v 1e19 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n");
     fail(command({}), {"mesh.obj: expected coordinates within 1.844e+18"});
