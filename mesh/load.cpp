@@ -74,12 +74,8 @@ std::vector<glm::vec3> load_points(const std::filesystem::path& path, const glm:
     const std::vector<std::byte> bytes = files::read(path);
     try {
         PolygonSoup soup = read_ply(bytes);
-        if (offset == glm::dvec3(0.0))
-            return std::move(soup.positions);
-        soup.remainders.resize(soup.positions.size(), glm::vec3(0.0f));
-        for (std::size_t i = 0; i < soup.positions.size(); ++i)
-            soup.positions[i] =
-                glm::vec3(glm::dvec3(soup.positions[i]) - offset + glm::dvec3(soup.remainders[i]));
+        if (offset != glm::dvec3(0.0))
+            soup.move_back(offset);
         return std::move(soup.positions);
     } catch (const std::runtime_error& reason) {
         throw std::runtime_error(fmt::format("{}: {}", path.string(), reason.what()));

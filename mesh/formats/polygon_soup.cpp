@@ -144,6 +144,13 @@ void PolygonSoup::add_position(const glm::dvec3& position) {
     positions.push_back(rounded);
 }
 
+void PolygonSoup::move_back(const glm::dvec3& by) {
+    remainders.resize(positions.size(), glm::vec3(0.0f));
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        positions[i] = glm::vec3(glm::dvec3(positions[i]) - by + glm::dvec3(remainders[i]));
+    remainders.clear();
+}
+
 void centre(PolygonSoup& soup) {
     const auto is_one = [](const glm::vec3& position) {
         return is_finite(position);
@@ -152,7 +159,6 @@ void centre(PolygonSoup& soup) {
         !std::all_of(soup.positions.begin(), soup.positions.end(), is_one))
         return;
     const std::size_t count = soup.positions.size();
-    soup.remainders.resize(count, glm::vec3(0.0f));
     // A few vertices may lie anywhere.
     std::vector<double> values(count);
     glm::dvec3 middle;
@@ -170,13 +176,12 @@ void centre(PolygonSoup& soup) {
     glm::dvec3 offset;
     for (int axis = 0; axis < 3; ++axis)
         offset[axis] = offset_of(middle[axis], *nearly_all);
-    const std::vector<glm::vec3> remainders = std::exchange(soup.remainders, {});
-    if (offset == glm::dvec3(0.0))
+    if (offset == glm::dvec3(0.0)) {
+        soup.remainders.clear();
         return;
+    }
     soup.offset = offset;
-    for (std::size_t i = 0; i < count; ++i)
-        soup.positions[i] =
-            glm::vec3(glm::dvec3(soup.positions[i]) - offset + glm::dvec3(remainders[i]));
+    soup.move_back(offset);
     for (std::size_t i = 0; i < soup.light_positions.size(); ++i)
         soup.lights[i].position = glm::vec3(soup.light_positions[i] - offset);
     soup.notes.push_back(fmt::format(

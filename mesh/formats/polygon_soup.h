@@ -82,6 +82,8 @@ struct PolygonSoup {
 
     /// Appends a vertex of a file that has more digits than floats.
     void add_position(const glm::dvec3& position);
+    /// Takes a vector off the positions, with what floats rounded off them.
+    void move_back(const glm::dvec3& by);
     /// Closes the face whose corners were appended to `corners` since the last call.
     void end_face() { face_ends.push_back(corners.size()); }
 };

@@ -396,13 +396,15 @@ std::vector<glm::vec3> LitScene::harmonics() const {
 /// Adds what pictures draw with: the lights that are traced one by one, and the rest of the light.
 void LitScene::Impl::take_apart(Lighting& lighting) const {
     std::vector<relight::SharpLight>& lights = lighting.lights;
-    const std::size_t num_own = relighter ? terms.front()->lights().size() : 0;
-    if (has_environment())
-        lighting.num_environment_lights = num_own;
+    std::size_t num_own = 0;
     for (const auto& term : terms) {
         const std::vector<relight::SharpLight> further = term->lights();
         lights.insert(lights.end(), further.begin(), further.end());
+        if (relighter && term == terms.front())
+            num_own = lights.size();
     }
+    if (has_environment())
+        lighting.num_environment_lights = num_own;
     if (relighter && scene->transfer.glossy && !scene->mesh.textures.empty())
         lighting.lobes = relighter->receiver_light().lobes(num_own == 0);
     if (relighter && has_mapped_vertices(*scene))
@@ -445,6 +447,8 @@ void LitScene::Impl::show_environment(Lighting& lighting) const {
 glm::vec3 LitScene::Impl::open_gain(const glm::vec3& open_floor) const {
     constexpr glm::vec3 Up(0.0f, 1.0f, 0.0f);
     const LightState& state = environment.state();
+    if (state.layers.empty() && listed.radiance.empty())
+        return glm::vec3(1.0f);
     glm::dvec3 base(0.0);
     if (!environment.is_edited() || state.layers.empty()) {
         base = relighter->open_radiance(Up);

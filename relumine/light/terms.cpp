@@ -28,7 +28,8 @@ void ClusterTerm::add_radiance(std::span<glm::vec3> own) const {
 }
 
 void ClusterTerm::add_soft(std::span<glm::vec3> own) const {
-    if (lights().empty())
+    // As picture_lights() are empty, which need not be merged for that.
+    if (relighter_.shadow_rays().blockers == nullptr || relighter_.sharp_lights().empty())
         add_radiance(own);
     else
         add(relighter_.receiver_light().soft_radiance(), own);
@@ -83,7 +84,7 @@ void ListTerm::add_radiance(std::span<glm::vec3> own) const {
 }
 
 void ListTerm::add_soft(std::span<glm::vec3> own) const {
-    add(listed_.lights.empty() ? listed_.radiance : listed_.soft, own);
+    add(listed_.without_traced(), own);
 }
 
 void ListTerm::add_harmonics(ArrivingLight& own) const {

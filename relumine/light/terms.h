@@ -40,7 +40,7 @@ public:
     /// Adds its radiance to that of this process's receivers, which has the terms before it.
     virtual void add_radiance(std::span<glm::vec3> own) const = 0;
     /// Adds the radiance without that of lights().
-    virtual void add_soft(std::span<glm::vec3> own) const = 0;
+    virtual void add_soft(std::span<glm::vec3> own) const { add_radiance(own); }
     /// Adds what arrives.
     virtual void add_harmonics(ArrivingLight& own) const = 0;
     /// Returns the lights that pictures trace one by one.
@@ -71,7 +71,6 @@ public:
         : bounces_(bounces), receivers_(receivers) {}
     [[nodiscard]] bool is_lit() const override { return !bounces_.bounced().empty(); }
     void add_radiance(std::span<glm::vec3> own) const override;
-    void add_soft(std::span<glm::vec3> own) const override { add_radiance(own); }
     void add_harmonics(ArrivingLight& own) const override;
 
 private:
@@ -86,7 +85,6 @@ public:
         : lamps_(lamps), receivers_(receivers) {}
     [[nodiscard]] bool is_lit() const override { return !lamps_.direct().empty(); }
     void add_radiance(std::span<glm::vec3> own) const override;
-    void add_soft(std::span<glm::vec3> own) const override { add_radiance(own); }
     void add_harmonics(ArrivingLight& own) const override;
 
 private:
