@@ -20,6 +20,8 @@ import warnings as _warnings
 from dataclasses import dataclass, field
 from typing import Any, Dict, List, Optional, Sequence, Union
 
+import numpy as np
+
 try:
     from pxr import Ar, Sdf, Tf, Usd, UsdUtils
 except ImportError as error:
@@ -29,7 +31,7 @@ from .. import _layers
 from .._environment import Environment
 from .._files import FileError
 from .._mesh import Mesh, RelumineWarning
-from ._lights import Dome, Lights, environment_of
+from ._lights import LEAST_RESOLUTION, Dome, environment_of
 from ._notes import Notes
 from ._stage import Drawn, Reader, bake_skeletons
 
@@ -62,7 +64,10 @@ class Asset:
 
         Without a dome it is dark but for distant lights and lamps.
         """
-        own = environment or self.environment or Environment([[[0.0] * 3] * 2])
+        own = environment or self.environment
+        if own is None:
+            r = LEAST_RESOLUTION
+            own = Environment(np.zeros((6, r, r, 3), np.float32), face_resolution=r)
         relighter.set_environment(own)
         if environment is None and self.layers:
             relighter.set_layers(self.layers)
@@ -169,7 +174,8 @@ def load(
         text = str(item.message).replace(name + ": ", "").replace("stage.glb: ", "")
         reader.notes.add(text, "")
     lights_ = reader.placer.lights
-    environment = environment_of(lights_.domes, _picture(reader.notes), reader.notes)
+    least = LEAST_RESOLUTION if lights_.layers else 16
+    environment = environment_of(lights_.domes, _picture(reader.notes), least)
     lines = reader.notes.lines()
     for line in lines:
         _warnings.warn(line, RelumineWarning, stacklevel=2)

@@ -24,6 +24,9 @@ class Glb:
         self._lists: Dict[str, List[Any]] = {}
         self._extensions: Dict[str, None] = {}
         self._lights: List[Dict[str, Any]] = []
+        self._vertices: List[int] = []
+        #: Of all nodes so far: where the next one's vertices begin in the scene.
+        self.num_vertices = 0
 
     def _add(self, kind: str, item: Dict[str, Any]) -> int:
         items = self._lists.setdefault(kind, [])
@@ -63,11 +66,16 @@ class Glb:
         return primitive
 
     def mesh(self, primitives: List[Dict[str, Any]]) -> int:
+        accessors = self._lists["accessors"]
+        counts = [accessors[p["attributes"]["POSITION"]]["count"] for p in primitives]
+        self._vertices.append(sum(counts))
         return self._add("meshes", {"primitives": primitives})
 
     def node(self, name: str, matrix: Array, **content: int) -> None:
         """`matrix` (4, 4) multiplies rows of points, as USD's."""
         self._add("nodes", {"name": name, "matrix": matrix.reshape(-1).tolist(), **content})
+        if "mesh" in content:
+            self.num_vertices += self._vertices[content["mesh"]]
 
     def punctual(self, light: Dict[str, Any], name: str, matrix: Array) -> None:
         """A light of KHR_lights_punctual."""

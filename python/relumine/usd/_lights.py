@@ -123,7 +123,7 @@ def _cylinder() -> Tuple[Array, Array]:
     a = (np.arange(steps - 1)[:, None] * SIDES + np.arange(SIDES)).reshape(-1)
     b = (np.arange(steps - 1)[:, None] * SIDES + (np.arange(SIDES) + 1) % SIDES).reshape(-1)
     quads = np.stack([a, b, b + SIDES, a, b + SIDES, a + SIDES], 1)
-    return points, quads.reshape(-1, 3)[:, [0, 2, 1]]
+    return points, quads.reshape(-1, 3)
 
 
 def _sphere() -> Tuple[Array, Array]:
@@ -358,8 +358,17 @@ def _cone(prim: Usd.Prim, time: Usd.TimeCode) -> Optional[Tuple[float, float]]:
     return outer * (1.0 - min(max(softness, 0.0), 1.0)), outer
 
 
-def environment_of(domes: List[Dome], load: Any, notes: Notes) -> Optional[Environment]:
-    """The sum of domes. `load(asset, format)` reads a picture, or returns None."""
+#: Texels along the edge of a face, so that layers over it lie where they should.
+LEAST_RESOLUTION = 256
+
+
+def environment_of(domes: List[Dome], load: Any, least: int) -> Optional[Environment]:
+    """The sum of domes; None where there are none. `load(dome)` reads a picture, or returns None.
+
+    least  texels along a face's edge
+    """
+    if not domes:
+        return None
     parts: List[Environment] = []
     constant = np.zeros(3)
     for dome in domes:
@@ -367,22 +376,19 @@ def environment_of(domes: List[Dome], load: Any, notes: Notes) -> Optional[Envir
         if picture is None:
             constant = constant + dome.color
             continue
-        environment = picture.turned(turn=dome.turn)
+        resolution = max(picture.face_resolution, least)
+        environment = picture.turned(turn=dome.turn, face_resolution=resolution)
         if not np.allclose(dome.color, 1.0, rtol=1e-6):
             cube = np.asarray(environment.cube) * dome.color
             environment = Environment(cube, face_resolution=cube.shape[1])
         parts.append(environment)
-    if not parts:
-        if not domes:
-            return None
-        return Environment(np.broadcast_to(constant, (6, 16, 16, 3)).astype(np.float32))
     if len(parts) == 1 and not constant.any():
         return parts[0]
-    r = max(part.cube.shape[1] for part in parts)
+    r = max([16, least, *(part.face_resolution for part in parts)])
     total = np.zeros((6, r, r, 3)) + constant
     for part in parts:
         cube = np.asarray(part.cube)
-        if cube.shape[1] != r:
+        if len(cube[0]) != r:
             cube = part.convert(layout="cube", face_resolution=r).reshape(6, r, r, 3)
         total += cube
     return Environment(total.astype(np.float32), face_resolution=r)

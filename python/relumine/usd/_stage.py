@@ -75,7 +75,7 @@ class Reader:
         self.placer = Placer(self.glb, self.materials, self.notes, self.world, self.up)
         self.drawn: List[Drawn] = []
         self.camera: Optional[str] = None
-        self._num_vertices = self._num_triangles = 0
+        self._num_triangles = 0
         self._parts: Dict[Any, Optional[_Part]] = {}
         self._leaves: Dict[Any, List[Tuple[Usd.Prim, Array, bool]]] = {}
         self._num_leaves = 0
@@ -284,15 +284,16 @@ class Reader:
         if not np.isfinite(placed).all():
             self.notes.add("a place that is not finite: left out", prim.GetPath())
             return
+        first = self.glb.num_vertices
         self.glb.node(prim.GetName(), placed, mesh=part.mesh)
         for corner, _ in part.vertices:
             self.drawn.append(
                 Drawn(
-                    str(prim.GetPath()), self._num_vertices, corner, part.is_refined,
+                    str(prim.GetPath()), first, corner, part.is_refined,
                     part.num_points, is_own and not prim.IsInstanceProxy(),
                 )
             )  # fmt: skip
-            self._num_vertices += len(corner)
+            first += len(corner)
 
     def _bound(self, prim: Usd.Prim) -> Optional[UsdShade.Material]:
         material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
