@@ -120,6 +120,8 @@ Surface reflecting(const MaterialPoint& point, GgxForm form) {
                    .dielectric_f0 = std::max({dielectric.r, dielectric.g, dielectric.b}),
                    .dielectric_f90 = strength};
     add_layers(point, result);
+    if (!has_highlight(material))
+        result.highlight = Highlight::None;
     return result;
 }
 
@@ -168,6 +170,9 @@ Surface measured_surface(std::shared_ptr<const mesh::BrdfTable> table) {
 bool has_highlight(const mesh::Material& material) {
     if (material.model == mesh::MaterialModel::Phong)
         return material.specular != glm::vec3(0.0f);
+    if (material.model == mesh::MaterialModel::MetallicRoughness && material.metallic == 0.0f &&
+        material.specular_strength == 0.0f)
+        return material.coat > 0.0f || material.sheen != glm::vec3(0.0f);
     return material.model != mesh::MaterialModel::Unlit;
 }
 

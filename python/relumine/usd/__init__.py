@@ -18,7 +18,7 @@ import os
 import tempfile
 import warnings as _warnings
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Optional, Sequence, Union
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
@@ -35,7 +35,7 @@ from ._lights import LEAST_RESOLUTION, Dome, environment_of
 from ._notes import Notes
 from ._stage import Drawn, Reader, bake_skeletons
 
-__all__ = ["Asset", "convert", "load"]
+__all__ = ["Asset", "load", "save"]
 Path = Union[str, "os.PathLike[str]"]
 FORMATS = (".usd", ".usda", ".usdc", ".usdz")
 
@@ -58,6 +58,7 @@ class Asset:
     time: Any = field(repr=False)
     _drawn: List[Drawn] = field(repr=False)
     _paths: Dict[str, str] = field(repr=False)
+    _domes: List[str] = field(repr=False)
 
     def light(self, relighter: Any, environment: Optional[Environment] = None) -> None:
         """Lights a scene of the mesh as the stage does, or with an environment of one's own.
@@ -66,8 +67,7 @@ class Asset:
         """
         own = environment or self.environment
         if own is None:
-            r = LEAST_RESOLUTION
-            own = Environment(np.zeros((6, r, r, 3), np.float32), face_resolution=r)
+            own = Environment(_dark(), face_resolution=LEAST_RESOLUTION)
         relighter.set_environment(own)
         if environment is None and self.layers:
             relighter.set_layers(self.layers)
@@ -181,8 +181,61 @@ def load(
         _warnings.warn(line, RelumineWarning, stacklevel=2)
     return Asset(
         mesh, environment, lights_.layers, lights_.lamps, lines, reader.stage, reader.time,
-        reader.drawn, lights_.paths,
+        reader.drawn, lights_.paths, [dome.path for dome in lights_.domes],
     )  # fmt: skip
+
+
+def save(
+    path: Path,
+    asset: Asset,
+    relighter: Any,
+    *,
+    colors: bool = True,
+    lights: bool = True,
+    emission: Optional[Mapping[str, Any]] = None,
+) -> None:
+    """Writes a layer over the asset's stage, which stays as it is: a .usd, .usda or .usdc file.
+
+    relighter  of a scene of asset.mesh
+    colors     the light of the vertices as displayColor, with a material that glows as it says
+    lights     the relighter's environment as a DomeLight with its .exr beside the layer, and discs
+               that emit as DistantLights; those that the stage has keep their prim. Other layers
+               become a part of the dome's picture. Domes of the stage become invisible
+    emission   {name of a lamp: a number or (r, g, b)}: factors on the lamps' intensity and colour
+
+    Prims of instances become prims of their own.
+    """
+    from ._write import write
+
+    for line in write(os.fspath(path), asset, relighter, colors, lights, emission or {}):
+        _warnings.warn(line, RelumineWarning, stacklevel=2)
+
+
+def _files(source: str, mesh: str, lights: str) -> List[str]:
+    """Writes a stage as a .glb, and its domes and distant lights as an .exr; returns what is said."""
+    try:
+        data, reader = convert(source)
+    except ValueError as error:
+        raise FileError(errno.EINVAL, str(error), source) from None
+    if not reader.drawn and not reader.placer.lights.lamps:
+        raise FileError(errno.EINVAL, "expected a stage with a mesh, got none", source)
+    with open(mesh, "wb") as file:
+        file.write(data)
+    from ._write import under
+
+    found = reader.placer.lights
+    least = LEAST_RESOLUTION if found.layers else 16
+    environment = environment_of(found.domes, _picture(reader.notes), least)
+    if environment is not None or found.layers:
+        cube = _dark() if environment is None else np.asarray(environment.cube)
+        if found.layers:
+            cube = under(cube, found.layers)
+        Environment(cube, face_resolution=cube.shape[1]).save(lights, layout="latlong")
+    return [f"{source}: {line}" for line in reader.notes.lines()]
+
+
+def _dark() -> Any:
+    return np.zeros((6, LEAST_RESOLUTION, LEAST_RESOLUTION, 3), np.float32)
 
 
 def _mesh_of(data: bytes, floor: Any, floor_scale: float) -> Mesh:

@@ -31,6 +31,7 @@ class Dome:
     """A dome of one colour, or a picture of the sphere times it. `turn` takes directions of the picture to the world's."""
 
     name: str
+    path: str
     color: Array
     texture: Optional[Any]
     format: str
@@ -231,7 +232,7 @@ class Placer:
             self._notes.add("portals are left out: the dome lights from all sides", prim.GetPath())
         has_texture = texture is not None and texture.path
         name = self._named(prim)
-        self.lights.domes.append(Dome(name, color, texture if has_texture else None, format, turn))
+        self.lights.domes.append(Dome(name, str(prim.GetPath()), color, texture if has_texture else None, format, turn))
 
     def _distant(self, prim: Usd.Prim, matrix: Array, time: Usd.TimeCode, color: Array) -> None:
         direction = np.array([0.0, 0.0, 1.0]) @ (matrix @ self._world)[:3, :3]

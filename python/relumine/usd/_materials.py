@@ -385,7 +385,7 @@ class Materials:
         path = material.GetPath()
         names = []
         for context in ("", "mtlx"):
-            shader = material.ComputeSurfaceSource([context] if context else [])[0]
+            shader = material.ComputeSurfaceSource(context)[0]
             if not shader:
                 continue
             name = shader.GetIdAttr().Get(time) or ""

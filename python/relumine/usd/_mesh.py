@@ -14,7 +14,7 @@ from ._notes import Notes
 
 Array = NDArray[Any]
 #: A subdivision surface is refined to fewer levels rather than to more faces.
-MOST_FACES = 1_000_000
+MOST_FACES = 300_000
 
 
 @dataclass
@@ -43,6 +43,9 @@ class Polygons:
     is_refined: bool
     num_points: int
     is_left_handed: bool
+    #: (C,) the corner of the file's faces; of no use once refined.
+    file_corner: Array
+    num_file_corners: int
 
 
 class Unfit(ValueError):
@@ -185,8 +188,9 @@ def polygons(
             primvars[name] = found
     left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
     result = Polygons(
-        counts, corners, points, normals, primvars, source, scheme != "none", len(points), left_handed
-    )
+        counts, corners, points, normals, primvars, source, scheme != "none", len(points), left_handed,
+        np.arange(len(corners)), len(corners),
+    )  # fmt: skip
     if scheme != "none":
         _refine(mesh, time, scheme, level, result, notes)
     holes = np.asarray(mesh.GetHoleIndicesAttr().Get(time) or (), np.int64)
@@ -208,7 +212,8 @@ def _drop(mesh: Polygons, gone: Array) -> None:
         mesh.normals.index = mesh.normals.index[keep]
     for values in mesh.primvars.values():
         values.index = values.index[keep]
-    mesh.corners, mesh.counts, mesh.source = mesh.corners[keep], mesh.counts[~gone], mesh.source[~gone]
+    mesh.corners, mesh.file_corner = mesh.corners[keep], mesh.file_corner[keep]
+    mesh.counts, mesh.source = mesh.counts[~gone], mesh.source[~gone]
 
 
 def _refine(
@@ -256,7 +261,8 @@ def _refine(
         if values.kind == "point":
             cage.vertex[name] = values.values
         elif values.kind == "corner":
-            cage.face[name] = values.values[values.index]
+            given_corners = values.values[values.index]
+            cage.face[name] = _subdivide.one_for_each(cage.corners, given_corners)
     boundary = mesh.GetInterpolateBoundaryAttr().Get(time)
     face_varying = mesh.GetFaceVaryingLinearInterpolationAttr().Get(time)
     if boundary == "none" and level > 0:
@@ -265,15 +271,14 @@ def _refine(
         cage = _subdivide.refined(
             cage, scheme=scheme, boundary=boundary, face_varying=face_varying
         )
-    normals = _subdivide.smooth_normals(cage)
+    normals, fans = _subdivide.smooth_normals(cage)
     if result.is_left_handed:
         normals = -normals
     for name, values in result.primvars.items():
         if values.kind == "point":
             result.primvars[name] = Values(cage.vertex[name], cage.corners, "point")
         elif values.kind == "corner":
-            corner = cage.face[name]
-            result.primvars[name] = Values(corner, np.arange(len(corner)), "corner")
+            result.primvars[name] = Values(*cage.face[name], "corner")
         elif values.kind == "face":
             # (F,) of the file's faces, whatever was dropped.
             faces = np.zeros(int(result.source.max()) + 1, np.int64)
@@ -286,8 +291,9 @@ def _refine(
             zeros = np.zeros(len(cage.corners), np.int64)
             result.primvars[name] = Values(values.values, zeros, "constant")
     result.counts, result.corners, result.points = cage.counts, cage.corners, cage.points
+    result.file_corner = np.arange(len(cage.corners))
     result.source = cage.source
-    result.normals = Values(normals, np.arange(len(normals)), "corner")
+    result.normals = Values(normals, fans, "point" if fans is cage.corners else "corner")
 
 
 def newell(mesh: Polygons) -> Array:
@@ -396,29 +402,34 @@ def ears(points: Array, normal: Array) -> List[Tuple[int, int, int]]:
 
 @dataclass
 class Vertices:
-    """Vertices of some faces: the corner that each was made of, and (T, 3) triangles of them."""
+    """Vertices of some faces: a corner that each was made of, and (T, 3) triangles of them.
+
+    used, vertex  the corners of these faces, and the vertex that each became
+    """
 
     corner: Array
     triangles: Array
+    used: Array
+    vertex: Array
 
 
 def split(mesh: Polygons, triangles: Array, names: Sequence[str]) -> Vertices:
     """One vertex for each point with one normal and one value of each primvar."""
     used = np.unique(triangles)
-    key = mesh.corners[used].astype(np.int64)
+    columns = [mesh.corners[used].astype(np.uint64)]
     assert mesh.normals is not None
     for values in [mesh.normals, *(mesh.primvars[n] for n in names if n in mesh.primvars)]:
         if values.kind in ("point", "constant"):
             continue
-        given = values.at(used).astype(np.float32)
-        raw = np.ascontiguousarray(given).view([("", np.void, given.itemsize * given.shape[1])])
-        number = np.unique(raw.reshape(-1), return_inverse=True)[1].reshape(-1)
-        key = np.unique(key, return_inverse=True)[1].reshape(-1) * (number.max() + 1) + number
+        numbers = _subdivide.numbers_of(values.values.astype(np.float32))
+        columns.append(numbers[values.index[used]])
     # In the order of points.
-    _, first, inverse = np.unique(key, return_index=True, return_inverse=True)
+    keys = _subdivide.numbers_of(*columns)
+    _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
     order = np.argsort(mesh.corners[used[first]], kind="stable")
     place = np.empty(len(order), np.int64)
     place[order] = np.arange(len(order))
     of_corner = np.zeros(int(used[-1]) + 1, np.int64)
-    of_corner[used] = place[inverse.reshape(-1)]
-    return Vertices(used[first[order]], of_corner[triangles])
+    vertex = place[inverse.reshape(-1)]
+    of_corner[used] = vertex
+    return Vertices(used[first[order]], of_corner[triangles], used, vertex)

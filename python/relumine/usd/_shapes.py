@@ -14,7 +14,7 @@ Array = NDArray[Any]
 SIDES = 48
 
 
-def _profile(rz: Array, nrz: Array, smooth: bool = True) -> Tuple[Array, Array, Array, Array, Array]:
+def _profile(rz: Array, nrz: Array) -> Tuple[Array, Array, Array, Array]:
     """A surface around +Z: radii and heights (K, 2), and normals in their plane (K, 2)."""
     angle = 2.0 * np.pi * np.arange(SIDES) / SIDES
     c, s = np.cos(angle), np.sin(angle)
@@ -24,20 +24,19 @@ def _profile(rz: Array, nrz: Array, smooth: bool = True) -> Tuple[Array, Array, 
         flat = np.stack([r * c, r * s, np.broadcast_to(z, (len(z), SIDES))], -1)
         return flat.reshape(-1, 3)
 
-    k = np.arange(len(rz) - 1)[:, None] * SIDES
     i = np.arange(SIDES)
     j = (i + 1) % SIDES
-    quads = np.stack([k + i, k + j, k + SIDES + j, k + SIDES + i], -1).reshape(-1, 4)
-    points = around(rz)
     counts, corners = [], []
-    for quad in quads:
-        # Poles are points: their quadrangles have three corners.
-        p = points[quad]
-        keep = [q for n, q in enumerate(quad) if not np.array_equal(p[n], p[n - 1])]
-        if len(keep) >= 3:
-            counts.append(len(keep))
-            corners += keep
-    return points, around(nrz), np.array(counts), np.array(corners), quads
+    for k in range(len(rz) - 1):
+        ring = [k * SIDES + i, k * SIDES + j, (k + 1) * SIDES + j, (k + 1) * SIDES + i]
+        # Poles are points: their faces have three corners.
+        if rz[k, 0] == 0.0:
+            del ring[1]
+        elif rz[k + 1, 0] == 0.0:
+            del ring[2]
+        counts.append(np.full(SIDES, len(ring)))
+        corners.append(np.stack(ring, -1).reshape(-1))
+    return around(rz), around(nrz), np.concatenate(counts), np.concatenate(corners)
 
 
 def _circle_part(low: float, high: float, steps: int) -> Array:
@@ -86,7 +85,7 @@ def shape(prim: Usd.Prim, time: Usd.TimeCode) -> Optional[Polygons]:
     axis = "Z"
     if prim.IsA(UsdGeom.Sphere):
         ball = _circle_part(-90, 90, SIDES // 2)
-        points, normals, counts, corners, _ = _profile(ball * number("radius"), ball)
+        points, normals, counts, corners = _profile(ball * number("radius"), ball)
     elif prim.IsA(UsdGeom.Cube):
         h = 0.5 * number("size")
         faces = []
@@ -103,7 +102,7 @@ def shape(prim: Usd.Prim, time: Usd.TimeCode) -> Optional[Polygons]:
         top = 0.0 if prim.IsA(UsdGeom.Cone) else radius
         slope = np.array([2.0 * half, radius - top])
         slope /= max(float(np.linalg.norm(slope)), 1e-300)
-        side = _profile(np.array([[radius, -half], [top, half]]), np.stack([slope, slope]))[:4]
+        side = _profile(np.array([[radius, -half], [top, half]]), np.stack([slope, slope]))
         parts = [side, _cap(radius, -half, -1.0)]
         if top > 0.0:
             parts.append(_cap(top, half, 1.0))
@@ -113,7 +112,7 @@ def shape(prim: Usd.Prim, time: Usd.TimeCode) -> Optional[Polygons]:
         radius, half = number("radius"), 0.5 * number("height")
         low, high = _circle_part(-90, 0, SIDES // 4), _circle_part(0, 90, SIDES // 4)
         rz = np.concatenate([low * radius - [0, half], high * radius + [0, half]])
-        points, normals, counts, corners, _ = _profile(rz, np.concatenate([low, high]))
+        points, normals, counts, corners = _profile(rz, np.concatenate([low, high]))
     elif prim.IsA(UsdGeom.Plane):
         axis = prim.GetAttribute("axis").Get(time)
         w, l = 0.5 * number("width"), 0.5 * number("length")
@@ -140,4 +139,6 @@ def shape(prim: Usd.Prim, time: Usd.TimeCode) -> Optional[Polygons]:
         False,
         len(points),
         left,
+        np.arange(len(corners)),
+        len(corners),
     )

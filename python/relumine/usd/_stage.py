@@ -25,17 +25,28 @@ DEEPEST = 16
 
 
 @dataclass
+class Shown:
+    """Vertices of one material of a mesh.
+
+    of_file  of a refined mesh: (size,) the file's point that each is, or -1; of any other: (corners
+             of the file,) the vertex of each, or -1
+    """
+
+    size: int
+    of_file: Array
+
+
+@dataclass
 class Drawn:
     """Vertices of the scene that show a prim."""
 
     path: str
     #: Where in Mesh.vertices they begin.
     first: int
-    #: (V,) the corner of the file's faces that each was made of; of a refined one, the point or -1.
-    corner: Array
+    shown: Shown
     is_refined: bool
     num_points: int
-    #: Where the prim may be written: not inside of a prototype that several places show.
+    #: False for instances of a point instancer.
     is_own: bool
 
 
@@ -45,7 +56,7 @@ class _Part:
 
     mesh: int
     num_triangles: int
-    vertices: List[Tuple[Array, int]]
+    shown: List[Shown]
     is_refined: bool
     num_points: int
 
@@ -97,8 +108,6 @@ class Reader:
         stack.reverse()
         while stack:
             prim, above, purpose, is_own = stack.pop()
-            if prim.IsInstance():
-                is_own = False
             placed, purpose = self._placed(prim, above, purpose)
             if placed is None:
                 continue
@@ -286,14 +295,13 @@ class Reader:
             return
         first = self.glb.num_vertices
         self.glb.node(prim.GetName(), placed, mesh=part.mesh)
-        for corner, _ in part.vertices:
+        for shown in part.shown:
             self.drawn.append(
                 Drawn(
-                    str(prim.GetPath()), first, corner, part.is_refined,
-                    part.num_points, is_own and not prim.IsInstanceProxy(),
+                    str(prim.GetPath()), first, shown, part.is_refined, part.num_points, is_own
                 )
             )  # fmt: skip
-            first += len(corner)
+            first += shown.size
 
     def _bound(self, prim: Usd.Prim) -> Optional[UsdShade.Material]:
         material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
@@ -328,7 +336,8 @@ class Reader:
         of_triangle = of_face[polygons.source[faces]]
         if lamp_at is not None:
             looks = [self._lamp(prim, polygons, triangles, lamp_at)] * len(looks)
-        primitives, vertices = [], []
+        primitives: List[Dict[str, Any]] = []
+        shown: List[Shown] = []
         for number, look in enumerate(looks):
             chosen = triangles[of_triangle == number]
             if not len(chosen):
@@ -347,15 +356,17 @@ class Reader:
                 else:
                     attributes["COLOR_0"] = np.clip(values.at(split.corner), 0.0, 1.0)
             primitives.append(self.glb.primitive(attributes, split.triangles, look.index))
-            of_file = split.corner
             if polygons.is_refined:
                 point = polygons.corners[split.corner]
                 of_file = np.where(point < polygons.num_points, point, -1)
-            vertices.append((of_file, number))
+            else:
+                of_file = np.full(polygons.num_file_corners, -1)
+                of_file[polygons.file_corner[split.used]] = split.vertex
+            shown.append(Shown(len(split.corner), of_file))
         if not primitives:
             raise _mesh.Unfit("has no faces")
         return _Part(
-            self.glb.mesh(primitives), len(triangles), vertices, polygons.is_refined, polygons.num_points
+            self.glb.mesh(primitives), len(triangles), shown, polygons.is_refined, polygons.num_points
         )
 
     def _polygons(self, prim: Usd.Prim, wanted: List[Tuple[str, int]]) -> _mesh.Polygons:
