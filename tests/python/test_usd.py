@@ -2,8 +2,10 @@
 
 import io
 import itertools
+import json
 import math
 import os
+import re
 import subprocess
 import sys
 import zipfile
@@ -19,10 +21,16 @@ import relumine.usd
 pytestmark = pytest.mark.filterwarnings("ignore::relumine.RelumineWarning")
 
 
+def usda(text, head=""):
+    """A text as the format wants it: a line for each statement."""
+    lines = re.sub(r"(?<=\S) *\}", "\n}", text.replace("{ ", "{\n"))
+    return f"#usda 1.0\n(\n{head}\n)\n{lines}"
+
+
 def stage_of(text, up="Y", meters=1.0):
     stage = Usd.Stage.CreateInMemory()
-    head = f'#usda 1.0\n(\n    upAxis = "{up}"\n    metersPerUnit = {meters}\n)\n'
-    assert stage.GetRootLayer().ImportFromString(head + text)
+    head = f'    upAxis = "{up}"\n    metersPerUnit = {meters}'
+    assert stage.GetRootLayer().ImportFromString(usda(text, head))
     return stage
 
 
@@ -175,7 +183,7 @@ def sky_file(tmp_path_factory):
 
 @pytest.mark.parametrize(
     "up, kind, axis",
-    itertools.product("YZ", ("DomeLight", "scene", "Y", "Z"), ("", "X", "Y", "Z")),
+    list(itertools.product("YZ", ("DomeLight", "scene", "Y", "Z"), ("", "X", "Y", "Z"))),
 )
 def test_domes_stand_as_they_should(sky_file, up, kind, axis):
     is_new = kind != "DomeLight"
@@ -199,7 +207,7 @@ def {"DomeLight_1" if is_new else "DomeLight"} "Dome" {{
     for normal in [*np.eye(3), *-np.eye(3), np.ones(3) / math.sqrt(3)]:
         share = (np.clip(w @ normal, 0, None) * solid)[..., None]
         expected = 4 * np.array([1, 0.5, 0.25]) * (sky * share).sum((0, 1))
-        assert environment.irradiance(normal) == pytest.approx(expected, rel=0.002)
+        assert environment.irradiance(normal) == pytest.approx(expected, rel=0.006)
 
 
 def test_domes_add_up_and_one_without_a_picture_has_its_colour():
@@ -363,8 +371,10 @@ class "P" { def Mesh "M" {
     int[] faceVertexIndices = [0, 1, 2]
     point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
 } }
-def Xform "A" (instanceable = true inherits = </P>) {}
-def Xform "B" (instanceable = true inherits = </P>) {
+def Xform "A" (instanceable = true
+inherits = </P>) {}
+def Xform "B" (instanceable = true
+inherits = </P>) {
     double3 xformOp:translate = (5, 0, 0)
     uniform token[] xformOpOrder = ["xformOp:translate"] }
 def Xform "C" (inherits = </P>) { token visibility = "invisible" }
@@ -420,8 +430,10 @@ def SkelRoot "R" (prepend apiSchemas = ["SkelBindingAPI"]) {
         int[] faceVertexCounts = [3]
         int[] faceVertexIndices = [0, 1, 2]
         point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
-        int[] primvars:skel:jointIndices = [0] (interpolation = "constant" elementSize = 1)
-        float[] primvars:skel:jointWeights = [1] (interpolation = "constant" elementSize = 1)
+        int[] primvars:skel:jointIndices = [0] (interpolation = "constant"
+elementSize = 1)
+        float[] primvars:skel:jointWeights = [1] (interpolation = "constant"
+elementSize = 1)
     }
 }
 """
@@ -431,7 +443,7 @@ def SkelRoot "R" (prepend apiSchemas = ["SkelBindingAPI"]) {
 # Materials.
 
 
-def textured(path, *, st="", inputs="", output="rgb", name="diffuseColor", kind="color3f", scale=""):
+def textured(path, *, st_node="", inputs="", output="rgb", name="diffuseColor", kind="color3f", scale=""):
     return f"""
 def Material "Look" {{
     token outputs:surface.connect = </Look/S.outputs:surface>
@@ -445,7 +457,7 @@ def Material "Look" {{
         uniform token info:id = "UsdUVTexture"
         asset inputs:file = @{path}@
         {scale}
-        float2 inputs:st.connect = {"</Look/X.outputs:result>" if st else "</Look/R.outputs:result>"}
+        float2 inputs:st.connect = {"</Look/X.outputs:result>" if st_node else "</Look/R.outputs:result>"}
         float3 outputs:rgb
         float outputs:r
         float outputs:g
@@ -455,7 +467,7 @@ def Material "Look" {{
     def Shader "X" {{
         uniform token info:id = "UsdTransform2d"
         float2 inputs:in.connect = </Look/R.outputs:result>
-        {st}
+        {st_node}
         float2 outputs:result
     }}
     def Shader "R" {{
@@ -517,35 +529,45 @@ def Material "Look" {
     assert material["roughness"] == pytest.approx(0.25)
 
 
-def glowing(folder, picture, look_options, st="(0, 0), (1, 0), (0, 1)"):
-    """Radiance of the three vertices of a triangle that glows as a texture says."""
-    picture.save(folder / "glow.png")
-    inputs = "color3f inputs:diffuseColor = (0, 0, 0)\nint inputs:useSpecularWorkflow = 1"
-    look = textured(folder / "glow.png", name="emissiveColor", inputs=inputs, **look_options)
-    mesh = loaded(bound(look, st)).mesh
+def document(text):
+    """The glTF document that a stage becomes."""
+    data = relumine.usd.convert(stage_of(text))[0]
+    return json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
+
+
+def colors_of(folder, picture, st="(0.25, 0.25), (0.75, 0.25), (0.25, 0.75)", **look_options):
+    """What the three vertices of a matte triangle reflect of a white sky."""
+    picture.save(folder / "color.png")
+    inputs = "int inputs:useSpecularWorkflow = 1"
+    mesh = loaded(bound(textured(folder / "color.png", inputs=inputs, **look_options), st)).mesh
     relighter = relumine.Relighter(relumine.precompute(mesh, refine=False, bounces=False))
-    relighter.set_environment(relumine.Environment(np.zeros((6, 4, 4, 3))))
+    relighter.set_environment(relumine.Environment(np.ones((6, 4, 4, 3))))
     return np.array(relighter.radiance)
 
 
 def test_channels_scale_bias_and_transforms_of_textures(tmp_path):
-    """Four texels, each of its colour: red, green below, blue, white above."""
+    """Four texels: red and green below, blue and white above."""
     picture = Image.new("RGB", (2, 2))
     for at, color in {(0, 1): (255, 0, 0), (1, 1): (0, 255, 0), (0, 0): (0, 0, 255), (1, 0): (255,) * 3}.items():
         picture.putpixel(at, color)
-    middles = "(0.25, 0.25), (0.75, 0.25), (0.25, 0.75)"
-    plain = glowing(tmp_path, picture, {}, middles)
-    assert plain == pytest.approx(np.eye(3), abs=0.01)
-    scaled = glowing(tmp_path, picture, {"scale": "float4 inputs:scale = (2, 0.5, 1, 1)\n"
-                                                  "float4 inputs:bias = (0, 0.25, 0, 0)"}, middles)  # fmt: skip
-    assert scaled == pytest.approx(np.array([[2, 0.25, 0], [0, 0.75, 0], [0, 0.25, 1]]), abs=0.02)
-    one = glowing(tmp_path, picture, {"output": "r", "kind": "color3f"}, middles)
-    assert one == pytest.approx(np.array([[1] * 3, [0] * 3, [0] * 3]), abs=0.01)
+    near = {"abs": 0.01}
+    assert colors_of(tmp_path, picture) == pytest.approx(np.eye(3), **near)
+    scale = "float4 inputs:scale = (0.75, 0.5, 1, 1)\nfloat4 inputs:bias = (0, 0.25, 0, 0)"
+    expected = np.array([[0.75, 0.25, 0], [0, 0.75, 0], [0, 0.25, 1]])
+    assert colors_of(tmp_path, picture, scale=scale) == pytest.approx(expected, **near)
+    red = np.array([[1] * 3, [0] * 3, [0] * 3])
+    assert colors_of(tmp_path, picture, output="r") == pytest.approx(red, **near)
     # A turn of 90 degrees takes (u, v) to (-v, u).
-    turned = glowing(tmp_path, picture, {"st": "float inputs:rotation = 90"}, middles)
-    assert turned == pytest.approx(np.array([[0, 1, 0], [1, 1, 1], [1, 0, 0]]), abs=0.01)
-    moved = glowing(tmp_path, picture, {"st": "float2 inputs:scale = (1, -1)\nfloat2 inputs:translation = (0.5, 0)"}, middles)  # fmt: skip
-    assert moved == pytest.approx(np.array([[1, 1, 1], [0, 0, 1], [0, 1, 0]]), abs=0.01)
+    turned = np.array([[0, 1, 0], [1, 1, 1], [1, 0, 0]])
+    assert colors_of(tmp_path, picture, st_node="float inputs:rotation = 90") == pytest.approx(turned, **near)
+    moved = np.array([[1, 1, 1], [0, 0, 1], [0, 1, 0]])
+    node = "float2 inputs:scale = (1, -1)\nfloat2 inputs:translation = (0.5, 0)"
+    assert colors_of(tmp_path, picture, st_node=node) == pytest.approx(moved, **near)
+    # Raw bytes of 128 are 128 of 255, those of sRGB 0.216.
+    grey = Image.new("RGB", (2, 2), (128,) * 3)
+    assert colors_of(tmp_path, grey) == pytest.approx(0.216, **near)
+    raw = 'token inputs:sourceColorSpace = "raw"'
+    assert colors_of(tmp_path, grey, scale=raw) == pytest.approx(128 / 255, **near)
 
 
 def test_metallic_and_roughness_of_two_pictures(tmp_path):
@@ -573,11 +595,11 @@ def test_metallic_and_roughness_of_two_pictures(tmp_path):
 
 def test_opacity(tmp_path):
     Image.new("RGBA", (2, 2), (255, 255, 255, 128)).save(tmp_path / "a.png")
-    for threshold, mode in ((0.0, "blend"), (0.25, "mask")):
+    for threshold, mode in ((0.0, "BLEND"), (0.25, "MASK")):
         look = textured(tmp_path / "a.png", inputs=f"float inputs:opacityThreshold = {threshold}\n"
                         "float inputs:opacity.connect = </Look/T.outputs:a>")  # fmt: skip
-        (material,) = loaded(bound(look)).mesh.materials
-        assert material["alpha_mode"] == mode
+        (material,) = document(bound(look))["materials"]
+        assert material["alphaMode"] == mode and material.get("alphaCutoff", 0.0) == threshold
 
 
 def test_standard_surface_and_what_it_has_more():
@@ -601,6 +623,39 @@ def Material "Look" {
     assert material["roughness"] == pytest.approx(0.4) and material["metallic"] == pytest.approx(0.125)
     assert material["coat"] == pytest.approx(1)
     assert len([n for n in asset.notes if "subsurface" in n or "thin_film" in n]) == 2
+
+
+def test_a_file_of_materialx(tmp_path):
+    """Nodes in a graph, with an interface, and a texture."""
+    Image.new("RGB", (2, 2), (0, 255, 0)).save(tmp_path / "green.png")
+    (tmp_path / "look.mtlx").write_text("""<?xml version="1.0"?>
+<materialx version="1.38" colorspace="lin_rec709">
+  <nodegraph name="G">
+    <input name="rough" type="float" value="0.375"/>
+    <image name="picture" type="color3">
+      <input name="file" type="filename" value="green.png" colorspace="srgb_texture"/>
+    </image>
+    <constant name="c" type="float"><input name="value" type="float" interfacename="rough"/></constant>
+    <output name="color" type="color3" nodename="picture"/>
+    <output name="r" type="float" nodename="c"/>
+  </nodegraph>
+  <standard_surface name="S" type="surfaceshader">
+    <input name="base" type="float" value="1"/>
+    <input name="base_color" type="color3" nodegraph="G" output="color"/>
+    <input name="specular_roughness" type="float" nodegraph="G" output="r"/>
+  </standard_surface>
+  <surfacematerial name="Gold" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="S"/>
+  </surfacematerial>
+</materialx>""")
+    text = bound('def Scope "Looks" (references = @./look.mtlx@</MaterialX>) {}\n').replace("</Look>", "</Looks/Materials/Gold>")
+    (tmp_path / "a.usda").write_text(usda(text))
+    asset = relumine.usd.load(tmp_path / "a.usda")
+    (material,) = asset.mesh.materials
+    assert material["name"] == "Gold" and material["roughness"] == pytest.approx(0.375), asset.notes
+    assert material["base_color_texture"] is not None
+    (tmp_path / "look.mtlx").write_text("<materialx")
+    assert any("look.mtlx" in n for n in relumine.usd.load(tmp_path / "a.usda").notes)
 
 
 def test_subsets_have_their_own_materials():
@@ -705,7 +760,7 @@ def Camera "C" { float focalLength = 50
     double3 xformOp:translate = (0.25, 0.25, 3)
     uniform token[] xformOpOrder = ["xformOp:translate"] }
 """
-    mesh = loaded(TRIANGLE.replace("M", "Tri", 1) + "}" + camera, camera="/C").mesh
+    mesh = loaded(TRIANGLE + "}" + camera, camera="/C").mesh
     scene = relumine.precompute(mesh, receivers="pixels:36x24", view="auto")
     relighter = relumine.Relighter(scene, highlight_rays=0)
     relighter.set_environment(relumine.Environment(np.ones((6, 4, 4, 3))))
@@ -723,7 +778,8 @@ def checked(path):
 
 @pytest.mark.parametrize("up", "YZ")
 def test_light_goes_back_into_the_stage(tmp_path, sky_file, up):
-    text = f'#usda 1.0\n( upAxis = "{up}"\nmetersPerUnit = 1\ndefaultPrim = "World" )\ndef Xform "World" {{\n' + f"""
+    head = f'upAxis = "{up}"\nmetersPerUnit = 1\ndefaultPrim = "World"'
+    text = 'def Xform "World" {\n' + f"""
 def DomeLight "Sky" {{ asset inputs:texture:file = @{sky_file}@
     float xformOp:rotateX = 30
     uniform token[] xformOpOrder = ["xformOp:rotateX"] }}
@@ -735,7 +791,7 @@ def RectLight "Lamp" {{ float inputs:intensity = 3
     uniform token[] xformOpOrder = ["xformOp:translate"] }}
 """ + cube_mesh(scheme="none") + INSTANCES.replace("</I", "</World/I") + "}\n"  # fmt: skip
     path = tmp_path / "scene.usda"
-    path.write_text(text)
+    path.write_text(usda(text, head))
     before = path.read_bytes()
     asset = relumine.usd.load(path)
     scene = relumine.precompute(asset.mesh, bounces=False)
@@ -773,13 +829,14 @@ def RectLight "Lamp" {{ float inputs:intensity = 3
 def test_refined_surfaces_and_instances_get_colours(tmp_path):
     path = tmp_path / "scene.usda"
     path.write_text('#usda 1.0\n( defaultPrim = "P"\nupAxis = "Y"\nmetersPerUnit = 1 )\nclass Xform "P" {' + cube_mesh() + '}\n'
-                    'def Xform "A" (instanceable = true inherits = </P>) {}\n'
+                    'def Xform "A" (instanceable = true\ninherits = </P>) {}\n'
                     'def DomeLight "D" {}\n')  # fmt: skip
     asset = relumine.usd.load(path)
     relighter = relumine.Relighter(relumine.precompute(asset.mesh, bounces=False, refine=False))
     asset.light(relighter)
     relumine.usd.save(tmp_path / "lit.usdc", asset, relighter)
-    prim = Usd.Stage.Open(str(tmp_path / "lit.usdc")).GetPrimAtPath("/A/M")
+    stage = Usd.Stage.Open(str(tmp_path / "lit.usdc"))
+    prim = stage.GetPrimAtPath("/A/M")
     primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar("displayColor")
     assert not prim.IsInstanceProxy() and primvar.GetInterpolation() == "vertex"
     assert np.array(primvar.Get()) == pytest.approx(np.array(relighter.radiance)[asset._drawn[0].first :][:8])
@@ -835,6 +892,6 @@ def test_the_command_takes_stages(tmp_path, sky_file):
     assert run("relight", "a.usda", sky_file, *size, "sky.png", folder=tmp_path).returncode == 0
     own, sky = (np.asarray(Image.open(tmp_path / f"{n}.png")).astype(float) for n in ("own", "sky"))
     assert own.shape == (48, 64, 3) and np.abs(own - sky).max() > 20
-    assert '"triangles": 12' in run("info", "a.usda", "--json", folder=tmp_path).stdout.replace(" ", "").replace(":", '": ').replace('"": ', '": ') or True
+    assert "12 triangles" in run("info", "a.usda", folder=tmp_path).stdout
     gone = run("relight", "gone.usda", "-o", "x.png", folder=tmp_path)
     assert gone.returncode == 1 and gone.stderr.count("\n") == 1 and "gone.usda" in gone.stderr

@@ -32,6 +32,7 @@ from .._environment import Environment
 from .._files import FileError
 from .._mesh import Mesh, RelumineWarning
 from ._lights import LEAST_RESOLUTION, Dome, environment_of
+from ._mtlx import attach
 from ._notes import Notes
 from ._stage import Drawn, Reader, bake_skeletons
 
@@ -112,6 +113,7 @@ def convert(
         else:
             moment = Usd.TimeCode.EarliestTime()
         reader = Reader(stage, moment, purposes, subdivision, camera, lights)
+        attach(stage, reader.notes)
         bake_skeletons(stage, moment, reader.notes)
         reader.run()
         data = reader.glb.bytes()
@@ -120,7 +122,9 @@ def convert(
         del delegate
     seen: Dict[str, None] = {}
     for item in said:
-        seen[_short(item.commentary)] = None
+        # attach() reads these.
+        if ".mtlx@" not in item.commentary:
+            seen[_short(item.commentary)] = None
     for text in list(seen)[:20]:
         reader.notes.add(text, "")
     if len(seen) > 20:

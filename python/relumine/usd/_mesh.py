@@ -156,6 +156,8 @@ def polygons(
     points = _array(mesh.GetPointsAttr(), time, 3)
     counts = np.asarray(mesh.GetFaceVertexCountsAttr().Get(time) or (), np.int64)
     corners = np.asarray(mesh.GetFaceVertexIndicesAttr().Get(time) or (), np.int64)
+    if points is not None and points.shape[1] != 3:
+        raise Unfit("has points of other than three numbers")
     if points is None or not len(counts) or not len(corners):
         raise Unfit("has no faces")
     if (counts < 0).any() or counts.sum() != len(corners):

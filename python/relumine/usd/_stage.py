@@ -411,10 +411,17 @@ def bake_skeletons(stage: Usd.Stage, time: Usd.TimeCode, notes: Notes) -> None:
     roots = [prim for prim in stage.Traverse() if prim.IsA(UsdSkel.Root)]
     if not roots:
         return
+    moment = 0.0 if time.IsDefault() or time.IsEarliestTime() else time.GetValue()
     with Usd.EditContext(stage, stage.GetSessionLayer()):
-        moment = time.GetValue() if not (time.IsDefault() or time.IsEarliestTime()) else 0.0
-        for root in roots:
-            if root.IsInstanceProxy():
+        for prim in stage.Traverse():
+            if not prim.IsA(UsdSkel.Animation):
                 continue
+            # Samples are baked where there are some: this makes one of the moment.
+            for name in ("translations", "rotations", "scales", "blendShapeWeights"):
+                attribute = prim.GetAttribute(name)
+                value = attribute.Get(moment)
+                if value is not None:
+                    attribute.Set(value, moment)
+        for root in roots:
             if not UsdSkel.BakeSkinning(UsdSkel.Root(root), Gf.Interval(moment, moment)):
                 notes.add("a skeleton that cannot be posed: it is at rest", root.GetPath())
