@@ -92,6 +92,9 @@ LitScene lit_scene(const SceneOptions& options, Session& session) {
         throw UsageError("SCENE", fmt::format("expected a scene, got the environment {}: the scene "
                                               "stands first, the environment behind it",
                                               options.path));
+    if (const std::string hint = mesh::hint_of_stage(options.path); !hint.empty())
+        throw std::runtime_error(
+            fmt::format("{}: expected a scene or a mesh, got '{}'{}", options.path, extension, hint));
     if (session.team != nullptr && session.team->has_others()) {
         if (mesh::has_mesh_extension(options.path))
             throw std::runtime_error(fmt::format("{}: expected a scene for processes to share, got "
