@@ -4,13 +4,13 @@
 # Expected: a light of the cylinder's size, or none and a line that says so.
 # Found:    a point light of radius 0, whatever radius and length the cylinder has, and nothing is said. Its shadows are
 #           sharp, and a cylinder ten times as long gives the same light.
-# Tried:    bpy 4.5.15 of PyPI, Python 3.11.
+# Tried:    bpy 4.5.3 of PyPI, Python 3.11.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 python3.11 -m venv venv
-venv/bin/pip install -q bpy==4.5.15
+venv/bin/pip install -q bpy==4.5.3
 cat >tubes.usda <<'USD'
 #usda 1.0
 (

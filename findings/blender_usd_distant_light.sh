@@ -5,13 +5,13 @@
 #           sun has its irradiance as strength and its angle across too, so both numbers stay.
 # Found:    strength 12 and twice the angle, with `normalize` and without. Without it the light grows with the disc's
 #           area as well, so a sun is 16 times as bright.
-# Tried:    bpy 4.5.15 of PyPI, Python 3.11.
+# Tried:    bpy 4.5.3 of PyPI, Python 3.11.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 python3.11 -m venv venv
-venv/bin/pip install -q bpy==4.5.15
+venv/bin/pip install -q bpy==4.5.3
 cat >sun.usda <<'USD'
 #usda 1.0
 (

@@ -4,13 +4,13 @@
 # Expected: UsdLux: a light's radiance is intensity times 2 to the exposure, so intensity 0.75 and exposure 3 give a
 #           background of strength 6. The importer carries the exposure of a RectLight.
 # Found:    strength 0.75: the dome is eight times too dark. The RectLight beside it has its exposure of 3.
-# Tried:    bpy 4.5.15 of PyPI, Python 3.11.
+# Tried:    bpy 4.5.3 of PyPI, Python 3.11.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 python3.11 -m venv venv
-venv/bin/pip install -q bpy==4.5.15
+venv/bin/pip install -q bpy==4.5.3
 cat >dome.usda <<'USD'
 #usda 1.0
 (
