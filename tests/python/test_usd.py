@@ -13,7 +13,7 @@ import zipfile
 import numpy as np
 import pytest
 from PIL import Image
-from pxr import Sdf, Usd, UsdGeom, UsdLux, UsdShade, UsdValidation
+from pxr import Usd, UsdGeom, UsdLux, UsdValidation
 
 import relumine
 import relumine.usd
@@ -627,10 +627,11 @@ def Material "Look" {
 
 def test_a_file_of_materialx(tmp_path):
     """Nodes in a graph, with an interface, and a texture."""
-    Image.new("RGB", (2, 2), (0, 255, 0)).save(tmp_path / "green.png")
+    (tmp_path / "pictures/plain").mkdir(parents=True)
+    Image.new("RGB", (2, 2), (0, 255, 0)).save(tmp_path / "pictures/plain/green.png")
     (tmp_path / "look.mtlx").write_text("""<?xml version="1.0"?>
-<materialx version="1.38" colorspace="lin_rec709">
-  <nodegraph name="G">
+<materialx version="1.38" colorspace="lin_rec709" fileprefix="pictures/">
+  <nodegraph name="G" fileprefix="plain/">
     <input name="rough" type="float" value="0.375"/>
     <image name="picture" type="color3">
       <input name="file" type="filename" value="green.png" colorspace="srgb_texture"/>

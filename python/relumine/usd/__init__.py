@@ -23,7 +23,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
 import numpy as np
 
 try:
-    from pxr import Ar, Sdf, Tf, Usd, UsdUtils
+    from pxr import Sdf, Tf, Usd, UsdUtils  # type: ignore[import]
 except ImportError as error:
     raise ImportError("relumine.usd: expected OpenUSD's Python: pip install relumine[usd]") from error
 
@@ -74,9 +74,16 @@ class Asset:
             relighter.set_layers(self.layers)
 
 
-def _opened(source: Any, notes: Notes) -> Any:
+def _opened(source: Any) -> Any:
     if isinstance(source, Usd.Stage):
-        return source
+        # Poses go into a session layer, which is not the user's.
+        session = Sdf.Layer.CreateAnonymous()
+        session.TransferContent(source.GetSessionLayer())
+        stage = Usd.Stage.Open(
+            source.GetRootLayer(), session, source.GetPathResolverContext(), Usd.Stage.LoadNone
+        )
+        stage.SetLoadRules(source.GetLoadRules())
+        return stage
     path = os.fspath(source)
     if not os.path.exists(path):
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), path)
@@ -102,10 +109,9 @@ def convert(
     lights: bool = True,
 ) -> Any:
     """A stage as the bytes of a .glb file, and the reader that made it. Options are load()'s."""
-    notes = Notes()
     delegate = UsdUtils.CoalescingDiagnosticDelegate()
     try:
-        stage = _opened(source, notes)
+        stage = _opened(source)
         if time is not None:
             moment = Usd.TimeCode(float(time))
         elif stage.HasAuthoredTimeCodeRange():

@@ -8,7 +8,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Ar
+from pxr import Ar  # type: ignore[import]
 
 from ._glb import Glb
 from ._notes import Notes
@@ -110,7 +110,7 @@ class Images:
         self._glb, self._notes = glb, notes
         self._bytes: Dict[str, Optional[bytes]] = {}
         self._pixels: Dict[str, Optional[Array]] = {}
-        self._made: Dict[Any, Optional[int]] = {}
+        self._made: Dict[Any, Optional[Tuple[int, float]]] = {}
 
     def content(self, path: str) -> Optional[bytes]:
         if path not in self._bytes:
@@ -141,7 +141,7 @@ class Images:
         if data[:4] == b"\x76\x2f\x31\x01" or data[:2] == b"#?":
             return self._of_environment(path, data)
         try:
-            from PIL import Image as Pillow
+            from PIL import Image as Pillow  # type: ignore[import]
         except ImportError:
             self._notes.add(
                 "a texture is left out: its channels are read by pillow "
@@ -222,7 +222,8 @@ class Images:
                 if is_srgb:
                     values = to_linear(values)
             columns.append(values * np.float32(image.scale[i]) + np.float32(image.bias[i]))
-        return np.stack(columns, -1).astype(np.float32)
+        result: Array = np.stack(columns, -1).astype(np.float32)
+        return result
 
     def linear(self, path: str) -> Optional[Array]:
         """(H, W, 3) linear values of a picture."""
@@ -303,7 +304,8 @@ def _resized(values: Array, height: int, width: int) -> Array:
         return values
     y = (np.arange(height) * values.shape[0]) // height
     x = (np.arange(width) * values.shape[1]) // width
-    return values[y][:, x]
+    result: Array = values[y][:, x]
+    return result
 
 
 def png(pixels: Array) -> bytes:

@@ -12,7 +12,7 @@ from typing import Any, Dict, List, Optional, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Gf, Usd, UsdGeom, UsdLux
+from pxr import Usd, UsdGeom, UsdLux  # type: ignore[import]
 
 from .._environment import Environment
 from .._layers import SHAPES, Emit, Layer
@@ -33,7 +33,7 @@ class Dome:
     name: str
     path: str
     color: Array
-    texture: Optional[Any]
+    texture: Any
     format: str
     turn: Array
 
@@ -57,7 +57,9 @@ def color_of(prim: Usd.Prim, time: Usd.TimeCode) -> Array:
         color = color * np.asarray(UsdLux.BlackbodyTemperatureAsRgb(kelvin), float)
     intensity = light.GetIntensityAttr().Get(time)
     exposure = light.GetExposureAttr().Get(time) or 0.0
-    return color * float(1.0 if intensity is None else intensity) * 2.0 ** float(exposure)
+    strength = float(1.0 if intensity is None else intensity) * 2.0 ** float(exposure)
+    result: Array = color * strength
+    return result
 
 
 #: Inputs of lights that change nothing here, and what they are when they say nothing.
@@ -206,7 +208,7 @@ class Placer:
         return True
 
     def _named(self, prim: Usd.Prim) -> str:
-        name = prim.GetName()
+        name: str = prim.GetName()
         if name in self.lights.paths:
             name = str(prim.GetPath())
         count, first = 1, name
@@ -388,8 +390,8 @@ def environment_of(domes: List[Dome], load: Any, least: int) -> Optional[Environ
     r = max([16, least, *(part.face_resolution for part in parts)])
     total = np.zeros((6, r, r, 3)) + constant
     for part in parts:
-        cube = np.asarray(part.cube)
-        if len(cube[0]) != r:
-            cube = part.convert(layout="cube", face_resolution=r).reshape(6, r, r, 3)
-        total += cube
+        own: Array = np.asarray(part.cube)
+        if own.shape[1] != r:
+            own = part.convert(layout="cube", face_resolution=r).reshape(6, r, r, 3)
+        total += own
     return Environment(total.astype(np.float32), face_resolution=r)

@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Usd, UsdGeom
+from pxr import Usd, UsdGeom  # type: ignore[import]
 
 from . import _subdivide
 from ._notes import Notes
@@ -339,7 +339,8 @@ def triangulated(mesh: Polygons) -> Tuple[Array, Array]:
         def least(x: Array, y: Array, z: Array, u: Array, v: Array, w: Array) -> Array:
             first = (np.cross(y - x, z - x) * n).sum(1)
             second = (np.cross(v - u, w - u) * n).sum(1)
-            return np.minimum(first, second)
+            smaller: Array = np.minimum(first, second)
+            return smaller
 
         along_ac, along_bd = least(a, b, c, a, c, d), least(a, b, d, b, c, d)
         bd = (along_ac < 0.0) & (along_bd > along_ac)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Any, Dict, Optional, Tuple
 from xml.etree import ElementTree
 
-from pxr import Gf, Sdf, Usd, UsdShade
+from pxr import Gf, Sdf, Usd, UsdShade  # type: ignore[import]
 
 from ._notes import Notes
 
@@ -126,7 +126,8 @@ class _Document:
             return
         value = _value(text, given.get("type", ""), vector)
         if given.get("type") == "filename":
-            prefix = "".join(e.get("fileprefix", "") for e in (self._root, scope) if e is not None)
+            scopes = [self._root] if scope is self._root else [self._root, scope]
+            prefix = "".join(e.get("fileprefix", "") for e in scopes)
             value = Sdf.AssetPath(os.path.join(self._folder, prefix + text))
             space = given.get("colorspace") or scope.get("colorspace") or self._root.get("colorspace")
             if space:

@@ -6,7 +6,7 @@ from typing import Any, List, Optional, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Usd, UsdGeom
+from pxr import Usd, UsdGeom  # type: ignore[import]
 
 from ._mesh import Polygons, Unfit, Values
 
@@ -22,7 +22,8 @@ def _profile(rz: Array, nrz: Array) -> Tuple[Array, Array, Array, Array]:
     def around(values: Array) -> Array:
         r, z = values[:, :1], values[:, 1:]
         flat = np.stack([r * c, r * s, np.broadcast_to(z, (len(z), SIDES))], -1)
-        return flat.reshape(-1, 3)
+        points: Array = flat.reshape(-1, 3)
+        return points
 
     i = np.arange(SIDES)
     j = (i + 1) % SIDES
@@ -42,7 +43,7 @@ def _profile(rz: Array, nrz: Array) -> Tuple[Array, Array, Array, Array]:
 def _circle_part(low: float, high: float, steps: int) -> Array:
     """Points of a circle from an angle to another, from the equator, as (r, z)."""
     angle = np.radians(np.linspace(low, high, steps + 1))
-    result = np.stack([np.cos(angle), np.sin(angle)], 1)
+    result: Array = np.stack([np.cos(angle), np.sin(angle)], 1)
     result[np.abs(result) < 1e-12] = 0.0
     return result
 

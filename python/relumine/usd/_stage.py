@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Gf, Tf, Usd, UsdGeom, UsdLux, UsdShade, UsdSkel
+from pxr import Gf, Tf, Usd, UsdGeom, UsdLux, UsdShade, UsdSkel  # type: ignore[import]
 
 from . import _mesh
 from ._glb import Glb
@@ -274,9 +274,9 @@ class Reader:
         own = prim.GetPrimInPrototype() if prim.IsInstanceProxy() else prim
         bound = self._bound(prim)
         is_light = prim.HasAPI(UsdLux.MeshLightAPI) and self._with_lights
-        key = (own.GetPath(), bound.GetPath() if bound else None)
-        if is_light:
-            key += (prim.GetPath(),)
+        key = (
+            own.GetPath(), bound.GetPath() if bound else None, prim.GetPath() if is_light else None
+        )  # fmt: skip
         if key not in self._parts:
             try:
                 self._parts[key] = self._part(prim, bound, matrix if is_light else None)

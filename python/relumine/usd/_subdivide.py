@@ -292,4 +292,5 @@ def _fans(cage: Cage, edges: _Edges, sharp: Array, following: Array) -> Array:
         if (new == label).all():
             break
         label = new
-    return np.unique(label, return_inverse=True)[1].reshape(-1)
+    fans: Array = np.unique(label, return_inverse=True)[1].reshape(-1)
+    return fans

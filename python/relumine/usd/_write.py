@@ -5,13 +5,14 @@ from __future__ import annotations
 import errno
 import math
 import os
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdShade, Vt
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdShade, Vt  # type: ignore[import]
 
 from .. import _relighter
+from .._arrays import view
 from .._environment import Environment
 from .._files import FileError
 from .._layers import SHAPES, Emit, Layer
@@ -92,14 +93,11 @@ class _Writer:
 
     def _own(self, path: str) -> Usd.Prim:
         """The prim, of its own: an instance that shows it stops being one."""
-        prim = self.stage.GetPrimAtPath(path)
-        while prim and prim.IsInstanceProxy():
-            above = prim.GetParent()
-            while not above.IsInstance():
-                above = above.GetParent()
-            above.SetInstanceable(False)
-            prim = self.stage.GetPrimAtPath(path)
-        return prim
+        for above in Sdf.Path(path).GetPrefixes():
+            prim = self.stage.GetPrimAtPath(above)
+            if prim and prim.IsInstance():
+                prim.SetInstanceable(False)
+        return self.stage.GetPrimAtPath(path)
 
     def colors(self, radiance: Array) -> None:
         count = len(self._asset.mesh.vertices)
@@ -183,7 +181,7 @@ class _Writer:
 
     def lights(self, relighter: Any) -> None:
         base, degrees = relighter._core.base()
-        cube = np.array(_relighter.view(base))
+        cube = np.array(view(base))
         layers = [layer for layer in relighter.layers if layer.on]
         if any(layer.solo for layer in layers):
             layers = [layer for layer in layers if layer.solo]
@@ -229,7 +227,7 @@ class _Writer:
         transform.Set(Gf.Matrix4d(matrix.tolist()))
 
     def _distant(self, layer: Layer, degrees: float, path: Optional[str]) -> None:
-        color = np.asarray(layer.effect.radiance, float)
+        color = np.asarray(getattr(layer.effect, "radiance"), float)
         if layer.kelvin:
             color = color * _kelvin_color(layer.kelvin)
         strength = max(float(color.max()), 1e-30)
