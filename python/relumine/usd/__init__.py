@@ -90,8 +90,7 @@ def _opened(source: Any) -> Any:
     try:
         return Usd.Stage.Open(path)
     except Tf.ErrorException as error:
-        reason = _short(error.args[0].commentary) if error.args else "none"
-        raise FileError(errno.EINVAL, f"expected a stage of USD: {reason}", path) from None
+        raise FileError(errno.EINVAL, f"expected a stage of USD: {_reason(error)}", path) from None
 
 
 def _short(text: str) -> str:
@@ -111,21 +110,33 @@ def convert(
     """A stage as the bytes of a .glb file, and the reader that made it. Options are load()'s."""
     delegate = UsdUtils.CoalescingDiagnosticDelegate()
     try:
-        stage = _opened(source)
-        if time is not None:
-            moment = Usd.TimeCode(float(time))
-        elif stage.HasAuthoredTimeCodeRange():
-            moment = Usd.TimeCode(stage.GetStartTimeCode())
-        else:
-            moment = Usd.TimeCode.EarliestTime()
-        reader = Reader(stage, moment, purposes, subdivision, camera, lights)
-        attach(stage, reader.notes)
-        bake_skeletons(stage, moment, reader.notes)
-        reader.run()
-        data = reader.glb.bytes()
+        try:
+            return _converted(_opened(source), time, purposes, subdivision, camera, lights, delegate)
+        except Tf.ErrorException as error:
+            raise ValueError(f"expected a stage of USD: {_reason(error)}") from None
     finally:
-        said = delegate.TakeUncoalescedDiagnostics()
         del delegate
+
+
+def _reason(error: Any) -> str:
+    return _short(error.args[0].commentary) if error.args else "none"
+
+
+def _converted(
+    stage: Any, time: Any, purposes: Any, subdivision: int, camera: Any, lights: bool, delegate: Any
+) -> Any:
+    if time is not None:
+        moment = Usd.TimeCode(float(time))
+    elif stage.HasAuthoredTimeCodeRange():
+        moment = Usd.TimeCode(stage.GetStartTimeCode())
+    else:
+        moment = Usd.TimeCode.EarliestTime()
+    reader = Reader(stage, moment, purposes, subdivision, camera, lights)
+    attach(stage, reader.notes)
+    bake_skeletons(stage, moment, reader.notes)
+    reader.run()
+    data = reader.glb.bytes()
+    said = delegate.TakeUncoalescedDiagnostics()
     seen: Dict[str, None] = {}
     for item in said:
         # attach() reads these.

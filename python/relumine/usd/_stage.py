@@ -76,7 +76,7 @@ class Reader:
         self.glb, self.notes = Glb(), Notes()
         self.materials = Materials(self.glb, self.notes)
         self.up = str(UsdGeom.GetStageUpAxis(stage))
-        meters = UsdGeom.GetStageMetersPerUnit(stage)
+        meters = _meters(stage)
         if not 0.0 < meters < 1e12:
             self.notes.add(f"metersPerUnit {meters:g} is taken as 1", "")
             meters = 1.0
@@ -399,6 +399,13 @@ class Reader:
         name = prim.GetName()
         self.placer.lights.lamps.append(name)
         return Look(self.materials.lamp(name, np.maximum(color, 0.0), None, prim))
+
+
+def _meters(stage: Usd.Stage) -> float:
+    try:
+        return float(UsdGeom.GetStageMetersPerUnit(stage))
+    except Tf.ErrorException:  # a float where the schema wants a double
+        return float(stage.GetRootLayer().pseudoRoot.GetInfo("metersPerUnit"))
 
 
 def _unit(normals: Array) -> Array:
