@@ -47,11 +47,11 @@ mesh::TriangleMesh without_lifts(mesh::TriangleMesh mesh) {
 
 LitSurface::LitSurface(const mesh::TriangleMesh& base, const Blockers& blockers,
                        const RefineOptions& options, const Progress& progress)
-    : base_(base), blockers_(blockers), options_(options), progress_(progress), split_(without_lifts(base)),
-      directions_(options.light ? &*options.light : nullptr), step_(automatic_bias(base)),
-      bias_(options.bias.value_or(step_)), fine_(FineEdge * mesh::scale(base)),
-      is_curved_(options.curved), is_refined_(triangles_to_refine(base, options.coarse_edge)),
-      lifts_(base.lifts) {}
+    : base_(base), blockers_(blockers), options_(options), progress_(progress),
+      split_(without_lifts(base)), directions_(options.light ? &*options.light : nullptr),
+      step_(automatic_bias(base)), bias_(options.bias.value_or(step_)),
+      fine_(FineEdge * mesh::scale(base)), is_curved_(options.curved),
+      is_refined_(triangles_to_refine(base, options.coarse_edge)), lifts_(base.lifts) {}
 
 void LitSurface::trace_vertices() {
     lift_new_vertices();
@@ -186,8 +186,8 @@ std::vector<float> LitSurface::lamps_at(const Receivers& receivers) {
     progress_.poll();
     std::vector<float> result = options_.lamps(receivers);
     if (mean_of_lamps_ == 0.0f)
-        mean_of_lamps_ = std::accumulate(result.begin(), result.end(), 0.0f) /
-                         static_cast<float>(result.size());
+        mean_of_lamps_ =
+            std::accumulate(result.begin(), result.end(), 0.0f) / static_cast<float>(result.size());
     if (mean_of_lamps_ > 0.0f)
         for (float& light : result)
             light /= mean_of_lamps_;

@@ -15,9 +15,10 @@
 
 namespace relumine::prt {
 
-/// The vertices of a mesh::SplitMesh with the bits of CoarseDirections and the light of lamps. Vertices alone are traced
-/// that belong to triangles to be refined (RefineOptions::coarse_edge). Rays of new vertices start
-/// on the smooth surface over the mesh of the beginning, unless the mesh will be curved.
+/// The vertices of a mesh::SplitMesh with the bits of CoarseDirections and the light of lamps.
+/// Vertices alone are traced that belong to triangles to be refined (RefineOptions::coarse_edge).
+/// Rays of new vertices start on the smooth surface over the mesh of the beginning, unless the mesh
+/// will be curved.
 class LitSurface {
 public:
     using Bits = CoarseDirections::Bits;
@@ -62,8 +63,8 @@ public:
     [[nodiscard]] std::vector<Bits> trace(const Receivers& receivers,
                                           std::span<const Neighbours> neighbours = {});
 
-    /// Returns what lamps give to points, [receivers], in parts of the mean of the first points that
-    /// any of it reached.
+    /// Returns what lamps give to points, [receivers], in parts of the mean of the first points
+    /// that any of it reached.
     [[nodiscard]] std::vector<float> lamps_at(const Receivers& receivers);
 
     /// Returns the mesh with the ways to the smooth surface. Ends the work.

@@ -64,12 +64,12 @@ struct RefineReport {
 };
 
 /// Splits the edges of a mesh where light changes between their ends, whatever the environment will
-/// be, and where that of its lamps does: mesh::SplitMesh says how. Transfer is found in 1,536 directions, horizons included, first at
-/// the vertices, then at new ones, round by round. Middles of edges are asked where the ends differ
-/// enough, or the edge is long in the scene. Triangles that are large in the scene are asked at
-/// points inside, too, so close to each other that nothing of some size is missed. Along edges that
-/// are short in the scene, middles and new vertices are traced only in directions on which the ends
-/// do not agree.
+/// be, and where that of its lamps does: mesh::SplitMesh says how. Transfer is found in 1,536
+/// directions, horizons included, first at the vertices, then at new ones, round by round. Middles
+/// of edges are asked where the ends differ enough, or the edge is long in the scene. Triangles
+/// that are large in the scene are asked at points inside, too, so close to each other that nothing
+/// of some size is missed. Along edges that are short in the scene, middles and new vertices are
+/// traced only in directions on which the ends do not agree.
 ///
 /// Where light is asked, a new vertex that is hidden in another solid moves along an edge to where
 /// light begins, if the surface around it is flat and goes on to all sides: its darkness would

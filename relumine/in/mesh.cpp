@@ -295,19 +295,18 @@ void look_at_lamps(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
     prt::Lamps lamps = prt::lamps_of(mesh);
     if (lamps.empty())
         return;
-    options.lamps = [&mesh, &rays, lamps = std::move(lamps),
-                     bias = options.bias.value_or(prt::automatic_bias(mesh))](
-                        const prt::Receivers& points) {
-        std::vector<float> result;
-        for (const glm::vec3& light :
-             relight::lamp_light(mesh, lamps.emitters, lamps.lights,
-                                 {.positions = points.positions,
-                                  .normals = points.normals,
-                                  .rays = rays,
-                                  .bias = bias}))
-            result.push_back(static_cast<float>(cubemap::luminance(light)));
-        return result;
-    };
+    options.lamps =
+        [&mesh, &rays, lamps = std::move(lamps),
+         bias = options.bias.value_or(prt::automatic_bias(mesh))](const prt::Receivers& points) {
+            std::vector<float> result;
+            for (const glm::vec3& light : relight::lamp_light(mesh, lamps.emitters, lamps.lights,
+                                                              {.positions = points.positions,
+                                                               .normals = points.normals,
+                                                               .rays = rays,
+                                                               .bias = bias}))
+                result.push_back(static_cast<float>(cubemap::luminance(light)));
+            return result;
+        };
 }
 
 } // namespace

@@ -126,8 +126,8 @@ using prt::RefineReport;
 /// Returns the mesh with more vertices where its light changes between two of them, or where edges
 /// are long: prt::refine(). The original triangles remain what blocks light, unless the new
 /// vertices lie on a curved surface, which then does. The vertices of the file keep their places;
-/// those of an added floor follow the new ones. The light of the mesh's own lamps is asked, too. Where a curved surface bulges downwards the floor
-/// sinks as much.
+/// those of an added floor follow the new ones. The light of the mesh's own lamps is asked, too.
+/// Where a curved surface bulges downwards the floor sinks as much.
 ///
 /// Throws:  std::runtime_error "SOURCE: ..." where prt::refine() throws std::invalid_argument;
 ///          Cancelled.

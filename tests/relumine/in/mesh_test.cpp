@@ -426,9 +426,8 @@ TEST(RefinedByItself, ALampOverTwoTrianglesGivesAllOfItsLight) {
         return Intensity / (std::numbers::pi * distance * distance * distance);
     };
     // The solid angle of the square from the lamp.
-    const double all =
-        Intensity / std::numbers::pi * 4.0 *
-        std::asin(HalfSide * HalfSide / (HalfSide * HalfSide + lamp.y * lamp.y));
+    const double all = Intensity / std::numbers::pi * 4.0 *
+                       std::asin(HalfSide * HalfSide / (HalfSide * HalfSide + lamp.y * lamp.y));
     const double mean = all / (4.0 * HalfSide * HalfSide);
     const LampOnVertices before(square, exact, mean);
     EXPECT_LT(before.all, 0.2 * all);
