@@ -165,6 +165,11 @@ Surface measured_surface(std::shared_ptr<const mesh::BrdfTable> table) {
     return surface;
 }
 
+bool is_unlit(const mesh::TriangleMesh& mesh, std::size_t triangle) {
+    return !mesh.triangle_materials.empty() &&
+           mesh.materials[mesh.triangle_materials[triangle]].model == mesh::MaterialModel::Unlit;
+}
+
 bool has_highlight(const mesh::Material& material) {
     if (material.model == mesh::MaterialModel::Phong)
         return material.specular != glm::vec3(0.0f);

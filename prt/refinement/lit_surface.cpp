@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "mesh/subject.h"
+#include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/refinement/large_triangles.h"
 #include "prt/visibility/ray_scene.h"
@@ -30,11 +31,12 @@ constexpr float LargestPartOfWay = 0.25f;
 /// Parts of automatic_bias(). Smaller lifts are none.
 constexpr float LeastLift = 0.25f;
 
-/// Returns which triangles are coarse for an edge, if there is one; all otherwise.
+/// Returns which triangles are lit, and coarse for an edge if there is one.
 std::vector<bool> triangles_to_refine(const mesh::TriangleMesh& mesh, std::optional<float> edge) {
     std::vector<bool> result;
-    for (const mesh::Triangle& triangle : mesh.triangles)
-        result.push_back(!edge || longest_side(mesh, triangle) > *edge);
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+        result.push_back(!is_unlit(mesh, i) &&
+                         (!edge || longest_side(mesh, mesh.triangles[i]) > *edge));
     return result;
 }
 
