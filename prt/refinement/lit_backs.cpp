@@ -55,10 +55,9 @@ Backs backs_of(const mesh::TriangleMesh& mesh, const std::vector<std::uint32_t>&
     return backs;
 }
 
-/// Pictures do not show the backs of single-sided faces, and those of unlit ones are as their
-/// fronts.
+/// Pictures do not show the backs of single-sided faces, nor light on some.
 bool needs_no_back(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
-    return is_unlit(mesh, triangle) ||
+    return !shows_light(mesh, triangle) ||
            (!mesh.triangle_materials.empty() &&
             !mesh.materials[mesh.triangle_materials[triangle]].is_double_sided);
 }

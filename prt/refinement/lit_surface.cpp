@@ -31,11 +31,11 @@ constexpr float LargestPartOfWay = 0.25f;
 /// Parts of automatic_bias(). Smaller lifts are none.
 constexpr float LeastLift = 0.25f;
 
-/// Returns which triangles are lit, and coarse for an edge if there is one.
+/// Returns which triangles show light, and are coarse for an edge if there is one.
 std::vector<bool> triangles_to_refine(const mesh::TriangleMesh& mesh, std::optional<float> edge) {
     std::vector<bool> result;
     for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
-        result.push_back(!is_unlit(mesh, i) &&
+        result.push_back(shows_light(mesh, i) &&
                          (!edge || longest_side(mesh, mesh.triangles[i]) > *edge));
     return result;
 }

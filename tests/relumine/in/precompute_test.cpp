@@ -383,6 +383,10 @@ TEST_F(PrecomputeFile, UnlitSurfacesAreNotLit) {
     EXPECT_EQ(report.clusters.num_rays, 0u);
     EXPECT_FALSE(report.refined);
     EXPECT_EQ(unlit.mesh.num_vertices(), mesh.num_vertices());
+    // Nobody sees light on what has no alpha.
+    mesh::TriangleMesh glassy = mesh;
+    glassy.materials[1] = {.name = "collider", .alpha_mode = mesh::AlphaMode::Blend, .alpha = 0.0f};
+    EXPECT_EQ(precompute(Mesh(glassy)).mesh.num_vertices(), mesh.num_vertices());
     // What the options light is lit.
     const auto white = [](const mesh::TriangleMesh&, std::uint32_t, const prt::Surface&) {
         return prt::Surface{};
