@@ -13,6 +13,7 @@
 #include "files/joined.h"
 #include "files/output_file.h"
 #include "mesh/formats/mesh_format.h"
+#include "mesh/stage_hint.h"
 
 namespace relumine::mesh {
 

@@ -80,8 +80,4 @@ struct LoadedMesh : TriangleMesh {
 /// Returns true if load() knows the path's extension, in capitals or not.
 [[nodiscard]] bool has_mesh_extension(const std::filesystem::path& path);
 
-/// Returns what a message says of a stage of USD, which the Python package alone reads; "" for any
-/// other name.
-[[nodiscard]] std::string hint_of_stage(const std::filesystem::path& path);
-
 } // namespace relumine::mesh
