@@ -179,7 +179,7 @@ bool has_highlight(const mesh::Material& material) {
     if (material.model == mesh::MaterialModel::Phong)
         return material.specular != glm::vec3(0.0f);
     if (material.model == mesh::MaterialModel::MetallicRoughness && material.metallic == 0.0f &&
-        material.specular_strength == 0.0f)
+        material.specular_strength == 0.0f && material.transmission == 0.0f)
         return material.coat > 0.0f || material.sheen != glm::vec3(0.0f);
     return material.model != mesh::MaterialModel::Unlit;
 }
