@@ -59,8 +59,8 @@ def _array(attribute: Any, time: Usd.TimeCode, width: int) -> Optional[Array]:
     array = np.asarray(value, np.float64)
     if array.size == 0:
         return None
-    if array.ndim == 0:
-        array = array.reshape(1)
+    if not attribute.GetTypeName().isArray:
+        array = array.reshape(1, -1)
     return array.reshape(len(array), -1)[:, :width]
 
 
