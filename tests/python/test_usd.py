@@ -409,6 +409,12 @@ def test_shapes_look_outwards_and_have_their_area(kind, area):
         assert ((cross * p.mean(1)).sum(1) > -1e-12).all()
 
 
+def test_a_colour_above_a_mesh_counts_as_an_array_of_one_or_without():
+    for kind, value in (("color3f", "(0.5, 0.25, 1)"), ("color3f[]", "[(0.5, 0.25, 1)]")):
+        text = f'def Xform "X" {{\n{kind} primvars:displayColor = {value}\n{TRIANGLE}}}\n}}\n'
+        assert loaded(text).mesh.colors == pytest.approx(np.broadcast_to([0.5, 0.25, 1], (3, 3)))
+
+
 def test_a_skin_stands_in_its_pose():
     text = """
 def SkelRoot "R" (prepend apiSchemas = ["SkelBindingAPI"]) {

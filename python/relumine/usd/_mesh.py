@@ -56,11 +56,14 @@ def _array(attribute: Any, time: Usd.TimeCode, width: int) -> Optional[Array]:
     value = attribute.Get(time) if attribute else None
     if value is None:
         return None
-    array = np.asarray(value, np.float64)
+    try:
+        array = np.asarray(value, np.float64)
+    except (TypeError, ValueError):  # of a type that holds no numbers
+        return None
     if array.size == 0:
         return None
-    if array.ndim == 0:
-        array = array.reshape(1)
+    if array.ndim == 0 or not attribute.GetTypeName().isArray:
+        array = array.reshape(1, -1)
     return array.reshape(len(array), -1)[:, :width]
 
 

@@ -314,7 +314,8 @@ class Reader:
 
     def _part(self, prim: Usd.Prim, bound: Any, lamp_at: Optional[Array]) -> _Part:
         path = prim.GetPath()
-        has_color = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("displayColor").HasValue()
+        color = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("displayColor")
+        has_color = bool(color) and color.HasValue()
         subsets: List[Tuple[Array, Look]] = []
         whole = self._look(bound, prim, has_color)
         if prim.IsA(UsdGeom.Mesh):
