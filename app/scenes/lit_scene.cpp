@@ -7,6 +7,7 @@
 
 #include "app/scenes/first_scene.h"
 #include "files/extension.h"
+#include "relumine/in/environment.h"
 #include "relumine/in/mesh_files.h"
 
 namespace relumine::app {
@@ -87,8 +88,7 @@ auto naming_scene(const std::string& path, const Make& make) {
 } // namespace
 
 LitScene lit_scene(const SceneOptions& options, Session& session) {
-    const std::string extension = files::extension_of(options.path);
-    if (extension == ".hdr" || extension == ".exr" || extension == ".pic")
+    if (cubemap::is_environment_name(options.path) || files::extension_of(options.path) == ".pic")
         throw UsageError("SCENE", fmt::format("expected a scene, got the environment {}: the scene "
                                               "stands first, the environment behind it",
                                               options.path));

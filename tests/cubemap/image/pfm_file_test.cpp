@@ -1,0 +1,57 @@
+#include <bit>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cubemap/image/image_size.h"
+#include "tests/cubemap/image/sample_files.h"
+#include "tests/cubemap/test_images.h"
+
+namespace relumine::cubemap {
+namespace {
+
+ImageFile decoded(const std::string& file) {
+    const std::vector<std::byte> bytes = bytes_of_text(file);
+    return format_of(bytes, "a.pfm").decode(bytes, "a.pfm");
+}
+
+std::string refusal(const std::string& file) {
+    return message_of([&] { static_cast<void>(decoded(file)); });
+}
+
+TEST(PfmFile, FilesOfOtherProgramsHaveTheirPixels) {
+    for (const auto& path : samples("pfm")) {
+        SCOPED_TRACE(path.filename());
+        EXPECT_EQ(decode_file(path).pixels, ramp());
+        EXPECT_EQ(read_image_size(path), (ImageSize{8, 4}));
+    }
+}
+
+TEST(PfmFile, GreyOfTheOtherByteOrderFromBelow) {
+    const std::string one("\x3f\x80\0\0", 4), two("\x40\0\0\0", 4);
+    const ImageFile image = decoded("Pf\n1 2\n1.0\n" + one + two);
+    EXPECT_EQ(image.pixels, (std::vector<glm::vec3>{glm::vec3(2.0f), glm::vec3(1.0f)}));
+    EXPECT_THAT(image.remarks, testing::ElementsAre("luminance only"));
+}
+
+/// Programs differ about it: see docs/environments.md.
+TEST(PfmFile, AScaleIsPassedOverAndSaid) {
+    const ImageFile image = decoded("Pf\n1 1\n-4\n" + std::string("\0\0\x80\x3f", 4));
+    EXPECT_EQ(image.pixels[0], glm::vec3(1.0f));
+    EXPECT_THAT(image.remarks, testing::Contains("the header's scale of 4 is passed over"));
+}
+
+TEST(PfmFile, BadOnesAreRefused) {
+    EXPECT_EQ(refusal("PF\n40000 40000\n-1\n"),
+              "a.pfm: expected a size that an environment can have, got 40000x40000");
+    EXPECT_EQ(refusal("PF\n8 4\n-1\nabcd"),
+              "a.pfm: expected 384 bytes of pixels, got a file of 14 bytes");
+    EXPECT_EQ(refusal("PF\n8 x\n-1\n"), "a.pfm: expected PF, width, height and scale, got 'x'");
+    EXPECT_EQ(refusal("PF\n8 4\n0\n"), "a.pfm: expected a scale that is not 0, got 0");
+    EXPECT_NE(refusal("PF\n8 4\nnan\n"), "");
+    EXPECT_NE(refusal("PF\n-8 4\n-1\n"), "");
+    EXPECT_NE(refusal("PF\n"), "");
+}
+
+} // namespace
+} // namespace relumine::cubemap
