@@ -234,10 +234,7 @@ public:
     explicit GainMapRows(FileBytes file) : file_(std::move(file)) {
         const std::vector<std::byte> bytes = file_.read(0, file_.size());
         JpegPictures pictures(bytes);
-        const std::optional<Jpeg> base = pictures.next();
-        if (!base || base->width == 0)
-            file_.refuse("a JPEG picture", "broken data");
-        base_ = *base;
+        base_ = pictures.next().value_or(Jpeg{});
         bool is_of_iso = false;
         for (std::optional<Jpeg> next = pictures.next(); next && !is_found_;
              next = pictures.next()) {

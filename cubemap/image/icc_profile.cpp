@@ -1,9 +1,11 @@
 // Based on: International Color Consortium, Specification ICC.1:2022.
 #include "cubemap/image/icc_profile.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
 #include <string_view>
 
 #include <glm/mat3x3.hpp>

@@ -40,11 +40,12 @@ public:
         file_.check_size(head_.width, head_.height, 1);
         pixels_at_ = position_ + 1; // one blank
         is_big_endian_ = scale > 0.0;
+        scale_ = static_cast<float>(std::abs(scale));
         if (num_channels_ == 1)
             head_.remarks.emplace_back("luminance only");
         if (std::abs(scale) != 1.0)
             head_.remarks.push_back(
-                fmt::format("the header's scale of {:g} is passed over", std::abs(scale)));
+                fmt::format("the header's scale of {:g} multiplied in", std::abs(scale)));
         const std::uint64_t num_bytes = row_bytes() * head_.height;
         if (file_.size() < pixels_at_ || file_.size() - pixels_at_ < num_bytes)
             file_.refuse(fmt::format("{} bytes of pixels", num_bytes),
@@ -74,7 +75,7 @@ private:
         std::uint32_t bits = 0;
         for (std::size_t i = 0; i < 4; ++i)
             bits = bits << 8 | std::to_integer<std::uint32_t>(at[is_big_endian_ ? i : 3 - i]);
-        return std::bit_cast<float>(bits);
+        return scale_ * std::bit_cast<float>(bits);
     }
 
     /// Reads the header's next word. Position is then behind it.
@@ -106,6 +107,7 @@ private:
     std::size_t position_ = 0, num_channels_ = 3;
     std::uint64_t pixels_at_ = 0;
     bool is_big_endian_ = false;
+    float scale_ = 1.0f;
 };
 
 } // namespace

@@ -10,16 +10,15 @@
 namespace relumine::cubemap {
 namespace {
 
-ImageFile decoded(const std::string& file) {
-    const std::vector<std::byte> bytes = bytes_of_text(file);
-    return format_of(bytes, "a.pfm").decode(bytes, "a.pfm");
-}
+class PfmFile : public testing::Test {
+protected:
+    static ImageFile decoded(const std::string& file) { return decode_text(file, "a.pfm"); }
+    static std::string refusal(const std::string& file) {
+        return message_of([&] { static_cast<void>(decoded(file)); });
+    }
+};
 
-std::string refusal(const std::string& file) {
-    return message_of([&] { static_cast<void>(decoded(file)); });
-}
-
-TEST(PfmFile, FilesOfOtherProgramsHaveTheirPixels) {
+TEST_F(PfmFile, FilesOfOtherProgramsHaveTheirPixels) {
     for (const auto& path : samples("pfm")) {
         SCOPED_TRACE(path.filename());
         EXPECT_EQ(decode_file(path).pixels, ramp());
@@ -27,21 +26,21 @@ TEST(PfmFile, FilesOfOtherProgramsHaveTheirPixels) {
     }
 }
 
-TEST(PfmFile, GreyOfTheOtherByteOrderFromBelow) {
+TEST_F(PfmFile, GreyOfTheOtherByteOrderFromBelow) {
     const std::string one("\x3f\x80\0\0", 4), two("\x40\0\0\0", 4);
     const ImageFile image = decoded("Pf\n1 2\n1.0\n" + one + two);
     EXPECT_EQ(image.pixels, (std::vector<glm::vec3>{glm::vec3(2.0f), glm::vec3(1.0f)}));
     EXPECT_THAT(image.remarks, testing::ElementsAre("luminance only"));
 }
 
-/// Programs differ about it: see docs/environments.md.
-TEST(PfmFile, AScaleIsPassedOverAndSaid) {
+/// As ImageMagick, OpenImageIO and pfstools do it.
+TEST_F(PfmFile, AScaleIsMultipliedIn) {
     const ImageFile image = decoded("Pf\n1 1\n-4\n" + std::string("\0\0\x80\x3f", 4));
-    EXPECT_EQ(image.pixels[0], glm::vec3(1.0f));
-    EXPECT_THAT(image.remarks, testing::Contains("the header's scale of 4 is passed over"));
+    EXPECT_EQ(image.pixels[0], glm::vec3(4.0f));
+    EXPECT_THAT(image.remarks, testing::Contains("the header's scale of 4 multiplied in"));
 }
 
-TEST(PfmFile, BadOnesAreRefused) {
+TEST_F(PfmFile, BadOnesAreRefused) {
     EXPECT_EQ(refusal("PF\n40000 40000\n-1\n"),
               "a.pfm: expected a size that an environment can have, got 40000x40000");
     EXPECT_EQ(refusal("PF\n8 4\n-1\nabcd"),

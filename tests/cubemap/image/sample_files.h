@@ -1,14 +1,15 @@
 // Small files that other programs wrote, and what is in them.
 #pragma once
 
-#include <cstdint>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
 
-#include <glm/exponential.hpp>
 #include <glm/vec3.hpp>
 
 #include "cubemap/image/image_file.h"
@@ -39,6 +40,11 @@ inline std::vector<std::byte> bytes_of_text(const std::string& text) {
     for (std::size_t i = 0; i < text.size(); ++i)
         bytes[i] = static_cast<std::byte>(text[i]);
     return bytes;
+}
+
+inline ImageFile decode_text(const std::string& text, const std::string& name) {
+    const std::vector<std::byte> bytes = bytes_of_text(text);
+    return format_of(bytes, name).decode(bytes, name);
 }
 
 /// The lat-long of 8 x 4 pixels that all samples of TIFF and PFM show.

@@ -54,15 +54,6 @@ std::string packed_ktx(std::uint32_t type) {
     return file;
 }
 
-ImageFile decoded(const std::string& file) {
-    const std::vector<std::byte> bytes = bytes_of_text(file);
-    return format_of(bytes, "a").decode(bytes, "a");
-}
-
-std::string refusal(std::string file) {
-    return message_of([&] { static_cast<void>(decoded(file)); });
-}
-
 std::string text_of(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
@@ -75,8 +66,16 @@ std::string changed(std::string file, std::size_t at, std::uint32_t value) {
     return file;
 }
 
+class TextureFile : public testing::Test {
+protected:
+    static ImageFile decoded(const std::string& file) { return decode_text(file, "a"); }
+    static std::string refusal(const std::string& file) {
+        return message_of([&] { static_cast<void>(decoded(file)); });
+    }
+};
+
 /// By DirectXTex and by ktx-parse; every format holds these numbers.
-TEST(TextureFile, CubesOfOtherProgramsHaveTheirPixels) {
+TEST_F(TextureFile, CubesOfOtherProgramsHaveTheirPixels) {
     for (const char* name : {"dds/float3.dds", "dds/float4_direct3d9.dds", "dds/half4_levels.dds",
                              "dds/r11g11b10.dds", "dds/r9g9b9e5.dds", "ktx/float3.ktx2",
                              "ktx/half4.ktx2", "ktx/half4_zstd.ktx2", "ktx/r9g9b9e5.ktx2"}) {
@@ -91,7 +90,7 @@ TEST(TextureFile, CubesOfOtherProgramsHaveTheirPixels) {
 
 /// cmft made them all of one lat-long, whose light is 4 (3/2 + direction). Its rows of 3 halves are
 /// 24 bytes.
-TEST(TextureFile, CubesOfCmftAreTurnedAndNotMirrored) {
+TEST_F(TextureFile, CubesOfCmftAreTurnedAndNotMirrored) {
     const ImageFile image = decode_file(sample("ktx/cmft_float4.ktx"));
     ASSERT_EQ(image.pixels.size(), 96u);
     std::size_t index = 0;
@@ -117,7 +116,7 @@ TEST(TextureFile, CubesOfCmftAreTurnedAndNotMirrored) {
 }
 
 /// DirectXTex packed the samples' cube, and unpacked it again.
-TEST(TextureFile, BlocksAreAsDirectXTexUnpacksThem) {
+TEST_F(TextureFile, BlocksAreAsDirectXTexUnpacksThem) {
     for (const std::string name : {"dds/bc6h_unsigned", "dds/bc6h_signed"}) {
         const ImageFile image = decode_file(sample(name + ".dds"));
         EXPECT_EQ(image.pixels.size(), 96u);
@@ -126,7 +125,7 @@ TEST(TextureFile, BlocksAreAsDirectXTexUnpacksThem) {
     }
 }
 
-TEST(TextureFile, MirroredFacesOfCmgenAreOurWorldAndStillThoseOfOpenGl) {
+TEST_F(TextureFile, MirroredFacesOfCmgenAreOurWorldAndStillThoseOfOpenGl) {
     const ImageFile plain = decoded(packed_ktx(0x8c3b));
     EXPECT_EQ(plain.pixels, sample_cube());
     const ImageFile mirrored = decoded(packed_ktx(0x8c3a));
@@ -171,14 +170,14 @@ TEST(TextureFile, MirroredFacesOfCmgenAreOurWorldAndStillThoseOfOpenGl) {
     EXPECT_EQ(ours.pixels, mirrored.pixels);
 }
 
-TEST(TextureFile, ColoursOfTheDescriptorAreConverted) {
+TEST_F(TextureFile, ColoursOfTheDescriptorAreConverted) {
     const ImageFile image = decode_file(sample("ktx/float3_rec2020.ktx2"));
     EXPECT_THAT(image.remarks,
                 testing::Contains(testing::StartsWith("lin_rec2020_scene converted to Rec. 709")));
     EXPECT_NE(image.pixels, sample_cube());
 }
 
-TEST(TextureFile, OthersAreRefusedByName) {
+TEST_F(TextureFile, OthersAreRefusedByName) {
     const std::string dds = text_of(sample("dds/float3.dds")),
                       ktx2 = text_of(sample("ktx/half4.ktx2"));
     constexpr std::size_t DxgiFormat = 128, DdsHeight = 12, DdsWidth = 16;

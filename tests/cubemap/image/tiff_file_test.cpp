@@ -56,19 +56,15 @@ std::string tiff(const std::vector<Field>& changed, const std::string& data = {}
     return file;
 }
 
-std::string refusal(const std::string& file) {
-    return message_of([&] {
-        const std::vector<std::byte> bytes = bytes_of_text(file);
-        static_cast<void>(format_of(bytes, "a.tif").decode(bytes, "a.tif"));
-    });
-}
+class TiffFile : public testing::Test {
+protected:
+    static ImageFile decoded(const std::string& file) { return decode_text(file, "a.tif"); }
+    static std::string refusal(const std::string& file) {
+        return message_of([&] { static_cast<void>(decoded(file)); });
+    }
+};
 
-ImageFile decoded(const std::string& file) {
-    const std::vector<std::byte> bytes = bytes_of_text(file);
-    return format_of(bytes, "a.tif").decode(bytes, "a.tif");
-}
-
-TEST(TiffFile, FilesOfOtherProgramsHaveTheirPixels) {
+TEST_F(TiffFile, FilesOfOtherProgramsHaveTheirPixels) {
     std::size_t num_files = 0;
     for (const auto& path : samples("tiff")) {
         SCOPED_TRACE(path.filename());
@@ -89,7 +85,7 @@ TEST(TiffFile, FilesOfOtherProgramsHaveTheirPixels) {
     EXPECT_GE(num_files, 11u);
 }
 
-TEST(TiffFile, BandsAreTheSameAsTheWhole) {
+TEST_F(TiffFile, BandsAreTheSameAsTheWhole) {
     for (const auto& path : samples("tiff")) {
         const auto rows = open_tiff(FileBytes(path));
         const std::vector<glm::vec3> all = decode_file(path).pixels;
@@ -103,13 +99,13 @@ TEST(TiffFile, BandsAreTheSameAsTheWhole) {
     }
 }
 
-TEST(TiffFile, AWideOneIsAveragedAsItIsRead) {
+TEST_F(TiffFile, AWideOneIsAveragedAsItIsRead) {
     const EnvironmentImage image = load_averaged(sample("tiff/plain.tif"), {}, 4);
     EXPECT_EQ(image.width, 4u);
     EXPECT_NEAR(image.pixels[0].x, 1.5f, 1e-6f);
 }
 
-TEST(TiffFile, OrientationIsUndone) {
+TEST_F(TiffFile, OrientationIsUndone) {
     const std::vector<glm::vec3> upright = decoded(tiff({})).pixels;
     EXPECT_EQ(upright, (std::vector<glm::vec3>{{1, 2, 3}, {4, 5, 6}}));
     const ImageFile turned = decoded(tiff({{274, 3, 1, 3}}));
@@ -121,7 +117,7 @@ TEST(TiffFile, OrientationIsUndone) {
     EXPECT_NE(refusal(tiff({{274, 3, 1, 6}})), "");
 }
 
-TEST(TiffFile, AlphaThatIsNotMultipliedIn) {
+TEST_F(TiffFile, AlphaThatIsNotMultipliedIn) {
     std::string data;
     for (const float value : {8.0f, 4.0f, 2.0f, 0.5f, 8.0f, 4.0f, 2.0f, 0.0f})
         put(data, std::bit_cast<std::uint32_t>(value), 4);
@@ -135,13 +131,13 @@ TEST(TiffFile, AlphaThatIsNotMultipliedIn) {
     EXPECT_EQ(with(0).num_transparent, 0u) << "a channel that says nothing of itself";
 }
 
-TEST(TiffFile, GreyIsLuminance) {
+TEST_F(TiffFile, GreyIsLuminance) {
     const ImageFile image = decoded(tiff({{262, 3, 1, 1}, {277, 3, 1, 1}, {279, 4, 1, 8}}));
     EXPECT_EQ(image.pixels, (std::vector<glm::vec3>{{1, 1, 1}, {2, 2, 2}}));
     EXPECT_THAT(image.remarks, testing::ElementsAre("luminance only"));
 }
 
-TEST(TiffFile, OthersAreRefusedByName) {
+TEST_F(TiffFile, OthersAreRefusedByName) {
     EXPECT_EQ(refusal(tiff({{339, 3, 1, 1}, {258, 3, 1, 16}})),
               "a.tif: expected a TIFF of floats, got one of 16-bit integers, which hold no light "
               "above white");
@@ -170,7 +166,7 @@ TEST(TiffFile, OthersAreRefusedByName) {
         EXPECT_NE(refusal(tiff({{259, 3, 1, static_cast<std::uint32_t>(packing)}})), "") << packing;
 }
 
-TEST(TiffFile, TruncatedFilesAreRefused) {
+TEST_F(TiffFile, TruncatedFilesAreRefused) {
     for (const auto& path : samples("tiff")) {
         const std::vector<std::byte> bytes = files::read(path);
         std::size_t num_refused = 0;
