@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <stb/stb_image_write.h>
@@ -24,21 +25,25 @@ std::string grey_jpeg(int width, int height, std::uint8_t grey) {
     return file;
 }
 
-std::string with_segment(const std::string& jpeg, int marker, const std::string& content) {
+std::string with_segment(std::string jpeg, int marker, const std::string& content) {
     const std::size_t size = content.size() + 2;
-    return jpeg.substr(0, 2) + '\xff' + static_cast<char>(marker) + static_cast<char>(size >> 8) +
-           static_cast<char>(size & 0xff) + content + jpeg.substr(2);
+    std::string segment(4, '\xff');
+    segment[1] = static_cast<char>(marker);
+    segment[2] = static_cast<char>(size >> 8);
+    segment[3] = static_cast<char>(size & 0xff);
+    jpeg.insert(2, segment += content);
+    return jpeg;
 }
 
 std::string with_xmp(const std::string& jpeg, const std::string& text) {
-    return with_segment(jpeg, 0xe1,
-                        std::string("http://ns.adobe.com/xap/1.0/\0", 29) +
-                            "<rdf:Description hdrgm:Version=\"1.0\" " + text +
-                            "</rdf:Description>");
+    std::string content("http://ns.adobe.com/xap/1.0/\0", 29);
+    content += fmt::format("<rdf:Description hdrgm:Version=\"1.0\" {}</rdf:Description>", text);
+    return with_segment(jpeg, 0xe1, content);
 }
 
 std::string with_iso(const std::string& jpeg, const std::string& numbers) {
-    return with_segment(jpeg, 0xe2, std::string("urn:iso:std:iso:ts:21496:-1\0", 28) + numbers);
+    std::string content("urn:iso:std:iso:ts:21496:-1\0", 28);
+    return with_segment(jpeg, 0xe2, content += numbers);
 }
 
 std::string big_endian(std::initializer_list<std::int32_t> values) {
@@ -93,8 +98,9 @@ TEST_F(GainMapFile, ListsAreForRedGreenAndBlue) {
 TEST_F(GainMapFile, NumbersOfTheStandard) {
     const std::string base = with_iso(grey_jpeg(16, 8, 255), std::string(4, '\0'));
     const auto read = [&](char flags, const std::string& numbers) {
-        return decoded(base +
-                       with_iso(grey_jpeg(4, 2, 255), std::string(4, '\0') + flags + numbers));
+        std::string content(5, '\0');
+        content[4] = flags;
+        return decoded(base + with_iso(grey_jpeg(4, 2, 255), content += numbers));
     };
     // Headrooms, then of one channel: least, most, gamma and two offsets, fractions all.
     const ImageFile one = read(0x40, big_endian({0, 1, 4, 1, -1, 1, 7, 2, 1, 1, 1, 64, 1, 64}));

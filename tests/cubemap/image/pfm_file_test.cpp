@@ -27,15 +27,14 @@ TEST_F(PfmFile, FilesOfOtherProgramsHaveTheirPixels) {
 }
 
 TEST_F(PfmFile, GreyOfTheOtherByteOrderFromBelow) {
-    const std::string one("\x3f\x80\0\0", 4), two("\x40\0\0\0", 4);
-    const ImageFile image = decoded("Pf\n1 2\n1.0\n" + one + two);
+    const ImageFile image = decoded({"Pf\n1 2\n1.0\n\x3f\x80\0\0\x40\0\0\0", 19});
     EXPECT_EQ(image.pixels, (std::vector<glm::vec3>{glm::vec3(2.0f), glm::vec3(1.0f)}));
     EXPECT_THAT(image.remarks, testing::ElementsAre("luminance only"));
 }
 
 /// As ImageMagick, OpenImageIO and pfstools do it.
 TEST_F(PfmFile, AScaleIsMultipliedIn) {
-    const ImageFile image = decoded("Pf\n1 1\n-4\n" + std::string("\0\0\x80\x3f", 4));
+    const ImageFile image = decoded({"Pf\n1 1\n-4\n\0\0\x80\x3f", 14});
     EXPECT_EQ(image.pixels[0], glm::vec3(4.0f));
     EXPECT_THAT(image.remarks, testing::Contains("the header's scale of 4 multiplied in"));
 }
