@@ -202,10 +202,9 @@ SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& mat
         add_boxes(*scene.blockers, of_blockers.triangles);
         add_boxes(next, of_blockers.triangles);
         change.blocker_positions = std::move(next.positions);
-    } else {
-        add_boxes(scene.mesh, parts.triangles);
-        add_boxes(after, parts.triangles);
     }
+    add_boxes(scene.mesh, parts.triangles);
+    add_boxes(after, parts.triangles);
     move_receivers(scene, after, parts.vertices, motion, change);
     difference.receivers.resize(scene.receivers.size());
     for (std::size_t i = 0; i < scene.receivers.size(); ++i)
@@ -218,7 +217,6 @@ SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& mat
     change.normals = std::move(after.normals);
     change.lifts = std::move(after.lifts);
     change.corner_tangents = std::move(after.corner_tangents);
-    change.bounces = scene.bounces;
     return change;
 }
 

@@ -37,7 +37,7 @@ struct SceneChange {
 /// Exchanges what a change has with what the scene has. A second call undoes the first.
 void exchange(Scene& scene, SceneChange& change);
 
-/// Returns the geometry of the scene after a move, with the counts as they are. `matrix` takes the
+/// Returns the geometry of the scene after a move, without counts and bounces. `matrix` takes the
 /// group from its present place to the next one, in the coordinates of the mesh's file (Y up).
 ///
 /// Receivers on the group go with it. All others stay, points in space among them.

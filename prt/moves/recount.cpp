@@ -20,6 +20,7 @@
 #include "prt/clusters/horizon.h"
 #include "prt/clusters/lattice.h"
 #include "prt/clusters/visibility_planes.h"
+#include "prt/moves/met_boxes.h"
 #include "prt/steps.h"
 #include "prt/visibility/bit_matrix.h"
 #include "prt/visibility/triangle_tree.h"
@@ -30,55 +31,6 @@ namespace {
 
 constexpr std::size_t BlocksPerGroup = ReceiverGroup::MaxSize / BlockSize;
 constexpr std::size_t WordsPerGroup = ReceiverGroup::MaxSize / WordSize;
-
-/// Tracers find hits beside a triangle, up to 16 roundings of the distance of its farthest corner
-/// (prt/visibility/ray_scene.cpp). Boxes are wider by four times as much.
-constexpr float Margin = 64.0f * 0x1p-24f;
-
-mesh::Bounds nothing() {
-    constexpr float Far = std::numeric_limits<float>::infinity();
-    return {glm::vec3(Far), glm::vec3(-Far)};
-}
-
-void include(mesh::Bounds& box, const glm::vec3& point) {
-    box.min = glm::min(box.min, point);
-    box.max = glm::max(box.max, point);
-}
-
-float reach(const mesh::Bounds& box) {
-    const glm::vec3 far = glm::max(glm::abs(box.min), glm::abs(box.max));
-    return std::max({far.x, far.y, far.z});
-}
-
-/// Returns what holds the difference of every point of `box` and every one of `from`.
-mesh::Bounds difference(const mesh::Bounds& box, const mesh::Bounds& from) {
-    mesh::Bounds result{box.min - from.max, box.max - from.min};
-    const glm::vec3 margin(Margin * (reach(box) + reach(from)));
-    result.min -= margin;
-    result.max += margin;
-    return result;
-}
-
-/// One over a direction's components; a number so large that it stands for infinity where one is 0.
-glm::vec3 inverse(const glm::vec3& direction) {
-    glm::vec3 result;
-    for (int axis = 0; axis < 3; ++axis)
-        result[axis] = std::abs(direction[axis]) < 1e-20f ? 1e20f : 1.0f / direction[axis];
-    return result;
-}
-
-/// Whether a ray from the origin meets a box. The box's margin is wider than the roundings here.
-bool meets(const mesh::Bounds& box, const glm::vec3& inverse_direction) {
-    const glm::vec3 a = box.min * inverse_direction, b = box.max * inverse_direction;
-    const glm::vec3 enters = glm::min(a, b), leaves = glm::max(a, b);
-    return std::max({enters.x, enters.y, enters.z, 0.0f}) <=
-           std::min({leaves.x, leaves.y, leaves.z});
-}
-
-bool meets_one(std::span<const mesh::Bounds> boxes, const glm::vec3& inverse_direction) {
-    return std::any_of(boxes.begin(), boxes.end(),
-                       [&](const mesh::Bounds& box) { return meets(box, inverse_direction); });
-}
 
 /// The rectangle that directions fill on a plane before them.
 class PatchExtent {
@@ -181,12 +133,7 @@ public:
             const SceneDifference& difference, const PrecomputeOptions& options)
         : receivers_(receivers), blockers_(blockers), transfer_(transfer), difference_(difference),
           bias_(options.bias), max_level_(texel_level(options.face_resolution)),
-          samples_(transfer.quadtree, max_level_) {
-        for (const mesh::Bounds& box : difference.boxes) {
-            include(all_boxes_, box.min);
-            include(all_boxes_, box.max);
-        }
-    }
+          samples_(transfer.quadtree, max_level_) {}
 
     [[nodiscard]] std::size_t num_groups() const {
         return (transfer_.counts.num_blocks() + BlocksPerGroup - 1) / BlocksPerGroup;
@@ -255,8 +202,8 @@ private:
         const std::size_t size =
             std::min(transfer_.num_receivers() - first, ReceiverGroup::MaxSize);
         group.num_blocks = (size + BlockSize - 1) / BlockSize;
-        group.places.fill(nothing());
-        group.facing.fill(nothing());
+        group.places.fill(no_box());
+        group.facing.fill(no_box());
         for (std::size_t i = 0; i < size; ++i) {
             const std::uint32_t receiver = transfer_.order[first + i];
             const glm::vec3& normal = receivers_.normals[receiver];
@@ -277,8 +224,7 @@ private:
         if (group.whole != 0)
             for (std::uint32_t cluster = 0; cluster < samples_.of_cluster.size(); ++cluster)
                 scratch.add(cluster, group.whole);
-        if (!difference_.boxes.empty())
-            find_met(group, scratch);
+        find_met(group, scratch);
         std::sort(scratch.clusters.begin(), scratch.clusters.end());
         for (const std::uint32_t cluster : scratch.clusters)
             for (const std::uint32_t point : samples_.of_cluster[cluster]) {
@@ -291,30 +237,22 @@ private:
 
     /// Finds the clusters with a sample whose rays may meet the boxes.
     void find_met(const Group& group, Scratch& scratch) const {
-        mesh::Bounds place = nothing();
-        std::array<mesh::Bounds, BlocksPerGroup> all{};
-        std::array<std::vector<mesh::Bounds>, BlocksPerGroup> boxes;
+        mesh::Bounds place = no_box();
+        std::vector<MetBoxes> boxes;
         for (std::size_t block = 0; block < group.num_blocks; ++block) {
-            include(place, group.places[block].min);
-            include(place, group.places[block].max);
-            all[block] = difference(all_boxes_, group.places[block]);
-            for (const mesh::Bounds& box : difference_.boxes)
-                boxes[block].push_back(difference(box, group.places[block]));
+            include(place, group.places[block]);
+            boxes.emplace_back(difference_.boxes, group.places[block]);
         }
-        const mesh::Bounds from_all = difference(all_boxes_, place);
-        std::vector<mesh::Bounds> from_group;
-        for (const mesh::Bounds& box : difference_.boxes)
-            from_group.push_back(difference(box, place));
+        const MetBoxes from_group(difference_.boxes, place);
         for (std::uint32_t point = 0; point < samples_.points.size(); ++point) {
             const glm::vec3& inverse_direction = samples_.inverses[point];
-            if (!meets(from_all, inverse_direction) || !meets_one(from_group, inverse_direction))
+            if (!from_group.meets(inverse_direction))
                 continue;
             std::uint8_t blocks = 0;
             for (std::size_t block = 0; block < group.num_blocks; ++block)
                 if ((group.whole >> block & 1u) == 0 &&
                     may_be_above(group.facing[block], samples_.directions[point]) &&
-                    meets(all[block], inverse_direction) &&
-                    meets_one(boxes[block], inverse_direction))
+                    boxes[block].meets(inverse_direction))
                     blocks |= static_cast<std::uint8_t>(1u << block);
             if (blocks != 0)
                 for (std::uint32_t i = samples_.begin[point]; i < samples_.begin[point + 1]; ++i)
@@ -454,7 +392,6 @@ private:
     float bias_;
     std::uint32_t max_level_;
     Samples samples_;
-    mesh::Bounds all_boxes_ = nothing();
 };
 
 } // namespace

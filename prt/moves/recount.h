@@ -17,7 +17,7 @@ namespace relumine::prt {
 
 /// What differs between a scene and the one that its counts were made for.
 struct SceneDifference {
-    /// They hold all triangles that block light in one of the two alone.
+    /// They hold all triangles that block or send light in one of the two alone.
     std::vector<mesh::Bounds> boxes;
     /// [num_receivers] true where a receiver has another position or another normal.
     std::vector<bool> receivers;
