@@ -130,7 +130,7 @@ BounceSamples ResampledBounces::samples(const BounceView& now, const BounceMatri
         });
         std::ranges::sort(rows[place]);
         result.num_hits[place] = num_hits;
-        constexpr double Roundings = 1e-9; // what is left of all that was taken away
+        constexpr double Roundings = 1e-6; // of floats, where all was taken away
         result.distances[place] =
             sum > Roundings * sum_before ? static_cast<float>(first_look / sum) : 0.0f;
         row = {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -170,7 +171,11 @@ private:
 GroupStep GroupStepText::read(const std::string& text) {
     const std::size_t equals = text.rfind('=');
     const auto numbers = parse_numbers(equals == std::string::npos ? "" : text.substr(equals + 1));
-    if (equals == 0 || !numbers || (numbers->size() != 3 && numbers->size() != 4))
+    const auto is_finite = [](double number) {
+        return std::isfinite(number);
+    };
+    if (equals == 0 || !numbers || (numbers->size() != 3 && numbers->size() != 4) ||
+        !std::all_of(numbers->begin(), numbers->end(), is_finite))
         refuse_text("NAME=X,Y,Z or NAME=X,Y,Z,DEGREES", text);
     return {.name = text.substr(0, equals),
             .by = {(*numbers)[0], (*numbers)[1], (*numbers)[2]},

@@ -169,6 +169,7 @@ private:
             check_own_blockers();
         if (options_.movable && scene_.mesh.groups.empty())
             throw std::invalid_argument(
+                prefix_ +
                 "expected a mesh with groups (nodes of glTF, groups of OBJ) to move, got none");
         if (!(scene_.settings.tolerance >= 0.0f && std::isfinite(scene_.settings.tolerance)))
             throw std::invalid_argument(

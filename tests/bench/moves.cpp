@@ -130,7 +130,7 @@ void run(const Settings& settings) {
                                     .movable = true};
     const Mesh mesh = Room(settings.cell).mesh();
     const auto environment = std::make_shared<const cubemap::CubeMap>(
-        data_gen::sun_and_sky(128, glm::normalize(glm::dvec3(0.3, 0.5, 1.0))));
+        data_gen::sun_and_sky(128, {.sun_azimuth_degrees = 20.0}));
     Scene scene;
     double fresh = 0.0;
     const double fresh_processor = bench::processor_seconds_of(

@@ -1,6 +1,7 @@
 // After a move, the counts are those of a fresh precompute with the same clusters, bit by bit.
 #include "prt/moves/moved_scene.h"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <functional>
@@ -14,6 +15,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "prt/bounces/bounce_precompute.h"
+#include "prt/bounces/bounce_sampler.h"
+#include "prt/moves/resampled_bounces.h"
 #include "prt/precompute.h"
 #include "prt/precompute_context.h"
 #include "prt/scene/scene_file.h"
@@ -43,7 +47,7 @@ mesh::TriangleMesh things() {
         mesh.triangle_groups = of_triangles;
     };
     add("floor", scenes::floor_grid(17, 6.0f));
-    add("wall", scenes::box({-3.0f, 0.0f, -3.2f}, {3.0f, 2.0f, -3.0f}));
+    add("wall", scenes::box({-3.3f, 0.0f, -3.4f}, {3.1f, 2.0f, -3.1f}));
     add("ball", scenes::icosphere(2, 0.5f, {1.0f, 0.6f, 0.5f}));
     add("crate", scenes::icosphere(1, 0.4f, {-1.0f, 0.5f, 0.5f}));
     add("slab", scenes::box({-1.5f, 1.5f, -1.0f}, {0.5f, 1.6f, 1.0f}));
@@ -217,6 +221,72 @@ TEST(MovedScene, FarFromTheOriginAndFarOutside) {
     expect_same(scene.transfer, fresh(scene));
     static_cast<void>(move(scene, Crate, motion(scene, Crate, {90.0, 0.0, 0.0})));
     expect_same(scene.transfer, fresh(scene));
+}
+
+/// A scene of things whose light bounces, half of every hemisphere taken for open.
+Scene bouncing_scene(const std::vector<float>& open) {
+    Scene scene = scene_of(things());
+    const RayScene rays(scene.mesh);
+    const std::vector<ProbeRadiance> dark(open.size());
+    std::vector<BounceSamples> samples;
+    samples.push_back(sample_bounces(scene.mesh, scene.receivers, scene.transfer,
+                                     {.open_parts = open, .values = dark, .index = {}}, rays,
+                                     {.is_kept = true, .bias = scene.settings.bias}));
+    scene.bounces = join_bounces(scene.receivers, scene.transfer, std::move(samples));
+    return scene;
+}
+
+TEST(MovedScene, RowsOfBouncesAreThoseOfAllRays) {
+    const std::vector<float> open(things().num_vertices(), 0.5f);
+    Scene scene = bouncing_scene(open);
+    ASSERT_TRUE(ResampledBounces::are_possible(scene));
+    const BounceMatrix first = *scene.bounces;
+    std::mt19937 random(9);
+    std::size_t num_changed = 0;
+    for (int i = 0; i < 6; ++i) {
+        SCOPED_TRACE(testing::Message() << "move " << i);
+        const auto group = static_cast<std::uint32_t>(2 + random() % 3);
+        SceneDifference difference;
+        SceneChange change =
+            moved(scene, group, random_motion(scene, group, random), difference);
+        exchange(scene, change);
+        CountsPatch counts;
+        with_beams(scene, [&](const Blockers& blockers) {
+            counts = recounted(scene.receivers, blockers, scene.transfer, difference,
+                               options_of(scene));
+        });
+        exchange(scene, change);
+        const RayScene before(scene.mesh);
+        ResampledBounces resampled({scene, open, before}, difference, counts, {});
+        exchange(scene, change);
+        exchange(scene.transfer.counts, counts);
+        const RayScene now(scene.mesh);
+        std::vector<BounceSamples> samples;
+        samples.push_back(resampled.samples({scene, open, now}, *change.bounces, {}));
+        scene.bounces = join_bounces(scene.receivers, scene.transfer, std::move(samples));
+
+        const BounceOptions options{.bias = scene.settings.bias};
+        const BounceProbes probes{.open_parts = open, .values = {}, .index = {}};
+        const BounceSampler sampler(scene.mesh, scene.receivers, scene.transfer, probes, now,
+                                    options);
+        const BounceRays& rays = scene.bounces->rays;
+        for (std::size_t place = 0; place < open.size(); ++place) {
+            RayHits hits;
+            sampler.look({.place = place, .index = place}, rays.num_directions[place], hits);
+            std::vector<std::uint32_t> row = hits.halves[0];
+            row.insert(row.end(), hits.halves[1].begin(), hits.halves[1].end());
+            EXPECT_EQ(rays.num_hits[place], row.size());
+            std::erase(row, NoEmitter);
+            std::ranges::sort(row);
+            ASSERT_TRUE(std::ranges::equal(scene.bounces->emitters[place], row)) << place;
+            num_changed += std::ranges::equal(first.emitters[place], row) ? 0 : 1;
+            RayHits look;
+            sampler.look({.place = place, .index = place}, options.min_directions, look);
+            const float distance = look.num_hits() == 0 ? 0.0f : look.distance();
+            EXPECT_NEAR(rays.distances[place], distance, 1e-3f * distance);
+        }
+    }
+    EXPECT_GT(num_changed, 100u);
 }
 
 using MovedSceneFile = tests::FolderTest;

@@ -55,14 +55,15 @@ const Scene& before() {
 /// A sky with a sharp sun, a layer over it, a distant light, dimmed lamps, and bounces.
 void light(LitScene& lit) {
     lit.dim({{.name = "lamp", .gain = glm::vec3(0.5f)}});
-    Light light(data_gen::sun_and_sky(64, glm::normalize(glm::dvec3(0.5, 0.7, 0.4))));
+    Light light(data_gen::sun_and_sky(64));
     light.lights = {{.direction = glm::normalize(glm::dvec3(-1.0, 1.0, 0.2)),
-                     .color = glm::dvec3(0.5, 0.1, 0.1)}};
+                     .irradiance = glm::dvec3(0.5, 0.1, 0.1)}};
     lit.light(std::move(light));
     set_layers(lit, {{.name = "key",
                       .region = cubemap::Disc{.direction = {0.0f, 1.0f, 0.3f},
                                               .radius_degrees = 20.0},
                       .effect = cubemap::Gain{.tint = glm::vec3(3.0f)}}});
+    mark(lit); // the light is that of the state, whichever edits led to it
     lit.bounce({.albedo = bounce_albedo(lit.scene())});
 }
 
