@@ -29,11 +29,10 @@ void move_groups(const MoveArguments& options, Session& session) {
     for (const GroupStep& step : options.steps) {
         MoveReport moved;
         const prt::Work own = session.work("moving " + step.name);
-        const PrecomputeWork work{.stop = own.stop,
-                                  .on_progress = [&](Stage stage, double fraction) {
-                                      own.on_progress(0.5 * fraction +
-                                                      (stage == Stage::Bounces ? 0.5 : 0.0));
-                                  }};
+        const PrecomputeWork work{
+            .stop = own.stop, .on_progress = [&](Stage stage, double fraction) {
+                own.on_progress(0.5 * fraction + (stage == Stage::Bounces ? 0.5 : 0.0));
+            }};
         try {
             move(scene, move_of(scene, step), work, &moved);
         } catch (const std::invalid_argument& error) {

@@ -13,8 +13,8 @@ std::size_t num_bits(std::uint64_t bits) {
 }
 
 /// Appends so many counts of 16 receivers.
-void append(std::vector<std::uint8_t>& to, const std::vector<std::uint8_t>& from,
-            std::size_t first, std::size_t count) {
+void append(std::vector<std::uint8_t>& to, const std::vector<std::uint8_t>& from, std::size_t first,
+            std::size_t count) {
     const auto begin = from.begin() + static_cast<std::ptrdiff_t>(first * BlockSize);
     to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(count * BlockSize));
 }

@@ -64,9 +64,8 @@ public:
     /// Given the inverse() of a direction.
     [[nodiscard]] bool meets(const glm::vec3& inverse_direction) const {
         return !boxes_.empty() && meets(all_, inverse_direction) &&
-               std::any_of(boxes_.begin(), boxes_.end(), [&](const mesh::Bounds& box) {
-                   return meets(box, inverse_direction);
-               });
+               std::any_of(boxes_.begin(), boxes_.end(),
+                           [&](const mesh::Bounds& box) { return meets(box, inverse_direction); });
     }
 
 private:

@@ -38,7 +38,8 @@ public:
             glm::length(linear_[0]) * glm::length(linear_[1]) * glm::length(linear_[2]);
         const double volume = glm::determinant(linear_);
         if (!(std::abs(volume) > LeastVolume * lengths) || !std::isfinite(lengths))
-            throw std::invalid_argument("expected a matrix that can be inverted, got a singular one");
+            throw std::invalid_argument(
+                "expected a matrix that can be inverted, got a singular one");
         if (volume < 0.0)
             throw std::invalid_argument("expected a matrix that turns and moves, got one that "
                                         "mirrors");
@@ -52,15 +53,16 @@ public:
         return linear_ * glm::dvec3(vector);
     }
     [[nodiscard]] glm::vec3 normal(const glm::vec3& normal) const {
-        return normal == glm::vec3(0.0f) ? normal
-                                         : glm::vec3(glm::normalize(of_normals_ *
-                                                                    glm::dvec3(normal)));
+        return normal == glm::vec3(0.0f)
+                   ? normal
+                   : glm::vec3(glm::normalize(of_normals_ * glm::dvec3(normal)));
     }
     /// Turns a tangent, whose length and sign of the bitangent stay.
     [[nodiscard]] glm::vec4 tangent(const glm::vec4& tangent) const {
         const glm::dvec3 before(tangent), after = linear_ * before;
         const double length = glm::length(after);
-        return length > 0.0 ? glm::vec4(after * (glm::length(before) / length), tangent.w) : tangent;
+        return length > 0.0 ? glm::vec4(after * (glm::length(before) / length), tangent.w)
+                            : tangent;
     }
 
 private:
@@ -159,7 +161,8 @@ SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& mat
             on_vertices(scene.layout)
                 ? "expected highlights that follow the eye where things move, got those of a fixed "
                   "view"
-                : "expected vertices or texels where things move, got pixels: they see other things "
+                : "expected vertices or texels where things move, got pixels: they see other "
+                  "things "
                   "then");
     if (scene.mesh.triangle_groups.empty() ||
         (scene.blockers && scene.blockers->triangle_groups.empty()))
@@ -208,9 +211,8 @@ SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& mat
     move_receivers(scene, after, parts.vertices, motion, change);
     difference.receivers.resize(scene.receivers.size());
     for (std::size_t i = 0; i < scene.receivers.size(); ++i)
-        difference.receivers[i] =
-            change.receiver_positions[i] != scene.receivers.positions[i] ||
-            change.receiver_normals[i] != scene.receivers.normals[i];
+        difference.receivers[i] = change.receiver_positions[i] != scene.receivers.positions[i] ||
+                                  change.receiver_normals[i] != scene.receivers.normals[i];
     for (const std::uint32_t receiver : scene.transfer.order)
         change.normals_by_place.push_back(change.receiver_normals[receiver]);
     change.positions = std::move(after.positions);

@@ -43,7 +43,8 @@ void exchange(Scene& scene, SceneChange& change);
 /// Receivers on the group go with it. All others stay, points in space among them.
 ///
 /// difference: gets what differs.
-/// Throws:  std::invalid_argument for a matrix that is not finite, singular, mirrors or is no affine
+/// Throws:  std::invalid_argument for a matrix that is not finite, singular, mirrors or is no
+/// affine
 ///          map; a group whose vertices others share, or that is the added floor's; receivers that
 ///          belong to an eye.
 [[nodiscard]] SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& matrix,

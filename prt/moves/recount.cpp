@@ -105,9 +105,8 @@ struct Samples {
             begin[i + 1] += begin[i];
         clusters.resize(begin.back());
         std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-        for_pairs([&](std::uint32_t point, std::uint32_t cluster) {
-            clusters[next[point]++] = cluster;
-        });
+        for_pairs(
+            [&](std::uint32_t point, std::uint32_t cluster) { clusters[next[point]++] = cluster; });
     }
 
 private:
@@ -214,7 +213,8 @@ private:
             if (difference_.receivers[receiver])
                 group.whole |= static_cast<std::uint8_t>(1u << (i / BlockSize));
         }
-        const std::size_t num_points = std::min(std::max(transfer_.num_points, first) - first, size);
+        const std::size_t num_points =
+            std::min(std::max(transfer_.num_points, first) - first, size);
         group.arrays = NormalArrays(group.normals, num_points);
         return group;
     }
@@ -288,8 +288,8 @@ private:
     }
 
     /// Traces the directions from `first` on.
-    void trace(const Group& group, const DirectionPatch& patch, std::size_t first,
-               Scratch& scratch, Found& found) const {
+    void trace(const Group& group, const DirectionPatch& patch, std::size_t first, Scratch& scratch,
+               Found& found) const {
         const std::size_t size = group.origins.size();
         std::array<std::uint64_t, ReceiverGroup::MaxSize> rays{}; // [receiver], a bit per direction
         const std::span<std::uint64_t> of_group(rays.data(), size);

@@ -68,9 +68,8 @@ ResampledBounces::ResampledBounces(const BounceView& before, const SceneDifferen
         row.is_whole = difference.receivers[receiver] || asked.sampler.closure_of(own) == 0.0;
         if (row.is_whole)
             return;
-        const glm::vec3 origin =
-            ray_origin(receivers.positions[receiver], transfer.normals[place],
-                       before.scene.settings.bias);
+        const glm::vec3 origin = ray_origin(receivers.positions[receiver], transfer.normals[place],
+                                            before.scene.settings.bias);
         const MetBoxes boxes(difference.boxes, {origin, origin});
         const std::size_t block = place / BlockSize;
         row.directions = asked.sampler.chosen(
@@ -139,8 +138,8 @@ BounceSamples ResampledBounces::samples(const BounceView& now, const BounceMatri
         result.emitters.append(row);
     std::vector<std::uint32_t> all(rows.size());
     std::iota(all.begin(), all.end(), 0u);
-    result.averaged = shared_samples(scene.receivers, transfer, 0, rows.size(), result.distances,
-                                     all);
+    result.averaged =
+        shared_samples(scene.receivers, transfer, 0, rows.size(), result.distances, all);
     return result;
 }
 

@@ -64,7 +64,8 @@ Receivers vertex_receivers(const mesh::TriangleMesh& mesh, float rim_step) {
     }
     for (std::size_t vertex = 0; vertex < is_inner.size(); ++vertex)
         if (const float length = glm::length(inwards[vertex]); length > 0.0f)
-            receivers.positions[vertex] += std::min(rim_step, reach[vertex]) / length * inwards[vertex];
+            receivers.positions[vertex] +=
+                std::min(rim_step, reach[vertex]) / length * inwards[vertex];
     return receivers;
 }
 

@@ -24,8 +24,8 @@ const std::string Radius = "bounce_radius", Weights = "bounce_weights",
                   EmitterSizes = "bounce_hits_size", Emitters = "bounce_hits",
                   AveragedSizes = "bounce_near_size", Averaged = "bounce_near",
                   OpenParts = "bounce_open", Distances = "bounce_distance",
-                  HitCounts = "bounce_rays_hit", Looks = "bounce_looks", Rays = "bounce_rays", Errors = "bounce_errors",
-                  PointRays = "point_rays", PointHits = "point_hits";
+                  HitCounts = "bounce_rays_hit", Looks = "bounce_looks", Rays = "bounce_rays",
+                  Errors = "bounce_errors", PointRays = "point_rays", PointHits = "point_hits";
 
 void add_lists(NewSections& sections, const std::string& size_name, const std::string& name,
                const PlaceLists& lists) {

@@ -40,8 +40,7 @@ using Groups = std::optional<std::pair<std::vector<std::string>, py::buffer>>;
 /// Optional arrays are None.
 MeshPointer make_mesh(const py::buffer& vertices, const py::buffer& triangle_indices,
                       const py::object& normals, const py::object& colors, const py::object& uvs,
-                      const OtherBlockers& blockers, const Groups& groups,
-                      const py::dict& given) {
+                      const OtherBlockers& blockers, const Groups& groups, const py::dict& given) {
     mesh::TriangleMesh geometry;
     geometry.positions = vec3s(vertices);
     geometry.triangles = triangles(triangle_indices);
@@ -280,9 +279,11 @@ py::tuple moved(const std::shared_ptr<Scene>& scene, const std::string& name,
     const Result result = in_background(progress, [scene, to](const Reins& reins) {
         Result found{std::make_shared<Scene>(*scene), {}};
         move(*found.first, to,
-             {.stop = reins.stop, .on_progress = [&reins](Stage stage, double fraction) {
-                  reins.on_progress(0.5 * fraction + (stage == Stage::Bounces ? 0.5 : 0.0));
-              }},
+             {.stop = reins.stop,
+              .on_progress =
+                  [&reins](Stage stage, double fraction) {
+                      reins.on_progress(0.5 * fraction + (stage == Stage::Bounces ? 0.5 : 0.0));
+                  }},
              &found.second);
         return found;
     });

@@ -104,8 +104,8 @@ public:
         prt::set_surfaces(scene_.transfer, scene_.receivers);
         report.num_moved = static_cast<std::size_t>(
             std::count(difference_.receivers.begin(), difference_.receivers.end(), true));
-        report.num_all = std::uint64_t{scene_.transfer.counts.num_blocks()} *
-                         scene_.transfer.counts.num_leaves;
+        report.num_all =
+            std::uint64_t{scene_.transfer.counts.num_blocks()} * scene_.transfer.counts.num_leaves;
         report.leaves_box = !is_inside(mesh::bounds(scene_.mesh), box);
         report.seconds = seconds_since(start);
         return std::move(change_);
@@ -118,10 +118,10 @@ private:
 
     prt::CountsPatch recounted(const prt::RayScene& rays, MoveReport& report) const {
         const prt::BeamScene beams(scene_.blocking_mesh(), rays);
-        return prt::recounted(scene_.receivers, beams, scene_.transfer, difference_,
-                              {.face_resolution = scene_.settings.face_resolution,
-                               .bias = scene_.settings.bias},
-                              work_.of(Stage::Clusters), &report.counts);
+        return prt::recounted(
+            scene_.receivers, beams, scene_.transfer, difference_,
+            {.face_resolution = scene_.settings.face_resolution, .bias = scene_.settings.bias},
+            work_.of(Stage::Clusters), &report.counts);
     }
 
     /// Finds what the bounces' rays met that are to be traced anew. Nothing where all are.
@@ -131,9 +131,8 @@ private:
         try {
             if (prt::ResampledBounces::are_possible(scene_)) {
                 const std::vector<float> open = open_parts(scene_);
-                result.emplace(
-                    prt::BounceView{scene_, open, ray_scene(scene_.mesh, "")}, difference_, counts,
-                    work_.of(Stage::Bounces).part(0.0, 0.5));
+                result.emplace(prt::BounceView{scene_, open, ray_scene(scene_.mesh, "")},
+                               difference_, counts, work_.of(Stage::Bounces).part(0.0, 0.5));
             }
         } catch (...) {
             prt::exchange(scene_, change_);

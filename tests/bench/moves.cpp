@@ -110,13 +110,14 @@ bool are_fresh(const Scene& scene) {
     const prt::RayScene rays(scene.blocking_mesh());
     const prt::BeamScene beams(scene.blocking_mesh(), rays);
     const prt::VisibleCounts counts =
-        prt::precompute(scene.receivers, beams,
-                        {.face_resolution = scene.settings.face_resolution,
-                         .bias = scene.settings.bias},
-                        {}, {.given = &scene.transfer, .has_clusters = true})
+        prt::precompute(
+            scene.receivers, beams,
+            {.face_resolution = scene.settings.face_resolution, .bias = scene.settings.bias}, {},
+            {.given = &scene.transfer, .has_clusters = true})
             .counts;
     const prt::VisibleCounts& own = scene.transfer.counts;
-    return counts.visible == own.visible && counts.mixed == own.mixed && counts.counts == own.counts;
+    return counts.visible == own.visible && counts.mixed == own.mixed &&
+           counts.counts == own.counts;
 }
 
 double error_of(const LitScene& lit, std::size_t num_receivers) {
@@ -154,13 +155,12 @@ void run(const Settings& settings) {
         step.degrees = i % 3 == 2 ? 180.0 * part() : 0.0;
         MoveReport report;
         processor.push_back(bench::processor_seconds_of([&] {
-            seconds.push_back(bench::seconds_of(
-                [&] { report = lit.move(move_of(lit.scene(), step)); }));
+            seconds.push_back(
+                bench::seconds_of([&] { report = lit.move(move_of(lit.scene(), step)); }));
         }));
         pairs.push_back(static_cast<double>(report.counts.num_pairs) /
                         static_cast<double>(report.num_all));
-        moved.push_back(static_cast<double>(report.num_moved) /
-                        static_cast<double>(num_receivers));
+        moved.push_back(static_cast<double>(report.num_moved) / static_cast<double>(num_receivers));
         if (i == 0)
             memory = bench::peak_megabytes();
     }

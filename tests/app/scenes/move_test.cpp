@@ -21,8 +21,8 @@ protected:
     }
     void precompute(const std::vector<std::string>& options) {
         std::vector<std::string> arguments = {
-            "precompute", "mesh.obj",          "-o", "scene.prt",   "--floor",     "17",
-            "--tolerance", "0.05", "--face-resolution", "64", "--no-refine", "-q"};
+            "precompute", "mesh.obj",          "-o", "scene.prt",   "--floor", "17", "--tolerance",
+            "0.05",       "--face-resolution", "64", "--no-refine", "-q"};
         arguments.insert(arguments.end(), options.begin(), options.end());
         succeed(arguments);
     }
@@ -83,7 +83,8 @@ TEST_F(Move, Refuses) {
     fail("move scene.prt --group mesh=1,0,0 -o moved.prt", {"scene.prt: expected", "--movable"});
     precompute({"--movable", "--receivers", "pixels:24x16", "--view", "auto"});
     fail("move scene.prt --group mesh=1,0,0 -o moved.prt", {"scene.prt: expected", "pixels"});
-    fail("precompute mesh.obj -o other.prt --movable -q", {"mesh.obj: expected a mesh with groups"});
+    fail("precompute mesh.obj -o other.prt --movable -q",
+         {"mesh.obj: expected a mesh with groups"});
 }
 
 } // namespace

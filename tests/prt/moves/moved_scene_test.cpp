@@ -247,13 +247,12 @@ TEST(MovedScene, RowsOfBouncesAreThoseOfAllRays) {
         SCOPED_TRACE(testing::Message() << "move " << i);
         const auto group = static_cast<std::uint32_t>(2 + random() % 3);
         SceneDifference difference;
-        SceneChange change =
-            moved(scene, group, random_motion(scene, group, random), difference);
+        SceneChange change = moved(scene, group, random_motion(scene, group, random), difference);
         exchange(scene, change);
         CountsPatch counts;
         with_beams(scene, [&](const Blockers& blockers) {
-            counts = recounted(scene.receivers, blockers, scene.transfer, difference,
-                               options_of(scene));
+            counts =
+                recounted(scene.receivers, blockers, scene.transfer, difference, options_of(scene));
         });
         exchange(scene, change);
         const RayScene before(scene.mesh);

@@ -23,7 +23,8 @@ using testing::HasSubstr;
 mesh::TriangleMesh things() {
     mesh::TriangleMesh mesh = scenes::floor_grid(21, 6.0f);
     const auto add = [&](const mesh::TriangleMesh& part) {
-        const std::uint32_t group = mesh.triangle_groups.empty() ? 0 : mesh.triangle_groups.back() + 1;
+        const std::uint32_t group =
+            mesh.triangle_groups.empty() ? 0 : mesh.triangle_groups.back() + 1;
         mesh::TriangleMesh joined = scenes::joined(mesh, part);
         joined.triangle_groups = mesh.triangle_groups;
         joined.triangle_groups.resize(joined.num_triangles(), group);
@@ -59,10 +60,10 @@ void light(LitScene& lit) {
     light.lights = {{.direction = glm::normalize(glm::dvec3(-1.0, 1.0, 0.2)),
                      .irradiance = glm::dvec3(0.5, 0.1, 0.1)}};
     lit.light(std::move(light));
-    set_layers(lit, {{.name = "key",
-                      .region = cubemap::Disc{.direction = {0.0f, 1.0f, 0.3f},
-                                              .radius_degrees = 20.0},
-                      .effect = cubemap::Gain{.tint = glm::vec3(3.0f)}}});
+    set_layers(lit,
+               {{.name = "key",
+                 .region = cubemap::Disc{.direction = {0.0f, 1.0f, 0.3f}, .radius_degrees = 20.0},
+                 .effect = cubemap::Gain{.tint = glm::vec3(3.0f)}}});
     mark(lit); // the light is that of the state, whichever edits led to it
     lit.bounce({.albedo = bounce_albedo(lit.scene())});
 }
@@ -140,8 +141,9 @@ TEST(Moves, RefusesNamesAndScenesThatAreShared) {
     Scene without = before();
     without.mesh.triangle_groups.clear();
     EXPECT_THAT(refusal([&] { move(without, {.name = "ball"}); }), HasSubstr("--movable"));
-    EXPECT_THAT(refusal([] { static_cast<void>(precompute(scenes::floor_grid(3, 1.0f),
-                                                          {.movable = true})); }),
+    EXPECT_THAT(refusal([] {
+                    static_cast<void>(precompute(scenes::floor_grid(3, 1.0f), {.movable = true}));
+                }),
                 HasSubstr("a mesh with groups"));
 }
 
