@@ -44,8 +44,10 @@ public:
     /// Set by Ctrl-C, SIGTERM and SIGHUP. Work that goes on for more than 0.15 s is ended
     /// from outside: outputs that are not complete disappear. See Patience.
     [[nodiscard]] std::stop_token stop() const { return stop_source_.get_token(); }
-    /// Throws prt::Cancelled after Ctrl-C.
+    /// Throws prt::Cancelled after Ctrl-C, or after cancel().
     void poll() const;
+    /// Ends the work as Ctrl-C does, but for what is said.
+    void cancel() { stop_source_.request_stop(); }
 
     /// Shows a bar with the time left on a terminal, lines elsewhere (ProgressLines), nothing in
     /// the first second or with -q. To be called with fractions in [0, 1].

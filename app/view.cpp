@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +20,7 @@
 #include "app/options/receiver_options.h"
 #include "app/scenes/lit_scene.h"
 #include "relumine/light/light_parts.h"
+#include "relumine/out/first_sight.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
 #include "viewer/view.h"
@@ -101,38 +105,35 @@ void report(const viewer::ViewReport& result, const viewer::ViewState& state, co
                     {"seconds_drag", seconds}});
 }
 
-void run(const Options& options, Session& session) {
-    check(options.picture);
-    viewer::ViewOptions view{.screenshot = options.screenshot, .stop = session.stop()};
-    view.width = static_cast<int>(options.picture.width);
-    view.height = static_cast<int>(options.picture.height);
-    const std::optional<double> exposure_ev = options.picture.exposure_ev;
-    if (!options.screenshot.empty())
-        check_output(options.screenshot,
-                     {options.scene.path, options.environment.path, options.script});
-    if (!options.script.empty())
-        view.script = viewer::load_script(options.script);
-    else if (!options.screenshot.empty())
-        view.script = viewer::parse_script("wait 2", "--screenshot");
+/// What a window begins with, and what the next one takes over from it.
+struct Beginning {
+    LightState light;
+    std::optional<viewer::OrbitCamera> camera = {};
+    std::optional<viewer::SceneLook> scene_look = {};
+    std::optional<viewer::EnvironmentLook> environment_look = {};
+};
 
-    LitScene lit = lit_scene(options.scene, session);
-    const bool shows_points = lit.scene().receivers.num_points() != 0;
-    if (!shows_points)
-        require_vertices(lit.scene(), options.scene.path);
-    lit.dim(options.picture.emission);
-    session.poll();
-    const auto load = [&](const std::filesystem::path& path) {
+/// Reads environments as the options say.
+auto loader(const Options& options, Session& session) {
+    return [&](const std::filesystem::path& path) {
         EnvironmentOptions environment = options.environment;
         environment.path = path.string();
         environment.rotate_degrees = 0.0; // the window turns it itself
         return load_environment(environment, session);
     };
-    const std::string& path = options.environment.path;
-    lit.edit({.base = base_of(path.empty()
-                                  ? Environment{.map = plain_grey(), .file = {}, .assumptions = {}}
-                                  : load(path)),
-              .rotation_degrees = options.environment.rotate_degrees});
-    options.bounces.bounce(lit, {}, options.scene.path);
+}
+
+/// Shows a scene in the light of `beginning`, and leaves there what the person made of it.
+/// `is_quick`: the whole scene follows.
+void show(LitScene& lit, const Options& options, viewer::ViewOptions view, bool is_quick,
+          Beginning& beginning, Session& session) {
+    const bool shows_points = lit.scene().receivers.num_points() != 0;
+    if (!shows_points)
+        require_vertices(lit.scene(), options.scene.path);
+    lit.dim(options.picture.emission);
+    lit.edit(beginning.light);
+    if (!is_quick)
+        options.bounces.bounce(lit, {}, options.scene.path);
     viewer::LightDesk desk(lit);
     std::optional<ProbeBalls> balls;
     std::optional<prt::RayScene> rays_of_balls;
@@ -146,23 +147,116 @@ void run(const Options& options, Session& session) {
                             .shading = balls ? shading_of(*balls, lit.scene())
                                              : shading_of(lit.scene(), options.picture.emission),
                             .picture = options.picture,
-                            .load_environment = load};
+                            .load_environment = loader(options, session)};
     state.balls = balls ? &*balls : nullptr;
     state.eye_options = options.eye;
     if (has_live_highlights(lit.scene())) {
         state.live_eye = std::make_unique<LiveEye>(lit);
-        warn_of_smooth_surfaces(state.live_eye->num_too_smooth(), session);
+        if (!is_quick)
+            warn_of_smooth_surfaces(state.live_eye->num_too_smooth(), session);
         state.roughness = state.live_eye->mean_roughness();
     }
-    if (!options.layers.empty() && !viewer::open(state, options.layers))
-        throw std::runtime_error(state.message);
-    state.scene_look.exposure_ev = static_cast<float>(
-        exposure_ev ? *exposure_ev : Painter(lit, {}).choose_exposure_ev(lit.lighting()));
-    state.environment_look.exposure_ev = state.scene_look.exposure_ev;
-    state.scene_look.tone = options.picture.tone;
-    state.environment_look.tone = state.scene_look.tone;
+    if (!beginning.scene_look) {
+        if (!options.layers.empty() && !viewer::open(state, options.layers))
+            throw std::runtime_error(state.message);
+        state.scene_look.exposure_ev = static_cast<float>(
+            options.picture.exposure_ev ? *options.picture.exposure_ev
+                                        : Painter(lit, {}).choose_exposure_ev(lit.lighting()));
+        state.environment_look.exposure_ev = state.scene_look.exposure_ev;
+        state.scene_look.tone = options.picture.tone;
+        state.environment_look.tone = state.scene_look.tone;
+    } else {
+        state.scene_look = *beginning.scene_look;
+        state.environment_look = *beginning.environment_look;
+    }
+    if (is_quick)
+        state.message = "A first sight: the whole scene is on its way.";
+    view.camera = beginning.camera;
     const viewer::ViewReport result = viewer::view(state, view);
-    report(result, state, lit, session);
+    if (is_quick)
+        session.add_to_report("frames_of_first_sight", result.num_frames);
+    beginning = {.light = lit.state(),
+                 .camera = state.camera,
+                 .scene_look = state.scene_look,
+                 .environment_look = state.environment_look};
+    if (!is_quick)
+        report(result, state, lit, session);
+}
+
+/// Returns the scene. Where it takes a precompute, a window shows a quick one until it is there.
+/// None where a person closed that window.
+std::optional<LitScene> whole_scene(const Options& options, viewer::ViewOptions view,
+                                    Beginning& beginning, Session& session) {
+    std::promise<Mesh> mesh;
+    std::future<Mesh> sight = mesh.get_future();
+    std::promise<void> go_on;
+    SceneOptions scene = options.scene;
+    scene.before = [&](const Mesh& found) {
+        mesh.set_value(found);
+        go_on.get_future().wait();
+    };
+    std::stop_source is_over;
+    const std::stop_callback on_signal(session.stop(), [&] { is_over.request_stop(); });
+    std::future<LitScene> whole = std::async(std::launch::async, [&] {
+        const std::unique_ptr<std::stop_source, void (*)(std::stop_source*)> tell(
+            &is_over, [](std::stop_source* over) { over->request_stop(); });
+        return lit_scene(scene, session);
+    });
+    constexpr auto Moment = std::chrono::milliseconds(10);
+    while (sight.wait_for(Moment) != std::future_status::ready && !is_over.stop_requested())
+        continue;
+    if (is_over.stop_requested())
+        return whole.get();
+    view.stop = is_over.get_token();
+    view.script.reset(); // it plays to the whole scene
+    view.screenshot.clear();
+    try {
+        // The precompute waits, so that the window is soon there.
+        LitScene quick = [&] {
+            const std::unique_ptr<std::promise<void>, void (*)(std::promise<void>*)> then(
+                &go_on, [](std::promise<void>* others) { others->set_value(); });
+            return LitScene(quick_scene(sight.get()),
+                            {.highlight_rays = options.scene.highlight_rays});
+        }();
+        show(quick, options, view, true, beginning, session);
+    } catch (...) {
+        session.cancel();
+        throw;
+    }
+    if (is_over.stop_requested())
+        return whole.get();
+    session.cancel();
+    whole.wait();
+    return std::nullopt;
+}
+
+void run(const Options& options, Session& session) {
+    check(options.picture);
+    viewer::ViewOptions view{.screenshot = options.screenshot, .stop = session.stop()};
+    view.width = static_cast<int>(options.picture.width);
+    view.height = static_cast<int>(options.picture.height);
+    if (!options.screenshot.empty())
+        check_output(options.screenshot,
+                     {options.scene.path, options.environment.path, options.script});
+    if (!options.script.empty())
+        view.script = viewer::load_script(options.script);
+    else if (!options.screenshot.empty())
+        view.script = viewer::parse_script("wait 2", "--screenshot");
+
+    options.scene.check();
+    const std::string& path = options.environment.path;
+    Beginning beginning{
+        .light = {.base = base_of(
+                      path.empty() ? Environment{.map = plain_grey(), .file = {}, .assumptions = {}}
+                                   : loader(options, session)(path)),
+                  .rotation_degrees = options.environment.rotate_degrees}};
+    std::optional<LitScene> lit = options.scene.is_first_picture()
+                                      ? whole_scene(options, view, beginning, session)
+                                      : lit_scene(options.scene, session);
+    if (!lit)
+        return;
+    session.poll();
+    show(*lit, options, view, false, beginning, session);
     session.poll();
 }
 

@@ -13,17 +13,11 @@
 
 #include "mesh/edge_uses.h"
 #include "mesh/materials/material.h"
+#include "mesh/opacity.h"
 
 namespace relumine::mesh {
 
 namespace {
-
-/// Whether nothing of a material is ever seen: its alpha is 0, or below what it is cut off at.
-bool is_unseen(const Material& material) {
-    return material.alpha_mode == AlphaMode::Blend
-               ? material.alpha == 0.0f
-               : material.alpha_mode == AlphaMode::Mask && material.alpha < material.alpha_cutoff;
-}
 
 /// Stray triangles reach so many times as far as the rest, and weigh no more than this part.
 constexpr double Far = 16.0, Light = 1e-3;

@@ -28,6 +28,7 @@
 #include "relumine/light/light.h"
 #include "relumine/light/lit_scene.h"
 #include "relumine/out/camera_path.h"
+#include "relumine/out/first_sight.h"
 #include "relumine/out/light_mix.h"
 #include "relumine/out/output.h"
 #include "relumine/out/output_options.h"

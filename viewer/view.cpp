@@ -284,12 +284,14 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
     Pictures pictures(state);
     ScriptPlayer player(options.script.value_or(std::vector<ScriptCommand>{}));
     Idleness idleness;
-    state.camera = camera_on_all(state.desk.lit().scene(), window.layout().scene, state.picture);
+    state.camera = options.camera ? *options.camera
+                                  : camera_on_all(state.desk.lit().scene(), window.layout().scene,
+                                                  state.picture);
     ViewReport report{.renderer = window.renderer()};
     double seconds = 0.0;
 
     bool is_last = false;
-    while (!is_last && !window.should_close() && !options.stop.stop_requested()) {
+    do {
         ScriptPlayer::Frame scripted;
         if (options.script) {
             scripted = player.step(state, window.layout().scene);
@@ -330,9 +332,8 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
         state.frame_seconds = seconds_since(start);
         seconds += state.frame_seconds;
         ++report.num_frames;
-    }
-    if (report.num_frames > 0)
-        report.mean_frame_seconds = seconds / static_cast<double>(report.num_frames);
+    } while (!is_last && !window.should_close() && !options.stop.stop_requested());
+    report.mean_frame_seconds = seconds / static_cast<double>(report.num_frames);
     report.drag_seconds.assign(state.hand.seconds().begin(), state.hand.seconds().end());
     return report;
 }

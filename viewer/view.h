@@ -22,6 +22,8 @@ struct ViewOptions {
     std::filesystem::path screenshot = {};
     /// Closes the window.
     std::stop_token stop = {};
+    /// The view to begin with. Empty: the whole mesh.
+    std::optional<OrbitCamera> camera = {};
 };
 
 /// What happened while the window was open.
@@ -34,8 +36,7 @@ struct ViewReport {
     std::vector<double> drag_seconds = {};
 };
 
-/// Shows the state until the window is closed or the script ends. Begins with a view of the whole
-/// mesh.
+/// Shows the state, one frame at least, until the window is closed or the script ends.
 ///
 /// Throws:  std::runtime_error when no window can be opened, for a command that a script cannot do,
 ///          and for a screenshot that cannot be written.

@@ -39,7 +39,7 @@ Scene load(const SceneOptions& options, Session& session) {
         return load_scene(options.path);
     }
     if (options.is_first_picture())
-        return first_scene(options.path, options.pose, !options.no_cache, session);
+        return first_scene(options.path, options.pose, !options.no_cache, options.before, session);
     if (options.clusters_only)
         throw std::runtime_error(fmt::format(
             "{}: expected a scene file with --clusters-only, got a mesh", options.path));
@@ -86,12 +86,16 @@ auto naming_scene(const std::string& path, const Make& make) {
 
 } // namespace
 
-LitScene lit_scene(const SceneOptions& options, Session& session) {
-    const std::string extension = files::extension_of(options.path);
+void SceneOptions::check() const {
+    const std::string extension = files::extension_of(path);
     if (extension == ".hdr" || extension == ".exr" || extension == ".pic")
         throw UsageError("SCENE", fmt::format("expected a scene, got the environment {}: the scene "
                                               "stands first, the environment behind it",
-                                              options.path));
+                                              path));
+}
+
+LitScene lit_scene(const SceneOptions& options, Session& session) {
+    options.check();
     if (session.team != nullptr && session.team->has_others()) {
         if (mesh::has_mesh_extension(options.path))
             throw std::runtime_error(fmt::format("{}: expected a scene for processes to share, got "

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -28,10 +29,14 @@ struct SceneOptions {
     bool no_cache = false;
     /// Lights a mesh without a precompute, and so without an environment.
     bool lights_alone = false;
+    /// Looks at a mesh before its precompute, where there is one. Empty: nobody does.
+    std::function<void(const Mesh&)> before = {};
     /// Colours of all surfaces, in place of those of the precompute
     SurfaceColors colors = {};
 
     void add_to(Command& command);
+    /// Throws UsageError for an environment in place of the scene. lit_scene() does so, too.
+    void check() const;
     /// SCENE is a mesh that is precomputed first, which says what its file leaves out.
     [[nodiscard]] bool is_first_picture() const;
 };

@@ -1,6 +1,8 @@
 #include "relumine/in/precompute.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -426,7 +428,7 @@ void add_work_options(Command& command, PrecomputeArguments& options) {
 } // namespace
 
 Scene first_scene(const std::string& path, const std::optional<mesh::Pose>& pose, bool is_cached,
-                  Session& session) {
+                  const std::function<void(const Mesh&)>& before, Session& session) {
     Stopwatch watch;
     PrecomputeArguments options;
     options.mesh = path;
@@ -441,6 +443,8 @@ Scene first_scene(const std::string& path, const std::optional<mesh::Pose>& pose
     };
     PrecomputeReport facts;
     try {
+        if (before && !(cache && std::filesystem::exists(cached_file(*cache, mesh))))
+            before(mesh);
         Scene scene = cache ? cached_precompute(*cache, std::move(mesh), {}, work, &facts)
                             : precompute(std::move(mesh), {}, work, &facts);
         session.end_progress();

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -19,10 +20,12 @@
 #include "app/options/plan_option.h"
 #include "app/scenes/lit_scene.h"
 #include "files/counted.h"
+#include "files/extension.h"
 #include "relumine/in/shared_work.h"
 #include "relumine/light/harmonics_file.h"
 #include "relumine/light/light_lists.h"
 #include "relumine/light/lit_part.h"
+#include "relumine/out/first_sight.h"
 
 namespace relumine::app {
 
@@ -173,11 +176,39 @@ void report_light(const RelightArguments& options, Session& session, const Lit& 
     session.report(report);
 }
 
+/// Returns what draws a first sight of a mesh in place of the picture that takes longer. Empty
+/// where none is wanted.
+std::function<void(const Mesh&)> first_sight(const RelightArguments& options, const Light& light,
+                                             Session& session) {
+    const std::string extension = files::extension_of(options.output.path);
+    if (!options.scene.is_first_picture() || (extension != ".png" && extension != ".exr") ||
+        options.only_bounces || options.scene.colors != SurfaceColors())
+        return {};
+    return [&options, &light, &session, watch = Stopwatch()](const Mesh& mesh) {
+        Scene scene = quick_scene(mesh);
+        options.output.check_fits(scene);
+        const relumine::OutputOptions picture = quick_picture(options.output.for_scene(scene));
+        LitScene lit(std::move(scene), {.highlight_rays = picture.highlight_rays});
+        lit.dim(picture.emission);
+        lit.light(light);
+        save(lit, options.output.path, picture);
+        session.say(fmt::format("{}: a first sight, small and without bounces, after {:.1f} s; the "
+                                "picture follows",
+                                options.output.path, watch.total()));
+        session.poll();
+    };
+}
+
 /// Lights the scene with an environment, a list, or both; alone or with the processes of a team,
 /// whose first one writes the output.
 void light_scene(const RelightArguments& options, Session& session) {
     Stopwatch watch;
-    LitScene lit = lit_scene(options.scene, session);
+    options.scene.check();
+    Given given = given_light(options, session);
+    SceneOptions with_sight = options.scene;
+    with_sight.before = first_sight(options, given.light, session);
+    watch.lap();
+    LitScene lit = lit_scene(with_sight, session);
     const Scene& scene = lit.scene();
     if (options.environment.path.empty() && options.lights.empty() && scene.lamps.empty())
         throw UsageError("relight", "expected ENV, --lights or both, or a scene with lamps");
@@ -186,9 +217,7 @@ void light_scene(const RelightArguments& options, Session& session) {
         check_harmonics(options.harmonics, scene);
     const double seconds_load_scene = watch.lap();
     session.poll();
-    Given given = given_light(options, session);
     const std::size_t num_lights = given.light.lights.size();
-    watch.lap();
     const relumine::OutputOptions output = options.output.for_scene(scene);
     lit.dim(output.emission);
     const UpdateReport times = lit.light(std::move(given.light));

@@ -7,6 +7,7 @@
 
 #include <glm/common.hpp>
 
+#include "mesh/opacity.h"
 #include "prt/glossy/lobe_list.h"
 #include "prt/glossy/sheen_lobe.h"
 #include "prt/receivers/mesh_point.h"
@@ -163,6 +164,13 @@ Surface measured_surface(std::shared_ptr<const mesh::BrdfTable> table) {
                     .roughness_or_exponent = table->roughness()};
     surface.table = std::move(table);
     return surface;
+}
+
+bool shows_light(const mesh::TriangleMesh& mesh, std::size_t triangle) {
+    if (mesh.triangle_materials.empty())
+        return true;
+    const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
+    return material.model != mesh::MaterialModel::Unlit && !mesh::is_unseen(material);
 }
 
 bool has_highlight(const mesh::Material& material) {

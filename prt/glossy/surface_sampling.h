@@ -44,6 +44,9 @@ enum class GgxForm { Whole, Published };
 /// Returns the surface of a measured BRDF.
 [[nodiscard]] Surface measured_surface(std::shared_ptr<const mesh::BrdfTable> table);
 
+/// Whether light changes what a triangle shows: not that of unlit ones, and of those of alpha 0.
+[[nodiscard]] bool shows_light(const mesh::TriangleMesh& mesh, std::size_t triangle);
+
 /// Whether surfaces of a material have a highlight.
 [[nodiscard]] bool has_highlight(const mesh::Material& material);
 

@@ -69,6 +69,15 @@ Receivers vertex_receivers(const mesh::TriangleMesh& mesh, float rim_step) {
     return receivers;
 }
 
+void leave_unlit_out(Receivers& receivers) {
+    for (std::size_t i = 0; i < receivers.surfaces.size(); ++i) {
+        const Surface& surface = receivers.surfaces[i];
+        if (surface.albedo == glm::vec3(0.0f) && surface.highlight == Highlight::None &&
+            surface.emission != glm::vec3(0.0f))
+            receivers.normals[i] = glm::vec3(0.0f);
+    }
+}
+
 void add_vertices(Receivers& receivers, const mesh::TriangleMesh& mesh) {
     const Receivers vertices = vertex_receivers(mesh);
     receivers.points.resize(receivers.size()); // points in space are not on the mesh

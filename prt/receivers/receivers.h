@@ -67,6 +67,10 @@ struct Receivers {
 /// Does the same with another step in place of automatic_bias(), that of a mesh before it changed.
 [[nodiscard]] Receivers vertex_receivers(const mesh::TriangleMesh& mesh, float rim_step);
 
+/// Takes the normals of receivers that show a colour of their own and reflect nothing: unlit ones,
+/// above all. No light changes them, so none is looked for.
+void leave_unlit_out(Receivers& receivers);
+
 /// Adds the mesh's vertices that belong to triangles to receivers that are others, so that these
 /// have something to get bounced light from. The vertices are Lambert, whatever the
 /// surface. Surfaces must be empty.

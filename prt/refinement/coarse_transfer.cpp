@@ -22,9 +22,9 @@ namespace relumine::prt {
 namespace {
 
 /// Weights of two squared errors beside the squared error under a small light anywhere: under even
-/// light from everywhere, and under the environment that is named. Under even light errors are
-/// smaller, so they would count for little. Measured: these lower the relative errors under all of
-/// them about alike.
+/// light from everywhere, and under the environment that is named or the lamps. Under even light
+/// errors are smaller, so they would count for little. Measured: these lower the relative errors
+/// under all of them about alike.
 constexpr double WeightOfEvenLight = 20.0, WeightOfLight = 4.0;
 
 } // namespace
@@ -222,10 +222,15 @@ float CoarseDirections::difference(const Point& point, std::span<const Point> ot
         under_even_light += static_cast<double>(even_of_patch);
         under_light += static_cast<double>(light_of_patch);
     }
-    return static_cast<float>(std::sqrt(squares +
-                                        WeightOfEvenLight * under_even_light * under_even_light +
-                                        WeightOfLight * under_light * under_light) /
-                              std::numbers::pi);
+    double of_others = 0.0;
+    for (const Point& other : others)
+        of_others += double{other.weight} * double{other.lamps};
+    const double under_lamps =
+        (double{point.lamps} - of_others) / (1.0 + std::max(double{point.lamps}, of_others));
+    return static_cast<float>(
+        std::sqrt(squares + WeightOfEvenLight * under_even_light * under_even_light +
+                  WeightOfLight * (under_light * under_light + under_lamps * under_lamps)) /
+        std::numbers::pi);
 }
 
 } // namespace relumine::prt

@@ -52,11 +52,12 @@ public:
                                           std::span<const Neighbours> neighbours = {}) const;
 
     /// A point with a normal and what reaches it. `weight` is its part of what stands between
-    /// points.
+    /// points, `lamps` what lamps give to it, where 1 is what they give on the mean.
     struct Point {
         glm::vec3 normal{0.0f};
         const Bits* lit = nullptr;
         float weight = 1.0f;
+        float lamps = 0.0f;
     };
 
     /// Whether what some directions lose may make up for what others gain.
@@ -68,8 +69,10 @@ public:
     ///     mean of D^2                       the error under a small light, wherever it is,
     ///     + 20 (mean of D)^2                under even light from all sides,
     ///     + 4 (mean of D, by light)^2       under the environment, if there is one,
+    ///     + 4 (d / (1 + l) pi)^2            under lamps,
     ///
-    /// over all directions of the sphere. Without signs the means are those of |D|.
+    /// over all directions of the sphere; d is the difference of the lamps' light, l the larger of
+    /// both sides. Without signs the means are those of |D|.
     [[nodiscard]] float difference(const Point& point, std::span<const Point> others,
                                    Signs signs = Signs::Kept) const;
 

@@ -116,11 +116,13 @@ void EdgeErrors::ask(std::span<const std::uint32_t> edges) {
             ends.push_back(surface_.neighbours(pair.ends.low, pair.ends.high));
         }
         const std::vector<Bits> bits = surface_.trace(receivers, ends);
+        const std::vector<float> lamps = surface_.lamps_at(receivers);
         std::vector<float> errors(pairs.size());
         files::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
             const std::array both = {surface_.vertex(pairs[i].ends.low, 0.5f),
                                      surface_.vertex(pairs[i].ends.high, 0.5f)};
-            errors[i] = surface_.directions().difference({receivers.normals[i], &bits[i]}, both);
+            errors[i] = surface_.directions().difference(
+                {receivers.normals[i], &bits[i], 1.0f, lamps[i]}, both);
         });
         set_errors(pairs, errors);
     }
@@ -153,13 +155,15 @@ void EdgeErrors::ask_inside(std::span<const Inside> points) {
     for (const Inside& point : points)
         surface_.add_inside(point.triangle, point.weights, receivers);
     const std::vector<Bits> bits = surface_.trace(receivers);
+    const std::vector<float> lamps = surface_.lamps_at(receivers);
     std::vector<float> errors(points.size());
     files::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         const auto& [a, b, c] = surface_.mesh().triangles[points[i].triangle];
         const std::array<float, 3>& weights = points[i].weights;
         const std::array corners = {surface_.vertex(a, weights[0]), surface_.vertex(b, weights[1]),
                                     surface_.vertex(c, weights[2])};
-        errors[i] = surface_.directions().difference({receivers.normals[i], &bits[i]}, corners);
+        errors[i] = surface_.directions().difference(
+            {receivers.normals[i], &bits[i], 1.0f, lamps[i]}, corners);
     });
     for (std::size_t i = 0; i < points.size(); ++i) {
         float& error = errors_[surface_.split().longest_edge(points[i].triangle)];

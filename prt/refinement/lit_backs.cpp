@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/refinement/coarse_transfer.h"
 #include "prt/visibility/twin_triangles.h"
@@ -54,10 +55,11 @@ Backs backs_of(const mesh::TriangleMesh& mesh, const std::vector<std::uint32_t>&
     return backs;
 }
 
-/// Pictures do not show the backs of single-sided faces.
-bool has_no_back(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
-    return !mesh.triangle_materials.empty() &&
-           !mesh.materials[mesh.triangle_materials[triangle]].is_double_sided;
+/// Pictures do not show the backs of single-sided faces, nor light on some.
+bool needs_no_back(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
+    return !shows_light(mesh, triangle) ||
+           (!mesh.triangle_materials.empty() &&
+            !mesh.materials[mesh.triangle_materials[triangle]].is_double_sided);
 }
 
 } // namespace
@@ -65,7 +67,7 @@ bool has_no_back(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
 mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers& blockers,
                                   float bias, const Work& work) {
     std::vector<std::uint32_t> single = triangles_without_twin(mesh);
-    std::erase_if(single, [&](std::uint32_t triangle) { return has_no_back(mesh, triangle); });
+    std::erase_if(single, [&](std::uint32_t triangle) { return needs_no_back(mesh, triangle); });
     const auto [receivers, ends] = backs_of(mesh, single);
     const auto bits = CoarseDirections().trace(receivers, blockers, bias, Progress(work));
     mesh::TriangleMesh result = mesh;

@@ -1,11 +1,13 @@
 #include "prt/refinement/lit_surface.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
 #include "mesh/subject.h"
+#include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/refinement/large_triangles.h"
 #include "prt/visibility/ray_scene.h"
@@ -29,11 +31,12 @@ constexpr float LargestPartOfWay = 0.25f;
 /// Parts of automatic_bias(). Smaller lifts are none.
 constexpr float LeastLift = 0.25f;
 
-/// Returns which triangles are coarse for an edge, if there is one; all otherwise.
+/// Returns which triangles show light, and are coarse for an edge if there is one.
 std::vector<bool> triangles_to_refine(const mesh::TriangleMesh& mesh, std::optional<float> edge) {
     std::vector<bool> result;
-    for (const mesh::Triangle& triangle : mesh.triangles)
-        result.push_back(!edge || longest_side(mesh, triangle) > *edge);
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+        result.push_back(shows_light(mesh, i) &&
+                         (!edge || longest_side(mesh, mesh.triangles[i]) > *edge));
     return result;
 }
 
@@ -46,11 +49,11 @@ mesh::TriangleMesh without_lifts(mesh::TriangleMesh mesh) {
 
 LitSurface::LitSurface(const mesh::TriangleMesh& base, const Blockers& blockers,
                        const RefineOptions& options, const Progress& progress)
-    : base_(base), blockers_(blockers), progress_(progress), split_(without_lifts(base)),
-      directions_(options.light ? &*options.light : nullptr), step_(automatic_bias(base)),
-      bias_(options.bias.value_or(step_)), fine_(FineEdge * mesh::scale(base)),
-      is_curved_(options.curved), is_refined_(triangles_to_refine(base, options.coarse_edge)),
-      lifts_(base.lifts) {}
+    : base_(base), blockers_(blockers), options_(options), progress_(progress),
+      split_(without_lifts(base)), directions_(options.light ? &*options.light : nullptr),
+      step_(automatic_bias(base)), bias_(options.bias.value_or(step_)),
+      fine_(FineEdge * mesh::scale(base)), is_curved_(options.curved),
+      is_refined_(triangles_to_refine(base, options.coarse_edge)), lifts_(base.lifts) {}
 
 void LitSurface::trace_vertices() {
     lift_new_vertices();
@@ -59,6 +62,7 @@ void LitSurface::trace_vertices() {
         all.positions[vertex] += lifts_[vertex];
     is_traced_.resize(all.size());
     vertex_bits_.resize(all.size());
+    vertex_lamps_.resize(all.size(), 0.0f);
     std::vector<Neighbours> ends_of(all.size());
     for (const SplitMesh::Middle& middle : split_.new_vertices())
         if (is_traced_[middle.low] && is_traced_[middle.high])
@@ -72,8 +76,11 @@ void LitSurface::trace_vertices() {
         ends.push_back(ends_of[vertex]);
     }
     const std::vector<Bits> bits = trace(added, ends);
-    for (std::size_t i = 0; i < vertices.size(); ++i)
+    const std::vector<float> lamps = lamps_at(added);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
         vertex_bits_[vertices[i]] = bits[i];
+        vertex_lamps_[vertices[i]] = lamps[i];
+    }
 }
 
 /// Marks the vertices of changed triangles as traced, and returns those that were not yet.
@@ -173,6 +180,20 @@ std::vector<LitSurface::Bits> LitSurface::trace(const Receivers& receivers,
                                                 std::span<const Neighbours> neighbours) {
     num_points_ += receivers.size();
     return directions_.trace(receivers, blockers_, bias_, progress_, neighbours);
+}
+
+std::vector<float> LitSurface::lamps_at(const Receivers& receivers) {
+    if (!options_.lamps || receivers.size() == 0)
+        return std::vector<float>(receivers.size());
+    progress_.poll();
+    std::vector<float> result = options_.lamps(receivers);
+    if (mean_of_lamps_ == 0.0f)
+        mean_of_lamps_ =
+            std::accumulate(result.begin(), result.end(), 0.0f) / static_cast<float>(result.size());
+    if (mean_of_lamps_ > 0.0f)
+        for (float& light : result)
+            light /= mean_of_lamps_;
+    return result;
 }
 
 mesh::TriangleMesh LitSurface::take() {

@@ -15,15 +15,16 @@
 
 namespace relumine::prt {
 
-/// The vertices of a mesh::SplitMesh with the bits of CoarseDirections. Vertices alone are traced
-/// that belong to triangles to be refined (RefineOptions::coarse_edge). Rays of new vertices start
-/// on the smooth surface over the mesh of the beginning, unless the mesh will be curved.
+/// The vertices of a mesh::SplitMesh with the bits of CoarseDirections and the light of lamps.
+/// Vertices alone are traced that belong to triangles to be refined (RefineOptions::coarse_edge).
+/// Rays of new vertices start on the smooth surface over the mesh of the beginning, unless the mesh
+/// will be curved.
 class LitSurface {
 public:
     using Bits = CoarseDirections::Bits;
     using Neighbours = CoarseDirections::Neighbours;
 
-    /// Keeps references to the mesh, the blockers and the progress.
+    /// Keeps references to the mesh, the blockers, the options and the progress.
     LitSurface(const mesh::TriangleMesh& base, const Blockers& blockers,
                const RefineOptions& options, const Progress& progress);
 
@@ -43,7 +44,7 @@ public:
     }
     [[nodiscard]] const Bits& bits(std::uint32_t vertex) const { return vertex_bits_[vertex]; }
     [[nodiscard]] CoarseDirections::Point vertex(std::uint32_t index, float weight = 1.0f) const {
-        return {mesh().normals[index], &vertex_bits_[index], weight};
+        return {mesh().normals[index], &vertex_bits_[index], weight, vertex_lamps_[index]};
     }
     /// Returns the way from a vertex to the smooth surface.
     [[nodiscard]] const glm::vec3& lift(std::uint32_t vertex) const { return lifts_[vertex]; }
@@ -62,6 +63,10 @@ public:
     [[nodiscard]] std::vector<Bits> trace(const Receivers& receivers,
                                           std::span<const Neighbours> neighbours = {});
 
+    /// Returns what lamps give to points, [receivers], in parts of the mean of the first points
+    /// that any of it reached.
+    [[nodiscard]] std::vector<float> lamps_at(const Receivers& receivers);
+
     /// Returns the mesh with the ways to the smooth surface. Ends the work.
     [[nodiscard]] mesh::TriangleMesh take();
 
@@ -74,6 +79,7 @@ private:
 
     const mesh::TriangleMesh& base_;
     const Blockers& blockers_;
+    const RefineOptions& options_;
     const Progress& progress_;
     mesh::SplitMesh split_;
     CoarseDirections directions_;
@@ -85,7 +91,10 @@ private:
     /// [num_vertices].
     std::vector<Bits> vertex_bits_;
     std::vector<bool> is_traced_;
+    std::vector<float> vertex_lamps_;
     std::vector<glm::vec3> lifts_;
+    /// Of the first points that any of it reached; 0 until then.
+    float mean_of_lamps_ = 0.0f;
 };
 
 } // namespace relumine::prt

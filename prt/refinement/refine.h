@@ -3,11 +3,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "cubemap/cube_map.h"
 #include "mesh/triangle_mesh.h"
+#include "prt/receivers/receivers.h"
 #include "prt/visibility/blockers.h"
 #include "prt/work.h"
 
@@ -39,6 +42,10 @@ struct RefineOptions {
     /// The environment that matters most: the error of the light that comes from it counts, too,
     /// as if its power were 1. So edges are split at the shadows of its sun. Empty: none does.
     std::optional<cubemap::CubeMap> light = {};
+    /// Returns what the scene's own lamps give to points, [points], in any unit. Its error counts
+    /// like the environment's, relative to what the lamps give there and to vertices on the mean.
+    /// Empty: there are no lamps.
+    std::function<std::vector<float>(const Receivers& points)> lamps = {};
     /// Lift of the rays' origins along the normal, as in PrecomputeOptions. Empty:
     /// automatic_bias().
     std::optional<float> bias = {};
@@ -57,12 +64,12 @@ struct RefineReport {
 };
 
 /// Splits the edges of a mesh where light changes between their ends, whatever the environment will
-/// be: mesh::SplitMesh says how. Transfer is found in 1,536 directions, horizons included, first at
-/// the vertices, then at new ones, round by round. Middles of edges are asked where the ends differ
-/// enough, or the edge is long in the scene. Triangles that are large in the scene are asked at
-/// points inside, too, so close to each other that nothing of some size is missed. Along edges that
-/// are short in the scene, middles and new vertices are traced only in directions on which the ends
-/// do not agree.
+/// be, and where that of its lamps does: mesh::SplitMesh says how. Transfer is found in 1,536
+/// directions, horizons included, first at the vertices, then at new ones, round by round. Middles
+/// of edges are asked where the ends differ enough, or the edge is long in the scene. Triangles
+/// that are large in the scene are asked at points inside, too, so close to each other that nothing
+/// of some size is missed. Along edges that are short in the scene, middles and new vertices are
+/// traced only in directions on which the ends do not agree.
 ///
 /// Where light is asked, a new vertex that is hidden in another solid moves along an edge to where
 /// light begins, if the surface around it is flat and goes on to all sides: its darkness would

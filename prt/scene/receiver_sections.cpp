@@ -371,6 +371,8 @@ void read_receivers(const SectionReader& reader, Scene& scene) {
     }
     receivers.to_eye = reader.elements<glm::vec3>("r_to_eye", receivers.size(), true);
     receivers.surfaces = read_surfaces(reader, receivers.size());
+    if (on_vertices(scene.layout))
+        leave_unlit_out(receivers);
     read_table_numbers(reader, scene.brdfs, receivers.surfaces);
 }
 

@@ -10,6 +10,7 @@
 #include "relumine/in/material_report.h"
 #include "relumine/in/mesh_files.h"
 #include "relumine/in/move.h"
+#include "relumine/out/first_sight.h"
 #include "run.h"
 
 namespace relumine::python {
@@ -404,6 +405,10 @@ void bind_scenes(py::module_& module) {
     module.def("unclustered_scene", [](const MeshPointer& mesh) {
         const Release release;
         return std::make_shared<Scene>(unclustered_scene(*mesh));
+    });
+    module.def("quick_scene", [](const MeshPointer& mesh) {
+        const Release release;
+        return std::make_shared<Scene>(quick_scene(*mesh));
     });
     module.def("recoloured", &recoloured);
     module.def("moved", &moved);

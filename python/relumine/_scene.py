@@ -307,6 +307,17 @@ class Scene:
         """A scene without a precompute: light lists light it, environments cannot."""
         return cls._of(_core.unclustered_scene(Mesh.of(mesh)._core))
 
+    @classmethod
+    def quick(cls, mesh: Mesh) -> "Scene":
+        """A scene for a first sight, while precompute() is under way: the mesh's own vertices under
+        384 directions, without light from surface to surface. It takes some 100 rays a vertex.
+
+        >>> relumine.Scene.quick(relumine.Mesh.load("boulder.ply")).num_clusters
+        384
+        """
+        with errors():
+            return cls._of(_core.quick_scene(Mesh.of(mesh)._core))
+
     def __deepcopy__(self, memo: Any) -> "Scene":
         return self
 

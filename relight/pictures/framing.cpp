@@ -172,6 +172,46 @@ double way_out(const mesh::Bounds& box, const glm::dvec3& from, const glm::dvec3
     return result;
 }
 
+/// Returns how deep in a box a camera sees fronts of surfaces, on the mean of the rays that meet
+/// something there: 0 where the box begins, 1 where it ends. What shows its back counts as 0.
+double depth_of_fronts(const Room& room, const mesh::Bounds& box, const Camera& camera,
+                       float aspect) {
+    constexpr int Columns = 12, Rows = 9;
+    constexpr float Filled = 0.66f; // by framed()
+    const prt::CameraAxes axes = prt::axes_of(camera, aspect);
+    const glm::dvec3 eye(camera.eye);
+    std::vector<glm::dvec3> ways;
+    std::vector<double> entries, lengths;
+    for (int row = 0; row < Rows; ++row)
+        for (int column = 0; column < Columns; ++column) {
+            const auto part = [](int i, int n) {
+                return Filled *
+                       (2.0f * (static_cast<float>(i) + 0.5f) / static_cast<float>(n) - 1.0f);
+            };
+            const glm::dvec3 way = glm::normalize(glm::dvec3(
+                axes.forward + part(column, Columns) * axes.right + part(row, Rows) * axes.up));
+            const glm::dvec3 low = (glm::dvec3(box.min) - eye) / way;
+            const glm::dvec3 high = (glm::dvec3(box.max) - eye) / way;
+            const glm::dvec3 first = glm::min(low, high), last = glm::max(low, high);
+            const double entry = std::max({first.x, first.y, first.z});
+            const double length = std::min({last.x, last.y, last.z}) - entry;
+            if (!(length > 0.0) || !(entry > 0.0))
+                continue;
+            ways.push_back(way);
+            entries.push_back(entry);
+            lengths.push_back(length);
+        }
+    const std::vector<Meeting> met = meetings(room, eye, ways);
+    double sum = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < met.size(); ++i)
+        if (std::isfinite(met[i].distance)) {
+            count += 1.0;
+            if (met[i].is_front)
+                sum += std::clamp((met[i].distance - entries[i]) / lengths[i], 0.0, 1.0);
+        }
+    return count > 0.0 ? sum / count : 0.0;
+}
+
 /// Whether most rays from a point meet fronts, far away in the box. Strictness 1 takes many rays.
 bool is_inside_room(const Room& room, const mesh::Bounds& box, const glm::dvec3& from,
                     std::uint32_t num_around, double strictness) {
@@ -202,6 +242,29 @@ bool is_inside_room(const Room& room, const mesh::Bounds& box, const glm::dvec3&
 }
 
 } // namespace
+
+Camera framed_from_open_side(const mesh::TriangleMesh& mesh, const Framing& framing) {
+    constexpr double Wall = 0.15, Open = 0.3, Deeper = 2.5;
+    const mesh::Extent extent = mesh::extent(mesh);
+    const Room room{mesh, extent.counts};
+    const mesh::Bounds box = mesh::bounds_of(mesh, mesh::subject(mesh, extent));
+    Camera result = framed(mesh, framing);
+    const double depth = depth_of_fronts(room, box, result, framing.aspect);
+    if (depth > Wall)
+        return result;
+    double deepest = std::max(Open, Deeper * depth);
+    for (const double turn : {90.0, -90.0, 180.0}) {
+        Framing turned = framing;
+        turned.angles.azimuth += turn;
+        const Camera camera = framed(mesh, turned);
+        if (const double seen = depth_of_fronts(room, box, camera, framing.aspect);
+            seen > deepest) {
+            deepest = seen;
+            result = camera;
+        }
+    }
+    return result;
+}
 
 std::optional<Camera> inside_room(const mesh::TriangleMesh& mesh, const Framing& framing) {
     constexpr double EyeHeight = 0.55; // of the room's

@@ -38,6 +38,14 @@ struct Framing {
 /// Cost:    O(vertices + triangles).
 [[nodiscard]] Camera framed(const mesh::TriangleMesh& mesh, const Framing& framing = {});
 
+/// Returns framed(), or the view from another side where this one shows a wall in front of what the
+/// mesh holds: a stage, a shelf, a room without a fourth wall. It turns by quarters to where fronts
+/// of surfaces are seen deep in the mesh's box.
+///
+/// Cost:    framed() and 108 rays for every triangle; four times as much where it turns.
+[[nodiscard]] Camera framed_from_open_side(const mesh::TriangleMesh& mesh,
+                                           const Framing& framing = {});
+
 using mesh::subject_bounds;
 
 /// Returns a camera inside of a mesh that is a room, at eye height, with its back to an open side

@@ -40,6 +40,18 @@ void require_surfaces(const LitScene& lit) {
         throw std::invalid_argument("expected a scene of surfaces, got points in space");
 }
 
+/// Returns the light that colours tell of in the least squares: the sums are those of colour times
+/// value, the weights those of colour squared. A channel of which the colours say next to nothing
+/// is taken as grey.
+glm::vec3 light_of(const glm::dvec3& sums, const glm::dvec3& weights) {
+    constexpr double PartOfGrey = 1e-4; // a hundredth of the brightest channel's colour
+    const double all = weights.r + weights.g + weights.b;
+    if (!(all > 0.0))
+        return glm::vec3(0.0f);
+    const double grey = (sums.r + sums.g + sums.b) / all, weight = PartOfGrey * all;
+    return glm::vec3((sums + weight * grey) / (weights + weight));
+}
+
 /// Gathers what receivers should look like.
 class Gathered {
 public:
@@ -63,10 +75,7 @@ public:
         for (std::size_t i = 0; i < sums_.size(); ++i) {
             const double weight = (weights_[i].r + weights_[i].g + weights_[i].b) / 3.0;
             result.weights[i] = static_cast<float>(weight);
-            for (int channel = 0; channel < 3; ++channel)
-                if (weights_[i][channel] > 0.0)
-                    result.radiance[i][channel] =
-                        static_cast<float>(sums_[i][channel] / weights_[i][channel]);
+            result.radiance[i] = light_of(sums_[i], weights_[i]);
             is_known = is_known || weight > 0.0;
             is_dark = is_dark && result.radiance[i] == glm::vec3(0.0f);
         }
@@ -346,11 +355,9 @@ std::vector<lights::DistantLight> fit_lights(LitScene& lit, const FitTarget& tar
     std::vector<float> weights = target.weights;
     const std::vector<prt::Surface>& surfaces = lit.scene().receivers.surfaces;
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        const glm::vec3& albedo = surfaces[i].albedo;
-        for (int channel = 0; channel < 3; ++channel)
-            radiance[i][channel] =
-                albedo[channel] > 0.0f ? radiance[i][channel] / albedo[channel] : 0.0f;
-        weights[i] *= glm::dot(albedo, albedo) / 3.0f;
+        const glm::dvec3 albedo(surfaces[i].albedo);
+        radiance[i] = light_of(albedo * glm::dvec3(radiance[i]), albedo * albedo);
+        weights[i] *= static_cast<float>(glm::dot(albedo, albedo) / 3.0);
     }
     std::vector<lights::DistantLight> result = relight::fit_lights(
         lit.relighter(), {.radiance = radiance, .weights = weights}, count, work);

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "cubemap/luminance.h"
 #include "mesh/customs.h"
 #include "mesh/floor.h"
 #include "mesh/half_edge/simplify.h"
@@ -15,10 +16,12 @@
 #include "mesh/normals.h"
 #include "mesh/opacity.h"
 #include "mesh/subject.h"
+#include "prt/lamps/lamps.h"
 #include "prt/memory_estimate.h"
 #include "prt/refinement/lit_backs.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
+#include "relight/lamps/lamp_light.h"
 #include "relight/pictures/framing.h"
 #include "relumine/in/stages.h"
 #include "relumine/options/option_table.h"
@@ -284,8 +287,31 @@ Mesh sound(Mesh mesh) {
     return mesh;
 }
 
-Mesh refined(Mesh given, const RefineOptions& options, const prt::Work& work,
-             RefineReport* report) {
+namespace {
+
+/// Lets refinement see the light of a mesh's own lamps (RefineOptions::lamps). Keeps references.
+void look_at_lamps(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
+                   RefineOptions& options) {
+    prt::Lamps lamps = prt::lamps_of(mesh);
+    if (lamps.empty())
+        return;
+    options.lamps =
+        [&mesh, &rays, lamps = std::move(lamps),
+         bias = options.bias.value_or(prt::automatic_bias(mesh))](const prt::Receivers& points) {
+            std::vector<float> result;
+            for (const glm::vec3& light : relight::lamp_light(mesh, lamps.emitters, lamps.lights,
+                                                              {.positions = points.positions,
+                                                               .normals = points.normals,
+                                                               .rays = rays,
+                                                               .bias = bias}))
+                result.push_back(static_cast<float>(cubemap::luminance(light)));
+            return result;
+        };
+}
+
+} // namespace
+
+Mesh refined(Mesh given, RefineOptions options, const prt::Work& work, RefineReport* report) {
     Mesh mesh = sound(std::move(given));
     const mesh::TriangleMesh& before = mesh.blockers ? *mesh.blockers : mesh.geometry;
     const std::size_t num_old = mesh.geometry.num_vertices();
@@ -296,6 +322,7 @@ Mesh refined(Mesh given, const RefineOptions& options, const prt::Work& work,
     try {
         const prt::RayScene rays(before, prt::RayScene::Packets::Wide);
         const prt::BeamScene beams(before, rays);
+        look_at_lamps(mesh.geometry, rays, options);
         after = prt::refine(mesh.geometry, beams, options, work, report);
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(prefix_of(mesh) + error.what());
@@ -336,14 +363,16 @@ constexpr std::size_t FewOfMesh = 9000;
 /// Where refined_by_itself() finds things: the scene, and what it adds to.
 struct Refining {
     const prt::Blockers& blockers;
-    float bias;
+    /// Has the bias and the lamps.
+    RefineOptions options;
     const prt::Work& work;
     RefineReport& report;
 };
 
 mesh::TriangleMesh refined_part(const mesh::TriangleMesh& part, RefineOptions options,
                                 std::size_t budget, const Refining& with) {
-    options.bias = with.bias;
+    options.bias = with.options.bias;
+    options.lamps = with.options.lamps;
     options.max_vertices =
         std::min<std::size_t>(part.num_vertices() + budget, RefineOptions{}.max_vertices);
     RefineReport found;
@@ -381,11 +410,16 @@ Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& wo
     try {
         const prt::RayScene rays(before, prt::RayScene::Packets::Wide);
         const prt::BeamScene beams(before, rays);
-        const Refining with{beams, bias.value_or(prt::automatic_bias(mesh.geometry)), work,
-                            report != nullptr ? *report : local};
+        // The mesh as it comes, with all of its lamps.
+        const mesh::TriangleMesh whole = std::move(mesh.geometry);
+        Refining with{beams,
+                      {.bias = bias.value_or(prt::automatic_bias(whole))},
+                      work,
+                      report != nullptr ? *report : local};
+        look_at_lamps(whole, rays, with.options);
         mesh.geometry = own;
         if (is_coarse) {
-            mesh.geometry = prt::with_lit_backs(own, beams, with.bias, work);
+            mesh.geometry = prt::with_lit_backs(own, beams, *with.options.bias, work);
             const std::size_t num_of_backs = mesh.geometry.num_vertices() - first_of_floor;
             with.report.num_added += num_of_backs;
             mesh.geometry = refined_part(mesh.geometry,

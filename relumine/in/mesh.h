@@ -126,12 +126,12 @@ using prt::RefineReport;
 /// Returns the mesh with more vertices where its light changes between two of them, or where edges
 /// are long: prt::refine(). The original triangles remain what blocks light, unless the new
 /// vertices lie on a curved surface, which then does. The vertices of the file keep their places;
-/// those of an added floor follow the new ones. Where a curved surface bulges downwards the floor
-/// sinks as much.
+/// those of an added floor follow the new ones. The light of the mesh's own lamps is asked, too.
+/// Where a curved surface bulges downwards the floor sinks as much.
 ///
 /// Throws:  std::runtime_error "SOURCE: ..." where prt::refine() throws std::invalid_argument;
 ///          Cancelled.
-[[nodiscard]] Mesh refined(Mesh mesh, const RefineOptions& options = {}, const prt::Work& work = {},
+[[nodiscard]] Mesh refined(Mesh mesh, RefineOptions options = {}, const prt::Work& work = {},
                            RefineReport* report = nullptr);
 
 /// Adds the floor of the options, if there is one.

@@ -156,8 +156,14 @@ private:
             return mesh;
         mesh.is_open = mesh.is_open && !options_.no_refine && options_.blockers == nullptr;
         prt::RefineReport found;
+        // The surfaces of the options may light what the file leaves unlit.
+        const std::vector<mesh::Material> of_file = mesh.geometry.materials;
+        if (options_.surface)
+            for (mesh::Material& material : mesh.geometry.materials)
+                material.model = mesh::MaterialModel::MetallicRoughness;
         mesh =
             refined_by_itself(std::move(mesh), options_.bias, work_.of(Stage::Refinement), &found);
+        mesh.geometry.materials = of_file;
         if (found.num_added != 0)
             report_.refined = found;
         return mesh;
@@ -217,6 +223,8 @@ private:
         if (!options_.tolerance && !options_.epsilon)
             limit_clusters(rays);
         set_surfaces();
+        if (prt::on_vertices(scene_.layout))
+            prt::leave_unlit_out(scene_.receivers);
         poll();
         if (prt::has_highlights(scene_.receivers) && !are_traced()) {
             if (options_.blockers != nullptr)

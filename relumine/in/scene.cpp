@@ -162,7 +162,7 @@ std::optional<Camera> own_camera(const Scene& scene, float aspect) {
 
 Camera camera_of(const Scene& scene, float aspect) {
     const std::optional<Camera> own = own_camera(scene, aspect);
-    return own ? *own : relight::framed(scene.mesh, {.aspect = aspect});
+    return own ? *own : relight::framed_from_open_side(scene.mesh, {.aspect = aspect});
 }
 
 std::uint32_t nearest_receiver(const Scene& scene, const glm::vec3& position) {

@@ -59,6 +59,8 @@ struct SurfaceColors {
     std::optional<glm::vec3> specular = {};
     /// The roughness of GGX highlights that follow the eye; a texture of roughness multiplies it.
     std::optional<float> roughness = {};
+
+    bool operator==(const SurfaceColors&) const = default;
 };
 
 [[nodiscard]] OptionTable options_of(SurfaceColors& colors);

@@ -187,7 +187,10 @@ Camera camera_of(const Scene& scene, const OutputOptions& options) {
         framing.fov_degrees = *fov;
     const bool is_plain = !options.camera_place && options.front == Front::PositiveZ;
     const std::optional<Camera> own = is_plain ? own_camera(scene, framing.aspect) : std::nullopt;
-    Camera camera = own ? *own : relight::framed(scene.mesh, framing);
+    const bool chooses_side = is_plain && !options.eye && !options.target;
+    Camera camera = own            ? *own
+                    : chooses_side ? relight::framed_from_open_side(scene.mesh, framing)
+                                   : relight::framed(scene.mesh, framing);
     if (own && !scene.settings.view) {
         // The automatic camera of a room is wide. An eye that was chosen is as other eyes.
         const bool is_chosen = options.eye && !scene.settings.camera;

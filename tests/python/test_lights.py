@@ -86,6 +86,19 @@ def test_light_lists_without_a_precompute(arrays):
     assert relighter.radiance == pytest.approx(np.tile([1.0, 2.0, 0.0], (3, 1)), rel=1e-5)
 
 
+def test_a_first_sight_without_bounces(arrays, scene, sky):
+    """A quick scene is lit as the precomputed one is, nearly, by direct light."""
+    quick, whole = relumine.Scene.quick(relumine.Mesh(*arrays)), scene
+    assert quick.num_receivers == len(arrays[0])
+    lit = []
+    for each in (quick, whole):
+        relighter = relumine.Relighter(each)
+        relighter.set_environment(sky)
+        lit.append(relighter.radiance[: len(arrays[0])])
+    off = np.linalg.norm(lit[0] - lit[1]) / np.linalg.norm(lit[1])
+    assert 0.0 < off < 0.05
+
+
 def test_lights_for_a_scene(relighter):
     exact = relighter.radiance.copy()
     told = []

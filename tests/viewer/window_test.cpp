@@ -18,6 +18,7 @@
 #include "cubemap/layers/light_layer.h"
 #include "cubemap/resample/save_environment.h"
 #include "data_gen/scenes.h"
+#include "mesh/save.h"
 #include "prt/precompute.h"
 #include "prt/receivers/receivers.h"
 #include "prt/scene/scene_file.h"
@@ -68,15 +69,16 @@ protected:
     }
 
     /// Exit code of `relumine view` with a script; its words are in out.txt and err.txt.
-    [[nodiscard]] int play(const std::string& script, int width = Width) const {
+    [[nodiscard]] int play(const std::string& script, int width = Width,
+                           const std::string& scene = "scene.prt") const {
         std::ofstream(folder_ / "script") << script;
         // The program's words and exit code are kept inside: xvfb-run may fail to remove its own
         // folder when a program ends soon.
         std::ofstream(folder_ / "run")
-            << fmt::format("'{}' view scene.prt env.exr --script script --size "
+            << fmt::format("RELUMINE_CACHE=cache '{}' view {} env.exr --script script --size "
                            "{}x{} --exposure 0 --json >out.txt 2>err.txt\n"
                            "echo $? >code.txt\n",
-                           RELUMINE_BINARY, width, Height);
+                           RELUMINE_BINARY, scene, width, Height);
         std::filesystem::remove(folder_ / "code.txt");
         const std::string command = fmt::format(
             "cd '{}' && LIBGL_ALWAYS_SOFTWARE=1 ASAN_OPTIONS=detect_leaks=0 "
@@ -484,6 +486,21 @@ TEST_F(WindowTest, RoughnessChangesHighlightsThatFollowTheEye) {
     for (std::size_t i = 0; i < smooth.size(); ++i)
         largest = std::max(largest, std::abs(smooth[i].b - rough[i].b));
     EXPECT_GT(largest, 0.02f);
+}
+
+TEST_F(WindowTest, AMeshIsSeenWhileItIsPrecomputed) {
+    mesh::save(folder_ / "posts.ply", data_gen::colonnade(4000));
+    const auto played = [&] {
+        EXPECT_EQ(play("wait 1\nquit\n", Width, "posts.ply"), 0) << words("err.txt");
+        return nlohmann::json::parse(words("out.txt"));
+    };
+    const nlohmann::json first = played();
+    EXPECT_GT(first["frames_of_first_sight"], 0);
+    EXPECT_GT(first["clusters"], 384) << "the script plays to the whole scene";
+    // It is in the cache now.
+    const nlohmann::json second = played();
+    EXPECT_FALSE(second.contains("frames_of_first_sight"));
+    EXPECT_EQ(second["clusters"], first["clusters"]);
 }
 
 } // namespace

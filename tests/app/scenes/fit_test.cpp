@@ -1,6 +1,7 @@
 // `relumine fit`: light that is found again, and what cannot be fitted.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,26 @@ TEST_F(Fit, FindsTwoLampsAgainFromNumbersAndFromAPicture) {
             "256x192 -q");
     succeed("fit c.prt lit.exr --lights 2 --camera 24,20 --albedo 0.5 -o seen.json -q");
     expect_lamps("seen.json", 5.0, 0.05);
+}
+
+TEST_F(Fit, AColourWithoutBlueTellsNothingOfBlueLight) {
+    succeed("precompute colonnade.ply -o gold.prt --tolerance 0.06 --no-refine --bounces 0 "
+            "--material ggx:roughness=0.5,albedo=0.7,0.4,0,f0=0.04 -q");
+    succeed("relight gold.prt --lights lamps.json -o gold.npy -q");
+    // What is not the scene's own light: a hundredth of the mean.
+    std::string bytes = read("gold.npy");
+    const std::size_t first = bytes.find('\n') + 1;
+    for (std::size_t at = first; at + 4 <= bytes.size(); at += 4) {
+        float value = 0.0f;
+        std::memcpy(&value, &bytes[at], 4);
+        value += 0.01f;
+        std::memcpy(&bytes[at], &value, 4);
+    }
+    write("gold.npy", bytes);
+    succeed("fit gold.prt gold.npy --lights 2 -o found.json -q");
+    for (const auto& light : nlohmann::json::parse(read("found.json"))["lights"])
+        EXPECT_LT(light["irradiance"][2].get<double>(),
+                  2.0 * light["irradiance"][0].get<double>() + 1.0);
 }
 
 TEST_F(Fit, FindsGainsAndAnEnvironment) {

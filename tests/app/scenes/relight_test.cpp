@@ -360,6 +360,9 @@ TEST_F(Relight, AMeshIsPrecomputedOnceAndKept) {
                                    fs::directory_iterator())
                    : 0;
     };
+    // Options that do not suit the scene are refused before anything is drawn.
+    fail("relight mesh.obj white.hdr -o lit.png --albedo mesh", {"--albedo", "vertex colours"});
+    EXPECT_FALSE(fs::exists(folder() / "lit.png"));
     EXPECT_TRUE(first_picture({}));
     EXPECT_EQ(num_kept(), 1);
     const std::string picture = read("lit.png");
@@ -382,6 +385,20 @@ TEST_F(Relight, AMeshIsPrecomputedOnceAndKept) {
     EXPECT_NE(read("lit.png"), picture);
     write("broken.ply", "ply\nformat ascii 1.0\n");
     fail("relight broken.ply white.hdr -o lit.png", {"broken.ply"});
+}
+
+TEST_F(Relight, AFirstSightComesBeforeThePrecompute) {
+    write("lamp.hdr", lamp_hdr(32));
+    const char* const command = "relight mesh.obj lamp.hdr -o lit.png --size 64x48";
+    const std::string said = succeed(command).out;
+    EXPECT_NE(said.find("lit.png: a first sight"), std::string::npos) << said;
+    EXPECT_LT(said.find("a first sight"), said.find("kept in cache"));
+    const std::string picture = read("lit.png");
+    // The scene is there now. Numbers and meshes have no sight.
+    EXPECT_EQ(succeed(command).out.find("a first sight"), std::string::npos);
+    EXPECT_EQ(read("lit.png"), picture);
+    EXPECT_EQ(succeed("relight mesh.obj lamp.hdr -o lit.npy --no-cache").out.find("first sight"),
+              std::string::npos);
 }
 
 TEST_F(Relight, AnotherKindOfFileIsToldApart) {

@@ -11,6 +11,7 @@ from scenes import rays_of
 NAME = "Radiance"
 HOME = os.path.join(sysconfig.get_paths()["purelib"], "pyradiance")
 os.environ["RAYPATH"] = os.pathsep.join([".", os.path.join(HOME, "lib")])
+os.environ["PATH"] = os.pathsep.join([os.path.join(HOME, "bin"), os.environ["PATH"]])  # programs call each other
 #: Suns are this wide in degrees: Radiance's sources have a solid angle.
 SUN_DEGREES = 0.1
 
@@ -138,3 +139,32 @@ def picture(state, samples):
     size = state.camera["size"]
     return found.reshape(size, per_axis, size, per_axis, 3).mean((1, 3))
 
+
+def skies(state, weather, division):
+    """(patches, hours) of a .wea file's skies, in W/(m2 sr): the ground, then Reinhart's patches."""
+    with open(state.path("year.wea"), "w") as file:
+        file.write(weather)
+    with open(state.path("year.smx"), "wb") as file:
+        file.write(run("gendaymtx", "-m", division, "-c", 1, 1, 1, "-of", state.path("year.wea")))
+    with open(state.path("year.smx"), "rb") as file:
+        text = file.read()
+    head, values = text.split(b"\n\n", 1)
+    rows = int(head.split(b"NROWS=")[1].split()[0])
+    return np.frombuffer(values, np.float32).reshape(rows, -1, 3)[..., 1].copy()
+
+
+def coefficients(state, sensors, division, samples):
+    """Finds what each patch gives to sensors that look up (+Z)."""
+    with open(state.path("sky.rad"), "w") as file:
+        for name, up, bins in (("ground", -1, "u"), ("sky", 1, f"r{division}")):
+            file.write(f"#@rfluxmtx u=+Y h={bins}\nvoid glow {name}_glow 0 0 4 1 1 1 0\n{name}_glow source {name} 0 0 4 0 0 {up} 180\n")
+    points = "".join(f"{_numbers(each)} 0 0 1\n" for each in sensors)
+    words = ["-faf", "-I+", "-ab", 12, "-ad", samples, "-lw", 0.1 / samples, "-n", 2, "-y", len(sensors)]
+    with open(state.path("sensors.mtx"), "wb") as file:
+        file.write(run("rfluxmtx", *words, "-", state.path("sky.rad"), "-i", state.path("scene.oct"), data=points.encode()))
+
+
+def year(state, skies):
+    """(hours, sensors) irradiance in W/m2, of the skies of skies()."""
+    found = run("dctimestep", "-of", state.path("sensors.mtx"), state.path("year.smx"))
+    return np.frombuffer(found.split(b"\n\n", 1)[1], np.float32).reshape(-1, skies.shape[1], 3)[..., 1].T.copy()

@@ -2,6 +2,7 @@
 import base64
 import json
 import os
+import sys
 import tempfile
 import warnings
 
@@ -10,6 +11,7 @@ import relumine
 from relumine import _core
 
 NAME = "Relumine"
+sys.path.append(os.path.join(os.path.dirname(__file__), "../../../examples/python"))
 warnings.simplefilter("ignore", relumine.RelumineWarning)
 
 
@@ -135,3 +137,21 @@ def gradient(state, weights, height):
     """The derivative of sum(weights * picture) by the pixels of the dome, (height, 2 height, 3); of a scene of pixels."""
     cube = state.relighter.picture_adjoint(weights, albedo=1.0, background="none")
     return np.asarray(_core.lat_long_adjoint(cube, cube.shape[1], 2 * height, height))
+
+
+def year(state, skies, division, sensors):
+    """(hours, sensors) irradiance in W/m2, one relight an hour."""
+    import daylight
+    import skies as judge
+
+    resolution = 32 if division == 1 else 64
+    directions, _ = daylight.cube_directions(resolution)
+    patches = judge.patch_of(directions @ judge.NORTH_IS_Y.T, division)
+    result = np.empty((skies.shape[1], len(sensors)), np.float32)
+    cube = np.empty((6, resolution, resolution, 3), np.float32)
+    for hour in range(skies.shape[1]):
+        cube[...] = skies[patches, hour][..., None]
+        state.relighter.set_environment(relumine.Environment(cube, face_resolution=resolution))
+        state.relighter.bounce()
+        result[hour] = np.asarray(state.relighter.radiance)[sensors, 1]
+    return result * np.pi / judge.FLOOR_ALBEDO

@@ -182,5 +182,41 @@ TEST(Framing, AShelfIsSeenFromOutside) {
     EXPECT_FALSE(inside_room(shelf));
 }
 
+TEST(Framing, AnOpenSideIsSeenRatherThanAWall) {
+    const auto side_of = [](const mesh::TriangleMesh& mesh) {
+        const Camera camera = framed_from_open_side(mesh);
+        return glm::normalize(camera.eye - camera.target);
+    };
+    // A stage in thick walls, open to one side.
+    for (const glm::vec3& open :
+         {glm::vec3(0, 0, 1), glm::vec3(1, 0, 0), glm::vec3(0, 0, -1), glm::vec3(-1, 0, 0)}) {
+        mesh::TriangleMesh stage;
+        for (const glm::vec3& wall :
+             {glm::vec3(0, 0, 1), glm::vec3(1, 0, 0), glm::vec3(0, 0, -1), glm::vec3(-1, 0, 0),
+              glm::vec3(0, 1, 0), glm::vec3(0, -1, 0)}) {
+            if (wall == open)
+                continue;
+            const glm::vec3 low =
+                glm::min(1.9f * wall, 2.0f * wall) - 2.0f * (glm::vec3(1.0f) - glm::abs(wall));
+            const glm::vec3 high =
+                glm::max(1.9f * wall, 2.0f * wall) + 2.0f * (glm::vec3(1.0f) - glm::abs(wall));
+            stage = stage.positions.empty() ? scenes::box(low, high)
+                                            : scenes::joined(stage, scenes::box(low, high));
+        }
+        EXPECT_GT(glm::dot(side_of(stage), open), 0.7f) << open.x << " " << open.z;
+    }
+    // All else is seen from where framed() stands, sheets from behind, too.
+    mesh::TriangleMesh facade =
+        scenes::box(glm::vec3(-2.0f, 0.0f, -1.0f), glm::vec3(2.0f, 3.0f, 1.0f));
+    std::erase_if(facade.triangles, [&](const mesh::Triangle& triangle) {
+        return std::all_of(triangle.begin(), triangle.end(),
+                           [&](std::uint32_t v) { return facade.positions[v].z < 0.0f; });
+    });
+    for (const mesh::TriangleMesh& mesh :
+         {scenes::box(glm::vec3(-1.0f), glm::vec3(1.0f)), facade, scenes::floor_grid(5, 2.0f),
+          scenes::icosphere(2, 1.0f, {0.0f, 1.0f, 0.0f}), mesh::TriangleMesh()})
+        EXPECT_EQ(framed_from_open_side(mesh).eye, framed(mesh).eye);
+}
+
 } // namespace
 } // namespace relumine::relight

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <functional>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -387,6 +389,56 @@ TEST_F(MeshFile, LiftsOfRefinedVerticesStandInTheScene) {
     EXPECT_EQ(loaded.receivers.positions, scene.receivers.positions);
     // A sheet has a back, which light from below reaches.
     EXPECT_GE(scene.mesh.num_triangles(), 2 * tent.num_triangles());
+}
+
+/// The light of a point lamp, as interpolation between vertices has it: sums over triangles.
+struct LampOnVertices {
+    double all = 0.0, worst = 0.0;
+
+    /// `exact` is the light at a place, `mean` its mean.
+    LampOnVertices(const mesh::TriangleMesh& mesh, const std::function<double(glm::dvec3)>& exact,
+                   double mean) {
+        for (const mesh::Triangle& triangle : mesh.triangles) {
+            if (mesh.normals[triangle[0]].y < 0.0f) // the back of the sheet
+                continue;
+            std::array<glm::dvec3, 3> corners{};
+            double sum = 0.0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                corners[k] = glm::dvec3(mesh.positions[triangle[k]]);
+                sum += exact(corners[k]) / 3.0;
+            }
+            all += 0.5 * sum *
+                   glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+            const double inside = exact((corners[0] + corners[1] + corners[2]) / 3.0);
+            worst = std::max(worst, std::abs(sum - inside) / (inside + mean));
+        }
+    }
+};
+
+TEST(RefinedByItself, ALampOverTwoTrianglesGivesAllOfItsLight) {
+    constexpr double HalfSide = 4.0, Intensity = 3.0;
+    mesh::TriangleMesh square = scenes::floor_grid(2, static_cast<float>(2.0 * HalfSide));
+    ASSERT_EQ(square.num_triangles(), 2u);
+    const glm::dvec3 lamp(0.0, 1.0, 0.0);
+    square.lights = {{.intensity = glm::vec3(Intensity), .position = glm::vec3(lamp)}};
+    const auto exact = [&](const glm::dvec3& at) {
+        const double distance = glm::distance(at, lamp);
+        return Intensity / (std::numbers::pi * distance * distance * distance);
+    };
+    // The solid angle of the square from the lamp.
+    const double all = Intensity / std::numbers::pi * 4.0 *
+                       std::asin(HalfSide * HalfSide / (HalfSide * HalfSide + lamp.y * lamp.y));
+    const double mean = all / (4.0 * HalfSide * HalfSide);
+    const LampOnVertices before(square, exact, mean);
+    EXPECT_LT(before.all, 0.2 * all);
+    const Mesh fine = refined_by_itself(Mesh(square));
+    const LampOnVertices after(fine.geometry, exact, mean);
+    EXPECT_NEAR(after.all, all, 0.005 * all);
+    EXPECT_LT(after.worst, 0.02);
+    // Without the lamp there is nothing to see on a square.
+    square.lights.clear();
+    EXPECT_LT(refined_by_itself(Mesh(square)).geometry.num_vertices(),
+              fine.geometry.num_vertices() / 4);
 }
 
 TEST(RefinedByItself, AnAutomaticFloorGetsVerticesWhereShadowsFall) {

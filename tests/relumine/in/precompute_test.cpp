@@ -370,5 +370,39 @@ TEST_F(PrecomputeFile, StoppedIsResumedToTheSameBytes) {
     EXPECT_FALSE(std::filesystem::exists(file("scene.prt.checkpoint")));
 }
 
+TEST_F(PrecomputeFile, UnlitSurfacesAreNotLit) {
+    mesh::TriangleMesh mesh = scenes::two_squares();
+    mesh.colors.clear();
+    mesh.materials = {{.name = "plaster"},
+                      {.name = "sign",
+                       .model = mesh::MaterialModel::Unlit,
+                       .base_color = glm::vec3(0.5f, 0.25f, 1.0f)}};
+    mesh.triangle_materials = {1, 1, 1, 1};
+    PrecomputeReport report;
+    const Scene unlit = precompute(Mesh(mesh), {}, {}, &report);
+    EXPECT_EQ(report.clusters.num_rays, 0u);
+    EXPECT_FALSE(report.refined);
+    EXPECT_EQ(unlit.mesh.num_vertices(), mesh.num_vertices());
+    // Nobody sees light on what has no alpha.
+    mesh::TriangleMesh glassy = mesh;
+    glassy.materials[1] = {.name = "collider", .alpha_mode = mesh::AlphaMode::Blend, .alpha = 0.0f};
+    EXPECT_EQ(precompute(Mesh(glassy)).mesh.num_vertices(), mesh.num_vertices());
+    // What the options light is lit.
+    const auto white = [](const mesh::TriangleMesh&, std::uint32_t, const prt::Surface&) {
+        return prt::Surface{};
+    };
+    const Scene lit = precompute(Mesh(mesh), {.surface = white}, {}, &report);
+    EXPECT_GT(report.clusters.num_rays, 0u);
+    EXPECT_GT(lit.mesh.num_vertices(), mesh.num_vertices());
+    EXPECT_EQ(lit.mesh.materials[1].model, mesh::MaterialModel::Unlit);
+    // Of both kinds, the file has the normals that were looked from.
+    mesh.triangle_materials = {0, 0, 1, 1};
+    const Scene both = precompute(Mesh(mesh), {.no_refine = true});
+    for (std::size_t i = 0; i < 8; ++i)
+        EXPECT_EQ(both.receivers.normals[i], i < 4 ? mesh.normals[i] : glm::vec3(0.0f));
+    save_scene(file("both.prt"), both);
+    EXPECT_EQ(load_scene(file("both.prt")).receivers.normals, both.receivers.normals);
+}
+
 } // namespace
 } // namespace relumine
