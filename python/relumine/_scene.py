@@ -417,15 +417,19 @@ class Scene:
                 coordinates of the mesh's file with Y up
 
         The clusters stay, and the counts are those of a precompute with these clusters, bit by bit.
-        Bounces are sampled anew, all of them. This scene stays as it is.
+        Bounces follow. This scene stays as it is.
 
         Raises ValueError for a name that no group has, a matrix that is singular, not finite or
         mirrors, and a scene without groups: precompute(..., movable=True) keeps them.
 
-        >>> shifted = numpy.eye(4)
+        >>> mesh = relumine.Mesh.load("boulder.ply", floor=20)
+        >>> scene = relumine.precompute(mesh, tolerance=0.05, bounces=False, movable=True)
+        >>> scene.groups
+        ['mesh', 'floor']
+        >>> shifted = np.eye(4)
         >>> shifted[0, 3] = 0.5
-        >>> room.move("chair", shifted)
-        <relumine.Scene: vertices, 6912 receivers, 384 clusters>
+        >>> scene.move("mesh", shifted)
+        <relumine.Scene: vertices, ... receivers, ... clusters>
         """
         rows = doubles("matrix", matrix, 4, 4)
         with errors():
