@@ -31,7 +31,7 @@ void move_groups(const MoveArguments& options, Session& session) {
         const prt::Work own = session.work("moving " + step.name);
         const PrecomputeWork work{
             .stop = own.stop, .on_progress = [&](Stage stage, double fraction) {
-                own.on_progress(0.5 * fraction + (stage == Stage::Bounces ? 0.5 : 0.0));
+                own.tell(0.5 * fraction + (stage == Stage::Bounces ? 0.5 : 0.0));
             }};
         try {
             move(scene, move_of(scene, step), work, &moved);
