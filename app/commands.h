@@ -24,6 +24,7 @@ void add_generate(Command& program, Session& session);
 void add_mesh(Command& program, Session& session);
 void add_env(Command& program, Session& session);
 void add_coarsen(Command& program, Session& session);
+void add_move(Command& program, Session& session);
 void add_export(Command& program, Session& session);
 void add_view(Command& program, Session& session);
 

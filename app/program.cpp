@@ -27,6 +27,7 @@ void add_commands(CommandLine& line, Session& session) {
     add_mesh(program, session);
     add_env(program, session);
     add_coarsen(program, session);
+    add_move(program, session);
     add_export(program, session);
     add_view(program, session);
     add_help(line);

@@ -142,6 +142,8 @@ TriangleMesh blockers_of(const TriangleMesh& mesh) {
     TriangleMesh blockers;
     blockers.positions = mesh.positions;
     blockers.triangles = mesh.triangles;
+    blockers.groups = mesh.groups;
+    blockers.triangle_groups = mesh.triangle_groups;
     if (!lets_light_pass(mesh))
         return blockers;
     blockers.uvs = mesh.uvs;

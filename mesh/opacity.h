@@ -63,8 +63,8 @@ struct Veil {
 /// Returns a white material with the same alpha, glass and sides.
 [[nodiscard]] Material without_colors(const Material& material);
 
-/// What rays of light need of a mesh: positions, triangles, and where light passes all that veil()
-/// reads. Materials and textures keep their numbers.
+/// What rays of light need of a mesh: positions, triangles with their groups, and where light
+/// passes all that veil() reads. Materials and textures keep their numbers.
 [[nodiscard]] TriangleMesh blockers_of(const TriangleMesh& mesh);
 
 } // namespace relumine::mesh

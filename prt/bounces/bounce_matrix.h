@@ -30,6 +30,15 @@ struct PlaceLists {
     bool operator==(const PlaceLists&) const = default;
 };
 
+/// How the rows of a matrix were sampled, by place: what moves need to sample parts of them anew.
+struct BounceRays {
+    /// Directions that each receiver looked into, and rays that met a surface
+    std::vector<std::uint32_t> num_directions = {}, num_hits = {};
+    /// BounceSamples::distances
+    std::vector<float> distances = {};
+    bool operator==(const BounceRays&) const = default;
+};
+
 /// Sampled form factors. The radiance that a receiver of albedo 1 gets from others is
 ///
 ///     weights[x] * (sum over y in averaged[x] of (sum over z in emitters[y] of X(z)))
@@ -49,6 +58,8 @@ struct BounceMatrix {
     float spectral_radius = 0.0f;
     /// Rows of the points in space, whose lists above are empty.
     PointRows points = {};
+    /// Only of scenes whose things can be moved
+    BounceRays rays = {};
 
     [[nodiscard]] std::size_t num_rows() const { return weights.size(); }
     bool operator==(const BounceMatrix&) const = default;

@@ -212,6 +212,8 @@ private:
     void collect(BounceSamples& result) {
         for (RayHits& each : hits_) {
             result.num_hits.push_back(static_cast<std::uint32_t>(each.num_hits()));
+            if (options_.is_kept)
+                result.num_directions.push_back(each.num_directions);
             std::vector<std::uint32_t>& row = each.halves[0];
             row.insert(row.end(), each.halves[1].begin(), each.halves[1].end());
             std::erase(row, NoEmitter);

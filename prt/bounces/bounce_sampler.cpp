@@ -76,9 +76,10 @@ BounceSampler::BounceSampler(const mesh::TriangleMesh& mesh, const Receivers& re
     }
 }
 
-std::uint64_t BounceSampler::look(const PartReceiver& of_part, std::uint32_t num_directions,
-                                  RayHits& hits) const {
-    const std::uint32_t begin = std::exchange(hits.num_directions, num_directions);
+/// Looks into `count` directions: `number_of(i)` is the number of the i-th.
+template<typename NumberOf, typename Visit>
+std::uint64_t BounceSampler::look_at(const PartReceiver& of_part, std::size_t count,
+                                     const NumberOf& number_of, const Visit& visit) const {
     if (closure_of(of_part) == 0.0)
         return 0;
     const std::uint32_t receiver = transfer_.order[of_part.place];
@@ -92,7 +93,8 @@ std::uint64_t BounceSampler::look(const PartReceiver& of_part, std::uint32_t num
                               : value_at(mesh_, mesh_.positions, receivers_.points[receiver]);
     const bool is_inside = glm::dot(origin - own, normal) < 0.0f;
     std::uint64_t num_rays = 0;
-    for (std::uint32_t i = begin; i < num_directions; ++i) {
+    for (std::size_t place = 0; place < count; ++place) {
+        const std::uint32_t i = number_of(place);
         const glm::dvec3 direction = directions[i];
         const std::uint32_t leaf = transfer_.quadtree.leaf_at(cubemap::face_point(direction));
         if (transfer_.counts.count(of_part.index, leaf) == FullCount)
@@ -102,14 +104,47 @@ std::uint64_t BounceSampler::look(const PartReceiver& of_part, std::uint32_t num
         if (!met)
             continue;
         const Hit hit = twins_.facing(*met, glm::vec3(direction));
-        hits.halves[i % 2].push_back(
-            is_inside ? NoEmitter : emitter_of(hit, glm::vec3(direction), choice_of(receiver, i)));
         const MeshPoint at{hit.triangle, hit.barycentric};
         const auto distance =
             static_cast<double>(glm::distance(value_at(mesh_, mesh_.positions, at), origin));
-        hits.sum_inverse_distances += 1.0 / distance;
+        visit(i, RayFate{is_inside ? NoEmitter
+                                   : emitter_of(hit, glm::vec3(direction), choice_of(receiver, i)),
+                         1.0 / distance});
     }
     return num_rays;
+}
+
+std::uint64_t BounceSampler::look(const PartReceiver& receiver, std::uint32_t num_directions,
+                                  RayHits& hits) const {
+    const std::uint32_t begin = std::exchange(hits.num_directions, num_directions);
+    return look_at(
+        receiver, num_directions - std::min(begin, num_directions),
+        [begin](std::size_t i) { return begin + static_cast<std::uint32_t>(i); },
+        [&hits](std::uint32_t i, const RayFate& fate) {
+            hits.halves[i % 2].push_back(fate.emitter);
+            hits.sum_inverse_distances += fate.inverse_distance;
+        });
+}
+
+std::uint64_t
+BounceSampler::look(const PartReceiver& receiver, std::span<const std::uint32_t> directions,
+                    const std::function<void(std::uint32_t, const RayFate&)>& visit) const {
+    return look_at(
+        receiver, directions.size(), [directions](std::size_t i) { return directions[i]; }, visit);
+}
+
+std::vector<std::uint32_t> BounceSampler::chosen(
+    const PartReceiver& receiver, std::uint32_t num_directions,
+    const std::function<bool(const glm::dvec3&, std::uint32_t)>& is_wanted) const {
+    const CosineDirections directions(transfer_.normals[receiver.place],
+                                      transfer_.order[receiver.place]);
+    std::vector<std::uint32_t> result;
+    for (std::uint32_t i = 0; i < num_directions; ++i) {
+        const glm::dvec3 direction = directions[i];
+        if (is_wanted(direction, transfer_.quadtree.leaf_at(cubemap::face_point(direction))))
+            result.push_back(i);
+    }
+    return result;
 }
 
 std::uint64_t BounceSampler::look_around(const PartReceiver& point,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,13 @@ struct RayHits {
     }
 };
 
+/// What a ray met that met a surface.
+struct RayFate {
+    /// Its place, or NoEmitter
+    std::uint32_t emitter = 0;
+    double inverse_distance = 0.0;
+};
+
 /// A receiver of the part that is worked on: its place among all, and its index in the part.
 struct PartReceiver {
     std::size_t place = 0;
@@ -61,6 +69,16 @@ public:
     std::uint64_t look(const PartReceiver& receiver, std::uint32_t num_directions,
                        RayHits& hits) const;
 
+    /// Looks into some of the directions, given by their numbers, and calls `visit(number, fate)`
+    /// for those that meet a surface. Returns the number of rays.
+    std::uint64_t look(const PartReceiver& receiver, std::span<const std::uint32_t> directions,
+                       const std::function<void(std::uint32_t, const RayFate&)>& visit) const;
+
+    /// Returns the numbers of the first so many directions that `is_wanted(direction, cluster)`.
+    [[nodiscard]] std::vector<std::uint32_t>
+    chosen(const PartReceiver& receiver, std::uint32_t num_directions,
+           const std::function<bool(const glm::dvec3&, std::uint32_t)>& is_wanted) const;
+
     /// Finds what a point in space sees in each direction: the place of an emitter, or NoEmitter.
     /// Returns the number of rays.
     ///
@@ -73,6 +91,9 @@ public:
     [[nodiscard]] double squared_error(const PartReceiver& receiver, const RayHits& hits) const;
 
 private:
+    template<typename NumberOf, typename Visit>
+    std::uint64_t look_at(const PartReceiver& receiver, std::size_t count,
+                          const NumberOf& number_of, const Visit& visit) const;
     [[nodiscard]] std::uint32_t emitter_of(const Hit& hit, const glm::vec3& direction,
                                            double choice) const;
 

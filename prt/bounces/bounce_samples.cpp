@@ -158,6 +158,9 @@ BounceMatrix join_bounces(const Receivers& receivers, const Transfer& transfer,
         found.mean_closure += closure / num_rows;
         found.num_hits += num_hits[place];
     }
+    if (parts.size() == 1 && parts[0].num_directions.size() == n)
+        result.rays = {std::move(parts[0].num_directions), std::move(parts[0].num_hits),
+                       std::move(parts[0].distances)};
     result.points = joined_points(parts, transfer.num_points);
     result.spectral_radius = spectral_radius(result);
     found.num_emitters = result.emitters.places.size();

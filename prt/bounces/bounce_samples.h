@@ -45,6 +45,8 @@ struct BounceSamples {
     /// [receivers of the part] harmonic mean of the distances of surfaces over the hemisphere,
     /// after the first look; 0 where there are none.
     std::vector<float> distances = {};
+    /// [receivers of the part] directions that each looked into. Empty: nothing will move.
+    std::vector<std::uint32_t> num_directions = {};
     /// [receivers of the part] rays that met a surface, whether it radiates or not.
     std::vector<std::uint32_t> num_hits = {};
     /// What surfaces the rays met, by their places among all receivers.

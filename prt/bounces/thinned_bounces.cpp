@@ -60,6 +60,7 @@ BounceMatrix thinned(const BounceMatrix& matrix, std::size_t samples_per_row) {
     if (sum <= num_rows * samples_per_row)
         return matrix;
     BounceMatrix result = matrix;
+    result.rays = {};
     result.emitters =
         thinned_lists(matrix.emitters,
                       static_cast<double>(num_rows * samples_per_row) / static_cast<double>(sum));

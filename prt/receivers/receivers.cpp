@@ -35,6 +35,10 @@ std::vector<bool> inner_vertices(const mesh::TriangleMesh& mesh) {
 } // namespace
 
 Receivers vertex_receivers(const mesh::TriangleMesh& mesh) {
+    return vertex_receivers(mesh, automatic_bias(mesh));
+}
+
+Receivers vertex_receivers(const mesh::TriangleMesh& mesh, float rim_step) {
     Receivers receivers{.positions = mesh.positions, .normals = mesh.normals};
     for (std::size_t vertex = 0; vertex < mesh.lifts.size(); ++vertex)
         receivers.positions[vertex] += mesh.lifts[vertex];
@@ -58,10 +62,10 @@ Receivers vertex_receivers(const mesh::TriangleMesh& mesh) {
                 reach[vertex] = std::min(reach[vertex], LargestPartOfATriangle * distance);
             }
     }
-    const float step = automatic_bias(mesh);
     for (std::size_t vertex = 0; vertex < is_inner.size(); ++vertex)
         if (const float length = glm::length(inwards[vertex]); length > 0.0f)
-            receivers.positions[vertex] += std::min(step, reach[vertex]) / length * inwards[vertex];
+            receivers.positions[vertex] +=
+                std::min(rim_step, reach[vertex]) / length * inwards[vertex];
     return receivers;
 }
 

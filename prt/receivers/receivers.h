@@ -64,6 +64,8 @@ struct Receivers {
 /// wall that meets the floor at a hard edge must not look out under it. Those with a lift look from
 /// the smooth surface.
 [[nodiscard]] Receivers vertex_receivers(const mesh::TriangleMesh& mesh);
+/// Does the same with another step in place of automatic_bias(), that of a mesh before it changed.
+[[nodiscard]] Receivers vertex_receivers(const mesh::TriangleMesh& mesh, float rim_step);
 
 /// Takes the normals of receivers that show a colour of their own and reflect nothing: unlit ones,
 /// above all. No light changes them, so none is looked for.

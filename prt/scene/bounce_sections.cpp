@@ -13,6 +13,7 @@
 
 #include "files/large_vector.h"
 #include "files/parallel.h"
+#include "prt/bounces/bounce_precompute.h"
 #include "prt/scene/small_numbers.h"
 
 namespace relumine::prt {
@@ -23,8 +24,8 @@ const std::string Radius = "bounce_radius", Weights = "bounce_weights",
                   EmitterSizes = "bounce_hits_size", Emitters = "bounce_hits",
                   AveragedSizes = "bounce_near_size", Averaged = "bounce_near",
                   OpenParts = "bounce_open", Distances = "bounce_distance",
-                  HitCounts = "bounce_rays_hit", Rays = "bounce_rays", Errors = "bounce_errors",
-                  PointRays = "point_rays", PointHits = "point_hits";
+                  HitCounts = "bounce_rays_hit", Looks = "bounce_looks", Rays = "bounce_rays",
+                  Errors = "bounce_errors", PointRays = "point_rays", PointHits = "point_hits";
 
 void add_lists(NewSections& sections, const std::string& size_name, const std::string& name,
                const PlaceLists& lists) {
@@ -138,6 +139,21 @@ PointRows read_points(const SectionReader& reader, std::size_t num_points) {
     return points;
 }
 
+BounceRays read_bounce_rays(const SectionReader& reader, const BounceMatrix& matrix) {
+    if (!reader.has(Looks))
+        return {};
+    const std::size_t n = matrix.num_rows();
+    BounceRays rays{.num_directions = reader.elements<std::uint32_t>(Looks, n),
+                    .num_hits = reader.elements<std::uint32_t>(HitCounts, n),
+                    .distances = reader.elements<float>(Distances, n)};
+    for (std::size_t i = 0; i < n; ++i)
+        if (rays.num_directions[i] > BounceOptions{}.max_directions ||
+            rays.num_hits[i] > rays.num_directions[i] ||
+            matrix.emitters[i].size() > rays.num_hits[i] || !(rays.distances[i] >= 0.0f))
+            reader.fail(Looks, "rays that fit the rows");
+    return rays;
+}
+
 } // namespace
 
 void add_bounce_sections(NewSections& sections, const BounceMatrix& matrix) {
@@ -146,6 +162,11 @@ void add_bounce_sections(NewSections& sections, const BounceMatrix& matrix) {
     add_lists(sections, EmitterSizes, Emitters, matrix.emitters);
     add_lists(sections, AveragedSizes, Averaged, matrix.averaged);
     add_points(sections, matrix.points);
+    if (matrix.rays.num_directions.empty())
+        return;
+    sections[Looks] = SectionContent::view(matrix.rays.num_directions);
+    sections[HitCounts] = SectionContent::view(matrix.rays.num_hits);
+    sections[Distances] = SectionContent::view(matrix.rays.distances);
 }
 
 bool has_bounces(const SectionReader& reader) {
@@ -162,6 +183,7 @@ std::optional<BounceMatrix> read_bounces(const SectionReader& reader, const Rece
     matrix.emitters = read_lists(reader, EmitterSizes, Emitters, num_receivers, num_receivers);
     matrix.averaged = read_lists(reader, AveragedSizes, Averaged, num_receivers, num_receivers);
     matrix.points = read_points(reader, receivers.num_points());
+    matrix.rays = read_bounce_rays(reader, matrix);
     return matrix;
 }
 

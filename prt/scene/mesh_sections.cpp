@@ -1,3 +1,8 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "prt/scene/json_members.h"
 #include "prt/scene/packed_mesh.h"
 #include "prt/scene/section_group.h"
 
@@ -11,6 +16,53 @@ void require_indices(const SectionReader& reader, const mesh::TriangleMesh& mesh
         if (std::any_of(triangle.begin(), triangle.end(),
                         [&](auto i) { return i >= mesh.num_vertices(); }))
             reader.fail(section, "indices of vertices");
+}
+
+void group_members(JsonMembers& member, std::vector<std::string>& names, SceneSettings& settings) {
+    member("names", names);
+    member.unusual("bounce_tolerance", settings.bounce_tolerance, 0.0f);
+    member.unusual("rim_step", settings.rim_step, {});
+}
+
+/// Adds what moves need to know.
+void add_groups(NewSections& sections, const Scene& scene) {
+    std::vector<std::string> names = scene.mesh.groups;
+    SceneSettings settings = scene.settings;
+    JsonMembers members;
+    group_members(members, names, settings);
+    sections["groups"] = bytes_of(members.json.text(2));
+    sections["t_groups"] = SectionContent::view(scene.mesh.triangle_groups);
+    if (!scene.blockers)
+        return;
+    if (scene.blockers->groups.size() > names.size() ||
+        !std::equal(scene.blockers->groups.begin(), scene.blockers->groups.end(), names.begin()))
+        throw std::invalid_argument("expected blockers of the same groups as the mesh");
+    sections["block_groups"] = SectionContent::view(scene.blockers->triangle_groups);
+}
+
+void read_groups(const SectionReader& reader, Scene& scene) {
+    if (!reader.has("groups"))
+        return;
+    const files::Json json = reader.json("groups");
+    try {
+        JsonMembers members(json);
+        group_members(members, scene.mesh.groups, scene.settings);
+    } catch (const std::exception&) {
+        reader.fail("groups", "JSON with the names of groups");
+    }
+    scene.settings.is_movable = true;
+    const auto read = [&](const std::string& section, mesh::TriangleMesh& mesh) {
+        mesh.triangle_groups = reader.elements<std::uint32_t>(section, mesh.num_triangles());
+        const std::size_t count = scene.mesh.groups.size();
+        if (std::any_of(mesh.triangle_groups.begin(), mesh.triangle_groups.end(),
+                        [&](std::uint32_t group) { return group >= count; }))
+            reader.fail(section, "indices of groups");
+    };
+    read("t_groups", scene.mesh);
+    if (!scene.blockers)
+        return;
+    scene.blockers->groups = scene.mesh.groups;
+    read("block_groups", *scene.blockers);
 }
 
 void add_mesh(NewSections& sections, const Scene& scene) {
@@ -29,6 +81,8 @@ void add_mesh(NewSections& sections, const Scene& scene) {
         sections["block_positions"] = SectionContent::view(scene.blockers->positions);
         sections["block_triangles"] = SectionContent::view(scene.blockers->triangles);
     }
+    if (scene.settings.is_movable)
+        add_groups(sections, scene);
 }
 
 void read_mesh(const SectionReader& reader, Scene& scene) {
@@ -46,12 +100,13 @@ void read_mesh(const SectionReader& reader, Scene& scene) {
     mesh.second_uvs = reader.elements<glm::vec2>("second_uvs", mesh.num_vertices(), true);
     mesh.lifts = reader.elements<glm::vec3>("lifts", mesh.num_vertices(), true);
     require_indices(reader, mesh, "triangles");
-    if (!reader.has("block_triangles"))
-        return;
-    mesh::TriangleMesh& blockers = scene.blockers.emplace();
-    blockers.positions = reader.elements<glm::vec3>("block_positions");
-    blockers.triangles = reader.elements<mesh::Triangle>("block_triangles");
-    require_indices(reader, blockers, "block_triangles");
+    if (reader.has("block_triangles")) {
+        mesh::TriangleMesh& blockers = scene.blockers.emplace();
+        blockers.positions = reader.elements<glm::vec3>("block_positions");
+        blockers.triangles = reader.elements<mesh::Triangle>("block_triangles");
+        require_indices(reader, blockers, "block_triangles");
+    }
+    read_groups(reader, scene);
 }
 
 void check_mesh(const SceneCheck& check, const Scene& scene) {
@@ -74,6 +129,10 @@ void check_mesh(const SceneCheck& check, const Scene& scene) {
               [](const glm::vec3& color) { return is_within(color, 0.0f, MaxColor); });
     check.all("finite uvs", scene.mesh.uvs, is_finite_uv);
     check.all("finite uvs", scene.mesh.second_uvs, is_finite_uv);
+    for (const float value :
+         {scene.settings.bounce_tolerance, scene.settings.rim_step.value_or(0.0f)})
+        check.that(value >= 0.0f && std::isfinite(value), "numbers >= 0 with the groups",
+                   SceneCheck::text_of(value));
 }
 
 } // namespace

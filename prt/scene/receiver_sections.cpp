@@ -339,7 +339,8 @@ void read_receivers(const SectionReader& reader, Scene& scene) {
     scene.layout = read_layout(reader);
     Receivers& receivers = scene.receivers;
     if (on_vertices(scene.layout)) {
-        receivers = vertex_receivers(mesh);
+        receivers = scene.settings.rim_step ? vertex_receivers(mesh, *scene.settings.rim_step)
+                                            : vertex_receivers(mesh);
     } else {
         if (auto* pixels = std::get_if<PixelLayout>(&scene.layout); pixels && reader.has("r_veils"))
             receivers.veils = read_veils(reader, pixels->samples);

@@ -40,6 +40,12 @@ struct SceneSettings {
     std::uint64_t source_hash = 0;
     /// GlossyOptions::tolerance; set where there is a glossy part.
     std::optional<float> glossy_tolerance = {};
+    /// Whether the file keeps the mesh's groups, so that they can be moved (prt/moves/).
+    bool is_movable = false;
+    /// BounceOptions::tolerance of the bounces, 0 without any; files keep it with the groups.
+    float bounce_tolerance = 0.0f;
+    /// The step of vertex_receivers() where things have moved: that of the mesh before.
+    std::optional<float> rim_step = {};
     /// BounceOptions::two_sided.
     bool two_sided_bounces = false;
     /// The eye that the highlights of vertices are for.
@@ -61,7 +67,7 @@ struct Scene {
     /// What the receivers are.
     ReceiverLayout layout = {};
     /// The triangles that block light, where they are not the mesh's own: the mesh before it was
-    /// refined or simplified. Positions and triangles, nothing else.
+    /// refined or simplified. Positions and triangles with their groups, nothing else.
     std::optional<mesh::TriangleMesh> blockers = {};
     /// Light from surface to surface. It comes from vertices, so pixels and texels have the mesh's
     /// vertices behind them: Receivers::num_added.

@@ -9,6 +9,7 @@
 #include "options.h"
 #include "relumine/in/material_report.h"
 #include "relumine/in/mesh_files.h"
+#include "relumine/in/move.h"
 #include "relumine/out/first_sight.h"
 #include "run.h"
 
@@ -34,11 +35,13 @@ mesh::TriangleMesh together(const mesh::TriangleMesh& mesh, const mesh::Triangle
 
 /// Other triangles that block the light: (vertices, triangles).
 using OtherBlockers = std::optional<std::pair<py::buffer, py::buffer>>;
+/// Names, and the index of each triangle's.
+using Groups = std::optional<std::pair<std::vector<std::string>, py::buffer>>;
 
 /// Optional arrays are None.
 MeshPointer make_mesh(const py::buffer& vertices, const py::buffer& triangle_indices,
                       const py::object& normals, const py::object& colors, const py::object& uvs,
-                      const OtherBlockers& blockers, const py::dict& given) {
+                      const OtherBlockers& blockers, const Groups& groups, const py::dict& given) {
     mesh::TriangleMesh geometry;
     geometry.positions = vec3s(vertices);
     geometry.triangles = triangles(triangle_indices);
@@ -48,6 +51,10 @@ MeshPointer make_mesh(const py::buffer& vertices, const py::buffer& triangle_ind
         geometry.colors = vec3s(colors.cast<py::buffer>());
     if (!uvs.is_none())
         geometry.uvs = vec2s(uvs.cast<py::buffer>());
+    if (groups) {
+        geometry.groups = groups->first;
+        geometry.triangle_groups = uint32s(groups->second);
+    }
     mesh::TriangleMesh others;
     if (blockers) {
         others.positions = vec3s(blockers->first);
@@ -262,6 +269,37 @@ std::shared_ptr<Scene> load_prt(const Path& path) {
     });
 }
 
+/// Returns another scene, and figures.
+py::tuple moved(const std::shared_ptr<Scene>& scene, const std::string& name,
+                const py::buffer& row_by_row, const py::object& progress) {
+    GroupMove to{.name = name};
+    const std::vector<double> numbers = doubles(row_by_row);
+    for (int i = 0; i < 16; ++i)
+        to.matrix[i % 4][i / 4] = numbers.at(static_cast<std::size_t>(i));
+    using Result = std::pair<std::shared_ptr<Scene>, MoveReport>;
+    const Result result = in_background(progress, [scene, to](const Reins& reins) {
+        Result found{std::make_shared<Scene>(*scene), {}};
+        move(*found.first, to,
+             {.stop = reins.stop,
+              .on_progress =
+                  [&reins](Stage stage, double fraction) {
+                      reins.on_progress(0.5 * fraction + (stage == Stage::Bounces ? 0.5 : 0.0));
+                  }},
+             &found.second);
+        return found;
+    });
+    py::dict report;
+    report["receivers"] = result.second.num_moved;
+    report["pairs"] = result.second.counts.num_pairs;
+    report["pairs_changed"] = result.second.counts.num_changed;
+    report["pairs_all"] = result.second.num_all;
+    report["rays"] = result.second.counts.num_rays;
+    report["leaves_box"] = result.second.leaves_box;
+    report["seconds_bounces"] = result.second.seconds_bounces;
+    report["seconds"] = result.second.seconds;
+    return py::make_tuple(result.first, std::move(report));
+}
+
 std::shared_ptr<Scene> recoloured(const std::shared_ptr<Scene>& scene, const py::dict& given) {
     const auto colors = options_from<SurfaceColors>(given);
     const Release release;
@@ -373,6 +411,7 @@ void bind_scenes(py::module_& module) {
         return std::make_shared<Scene>(quick_scene(*mesh));
     });
     module.def("recoloured", &recoloured);
+    module.def("moved", &moved);
 }
 
 } // namespace relumine::python

@@ -6,13 +6,13 @@ import errno
 import json
 import os
 import warnings
-from typing import Any, Callable, Dict, List, Optional, Tuple, Union
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Floats, Indices, expect, floats, indices, view, whole
+from ._arrays import Floats, Indices, expect, floats, indices, view, whole, word
 from ._core import Mesh as CoreMesh
 from ._files import FileError, Path, errors, in_python
 
@@ -46,6 +46,7 @@ class Mesh:
     normals    (N, 3) of unit length; computed from the triangles where not given
     colors     (N, 3) linear RGB
     uvs        (N, 2), for lightmaps
+    groups     (M,) names: the things that each triangle is of, for materials and Scene.move()
     blockers   (vertices, triangles) of other things that block the light and are not lit
     up         "x", "y" or "z": the axis of the arrays that points up
     floor      n: adds a floor of n x n vertices under the mesh, after its own vertices; "auto": a
@@ -75,6 +76,7 @@ class Mesh:
         colors: Optional[ArrayLike] = None,
         uvs: Optional[ArrayLike] = None,
         blockers: Optional[Tuple[ArrayLike, ArrayLike]] = None,
+        groups: Optional[Sequence[str]] = None,
         up: str = "y",
         floor: Union[int, str, None] = None,
         floor_scale: float = 4.0,
@@ -89,6 +91,15 @@ class Mesh:
                 raise ValueError("blockers: expected (vertices, triangles)")
             corner = floats("blockers[0]", blockers[0], None, 3)
             others = corner, indices("blockers[1]", blockers[1], len(corner), None, 3)
+        names = None
+        if groups is not None:
+            names = [word("groups", name) for name in groups]
+            if len(names) != len(corners):
+                raise ValueError(
+                    f"groups: expected a name for each of {len(corners)} triangles, got {len(names)}"
+                )
+            distinct = list(dict.fromkeys(names))
+            places = {name: place for place, name in enumerate(distinct)}
         self._core = _core.make_mesh(
             points,
             corners,
@@ -96,13 +107,16 @@ class Mesh:
             None if colors is None else floats("colors", colors, count, 3),
             None if uvs is None else floats("uvs", uvs, count, 2),
             others,
+            None
+            if names is None
+            else (distinct, np.array([places[name] for name in names], np.uint32)),
             {"up": up, "floor": floor, "floor_scale": floor_scale},
         )
         given = {"normals": normals, "colors": colors, "uvs": uvs}
         options: Dict[str, Any] = {
             name: None if value is None else np.array(value) for name, value in given.items()
         }
-        options.update(blockers=others, up=up, floor=floor, floor_scale=floor_scale)
+        options.update(blockers=others, groups=names, up=up, floor=floor, floor_scale=floor_scale)
         self._made = Mesh, (points, corners), options
 
     @classmethod

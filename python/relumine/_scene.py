@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Floats, Indices, expect, floats, view, whole
+from ._arrays import Floats, Indices, doubles, expect, floats, view, whole, word
 from ._blockers import BlockersFunction, asked
 from ._brdf import Brdf
 from ._core import Scene as CoreScene
@@ -107,6 +107,7 @@ def precompute(
     glossy_tolerance: Optional[float] = None,
     bounces: Union[bool, float, None] = None,
     two_sided: bool = False,
+    movable: bool = False,
     max_memory: Optional[int] = None,
     output: Optional[Path] = None,
     checkpoint_seconds: float = 20.0,
@@ -139,6 +140,7 @@ def precompute(
                traced for pixels, stored for the rest
     bounces    light goes on from surface to surface: True, or its standard error; False: direct
                light alone; None: where vertices see other surfaces
+    movable    the scene's file keeps the mesh's groups, so that they can be moved: Scene.move()
     max_memory bytes; work that would take more is refused with MemoryError
     output     the .prt file to write as soon as the scene is ready, with checkpoints on the way
                that `resume` goes on from
@@ -178,6 +180,7 @@ def precompute(
         "glossy_tolerance": glossy_tolerance,
         "bounces": _bounces(bounces),
         "two_sided": two_sided,
+        "movable": movable,
         "max_memory": f"{max_memory}B" if isinstance(max_memory, int) else max_memory,
         "output": None if output is None else os.fspath(output),
         "checkpoint_seconds": checkpoint_seconds,
@@ -398,6 +401,42 @@ class Scene:
         """The index of the receiver nearest to a point (x, y, z)."""
         x, y, z = position
         return self._core.nearest_receiver((float(x), float(y), float(z)))
+
+    @property
+    def groups(self) -> List[str]:
+        """Names of the groups that move() takes; empty for a loaded scene that is not movable."""
+        return self._core.groups
+
+    def move(
+        self, name: str, matrix: ArrayLike, *, progress: Optional[Progress] = None
+    ) -> "Scene":
+        """A scene in which a group of the mesh stands elsewhere, for the cost of what it changes.
+
+        name    a group of the mesh
+        matrix  (4, 4): from its present place to the next one, for columns (x, y, z, 1), in the
+                coordinates of the mesh's file with Y up
+
+        The clusters stay, and the counts are those of a precompute with these clusters, bit by bit.
+        Bounces follow. This scene stays as it is.
+
+        Raises ValueError for a name that no group has, a matrix that is singular, not finite or
+        mirrors, and a scene without groups: precompute(..., movable=True) keeps them.
+
+        >>> mesh = relumine.Mesh.load("boulder.ply", floor=20)
+        >>> scene = relumine.precompute(mesh, tolerance=0.05, bounces=False, movable=True)
+        >>> scene.groups
+        ['mesh', 'floor']
+        >>> shifted = np.eye(4)
+        >>> shifted[0, 3] = 0.5
+        >>> scene.move("mesh", shifted)
+        <relumine.Scene: vertices, ... receivers, ... clusters>
+        """
+        rows = doubles("matrix", matrix, 4, 4)
+        with errors():
+            core, report = _core.moved(self._core, word("name", name), rows, progress)
+        scene = Scene._of(core)
+        scene.report = report
+        return scene
 
     def recolored(
         self,

@@ -26,6 +26,8 @@ Scene coarsened(Scene scene, float tolerance, const prt::Work& work) {
                                     work);
     scene.settings.tolerance = tolerance;
     scene.settings.epsilon.reset();
+    if (scene.bounces)
+        scene.bounces->rays = {}; // they were chosen by other clusters
     return scene;
 }
 

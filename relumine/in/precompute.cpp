@@ -118,6 +118,7 @@ public:
             .source = std::filesystem::path(mesh.source).filename().string(),
             .floor_added = mesh.floor_added,
             .source_hash = mesh.source_hash,
+            .is_movable = options.movable,
             .camera = mesh.camera,
             .left_out = mesh::left_out(scene_.mesh)};
     }
@@ -172,6 +173,10 @@ private:
         check_points(options_);
         if (options_.blockers != nullptr)
             check_own_blockers();
+        if (options_.movable && scene_.mesh.groups.empty())
+            throw std::invalid_argument(
+                prefix_ +
+                "expected a mesh with groups (nodes of glTF, groups of OBJ) to move, got none");
         if (!(scene_.settings.tolerance >= 0.0f && std::isfinite(scene_.settings.tolerance)))
             throw std::invalid_argument(
                 fmt::format("expected a tolerance >= 0, got {}", scene_.settings.tolerance));
@@ -230,6 +235,7 @@ private:
         }
         if (const float tolerance = bounce_tolerance(rays); tolerance > 0.0f) {
             scene_.settings.two_sided_bounces = options_.two_sided_bounces;
+            scene_.settings.bounce_tolerance = tolerance;
             plan_.bounces = {.tolerance = tolerance,
                              .is_automatic = !options_.bounce_tolerance.has_value()};
         }

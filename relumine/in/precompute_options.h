@@ -184,6 +184,9 @@ struct PrecomputeOptions {
     /// Backs of surfaces send the bounced light that their fronts do; otherwise they are black.
     bool two_sided_bounces = false;
 
+    /// The scene's file keeps the mesh's groups, so that they can be moved: move().
+    bool movable = false;
+
     /// Bytes. Work that is estimated to take more is refused before it begins. Work that turns out
     /// to take more is stopped. Empty: no limit.
     std::optional<std::uint64_t> max_memory = {};

@@ -365,6 +365,9 @@ OptionTable options_of(PrecomputeOptions& o) {
         row("--two-sided", o.two_sided_bounces,
             "backs of surfaces send the bounced light that their fronts do",
             {.needs = "--bounces"}),
+        row("--movable", o.movable,
+            "keep the groups of the mesh (nodes of glTF, groups of OBJ) in the scene, so that they "
+            "can be moved: relumine move"),
         row("--resume", o.resume,
             "go on from the last checkpoint of the same work, SCENE.prt.checkpoint, where "
             "there is one; without it the work begins anew and its checkpoints replace that "

@@ -228,6 +228,7 @@ prt::BounceSamples Stages::bounces(const prt::RayScene& rays) {
     if (scene_.blockers)
         of_mesh.emplace(ray_scene(scene_.mesh, options_.prefix));
     prt::BounceOptions options{.tolerance = plan_.bounces->tolerance,
+                               .is_kept = scene_.settings.is_movable,
                                .two_sided = scene_.settings.two_sided_bounces,
                                .bias = scene_.settings.bias};
     if (options_.max_memory)

@@ -51,12 +51,14 @@ public:
     /// Does the work of the process or part. `rays`: of what blocks light.
     [[nodiscard]] prt::PartLight run(const prt::RayScene& rays);
 
+    /// Samples the bounces alone, for counts that are there: those of the process or part.
+    [[nodiscard]] prt::BounceSamples bounces(const prt::RayScene& rays);
+
 private:
     template<typename Find>
     void find_clusters(const prt::RayScene& rays, const Find& find);
     void limit_clusters(const prt::Blockers& blockers, prt::PrecomputeOptions& clusters);
     void add_highlights(const prt::RayScene& rays);
-    [[nodiscard]] prt::BounceSamples bounces(const prt::RayScene& rays);
 
     [[nodiscard]] prt::SceneSizes sizes() const;
     [[nodiscard]] prt::PrecomputeOptions cluster_options() const;

@@ -51,6 +51,7 @@ struct LitScene::Impl {
     void require_same(const Light& light) const;
     BounceReport find_bounces(bool is_step);
     void forget_bounces();
+    void require_own() const;
     void finish(UpdateReport& report);
     void bind_sent(ArrivingLight& arriving) const;
     void take_apart(Lighting& lighting) const;
@@ -61,6 +62,8 @@ struct LitScene::Impl {
         return relighter && relighter->environment().resolution != 0;
     }
 
+    /// What it was made with
+    LightOptions given;
     std::shared_ptr<const Scene> scene;
     /// The same, where nobody else has it.
     Scene* own_scene = nullptr;
@@ -79,6 +82,10 @@ struct LitScene::Impl {
     /// The environment's light, or a list's alone. Null without clusters.
     std::unique_ptr<relight::Relighter> relighter;
     ListedLight listed;
+    /// What `listed`, or the clusters' light, was made of.
+    std::vector<lights::DistantLight> listed_lights;
+    /// Moves that can be undone, and made again; the last ones are next.
+    std::vector<prt::SceneChange> moves, undone_moves;
     SceneBounces bounces;
     SceneLamps lamps;
     SceneMirrors mirrors;
@@ -90,7 +97,8 @@ struct LitScene::Impl {
 
 LitScene::Impl::Impl(std::shared_ptr<const Scene> whole, std::unique_ptr<prt::ScenePart> part,
                      const LightOptions& options)
-    : scene(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(whole)),
+    : given(options),
+      scene(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(whole)),
       rays(*scene), receivers(*scene, std::move(part), options.team, options.path),
       harmonics(options.harmonics), own_blockers(options.blockers), lamps(*scene, rays),
       mirrors(*scene, rays, options.highlight_rays) {
@@ -254,6 +262,7 @@ UpdateReport LitScene::light(Light light) {
             relight::require_radiance(map_of(light)->texels);
         listed = listed_light(light.lights, *own.relighter, own.harmonics != 0);
     }
+    own.listed_lights = light.lights;
     if (has_environment)
         report = own.environment.light(std::move(light), *own.relighter);
     else
@@ -345,6 +354,89 @@ void LitScene::set_roughness(float roughness) {
     if (impl_->own_scene == nullptr)
         throw std::logic_error("expected a scene that is not shared, to set its roughness");
     relumine::set_roughness(*impl_->own_scene, roughness);
+}
+
+/// Makes all that follows from the scene anew, and lights it by the same light.
+void LitScene::follow() {
+    Impl& before = *impl_;
+    auto next = std::make_unique<Impl>(before.scene, nullptr, before.given);
+    next->own_scene = before.own_scene;
+    next->moves = std::move(before.moves);
+    next->undone_moves = std::move(before.undone_moves);
+    next->lamps.set(before.lamps.gains());
+    std::optional<Light> light;
+    if (before.is_lit)
+        light.emplace(before.listed_lights);
+    if (light && before.has_environment()) {
+        const std::shared_ptr<const LightBase> base = before.environment.state().base;
+        light->environment =
+            before.environment.is_edited()
+                ? base->map()
+                : std::make_shared<const cubemap::CubeMap>(before.relighter->environment());
+        if (base) {
+            light->file = base->file();
+            light->path = base->path();
+        }
+    }
+    next->environment = std::move(before.environment);
+    const bool are_bounced = before.bounces.is_set();
+    relight::SurfaceBounces surfaces = before.bounces.surfaces();
+    impl_ = std::move(next);
+    if (light)
+        this->light(std::move(*light));
+    if (light && are_bounced) {
+        surfaces.matrix = &*impl_->scene->bounces;
+        impl_->bounces.set(*impl_->scene, std::move(surfaces), impl_->receivers.rows());
+        bounce();
+    }
+}
+
+void LitScene::Impl::require_own() const {
+    if (own_scene == nullptr || receivers.are_in_others())
+        throw std::logic_error("expected a scene that is not shared, to move its groups");
+    if (own_blockers)
+        throw std::logic_error("expected triangles that block light where groups move, got others");
+}
+
+MoveReport LitScene::move(const GroupMove& to, const PrecomputeWork& work) {
+    constexpr std::size_t MostMoves = 32;
+    impl_->require_own();
+    MoveReport report;
+    try {
+        prt::SceneChange change = relumine::move(*impl_->own_scene, to, work, &report);
+        std::vector<prt::SceneChange>& moves = impl_->moves;
+        moves.push_back(std::move(change));
+        if (moves.size() > MostMoves)
+            moves.erase(moves.begin());
+        impl_->undone_moves.clear();
+    } catch (...) {
+        follow();
+        throw;
+    }
+    follow();
+    return report;
+}
+
+bool LitScene::exchange_move(bool is_undo) {
+    impl_->require_own();
+    std::vector<prt::SceneChange>& from = is_undo ? impl_->moves : impl_->undone_moves;
+    std::vector<prt::SceneChange>& to = is_undo ? impl_->undone_moves : impl_->moves;
+    if (from.empty())
+        return false;
+    prt::exchange(*impl_->own_scene, from.back());
+    prt::set_surfaces(impl_->own_scene->transfer, impl_->own_scene->receivers);
+    to.push_back(std::move(from.back()));
+    from.pop_back();
+    follow();
+    return true;
+}
+
+bool LitScene::undo_move() {
+    return exchange_move(true);
+}
+
+bool LitScene::redo_move() {
+    return exchange_move(false);
 }
 
 // What it gives

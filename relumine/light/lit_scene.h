@@ -15,6 +15,7 @@
 #include "prt/team.h"
 #include "prt/visibility/blockers.h"
 #include "relight/relighter.h"
+#include "relumine/in/move.h"
 #include "relumine/in/scene.h"
 #include "relumine/light/bounces.h"
 #include "relumine/light/edited_environment.h"
@@ -159,6 +160,19 @@ public:
     /// Throws:  as relumine::set_roughness(); std::logic_error where the scene is shared.
     void set_roughness(float roughness);
 
+    /// Moves a group of the scene's mesh (relumine/in/move.h), and lights the scene again by the
+    /// light that it has: environment, layers, lists, lamps and bounces. Of what this object gave,
+    /// only scene() stays valid.
+    ///
+    /// Throws:  as relumine::move(); std::logic_error where the scene is shared, by other users or
+    ///          processes, or others than its triangles block light.
+    /// Cost:    what the move changes, and once the light of the scene.
+    MoveReport move(const GroupMove& to, const PrecomputeWork& work = {});
+    /// Undoes the last move that is not undone, or makes it again. Nothing of it is traced anew but
+    /// the sharp lights. The last 32 moves are kept. Returns whether there was one.
+    bool undo_move();
+    bool redo_move();
+
     /// Outgoing radiance of this process's receivers, in their order and the unit of the
     /// environment's; without materials for albedo 1. Empty before the first light().
     [[nodiscard]] std::span<const glm::vec3> radiance() const;
@@ -182,6 +196,9 @@ public:
     [[nodiscard]] Lighting lighting(bool is_drawn = true) const;
 
 private:
+    void follow();
+    bool exchange_move(bool is_undo);
+
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

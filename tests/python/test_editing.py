@@ -158,3 +158,40 @@ def test_undo_says_what_it_does(scene):
     relighter.undo()
     assert not relighter.can_undo
     assert relighter.layers == []
+
+
+def test_a_group_moves(arrays, sky):
+    vertices, triangles = arrays
+    names = ["plate" if triangle[0] >= 2 * 48 * 48 else "ball" for triangle in triangles]
+    mesh = relumine.Mesh(vertices, triangles, groups=names)
+    assert sorted(mesh.groups) == ["ball", "plate"]
+    scene = relumine.precompute(mesh, tolerance=0.05, refine=False, bounces=False, movable=True)
+    shifted = np.eye(4)
+    shifted[:3, 3] = 0.5, 0.25, 0.0
+    moved = scene.move("ball", shifted)
+    assert 0 < moved.report["pairs_changed"] <= moved.report["pairs"] < moved.report["pairs_all"]
+    ball = np.unique(triangles[np.array(names) == "ball"])
+    assert np.allclose(moved.vertices[ball], scene.vertices[ball] + [0.5, 0.25, 0.0], atol=1e-6)
+    plate = np.unique(triangles[np.array(names) == "plate"])
+    assert (moved.vertices[plate] == scene.vertices[plate]).all()
+    lights = [relumine.Relighter(each) for each in (scene, moved)]
+    for each in lights:
+        each.set_environment(sky)
+    assert (lights[0].radiance[plate] != lights[1].radiance[plate]).any()
+    back = np.eye(4)
+    back[:3, 3] = -0.5, -0.25, 0.0
+    assert (moved.move("ball", back).move("ball", shifted).vertices[plate] == scene.vertices[plate]).all()
+
+
+def test_what_cannot_move_is_refused(arrays, scene):
+    vertices, triangles = arrays
+    with pytest.raises(ValueError, match="movable"):
+        scene.move("ball", np.eye(4))
+    with pytest.raises(ValueError, match="groups: expected a name for each"):
+        relumine.Mesh(vertices, triangles, groups=["ball"])
+    with pytest.raises(ValueError, match="a mesh with groups"):
+        relumine.precompute(relumine.Mesh(vertices, triangles), movable=True)
+    with pytest.raises(ValueError, match="matrix: expected shape"):
+        scene.move("ball", np.eye(3))
+    with pytest.raises(ValueError, match="matrix: expected finite"):
+        scene.move("ball", np.full((4, 4), np.nan))

@@ -1,0 +1,82 @@
+// `relumine move`: a scene in which things stand elsewhere.
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/options/output_options.h"
+#include "relumine/in/move.h"
+
+namespace relumine::app {
+
+namespace {
+
+struct MoveArguments {
+    std::string scene;
+    std::vector<GroupStep> steps;
+    std::string output;
+};
+
+void move_groups(const MoveArguments& options, Session& session) {
+    require_extension("--output", options.output, {".prt"});
+    check_output(options.output, {});
+    Scene scene = load_scene(options.scene);
+    session.poll();
+    Report moves = Report::Array{};
+    for (const GroupStep& step : options.steps) {
+        MoveReport moved;
+        const prt::Work own = session.work("moving " + step.name);
+        const PrecomputeWork work{
+            .stop = own.stop, .on_progress = [&](Stage stage, double fraction) {
+                own.tell(0.5 * fraction + (stage == Stage::Bounces ? 0.5 : 0.0));
+            }};
+        try {
+            move(scene, move_of(scene, step), work, &moved);
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error(fmt::format("{}: {}", options.scene, error.what()));
+        }
+        session.end_progress();
+        session.say(fmt::format(
+            "{}: {} receivers moved, {:.2g} % of the light counted anew, {:.2f} s{}", step.name,
+            moved.num_moved,
+            100.0 * static_cast<double>(moved.counts.num_pairs) /
+                static_cast<double>(moved.num_all),
+            moved.seconds,
+            moved.leaves_box ? "; it is now outside of the box that held the scene" : ""));
+        moves.push_back({{"name", step.name},
+                         {"receivers", moved.num_moved},
+                         {"pairs", moved.counts.num_pairs},
+                         {"pairs_changed", moved.counts.num_changed},
+                         {"pairs_all", moved.num_all},
+                         {"rays", moved.counts.num_rays},
+                         {"leaves_box", moved.leaves_box},
+                         {"seconds_bounces", moved.seconds_bounces},
+                         {"seconds", moved.seconds}});
+    }
+    const std::uint64_t bytes = save_scene(options.output, scene);
+    session.report({{"moves", moves}, {"bytes", bytes}});
+}
+
+} // namespace
+
+void add_move(Command& program, Session& session) {
+    Command command = program.add_command(
+        "move", "things moved in a precomputed scene: SCENE.prt -> OUT.prt, for what it changes");
+    auto options = std::make_shared<MoveArguments>();
+    command.add(row("SCENE", options->scene, "scene of `relumine precompute --movable`",
+                    {.file = true, .required = true}));
+    command.add(row<GroupStepText>(
+        "--group", options->steps,
+        "a group of the mesh, how far it moves, and by how many degrees it turns about the "
+        "vertical through its middle; may be given several times",
+        {.required = true, .example = "chair=0.5,0,0,90"}));
+    command.add(row("-o,--output", options->output, "the scene to write, .prt; SCENE itself, too",
+                    {.file = true, .required = true}));
+    session.add_common_options(command);
+    command.on_run([options, &session] { move_groups(*options, session); });
+}
+
+} // namespace relumine::app

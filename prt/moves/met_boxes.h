@@ -1,0 +1,88 @@
+// Whether rays from a place may meet boxes.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+
+#include "mesh/triangle_mesh.h"
+
+namespace relumine::prt {
+
+/// A box that holds nothing yet.
+[[nodiscard]] inline mesh::Bounds no_box() {
+    constexpr float Far = std::numeric_limits<float>::infinity();
+    return {glm::vec3(Far), glm::vec3(-Far)};
+}
+
+inline void include(mesh::Bounds& box, const glm::vec3& point) {
+    box.min = glm::min(box.min, point);
+    box.max = glm::max(box.max, point);
+}
+inline void include(mesh::Bounds& box, const mesh::Bounds& other) {
+    include(box, other.min);
+    include(box, other.max);
+}
+
+/// Largest coordinate.
+[[nodiscard]] inline float reach(const mesh::Bounds& box) {
+    const glm::vec3 far = glm::max(glm::abs(box.min), glm::abs(box.max));
+    return std::max({far.x, far.y, far.z});
+}
+
+/// One over a direction's components; a number so large that it stands for infinity where one is 0.
+[[nodiscard]] inline glm::vec3 inverse(const glm::vec3& direction) {
+    glm::vec3 result;
+    for (int axis = 0; axis < 3; ++axis)
+        result[axis] = std::abs(direction[axis]) < 1e-20f ? 1e20f : 1.0f / direction[axis];
+    return result;
+}
+
+/// Boxes as seen from a box of places: a ray from any of these that meets a box meets the box's
+/// difference from the places when it starts at the origin.
+///
+/// Boxes are wider than they are: tracers find hits beside a triangle, up to 16 roundings of the
+/// distance of its farthest corner (prt/visibility/ray_scene.cpp). The margin is four times as
+/// much, and far more than what the tests here round.
+class MetBoxes {
+public:
+    MetBoxes(std::span<const mesh::Bounds> boxes, const mesh::Bounds& places) {
+        mesh::Bounds all = no_box();
+        for (const mesh::Bounds& box : boxes) {
+            boxes_.push_back(difference(box, places));
+            include(all, box);
+        }
+        if (!boxes.empty())
+            all_ = difference(all, places);
+    }
+
+    /// Given the inverse() of a direction.
+    [[nodiscard]] bool meets(const glm::vec3& inverse_direction) const {
+        return !boxes_.empty() && meets(all_, inverse_direction) &&
+               std::any_of(boxes_.begin(), boxes_.end(),
+                           [&](const mesh::Bounds& box) { return meets(box, inverse_direction); });
+    }
+
+private:
+    static mesh::Bounds difference(const mesh::Bounds& box, const mesh::Bounds& places) {
+        constexpr float Margin = 64.0f * 0x1p-24f;
+        const glm::vec3 margin(Margin * (reach(box) + reach(places)));
+        return {box.min - places.max - margin, box.max - places.min + margin};
+    }
+    static bool meets(const mesh::Bounds& box, const glm::vec3& inverse_direction) {
+        const glm::vec3 a = box.min * inverse_direction, b = box.max * inverse_direction;
+        const glm::vec3 enters = glm::min(a, b), leaves = glm::max(a, b);
+        return std::max({enters.x, enters.y, enters.z, 0.0f}) <=
+               std::min({leaves.x, leaves.y, leaves.z});
+    }
+
+    mesh::Bounds all_;
+    std::vector<mesh::Bounds> boxes_;
+};
+
+} // namespace relumine::prt

@@ -1,0 +1,91 @@
+// `relumine move`: things move in a scene's file, and what is refused.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "prt/scene/scene_file.h"
+#include "tests/app/command.h"
+#include "tests/app/formats.h"
+#include "tests/app/small_files.h"
+
+namespace relumine::app {
+namespace {
+
+class Move : public AppTest {
+protected:
+    Move() {
+        write("mesh.obj", octahedron_obj());
+        write("white.hdr", white_hdr());
+    }
+    void precompute(const std::vector<std::string>& options) {
+        std::vector<std::string> arguments = {
+            "precompute", "mesh.obj",          "-o", "scene.prt",   "--floor", "17", "--tolerance",
+            "0.05",       "--face-resolution", "64", "--no-refine", "-q"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        succeed(arguments);
+    }
+    std::vector<Rgb> light_of(const std::string& scene) {
+        succeed({"relight", scene, "white.hdr", "-o", "light.npy", "-q"});
+        return npy_values(read("light.npy"));
+    }
+};
+
+TEST_F(Move, MovesAndComesBack) {
+    precompute({"--movable", "--bounces", "0.05"});
+    const std::vector<Rgb> before = light_of("scene.prt");
+    const nlohmann::json report =
+        succeed("move scene.prt --group mesh=0.5,0,0 --group mesh=0.25,0,0 -o moved.prt --json")
+            .json();
+    ASSERT_EQ(report["moves"].size(), 2u);
+    EXPECT_EQ(report["moves"][0]["name"], "mesh");
+    EXPECT_GT(report["moves"][0]["pairs_changed"], 0);
+    EXPECT_EQ(report["bytes"], std::filesystem::file_size(folder() / "moved.prt"));
+    succeed("info moved.prt --check -q");
+    EXPECT_NE(light_of("moved.prt"), before);
+    EXPECT_TRUE(prt::load_scene(folder() / "moved.prt").bounces.has_value());
+    // Steps that floats hold exactly lead back to the same scene.
+    succeed("move moved.prt --group mesh=-0.75,0,0 -o moved.prt -q");
+    const prt::Scene back = prt::load_scene(folder() / "moved.prt"),
+                     first = prt::load_scene(folder() / "scene.prt");
+    EXPECT_EQ(back.mesh.positions, first.mesh.positions);
+    EXPECT_EQ(back.transfer.counts.counts, first.transfer.counts.counts);
+    EXPECT_EQ(light_of("moved.prt"), before);
+}
+
+TEST_F(Move, WhoDoesNotAskGetsTheSameFile) {
+    precompute({});
+    const prt::Scene plain = prt::load_scene(folder() / "scene.prt");
+    EXPECT_TRUE(plain.mesh.groups.empty());
+    precompute({"--movable"});
+    prt::Scene movable = prt::load_scene(folder() / "scene.prt");
+    EXPECT_THAT(movable.mesh.groups, testing::ElementsAre("mesh", "floor"));
+    EXPECT_EQ(plain.transfer.counts.counts, movable.transfer.counts.counts);
+    movable.settings.is_movable = false;
+    prt::save_scene(folder() / "again.prt", movable);
+    precompute({});
+    EXPECT_EQ(read("again.prt"), read("scene.prt"));
+}
+
+TEST_F(Move, Refuses) {
+    precompute({"--movable"});
+    fail("move scene.prt --group mush=1,0,0 -o moved.prt",
+         {"scene.prt: expected one of 2 groups, got 'mush'; did you mean mesh?"});
+    fail("move scene.prt --group floor=1,0,0 -o moved.prt", {"scene.prt: expected", "added floor"});
+    fail("move scene.prt --group mesh=1e30,0,0 -o moved.prt", {"scene.prt: expected coordinates"});
+    fail("move absent.prt --group mesh=1,0,0 -o moved.prt", {"absent.prt"});
+    misuse("move scene.prt --group mesh=1,0 -o moved.prt", "--group");
+    misuse("move scene.prt -o moved.prt", "--group");
+    misuse("move scene.prt --group mesh=1,0,0 -o moved.ply", "--output");
+    EXPECT_FALSE(std::filesystem::exists(folder() / "moved.prt"));
+    precompute({});
+    fail("move scene.prt --group mesh=1,0,0 -o moved.prt", {"scene.prt: expected", "--movable"});
+    precompute({"--movable", "--receivers", "pixels:24x16", "--view", "auto"});
+    fail("move scene.prt --group mesh=1,0,0 -o moved.prt", {"scene.prt: expected", "pixels"});
+    fail("precompute mesh.obj -o other.prt --movable -q",
+         {"mesh.obj: expected a mesh with groups"});
+}
+
+} // namespace
+} // namespace relumine::app

@@ -1,0 +1,344 @@
+// After a move, the counts are those of a fresh precompute with the same clusters, bit by bit.
+#include "prt/moves/moved_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "prt/bounces/bounce_precompute.h"
+#include "prt/bounces/bounce_sampler.h"
+#include "prt/moves/resampled_bounces.h"
+#include "prt/precompute.h"
+#include "prt/precompute_context.h"
+#include "prt/scene/scene_file.h"
+#include "prt/visibility/beam_scene.h"
+#include "prt/visibility/bias.h"
+#include "prt/visibility/ray_scene.h"
+#include "tests/own_folder.h"
+#include "tests/prt/same_transfer.h"
+#include "tests/prt/scenes.h"
+
+namespace relumine::prt {
+namespace {
+
+constexpr std::uint32_t Crate = 3;
+
+/// A floor, a wall, a ball, a crate and a slab above, a group each.
+mesh::TriangleMesh things() {
+    mesh::TriangleMesh mesh;
+    const auto add = [&](const std::string& name, const mesh::TriangleMesh& part) {
+        mesh.triangle_groups.resize(mesh.num_triangles() + part.num_triangles(),
+                                    static_cast<std::uint32_t>(mesh.groups.size()));
+        mesh.groups.push_back(name);
+        const std::vector<std::string> groups = mesh.groups;
+        const std::vector<std::uint32_t> of_triangles = mesh.triangle_groups;
+        mesh = scenes::joined(mesh, part);
+        mesh.groups = groups;
+        mesh.triangle_groups = of_triangles;
+    };
+    add("floor", scenes::floor_grid(17, 6.0f));
+    add("wall", scenes::box({-3.3f, 0.0f, -3.4f}, {3.1f, 2.0f, -3.1f}));
+    add("ball", scenes::icosphere(2, 0.5f, {1.0f, 0.6f, 0.5f}));
+    add("crate", scenes::icosphere(1, 0.4f, {-1.0f, 0.5f, 0.5f}));
+    add("slab", scenes::box({-1.5f, 1.5f, -1.0f}, {0.5f, 1.6f, 1.0f}));
+    return mesh;
+}
+
+PrecomputeOptions options_of(const Scene& scene) {
+    return {.tolerance = 0.05f, .min_level = 2, .face_resolution = 32, .bias = scene.settings.bias};
+}
+
+/// Calls `use` with what blocks the light of a scene: beams, which ask Embree.
+void with_beams(const Scene& scene, const std::function<void(const Blockers&)>& use) {
+    const RayScene rays(scene.blocking_mesh());
+    use(BeamScene(scene.blocking_mesh(), rays));
+}
+
+Scene scene_of(mesh::TriangleMesh mesh) {
+    Scene scene;
+    scene.mesh = std::move(mesh);
+    scene.receivers = vertex_receivers(scene.mesh);
+    scene.settings = {.tolerance = 0.05f,
+                      .min_level = 2,
+                      .face_resolution = 32,
+                      .bias = automatic_bias(scene.mesh),
+                      .is_movable = true};
+    with_beams(scene, [&](const Blockers& blockers) {
+        scene.transfer = precompute(scene.receivers, blockers, options_of(scene));
+    });
+    return scene;
+}
+
+/// Moves a group and returns what undoes it.
+SceneChange move(Scene& scene, std::uint32_t group, const glm::dmat4& matrix,
+                 RecountStatistics* statistics = nullptr) {
+    SceneDifference difference;
+    SceneChange change = moved(scene, group, matrix, difference);
+    exchange(scene, change);
+    with_beams(scene, [&](const Blockers& blockers) {
+        CountsPatch counts = recounted(scene.receivers, blockers, scene.transfer, difference,
+                                       options_of(scene), {}, statistics);
+        exchange(scene.transfer.counts, counts);
+        change.counts = std::move(counts);
+    });
+    return change;
+}
+
+/// The transfer that a precompute of the scene finds for its clusters.
+Transfer fresh(const Scene& scene) {
+    Transfer result;
+    with_beams(scene, [&](const Blockers& blockers) {
+        result = precompute(scene.receivers, blockers, options_of(scene), {},
+                            {.given = &scene.transfer, .has_clusters = true});
+    });
+    return result;
+}
+
+glm::dvec3 middle_of(const mesh::TriangleMesh& mesh, std::uint32_t group) {
+    glm::dvec3 sum(0.0);
+    double count = 0.0;
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+        if (mesh.triangle_groups[i] == group)
+            for (const std::uint32_t vertex : mesh.triangles[i]) {
+                sum += glm::dvec3(mesh.positions[vertex]);
+                count += 1.0;
+            }
+    return sum / count;
+}
+
+/// Turns a group about its middle and moves it.
+glm::dmat4 motion(const Scene& scene, std::uint32_t group, const glm::dvec3& by,
+                  double radians = 0.0, const glm::dvec3& axis = {0.0, 1.0, 0.0}) {
+    const glm::dvec3 middle = middle_of(scene.mesh, group);
+    const glm::dmat4 back = glm::translate(glm::dmat4(1.0), -middle);
+    return glm::translate(glm::dmat4(1.0), middle + by) *
+           glm::rotate(glm::dmat4(1.0), radians, axis) * back;
+}
+
+/// Small steps, jumps across the scene, turns, into contact with the floor, through each other.
+glm::dmat4 random_motion(const Scene& scene, std::uint32_t group, std::mt19937& random) {
+    std::uniform_real_distribution<double> any(-1.0, 1.0);
+    const double length = std::array{0.01, 0.2, 2.0, 6.0}[random() % 4];
+    glm::dvec3 by = length * glm::dvec3(any(random), 0.3 * any(random), any(random));
+    if (random() % 4 == 0) // sinks into the floor
+        by.y = -middle_of(scene.mesh, group).y;
+    if (random() % 4 == 0) // into another
+        by = middle_of(scene.mesh, 1 + random() % 4) - middle_of(scene.mesh, group);
+    return motion(scene, group, by, random() % 2 == 0 ? 0.0 : 3.0 * any(random),
+                  glm::dvec3(scenes::random_direction(random)));
+}
+
+TEST(MovedScene, CountsAreThoseOfAPrecomputeWithTheSameClusters) {
+    Scene scene = scene_of(things());
+    std::mt19937 random(5);
+    for (int i = 0; i < 50; ++i) {
+        const auto group = static_cast<std::uint32_t>(1 + random() % 4);
+        const glm::dmat4 matrix = random_motion(scene, group, random);
+        RecountStatistics statistics;
+        static_cast<void>(move(scene, group, matrix, &statistics));
+        EXPECT_LE(statistics.num_changed, statistics.num_pairs);
+        SCOPED_TRACE(testing::Message() << "move " << i << " of group " << group);
+        expect_same(scene.transfer, fresh(scene));
+        if (testing::Test::HasFailure())
+            return;
+    }
+}
+
+TEST(MovedScene, FewPairsAreCountedAnewAndThoseThatMustBe) {
+    Scene scene = scene_of(things());
+    const VisibleCounts before = scene.transfer.counts;
+    RecountStatistics statistics;
+    static_cast<void>(move(scene, Crate, motion(scene, Crate, {0.0, 0.0, 0.3}), &statistics));
+    const std::uint64_t all = before.num_blocks() * before.num_leaves;
+    EXPECT_LT(statistics.num_pairs, all / 2);
+    EXPECT_GT(statistics.num_changed, 0u);
+    EXPECT_NE(before.counts, scene.transfer.counts.counts);
+}
+
+TEST(MovedScene, ASecondExchangeUndoesAMoveBitByBit) {
+    Scene scene = scene_of(things());
+    const Transfer before = scene.transfer;
+    const std::vector<glm::vec3> positions = scene.mesh.positions,
+                                 of_receivers = scene.receivers.positions;
+    SceneChange change = move(scene, Crate, motion(scene, Crate, {0.7, 0.0, 0.1}, 1.0));
+    const Transfer after = scene.transfer;
+    exchange(scene, change);
+    expect_same(scene.transfer, before);
+    EXPECT_EQ(scene.mesh.positions, positions);
+    EXPECT_EQ(scene.receivers.positions, of_receivers);
+    EXPECT_FALSE(scene.settings.rim_step.has_value());
+    exchange(scene, change);
+    expect_same(scene.transfer, after);
+}
+
+TEST(MovedScene, BlockersOfARefinedMeshMoveWithIt) {
+    Scene scene = scene_of(things());
+    scene.blockers = things();
+    scene.blockers->normals.clear();
+    static_cast<void>(move(scene, Crate, motion(scene, Crate, {0.5, 0.2, -0.4}, 0.5)));
+    EXPECT_EQ(scene.blockers->positions, scene.mesh.positions);
+    expect_same(scene.transfer, fresh(scene));
+}
+
+TEST(MovedScene, PointsStayAndSeeWhatMoves) {
+    Scene scene;
+    scene.mesh = things();
+    for (int i = 0; i < 300; ++i)
+        scene.receivers.positions.emplace_back(static_cast<float>(i % 10) - 4.5f,
+                                               0.3f + static_cast<float>(i / 100),
+                                               static_cast<float>(i / 10 % 10) - 4.5f);
+    scene.receivers.normals.resize(300, glm::vec3(0.0f));
+    scene.receivers.have_no_surface = true;
+    PointLayout layout{.count = 300};
+    for (std::uint32_t i = 0; i < 300; ++i)
+        layout.indices.push_back(i);
+    scene.layout = layout;
+    scene.settings.bias = automatic_bias(scene.mesh);
+    with_beams(scene, [&](const Blockers& blockers) {
+        scene.transfer = precompute(scene.receivers, blockers, options_of(scene));
+    });
+    const VisibleCounts before = scene.transfer.counts;
+    static_cast<void>(move(scene, Crate, motion(scene, Crate, {1.5, 0.0, 0.4})));
+    EXPECT_NE(before.counts, scene.transfer.counts.counts);
+    expect_same(scene.transfer, fresh(scene));
+}
+
+TEST(MovedScene, FarFromTheOriginAndFarOutside) {
+    Scene scene = scene_of(scenes::transformed(things(), 1.0f, {500.0f, -300.0f, 800.0f}));
+    scene.mesh.groups = things().groups;
+    scene.mesh.triangle_groups = things().triangle_groups;
+    static_cast<void>(move(scene, Crate, motion(scene, Crate, {0.5, 0.0, 0.5}, 1.0)));
+    expect_same(scene.transfer, fresh(scene));
+    static_cast<void>(move(scene, Crate, motion(scene, Crate, {90.0, 0.0, 0.0})));
+    expect_same(scene.transfer, fresh(scene));
+}
+
+/// A scene of things whose light bounces, half of every hemisphere taken for open.
+Scene bouncing_scene(const std::vector<float>& open) {
+    Scene scene = scene_of(things());
+    const RayScene rays(scene.mesh);
+    const std::vector<ProbeRadiance> dark(open.size());
+    std::vector<BounceSamples> samples;
+    samples.push_back(sample_bounces(scene.mesh, scene.receivers, scene.transfer,
+                                     {.open_parts = open, .values = dark, .index = {}}, rays,
+                                     {.is_kept = true, .bias = scene.settings.bias}));
+    scene.bounces = join_bounces(scene.receivers, scene.transfer, std::move(samples));
+    return scene;
+}
+
+TEST(MovedScene, RowsOfBouncesAreThoseOfAllRays) {
+    const std::vector<float> open(things().num_vertices(), 0.5f);
+    Scene scene = bouncing_scene(open);
+    ASSERT_TRUE(ResampledBounces::are_possible(scene));
+    const BounceMatrix first = *scene.bounces;
+    std::mt19937 random(9);
+    std::size_t num_changed = 0;
+    for (int i = 0; i < 6; ++i) {
+        SCOPED_TRACE(testing::Message() << "move " << i);
+        const auto group = static_cast<std::uint32_t>(2 + random() % 3);
+        SceneDifference difference;
+        SceneChange change = moved(scene, group, random_motion(scene, group, random), difference);
+        exchange(scene, change);
+        CountsPatch counts;
+        with_beams(scene, [&](const Blockers& blockers) {
+            counts =
+                recounted(scene.receivers, blockers, scene.transfer, difference, options_of(scene));
+        });
+        exchange(scene, change);
+        const RayScene before(scene.mesh);
+        ResampledBounces resampled({scene, open, before}, difference, counts, {});
+        exchange(scene, change);
+        exchange(scene.transfer.counts, counts);
+        const RayScene now(scene.mesh);
+        std::vector<BounceSamples> samples;
+        samples.push_back(resampled.samples({scene, open, now}, *change.bounces, {}));
+        scene.bounces = join_bounces(scene.receivers, scene.transfer, std::move(samples));
+
+        const BounceOptions options{.bias = scene.settings.bias};
+        const BounceProbes probes{.open_parts = open, .values = {}, .index = {}};
+        const BounceSampler sampler(scene.mesh, scene.receivers, scene.transfer, probes, now,
+                                    options);
+        const BounceRays& rays = scene.bounces->rays;
+        for (std::size_t place = 0; place < open.size(); ++place) {
+            RayHits hits;
+            sampler.look({.place = place, .index = place}, rays.num_directions[place], hits);
+            std::vector<std::uint32_t> row = hits.halves[0];
+            row.insert(row.end(), hits.halves[1].begin(), hits.halves[1].end());
+            EXPECT_EQ(rays.num_hits[place], row.size());
+            std::erase(row, NoEmitter);
+            std::ranges::sort(row);
+            ASSERT_TRUE(std::ranges::equal(scene.bounces->emitters[place], row)) << place;
+            num_changed += std::ranges::equal(first.emitters[place], row) ? 0 : 1;
+            RayHits look;
+            sampler.look({.place = place, .index = place}, options.min_directions, look);
+            const float distance = look.num_hits() == 0 ? 0.0f : look.distance();
+            EXPECT_NEAR(rays.distances[place], distance, 1e-3f * distance);
+        }
+    }
+    EXPECT_GT(num_changed, 100u);
+}
+
+using MovedSceneFile = tests::FolderTest;
+
+TEST_F(MovedSceneFile, KeepsThePlace) {
+    Scene scene = scene_of(things());
+    static_cast<void>(move(scene, Crate, motion(scene, Crate, {20.0, 0.0, 0.1}, 1.0)));
+    const std::filesystem::path path = folder_ / "moved.prt";
+    save_scene(path, scene);
+    Scene loaded = load_scene(path);
+    EXPECT_EQ(loaded.mesh.groups, scene.mesh.groups);
+    EXPECT_EQ(loaded.mesh.triangle_groups, scene.mesh.triangle_groups);
+    EXPECT_EQ(loaded.receivers.positions, scene.receivers.positions);
+    expect_same(loaded.transfer, fresh(loaded));
+    static_cast<void>(move(loaded, Crate, motion(loaded, Crate, {-20.0, 0.0, 0.0})));
+    expect_same(loaded.transfer, fresh(loaded));
+    // Who does not ask gets no groups.
+    scene.settings.is_movable = false;
+    scene.settings.rim_step = {};
+    save_scene(path, scene);
+    EXPECT_TRUE(load_scene(path).mesh.groups.empty());
+}
+
+void expect_refusal(const Scene& scene, const glm::dmat4& matrix, const std::string& text,
+                    std::uint32_t group = Crate) {
+    SceneDifference difference;
+    try {
+        static_cast<void>(moved(scene, group, matrix, difference));
+        ADD_FAILURE() << "expected a refusal: " << text;
+    } catch (const std::invalid_argument& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr(text));
+    }
+}
+
+TEST(MovedScene, RefusesWhatCannotBeMoved) {
+    Scene scene = scene_of(things());
+    glm::dmat4 matrix(1.0);
+    matrix[3][0] = std::numeric_limits<double>::quiet_NaN();
+    expect_refusal(scene, matrix, "finite numbers");
+    expect_refusal(scene, glm::scale(glm::dmat4(1.0), {1.0, 0.0, 1.0}), "singular");
+    expect_refusal(scene, glm::scale(glm::dmat4(1.0), {1.0, -1.0, 1.0}), "mirrors");
+    expect_refusal(scene, glm::dmat4(0.0), "last row");
+    expect_refusal(scene, glm::translate(glm::dmat4(1.0), {1e30, 0.0, 0.0}), "coordinates within");
+    scene.settings.floor_vertices = 3;
+    expect_refusal(scene, glm::dmat4(1.0), "added floor", 4);
+    scene.mesh.triangle_groups.back() = 0;
+    expect_refusal(scene, glm::dmat4(1.0), "shares some with", 0);
+    scene.receivers.to_eye.resize(scene.receivers.size(), {0.0f, 1.0f, 0.0f});
+    expect_refusal(scene, glm::dmat4(1.0), "fixed view");
+    scene.receivers.to_eye.clear();
+    scene.mesh.triangle_groups.clear();
+    expect_refusal(scene, glm::dmat4(1.0), "--movable");
+}
+
+} // namespace
+} // namespace relumine::prt

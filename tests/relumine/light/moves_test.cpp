@@ -1,0 +1,160 @@
+// Groups that move in a scene that is lit: the light follows, and goes back.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "data_gen/environments.h"
+#include "relumine/relumine.h"
+#include "tests/prt/scenes.h"
+
+namespace relumine {
+namespace {
+
+using testing::HasSubstr;
+
+/// A floor, a ball, and a lamp above it.
+mesh::TriangleMesh things() {
+    mesh::TriangleMesh mesh = scenes::floor_grid(21, 6.0f);
+    const auto add = [&](const mesh::TriangleMesh& part) {
+        const std::uint32_t group =
+            mesh.triangle_groups.empty() ? 0 : mesh.triangle_groups.back() + 1;
+        mesh::TriangleMesh joined = scenes::joined(mesh, part);
+        joined.triangle_groups = mesh.triangle_groups;
+        joined.triangle_groups.resize(joined.num_triangles(), group);
+        mesh = std::move(joined);
+    };
+    mesh.triangle_groups.resize(mesh.num_triangles(), 0);
+    add(scenes::icosphere(3, 0.6f, {0.8f, 0.7f, 0.3f}));
+    add(scenes::box({-1.2f, 1.5f, -0.3f}, {-0.9f, 1.7f, 0.3f}));
+    mesh.groups = {"ground", "ball", "lamp"};
+    mesh.materials = {{.name = "grey", .base_color = glm::vec3(0.5f)},
+                      {.name = "bulb", .emission = {4, 3, 2}}};
+    for (const std::uint32_t group : mesh.triangle_groups)
+        mesh.triangle_materials.push_back(group == 2 ? 1 : 0);
+    return mesh;
+}
+
+const PrecomputeOptions Options{.tolerance = 0.04f,
+                                .min_level = 2,
+                                .face_resolution = 64,
+                                .no_refine = true,
+                                .bounce_tolerance = 0.03f,
+                                .movable = true};
+
+const Scene& before() {
+    static const Scene scene = precompute(things(), Options);
+    return scene;
+}
+
+/// A sky with a sharp sun, a layer over it, a distant light, dimmed lamps, and bounces.
+void light(LitScene& lit) {
+    lit.dim({{.name = "lamp", .gain = glm::vec3(0.5f)}});
+    Light light(data_gen::sun_and_sky(64));
+    light.lights = {{.direction = glm::normalize(glm::dvec3(-1.0, 1.0, 0.2)),
+                     .irradiance = glm::dvec3(0.5, 0.1, 0.1)}};
+    lit.light(std::move(light));
+    set_layers(lit,
+               {{.name = "key",
+                 .region = cubemap::Disc{.direction = {0.0f, 1.0f, 0.3f}, .radius_degrees = 20.0},
+                 .effect = cubemap::Gain{.tint = glm::vec3(3.0f)}}});
+    mark(lit); // the light is that of the state, whichever edits led to it
+    lit.bounce({.albedo = bounce_albedo(lit.scene())});
+}
+
+std::vector<glm::vec3> radiance_of(const LitScene& lit) {
+    return {lit.radiance().begin(), lit.radiance().end()};
+}
+
+const GroupStep Step{.name = "ball", .by = {-1.5, 0.1, 0.2}, .degrees = 30.0};
+
+TEST(Moves, TheLightIsThatOfTheMovedScene) {
+    LitScene lit(before());
+    light(lit);
+    const std::vector<glm::vec3> at_first = radiance_of(lit);
+    MoveReport report = lit.move(move_of(lit.scene(), Step));
+    EXPECT_GT(report.num_moved, 600u);
+    EXPECT_LT(report.counts.num_pairs, report.num_all);
+    Scene moved = before();
+    move(moved, move_of(moved, Step));
+    LitScene anew(std::move(moved));
+    light(anew);
+    EXPECT_NE(radiance_of(lit), at_first);
+    EXPECT_EQ(radiance_of(lit), radiance_of(anew));
+    ASSERT_EQ(lit.state().layers.size(), 1u);
+
+    EXPECT_TRUE(lit.undo_move());
+    EXPECT_EQ(radiance_of(lit), at_first);
+    EXPECT_FALSE(lit.undo_move());
+    EXPECT_TRUE(lit.redo_move());
+    EXPECT_EQ(radiance_of(lit), radiance_of(anew));
+    EXPECT_FALSE(lit.redo_move());
+}
+
+TEST(Moves, TheLightIsAboutThatOfAPrecomputeAnew) {
+    LitScene lit(before());
+    light(lit);
+    for (const GroupStep& step :
+         {Step, GroupStep{.name = "lamp", .by = {1.0, -0.2, 0.5}, .degrees = 70.0}})
+        lit.move(move_of(lit.scene(), step));
+    mesh::TriangleMesh mesh = lit.scene().mesh;
+    LitScene anew(precompute(std::move(mesh), Options));
+    light(anew);
+    double difference = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < lit.radiance().size(); ++i) {
+        const glm::dvec3 a(lit.radiance()[i]), b(anew.radiance()[i]);
+        difference += glm::dot(a - b, a - b);
+        sum += glm::dot(b, b);
+    }
+    EXPECT_LT(std::sqrt(difference / sum), 0.05);
+}
+
+template<typename Call>
+std::string refusal(const Call& call) {
+    try {
+        call();
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Moves, RefusesNamesAndScenesThatAreShared) {
+    LitScene lit(before());
+    light(lit);
+    const std::vector<glm::vec3> at_first = radiance_of(lit);
+    EXPECT_THAT(refusal([&] { lit.move({.name = "bal"}); }),
+                HasSubstr("expected one of 3 groups, got 'bal'; did you mean ball?"));
+    glm::dmat4 singular(1.0);
+    singular[1] = glm::dvec4(0.0);
+    EXPECT_THAT(refusal([&] { lit.move({.name = "ball", .matrix = singular}); }),
+                HasSubstr("singular"));
+    EXPECT_EQ(radiance_of(lit), at_first);
+    LitScene shared(std::make_shared<const Scene>(before()));
+    EXPECT_THAT(refusal([&] { shared.move({.name = "ball"}); }), HasSubstr("not shared"));
+    Scene without = before();
+    without.mesh.triangle_groups.clear();
+    EXPECT_THAT(refusal([&] { move(without, {.name = "ball"}); }), HasSubstr("--movable"));
+    EXPECT_THAT(refusal([] {
+                    static_cast<void>(precompute(scenes::floor_grid(3, 1.0f), {.movable = true}));
+                }),
+                HasSubstr("a mesh with groups"));
+}
+
+TEST(Moves, StepsHaveAText) {
+    const GroupStep step = GroupStepText::read("a=b=1,2,-3.5,90");
+    EXPECT_EQ(step, (GroupStep{.name = "a=b", .by = {1.0, 2.0, -3.5}, .degrees = 90.0}));
+    EXPECT_EQ(GroupStepText::read(GroupStepText::show(step)), step);
+    EXPECT_EQ(GroupStepText::show(GroupStepText::read("x=1,2,3")), "x=1,2,3");
+    for (const char* text : {"x", "=1,2,3", "x=1,2", "x=1,2,3,4,5", "x=1,2,nan", "x=a,b,c"})
+        EXPECT_THROW(static_cast<void>(GroupStepText::read(text)), std::invalid_argument) << text;
+}
+
+} // namespace
+} // namespace relumine
