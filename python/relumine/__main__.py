@@ -1,4 +1,4 @@
-"""python3 -m relumine: the program `relumine` of the same installation, which takes stages of USD too."""
+"""python3 -m relumine: the program `relumine` of the same installation, with stages of USD."""
 
 import os
 import shutil

@@ -62,7 +62,9 @@ def card(place, normal, side=0.001):
     u = np.cross(np.eye(3)[np.abs(n).argmin()], n)
     u /= np.linalg.norm(u)
     v = np.cross(n, u)
-    corners = [np.asarray(place) + side * (x * u + y * v) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    corners = [
+        np.asarray(place) + side * (x * u + y * v) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    ]
     return CARD.format(", ".join(f"({c[0]:.9f}, {c[1]:.9f}, {c[2]:.9f})" for c in corners))
 
 
@@ -87,7 +89,9 @@ def polygon_irradiance(corners, place, normal):
 
 
 def light(kind, **inputs):
-    lines = "\n".join(f"    {value[0]} inputs:{name} = {value[1]}" for name, value in inputs.items())
+    lines = "\n".join(
+        f"    {value[0]} inputs:{name} = {value[1]}" for name, value in inputs.items()
+    )
     return f'def {kind} "L" {{\n    float inputs:intensity = 10\n{lines}\n}}\n'
 
 
@@ -211,13 +215,17 @@ def {"DomeLight_1" if is_new else "DomeLight"} "Dome" {{
 
 
 def test_domes_add_up_and_one_without_a_picture_has_its_colour():
-    domes = "".join(f'def DomeLight "D{i}" {{ color3f inputs:color = ({i}, 1, 0)\n}}\n' for i in (1, 2))
+    domes = "".join(
+        f'def DomeLight "D{i}" {{ color3f inputs:color = ({i}, 1, 0)\n}}\n' for i in (1, 2)
+    )
     cube = np.asarray(loaded(domes + TRIANGLE + "}").environment.cube)
     assert cube == pytest.approx(np.broadcast_to([3, 2, 0], cube.shape))
 
 
 def test_a_picture_that_is_not_there_is_said_and_has_one_colour():
-    asset = loaded('def DomeLight "D" { asset inputs:texture:file = @./gone.exr@\n}\n' + TRIANGLE + "}")
+    asset = loaded(
+        'def DomeLight "D" { asset inputs:texture:file = @./gone.exr@\n}\n' + TRIANGLE + "}"
+    )
     assert any("gone.exr" in note for note in asset.notes)
     assert np.asarray(asset.environment.cube) == pytest.approx(1)
 
@@ -268,7 +276,9 @@ def Mesh "M" {
     assert len(mesh.vertices) == 6
     # v counts from the top there.
     order = np.lexsort(mesh.vertices.T[:2])
-    assert mesh.uvs[order] == pytest.approx(np.array([[0, 1], [1, 1], [2, 1], [0, 0], [1, 0], [2, 0]]))
+    assert mesh.uvs[order] == pytest.approx(
+        np.array([[0, 1], [1, 1], [2, 1], [0, 0], [1, 0], [2, 0]])
+    )
 
 
 def cube_mesh(extra="", scheme="catmullClark"):
@@ -322,11 +332,13 @@ def Mesh "M" {
 }"""
     corners = loaded(text % "edgeAndCorner", subdivision=3).mesh.vertices[:4]
     assert corners == pytest.approx(np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]))
-    assert loaded(text % "edgeOnly", subdivision=1).mesh.vertices[0] == pytest.approx([1 / 8, 1 / 8, 0])
+    assert loaded(text % "edgeOnly", subdivision=1).mesh.vertices[0] == pytest.approx(
+        [1 / 8, 1 / 8, 0]
+    )
 
 
 def test_normals_without_a_scheme_make_polygons():
-    normals = 'normal3f[] normals = [(0, 0, 1), (0, 0, 1), (0, 0, 1)]\n}'
+    normals = "normal3f[] normals = [(0, 0, 1), (0, 0, 1), (0, 0, 1)]\n}"
     text = TRIANGLE.replace('uniform token subdivisionScheme = "none"', "") + normals
     asset = loaded(text)
     assert len(asset.mesh.vertices) == 3 and any("subdivision scheme" in n for n in asset.notes)
@@ -449,7 +461,9 @@ elementSize = 1)
 # Materials.
 
 
-def textured(path, *, st_node="", inputs="", output="rgb", name="diffuseColor", kind="color3f", scale=""):
+def textured(
+    path, *, st_node="", inputs="", output="rgb", name="diffuseColor", kind="color3f", scale=""
+):
     return f"""
 def Material "Look" {{
     token outputs:surface.connect = </Look/S.outputs:surface>
@@ -512,7 +526,9 @@ def Material "Look" {
 }"""))  # fmt: skip
     (material,) = asset.mesh.materials
     assert material["base_color"] == pytest.approx([0.1, 0.2, 0.3])
-    assert material["metallic"] == pytest.approx(0.25) and material["roughness"] == pytest.approx(0.75)
+    assert material["metallic"] == pytest.approx(0.25) and material["roughness"] == pytest.approx(
+        0.75
+    )
     assert material["ior"] == pytest.approx(2) and material["coat"] == pytest.approx(0.5)
     assert material["emission"] == pytest.approx([0, 3, 0])
     assert [n for n in asset.notes if "occlusion" in n]
@@ -554,7 +570,12 @@ def colors_of(folder, picture, st="(0.25, 0.25), (0.75, 0.25), (0.25, 0.75)", **
 def test_channels_scale_bias_and_transforms_of_textures(tmp_path):
     """Four texels: red and green below, blue and white above."""
     picture = Image.new("RGB", (2, 2))
-    for at, color in {(0, 1): (255, 0, 0), (1, 1): (0, 255, 0), (0, 0): (0, 0, 255), (1, 0): (255,) * 3}.items():
+    for at, color in {
+        (0, 1): (255, 0, 0),
+        (1, 1): (0, 255, 0),
+        (0, 0): (0, 0, 255),
+        (1, 0): (255,) * 3,
+    }.items():
         picture.putpixel(at, color)
     near = {"abs": 0.01}
     assert colors_of(tmp_path, picture) == pytest.approx(np.eye(3), **near)
@@ -565,7 +586,9 @@ def test_channels_scale_bias_and_transforms_of_textures(tmp_path):
     assert colors_of(tmp_path, picture, output="r") == pytest.approx(red, **near)
     # A turn of 90 degrees takes (u, v) to (-v, u).
     turned = np.array([[0, 1, 0], [1, 1, 1], [1, 0, 0]])
-    assert colors_of(tmp_path, picture, st_node="float inputs:rotation = 90") == pytest.approx(turned, **near)
+    assert colors_of(tmp_path, picture, st_node="float inputs:rotation = 90") == pytest.approx(
+        turned, **near
+    )
     moved = np.array([[1, 1, 1], [0, 0, 1], [0, 1, 0]])
     node = "float2 inputs:scale = (1, -1)\nfloat2 inputs:translation = (0.5, 0)"
     assert colors_of(tmp_path, picture, st_node=node) == pytest.approx(moved, **near)
@@ -626,7 +649,9 @@ def Material "Look" {
 }"""))  # fmt: skip
     (material,) = asset.mesh.materials
     assert material["base_color"] == pytest.approx([0.25, 0.125, 0.5])
-    assert material["roughness"] == pytest.approx(0.4) and material["metallic"] == pytest.approx(0.125)
+    assert material["roughness"] == pytest.approx(0.4) and material["metallic"] == pytest.approx(
+        0.125
+    )
     assert material["coat"] == pytest.approx(1)
     assert len([n for n in asset.notes if "subsurface" in n or "thin_film" in n]) == 2
 
@@ -655,7 +680,9 @@ def test_a_file_of_materialx(tmp_path):
     <input name="surfaceshader" type="surfaceshader" nodename="S"/>
   </surfacematerial>
 </materialx>""")
-    text = bound('def Scope "Looks" (references = @./look.mtlx@</MaterialX>) {}\n').replace("</Look>", "</Looks/Materials/Gold>")
+    text = bound('def Scope "Looks" (references = @./look.mtlx@</MaterialX>) {}\n').replace(
+        "</Look>", "</Looks/Materials/Gold>"
+    )
     (tmp_path / "a.usda").write_text(usda(text))
     asset = relumine.usd.load(tmp_path / "a.usda")
     (material,) = asset.mesh.materials
@@ -693,15 +720,21 @@ def test_a_mesh_that_cannot_be_drawn_is_named(change, words):
 
 
 def test_missing_and_circular_layers(tmp_path):
-    (tmp_path / "a.usda").write_text('#usda 1.0\n( subLayers = [@./b.usda@, @./gone.usda@] )\n' + TRIANGLE + "}")
-    (tmp_path / "b.usda").write_text('#usda 1.0\n( subLayers = [@./a.usda@] )\ndef "X" (references = @./none.usda@</X>) {}\n')
+    (tmp_path / "a.usda").write_text(
+        "#usda 1.0\n( subLayers = [@./b.usda@, @./gone.usda@] )\n" + TRIANGLE + "}"
+    )
+    (tmp_path / "b.usda").write_text(
+        '#usda 1.0\n( subLayers = [@./a.usda@] )\ndef "X" (references = @./none.usda@</X>) {}\n'
+    )
     asset = relumine.usd.load(tmp_path / "a.usda")
     assert len(asset.mesh.vertices) == 3
     for name in ("gone.usda", "none.usda", "a.usda"):
         assert any(name in note and "\n" not in note for note in asset.notes), asset.notes
 
 
-@pytest.mark.parametrize("content", [b"", b"#usda 1.0\ndef {", b"PXR-USDC" + bytes(100), b"PK\x03\x04"])
+@pytest.mark.parametrize(
+    "content", [b"", b"#usda 1.0\ndef {", b"PXR-USDC" + bytes(100), b"PK\x03\x04"]
+)
 @pytest.mark.parametrize("name", ["a.usda", "a.usdc", "a.usdz", "a.usd"])
 def test_files_that_are_no_stage(tmp_path, name, content):
     (tmp_path / name).write_bytes(content)
@@ -732,7 +765,10 @@ def test_instances_of_instances_of_instances_have_a_limit():
 
 
 def test_an_instancer_of_itself_and_odd_arrays():
-    text = TRIANGLE + '}\ndef PointInstancer "I" { int[] protoIndices = [0, 9]\n point3f[] positions = [(0,0,0),(1,1,1)]\n rel prototypes = [</I>]\n}\n'
+    text = (
+        TRIANGLE
+        + '}\ndef PointInstancer "I" { int[] protoIndices = [0, 9]\n point3f[] positions = [(0,0,0),(1,1,1)]\n rel prototypes = [</I>]\n}\n'
+    )
     text += 'def PointInstancer "J" { int[] protoIndices = [0, 0]\n point3f[] positions = [(0,0,0)]\n rel prototypes = [</M>]\n}\n'
     asset = loaded(text)
     assert len(asset.mesh.vertices) == 3
@@ -741,7 +777,9 @@ def test_an_instancer_of_itself_and_odd_arrays():
 
 def test_textures_that_cannot_be_read(tmp_path):
     (tmp_path / "bad.png").write_bytes(b"no picture")
-    asset = loaded(bound(textured(tmp_path / "bad.png", output="r", name="roughness", kind="float")))
+    asset = loaded(
+        bound(textured(tmp_path / "bad.png", output="r", name="roughness", kind="float"))
+    )
     assert any("bad.png" in n for n in asset.notes)
 
 
@@ -827,7 +865,10 @@ def RectLight "Lamp" {{ float inputs:intensity = 3
     again.light(second)
     assert {layer.name for layer in again.layers} == {"Sun", "rim"}
     for normal in [*np.eye(3), *-np.eye(3)]:
-        old, new = (relumine.Environment(np.array(r.environment)).irradiance(normal) for r in (relighter, second))
+        old, new = (
+            relumine.Environment(np.array(r.environment)).irradiance(normal)
+            for r in (relighter, second)
+        )
         assert new == pytest.approx(old, rel=0.002)
     lamp = [m for m in again.mesh.materials if m["name"] == "Lamp"][0]
     assert lamp["emission"] == pytest.approx([1.5, 0.75, 0])
@@ -846,12 +887,14 @@ def test_refined_surfaces_and_instances_get_colours(tmp_path):
     prim = stage.GetPrimAtPath("/A/M")
     primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar("displayColor")
     assert not prim.IsInstanceProxy() and primvar.GetInterpolation() == "vertex"
-    assert np.array(primvar.Get()) == pytest.approx(np.array(relighter.radiance)[asset._drawn[0].first :][:8])
+    assert np.array(primvar.Get()) == pytest.approx(
+        np.array(relighter.radiance)[asset._drawn[0].first :][:8]
+    )
 
 
 def test_other_layers_go_into_the_dome(tmp_path):
     path = tmp_path / "scene.usda"
-    path.write_text("#usda 1.0\n" + TRIANGLE + "}\ndef DomeLight \"D\" {}\n")
+    path.write_text("#usda 1.0\n" + TRIANGLE + '}\ndef DomeLight "D" {}\n')
     asset = relumine.usd.load(path)
     relighter = relumine.Relighter(relumine.precompute(asset.mesh, bounces=False))
     asset.light(relighter)
@@ -865,7 +908,10 @@ def test_other_layers_go_into_the_dome(tmp_path):
     second = relumine.Relighter(relumine.precompute(again.mesh, bounces=False))
     again.light(second)
     for normal in [*np.eye(3), *-np.eye(3)]:
-        old, new = (relumine.Environment(np.array(r.environment)).irradiance(normal) for r in (relighter, second))
+        old, new = (
+            relumine.Environment(np.array(r.environment)).irradiance(normal)
+            for r in (relighter, second)
+        )
         assert new == pytest.approx(old, rel=0.005, abs=1e-6)
 
 
@@ -887,13 +933,18 @@ def test_save_refuses(tmp_path):
 
 
 def run(*arguments, folder):
-    environment = {**os.environ, "PATH": os.path.dirname(os.environ["RELUMINE_PROGRAM"]) + ":" + os.environ["PATH"]}
+    environment = {
+        **os.environ,
+        "PATH": os.path.dirname(os.environ["RELUMINE_PROGRAM"]) + ":" + os.environ["PATH"],
+    }
     return subprocess.run([sys.executable, "-m", "relumine", *map(str, arguments)], cwd=folder,
                           env=environment, capture_output=True, text=True)  # fmt: skip
 
 
 def test_the_command_takes_stages(tmp_path, sky_file):
-    (tmp_path / "a.usda").write_text("#usda 1.0\n" + cube_mesh(scheme="none") + 'def DomeLight "D" {}\n')
+    (tmp_path / "a.usda").write_text(
+        "#usda 1.0\n" + cube_mesh(scheme="none") + 'def DomeLight "D" {}\n'
+    )
     size = ("--size", "64x48", "-o")
     assert run("relight", "a.usda", *size, "own.png", folder=tmp_path).returncode == 0
     assert run("relight", "a.usda", sky_file, *size, "sky.png", folder=tmp_path).returncode == 0

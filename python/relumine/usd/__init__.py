@@ -25,7 +25,9 @@ import numpy as np
 try:
     from pxr import Sdf, Tf, Usd, UsdUtils  # type: ignore[import]
 except ImportError as error:
-    raise ImportError("relumine.usd: expected OpenUSD's Python: pip install relumine[usd]") from error
+    raise ImportError(
+        "relumine.usd: expected OpenUSD's Python: pip install relumine[usd]"
+    ) from error
 
 from .. import _layers
 from .._environment import Environment
@@ -111,7 +113,9 @@ def convert(
     delegate = UsdUtils.CoalescingDiagnosticDelegate()
     try:
         try:
-            return _converted(_opened(source), time, purposes, subdivision, camera, lights, delegate)
+            return _converted(
+                _opened(source), time, purposes, subdivision, camera, lights, delegate
+            )
         except Tf.ErrorException as error:
             raise ValueError(f"expected a stage of USD: {_reason(error)}") from None
     finally:
@@ -175,7 +179,12 @@ def load(
     path = "" if isinstance(stage, Usd.Stage) else os.fspath(stage)
     try:
         data, reader = convert(
-            stage, time=time, purposes=purposes, subdivision=subdivision, camera=camera, lights=lights
+            stage,
+            time=time,
+            purposes=purposes,
+            subdivision=subdivision,
+            camera=camera,
+            lights=lights,
         )
     except ValueError as error:
         if path:
@@ -233,7 +242,7 @@ def save(
 
 
 def _files(source: str, mesh: str, lights: str) -> List[str]:
-    """Writes a stage as a .glb, and its domes and distant lights as an .exr; returns what is said."""
+    """Writes a stage as a .glb, and its light from afar as an .exr; returns what is said."""
     try:
         data, reader = convert(source)
     except ValueError as error:
@@ -280,7 +289,10 @@ def _picture(notes: Notes) -> Any:
     def load(dome: Dome) -> Optional[Environment]:
         path = dome.texture.resolvedPath
         if not path:
-            notes.add(f"the dome's picture is not there: {dome.texture.path}; it has one colour", dome.name)
+            notes.add(
+                f"the dome's picture is not there: {dome.texture.path}; it has one colour",
+                dome.name,
+            )
             return None
         try:
             data = read_asset(path)

@@ -77,7 +77,9 @@ def to_linear(x: Array) -> Array:
 
 
 def to_srgb(x: Array) -> Array:
-    return np.where(x <= 0.0031308, x * 12.92, 1.055 * np.maximum(x, 0.0031308) ** (1 / 2.4) - 0.055)
+    return np.where(
+        x <= 0.0031308, x * 12.92, 1.055 * np.maximum(x, 0.0031308) ** (1 / 2.4) - 0.055
+    )
 
 
 def read_asset(path: str) -> bytes:
@@ -129,7 +131,7 @@ class Images:
         return next((kind for mark, kind in _KINDS.items() if data.startswith(mark)), "")
 
     def pixels(self, path: str) -> Optional[Array]:
-        """(H, W, 1 to 4) in 0 to 1, as the file has them; None with a note where none can be read."""
+        """(H, W, 1 to 4) in 0 to 1, as the file has them; None, with a note, without any."""
         if path not in self._pixels:
             self._pixels[path] = self._decoded(path)
         return self._pixels[path]
@@ -216,7 +218,9 @@ class Images:
         for c in image.channels:
             i = "rgba".index(c)
             if c == "a":
-                values = pixels[..., -1] if count in (2, 4) else np.ones(pixels.shape[:2], np.float32)
+                values = (
+                    pixels[..., -1] if count in (2, 4) else np.ones(pixels.shape[:2], np.float32)
+                )
             else:
                 values = pixels[..., 0 if count < 3 else i]
                 if is_srgb:
@@ -262,7 +266,12 @@ class Images:
     def _make(self, channels: Sequence[Input], is_srgb: bool, alpha: Optional[Input]) -> Any:
         first = channels[0]
         assert isinstance(first, Image) or any(isinstance(c, Image) for c in [*channels, alpha])
-        if len(channels) == 1 and isinstance(first, Image) and first.channels == "rgb" and first.is_plain:
+        if (
+            len(channels) == 1
+            and isinstance(first, Image)
+            and first.channels == "rgb"
+            and first.is_plain
+        ):
             own_alpha = alpha is None or (
                 isinstance(alpha, Image)
                 and (alpha.path, alpha.channels) == (first.path, "a")

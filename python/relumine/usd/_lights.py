@@ -28,7 +28,10 @@ SIDES = 48
 
 @dataclass
 class Dome:
-    """A dome of one colour, or a picture of the sphere times it. `turn` takes directions of the picture to the world's."""
+    """A dome of one colour, or a picture of the sphere times it.
+
+    `turn` takes directions of the picture to the world's.
+    """
 
     name: str
     path: str
@@ -178,7 +181,7 @@ class Placer:
         self.lights = Lights()
 
     def add(self, prim: Usd.Prim, matrix: Array, time: Usd.TimeCode) -> bool:
-        """Returns whether the prim is a light. `matrix` (4, 4) takes rows of points to the stage."""
+        """Returns whether the prim is a light. `matrix` (4, 4) takes its points to the stage."""
         kinds = {
             UsdLux.DomeLight: self._dome,
             UsdLux.DomeLight_1: self._dome,
@@ -234,7 +237,9 @@ class Placer:
             self._notes.add("portals are left out: the dome lights from all sides", prim.GetPath())
         has_texture = texture is not None and texture.path
         name = self._named(prim)
-        self.lights.domes.append(Dome(name, str(prim.GetPath()), color, texture if has_texture else None, format, turn))
+        self.lights.domes.append(
+            Dome(name, str(prim.GetPath()), color, texture if has_texture else None, format, turn)
+        )
 
     def _distant(self, prim: Usd.Prim, matrix: Array, time: Usd.TimeCode, color: Array) -> None:
         direction = np.array([0.0, 0.0, 1.0]) @ (matrix @ self._world)[:3, :3]
@@ -273,14 +278,18 @@ class Placer:
             radius = _get(prim, "inputs:radius", time)
             is_point = bool(prim.GetAttribute("treatAsPoint").Get(time)) or radius == 0.0
             if is_point or cone:
-                self._point(prim, matrix, color, 0.0 if is_point and normalize else radius, cone, normalize)
+                self._point(
+                    prim, matrix, color, 0.0 if is_point and normalize else radius, cone, normalize
+                )
                 return
             size = [radius] * 3
         else:
             points, triangles = _cylinder()
             radius = _get(prim, "inputs:radius", time)
             if prim.GetAttribute("treatAsLine").Get(time):
-                self._notes.add("treatAsLine is left out: the cylinder has its radius", prim.GetPath())
+                self._notes.add(
+                    "treatAsLine is left out: the cylinder has its radius", prim.GetPath()
+                )
             size = [_get(prim, "inputs:length", time), radius, radius]
         if cone:
             self._notes.add("a cone of a light with a surface is left out", prim.GetPath())
@@ -337,14 +346,14 @@ class Placer:
         self.lights.lamps.append(name)
         if not intensity.any():
             if radius == 0.0 and color.any():
-                self._notes.add("a sphere of radius 0 gives no light without normalize", prim.GetPath())
+                self._notes.add(
+                    "a sphere of radius 0 gives no light without normalize", prim.GetPath()
+                )
             return
         if cone:
             self._notes.add("a cone makes the sphere a spot: its shadows are sharp", prim.GetPath())
         # Candela of glTF falls with metres, the stage's light with its own unit.
-        self._materials.punctual(
-            name, intensity * meters**2, cone, matrix @ self._world
-        )
+        self._materials.punctual(name, intensity * meters**2, cone, matrix @ self._world)
 
 
 def _cone(prim: Usd.Prim, time: Usd.TimeCode) -> Optional[Tuple[float, float]]:
@@ -355,8 +364,11 @@ def _cone(prim: Usd.Prim, time: Usd.TimeCode) -> Optional[Tuple[float, float]]:
     angle = float(attribute.Get(time))
     if angle >= 90.0 and (not prim.IsA(UsdLux.SphereLight) or angle >= 180.0):
         return None
-    softness = _get(prim, "inputs:shaping:cone:softness", time) if prim.GetAttribute(
-        "inputs:shaping:cone:softness") else 0.0
+    softness = (
+        _get(prim, "inputs:shaping:cone:softness", time)
+        if prim.GetAttribute("inputs:shaping:cone:softness")
+        else 0.0
+    )
     outer = min(angle, 90.0)
     return outer * (1.0 - min(max(softness, 0.0), 1.0)), outer
 

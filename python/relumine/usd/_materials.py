@@ -125,7 +125,9 @@ class Network:
         if name.startswith(("ND_geomcolor", "ND_geompropvalue_color3")):
             self.color_primvar = str(self._of(node, "geomprop", "displayColor", depth))
             return (1.0, 1.0, 1.0)
-        if name.startswith(("ND_normalmap", "ND_convert_", "ND_dot_", "ND_extract_", "ND_swizzle_")):
+        if name.startswith(
+            ("ND_normalmap", "ND_convert_", "ND_dot_", "ND_extract_", "ND_swizzle_")
+        ):
             value = self._of(node, "in", fallback, depth)
             if isinstance(value, Image) and name.startswith(("ND_extract_", "ND_swizzle_")):
                 index = self._of(node, "index", 0, depth)
@@ -173,13 +175,17 @@ class Network:
             return None
         path = value.resolvedPath
         if "<UDIM>" in value.path:
-            self._notes.add("textures in tiles (UDIM) are left out: the first tile counts", self.path)
+            self._notes.add(
+                "textures in tiles (UDIM) are left out: the first tile counts", self.path
+            )
             tile = value.path.replace("<UDIM>", "1001")
             attribute = sources[0] if sources else found.GetAttr()
             stack = attribute.GetPropertyStack(self._time)
             path = stack[0].layer.ComputeAbsolutePath(tile) if stack else tile
         if not path:
-            self._notes.add("a texture is left out: expected a file, got none of its name", value.path)
+            self._notes.add(
+                "a texture is left out: expected a file, got none of its name", value.path
+            )
             return None
         return str(path)
 
@@ -199,7 +205,9 @@ class Network:
             if self._images.exists(image):
                 return image
         rest = _four(rest, 1.0)
-        has_fallback = node.GetInput("fallback") and node.GetInput("fallback").GetAttr().HasAuthoredValue()
+        has_fallback = (
+            node.GetInput("fallback") and node.GetInput("fallback").GetAttr().HasAuthoredValue()
+        )
         if not has_fallback:
             return fallback
         return rest[:3] if output == "rgb" else rest["rgba".index(output[0])]
@@ -216,7 +224,10 @@ class Network:
         while found and found.HasConnectedSource() and seen < DEEPEST:
             seen += 1
             sources = UsdShade.Utils.GetValueProducingAttributes(found)
-            if not sources or UsdShade.Utils.GetType(sources[0].GetName()) != UsdShade.AttributeType.Output:
+            if (
+                not sources
+                or UsdShade.Utils.GetType(sources[0].GetName()) != UsdShade.AttributeType.Output
+            ):
                 break
             reader = UsdShade.Shader(sources[0].GetPrim())
             name = reader.GetIdAttr().Get(self._time) or ""
@@ -262,13 +273,18 @@ class Network:
                 primvar = str(self._of(reader, key, "st", depth))
             elif not reader_name.startswith("ND_texcoord"):
                 self._notes.add(f"the node {reader_name} is left out", self.path)
-        wraps = [str(self._of(node, n, "periodic", depth)) for n in ("uaddressmode", "vaddressmode")]
+        wraps = [
+            str(self._of(node, n, "periodic", depth)) for n in ("uaddressmode", "vaddressmode")
+        ]
         place = Place(
             primvar,
             (float(tiling[0]), float(tiling[1])),
             0.0,
             (-float(offset[0]), -float(offset[1])),
-            ({"constant": "clamp"}.get(wraps[0], wraps[0]), {"constant": "clamp"}.get(wraps[1], wraps[1])),
+            (
+                {"constant": "clamp"}.get(wraps[0], wraps[0]),
+                {"constant": "clamp"}.get(wraps[1], wraps[1]),
+            ),
         )
         image = Image(path, channels, place, space)
         return image if self._images.exists(image) else default
@@ -298,7 +314,9 @@ def _four(value: Any, last: float) -> Tuple[float, ...]:
 
 
 def _color(value: Any) -> Tuple[float, float, float]:
-    r, g, b = (value * 3 if len(value) == 1 else value[:3]) if isinstance(value, tuple) else [value] * 3
+    r, g, b = (
+        (value * 3 if len(value) == 1 else value[:3]) if isinstance(value, tuple) else [value] * 3
+    )
     return float(r), float(g), float(b)
 
 
@@ -332,8 +350,8 @@ class Materials:
             if not path:
                 self._notes.add("a light's texture is left out: no such file", texture.path)
             else:
-                index, factor = self.images.texture([Image(path, "rgb", Place(wrap=("clamp", "clamp")))],
-                                                    is_srgb=True)  # fmt: skip
+                image = Image(path, "rgb", Place(wrap=("clamp", "clamp")))
+                index, factor = self.images.texture([image], is_srgb=True)
                 if index is not None:
                     material["emissiveTexture"] = {"index": index}
                     radiance = radiance * factor
@@ -409,7 +427,9 @@ class Materials:
                 self._notes.add("displacement is left out", path)
             return Look(self._add(result), slots.uvs, network.color_primvar)
         if names:
-            self._notes.add(f"the surface {' and '.join(names)} is left out: grey stands for it", path)
+            self._notes.add(
+                f"the surface {' and '.join(names)} is left out: grey stands for it", path
+            )
         else:
             self._notes.add("a material without a surface: grey stands for it", path)
         return None
@@ -422,7 +442,9 @@ class Materials:
         factor = [1.0, 1.0, 1.0, 1.0]
         texture_key = "diffuseTexture" if key == "diffuse" else f"{key}Texture"
         if not isinstance(alpha, Image):
-            factor[3] = min(max(float(alpha if not isinstance(alpha, tuple) else alpha[0]), 0.0), 1.0)
+            factor[3] = min(
+                max(float(alpha if not isinstance(alpha, tuple) else alpha[0]), 0.0), 1.0
+            )
         if isinstance(color, Image) or isinstance(alpha, Image):
             with_alpha = alpha if isinstance(alpha, Image) else None
             channels: List[Input] = [color] if isinstance(color, Image) else [_color(color)]
@@ -440,12 +462,16 @@ class Materials:
     def _alpha(self, material: Dict[str, Any], alpha: Input, threshold: float) -> None:
         if threshold > 0.0:
             material.update(alphaMode="MASK", alphaCutoff=threshold)
-        elif isinstance(alpha, Image) or float(alpha if not isinstance(alpha, tuple) else alpha[0]) < 1.0:
+        elif (
+            isinstance(alpha, Image)
+            or float(alpha if not isinstance(alpha, tuple) else alpha[0]) < 1.0
+        ):
             material["alphaMode"] = "BLEND"
 
     @staticmethod
     def _fraction(value: Input) -> float:
-        return _clamped([value[0] if isinstance(value, tuple) else value])[0]  # type: ignore[list-item]
+        number: Any = value[0] if isinstance(value, tuple) else value
+        return _clamped([number])[0]
 
     def _roughness(self, slots: _Slots, pbr: Dict[str, Any], metallic: Input, rough: Input) -> None:
         pbr["metallicFactor"] = 1.0 if isinstance(metallic, Image) else self._fraction(metallic)
@@ -482,7 +508,9 @@ class Materials:
         bias = tuple(0.5 * b + 0.5 for b in normal.bias)
         plain = _replaced(normal, scale=scale, bias=bias, channels="rgb")
         if normal.scale[:3] == (1.0, 1.0, 1.0) and normal.bias[:3] == (0.0, 0.0, 0.0):
-            self._notes.add("a normal map without scale 2 and bias -1 is taken as if it had them", path)
+            self._notes.add(
+                "a normal map without scale 2 and bias -1 is taken as if it had them", path
+            )
             plain = _replaced(normal, channels="rgb")
         if self.images._is_srgb(plain) and plain.space == "auto":
             plain = _replaced(plain, space="raw")
@@ -491,7 +519,9 @@ class Materials:
         if info is not None:
             material["normalTexture"] = info
 
-    def _emission(self, slots: _Slots, material: Dict[str, Any], color: Input, weight: float = 1.0) -> None:
+    def _emission(
+        self, slots: _Slots, material: Dict[str, Any], color: Input, weight: float = 1.0
+    ) -> None:
         if isinstance(color, Image):
             info, factor = slots.texture([color], is_srgb=True)
             if info is not None:
@@ -512,13 +542,18 @@ class Materials:
             gloss: Dict[str, Any] = {}
             self._base(slots, gloss, color, alpha, "diffuse")
             specular = n.input("specularColor", (0.0, 0.0, 0.0))
-            gloss["glossinessFactor"] = 1.0 if isinstance(rough, Image) else 1.0 - self._fraction(rough)
-            gloss["specularFactor"] = [1.0] * 3 if isinstance(specular, Image) else _clamped(_color(specular))
+            gloss["glossinessFactor"] = (
+                1.0 if isinstance(rough, Image) else 1.0 - self._fraction(rough)
+            )
+            gloss["specularFactor"] = (
+                [1.0] * 3 if isinstance(specular, Image) else _clamped(_color(specular))
+            )
             if isinstance(specular, Image) or isinstance(rough, Image):
-                shiny = 1.0
+                shiny: Input = 1.0
                 if isinstance(rough, Image):
-                    shiny = _single(_replaced(rough, scale=tuple(-s for s in rough.scale),
-                                              bias=tuple(1.0 - b for b in rough.bias)))  # type: ignore[assignment]  # fmt: skip
+                    scale = tuple(-x for x in rough.scale)
+                    bias = tuple(1.0 - x for x in rough.bias)
+                    shiny = _single(_replaced(rough, scale=scale, bias=bias))
                 colors: List[Input] = [specular if isinstance(specular, Image) else (1.0, 1.0, 1.0)]
                 info, _ = slots.texture(colors, is_srgb=True, alpha=shiny)
                 if info is not None:
@@ -552,7 +587,9 @@ class Materials:
         if not extensions:
             del material["extensions"]
 
-    def _layered(self, n: Network, slots: _Slots, material: Dict[str, Any], names: Dict[str, Any]) -> None:
+    def _layered(
+        self, n: Network, slots: _Slots, material: Dict[str, Any], names: Dict[str, Any]
+    ) -> None:
         """standard_surface and what came of it: glTF's names to theirs, with the fallback."""
         extensions: Dict[str, Any] = material.setdefault("extensions", {})
 
@@ -566,8 +603,12 @@ class Materials:
             weight = 1.0
         color = of("color")
         if isinstance(color, Image):
-            color = _replaced(color, scale=tuple(s * w for s, w in zip(color.scale, [weight] * 3 + [1.0])),
-                              bias=tuple(b * w for b, w in zip(color.bias, [weight] * 3 + [1.0])))  # fmt: skip
+            by = (weight, weight, weight, 1.0)
+            color = _replaced(
+                color,
+                scale=tuple(x * w for x, w in zip(color.scale, by)),
+                bias=tuple(x * w for x, w in zip(color.bias, by)),
+            )
         else:
             color = tuple(x * weight for x in _color(color))
         alpha = of("opacity")
@@ -614,7 +655,9 @@ class Materials:
             sheen_rough = of("sheen_roughness")
             extensions["KHR_materials_sheen"] = {
                 "sheenColorFactor": _clamped([x * sheen for x in _color(cloth)]),
-                "sheenRoughnessFactor": 0.3 if isinstance(sheen_rough, Image) else self._fraction(sheen_rough),
+                "sheenRoughnessFactor": (
+                    0.3 if isinstance(sheen_rough, Image) else self._fraction(sheen_rough)
+                ),
             }
         passing = of("transmission")
         if isinstance(passing, Image) or passing > 0.0:

@@ -83,7 +83,11 @@ def _interpolated(
         return None
     name, places, size = kinds[kind]
     if indices is not None:
-        if len(indices) < size or indices.min(initial=0) < 0 or indices.max(initial=0) >= len(values):
+        if (
+            len(indices) < size
+            or indices.min(initial=0) < 0
+            or indices.max(initial=0) >= len(values)
+        ):
             return None
         places = indices[places]
         if name == "point":
@@ -182,7 +186,9 @@ def polygons(
         # The schema's own scheme is Catmull-Clark; exporters that write normals forget to say none.
         normals = _normals(*arguments)
         if normals is not None:
-            notes.add("has normals and names no subdivision scheme: taken as polygons", prim.GetPath())
+            notes.add(
+                "has normals and names no subdivision scheme: taken as polygons", prim.GetPath()
+            )
             scheme = "none"
     if scheme == "none" and normals is None:
         normals = _normals(*arguments)
@@ -273,9 +279,7 @@ def _refine(
     if boundary == "none" and level > 0:
         notes.add("interpolateBoundary none: its boundary is kept", path)
     for _ in range(level):
-        cage = _subdivide.refined(
-            cage, scheme=scheme, boundary=boundary, face_varying=face_varying
-        )
+        cage = _subdivide.refined(cage, scheme=scheme, boundary=boundary, face_varying=face_varying)
     normals, fans = _subdivide.smooth_normals(cage)
     if result.is_left_handed:
         normals = -normals

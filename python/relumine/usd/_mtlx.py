@@ -73,14 +73,18 @@ class _Document:
         for given in element:
             shader = self._found(self._root, given.get("nodename", ""))
             if given.get("name") == "surfaceshader" and shader is not None:
-                output = self._node(path, self._root, shader, 0).CreateOutput("out", Sdf.ValueTypeNames.Token)
+                output = self._node(path, self._root, shader, 0).CreateOutput(
+                    "out", Sdf.ValueTypeNames.Token
+                )
                 material.CreateSurfaceOutput("mtlx").ConnectToSource(output)
 
     @staticmethod
     def _found(scope: Element, name: str) -> Optional[Element]:
         return next((e for e in scope if name and e.get("name") == name), None)
 
-    def _node(self, material: Sdf.Path, scope: Element, element: Element, depth: int) -> UsdShade.Shader:
+    def _node(
+        self, material: Sdf.Path, scope: Element, element: Element, depth: int
+    ) -> UsdShade.Shader:
         name = _name(element.get("name", ""))
         if scope is not self._root:
             name = f"{_name(scope.get('name', ''))}_{name}"
@@ -129,7 +133,9 @@ class _Document:
             scopes = [self._root] if scope is self._root else [self._root, scope]
             prefix = "".join(e.get("fileprefix", "") for e in scopes)
             value = Sdf.AssetPath(os.path.join(self._folder, prefix + text))
-            space = given.get("colorspace") or scope.get("colorspace") or self._root.get("colorspace")
+            space = (
+                given.get("colorspace") or scope.get("colorspace") or self._root.get("colorspace")
+            )
             if space:
                 result.GetAttr().SetColorSpace(space)
         if value is not None:

@@ -13,7 +13,7 @@ class Notes:
 
     def add(self, text: str, path: Any) -> None:
         paths = self._prims.setdefault(text, [])
-        if str(path) not in paths[:64] :
+        if str(path) not in paths[:64]:
             paths.append(str(path))
 
     def lines(self) -> List[str]:

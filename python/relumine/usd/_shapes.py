@@ -63,7 +63,12 @@ def _joined(parts: List[Tuple[Array, Array, Array, Array]]) -> Tuple[Array, Arra
         counts.append(count)
         corners.append(corner + first)
         first += len(p)
-    return tuple(map(np.concatenate, (points, normals, counts, corners)))  # type: ignore[return-value]
+    return (
+        np.concatenate(points),
+        np.concatenate(normals),
+        np.concatenate(counts),
+        np.concatenate(corners),
+    )
 
 
 def _cap(radius: float, z: float, up: float) -> Tuple[Array, Array, Array, Array]:

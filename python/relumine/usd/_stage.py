@@ -72,7 +72,12 @@ class Reader:
         lights: bool,
     ) -> None:
         self.stage, self.time = stage, time
-        self._purposes, self._level, self._camera, self._with_lights = purposes, subdivision, camera, lights
+        self._purposes, self._level, self._camera, self._with_lights = (
+            purposes,
+            subdivision,
+            camera,
+            lights,
+        )
         self.glb, self.notes = Glb(), Notes()
         self.materials = Materials(self.glb, self.notes)
         self.up = str(UsdGeom.GetStageUpAxis(stage))
@@ -132,9 +137,7 @@ class Reader:
         predicate = Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate)
         return list(prim.GetFilteredChildren(predicate))
 
-    def _placed(
-        self, prim: Usd.Prim, above: Array, purpose: str
-    ) -> Tuple[Optional[Array], str]:
+    def _placed(self, prim: Usd.Prim, above: Array, purpose: str) -> Tuple[Optional[Array], str]:
         """The place of a prim; None where it is not to be seen."""
         imageable = UsdGeom.Imageable(prim)
         if imageable:
@@ -163,10 +166,14 @@ class Reader:
             self.notes.add("a point instancer without instances", path)
             return []
         if depth >= DEEPEST:
-            raise ValueError(f"{path}: expected at most {DEEPEST} instancers within each other, got more")
+            raise ValueError(
+                f"{path}: expected at most {DEEPEST} instancers within each other, got more"
+            )
         indices = np.asarray(indices)
         if len(indices) > MOST_INSTANCES:
-            raise ValueError(f"{path}: expected at most {MOST_INSTANCES} instances, got {len(indices)}")
+            raise ValueError(
+                f"{path}: expected at most {MOST_INSTANCES} instances, got {len(indices)}"
+            )
         try:
             matrices = instancer.ComputeInstanceTransformsAtTime(
                 self.time, self.time, UsdGeom.PointInstancer.ExcludeProtoXform,
@@ -235,7 +242,9 @@ class Reader:
             self._add_mesh(prim, matrix, is_own)
 
     def _add_camera(self, prim: Usd.Prim, matrix: Array) -> None:
-        wanted = self.camera is None if self._camera is None else str(prim.GetPath()) == self._camera
+        wanted = (
+            self.camera is None if self._camera is None else str(prim.GetPath()) == self._camera
+        )
         if not wanted:
             return
         camera = UsdGeom.Camera(prim).GetCamera(self.time)
@@ -288,7 +297,9 @@ class Reader:
             return
         self._num_triangles += part.num_triangles
         if self._num_triangles > MOST_TRIANGLES:
-            raise ValueError(f"expected at most {MOST_TRIANGLES} triangles with their instances, got more")
+            raise ValueError(
+                f"expected at most {MOST_TRIANGLES} triangles with their instances, got more"
+            )
         placed = matrix @ self.world
         if not np.isfinite(placed).all():
             self.notes.add("a place that is not finite: left out", prim.GetPath())
@@ -367,7 +378,11 @@ class Reader:
         if not primitives:
             raise _mesh.Unfit("has no faces")
         return _Part(
-            self.glb.mesh(primitives), len(triangles), shown, polygons.is_refined, polygons.num_points
+            self.glb.mesh(primitives),
+            len(triangles),
+            shown,
+            polygons.is_refined,
+            polygons.num_points,
         )
 
     def _polygons(self, prim: Usd.Prim, wanted: List[Tuple[str, int]]) -> _mesh.Polygons:
@@ -391,11 +406,15 @@ class Reader:
             return np.zeros((len(corners), 2))
         return values.at(corners) * [1.0, -1.0] + [0.0, 1.0]
 
-    def _lamp(self, prim: Usd.Prim, polygons: _mesh.Polygons, triangles: Array, matrix: Array) -> Look:
+    def _lamp(
+        self, prim: Usd.Prim, polygons: _mesh.Polygons, triangles: Array, matrix: Array
+    ) -> Look:
         color = color_of(prim, self.time)
         if UsdLux.LightAPI(prim).GetNormalizeAttr().Get(self.time):
             p = (polygons.points @ matrix[:3, :3])[polygons.corners[triangles]]
-            area = 0.5 * np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1).sum()
+            area = (
+                0.5 * np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1).sum()
+            )
             color = color / max(float(area), 1e-30)
         name = prim.GetName()
         self.placer.lights.lamps.append(name)

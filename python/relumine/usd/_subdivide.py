@@ -160,16 +160,14 @@ def refined(cage: Cage, *, scheme: str, boundary: str, face_varying: str) -> Cag
     ).reshape(-1)
 
     def apply(values: Array) -> Array:
-        return _smoothed(
-            cage.counts, cage.corners, values, edges, sharp, corner_sharp, bilinear
-        )
+        return _smoothed(cage.counts, cage.corners, values, edges, sharp, corner_sharp, bilinear)
 
     # Halves of a crease that is still sharp, by one less.
     still = (sharp > 1.0) & (edges.count == 2)
     middle = n + np.flatnonzero(still)
-    halves = np.concatenate(
-        [np.stack([edges.ends[still, i], middle], 1) for i in (0, 1)]
-    ).reshape(-1, 2)
+    halves = np.concatenate([np.stack([edges.ends[still, i], middle], 1) for i in (0, 1)]).reshape(
+        -1, 2
+    )
     left = sharp[still]
     left = np.where(left >= INFINITE, left, left - 1.0)
     keep = cage.corner_sharpness > 1.0
@@ -192,7 +190,7 @@ def refined(cage: Cage, *, scheme: str, boundary: str, face_varying: str) -> Cag
 
 
 def numbers_of(*columns: Array) -> Array:
-    """A number for each row of arrays: equal rows have equal numbers, others, as good as surely, not.
+    """A number for each row of arrays: equal rows have equal numbers, others as good as never.
 
     Sorting numbers is some thirty times faster than sorting rows.
     """
@@ -246,7 +244,7 @@ def _face_values(
 
 
 def smooth_normals(cage: Cage) -> Tuple[Array, Array]:
-    """Normals, smooth over all edges but those that are still sharp, and (C,) which a corner has."""
+    """Normals, smooth over all edges that are not sharp, and (C,) which a corner has."""
     following, before, face = next_corner(cage.counts)
     p = cage.points[cage.corners]
     ahead, back = p[following] - p, p[before] - p

@@ -125,7 +125,7 @@ class _Writer:
         if left_out:
             self.lines.append(
                 f"{next(iter(left_out))}{f' and {len(left_out) - 1} more' * (len(left_out) > 1)}: "
-                "instances of point instancers and shapes with a formula have no colours of their own"
+                "instances of point instancers, and shapes, have no colours of their own"
             )
 
     def _color(self, prim: Usd.Prim, parts: List[Any], radiance: Array) -> None:
@@ -264,10 +264,14 @@ class _Writer:
         """Factors on lamps, as picture() takes them."""
         for name, gain in gains.items():
             if name not in self._asset.lamps:
-                raise ValueError(f"emission: expected a lamp ({', '.join(self._asset.lamps)}), got {name}")
+                raise ValueError(
+                    f"emission: expected a lamp ({', '.join(self._asset.lamps)}), got {name}"
+                )
             factor = np.broadcast_to(np.asarray(gain, float), (3,))
             if not (np.isfinite(factor).all() and (factor >= 0.0).all()):
-                raise ValueError(f"emission: expected a number or (r, g, b) of 0 or more, got {gain}")
+                raise ValueError(
+                    f"emission: expected a number or (r, g, b) of 0 or more, got {gain}"
+                )
             prim = self._own(self._asset._paths[name])
             light, time = UsdLux.LightAPI(prim), self._asset.time
             strength = max(float(factor.max()), 1e-30)
@@ -292,7 +296,9 @@ def under(cube: Array, layers: List[Layer]) -> Array:
 
 def _kelvin_color(kelvin: float) -> Array:
     """The colour of a layer's kelvin."""
-    everywhere = Layer("", SHAPES["Disc"]((0.0, 1.0, 0.0), 180.0), Emit((1.0, 1.0, 1.0)), kelvin=kelvin)
+    everywhere = Layer(
+        "", SHAPES["Disc"]((0.0, 1.0, 0.0), 180.0), Emit((1.0, 1.0, 1.0)), kelvin=kelvin
+    )
     return np.asarray(under(np.zeros((6, 4, 4, 3), np.float32), [everywhere])[0, 0, 0], float)
 
 
