@@ -7,7 +7,7 @@
 
 #include <glm/common.hpp>
 
-#include "mesh/opacity.h"
+#include "mesh/subject.h"
 #include "prt/glossy/lobe_list.h"
 #include "prt/glossy/sheen_lobe.h"
 #include "prt/receivers/mesh_point.h"
