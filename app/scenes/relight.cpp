@@ -204,10 +204,13 @@ std::function<void(const Mesh&)> first_sight(const RelightArguments& options, co
 void light_scene(const RelightArguments& options, Session& session) {
     Stopwatch watch;
     options.scene.check();
-    Given given = given_light(options, session);
+    Given given;
     SceneOptions with_sight = options.scene;
-    with_sight.before = first_sight(options, given.light, session);
-    watch.lap();
+    if (options.scene.is_first_picture()) {
+        given = given_light(options, session);
+        with_sight.before = first_sight(options, given.light, session);
+        watch.lap();
+    }
     LitScene lit = lit_scene(with_sight, session);
     const Scene& scene = lit.scene();
     if (options.environment.path.empty() && options.lights.empty() && scene.lamps.empty())
@@ -217,7 +220,10 @@ void light_scene(const RelightArguments& options, Session& session) {
         check_harmonics(options.harmonics, scene);
     const double seconds_load_scene = watch.lap();
     session.poll();
+    if (!options.scene.is_first_picture())
+        given = given_light(options, session);
     const std::size_t num_lights = given.light.lights.size();
+    watch.lap();
     const relumine::OutputOptions output = options.output.for_scene(scene);
     lit.dim(output.emission);
     const UpdateReport times = lit.light(std::move(given.light));

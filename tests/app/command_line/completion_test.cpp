@@ -49,9 +49,9 @@ protected:
     }
 
     [[nodiscard]] std::vector<std::string> commands() const {
-        return {"precompute", "plan",       "join", "relight",  "animate", "edit",
-                "verify",     "lights",     "info", "generate", "env",     "mesh",
-                "view",       "completion", "help", "fit",      "export",  "coarsen"};
+        return {"precompute", "plan", "join",     "relight", "animate", "edit", "verify",
+                "lights",     "info", "generate", "env",     "mesh",    "view", "completion",
+                "help",       "fit",  "export",   "coarsen", "move"};
     }
 };
 
