@@ -53,8 +53,9 @@ struct MoveReport {
 /// Moves a group of a scene that was precomputed with PrecomputeOptions::movable. The clusters
 /// stay. The counts become those that a precompute finds for these clusters, bit by bit: only rays
 /// are traced that the group can have met before or can meet now. So are the rays of bounces, where
-/// the scene knows how many each receiver has; otherwise all are sampled anew. What the precompute made of the scene beyond that stays: receivers where they look from,
-/// vertices that refinement added, lifts.
+/// the scene knows how many each receiver has; otherwise all are sampled anew. What the precompute
+/// made of the scene beyond that stays: receivers where they look from, vertices that refinement
+/// added, lifts.
 ///
 /// Returns what undoes the move: prt::exchange(scene, change). A second exchange makes it again.
 /// Report:  where given, filled.
