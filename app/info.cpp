@@ -186,7 +186,7 @@ prt::SceneFileKind kind_of(const std::string& path) {
 
 /// Whether a file is an environment by its name, or a picture that people take for one.
 bool is_environment(const std::string& path) {
-    constexpr std::array Pictures = {".jpg", ".jpeg", ".png", ".webp"};
+    constexpr std::array Pictures = {".png", ".webp"};
     return cubemap::is_environment_name(path) ||
            std::find(Pictures.begin(), Pictures.end(), extension_of(path)) != Pictures.end();
 }
@@ -223,11 +223,11 @@ void add_info(Command& program, Session& session) {
     Command command = program.add_command(
         "info", "what a file is: a scene, a plan or a part of one, an environment or a mesh");
     auto options = std::make_shared<InfoArguments>();
-    command.add(
-        row("FILE", options->path,
-            "a scene or a part of one (.prt), a plan, an environment (.exr, .hdr) or a mesh: " +
-                mesh::mesh_extensions(),
-            {.file = true, .required = true}));
+    command.add(row("FILE", options->path,
+                    "a scene or a part of one (.prt), a plan, an environment (" +
+                        cubemap::environment_extensions() +
+                        ") or a mesh: " + mesh::mesh_extensions(),
+                    {.file = true, .required = true}));
     command.add(row<LayoutText>("--layout", options->layout,
                                 "layout of an environment, where the file does not tell"));
     command.add(row("--picture", options->picture,

@@ -18,4 +18,8 @@ std::vector<std::byte> compressed(std::span<const std::byte> bytes, int level) {
     return result;
 }
 
+bool decompress(std::span<const std::byte> from, std::span<std::byte> to) {
+    return ZSTD_decompress(to.data(), to.size(), from.data(), from.size()) == to.size();
+}
+
 } // namespace relumine::files

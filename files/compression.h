@@ -16,4 +16,7 @@ inline constexpr std::uint64_t MaxCompressionRatio = 1 << 17;
 /// Throws:  std::runtime_error if zstd fails.
 [[nodiscard]] std::vector<std::byte> compressed(std::span<const std::byte> bytes, int level);
 
+/// Unpacks frames of zstd that hold just as many bytes as `to` has. Returns false for others.
+[[nodiscard]] bool decompress(std::span<const std::byte> from, std::span<std::byte> to);
+
 } // namespace relumine::files

@@ -13,6 +13,7 @@
 #include "files/joined.h"
 #include "files/output_file.h"
 #include "mesh/formats/mesh_format.h"
+#include "mesh/stage_hint.h"
 
 namespace relumine::mesh {
 
@@ -25,6 +26,13 @@ std::string mesh_extensions() {
 
 bool has_mesh_extension(const std::filesystem::path& path) {
     return format_of(path) != nullptr;
+}
+
+std::string hint_of_stage(const std::filesystem::path& path) {
+    for (const char* extension : {".usd", ".usda", ".usdc", ".usdz"})
+        if (files::extension_of(path) == extension)
+            return ": `python3 -m relumine` reads USD after pip install relumine[usd]";
+    return "";
 }
 
 namespace {
@@ -44,9 +52,9 @@ LoadedMesh load(const std::filesystem::path& path, const LoadOptions& options) {
     static_cast<void>(files::size(path));
     const MeshFormat* format = format_of(path);
     if (format == nullptr)
-        throw std::runtime_error(fmt::format("{}: expected a mesh file ({}), got '{}'",
+        throw std::runtime_error(fmt::format("{}: expected a mesh file ({}), got '{}'{}",
                                              path.string(), mesh_extensions(),
-                                             files::extension_of(path)));
+                                             files::extension_of(path), hint_of_stage(path)));
     const std::vector<std::byte> bytes = files::read(path);
     try {
         if (options.pose && !format->has_animations)

@@ -35,12 +35,6 @@ bool is_thin(const Material& material) {
            (material.transmission > 0.0f || material.alpha_mode == AlphaMode::Blend);
 }
 
-bool is_unseen(const Material& material) {
-    return material.alpha_mode == AlphaMode::Blend
-               ? material.alpha == 0.0f
-               : material.alpha_mode == AlphaMode::Mask && material.alpha < material.alpha_cutoff;
-}
-
 bool lets_eye_pass(const Material& material) {
     return !material.is_double_sided || lets_light_pass(material);
 }

@@ -34,9 +34,6 @@ struct Veil {
 /// Whether a material is there and yet seen through: blended, or glass.
 [[nodiscard]] bool is_thin(const Material& material);
 
-/// Whether nothing of a material is ever seen: its alpha is 0, or below what it is cut off at.
-[[nodiscard]] bool is_unseen(const Material& material);
-
 /// Whether pictures may see through a material's triangles: light passes, or backs are not shown.
 [[nodiscard]] bool lets_eye_pass(const Material& material);
 

@@ -13,9 +13,14 @@
 
 #include "mesh/edge_uses.h"
 #include "mesh/materials/material.h"
-#include "mesh/opacity.h"
 
 namespace relumine::mesh {
+
+bool is_unseen(const Material& material) {
+    return material.alpha_mode == AlphaMode::Blend
+               ? material.alpha == 0.0f
+               : material.alpha_mode == AlphaMode::Mask && material.alpha < material.alpha_cutoff;
+}
 
 namespace {
 

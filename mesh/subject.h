@@ -9,6 +9,9 @@
 
 namespace relumine::mesh {
 
+/// Whether nothing of a material is ever seen: its alpha is 0, or below what it is cut off at.
+[[nodiscard]] bool is_unseen(const Material& material);
+
 /// What of a mesh tells how large it is: what is seen and carries weight.
 struct Extent {
     /// Around the triangles that count.

@@ -127,8 +127,9 @@ bool open(ViewState& state, const std::filesystem::path& path) {
         if (path.extension() == ".json")
             return open_layers(state, path);
         if (!cubemap::is_environment_name(path))
-            throw std::runtime_error(fmt::format("{}: expected .exr, .hdr or .json, got '{}'",
-                                                 path.string(), path.extension().string()));
+            throw std::runtime_error(fmt::format("{}: expected {}, or layers (.json), got '{}'",
+                                                 path.string(), cubemap::environment_extensions(),
+                                                 path.extension().string()));
         set_environment(state, path);
         state.desk.finish();
         return fmt::format("{}: {} texels a face", path.string(),
@@ -148,10 +149,11 @@ bool add_image(ViewState& state, const std::filesystem::path& path) {
         if (!cubemap::is_environment_name(path)) {
             state.wants_path = true;
             throw std::runtime_error(
-                path.empty() ? std::string("Which picture? Type its path (.exr, .hdr) below, or "
-                                           "drop it on the window.")
-                             : fmt::format("{}: expected .exr or .hdr for an image layer, got '{}'",
-                                           path.string(), path.extension().string()));
+                path.empty()
+                    ? std::string("Which picture? Type its path (.exr, .hdr) below, or "
+                                  "drop it on the window.")
+                    : fmt::format("{}: expected {} for an image layer, got '{}'", path.string(),
+                                  cubemap::environment_extensions(), path.extension().string()));
         }
         cubemap::ImagePatch patch{.path = std::filesystem::absolute(path).lexically_normal(),
                                   .picture = cubemap::load_image_pyramid(path)};

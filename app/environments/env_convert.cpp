@@ -189,7 +189,8 @@ void add_convert(Command& group, Session& session) {
         list += fmt::format("  {:8} {}\n", convention.name, convention.mathematics);
     command.footer(list);
     command.add(row("IN", options->input.path,
-                    "environment: .exr or .hdr; {face} in the name for px nx py ny pz nz",
+                    "environment: " + cubemap::environment_extensions() +
+                        "; {face} in the name for px nx py ny pz nz",
                     {.file = true, .required = true}));
     command.add(row("-o,--output", options->output, "what to write: .exr or .hdr; {face} as in IN",
                     {.file = true, .required = true}));

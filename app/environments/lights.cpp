@@ -314,8 +314,9 @@ void add_lights(Command& program, Session& session) {
         program.add_command("lights", "a few distant lights that stand for an environment");
     auto options = std::make_shared<LightsArguments>();
     options->environment.add_to(command).description(
-        "environment: .exr or .hdr; {face} in the name for six files px nx py ny pz nz; or a light "
-        "list (.json), which -o writes in another format");
+        "environment: " + cubemap::environment_extensions() +
+        "; {face} in the name for six files px nx py ny pz nz; or a light list (.json), which -o "
+        "writes in another format");
     add_output_options(command, *options);
     add_method_options(command, *options);
     add_format_options(command, *options);

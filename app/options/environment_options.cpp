@@ -23,10 +23,11 @@ void tell(const EnvironmentOptions& options, const std::string& assumptions,
 } // namespace
 
 Option EnvironmentOptions::add_to(Command& command) {
-    const Option environment = command.add(
-        row("ENV", path,
-            "environment: .exr or .hdr; {face} in the name for six files px nx py ny pz nz",
-            {.file = true, .required = true}));
+    const Option environment =
+        command.add(row("ENV", path,
+                        "environment: " + cubemap::environment_extensions() +
+                            "; {face} in the name for six files px nx py ny pz nz",
+                        {.file = true, .required = true}));
     command.add_all(options_of(*this));
     return environment;
 }

@@ -40,8 +40,8 @@ void RefineOptionGroup::add_to_refine(Command& command) {
 void RefineOptionGroup::add(Command& command, OptionTable table) {
     table.push_back(
         row("--refine-for", light_,
-            "the environment that matters most, .exr or .hdr: more vertices at the shadows of its "
-            "sun; the scene can still be lit by any other",
+            "the environment that matters most: more vertices at the shadows of its sun; the scene "
+            "can still be lit by any other",
             {.file = true, .type = "ENV"}));
     for (const Option& option : command.add_all(std::move(table)))
         if (option.name() != "--refine" && option.name() != "--error" &&

@@ -7,6 +7,7 @@
 
 #include "app/scenes/first_scene.h"
 #include "files/extension.h"
+#include "relumine/in/environment.h"
 #include "relumine/in/mesh_files.h"
 
 namespace relumine::app {
@@ -87,11 +88,13 @@ auto naming_scene(const std::string& path, const Make& make) {
 } // namespace
 
 void SceneOptions::check() const {
-    const std::string extension = files::extension_of(path);
-    if (extension == ".hdr" || extension == ".exr" || extension == ".pic")
+    if (cubemap::is_environment_name(path) || files::extension_of(path) == ".pic")
         throw UsageError("SCENE", fmt::format("expected a scene, got the environment {}: the scene "
                                               "stands first, the environment behind it",
                                               path));
+    if (const std::string hint = mesh::hint_of_stage(path); !hint.empty())
+        throw std::runtime_error(fmt::format("{}: expected a scene or a mesh, got '{}'{}", path,
+                                             files::extension_of(path), hint));
 }
 
 LitScene lit_scene(const SceneOptions& options, Session& session) {

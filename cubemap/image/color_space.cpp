@@ -67,6 +67,8 @@ bool are_near(const Primaries& a, const Primaries& b) {
            is_near(a.white, b.white);
 }
 
+} // namespace
+
 float linear(float value, Transfer transfer) {
     const float size = std::abs(value);
     const auto power = [&](float exponent) {
@@ -84,8 +86,6 @@ float linear(float value, Transfer transfer) {
         return value;
     }
 }
-
-} // namespace
 
 glm::dmat3 to_rec709(const Primaries& primaries) {
     const glm::dmat3 result =

@@ -30,6 +30,8 @@ struct ColorSpace {
     std::string name = {};
 };
 
+/// Returns the light of a file's number.
+[[nodiscard]] float linear(float value, Transfer transfer);
 /// Returns the matrix from linear colours of these primaries to those of Rec. 709. White stays
 /// white: Bradford's adaptation [Lindbloom, "Chromatic Adaptation"].
 ///

@@ -141,4 +141,25 @@ void swap_z_faces(EnvironmentImage& image) {
     }
 }
 
+void take_faces(const Convention& convention, EnvironmentImage& image) {
+    if (!convention.swaps_z_faces || image.faces_of == FacesOf::Direct3D)
+        return;
+    swap_z_faces(image);
+    if (image.faces_of == FacesOf::OpenExr ||
+        (image.layout != Layout::Cube && image.layout != Layout::HorizontalStrip))
+        return;
+    // The reader undid OpenGL's mirror along Z.
+    const FaceSquares squares(image.layout, image.width, image.height);
+    const std::uint32_t size = squares.resolution();
+    for (const Face face : AllFaces)
+        for (std::uint32_t i = 0; i < size; ++i)
+            for (std::uint32_t k = 0; k < size / 2; ++k) {
+                const bool is_vertical = face == Face::PositiveY || face == Face::NegativeY;
+                const auto pixel = [&](std::uint32_t at) {
+                    return is_vertical ? squares.pixel(face, i, at) : squares.pixel(face, at, i);
+                };
+                std::swap(image.pixels[pixel(k)], image.pixels[pixel(size - 1 - k)]);
+            }
+}
+
 } // namespace relumine::cubemap

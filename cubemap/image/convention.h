@@ -49,4 +49,8 @@ struct Convention {
 /// are.
 void swap_z_faces(EnvironmentImage& image);
 
+/// Gives a Cube or HorizontalStrip as it was read the faces of a convention, whose matrix then
+/// takes them to the world.
+void take_faces(const Convention& convention, EnvironmentImage& image);
+
 } // namespace relumine::cubemap

@@ -55,6 +55,9 @@ void interpret(const ImageFile& file, const LoadOptions& options, const std::str
     } else if (file.envmap) {
         image.layout = *file.envmap;
         why = fmt::format("{} as the envmap attribute says", name(image.layout));
+    } else if (file.layout) {
+        image.layout = *file.layout;
+        why = fmt::format("{} as the file says", name(image.layout));
     } else {
         const auto layout = guess_layout(image.width, image.height);
         if (!layout)
@@ -76,6 +79,7 @@ void interpret(const ImageFile& file, const LoadOptions& options, const std::str
         throw std::runtime_error(fmt::format("{}: expected a {} image for layout {}, got {}", path,
                                              proportions(image.layout), name(image.layout), size));
     // The attribute's rule about borders holds only for the attribute's layout.
+    image.faces_of = file.faces_of;
     image.sampling = file.envmap == image.layout ? Sampling::Borders : Sampling::TexelCentres;
     why += image.sampling == Sampling::Borders ? ", samples on the borders"
                                                : ", samples at texel centres";
@@ -318,9 +322,10 @@ bool is_environment_name(const std::filesystem::path& path) {
 }
 
 void check_environment_name(const std::filesystem::path& path) {
-    if (!is_environment_name(path))
+    const ImageFormat* format = format_of_name(path);
+    if (format == nullptr || format->write == nullptr)
         throw std::invalid_argument(fmt::format("{}: expected a name that ends in {}, got '{}'",
-                                                path.string(), image_extensions(),
+                                                path.string(), written_extensions(),
                                                 files::extension_of(path)));
 }
 

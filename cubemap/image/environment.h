@@ -1,4 +1,4 @@
-// Environment files: OpenEXR and Radiance .hdr, read and written in the usual layouts.
+// Environment files: read and written in the usual layouts.
 #pragma once
 
 #include <array>
@@ -61,6 +61,15 @@ enum class Sampling {
     Borders,
 };
 
+/// Whose faces a file has. All became OpenEXR's as it was read.
+enum class FacesOf {
+    OpenExr,
+    /// As one sees them in Direct3D's left-handed world: +Z and -Z are exchanged
+    Direct3D,
+    /// Of a right-handed world that OpenGL looks up without a sign: mirrored
+    OpenGl,
+};
+
 /// Count of pixels whose values are no radiance.
 struct BadPixels {
     /// Largest negative_share that is taken for what a resampling filter left.
@@ -92,6 +101,7 @@ struct BadPixels {
 struct EnvironmentImage : Picture {
     Layout layout = Layout::LatLong;
     Sampling sampling = Sampling::TexelCentres;
+    FacesOf faces_of = FacesOf::OpenExr;
     /// One sentence on why this layout and sampling were chosen: "2:1 image without envmap
     /// attribute".
     std::string assumptions;
@@ -129,7 +139,8 @@ inline constexpr std::array<std::string_view, 6> FaceFileNames = {"px", "nx", "p
 [[nodiscard]] std::vector<std::filesystem::path>
 environment_files(const std::filesystem::path& path);
 
-/// Reads an .exr or .hdr file, or six of them as a Cube if the path holds `{face}`.
+/// Reads a file, or six of them as a Cube if the path holds `{face}`. docs/environments.md has the
+/// formats.
 ///
 /// Format:  .exr may be scanline or tiled, half, float or uint, in any compression, with any data
 ///          window. Luminance-only, luminance-chroma, alpha and extra channels are understood. A
@@ -167,10 +178,13 @@ struct ImageSize {
 /// Returns the size of an image in a layout whose natural resolution is `face_resolution`.
 [[nodiscard]] ImageSize natural_size(Layout layout, std::uint32_t face_resolution);
 
-/// Whether a name ends as an environment's does: .exr or .hdr, in capitals or not.
+/// Returns the extensions of files that are read: ".exr, .hdr, .tif, .pfm, .dds, .ktx2 or .jpg".
+[[nodiscard]] std::string environment_extensions();
+
+/// Whether a name ends as an environment's does, in capitals or not.
 [[nodiscard]] bool is_environment_name(const std::filesystem::path& path);
 
-/// Checks that a path ends in .exr or .hdr, in small letters or capitals.
+/// Checks that a path ends in .exr or .hdr, which are written, in small letters or capitals.
 /// Throws:  std::invalid_argument "path: ..." for any other name.
 void check_environment_name(const std::filesystem::path& path);
 

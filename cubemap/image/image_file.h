@@ -1,6 +1,7 @@
-// What the readers of both file formats return to load_environment().
+// What the readers of the file formats return to load_environment().
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -15,6 +16,7 @@
 
 #include "cubemap/image/color_space.h"
 #include "cubemap/image/environment.h"
+#include "cubemap/image/file_bytes.h"
 #include "files/output_file.h"
 
 namespace relumine::cubemap {
@@ -23,6 +25,9 @@ namespace relumine::cubemap {
 struct ImageFile : Picture {
     /// The layout that the file itself states by OpenEXR's `envmap` attribute. Empty: none stated.
     std::optional<Layout> envmap;
+    /// The layout of a format that has but one. Empty: none
+    std::optional<Layout> layout;
+    FacesOf faces_of = FacesOf::OpenExr;
     /// True: 16-bit floats, in which radiance above 65504 is infinite.
     bool is_half = false;
     /// What a user may want to know, for example "luminance only".
@@ -52,6 +57,8 @@ public:
     /// What decode() returns, without pixels and transparent ones, and without the remark on
     /// colours.
     [[nodiscard]] const ImageFile& head() const { return head_; }
+    /// Returns how many rows, from a multiple of it on, are decoded together. Fewer cost as much.
+    [[nodiscard]] virtual std::uint32_t rows_together() const { return 1; }
     /// Null: colours stay as they are.
     [[nodiscard]] const ColorConversion* colors() const { return colors_ ? &*colors_ : nullptr; }
 
@@ -71,9 +78,24 @@ protected:
 /// before memory is allocated.
 inline constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 29;
 
-/// Returns true if a file's first bytes mark it as .exr or .hdr.
+/// Returns true if a file's first bytes mark it as of a format.
 [[nodiscard]] bool is_exr(std::span<const std::byte> bytes);
 [[nodiscard]] bool is_hdr(std::span<const std::byte> bytes);
+[[nodiscard]] bool is_dds(std::span<const std::byte> bytes);
+[[nodiscard]] bool is_jpeg(std::span<const std::byte> bytes);
+[[nodiscard]] bool is_ktx(std::span<const std::byte> bytes);
+[[nodiscard]] bool is_pfm(std::span<const std::byte> bytes);
+[[nodiscard]] bool is_tiff(std::span<const std::byte> bytes);
+
+/// Reads what stands before the pixels.
+/// Throws:  std::runtime_error "name: expected X, got Y", as read() of what is returned does.
+[[nodiscard]] std::unique_ptr<ImageRows> open_dds(FileBytes file);
+[[nodiscard]] std::unique_ptr<ImageRows> open_gain_map(FileBytes file);
+[[nodiscard]] std::unique_ptr<ImageRows> open_ktx(FileBytes file);
+[[nodiscard]] std::unique_ptr<ImageRows> open_pfm(FileBytes file);
+[[nodiscard]] std::unique_ptr<ImageRows> open_tiff(FileBytes file);
+/// Decodes all rows.
+[[nodiscard]] ImageFile whole(const ImageRows& rows);
 
 /// Decodes a file's content. `name` stands for the file in messages.
 /// Throws:  std::runtime_error "name: expected X, got Y".
@@ -120,8 +142,8 @@ inline constexpr std::size_t MaxHeadBytes = 1 << 16;
 
 /// A format of environments and pictures: a row in image_file.cpp.
 struct ImageFormat {
-    /// ".exr"
-    std::string_view extension;
+    /// ".exr"; of others that mean the same
+    std::array<std::string_view, 2> extensions;
     /// "OpenEXR", for messages
     std::string_view name;
     /// Whether a file's first bytes mark it. The extension of a file that is read does not count.
@@ -129,13 +151,14 @@ struct ImageFormat {
     ImageFile (*decode)(std::span<const std::byte> bytes, const std::string& name);
     ImageSize (*size)(const FileHead& head);
     std::unique_ptr<ImageRows> (*rows)(const std::filesystem::path& path);
-    void (*write)(files::OutputFile& file, const EnvironmentImage& image);
+    /// Null: files are read alone
+    void (*write)(files::OutputFile& file, const EnvironmentImage& image) = nullptr;
     /// Files state by an attribute that samples lie on the borders
     bool has_envmap = false;
 };
 
-/// Returns ".exr or .hdr".
-[[nodiscard]] std::string image_extensions();
+/// Returns the extensions of files that are written: ".exr or .hdr".
+[[nodiscard]] std::string written_extensions();
 /// Returns the format of a file's first bytes.
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y", which tells what it is where that is

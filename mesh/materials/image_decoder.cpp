@@ -39,7 +39,7 @@ void* limited_realloc(void* bytes, std::size_t size) {
 #define STBI_ONLY_TGA
 #include <stb_image.h>
 
-#include "mesh/materials/jpeg_decoder.h"
+#include "files/jpeg_decoder.h"
 #include "mesh/materials/texture.h"
 #include "mesh/materials/webp_decoder.h"
 #include "mesh/text_reader.h"
@@ -198,7 +198,7 @@ DecodedImage decode(std::span<const std::byte> file, int num_channels, ImageBudg
     };
     const Format format = format_of(file);
     if (format == Format::Jpeg)
-        decode_jpeg(file, allocate);
+        files::decode_jpeg(file, allocate);
     else if (format == Format::WebP)
         decode_webp(file, num_channels == 4, allocate);
     else

@@ -7,7 +7,7 @@
 
 #include <glm/common.hpp>
 
-#include "mesh/opacity.h"
+#include "mesh/subject.h"
 #include "prt/glossy/lobe_list.h"
 #include "prt/glossy/sheen_lobe.h"
 #include "prt/receivers/mesh_point.h"
@@ -121,6 +121,8 @@ Surface reflecting(const MaterialPoint& point, GgxForm form) {
                    .dielectric_f0 = std::max({dielectric.r, dielectric.g, dielectric.b}),
                    .dielectric_f90 = strength};
     add_layers(point, result);
+    if (!has_highlight(material))
+        result.highlight = Highlight::None;
     return result;
 }
 
@@ -176,6 +178,9 @@ bool shows_light(const mesh::TriangleMesh& mesh, std::size_t triangle) {
 bool has_highlight(const mesh::Material& material) {
     if (material.model == mesh::MaterialModel::Phong)
         return material.specular != glm::vec3(0.0f);
+    if (material.model == mesh::MaterialModel::MetallicRoughness && material.metallic == 0.0f &&
+        material.specular_strength == 0.0f && material.transmission == 0.0f)
+        return material.coat > 0.0f || material.sheen != glm::vec3(0.0f);
     return material.model != mesh::MaterialModel::Unlit;
 }
 

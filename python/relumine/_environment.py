@@ -79,7 +79,9 @@ class Environment:
         tilt: float = 0.0,
         rotate: float = 0.0,
     ) -> "Environment":
-        """Reads an .exr or .hdr file, or six where the name has {face} (px nx py ny pz nz).
+        """Reads an environment's file, or six where the name has {face} (px nx py ny pz nz).
+
+        .exr, .hdr, .tif, .pfm, .dds, .ktx2, or .jpg with a gain map.
 
         Raises OSError with the file's name.
 

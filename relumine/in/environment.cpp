@@ -72,8 +72,7 @@ cubemap::EnvironmentImage as_convention_has_it(cubemap::EnvironmentImage image,
         image.assumptions = fmt::format("{} as {} reads it, samples at texel centres",
                                         cubemap::name(image.layout), from.name);
     }
-    if (from.swaps_z_faces)
-        cubemap::swap_z_faces(image);
+    cubemap::take_faces(from, image);
     return image;
 }
 

@@ -136,7 +136,7 @@ environment_of(const std::shared_ptr<const cubemap::EnvironmentImage>& image,
 environment_of(const std::shared_ptr<const cubemap::EnvironmentImage>& image,
                const cubemap::CubeMap& resampled, const EnvironmentOptions& options = {});
 
-/// Reads an .exr or .hdr file, or six of them where the path holds `{face}`, resamples and turns.
+/// Reads a file, or six of them where the path holds `{face}`, resamples and turns.
 /// A lat-long wider than 8,192 pixels, and than 4 `face_resolution`, is averaged down as it is
 /// read: cubemap::load_averaged().
 ///

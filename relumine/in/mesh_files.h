@@ -13,6 +13,7 @@
 #include "mesh/normals.h"
 #include "mesh/pose.h"
 #include "mesh/save.h"
+#include "mesh/stage_hint.h"
 #include "mesh/triangle_mesh.h"
 #include "prt/lamps/lamps.h"
 #include "prt/visibility/twin_triangles.h"

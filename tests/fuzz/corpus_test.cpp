@@ -17,11 +17,15 @@
 // As CMakeLists.txt lists them.
 #define RELUMINE_FUZZ_TARGETS(X)                                                                   \
     X(command_line)                                                                                \
+    X(dds)                                                                                         \
     X(exr)                                                                                         \
+    X(gain_map)                                                                                    \
     X(gltf)                                                                                        \
     X(hdr)                                                                                         \
+    X(ktx)                                                                                         \
     X(layers)                                                                                      \
-    X(lights) X(mtl) X(obj) X(off) X(ply) X(prt) X(sections) X(stl) X(texture)
+    X(lights)                                                                                      \
+    X(mtl) X(obj) X(off) X(pfm) X(ply) X(prt) X(sections) X(stl) X(texture) X(tiff)
 
 #define RELUMINE_DECLARE(name)                                                                     \
     extern "C" int relumine_fuzz_##name(const std::uint8_t* data, std::size_t size);

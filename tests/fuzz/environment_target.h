@@ -1,4 +1,4 @@
-// What both formats of environments have in common for fuzzing.
+// What the formats of environments have in common for fuzzing.
 #pragma once
 
 #include "tests/fuzz/fuzz.h"

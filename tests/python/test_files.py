@@ -2,6 +2,8 @@
 
 import errno
 import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -189,3 +191,19 @@ def test_meshes_are_refined_and_simplified(arrays):
         mesh.refined(max_edge=-1.0)
     with pytest.raises(ValueError, match="num_vertices"):
         mesh.simplified(0)
+
+
+def test_a_stage_of_usd_names_what_would_read_it(folder, command_line):
+    (folder / "a.usda").write_text("#usda 1.0\n")
+    text = (
+        "import runpy, sys; sys.modules['pxr'] = None; "
+        "sys.argv[1:] = ['relight', 'a.usda', '-o', 'a.png']; "
+        "runpy.run_module('relumine', run_name='__main__')"
+    )
+    program = os.path.dirname(os.environ["RELUMINE_PROGRAM"])
+    environment = {**os.environ, "PATH": f"{program}:{os.environ['PATH']}"}
+    run = subprocess.run(
+        [sys.executable, "-c", text], env=environment, capture_output=True, text=True
+    )
+    assert run.returncode == 1 and "pip install relumine[usd]" in run.stderr
+    assert run.stderr.count("\n") == 1

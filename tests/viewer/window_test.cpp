@@ -436,9 +436,8 @@ TEST_F(WindowTest, SavedLayersFindTheirPicturesFromAnotherFolder) {
     EXPECT_EQ(std::get<cubemap::ImagePatch>(saved.layers[0].effect).path, "../picture.exr");
     EXPECT_EQ(play("add_image missing.exr\n"), 1);
     EXPECT_EQ(play("add_image env.png\n"), 1);
-    EXPECT_EQ(
-        words("err.txt"),
-        "relumine: script line 1: env.png: expected .exr or .hdr for an image layer, got '.png'\n");
+    EXPECT_EQ(words("err.txt"), "relumine: script line 1: env.png: expected .exr, .hdr, .tif, "
+                                ".pfm, .dds, .ktx2 or .jpg for an image layer, got '.png'\n");
 }
 
 TEST_F(WindowTest, AScriptThatFailsEndsWithOneLine) {

@@ -101,6 +101,7 @@ TEST_F(MeshFiles, SizeWithoutExtentAndFarAway) {
 
 TEST_F(MeshFiles, UnknownKindsAndPaths) {
     refused("mesh.fbx", "Kaydara", "expected a mesh file");
+    refused("mesh.usdz", "PK", "pip install relumine[usd]");
     refused("mesh", octahedron_obj(), "expected a mesh file");
     refused("mesh.prt.txt", octahedron_obj(), "expected a mesh file");
     fail("info missing.obj", {"missing.obj", "cannot read"});

@@ -144,13 +144,13 @@ def year(state, skies, division, sensors):
     import daylight
     import skies as judge
 
-    resolution = 32 if division == 1 else 64
-    directions, _ = daylight.cube_directions(resolution)
-    patches = judge.patch_of(directions @ judge.NORTH_IS_Y.T, division)
+    resolution, parts = 32 if division == 1 else 64, 4
+    directions, _ = daylight.cube_directions(parts * resolution)
+    patches = judge.patch_of(directions @ judge.NORTH_IS_Y.T, division).reshape(6, resolution, parts, resolution, parts)
     result = np.empty((skies.shape[1], len(sensors)), np.float32)
     cube = np.empty((6, resolution, resolution, 3), np.float32)
     for hour in range(skies.shape[1]):
-        cube[...] = skies[patches, hour][..., None]
+        cube[...] = np.ascontiguousarray(skies[:, hour])[patches].mean((2, 4))[..., None]
         state.relighter.set_environment(relumine.Environment(cube, face_resolution=resolution))
         state.relighter.bounce()
         result[hour] = np.asarray(state.relighter.radiance)[sensors, 1]

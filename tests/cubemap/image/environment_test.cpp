@@ -231,7 +231,8 @@ TEST(Environment, FilesThatAreNoneAreRefused) {
     write(folder / "empty.exr", {});
     EXPECT_EQ(message_of([&] { (void)load_environment(folder / "empty.exr"); }),
               (folder / "empty.exr").string() +
-                  ": expected an OpenEXR or Radiance .hdr file, got an empty file");
+                  ": expected an OpenEXR, Radiance .hdr, TIFF, PFM, DDS, KTX or gain-map JPEG "
+                  "file, got an empty file");
     write(folder / "text.hdr", std::vector<std::byte>(100, std::byte{'x'}));
     EXPECT_NE(message_of([&] { (void)load_environment(folder / "text.hdr"); }), "");
 }

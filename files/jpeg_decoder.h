@@ -6,7 +6,7 @@
 #include <functional>
 #include <span>
 
-namespace relumine::mesh {
+namespace relumine::files {
 
 /// Decodes into the memory that `allocate(width, height)` returns, [height * width * 3] from the
 /// top left. `allocate` may throw to refuse the size. Grey becomes RGB. CMYK is taken as inverted,
@@ -17,4 +17,4 @@ void decode_jpeg(
     std::span<const std::byte> file,
     const std::function<std::uint8_t*(std::uint32_t width, std::uint32_t height)>& allocate);
 
-} // namespace relumine::mesh
+} // namespace relumine::files

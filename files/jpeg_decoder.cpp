@@ -1,4 +1,4 @@
-#include "mesh/materials/jpeg_decoder.h"
+#include "files/jpeg_decoder.h"
 
 #include <csetjmp>
 #include <cstdio> // jpeglib.h needs it
@@ -9,7 +9,7 @@
 #include <jerror.h>
 #include <jpeglib.h>
 
-namespace relumine::mesh {
+namespace relumine::files {
 
 namespace {
 
@@ -114,4 +114,4 @@ void decode_jpeg(std::span<const std::byte> file,
                         decoder.width(), decoder.height(), decoder.message()));
 }
 
-} // namespace relumine::mesh
+} // namespace relumine::files
