@@ -18,7 +18,6 @@
 #include "relumine/in/environment.h"
 #include "relumine/in/material.h"
 #include "relumine/in/mesh.h"
-#include "relumine/in/move.h"
 #include "relumine/in/precompute.h"
 #include "relumine/in/precompute_options.h"
 #include "relumine/in/scene.h"

@@ -12,6 +12,7 @@
 #include "relight/receiver_light.h"
 #include "relight/sharp/light_packets.h"
 #include "relight/sharp/shadow_rays.h"
+#include "relumine/in/move.h"
 #include "relumine/light/layer_compositor.h"
 #include "relumine/light/listed_light.h"
 #include "relumine/light/rays.h"

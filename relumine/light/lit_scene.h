@@ -15,7 +15,7 @@
 #include "prt/team.h"
 #include "prt/visibility/blockers.h"
 #include "relight/relighter.h"
-#include "relumine/in/move.h"
+#include "relumine/in/precompute_options.h"
 #include "relumine/in/scene.h"
 #include "relumine/light/bounces.h"
 #include "relumine/light/edited_environment.h"
@@ -28,6 +28,9 @@
 #include "relumine/light/shared_receivers.h"
 
 namespace relumine {
+
+struct GroupMove;
+struct MoveReport;
 
 struct LightOptions {
     /// Lights the sun through its cluster too, without shadow rays of its own: faster, softer
@@ -160,9 +163,9 @@ public:
     /// Throws:  as relumine::set_roughness(); std::logic_error where the scene is shared.
     void set_roughness(float roughness);
 
-    /// Moves a group of the scene's mesh (relumine/in/move.h), and lights the scene again by the
-    /// light that it has: environment, layers, lists, lamps and bounces. Of what this object gave,
-    /// only scene() stays valid.
+    /// Moves a group of the scene's mesh (include relumine/in/move.h), and lights the scene again
+    /// by the light that it has: environment, layers, lists, lamps and bounces. Of what this object
+    /// gave, only scene() stays valid.
     ///
     /// Throws:  as relumine::move(); std::logic_error where the scene is shared, by other users or
     ///          processes, or others than its triangles block light.

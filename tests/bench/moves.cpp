@@ -12,6 +12,7 @@
 #include "data_gen/environments.h"
 #include "prt/precompute_context.h"
 #include "prt/visibility/beam_scene.h"
+#include "relumine/in/move.h"
 #include "relumine/relumine.h"
 #include "tests/bench/process_usage.h"
 #include "tests/bench/program.h"

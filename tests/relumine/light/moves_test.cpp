@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "data_gen/environments.h"
+#include "relumine/in/move.h"
 #include "relumine/relumine.h"
 #include "tests/prt/scenes.h"
 
