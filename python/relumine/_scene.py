@@ -309,7 +309,7 @@ class Scene:
 
     @classmethod
     def quick(cls, mesh: Mesh) -> "Scene":
-        """A scene for a first sight, while precompute() is under way: the mesh's own vertices under
+        """A scene for a first sight, while precompute() is under way: the mesh's vertices under
         384 directions, without light from surface to surface. It takes some 100 rays a vertex.
 
         >>> relumine.Scene.quick(relumine.Mesh.load("boulder.ply")).num_clusters
