@@ -1,7 +1,6 @@
 #include "relumine/in/precompute.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -443,9 +442,9 @@ Scene first_scene(const std::string& path, const std::optional<mesh::Pose>& pose
     };
     PrecomputeReport facts;
     try {
-        if (before && !(cache && std::filesystem::exists(cached_file(*cache, mesh))))
+        if (before && !cache)
             before(mesh);
-        Scene scene = cache ? cached_precompute(*cache, std::move(mesh), {}, work, &facts)
+        Scene scene = cache ? cached_precompute(*cache, std::move(mesh), {}, work, &facts, before)
                             : precompute(std::move(mesh), {}, work, &facts);
         session.end_progress();
         if (facts.num_vertices != 0) {

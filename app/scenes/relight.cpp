@@ -181,8 +181,8 @@ void report_light(const RelightArguments& options, Session& session, const Lit& 
 std::function<void(const Mesh&)> first_sight(const RelightArguments& options, const Light& light,
                                              Session& session) {
     const std::string extension = files::extension_of(options.output.path);
-    if (!options.scene.is_first_picture() || (extension != ".png" && extension != ".exr") ||
-        options.only_bounces || options.scene.colors != SurfaceColors())
+    if ((extension != ".png" && extension != ".exr") || options.only_bounces ||
+        options.scene.colors != SurfaceColors())
         return {};
     return [&options, &light, &session, watch = Stopwatch()](const Mesh& mesh) {
         Scene scene = quick_scene(mesh);

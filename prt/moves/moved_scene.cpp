@@ -114,6 +114,8 @@ void move_receivers(const Scene& scene, const mesh::TriangleMesh& after,
     const Receivers& receivers = scene.receivers;
     if (on_vertices(scene.layout)) {
         Receivers next = vertex_receivers(after, *change.rim_step);
+        next.surfaces = receivers.surfaces;
+        leave_unlit_out(next);
         change.receiver_positions = std::move(next.positions);
         change.receiver_normals = std::move(next.normals);
         return;

@@ -157,13 +157,16 @@ private:
         mesh.is_open = mesh.is_open && !options_.no_refine && options_.blockers == nullptr;
         prt::RefineReport found;
         // The surfaces of the options may light what the file leaves unlit.
-        const std::vector<mesh::Material> of_file = mesh.geometry.materials;
-        if (options_.surface)
+        std::vector<mesh::Material> of_file;
+        if (options_.surface) {
+            of_file = mesh.geometry.materials;
             for (mesh::Material& material : mesh.geometry.materials)
                 material.model = mesh::MaterialModel::MetallicRoughness;
+        }
         mesh =
             refined_by_itself(std::move(mesh), options_.bias, work_.of(Stage::Refinement), &found);
-        mesh.geometry.materials = of_file;
+        if (options_.surface)
+            mesh.geometry.materials = std::move(of_file);
         if (found.num_added != 0)
             report_.refined = found;
         return mesh;

@@ -88,7 +88,8 @@ fs::path cached_file(const SceneCache& cache, const Mesh& mesh, const Precompute
 }
 
 Scene cached_precompute(const SceneCache& cache, Mesh mesh, const PrecomputeOptions& options,
-                        const PrecomputeWork& work, PrecomputeReport* report) {
+                        const PrecomputeWork& work, PrecomputeReport* report,
+                        const std::function<void(const Mesh&)>& before) {
     const fs::path file = cached_file(cache, mesh, options);
     std::error_code error;
     if (fs::exists(file, error)) {
@@ -101,6 +102,8 @@ Scene cached_precompute(const SceneCache& cache, Mesh mesh, const PrecomputeOpti
         } catch (const std::runtime_error&) { // made anew
         }
     }
+    if (before)
+        before(mesh);
     fs::create_directories(cache.folder, error);
     PrecomputeOptions unsaved = options;
     unsaved.output.clear();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 #include "relumine/in/mesh.h"
@@ -32,11 +33,13 @@ struct SceneCache {
 /// is made anew. Where the folder cannot be written, a warning says so, and the scene is not kept.
 /// Processes may use one cache at the same time.
 ///
+/// before:  looks at the mesh where the scene is not there, before the precompute. May be empty.
 /// Report:  num_vertices is 0 where the scene was there.
 /// Throws:  as precompute() and cached_file().
 [[nodiscard]] Scene cached_precompute(const SceneCache& cache, Mesh mesh,
                                       const PrecomputeOptions& options = {},
                                       const PrecomputeWork& work = {},
-                                      PrecomputeReport* report = nullptr);
+                                      PrecomputeReport* report = nullptr,
+                                      const std::function<void(const Mesh&)>& before = {});
 
 } // namespace relumine

@@ -154,6 +154,26 @@ TEST(MovedScene, CountsAreThoseOfAPrecomputeWithTheSameClusters) {
     }
 }
 
+TEST(MovedScene, WhatIsUnlitStaysUnlit) {
+    Scene scene = scene_of(things());
+    scene.receivers.surfaces.resize(scene.receivers.size());
+    for (std::size_t i = 0; i < scene.mesh.num_triangles(); ++i)
+        if (scene.mesh.groups[scene.mesh.triangle_groups[i]] == "ball")
+            for (const std::uint32_t vertex : scene.mesh.triangles[i])
+                scene.receivers.surfaces[vertex] = {.albedo = glm::vec3(0.0f),
+                                                    .emission = glm::vec3(1.0f)};
+    leave_unlit_out(scene.receivers);
+    const std::vector<glm::vec3> normals = scene.receivers.normals;
+    ASSERT_NE(normals, scene.mesh.normals);
+    with_beams(scene, [&](const Blockers& blockers) {
+        scene.transfer = precompute(scene.receivers, blockers, options_of(scene));
+    });
+    static_cast<void>(move(scene, Crate, motion(scene, Crate, {0.0, 0.0, 0.3})));
+    for (std::size_t i = 0; i < normals.size(); ++i)
+        EXPECT_EQ(scene.receivers.normals[i] == glm::vec3(0.0f), normals[i] == glm::vec3(0.0f));
+    expect_same(scene.transfer, fresh(scene));
+}
+
 TEST(MovedScene, FewPairsAreCountedAnewAndThoseThatMustBe) {
     Scene scene = scene_of(things());
     const VisibleCounts before = scene.transfer.counts;
