@@ -30,6 +30,9 @@ struct PlaceLists {
     bool operator==(const PlaceLists&) const = default;
 };
 
+/// The most directions that a receiver looks into
+inline constexpr std::uint32_t MostBounceDirections = 3072;
+
 /// How the rows of a matrix were sampled, by place: what moves need to sample parts of them anew.
 struct BounceRays {
     /// Directions that each receiver looked into, and rays that met a surface

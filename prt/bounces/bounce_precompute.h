@@ -40,7 +40,7 @@ struct BounceOptions {
     /// tolerance asks for.
     std::uint32_t min_directions = 48;
     /// A power of two times min_directions at which the doubling ends.
-    std::uint32_t max_directions = 3072;
+    std::uint32_t max_directions = MostBounceDirections;
     /// The samples say how many directions each receiver looked into: moves will ask.
     bool is_kept = false;
     /// Backs send the light that their fronts do; otherwise they are black.

@@ -13,7 +13,6 @@
 
 #include "files/large_vector.h"
 #include "files/parallel.h"
-#include "prt/bounces/bounce_precompute.h"
 #include "prt/scene/small_numbers.h"
 
 namespace relumine::prt {
@@ -147,7 +146,7 @@ BounceRays read_bounce_rays(const SectionReader& reader, const BounceMatrix& mat
                     .num_hits = reader.elements<std::uint32_t>(HitCounts, n),
                     .distances = reader.elements<float>(Distances, n)};
     for (std::size_t i = 0; i < n; ++i)
-        if (rays.num_directions[i] > BounceOptions{}.max_directions ||
+        if (rays.num_directions[i] > MostBounceDirections ||
             rays.num_hits[i] > rays.num_directions[i] ||
             matrix.emitters[i].size() > rays.num_hits[i] || !(rays.distances[i] >= 0.0f))
             reader.fail(Looks, "rays that fit the rows");
