@@ -18,10 +18,18 @@ struct LobeRays {
     LobeRays(const prt::Surface& surface, std::uint32_t num)
         : all(lobe_alpha(surface) > WideAlpha ? 2 * num : num), coat((num + 1) / 2),
           sheen(2 * num) {}
+    static LobeRays one_each() {
+        LobeRays one;
+        one.all = one.coat = one.sheen = 1;
+        return one;
+    }
     static constexpr float WideAlpha = 0.25f;
     std::uint32_t all, coat;
     /// They are as dense everywhere.
     std::uint32_t sheen;
+
+private:
+    LobeRays() = default;
 };
 
 /// Returns the rays of a pixel that shares none with its neighbours. Where a wide lobe turns from

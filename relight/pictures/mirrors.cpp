@@ -10,6 +10,7 @@
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/ggx_lobe.h"
 #include "prt/glossy/sheen_lobe.h"
+#include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/lit_position.h"
 #include "relight/pictures/highlight_rays.h"
 
@@ -128,24 +129,22 @@ std::optional<MirroredLight> Mirrors::shared(const Mirror& mirror,
 }
 
 std::optional<Mirror> Mirrors::at(const prt::MeshPoint& point) const {
-    if (light_.reflections == nullptr || light_.textures == nullptr || !light_.eye ||
+    if (!light_.eye)
+        return std::nullopt;
+    if (light_.reflections == nullptr || light_.textures == nullptr ||
         !light_.textures->mirrors(point.triangle))
         return std::nullopt;
-    const glm::vec3 to_eye =
-        glm::normalize(*light_.eye - prt::value_at(mesh_, mesh_.positions, point));
+    return mirror_of(light_.textures->mirror(point, &view_), point,
+                     glm::normalize(*light_.eye - prt::value_at(mesh_, mesh_.positions, point)));
+}
+
+std::optional<Mirror> Mirrors::mirror_of(const prt::Surface& surface, const prt::MeshPoint& point,
+                                         const glm::vec3& to_eye) const {
     if (!(glm::dot(prt::shading_normal(mesh_, point), to_eye) > 0.0f))
         return std::nullopt;
-    // A normal map may turn away from the eye what the eye sees.
-    const auto turned = [&](const glm::vec3& normal) {
-        constexpr float LeastCosine = 0.01f;
-        const float cosine = glm::dot(normal, to_eye);
-        return cosine < LeastCosine ? glm::normalize(normal + (LeastCosine - cosine) * to_eye)
-                                    : normal;
-    };
-    Mirror mirror{light_.textures->mirror(point, &view_), turned(prt::mapped_normal(mesh_, point)),
-                  to_eye};
+    Mirror mirror{surface, seen_normal(prt::mapped_normal(mesh_, point), to_eye), to_eye};
     if (prt::has_coat(mirror.surface))
-        mirror.surface.coat_normal = turned(prt::coat_normal(mesh_, point));
+        mirror.surface.coat_normal = seen_normal(prt::coat_normal(mesh_, point), to_eye);
     return mirror;
 }
 
@@ -187,9 +186,8 @@ MirroredLight Mirrors::light(const Mirror& mirror, const prt::MeshPoint& point) 
 
 MirroredLight Mirrors::trace(const Mirror& mirror, const prt::MeshPoint& point,
                              std::uint32_t num_rays) const {
-    const auto surfaces = [this](const prt::Hit& hit, const glm::vec3& direction,
-                                 float solid_angle) {
-        return seen(hit, direction, solid_angle);
+    const auto surfaces = [this](const MetSurface& met) {
+        return seen(met);
     };
     return light_.reflections->light(
         mirror.surface,
@@ -200,21 +198,51 @@ MirroredLight Mirrors::trace(const Mirror& mirror, const prt::MeshPoint& point,
         num_rays, surfaces);
 }
 
-glm::vec3 Mirrors::seen(const prt::Hit& hit, const glm::vec3& direction, float solid_angle) const {
-    const prt::Hit facing = twins_.facing(hit, direction);
-    const prt::MeshPoint at{.triangle = facing.triangle, .barycentric = facing.barycentric};
+prt::MeshPoint Mirrors::point_of(const MetSurface& met) const {
+    const prt::Hit facing = twins_.facing(met.hit, met.direction);
+    return {.triangle = facing.triangle, .barycentric = facing.barycentric};
+}
+
+glm::vec3 Mirrors::seen(const MetSurface& met) const {
+    const prt::MeshPoint at = point_of(met);
+    if (floor_.has(mesh_.triangles[at.triangle]))
+        return floor(at, met);
     const SurfaceColors& colors = *light_.textures;
-    if (!floor_.has(mesh_.triangles[at.triangle])) {
-        if (!colors.has(at.triangle))
-            return prt::value_at(mesh_, light_.mirrored, at) +
-                   (light_.emission.empty() ? glm::vec3(0.0f)
-                                            : prt::value_at(mesh_, light_.emission, at));
-        const prt::Surface surface = colors.surface(at);
-        return colors.light(light_.mirrored, at) * surface.albedo +
-               light_.emission_gain(at.triangle) * surface.emission;
-    }
+    if (!colors.mirrors(at.triangle))
+        return matte(met);
+    const prt::Surface surface = colors.mirror(at);
+    const glm::vec3 light = colors.light(light_.mirrored, at);
+    const glm::vec3 emission = light_.emission_gain(at.triangle) * surface.emission;
+    const glm::vec3 matte = light * prt::without_highlight(surface).albedo;
+    const std::uint32_t count = asked_for(met, surface);
+    if (count == 0)
+        return matte + emission;
+    const std::optional<Mirror> mirror = mirror_of(surface, at, -met.direction);
+    if (!mirror)
+        return matte + emission;
+    const glm::vec3 whole = light_.reflections->in_mirror(
+        met, mirror->surface, prt::value_at(mesh_, mesh_.positions, at), mirror->normal, light,
+        [this](const MetSurface& behind) { return this->matte(behind); });
+    return glm::max(matte + static_cast<float>(count) * (whole - matte), 0.0f) + emission;
+}
+
+glm::vec3 Mirrors::matte(const MetSurface& met) const {
+    const prt::MeshPoint at = point_of(met);
+    if (floor_.has(mesh_.triangles[at.triangle]))
+        return floor(at, met);
+    const SurfaceColors& colors = *light_.textures;
+    if (!colors.has(at.triangle))
+        return prt::value_at(mesh_, light_.mirrored, at) +
+               (light_.emission.empty() ? glm::vec3(0.0f)
+                                        : prt::value_at(mesh_, light_.emission, at));
+    const prt::Surface surface = colors.surface(at);
+    return colors.light(light_.mirrored, at) * surface.albedo +
+           light_.emission_gain(at.triangle) * surface.emission;
+}
+
+glm::vec3 Mirrors::floor(const prt::MeshPoint& at, const MetSurface& met) const {
     const auto sky = [&] {
-        return light_.reflections->sky(direction, solid_angle);
+        return light_.reflections->sky(met.direction, met.solid_angle);
     };
     const glm::vec3 position = prt::value_at(mesh_, mesh_.positions, at);
     const float opacity = floor_.opacity(position);

@@ -51,16 +51,24 @@ public:
     [[nodiscard]] glm::vec3 soft(const Mirror& mirror, const prt::MeshPoint& point,
                                  const glm::vec3& diffuse);
 
-    /// Returns the radiance of a surface that a ray meets. A floor that catches shadows shows what
-    /// is behind it, as in the picture; without a picture's backdrop, the mean of the sky over a
-    /// solid angle.
-    [[nodiscard]] glm::vec3 seen(const prt::Hit& hit, const glm::vec3& direction,
-                                 float solid_angle) const;
+    /// Returns the radiance of a surface that a ray meets, with what it mirrors itself. Surfaces
+    /// in that are matte. A floor that catches shadows shows what is behind it, as in the picture;
+    /// without a picture's backdrop, the mean of the sky over the ray's solid angle.
+    [[nodiscard]] glm::vec3 seen(const MetSurface& met) const;
 
     /// How the rays of this pixel are shifted: MirrorPoint::shift.
     [[nodiscard]] const glm::vec2& shift() const { return shift_; }
 
 private:
+    /// at() for a ray that comes from the side of `to_eye`.
+    [[nodiscard]] std::optional<Mirror> mirror_of(const prt::Surface& surface,
+                                                  const prt::MeshPoint& point,
+                                                  const glm::vec3& to_eye) const;
+    /// seen() of what mirrors nothing.
+    [[nodiscard]] glm::vec3 matte(const MetSurface& met) const;
+    [[nodiscard]] glm::vec3 floor(const prt::MeshPoint& at, const MetSurface& met) const;
+    [[nodiscard]] prt::MeshPoint point_of(const MetSurface& met) const;
+
     struct Traced {
         Mirror mirror;
         MirroredLight light;

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -42,6 +43,38 @@ struct Weighted {
     }
 };
 
+/// Resolution of what is mirrored twice: a texel is as wide as the sun.
+constexpr std::uint32_t MostTwiceMirrored = 256;
+
+/// Returns a map at R, R / 2, .. texels along an edge.
+std::vector<cubemap::CubeMap> halves(cubemap::CubeMap map) {
+    std::vector<cubemap::CubeMap> levels;
+    levels.push_back(std::move(map));
+    while (levels.back().resolution % 2 == 0)
+        levels.push_back(cubemap::halved(levels.back()));
+    return levels;
+}
+
+/// Returns a number of a fan that has nothing to do with where its rays go.
+std::uint32_t number_of(const glm::vec2& shift) {
+    const std::uint64_t bits = std::bit_cast<std::uint64_t>(shift);
+    return static_cast<std::uint32_t>((bits ^ bits >> 32) * 0x9e3779b97f4a7c15u >> 40);
+}
+
+/// Every so many rays of a fan ask.
+std::uint32_t every_of(const MetSurface& met, const prt::Surface& surface) {
+    constexpr float Asked = 32.0f, AlwaysAsked = 0.25f, OfLayers = 0.04f;
+    const auto most = [](const glm::vec3& color) {
+        return std::max({color.r, color.g, color.b});
+    };
+    const float part = std::max({most(surface.specular), surface.table ? 1.0f : 0.0f,
+                                 prt::has_coat(surface) ? OfLayers : 0.0f,
+                                 prt::has_sheen(surface) ? OfLayers : 0.0f});
+    const float asked = std::max(Asked * std::min(part / AlwaysAsked, 1.0f), 1.0f);
+    const auto rays = static_cast<float>(met.num_rays);
+    return static_cast<std::uint32_t>(std::clamp(std::round(rays / asked), 1.0f, rays));
+}
+
 /// What a highlight sends, by colour; of a measured one each colour has its own lobe.
 glm::vec3 highlight_of(const prt::Surface& surface, const prt::Lobes<float>& lobes) {
     return surface.table ? glm::vec3(lobes.specular, lobes.specular_grazing, lobes.diffuse_grazing)
@@ -53,6 +86,12 @@ glm::vec3 highlight_of(const prt::Surface& surface, const prt::Lobes<float>& lob
 glm::vec2 ray_shift(std::uint64_t i) {
     return glm::vec2(
         glm::fract(static_cast<double>(i) * glm::dvec2(0.75487766624669276, 0.56984029099805327)));
+}
+
+glm::vec3 seen_normal(const glm::vec3& normal, const glm::vec3& to_eye) {
+    constexpr float LeastCosine = 0.01f;
+    const float cosine = glm::dot(normal, to_eye);
+    return cosine < LeastCosine ? glm::normalize(normal + (LeastCosine - cosine) * to_eye) : normal;
 }
 
 float lobe_alpha(const prt::Surface& surface) {
@@ -99,28 +138,40 @@ Reflections::Reflections(const prt::RayScene& rays, float bias, std::uint32_t nu
     }
     if (environment.resolution == 0)
         return;
-    levels_.push_back(without_lights(environment, without));
-    while (levels_.back().resolution % 2 == 0)
-        levels_.push_back(cubemap::halved(levels_.back()));
+    levels_ = halves(without_lights(environment, without));
+    if (!without.empty()) {
+        const cubemap::CubeMap* all = &environment;
+        cubemap::CubeMap coarse;
+        while (all->resolution > MostTwiceMirrored && all->resolution % 2 == 0) {
+            coarse = cubemap::halved(*all);
+            all = &coarse;
+        }
+        whole_ = halves(*all);
+    }
 }
 
 glm::vec3 Reflections::sky(const glm::vec3& direction, float solid_angle) const {
-    if (levels_.empty())
+    return mean(levels_, direction, solid_angle);
+}
+
+glm::vec3 Reflections::mean(const Levels& levels, const glm::vec3& direction, float solid_angle) {
+    if (levels.empty())
         return glm::vec3(0.0f);
-    const auto r = static_cast<float>(levels_[0].resolution);
+    const auto r = static_cast<float>(levels[0].resolution);
     // Bilinear values between means spread as far as squares of three times the area.
     constexpr float Spread = 3.0f;
     const float texels = solid_angle * 6.0f * r * r / (4.0f * std::numbers::pi_v<float>);
     const float level = 0.5f * std::log2(std::max(texels / Spread, 1.0f));
-    const auto last = static_cast<float>(levels_.size() - 1);
-    return cubemap::sample(levels_[static_cast<std::size_t>(std::min(level + 0.5f, last))],
+    const auto last = static_cast<float>(levels.size() - 1);
+    return cubemap::sample(levels[static_cast<std::size_t>(std::min(level + 0.5f, last))],
                            direction);
 }
 
 template<typename Add>
 void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surfaces& surfaces,
-                       const Add& add) const {
+                       const Behind& behind, const Add& add) const {
     const FanFrame frame(fan);
+    const float num_rays = static_cast<float>(fan.num_rays) * behind.num_fans;
     for (std::uint32_t first = 0; first < fan.num_rays; first += prt::PacketSize) {
         const FanRays rays = fan_rays(fan, frame, first);
         if (rays.above == 0)
@@ -131,21 +182,61 @@ void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surface
             const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
             const glm::vec3 w = rays.directions.direction(lane);
             const float dense = rays.densities[lane];
-            const float seen = SeenPart / (static_cast<float>(fan.num_rays) * dense);
-            add(w, dense, (met >> lane & 1u) != 0 ? surfaces(hits[lane], w, seen) : sky(w, seen));
+            const float seen = std::max(SeenPart / (num_rays * dense), behind.least_solid_angle);
+            if ((met >> lane & 1u) == 0)
+                add(w, dense, mean(behind.levels, w, seen));
+            else
+                add(w, dense,
+                    surfaces({.hit = hits[lane],
+                              .direction = w,
+                              .solid_angle = seen,
+                              .ray = first + static_cast<std::uint32_t>(lane),
+                              .num_rays = fan.num_rays,
+                              .fan_shift = fan.shift}));
         }
     }
 }
 
 MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint& point,
                                  std::uint32_t num_rays, const Surfaces& surfaces) const {
+    return sum(surface, point, LobeRays(surface, num_rays), surfaces, {levels_});
+}
+
+std::uint32_t asked_for(const MetSurface& met, const prt::Surface& surface) {
+    const std::uint32_t every = every_of(met, surface);
+    return (met.ray + number_of(met.fan_shift)) % every == 0 ? every : 0;
+}
+
+glm::vec3 Reflections::in_mirror(const MetSurface& met, const prt::Surface& surface,
+                                 const glm::vec3& position, const glm::vec3& normal,
+                                 const glm::vec3& diffuse, const Surfaces& surfaces) const {
+    // Rays of the same fan look into nearly the same lobe.
+    const float num_fans =
+        static_cast<float>(met.num_rays) / static_cast<float>(every_of(met, surface));
+    // As wide as about half of the lobe that the surface is seen through.
+    const float blur = met.solid_angle * static_cast<float>(met.num_rays);
+    const MirrorPoint point{.position = position,
+                            .normal = normal,
+                            .to_eye = -met.direction,
+                            .shift = glm::fract(met.fan_shift + ray_shift(met.ray))};
+    const prt::EyeCosines n_v(surface, point.normal, point.to_eye);
+    prt::Lobes<glm::vec3> lobes = lobes_of(surface,
+                                           sum(surface, point, LobeRays::one_each(), surfaces,
+                                               {whole_.empty() ? levels_ : whole_, blur, num_fans}),
+                                           n_v);
+    lobes.diffuse = diffuse;
+    return prt::reflect(surface, lobes, n_v);
+}
+
+MirroredLight Reflections::sum(const prt::Surface& surface, const MirrorPoint& point,
+                               const LobeRays& rays, const Surfaces& surfaces,
+                               const Behind& behind) const {
     const prt::EyeCosines n_v(surface, point.normal, point.to_eye);
     if (surface.highlight == prt::Highlight::None || n_v.base <= 0.0f)
         return {};
     const auto lobes = [&](const glm::vec3& w) {
         return prt::evaluate_lobes(surface, point.normal, point.to_eye, w);
     };
-    const LobeRays rays(surface, num_rays);
     const glm::vec3 origin = point.position + bias_ * point.normal;
     RayFan fan{.normal = point.normal,
                .to_eye = point.to_eye,
@@ -153,17 +244,18 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
                .num_rays = rays.all,
                .shift = point.shift};
     Weighted all, grazing, coat, sheen;
-    send(origin, fan, surfaces, [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
-        const prt::Lobes<float> lobe = lobes(w);
-        all.add(highlight_of(surface, lobe) / dense, radiance);
-        grazing.add(glm::vec3(lobe.specular_grazing / dense), radiance);
-    });
+    send(origin, fan, surfaces, behind,
+         [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
+             const prt::Lobes<float> lobe = lobes(w);
+             all.add(highlight_of(surface, lobe) / dense, radiance);
+             grazing.add(glm::vec3(lobe.specular_grazing / dense), radiance);
+         });
     fan.num_rays = rays.coat;
     if (prt::has_coat(surface) && n_v.coat > 0.0f) {
         fan.alpha = prt::ggx_alpha(surface.coat_roughness);
         if (surface.coat_normal != glm::vec3(0.0f))
             fan.normal = surface.coat_normal;
-        send(origin, fan, surfaces,
+        send(origin, fan, surfaces, behind,
              [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
                  coat.add(glm::vec3(lobes(w).coat / dense), radiance);
              });
@@ -172,7 +264,7 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
         fan.num_rays = rays.sheen;
         fan.alpha = 0.0f;
         fan.normal = point.normal;
-        send(origin, fan, surfaces,
+        send(origin, fan, surfaces, behind,
              [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
                  sheen.add(glm::vec3(lobes(w).sheen / dense), radiance);
              });

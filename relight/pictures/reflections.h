@@ -22,6 +22,7 @@
 
 namespace relumine::relight {
 
+struct LobeRays;
 struct RayFan;
 
 /// A point that mirrors.
@@ -54,12 +55,27 @@ struct MirroredLight {
 [[nodiscard]] prt::Lobes<glm::vec3>
 lobes_of(const prt::Surface& surface, const MirroredLight& light, const prt::EyeCosines& n_v);
 
+/// A surface that a ray of a highlight meets.
+struct MetSurface {
+    const prt::Hit& hit;
+    const glm::vec3& direction;
+    /// What the ray stands for, in sr.
+    float solid_angle = 0.0f;
+    /// Which ray of a fan it is, of how many, and MirrorPoint::shift of the fan
+    std::uint32_t ray = 0, num_rays = 1;
+    glm::vec2 fan_shift{0.0f};
+};
+
+/// Returns for how many rays of its fan this one asks what the surface mirrors that it met: those
+/// in between take it for matte. 0: it does not ask. A metal is asked by 32 rays of a fan, or all;
+/// what mirrors little by fewer.
+[[nodiscard]] std::uint32_t asked_for(const MetSurface& met, const prt::Surface& surface);
+
 class Reflections {
 public:
     /// Returns the radiance of a surface that a ray meets. A ray that passes sees the mean of sky()
-    /// over a solid angle.
-    using Surfaces = std::function<glm::vec3(const prt::Hit& hit, const glm::vec3& direction,
-                                             float solid_angle)>;
+    /// over its solid angle.
+    using Surfaces = std::function<glm::vec3(const MetSurface& met)>;
 
     /// `without` are lights of the environment that are lit in another way: they are not mirrored.
     /// `environment` may have no texels, which is black. `bias` is that of prt::PrecomputeOptions.
@@ -78,6 +94,17 @@ public:
     [[nodiscard]] MirroredLight light(const prt::Surface& surface, const MirrorPoint& point,
                                       std::uint32_t num_rays, const Surfaces& surfaces) const;
 
+    /// Returns what a surface sends on that a ray of a highlight met: of its diffuse light, which
+    /// is the radiance of albedo 1, and of what it mirrors itself, which a ray of each lobe finds.
+    /// All lights of the environment are in it, blurred over half of the lobe that the surface is
+    /// seen through.
+    ///
+    /// Cost:    1 to 3 rays.
+    /// Threads: any.
+    [[nodiscard]] glm::vec3 in_mirror(const MetSurface& met, const prt::Surface& surface,
+                                      const glm::vec3& position, const glm::vec3& normal,
+                                      const glm::vec3& diffuse, const Surfaces& surfaces) const;
+
     /// Returns the mean radiance of the environment around a direction, but of the lights that it
     /// is without.
     [[nodiscard]] glm::vec3 sky(const glm::vec3& direction, float solid_angle) const;
@@ -89,18 +116,37 @@ public:
     [[nodiscard]] float least_roughness() const { return least_roughness_; }
 
 private:
+    /// The environment at R, R / 2, .. texels along an edge.
+    using Levels = std::vector<cubemap::CubeMap>;
+    /// What rays see that leave, how wide they are at least, and how many fans share a lobe.
+    struct Behind {
+        const Levels& levels;
+        float least_solid_angle = 0.0f;
+        float num_fans = 1.0f;
+    };
+    [[nodiscard]] static glm::vec3 mean(const Levels& levels, const glm::vec3& direction,
+                                        float solid_angle);
+    [[nodiscard]] MirroredLight sum(const prt::Surface& surface, const MirrorPoint& point,
+                                    const LobeRays& rays, const Surfaces& surfaces,
+                                    const Behind& behind) const;
     /// Calls add(direction, density of rays there, radiance) for each ray of a fan.
     template<typename Add>
     void send(const glm::vec3& origin, const RayFan& fan, const Surfaces& surfaces,
-              const Add& add) const;
+              const Behind& behind, const Add& add) const;
 
     const prt::RayScene& rays_;
     float bias_;
     std::uint32_t num_rays_;
     float least_roughness_ = 0.0f;
-    /// The environment at R, R / 2, .. texels along an edge.
-    std::vector<cubemap::CubeMap> levels_;
+    /// Without the lights
+    Levels levels_;
+    /// With the lights, from a resolution on that is enough for what is mirrored twice. Empty:
+    /// there are no lights.
+    Levels whole_;
 };
+
+/// Returns a normal that the eye sees: a normal map may turn one away from it.
+[[nodiscard]] glm::vec3 seen_normal(const glm::vec3& normal, const glm::vec3& to_eye);
 
 /// Returns the alpha of the GGX lobe that is about as wide as a surface's highlight.
 [[nodiscard]] float lobe_alpha(const prt::Surface& surface);

@@ -20,6 +20,9 @@ namespace {
 /// Spreads less than a pixel does.
 constexpr float SmoothAlpha = 0.003f;
 
+/// What metals behind smooth glass mirror is blurred over 2 degrees: a sample has one ray.
+constexpr float LeastSpread = 1e-3f;
+
 /// Surfaces that a ray meets before it is let go where it is.
 constexpr int MostSurfaces = 16;
 
@@ -135,6 +138,12 @@ glm::vec3 Refractions::followed(Ray ray, const glm::vec2& u) const {
         const auto sky = [&] {
             return ray.throughput * light_.reflections->sky(ray.direction, ray.spread);
         };
+        const auto seen = [&] {
+            return ray.throughput * mirrors_.seen({.hit = *hit,
+                                                   .direction = ray.direction,
+                                                   .solid_angle = std::max(ray.spread, LeastSpread),
+                                                   .fan_shift = turned(u, ray.num_surfaces)});
+        };
         if (!hit)
             return sky();
         if (ray.body != nullptr)
@@ -142,11 +151,11 @@ glm::vec3 Refractions::followed(Ray ray, const glm::vec2& u) const {
                                        glm::vec3(hit->distance / ray.body->attenuation_distance));
         const bool is_last = ray.num_surfaces >= MostSurfaces;
         if (!rays_.is_thin(hit->triangle))
-            return ray.throughput * mirrors_.seen(*hit, ray.direction, ray.spread);
+            return seen();
         if (is_last)
             return sky();
         if (!meet(ray, *hit, u))
-            return ray.throughput * mirrors_.seen(*hit, ray.direction, ray.spread);
+            return seen();
     }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "files/parallel.h"
 #include "prt/glossy/brdf.h"
@@ -19,13 +20,16 @@ namespace {
 /// What rays see of the surfaces that they meet.
 class MirroredSurfaces {
 public:
-    MirroredSurfaces(const Scene& scene, const SceneMirrors::Surfaces& surfaces)
-        : mesh_(scene.mesh), twins_(scene.mesh),
+    MirroredSurfaces(const Scene& scene, const relight::Reflections& reflections,
+                     const SceneMirrors::Surfaces& surfaces)
+        : mesh_(scene.mesh), reflections_(reflections), twins_(scene.mesh),
           gains_(scene.lamps.empty() ? std::vector<glm::vec3>()
                                      : triangle_gains(scene, surfaces.emission)) {
-        for (const mesh::Material& material : mesh_.materials)
+        for (const mesh::Material& material : mesh_.materials) {
+            has_highlight_.push_back(prt::has_highlight(material));
             has_own_color_.push_back(material.base_color_texture || material.emission_texture ||
-                                     prt::has_highlight(material));
+                                     has_highlight_.back());
+        }
         const prt::Receivers& receivers = scene.receivers;
         if (surfaces.radiance.empty() || receivers.num_added == 0)
             return;
@@ -44,28 +48,65 @@ public:
     }
 
     /// Returns the radiance of a surface that a ray meets, as relight::Reflections asks for it.
-    [[nodiscard]] glm::vec3 radiance(const prt::Hit& hit, const glm::vec3& direction) const {
-        const prt::Hit facing = twins_.facing(hit, direction);
-        const prt::MeshPoint at{.triangle = facing.triangle, .barycentric = facing.barycentric};
-        const glm::vec3 gain = gains_.empty() ? glm::vec3(1.0f) : gains_[at.triangle];
+    [[nodiscard]] glm::vec3 radiance(const relight::MetSurface& met) const {
+        const prt::MeshPoint at = point_of(met);
+        if (!has_highlight(at))
+            return matte(met);
+        prt::Surface surface =
+            prt::surface_at(mesh_, at.triangle, at.barycentric, prt::GgxForm::Whole);
+        const glm::vec3 emission = gain(at) * surface.emission;
+        const glm::vec3 matte_part = prt::without_highlight(surface).albedo * diffuse(at);
+        const std::uint32_t count = relight::asked_for(met, surface);
+        const glm::vec3 to_eye = -met.direction;
+        if (count == 0 || !(glm::dot(prt::shading_normal(mesh_, at), to_eye) > 0.0f))
+            return matte_part + emission;
+        if (prt::has_coat(surface))
+            surface.coat_normal = relight::seen_normal(prt::coat_normal(mesh_, at), to_eye);
+        const glm::vec3 whole = reflections_.in_mirror(
+            met, surface, prt::value_at(mesh_, mesh_.positions, at),
+            relight::seen_normal(prt::mapped_normal(mesh_, at), to_eye), diffuse(at),
+            [this](const relight::MetSurface& behind) { return matte(behind); });
+        return glm::max(matte_part + static_cast<float>(count) * (whole - matte_part), 0.0f) +
+               emission;
+    }
+
+private:
+    [[nodiscard]] prt::MeshPoint point_of(const relight::MetSurface& met) const {
+        const prt::Hit facing = twins_.facing(met.hit, met.direction);
+        return {.triangle = facing.triangle, .barycentric = facing.barycentric};
+    }
+    [[nodiscard]] bool has_highlight(const prt::MeshPoint& at) const {
+        return !mesh_.triangle_materials.empty() &&
+               has_highlight_[mesh_.triangle_materials[at.triangle]];
+    }
+    [[nodiscard]] glm::vec3 gain(const prt::MeshPoint& at) const {
+        return gains_.empty() ? glm::vec3(1.0f) : gains_[at.triangle];
+    }
+    /// What arrives, as radiance of albedo 1.
+    [[nodiscard]] glm::vec3 diffuse(const prt::MeshPoint& at) const {
+        return light_.empty() ? glm::vec3(0.0f) : prt::value_at(mesh_, light_, at);
+    }
+    /// radiance() of what mirrors nothing.
+    [[nodiscard]] glm::vec3 matte(const relight::MetSurface& met) const {
+        const prt::MeshPoint at = point_of(met);
         if (mesh_.triangle_materials.empty() ||
             !has_own_color_[mesh_.triangle_materials[at.triangle]])
             return light_.empty() ? glm::vec3(0.0f)
                                   : prt::value_at(mesh_, sent_, at) +
-                                        gain * prt::value_at(mesh_, emission_, at);
+                                        gain(at) * prt::value_at(mesh_, emission_, at);
         const prt::Surface surface = prt::without_highlight(
             prt::surface_at(mesh_, at.triangle, at.barycentric, prt::GgxForm::Published));
-        const glm::vec3 reflected =
-            light_.empty() ? glm::vec3(0.0f) : surface.albedo * prt::value_at(mesh_, light_, at);
-        return reflected + gain * surface.emission;
+        return surface.albedo * diffuse(at) + gain(at) * surface.emission;
     }
 
-private:
     const mesh::TriangleMesh& mesh_;
+    const relight::Reflections& reflections_;
     prt::TwinTriangles twins_;
     std::vector<glm::vec3> gains_;
     /// Whether the materials know their colours; others have those of the vertices.
     std::vector<bool> has_own_color_;
+    /// Whether they have a highlight
+    std::vector<bool> has_highlight_;
     /// [num_vertices] what arrives, as radiance of albedo 1, what is sent of it, and what glows;
     /// empty: unknown.
     std::vector<glm::vec3> light_, sent_, emission_;
@@ -96,9 +137,9 @@ void SceneMirrors::add(const relight::Relighter& light, const Surfaces& surfaces
     const prt::Receivers& all = scene_->receivers;
     const relight::Reflections reflections(rays_->of_mesh(), scene_->settings.bias, rays_per_pixel_,
                                            light.environment(), light.sharp_lights());
-    const MirroredSurfaces mirrored(*scene_, surfaces);
-    const auto seen = [&](const prt::Hit& hit, const glm::vec3& direction, float) {
-        return mirrored.radiance(hit, direction);
+    const MirroredSurfaces mirrored(*scene_, reflections, surfaces);
+    const auto seen = [&](const relight::MetSurface& met) {
+        return mirrored.radiance(met);
     };
     files::parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t i) {
         const std::uint32_t receiver = receivers[i];

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t R = 64;
 
-const Reflections::Surfaces NoSurface = [](const prt::Hit&, const glm::vec3&, float) {
+const Reflections::Surfaces NoSurface = [](const MetSurface&) {
     ADD_FAILURE() << "nothing stands around the point";
     return glm::vec3(0.0f);
 };
@@ -146,9 +146,9 @@ TEST(Reflections, AMirrorShowsWhatItLooksAt) {
     // A wall of radiance 3 stands where the mirror looks, and hides the sky.
     const prt::RayScene wall(scenes::box({-2.0f, -1.0f, 0.5f}, {-1.0f, 1.0f, 2.0f}));
     const Reflections reflections(wall, 1e-4f, 16, cubemap::CubeMap(16, glm::vec3(0.25f)), {});
-    const auto bright = [&](const prt::Hit&, const glm::vec3& direction, float solid_angle) {
-        EXPECT_LT(direction.x, 0.0f);
-        EXPECT_NEAR(reflections.sky(direction, solid_angle).r, 0.25f, 1e-4f);
+    const auto bright = [&](const MetSurface& met) {
+        EXPECT_LT(met.direction.x, 0.0f);
+        EXPECT_NEAR(reflections.sky(met.direction, met.solid_angle).r, 0.25f, 1e-4f);
         return glm::vec3(3.0f);
     };
     const prt::Surface mirror = metal(0.0f);
@@ -162,6 +162,60 @@ TEST(Reflections, AMirrorShowsWhatItLooksAt) {
     MirrorPoint away = seen_at(0.6f);
     away.to_eye = -away.to_eye;
     EXPECT_EQ(mirrored(reflections, mirror, away, bright).specular, glm::vec3(0.0f));
+}
+
+/// Whatever a surface mirrors, its questions stand for all rays of a fan.
+TEST(Reflections, QuestionsStandForAllRays) {
+    const prt::Hit hit{};
+    const glm::vec3 direction(0.0f, 0.0f, -1.0f);
+    for (const std::uint32_t num_rays : {1u, 16u, 32u, 64u, 256u})
+        for (const float f0 : {0.0f, 0.04f, 0.1f, 0.25f, 1.0f}) {
+            prt::Surface surface = metal(0.3f);
+            surface.specular = glm::vec3(f0);
+            std::uint32_t sum = 0, asked = 0;
+            for (std::uint32_t ray = 0; ray < num_rays; ++ray) {
+                const std::uint32_t count = asked_for({.hit = hit,
+                                                       .direction = direction,
+                                                       .ray = ray,
+                                                       .num_rays = num_rays,
+                                                       .fan_shift = {0.2f, 0.7f}},
+                                                      surface);
+                sum += count;
+                asked += count > 0;
+            }
+            EXPECT_NEAR(sum, num_rays, num_rays / asked) << num_rays << " rays, F0 " << f0;
+            EXPECT_LE(asked, f0 >= 0.25f ? 64u : 16u) << num_rays << " rays, F0 " << f0;
+        }
+}
+
+/// A surface that a mirror shows sends what it mirrors itself, sharp lights included.
+TEST(Reflections, ASurfaceInAMirrorMirrorsTheSky) {
+    cubemap::CubeMap sky = scenes::smooth_environment(R);
+    const glm::vec3 to_eye = glm::normalize(glm::vec3(0.6f, 0.0f, 0.8f));
+    const glm::vec3 way(-to_eye.x, 0.0f, to_eye.z);
+    const prt::Hit hit{};
+    const glm::vec3 direction = -to_eye;
+    const MetSurface met{.hit = hit, .direction = direction, .solid_angle = 1e-4f};
+    prt::Surface gold = metal(0.0f);
+    gold.specular = {0.9f, 0.6f, 0.3f};
+    const auto mirrored_twice = [&](const Reflections& reflections) {
+        return reflections.in_mirror(met, gold, glm::vec3(0.0f), {0.0f, 0.0f, 1.0f},
+                                     glm::vec3(0.0f), NoSurface);
+    };
+    const glm::vec3 reflected = prt::reflect(
+        gold, lobes_of(gold, {.all = glm::vec3(1.0f), .grazing = glm::vec3(1.0f)}, 0.8f), 0.8f);
+    const Reflections reflections(nothing(), 0.0f, 16, sky, {});
+    const glm::vec3 expected = reflected * cubemap::sample(sky, way);
+    EXPECT_LT(glm::distance(mirrored_twice(reflections), expected), 0.02f * glm::length(expected));
+
+    // A light that is traced is not in the first mirror, and in the second.
+    const cubemap::CubeMap all(R, glm::vec3(0.5f));
+    const LightBinning binning(R);
+    const prt::Cell cell{cubemap::Face::PositiveZ, 0, 0, 0};
+    const SharpLight light{.cell = cell, .irradiance = binning.sum(all, cell)};
+    const Reflections without(nothing(), 0.0f, 16, all, {&light, 1});
+    EXPECT_LT(without.sky(way, 1e-4f).g, 0.1f);
+    EXPECT_NEAR(mirrored_twice(without).g, 0.5f * reflected.g, 0.01f);
 }
 
 TEST(Reflections, LightsThatAreTracedAreNotMirrored) {

@@ -12,6 +12,7 @@
 #include "relumine/light/lit_scene.h"
 #include "relumine/out/output.h"
 #include "tests/prt/scenes.h"
+#include "tests/relight/environments.h"
 
 namespace relumine {
 namespace {
@@ -261,6 +262,52 @@ TEST(Highlights, AMirrorShowsTheLightOfSurfaces) {
     const glm::vec3 seen = middle(drawn(lit));
     EXPECT_LT(glm::length(seen - glm::vec3(1.0f, 0.5f, 0.25f)), 0.03f);
     EXPECT_LT(middle(drawn(lit, {.highlight_rays = 0})).g, 0.2f) << "matte, and in shadow";
+}
+
+/// A mirror at z = 0 shows a ball behind the eye as an eye behind the mirror would see it.
+TEST(Highlights, AMirrorShowsWhatAMetalMirrors) {
+    const glm::vec3 centre(0.0f, 0.0f, 8.0f);
+    const cubemap::CubeMap sky = scenes::smooth_environment(64);
+    mesh::TriangleMesh ball = scenes::icosphere(5, 0.5f, centre);
+    ball.materials = {metal(0.25f)};
+    ball.materials[0].base_color = {1.0f, 0.7f, 0.3f};
+    ball.triangle_materials.assign(ball.num_triangles(), 0);
+    mesh::TriangleMesh both = scenes::joined(ball, scenes::box({-1, -1, -1}, {1, 1, 0}));
+    both.materials = {ball.materials[0], metal(0.0f)};
+    both.triangle_materials.assign(both.num_triangles(), 1);
+    std::fill_n(both.triangle_materials.begin(), ball.num_triangles(), 0u);
+    for (std::size_t i = ball.num_vertices(); i < both.num_vertices(); ++i)
+        both.normals[i] = {0, 0, 1};
+    const auto seen = [&](const mesh::TriangleMesh& mesh, const Camera& camera) {
+        OutputOptions options{.camera = camera, .background = NothingBehind{}};
+        options.width = options.height = 48;
+        const LitScene lit = lit_under(mesh, sky);
+        return Painter(lit, options).draw(lit.lighting());
+    };
+    const Picture direct = seen(ball, {.eye = {0, 0, -4}, .target = centre, .fov_degrees = 6});
+    const Picture mirrored = seen(both, {.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = 6});
+    double sum = 0.0, difference = 0.0;
+    for (std::uint32_t y = 0; y < 48; ++y)
+        for (std::uint32_t x = 0; x < 48; ++x) {
+            const std::size_t pixel = std::size_t{y} * 48 + x;
+            // The middle of the ball mirrors the mirror, which nothing shows in `direct`.
+            if (direct.alpha[pixel] < 1.0f ||
+                glm::length(glm::vec2(x, y) - glm::vec2(23.5f)) < 8.0f)
+                continue;
+            for (int color = 0; color < 3; ++color) {
+                const double own = direct.pixels[pixel][color];
+                sum += own;
+                difference +=
+                    std::abs(own - double{mirrored.pixels[std::size_t{y} * 48 + 47 - x][color]});
+            }
+        }
+    ASSERT_GT(sum, 1.0);
+    EXPECT_LT(difference, 0.1 * sum);
+    for (std::uint32_t y = 4; y < 48; y += 6) {
+        for (std::uint32_t x = 4; x < 48; x += 6)
+            printf("%.2f/%.2f ", direct.pixels[y * 48 + x].r, mirrored.pixels[y * 48 + 47 - x].r);
+        printf("\n");
+    }
 }
 
 TEST(Highlights, SurfacesOfOptionsHaveTheirs) {
