@@ -138,7 +138,7 @@ TEST(ObjReader, SmoothingGroups) {
     const TriangleMesh off = obj(cube_obj({"s off", "s off", "s off", "s 0", "s off", "s off"}));
     EXPECT_EQ(off.num_vertices(), 24u);
     expect_flat(off);
-    EXPECT_THAT(off.notes, testing::Contains("6 faces without normals are flat; --normals smooth "
+    EXPECT_THAT(off.notes, testing::Contains("6 faces without normals are flat; --crease 180 "
                                              "rounds them"));
     const TriangleMesh smooth = obj(cube_obj({"", "", "", "", "", ""}));
     EXPECT_EQ(smooth.num_vertices(), 8u);
