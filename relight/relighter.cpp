@@ -14,6 +14,7 @@
 #include <glm/geometric.hpp>
 
 #include "files/parallel.h"
+#include "files/seconds.h"
 #include "relight/harmonics/harmonics.h"
 #include "relight/receiver_light.h"
 #include "relight/sharp/light_packets.h"
@@ -40,10 +41,6 @@ bool is_cheaper_to_sum_all(std::span<const std::uint32_t> changed, std::size_t n
                CostOfClusters * static_cast<double>(changed.size()) /
                    static_cast<double>(num_clusters) >
            1.0;
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// Returns the sum of all squares, over channels and axes.
@@ -112,11 +109,11 @@ UpdateReport Relighter::light_by(BinnedEnvironment binned, std::shared_ptr<cubem
     powers_ = std::move(binned.powers);
     sharp_lights_ = std::move(binned.sharp_lights);
     static_cast<void>(light_->trace(sharp_lights_));
-    report.seconds_trace += seconds_since(start);
+    report.seconds_trace += files::seconds_since(start);
 
     start = std::chrono::steady_clock::now();
     set_cells();
-    report.seconds_bin += seconds_since(start);
+    report.seconds_bin += files::seconds_since(start);
     sum_all(report);
     return report;
 }
@@ -136,7 +133,7 @@ void Relighter::return_environment(cubemap::CubeMap environment) {
 void Relighter::sum_all(UpdateReport& report) {
     const auto start = std::chrono::steady_clock::now();
     resum();
-    report.seconds_relight = seconds_since(start);
+    report.seconds_relight = files::seconds_since(start);
     report.seconds = report.seconds_bin + report.seconds_trace + report.seconds_relight;
     report.num_clusters = sums_.size();
     report.num_receivers = radiance().size();
@@ -166,7 +163,7 @@ UpdateReport Relighter::set_frame(BinnedEnvironment frame, double bound) {
 
     const auto trace_start = std::chrono::steady_clock::now();
     const std::optional<std::size_t> traced = replace_sharp_lights(std::move(frame.sharp_lights));
-    report.seconds_trace = seconds_since(trace_start);
+    report.seconds_trace = files::seconds_since(trace_start);
     report.num_sharp_lights = traced.value_or(0);
     report.num_clusters = changed_.size();
 
@@ -186,7 +183,7 @@ UpdateReport Relighter::set_frame(BinnedEnvironment frame, double bound) {
         report.num_receivers =
             light_->update({.all = sums_, .sharp = sharp_lights_}, changed_, traced.has_value());
     }
-    report.seconds = seconds_since(start);
+    report.seconds = files::seconds_since(start);
     return report;
 }
 
@@ -222,11 +219,11 @@ UpdateReport Relighter::set_lights(std::span<const lights::DistantLight> lights)
     if (LightPyramid* pyramid = light_->pyramid())
         pyramid->set_lights(rays_.blockers == nullptr ? lights
                                                       : std::span<const lights::DistantLight>());
-    report.seconds_bin = seconds_since(start);
+    report.seconds_bin = files::seconds_since(start);
 
     start = std::chrono::steady_clock::now();
     static_cast<void>(light_->trace(sharp_lights_));
-    report.seconds_trace = seconds_since(start);
+    report.seconds_trace = files::seconds_since(start);
     sum_all(report);
     return report;
 }
@@ -269,7 +266,7 @@ UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangle
     return {.num_clusters = num_changed,
             .num_receivers = num_receivers,
             .num_sharp_lights = traced.value_or(0),
-            .seconds = seconds_since(start)};
+            .seconds = files::seconds_since(start)};
 }
 
 /// Replaces the sharp lights where any came or went, and adds their clusters to `changed_`. Returns

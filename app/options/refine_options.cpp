@@ -32,7 +32,8 @@ void RefineOptionGroup::add_to_precompute(Command& command, bool& keeps_vertices
         keeps_vertices = texts.back() == "off";
         if (keeps_vertices)
             return;
-        if (const auto number = parse_number(texts.back()); !number || !(*number >= 0.0 && *number <= 1.0))
+        if (const auto number = parse_number(texts.back());
+            !number || !(*number >= 0.0 && *number <= 1.0))
             refuse_text("off or an error from 0 to 1", texts.back());
         read(texts);
     };

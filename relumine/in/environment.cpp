@@ -14,6 +14,7 @@
 #include "cubemap/resample/load_averaged.h"
 #include "cubemap/resample/resample.h"
 #include "files/joined.h"
+#include "files/seconds.h"
 #include "lights/sun_split.h"
 #include "relumine/options/option_table.h"
 
@@ -229,7 +230,7 @@ Environment environment_of(const std::shared_ptr<const cubemap::EnvironmentImage
     const glm::dmat3 turn = world_from_image(image->layout, options);
     Environment result =
         told_of(image, cubemap::turned(unturned_cube_map_of(*image, options), turn), turn);
-    result.seconds_resample = std::chrono::duration<double>(Clock::now() - start).count();
+    result.seconds_resample = files::seconds_since(start);
     return result;
 }
 
@@ -239,7 +240,7 @@ Environment environment_of(const std::shared_ptr<const cubemap::EnvironmentImage
     const Clock::time_point start = Clock::now();
     const glm::dmat3 turn = world_from_image(image->layout, options);
     Environment result = told_of(image, cubemap::turned(resampled, turn), turn);
-    result.seconds_resample = std::chrono::duration<double>(Clock::now() - start).count();
+    result.seconds_resample = files::seconds_since(start);
     return result;
 }
 
@@ -249,7 +250,7 @@ Environment load_environment(const std::filesystem::path& path, const Environmen
     const std::uint32_t most_width = 4 * std::max(FinestResolution, options.face_resolution);
     const auto image = std::make_shared<const cubemap::EnvironmentImage>(as_convention_has_it(
         cubemap::load_averaged(path, load_options(options), most_width), path.string(), options));
-    const double seconds_load = std::chrono::duration<double>(Clock::now() - start).count();
+    const double seconds_load = files::seconds_since(start);
     Environment result = environment_of(image, options);
     if (lights::has_sun_file(path)) // what is left may well be darker above
         result.warnings = warnings_about(*image, 0.0);
