@@ -14,6 +14,7 @@
 #include "cubemap/resample/load_averaged.h"
 #include "cubemap/resample/resample.h"
 #include "files/joined.h"
+#include "files/pixel_values.h"
 #include "files/seconds.h"
 #include "lights/sun_split.h"
 #include "relumine/options/option_table.h"
@@ -188,11 +189,11 @@ std::vector<std::string> warnings_about(const cubemap::EnvironmentImage& image,
         result.push_back(fmt::format("{} negative pixels became 0 ({:.2g} % of the light)",
                                      bad.num_negative, 100.0 * bad.negative_share));
     if (image.fixed && bad.num_infinite > 0)
-        result.push_back(
-            fmt::format("{} infinite pixels became {:g}, {}: the light there was brighter",
-                        bad.num_infinite, image.infinity_became,
-                        image.infinity_became == 65504.0f ? "the most that 16-bit floats hold"
-                                                          : "the largest radiance of the others"));
+        result.push_back(fmt::format(
+            "{} infinite pixels became {:g}, {}: the light there was brighter", bad.num_infinite,
+            image.infinity_became,
+            image.infinity_became == files::LargestHalf ? "the most that 16-bit floats hold"
+                                                        : "the largest radiance of the others"));
     if (image.num_transparent != 0)
         result.push_back(fmt::format("{} of {} pixels have an alpha of 0: no light comes from them",
                                      image.num_transparent, image.num_file_pixels));
