@@ -151,23 +151,23 @@ OptionRow view_row(OutputOptions& options, OptionFacts facts) {
             constexpr double LargestFov = 179.0;
             const auto numbers = parse_numbers(text);
             const std::size_t count = numbers ? numbers->size() : 0;
-            if (count != 3 && count != 6 && count != 7)
-                refuse_text("EX,EY,EZ[,TX,TY,TZ[,FOV]]", text);
-            const auto point = [&](std::size_t first) {
-                return PointText::read(fmt::format("{},{},{}", (*numbers)[first],
-                                                   (*numbers)[first + 1], (*numbers)[first + 2]));
+            const auto is_place = [](double number) {
+                return std::abs(number) <= LargestPosition;
             };
-            options.eye = point(0);
+            if ((count != 3 && count != 6 && count != 7) ||
+                !std::all_of(numbers->begin(), numbers->end(), is_place))
+                refuse_text(fmt::format("EX,EY,EZ[,TX,TY,TZ[,FOV]] within {}", LargestPosition),
+                            text);
+            if (count == 7 && !is_in(numbers->back(), LargestFov))
+                refuse_text(fmt::format("a field of view of up to {} degrees", LargestFov), text);
+            const std::vector<double>& own = *numbers;
+            options.eye.emplace(own[0], own[1], own[2]);
             options.target.reset();
             options.fov_degrees.reset();
             if (count > 3)
-                options.target = point(3);
-            if (count == 7) {
-                if (!is_in(numbers->back(), LargestFov))
-                    refuse_text(fmt::format("a field of view of up to {} degrees", LargestFov),
-                                text);
-                options.fov_degrees = static_cast<float>(numbers->back());
-            }
+                options.target.emplace(own[3], own[4], own[5]);
+            if (count == 7)
+                options.fov_degrees = static_cast<float>(own[6]);
         },
         "in place of --camera: EX,EY,EZ[,TX,TY,TZ[,FOV]], the eye, the point that it looks at "
         "(automatic) and the vertical field of view in degrees (35)",
