@@ -43,21 +43,6 @@ bool is_cheaper_to_sum_all(std::span<const std::uint32_t> changed, std::size_t n
            1.0;
 }
 
-/// Returns the sum of all squares, over channels and axes.
-double squared_norm(const VectorIrradiance& sum) {
-    return glm::dot(sum.red, sum.red) + glm::dot(sum.green, sum.green) +
-           glm::dot(sum.blue, sum.blue);
-}
-
-/// Whether a cluster's light changed by more than `bound` of its new light.
-bool differs(const VectorIrradiance& before, const VectorIrradiance& after, double bound) {
-    if (bound == 0.0)
-        return before != after;
-    VectorIrradiance difference = after;
-    difference -= before;
-    return squared_norm(difference) > bound * bound * squared_norm(after);
-}
-
 void sort_unique(std::vector<std::uint32_t>& values) {
     std::sort(values.begin(), values.end());
     values.erase(std::unique(values.begin(), values.end()), values.end());
@@ -147,18 +132,16 @@ void Relighter::hold_own(std::shared_ptr<cubemap::CubeMap> map) {
     environment_ = own_environment_;
 }
 
-UpdateReport Relighter::set_frame(BinnedEnvironment frame, double bound) {
+UpdateReport Relighter::set_frame(BinnedEnvironment frame) {
     const auto start = std::chrono::steady_clock::now();
     if (frame.sums.size() != sums_.size() || frame.powers.size() != sums_.size() ||
         !frame.binning || !frame.map)
         throw std::invalid_argument("expected an environment binned for this scene");
-    if (!(bound >= 0.0))
-        throw std::invalid_argument("expected a bound >= 0");
     UpdateReport report;
     const bool is_first = environment_->resolution == 0;
     changed_.clear();
     for (std::uint32_t cluster = 0; cluster < sums_.size(); ++cluster)
-        if (is_first || differs(sums_[cluster], frame.sums[cluster], bound))
+        if (is_first || sums_[cluster] != frame.sums[cluster])
             changed_.push_back(cluster);
 
     const auto trace_start = std::chrono::steady_clock::now();
