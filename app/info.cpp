@@ -62,7 +62,7 @@ void describe_plan(const std::string& path, const Session& session) {
                                  : fmt::format("tolerance           {} 1/sr", settings.tolerance));
     session.say(plan.bounces ? fmt::format("bounces             within {}", plan.bounces->tolerance)
                              : "bounces             none");
-    session.say(fmt::format("parts               as many as you like: `relumine precompute --plan "
+    session.say(fmt::format("parts               as many as you like: `relumine precompute "
                             "{} --part I/N` does one, `relumine join` makes the scene",
                             path));
     say_file(file_bytes, session);

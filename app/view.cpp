@@ -269,16 +269,15 @@ void add_view(Command& program, Session& session) {
     auto options = std::make_shared<Options>();
     options->scene.add_to(command);
     options->environment.add_to(command).required(false);
-    options->bounces.add_to(command);
     command.add(
-        row("--layers", options->layers, "light layers to begin with, .json", {.file = true}));
+        row("LAYERS", options->layers, "light layers to begin with, .json", {.file = true}));
+    options->bounces.add_to(command);
     for (OptionRow& each : options_of(options->picture))
         if ((each.part == "camera" && each.name != "--size") || each.name == "--exposure" ||
             each.name == "--tone-map" || each.name == "--floor" || each.name == "--photo-height" ||
             each.name == "--emission")
             command.add(std::move(each));
-    command.add(glossy_tolerance_row(options->eye));
-    command.add(glossy_budget_row(options->eye));
+    const Option tolerance = command.add(glossy_tolerance_row(options->eye));
     command.add(size_row(options->picture.width, options->picture.height, "the window's size",
                          {.min = 320}));
     command.add(row("--script", options->script,
@@ -288,7 +287,11 @@ void add_view(Command& program, Session& session) {
                     "write the last frame of the script, or the first there is, as .png or .exr",
                     {.file = true}));
     session.add_common_options(command);
-    command.on_run([options, &session] { run(*options, session); });
+    command.on_run([options, tolerance, &session] {
+        if (tolerance.is_given())
+            options->eye.budget_ms = 0.0;
+        run(*options, session);
+    });
 }
 
 } // namespace relumine::app

@@ -162,7 +162,7 @@ std::span<const Sequence> sequences() {
     static constexpr std::array<Sequence, 5> Sequences = {{
         {"sun", "the sun's way through a clear sky, from the right to the left of the viewer",
          false, sun},
-        {"turn", "an environment (--env) that turns once about +Y", true, turn},
+        {"turn", "an environment of yours that turns once about +Y", true, turn},
         {"switch", "a dim room in which a light is switched on half-way", false, switched},
         {"clouds", "clouds that the wind blows over a clear sky and the sun", false, clouds},
         {"tunnel", "a drive through a tunnel with two rows of lamps", false, tunnel},

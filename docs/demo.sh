@@ -25,18 +25,18 @@ step knot generate knot -o "$folder" --vertices 20000
 step precompute precompute "$folder/knot.ply" -o "$folder/knot.prt"
 for environment in "${environments[@]}"; do
     step "relight_$environment" relight "$folder/knot.prt" "$folder/$environment.exr" -o "$folder/knot_$environment.png" --size 720x480
-    step "verify_$environment" verify "$folder/knot.prt" "$folder/$environment.exr" --samples 200 --surface 200 --bounces 0
+    step "verify_$environment" verify "$folder/knot.prt" "$folder/$environment.exr" --samples 200 --bounces 0
 done
 # The cool fill box of the studio, four times as bright.
-step edit edit "$folder/knot.prt" "$folder/soft_boxes.exr" --disc 0.85,0.35,0.4 --radius 25 --gain 4 \
+step edit edit "$folder/knot.prt" "$folder/soft_boxes.exr" --disc 0.85,0.35,0.4,25 --gain 4 \
     -o "$folder/knot_soft_boxes_edited.png" --size 720x480
 
-camera=(--eye 1.2,3.3,4.2 --target 0.05,0.4,0.15 --fov 28)
+camera=(--view 1.2,3.3,4.2,0.05,0.4,0.15,28)
 step still_life generate still_life -o "$folder" --vertices 20000
 step still_life_precompute precompute "$folder/still_life.glb" -o "$folder/still_life.prt"
 step still_life_soft_boxes relight "$folder/still_life.prt" "$folder/soft_boxes.exr" -o "$folder/still_life_soft_boxes.png" \
     "${camera[@]}" --size 480x320
-step sun generate sequence sun -o "$folder/sun" --num-frames 3
+step sun generate sequence sun -o "$folder/sun" --frames 3
 step still_life_sun animate "$folder/still_life.prt" "$folder/sun/sun.%04d.exr" -o "$folder/still_life_sun.%04d.png" \
     "${camera[@]}" --size 360x240
 

@@ -52,10 +52,10 @@ draw() { # draw NAME ENVIRONMENT MESH VERTICES OPTION...
     local name=$1 environment=$2 mesh=$3 vertices=$4 way
     shift 4
     for way in before uniform refined sun; do
-        local -a more=(--no-refine)
-        [ "$way" = uniform ] && more=(--max-edge 1e-6 --max-vertices "$vertices")
-        [ "$way" = refined ] && more=(--refine 0 --max-vertices "$vertices")
-        [ "$way" = sun ] && more=(--refine 0 --refine-for "$folder/sun_sky.exr" --max-vertices "$vertices")
+        local -a more=(--refine off)
+        [ "$way" = uniform ] && more=(--max-edge 1e-6 --vertices "$vertices")
+        [ "$way" = refined ] && more=(--refine 0 --vertices "$vertices")
+        [ "$way" = sun ] && more=(--refine 0 --refine-for "$folder/sun_sky.exr" --vertices "$vertices")
         [ "$way" = sun ] && [ "$environment" != sun_sky ] && continue
         "$relumine" precompute "$mesh" --floor 2 "$@" "${more[@]}" --tolerance 0.02 -o "$folder/$name.$way.prt" -q
         "$relumine" relight "$folder/$name.$way.prt" "$folder/$environment.exr" --sun vertex --size 360x270 \

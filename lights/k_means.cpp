@@ -10,6 +10,7 @@
 
 #include "cubemap/split_mix64.h"
 #include "files/parallel.h"
+#include "files/seconds.h"
 #include "lights/nearest_centre.h"
 
 namespace relumine::lights {
@@ -229,8 +230,7 @@ KMeans k_means(std::span<const ClusterPoint> points, const KMeansOptions& option
         }
     }
     result.num_empty = iteration.num_empty();
-    result.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start_time).count();
+    result.seconds = files::seconds_since(start_time);
     return result;
 }
 

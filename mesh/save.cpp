@@ -11,9 +11,9 @@
 
 #include "files/extension.h"
 #include "files/output_file.h"
+#include "files/pixel_values.h"
 #include "mesh/formats/glb_writer.h"
 #include "mesh/formats/obj_writer.h"
-#include "mesh/materials/srgb.h"
 
 namespace relumine::mesh {
 
@@ -33,7 +33,7 @@ struct PlyVertices {
 
 std::uint8_t srgb_byte(float linear) {
     return static_cast<std::uint8_t>(
-        std::lround(255.0f * srgb_of_linear(std::clamp(linear, 0.0f, 1.0f))));
+        std::lround(255.0f * files::srgb_of_linear(std::clamp(linear, 0.0f, 1.0f))));
 }
 
 std::string ply(const TriangleMesh& mesh, const std::string& comment, const PlyVertices& vertices) {

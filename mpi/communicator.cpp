@@ -13,6 +13,7 @@
 #include <mpi.h>
 
 #include "files/output_file.h"
+#include "files/seconds.h"
 
 namespace relumine::mpi {
 
@@ -25,10 +26,6 @@ constexpr std::size_t MostBytes = std::size_t{1} << 30;
 
 constexpr int DataTag = 1;
 constexpr int HereTag = 2;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// A process that waits leaves its processor to others: MPI itself would spin.
 void pause(double seconds_waited) {
@@ -73,12 +70,12 @@ void Communicator::run(const Start& start) {
         MPI_Test(&request, &is_done, MPI_STATUS_IGNORE);
         if (is_done != 0)
             break;
-        const double waited = seconds_since(begin);
+        const double waited = files::seconds_since(begin);
         if (timeout_ > 0.0 && waited > timeout_)
             give_up();
         pause(waited);
     }
-    seconds_waiting_ += seconds_since(begin);
+    seconds_waiting_ += files::seconds_since(begin);
 }
 
 std::int64_t Communicator::largest(std::int64_t value) {
@@ -113,10 +110,10 @@ void Communicator::give_up() {
     constexpr double Patience = 2.0; // seconds: the others wait about as long as this one
     std::set<std::uint32_t> here = {part_.index};
     for (const Clock::time_point begin = Clock::now();
-         seconds_since(begin) < (part_.index == 0   ? 1.0
-                                 : part_.index == 1 ? 1.5
-                                                    : 2.0) *
-                                    Patience;) {
+         files::seconds_since(begin) < (part_.index == 0   ? 1.0
+                                        : part_.index == 1 ? 1.5
+                                                           : 2.0) *
+                                           Patience;) {
         int has_message = 0;
         MPI_Status status;
         MPI_Iprobe(MPI_ANY_SOURCE, HereTag, MPI_COMM_WORLD, &has_message, &status);

@@ -7,7 +7,7 @@ rm -rf "$3"
 cp -r "$1" "$3"
 "$program" generate still_life -o "$3/example" --vertices 6000 -q
 cd "$3/example"
-"$program" precompute still_life.glb -o scene.prt --no-refine --tolerance 0.05 -q
+"$program" precompute still_life.glb -o scene.prt --refine off --tolerance 0.05 -q
 "$program" export runtime scene.prt -o scene.relight -q
 mv still_life.glb scene.glb
 rm scene.prt

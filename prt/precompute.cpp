@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "files/seconds.h"
 #include "prt/clusters/clustering.h"
 #include "prt/precompute_context.h"
 #include "prt/receivers/receiver_order.h"
@@ -112,7 +113,7 @@ Transfer precompute(const Receivers& receivers, const Blockers& blockers,
     Transfer transfer = found(receivers, blockers, options, work, context, local);
     local.num_clusters = transfer.num_clusters();
     local.num_samples = local.num_directions * receivers.size();
-    local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    local.seconds = files::seconds_since(start);
     if (statistics != nullptr)
         *statistics = local;
     return transfer;

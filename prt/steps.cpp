@@ -12,6 +12,7 @@
 
 #include "files/packed_parts.h"
 #include "files/parallel.h"
+#include "files/seconds.h"
 
 namespace relumine::prt {
 
@@ -63,8 +64,7 @@ void Steps::save() {
         on_saved_();
         has_news_ = false;
     }
-    seconds_saving_ +=
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds_saving_ += files::seconds_since(start);
 }
 
 void Steps::look_up() {

@@ -8,15 +8,13 @@
 
 #include <fmt/format.h>
 
+#include "files/seconds.h"
 #include "relight/kernels/band_sums.h"
 
 namespace relumine::relight {
 
 BinnedEnvironment EnvironmentBinner::bin(std::shared_ptr<const cubemap::CubeMap> map) {
     using Clock = std::chrono::steady_clock;
-    const auto seconds_since = [](Clock::time_point start) {
-        return std::chrono::duration<double>(Clock::now() - start).count();
-    };
     if (!map)
         throw std::invalid_argument("expected an environment");
     const std::size_t r = map->resolution;
@@ -37,13 +35,13 @@ BinnedEnvironment EnvironmentBinner::bin(std::shared_ptr<const cubemap::CubeMap>
     result.powers.resize(result.sums.size());
     std::transform(result.sums.begin(), result.sums.end(), result.powers.begin(),
                    std::mem_fn(&VectorIrradiance::power));
-    result.seconds_bin = seconds_since(start);
+    result.seconds_bin = files::seconds_since(start);
 
     start = Clock::now();
     if (sharp_tolerance_ > 0.0f)
         result.sharp_lights =
             find_sharp_lights(*result.map, *binning_, transfer_, result.powers, sharp_tolerance_);
-    result.seconds_sharp = seconds_since(start);
+    result.seconds_sharp = files::seconds_since(start);
     return result;
 }
 

@@ -14,6 +14,7 @@
 #include <glm/geometric.hpp>
 
 #include "files/parallel.h"
+#include "files/seconds.h"
 #include "relight/harmonics/harmonics.h"
 #include "relight/receiver_light.h"
 #include "relight/sharp/light_packets.h"
@@ -40,25 +41,6 @@ bool is_cheaper_to_sum_all(std::span<const std::uint32_t> changed, std::size_t n
                CostOfClusters * static_cast<double>(changed.size()) /
                    static_cast<double>(num_clusters) >
            1.0;
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// Returns the sum of all squares, over channels and axes.
-double squared_norm(const VectorIrradiance& sum) {
-    return glm::dot(sum.red, sum.red) + glm::dot(sum.green, sum.green) +
-           glm::dot(sum.blue, sum.blue);
-}
-
-/// Whether a cluster's light changed by more than `bound` of its new light.
-bool differs(const VectorIrradiance& before, const VectorIrradiance& after, double bound) {
-    if (bound == 0.0)
-        return before != after;
-    VectorIrradiance difference = after;
-    difference -= before;
-    return squared_norm(difference) > bound * bound * squared_norm(after);
 }
 
 void sort_unique(std::vector<std::uint32_t>& values) {
@@ -112,11 +94,11 @@ UpdateReport Relighter::light_by(BinnedEnvironment binned, std::shared_ptr<cubem
     powers_ = std::move(binned.powers);
     sharp_lights_ = std::move(binned.sharp_lights);
     static_cast<void>(light_->trace(sharp_lights_));
-    report.seconds_trace += seconds_since(start);
+    report.seconds_trace += files::seconds_since(start);
 
     start = std::chrono::steady_clock::now();
     set_cells();
-    report.seconds_bin += seconds_since(start);
+    report.seconds_bin += files::seconds_since(start);
     sum_all(report);
     return report;
 }
@@ -136,7 +118,7 @@ void Relighter::return_environment(cubemap::CubeMap environment) {
 void Relighter::sum_all(UpdateReport& report) {
     const auto start = std::chrono::steady_clock::now();
     resum();
-    report.seconds_relight = seconds_since(start);
+    report.seconds_relight = files::seconds_since(start);
     report.seconds = report.seconds_bin + report.seconds_trace + report.seconds_relight;
     report.num_clusters = sums_.size();
     report.num_receivers = radiance().size();
@@ -150,23 +132,21 @@ void Relighter::hold_own(std::shared_ptr<cubemap::CubeMap> map) {
     environment_ = own_environment_;
 }
 
-UpdateReport Relighter::set_frame(BinnedEnvironment frame, double bound) {
+UpdateReport Relighter::set_frame(BinnedEnvironment frame) {
     const auto start = std::chrono::steady_clock::now();
     if (frame.sums.size() != sums_.size() || frame.powers.size() != sums_.size() ||
         !frame.binning || !frame.map)
         throw std::invalid_argument("expected an environment binned for this scene");
-    if (!(bound >= 0.0))
-        throw std::invalid_argument("expected a bound >= 0");
     UpdateReport report;
     const bool is_first = environment_->resolution == 0;
     changed_.clear();
     for (std::uint32_t cluster = 0; cluster < sums_.size(); ++cluster)
-        if (is_first || differs(sums_[cluster], frame.sums[cluster], bound))
+        if (is_first || sums_[cluster] != frame.sums[cluster])
             changed_.push_back(cluster);
 
     const auto trace_start = std::chrono::steady_clock::now();
     const std::optional<std::size_t> traced = replace_sharp_lights(std::move(frame.sharp_lights));
-    report.seconds_trace = seconds_since(trace_start);
+    report.seconds_trace = files::seconds_since(trace_start);
     report.num_sharp_lights = traced.value_or(0);
     report.num_clusters = changed_.size();
 
@@ -186,7 +166,7 @@ UpdateReport Relighter::set_frame(BinnedEnvironment frame, double bound) {
         report.num_receivers =
             light_->update({.all = sums_, .sharp = sharp_lights_}, changed_, traced.has_value());
     }
-    report.seconds = seconds_since(start);
+    report.seconds = files::seconds_since(start);
     return report;
 }
 
@@ -222,11 +202,11 @@ UpdateReport Relighter::set_lights(std::span<const lights::DistantLight> lights)
     if (LightPyramid* pyramid = light_->pyramid())
         pyramid->set_lights(rays_.blockers == nullptr ? lights
                                                       : std::span<const lights::DistantLight>());
-    report.seconds_bin = seconds_since(start);
+    report.seconds_bin = files::seconds_since(start);
 
     start = std::chrono::steady_clock::now();
     static_cast<void>(light_->trace(sharp_lights_));
-    report.seconds_trace = seconds_since(start);
+    report.seconds_trace = files::seconds_since(start);
     sum_all(report);
     return report;
 }
@@ -269,7 +249,7 @@ UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangle
     return {.num_clusters = num_changed,
             .num_receivers = num_receivers,
             .num_sharp_lights = traced.value_or(0),
-            .seconds = seconds_since(start)};
+            .seconds = files::seconds_since(start)};
 }
 
 /// Replaces the sharp lights where any came or went, and adds their clusters to `changed_`. Returns

@@ -94,18 +94,15 @@ public:
     /// Takes the next frame of a sequence, binned by an EnvironmentBinner of the same transfer and
     /// ShadowRays::tolerance (0 without shadow rays).
     ///
-    /// A cluster is updated only if its vector irradiance E differs from its present light by more
-    /// than `bound` |E| (|E|: Frobenius norm over the channels). Sharp lights are traced only if
-    /// any changed. Other clusters keep their light, and later frames are compared with that light.
-    /// So errors do not add up over frames: a cluster's light is never off by more than the bound.
+    /// A cluster is updated only if its vector irradiance differs from its present light. Sharp
+    /// lights are traced only if any changed.
     ///
-    /// With bound 0 the radiance equals the result of set_environment() to 1e-5 relative, as after
+    /// The radiance equals the result of set_environment() to 1e-5 relative, as after
     /// update_region(). Where many clusters changed, or there was no environment, all clusters are
     /// summed. The radiance is then bit by bit the result of set_environment().
     ///
-    /// Throws:  std::invalid_argument for an environment binned for another scene, or a bound that
-    ///          is negative or NaN.
-    UpdateReport set_frame(BinnedEnvironment frame, double bound = 0.0);
+    /// Throws:  std::invalid_argument for an environment binned for another scene.
+    UpdateReport set_frame(BinnedEnvironment frame);
 
     /// Lights all receivers with distant lights in place of an environment. Each light gets one
     /// shadow ray per receiver, or its cluster's visible counts where there are no shadow rays.

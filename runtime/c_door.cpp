@@ -10,6 +10,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "cubemap/resample/resample_lat_long.h"
+#include "files/pixel_values.h"
 #include "prt/scene/section_reader.h"
 #include "relight/harmonics/harmonics.h"
 #include "runtime/runtime_scene.h"
@@ -383,11 +384,10 @@ RelumineResult relumine_radiance_half(const RelumineScene* scene, uint16_t* rgb,
         own.require_light();
         require(rgb, "rgb");
         require_count(count, 3 * own.num_receivers());
-        constexpr float LargestHalf = 65504.0f;
         for (std::size_t i = 0; i < own.num_receivers(); ++i) {
             const glm::vec3 value = own.radiance(i);
             for (int channel = 0; channel < 3; ++channel)
-                *rgb++ = glm::packHalf1x16(std::min(value[channel], LargestHalf));
+                *rgb++ = glm::packHalf1x16(std::min(value[channel], files::LargestHalf));
         }
     });
 }

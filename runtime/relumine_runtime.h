@@ -122,7 +122,7 @@ RELUMINE_API RelumineResult relumine_info(const RelumineScene* scene, RelumineIn
 /* Geometry into the caller's arrays. `count` is their number of elements, and must be 3 x
  * num_receivers, or 3 x num_triangles. Receivers of RELUMINE_VERTICES are the scene's vertices:
  * those of the mesh file in its order, and behind them those that `precompute` added where the mesh
- * was coarse (not with --no-refine) and a floor's. */
+ * was coarse (not with --refine off) and a floor's. */
 RELUMINE_API RelumineResult relumine_positions(const RelumineScene* scene, float* xyz,
                                                size_t count);
 RELUMINE_API RelumineResult relumine_normals(const RelumineScene* scene, float* xyz, size_t count);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "files/seconds.h"
 #include "relumine/light/layers.h"
 
 namespace relumine::viewer {
@@ -19,8 +20,7 @@ template<typename Edit>
 void LightDesk::timed(Edit edit) {
     const auto start = std::chrono::steady_clock::now();
     last_cost_.report = edit();
-    last_cost_.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    last_cost_.seconds = files::seconds_since(start);
     const auto changed = std::exchange(last_cost_.report.texels, {});
     changed_texels_.insert(changed_texels_.end(), changed.begin(), changed.end());
     ++version_;

@@ -62,7 +62,7 @@ void polish(ViewState& state) {
     ImGui::SliderFloat("##roughness", &state.roughness, relight::NarrowestLiveRoughness, 1.0f,
                        "rough %.2f", ImGuiSliderFlags_AlwaysClamp);
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("The roughness of all glossy surfaces, as --surface-roughness does");
+        ImGui::SetTooltip("The roughness of all glossy surfaces, as --material roughness=R does");
 }
 
 void tools(ViewState& state, const PixelRectangle& place, const PixelRectangle& picture) {

@@ -9,6 +9,7 @@
 
 #include <imgui.h>
 
+#include "files/seconds.h"
 #include "relumine/ask/questions.h"
 #include "relumine/light/layer_compositor.h"
 #include "viewer/cube_texture.h"
@@ -25,10 +26,6 @@ namespace relumine::viewer {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// What a refined picture depends on.
 struct Scenery {
@@ -155,8 +152,8 @@ public:
         if (at_once) {
             scene_.upload_picture(refiner_.draw(moment_of(state, size)));
             is_refined_ = is_refining_ = true;
-        } else if (!is_refining_ && seconds_since(since_) > Pause && !state.hand.is_dragging() &&
-                   !state.hand.is_painting()) {
+        } else if (!is_refining_ && files::seconds_since(since_) > Pause &&
+                   !state.hand.is_dragging() && !state.hand.is_painting()) {
             refiner_.start(moment_of(state, size));
             is_refining_ = true;
         }
@@ -329,7 +326,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
         if (is_last && !options.screenshot.empty())
             relight::save_picture(options.screenshot, window.screenshot());
         window.show();
-        state.frame_seconds = seconds_since(start);
+        state.frame_seconds = files::seconds_since(start);
         seconds += state.frame_seconds;
         ++report.num_frames;
     } while (!is_last && !window.should_close() && !options.stop.stop_requested());

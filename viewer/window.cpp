@@ -1,4 +1,5 @@
 #include "viewer/window.h"
+#include "files/pixel_values.h"
 
 #include <array>
 #include <cmath>
@@ -80,7 +81,7 @@ void load_font(float scale) {
 }
 
 float linear(std::uint8_t encoded) {
-    return mesh::linear_of_srgb(static_cast<float>(encoded) / 255.0f);
+    return files::linear_of_srgb(static_cast<float>(encoded) / 255.0f);
 }
 
 } // namespace

@@ -275,7 +275,8 @@ Option Command::add(OptionRow row) {
 std::vector<Option> Command::add_all(OptionTable table) {
     std::vector<Option> options;
     for (OptionRow& row : table)
-        options.push_back(add(std::move(row)));
+        if (!row.library_only)
+            options.push_back(add(std::move(row)));
     return options;
 }
 

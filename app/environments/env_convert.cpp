@@ -1,7 +1,11 @@
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -10,6 +14,8 @@
 #include "app/environments/split_sun.h"
 #include "app/options/environment_options.h"
 #include "app/options/output_options.h"
+#include "files/joined.h"
+#include "files/nearest_name.h"
 #include "relumine/ask/environment_doctor.h"
 #include "relumine/in/environment_files.h"
 #include "relumine/light/light_lists.h"
@@ -24,11 +30,35 @@ struct ConvertArguments {
     /// Empty: what `to` usually reads
     std::optional<cubemap::Layout> to_layout;
     std::string to = "openexr";
+
+    /// --to: a convention, a layout, or both
+    void read_to(const std::string& text);
     std::optional<cubemap::ImageSize> size;
     std::uint32_t face_resolution = 0;
-    std::string samples = "auto";
     bool split_sun = false;
 };
+
+void ConvertArguments::read_to(const std::string& text) {
+    const std::span<const std::string_view> layouts = LayoutText::choices();
+    to = ConvertArguments().to;
+    to_layout.reset();
+    for (const std::string& word : split(text, ',')) {
+        if (cubemap::find_convention(word) != nullptr) {
+            to = word;
+        } else if (std::find(layouts.begin(), layouts.end(), word) != layouts.end()) {
+            to_layout = LayoutText::read(word);
+        } else {
+            std::vector<std::string> known(layouts.begin(), layouts.end());
+            for (const std::string_view name : ConventionText::choices())
+                known.emplace_back(name);
+            throw std::invalid_argument(fmt::format("expected a layout ({}) or a program ({}), got "
+                                                    "'{}'{}",
+                                                    files::joined(layouts, ", "),
+                                                    files::joined(ConventionText::choices(), ", "),
+                                                    word, files::did_you_mean(word, known)));
+        }
+    }
+}
 
 /// W, or WxH
 struct ImageSizeText {
@@ -95,12 +125,11 @@ cubemap::Layout target_layout(const ConvertArguments& options,
         layout = cubemap::Layout::Cube;
     layout = options.to_layout.value_or(layout);
     if (!to.reads(layout))
-        throw UsageError("--to-layout",
-                         fmt::format("expected {} with --to {}, got {}", layouts_of(to), to.name,
-                                     cubemap::option_name(layout)));
+        throw UsageError("--to", fmt::format("expected {} for {}, got {}", layouts_of(to), to.name,
+                                             cubemap::option_name(layout)));
     if (six_files && layout != cubemap::Layout::Cube)
-        throw UsageError("--to-layout", fmt::format("expected cube for six files, got {}",
-                                                    cubemap::option_name(layout)));
+        throw UsageError("--to", fmt::format("expected cube for six files, got {}",
+                                             cubemap::option_name(layout)));
     return layout;
 }
 
@@ -142,7 +171,7 @@ void run(const ConvertArguments& options, Session& session) {
 
     const cubemap::Layout layout = target_layout(options, image, to);
     const cubemap::ImageSize size = target_size(options, image, layout);
-    const cubemap::Sampling sampling = to.has_attribute && options.samples != "centres"
+    const cubemap::Sampling sampling = to.has_attribute
                                            ? cubemap::default_sampling(options.output, layout)
                                            : cubemap::Sampling::TexelCentres;
     Report result = {{"input", described(from, image, cubemap::statistics(image))}};
@@ -197,9 +226,10 @@ void add_convert(Command& group, Session& session) {
     OptionTable reading = options_of(options->input);
     reading.pop_back(); // --face-resolution, which is OUT's here
     command.add_all(std::move(reading));
-    command.add(row<LayoutText>("--to-layout", options->to_layout,
-                                "layout of OUT (IN's; with --to, what that program reads)"));
-    command.add(row<ConventionText>("--to", options->to, "whose convention OUT follows"));
+    command.add(row("--to", [options](const std::string& text) { options->read_to(text); },
+                    "layout of OUT (IN's), the program that reads it (openexr), which has a layout "
+                    "of its own, or both: blender, octahedral or directx,hcross",
+                    {.type = "TEXT"}));
     command.add(row<ImageSizeText>(
         "--size", options->size,
         "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face, from discs 512, to "
@@ -207,10 +237,6 @@ void add_convert(Command& group, Session& session) {
     command.add(row("--face-resolution", options->face_resolution,
                     "the same as a cube face: a lat-long gets 4R x 2R pixels",
                     {.min = 0, .max = 16384, .shows_default = false}));
-    command.add(row("--samples", options->samples,
-                    "centres: at texel centres and without the envmap attribute, even in OpenEXR's "
-                    "lat-long and cube",
-                    {.choices = {"auto", "centres"}}));
     command.add(row("--split-sun", options->split_sun,
                     "OUT without its sun; OUT.sun.json (.exr or .hdr replaced) has the sun as a "
                     "light, in world axes"));

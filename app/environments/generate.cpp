@@ -117,7 +117,7 @@ void add_generate(Command& program, Session& session) {
     const Option resolution = command.add(row("--face-resolution", options->face_resolution,
                                               "R of an environment: cube 6 x R x R, lat-long "
                                               "4R x 2R; of a sequence 128 when it is not "
-                                              "given, of `turn` that of its --env",
+                                              "given, of `turn` that of its environment",
                                               {.min = 1, .max = 16384}));
     session.add_common_options(command);
     command.on_run(

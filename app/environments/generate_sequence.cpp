@@ -31,9 +31,9 @@ data_gen::SequenceOptions sequence_options(const GenerateSequenceOptions& option
     if (face_resolution)
         result.face_resolution = *face_resolution;
     if (sequence.needs_probe != !options.environment.empty())
-        throw UsageError("--env", fmt::format("expected {} for `{}`",
-                                              sequence.needs_probe ? "an environment" : "none",
-                                              sequence.name));
+        throw UsageError("ENV", fmt::format("expected {} for `{}`",
+                                            sequence.needs_probe ? "an environment" : "none",
+                                            sequence.name));
     if (sequence.needs_probe) {
         EnvironmentOptions environment;
         environment.path = options.environment;
@@ -48,9 +48,8 @@ data_gen::SequenceOptions sequence_options(const GenerateSequenceOptions& option
 void GenerateSequenceOptions::add_to(Command& command) {
     command.add(row("KIND", kind, "after `sequence`: which one, see below", {.type = "KIND"}));
     command.add(
-        row("--num-frames", num_frames, "frames of a sequence", {.min = 1, .max = 1000000}));
-    command.add(
-        row("--env", environment, "the environment that `sequence turn` turns", {.file = true}));
+        row("ENV", environment, "the environment that `sequence turn` turns", {.file = true}));
+    command.add(row("--frames", num_frames, "frames of a sequence", {.min = 1, .max = 1000000}));
     command.add(row("--layout", layout,
                     "of a sequence's frames: cross (texels as they are), cube or latlong",
                     {.choices = {"cross", "cube", "latlong"}}));

@@ -14,7 +14,7 @@ struct GenerateSequenceOptions {
     /// The argument KIND. Empty: not given.
     std::string kind;
     std::size_t num_frames = 100;
-    /// --env: the environment that the sequence turns.
+    /// The environment that the sequence turns.
     std::string environment;
     /// Layout of the frames. A cross holds the cube map's texels unchanged.
     std::string layout = "cross";
@@ -22,7 +22,8 @@ struct GenerateSequenceOptions {
     void add_to(Command& command);
 };
 
-/// Writes FOLDER/KIND.0000.exr and on. Without a face resolution: 128, or that of --env. After
+/// Writes FOLDER/KIND.0000.exr and on. Without a face resolution: 128, or that of
+/// the environment. After
 /// Ctrl-C the frames that were written stay.
 void generate_sequence(const GenerateSequenceOptions& options, const std::string& folder,
                        std::optional<std::uint32_t> face_resolution, Session& session);

@@ -28,33 +28,29 @@ namespace {
 
 /// The name of relight::transfer_lights() beside those of lights::AllMethods.
 constexpr const char* TransferMethod = "transfer";
+/// Of importance sampling
+constexpr std::uint64_t Seed = 1;
 
 struct LightsArguments {
     EnvironmentOptions environment;
     std::string path;
     std::string picture;
-    /// Empty: the output's extension decides.
-    std::string format;
     std::string method = std::string(lights::name(lights::Method::VarianceCut));
     std::size_t number = 64;
     /// A .prt file. The error of the lights on it is printed, and the transfer method chooses for
     /// it. Empty: none.
     std::string scene;
-    std::uint64_t seed = 1;
     lights::ExportOptions export_options;
 };
 
 lights::LightFormat format_of(const LightsArguments& options) {
-    if (!options.format.empty())
-        return *lights::light_format_named(options.format);
     if (const auto format = lights::light_format_of(options.path))
         return *format;
     std::vector<std::string> known;
     known.reserve(lights::AllLightFormats.size());
     for (const lights::LightFormat format : lights::AllLightFormats)
         known.emplace_back(lights::extension(format));
-    throw UsageError("--output", fmt::format("expected a name that ends in {}, or --format with "
-                                             "it, got '{}'",
+    throw UsageError("--output", fmt::format("expected a name that ends in {}, got '{}'",
                                              files::joined_by_or(known), options.path));
 }
 
@@ -130,8 +126,7 @@ lights::Placement place(const LightsArguments& options, const cubemap::Environme
                         const Lit* lit, Session& session) {
     try {
         if (options.method != TransferMethod)
-            return lights::place(*lights::method_named(options.method), map, options.number,
-                                 options.seed);
+            return lights::place(*lights::method_named(options.method), map, options.number, Seed);
         lights::Placement result{.lights = relight::transfer_lights(
                                      lit->scene.relighter(), options.number,
                                      session.work(files::counted(options.number, "light"))),
@@ -162,7 +157,7 @@ void save(const LightsArguments& options, const cubemap::EnvironmentImage& map,
             .environment = std::filesystem::path(options.environment.path).filename().string(),
             .method = options.method};
         if (options.method == lights::name(lights::Method::Importance))
-            list.seed = options.seed;
+            list.seed = Seed;
         lights::export_lights(options.path, list, format_of(options), options.export_options);
     }
     if (!options.picture.empty())
@@ -268,7 +263,7 @@ void add_output_options(Command& command, LightsArguments& options) {
     command.add(row("-n,--number", options.number, "how many lights", {.min = 1, .max = 1e9}));
 }
 
-/// --scene, --method and --seed.
+/// --scene and --method.
 void add_method_options(Command& command, LightsArguments& options) {
     command.add(
         row("--scene", options.scene,
@@ -285,26 +280,6 @@ void add_method_options(Command& command, LightsArguments& options) {
             "close together (Viriyothai and Debevec); importance: random directions, stratified; "
             "transfer: those that light --scene most like the environment",
             {.choices = methods}));
-    command.add(row("--seed", options.seed, "of importance sampling", {.min = 0, .max = 0x1p53}));
-}
-
-/// --format and the details of formats.
-void add_format_options(Command& command, LightsArguments& options) {
-    std::vector<std::string> formats;
-    formats.reserve(lights::AllLightFormats.size());
-    for (const lights::LightFormat format : lights::AllLightFormats)
-        formats.emplace_back(lights::name(format));
-    command.add(row("--format", options.format, "format of the light list, whatever its extension",
-                    {.choices = formats}));
-    command.add(
-        row("--soft", options.export_options.soft,
-            "lights as wide as the part of the sphere they stand for (USD, Blender; JSON and "
-            "CSV have the solid angle)"));
-    command.add(row("--lumens-per-watt", options.export_options.lumens_per_watt,
-                    "glTF: intensity in lux is irradiance times this; 1 keeps the environment's "
-                    "unit, 683 is "
-                    "photometric",
-                    {.min = 1e-6, .max = 1e6}));
 }
 
 } // namespace
@@ -319,7 +294,14 @@ void add_lights(Command& program, Session& session) {
         "writes in another format");
     add_output_options(command, *options);
     add_method_options(command, *options);
-    add_format_options(command, *options);
+    command.add(
+        row("--soft", options->export_options.soft,
+            "lights as wide as the part of the sphere they stand for (USD, Blender; JSON and "
+            "CSV have the solid angle)"));
+    command.add(row("--lumens-per-watt", options->export_options.lumens_per_watt,
+                    "glTF: intensity in lux is irradiance times this; 1 keeps the environment's "
+                    "unit, 683 is photometric",
+                    {.min = 1e-6, .max = 1e6}));
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

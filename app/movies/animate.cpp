@@ -29,6 +29,9 @@ namespace relumine::app {
 
 namespace {
 
+/// Lights of --method importance in a frame
+constexpr std::size_t ImportanceLights = 64;
+
 /// A frame as it lights the scene.
 struct PreparedFrame {
     /// --method prt
@@ -87,7 +90,7 @@ public:
             Stopwatch watch;
             PreparedFrame frame = ahead.get(i);
             totals_.seconds_wait += watch.lap();
-            count(frame, light(frame, options_.bound));
+            count(frame, light(frame));
             bounce();
             const double seconds_relight = watch.lap();
             totals_.seconds_relight += seconds_relight;
@@ -195,7 +198,7 @@ private:
             session_.poll();
             const std::size_t index = num_gaps == 0 ? 0 : i * last / num_gaps;
             PreparedFrame frame = prepare(index);
-            static_cast<void>(light(frame, 0.0));
+            static_cast<void>(light(frame));
             bounce();
             const Lighting lighting = lit_.lighting();
             if (!session_.is_first())
@@ -223,21 +226,15 @@ private:
         Stopwatch watch;
         const lights::FrameSamples samples = lights::sample_frames(
             [this](std::size_t frame) { return image_of(frame); }, sequence_.size(),
-            {.samples_per_frame = options_.num_samples,
-             .seed = options_.seed,
-             .stop = session_.stop(),
-             .on_progress = session_.progress("samples")});
+            {.stop = session_.stop(), .on_progress = session_.progress("samples")});
         session_.end_progress();
         session_.poll();
-        const lights::LightClusters clusters =
-            lights::cluster_lights(samples, {.num_clusters = options_.num_clusters,
-                                             .seed = options_.seed,
-                                             .stop = session_.stop()});
+        const lights::LightClusters clusters = lights::cluster_lights(
+            samples,
+            {.num_clusters = options_.num_lights.value_or(lights::KMeansOptions{}.num_clusters),
+             .stop = session_.stop()});
         session_.poll();
-        frame_lights_ =
-            lights::frame_lights(clusters, {.strength = options_.even ? lights::Strength::Even
-                                                                      : lights::Strength::Followed,
-                                            .fade = options_.fade});
+        frame_lights_ = lights::frame_lights(clusters);
         const lights::KMeans& means = clusters.k_means;
         session_.say(fmt::format(
             "{} samples in {} clusters, {} iterations{}, objective {:.4g} to {:.4g}, {} started "
@@ -266,12 +263,6 @@ private:
         extra_report_.set("inconsistency", flicker.inconsistency);
         extra_report_.set("mean_relative_l2", flicker.mean_relative_l2);
         extra_report_.set("relative_l2", flicker.relative_l2);
-        if (options_.plot.empty())
-            return;
-        const relight::NamedReport named{options_.method, flicker};
-        files::save_text(options_.plot, relight::inconsistency_plot(
-                                            {&named, 1}, fmt::format("Temporal inconsistency, {}",
-                                                                     options_.frames)));
     }
 
     /// Runs on another thread; touches no state but the binner, has_warned_ and still_.
@@ -305,12 +296,12 @@ private:
             if (options_.method == "prt") {
                 result.binned = binner_.bin(std::move(map));
             } else {
-                result.lights =
-                    options_.method == "clusters"
-                        ? frame_lights_.frames.at(frame)
-                        : lights::place_lights(
-                              lights::Method::Importance, map, options_.num_lights,
-                              options_.seed + static_cast<std::uint64_t>(sequence_.number(frame)));
+                result.lights = options_.method == "clusters"
+                                    ? frame_lights_.frames.at(frame)
+                                    : lights::place_lights(
+                                          lights::Method::Importance, map,
+                                          options_.num_lights.value_or(ImportanceLights),
+                                          1 + static_cast<std::uint64_t>(sequence_.number(frame)));
                 result.background = std::move(map);
             }
         } catch (const std::invalid_argument& error) { // a radiance beyond all bounds
@@ -321,12 +312,10 @@ private:
         return result;
     }
 
-    UpdateReport light(PreparedFrame& frame, double bound) {
+    UpdateReport light(PreparedFrame& frame) {
         if (options_.method != "prt")
             return lit_.light(std::move(frame.lights));
-        Light light(std::move(frame.binned));
-        light.bound = bound;
-        return lit_.light(std::move(light));
+        return lit_.light(Light(std::move(frame.binned)));
     }
 
     /// Adds the bounces, where there are any.

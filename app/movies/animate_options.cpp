@@ -44,19 +44,9 @@ void AnimateOptions::add_to(Command& command) {
              "prt: clusters' transfer, exact; clusters: lights that live over many frames (Staton "
              "et al.); importance: a few lights chosen anew for every frame",
              {.choices = {"prt", "clusters", "importance"}}),
-         row("--bound", bound,
-             "prt: update only clusters whose light changed by more than this part of it; 0: all "
-             "that changed",
-             {.min = 0, .max = 1}),
-         row("--lights", num_lights, "importance: lights in a frame", {.min = 1, .max = 1000000}),
-         row("--clusters", num_clusters, "clusters: lights of all frames together",
-             {.min = 1, .max = 1000000}),
-         row("--samples", num_samples, "clusters: samples of a frame", {.min = 1, .max = 1000000}),
-         row("--fade", fade, "clusters: frames over which lights come and go",
-             {.min = 0, .max = 10000}),
-         row("--even", even,
-             "clusters: lights are equally strong over all their frames, as in the paper"),
-         row("--seed", seed, "of the random numbers")});
+         row("--lights", num_lights,
+             "importance: lights in a frame (64); clusters: lights of all frames together (512)",
+             {.min = 1, .max = 1000000})});
     bounces.add_to(command);
     output.add_to(command).required(false).description(
         "what to write, the number's place in its name: lit.%04d.png, .exr (pictures), .npy "
@@ -68,7 +58,6 @@ void AnimateOptions::add_to(Command& command) {
          "all frames in one .npy [frames x receivers x 3]: radiance times albedo");
     file("--measure", reference,
          "another --vertices file of the same frames: says how much this one flickers against it");
-    file("--plot", plot, "of --measure: flicker over frames, .svg");
     file("--mp4", movie, "a movie of the .png frames, where ffmpeg is installed");
     command.add(row("--fps", frames_per_second, "frames per second of the movie",
                     {.min = 0.01, .max = 1000, .shapes_frames = false}));
@@ -87,16 +76,13 @@ void AnimateOptions::load_camera() {
     };
     refuse_beside(turntable > 0, "--turntable");
     refuse_beside(picture.camera_place.has_value(), "--camera");
-    refuse_beside(picture.eye.has_value(), "--eye");
-    refuse_beside(picture.target.has_value(), "--target");
+    refuse_beside(picture.eye.has_value(), "--view");
     const std::string extension = extension_of(output.path);
     if (extension != ".png" && extension != ".exr")
         throw UsageError(
             "--camera-path",
             fmt::format("expected --output with .png or .exr frames, got '{}'", output.path));
     camera_path = load_camera_path(camera_file);
-    refuse_beside(camera_path->names_fov && picture.fov_degrees.has_value(),
-                  "--fov where the file has fov_degrees");
 }
 
 Camera AnimateOptions::camera_on_path(std::int64_t number, const Camera& other) const {
@@ -174,12 +160,6 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
         static_cast<void>(files::size(reference));
         require_extension("--measure", reference, {".npy"});
         check_output(vertices, {reference});
-    }
-    if (!plot.empty()) {
-        if (reference.empty())
-            throw UsageError("--plot", "expected --measure with it");
-        require_extension("--plot", plot, {".svg"});
-        check_output(plot, {scene.path, reference});
     }
     if (!movie.empty()) {
         require_extension("--mp4", movie, {".mp4"});

@@ -23,24 +23,11 @@ struct AnimateOptions {
     std::string range;
     EnvironmentOptions environment;
     std::string method = "prt";
-    /// --method prt: only clusters whose light changed by more than this part of it are updated. 0:
-    /// all clusters that changed.
-    double bound = 0.0;
-    /// --method importance: lights per frame.
-    std::size_t num_lights = 64;
-    std::uint64_t seed = 1;
-    /// --method clusters: clusters of all frames together.
-    std::size_t num_clusters = 512;
-    /// Samples of one frame.
-    std::size_t num_samples = 1024;
-    /// frames
-    std::size_t fade = 0;
-    /// --method clusters: a light is equally strong in all its frames, as in the paper.
-    bool even = false;
+    /// Lights of --method importance in a frame (64), or of --method clusters in all frames
+    /// together (512).
+    std::optional<std::size_t> num_lights;
     /// --measure: a .npy with the reference of all frames. Empty: nothing is measured.
     std::string reference;
-    /// An .svg plot of what --measure finds. Empty: none.
-    std::string plot;
     /// Its path is a pattern. Empty: no picture files.
     OutputOptions output;
     BounceOption bounces;

@@ -6,25 +6,28 @@
 
 namespace relumine::app {
 
-void BounceOption::add_to(Command& command, bool by_default) {
+void BounceOption::add_to(Command& command, bool by_default, bool can_be_alone) {
     by_default_ = by_default;
     command.add(
         row("--bounces",
-            [this](const std::string& text) {
+            [this, can_be_alone](const std::string& text) {
                 is_given_ = true;
-                if (text == "all") {
+                are_alone_ = can_be_alone && text == "only";
+                if (text == "all" || are_alone_) {
                     limits_.num_bounces.reset();
                     return;
                 }
                 const auto count = parse_count(text);
                 if (!count)
-                    throw UsageError(
-                        "--bounces",
-                        fmt::format("expected a number of bounces or 'all', got '{}'", text));
+                    throw UsageError("--bounces",
+                                     fmt::format("expected a number of bounces{} or 'all', got "
+                                                 "'{}'",
+                                                 can_be_alone ? ", 'only'" : "", text));
                 limits_.num_bounces = *count;
             },
             fmt::format("how often light goes on from surface to surface: N, 0 for direct light "
-                        "alone, or all [{}]",
+                        "alone, {}or all [{}]",
+                        can_be_alone ? "only for what surfaces add to the direct light, " : "",
                         by_default ? "all where the scene has bounces, otherwise 0" : "0"),
             {.type = "N"}));
 }

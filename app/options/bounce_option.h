@@ -12,7 +12,8 @@ namespace relumine::app {
 class BounceOption {
 public:
     /// `by_default`: light bounces where nothing is said and the scene was made for it.
-    void add_to(Command& command, bool by_default = true);
+    /// `can_be_alone`: the word `only` is taken, too.
+    void add_to(Command& command, bool by_default = true, bool can_be_alone = false);
 
     /// Returns whether light is to bounce: as often as was asked for, or where nothing was said and
     /// the scene has bounces. `path` is the scene's, for messages.
@@ -27,9 +28,11 @@ public:
                                        const std::string& path) const;
 
     [[nodiscard]] const BounceLimits& limits() const { return limits_; }
+    /// Whether what surfaces add to the direct light is asked for alone: `--bounces only`.
+    [[nodiscard]] bool are_alone() const { return are_alone_; }
 
 private:
-    bool is_given_ = false, by_default_ = true;
+    bool is_given_ = false, by_default_ = true, are_alone_ = false;
     BounceLimits limits_;
 };
 

@@ -15,13 +15,6 @@ OptionRow glossy_tolerance_row(EyeOptions& options) {
                {.min = 1e-5, .max = 1});
 }
 
-OptionRow glossy_budget_row(EyeOptions& options) {
-    return row("--glossy-budget", options.budget_ms,
-               "milliseconds that highlights may take while the eye moves: the tolerance follows; "
-               "0: --glossy-tolerance counts",
-               {.min = 0, .max = 1e6});
-}
-
 void require_live_highlights(const Scene& scene, const std::filesystem::path& path) {
     if (!has_live_highlights(scene))
         throw std::runtime_error(fmt::format(

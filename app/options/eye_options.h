@@ -15,8 +15,6 @@ namespace relumine::app {
 
 /// --glossy-tolerance
 [[nodiscard]] OptionRow glossy_tolerance_row(EyeOptions& options);
-/// --glossy-budget
-[[nodiscard]] OptionRow glossy_budget_row(EyeOptions& options);
 
 /// Throws std::runtime_error "path: expected X, got Y" for a scene without live highlights.
 void require_live_highlights(const Scene& scene, const std::filesystem::path& path);

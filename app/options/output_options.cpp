@@ -26,10 +26,8 @@ Option OutputOptions::add_to(Command& command) {
     command.add_all({row("--ocio", picture.display.config,
                          "an OpenColorIO config: its view shows .png, in place of --tone-map",
                          {.file = true, .excludes = "--tone-map"}),
-                     row("--ocio-display", picture.display.display,
-                         "a display of --ocio (the config's own)", {.needs = "--ocio"}),
                      row("--ocio-view", picture.display.view,
-                         "a view of the display (the display's own)", {.needs = "--ocio"})});
+                         "a view of its display (the display's own)", {.needs = "--ocio"})});
     return output;
 }
 

@@ -31,28 +31,24 @@ prt::Part parse_part(const std::string& text) {
 }
 
 void PlanOption::add_to(Command& command) {
-    command.add(row("--plan", plan_, "do one part of a plan of `relumine plan` instead of a MESH",
-                    {.file = true}));
     command.add(row("--part", [this](const std::string& text) { part_ = parse_part(text); },
-                    "with --plan: part I of N, from 1/N to N/N; `relumine join` puts them together",
-                    {.type = "I/N", .needs = "--plan"}));
+                    "MESH is a plan of `relumine plan`: do part I of N of it, from 1/N to N/N; "
+                    "`relumine join` puts them together",
+                    {.type = "I/N"}));
 }
 
-void PlanOption::run(const Command& command, const std::string& output, Engine engine,
+void PlanOption::run(const Command& command, const std::string& plan, const std::string& output,
                      const PrecomputeWork& work, Session& session) const {
-    if (part_.count == 0)
-        throw UsageError("--plan", "expected --part I/N with it");
-    constexpr std::array<std::string_view, 8> Fitting = {
-        "--plan", "--part", "--output", "--engine", "--threads", "--json", "--quiet", "--verbose"};
+    constexpr std::array<std::string_view, 7> Fitting = {
+        "MESH", "--part", "--output", "--threads", "--json", "--quiet", "--verbose"};
     for (const std::string& name : command.given_options())
         if (std::find(Fitting.begin(), Fitting.end(), name) == Fitting.end())
             throw UsageError(name, "the plan says it already: give it to `relumine plan`");
     require_part_name(output);
-    check_output(output, {plan_});
+    check_output(output, {plan});
     Stopwatch watch;
     prt::PrecomputeStatistics statistics;
-    precompute_part({.plan = plan_, .part = part_, .output = output, .engine = engine}, work,
-                    &statistics);
+    precompute_part({.plan = plan, .part = part_, .output = output}, work, &statistics);
     session.end_progress();
     const std::uintmax_t file_bytes = std::filesystem::file_size(output);
     const double seconds = watch.total();
@@ -133,7 +129,7 @@ void add_join(Command& program, Session& session) {
         "join", "put parts together: of a planned precompute -> SCENE.prt, of light -> OUT.npy");
     auto options = std::make_shared<Options>();
     command.add(row("PART", options->parts,
-                    "all parts that `relumine precompute --plan` or `relumine relight --part` "
+                    "all parts that `relumine precompute --part` or `relumine relight --part` "
                     "wrote, in any order",
                     {.file = true, .required = true}));
     command.add(row("-o,--output", options->output,

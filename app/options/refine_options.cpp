@@ -1,6 +1,7 @@
 #include "app/options/refine_options.h"
 
-#include <tuple>
+#include <limits>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,13 +20,25 @@ void report_refinement(const RefineReport& found, std::size_t num_vertices, Sess
                                             {"seconds", found.seconds}}));
 }
 
-void RefineOptionGroup::add_to_precompute(Command& command) {
+void RefineOptionGroup::add_to_precompute(Command& command, bool& keeps_vertices) {
     OptionTable table = options_of(options_);
     OptionRow& error = table.front();
     error.name = "--refine";
-    error.help += fmt::format(", {} when no error is given", *RefineOptions{}.error);
+    error.help += fmt::format(", {} when no error is given; off: keep the mesh's vertices, where a "
+                              "coarse mesh gets more by itself",
+                              *RefineOptions{}.error);
+    error.max = std::numeric_limits<double>::infinity(); // off is no number
+    error.read = [read = error.read, &keeps_vertices](std::span<const std::string> texts) {
+        keeps_vertices = texts.back() == "off";
+        if (keeps_vertices)
+            return;
+        if (const auto number = parse_number(texts.back());
+            !number || !(*number >= 0.0 && *number <= 1.0))
+            refuse_text("off or an error from 0 to 1", texts.back());
+        read(texts);
+    };
     error.bare = fmt::format("{}", *RefineOptions{}.error);
-    error.type = "[ERROR]";
+    error.type = "[ERROR|off]";
     add(command, std::move(table));
 }
 
@@ -44,7 +57,7 @@ void RefineOptionGroup::add(Command& command, OptionTable table) {
             "can still be lit by any other",
             {.file = true, .type = "ENV"}));
     for (const Option& option : command.add_all(std::move(table)))
-        if (option.name() != "--refine" && option.name() != "--error" &&
+        if (option.name() != "--refine" && option.name() != "--tolerance" &&
             option.name() != "--max-edge")
             limits_.push_back(option);
 }
@@ -54,7 +67,7 @@ bool RefineOptionGroup::is_wanted() const {
 }
 
 void RefineOptionGroup::check() const {
-    const auto& [max_edge, min_edge] = std::tie(options_.max_edge, options_.min_edge);
+    const std::optional<float>& max_edge = options_.max_edge;
     if (!is_wanted())
         for (const Option& option : limits_)
             if (option.is_given())
@@ -62,12 +75,9 @@ void RefineOptionGroup::check() const {
     if (!light_.empty() && max_edge && !options_.error)
         throw UsageError("--refine-for",
                          fmt::format("expected {} with it: --max-edge alone asks for no light",
-                                     is_command_ ? "--error" : "--refine"));
+                                     is_command_ ? "--tolerance" : "--refine"));
     if (max_edge && !(*max_edge > 0.0f))
         throw UsageError("--max-edge", fmt::format("expected a length > 0, got {}", *max_edge));
-    if (max_edge && min_edge && *min_edge > *max_edge)
-        throw UsageError("--min-edge", fmt::format("expected at most the --max-edge of {}, got {}",
-                                                   *max_edge, *min_edge));
 }
 
 Mesh RefineOptionGroup::refined(Mesh mesh, std::optional<float> bias, Session& session) const {

@@ -17,9 +17,10 @@ class RefineOptionGroup {
 public:
     RefineOptionGroup() { options_.error.reset(); }
 
-    /// For `precompute`: --refine [ERROR] and limits, which need it.
-    void add_to_precompute(Command& command);
-    /// For `mesh refine`: --error and limits. Light is asked unless --max-edge alone is given.
+    /// For `precompute`: --refine [ERROR] and limits, which need it. `--refine off` sets
+    /// `keeps_vertices`.
+    void add_to_precompute(Command& command, bool& keeps_vertices);
+    /// For `mesh refine`: --tolerance and limits. Light is asked unless --max-edge alone is given.
     void add_to_refine(Command& command);
 
     /// Refuses limits that contradict each other, or have nothing to limit.
@@ -36,7 +37,7 @@ private:
     /// No error: not asked for
     RefineOptions options_;
     bool is_command_ = false;
-    /// --max-vertices, --min-edge, --curved, --refine-for
+    /// --vertices, --curved, --refine-for
     std::vector<Option> limits_;
     /// An environment's file. Empty: none
     std::string light_;

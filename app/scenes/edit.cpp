@@ -9,9 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-#include <glm/geometric.hpp>
-
 #include "app/commands.h"
 #include "app/file_watch.h"
 #include "app/options/bounce_option.h"
@@ -23,6 +20,7 @@
 #include "relumine/in/environment_files.h"
 #include "relumine/light/layers.h"
 #include "relumine/out/light_mix.h"
+#include <fmt/format.h>
 
 namespace relumine::app {
 
@@ -34,9 +32,8 @@ struct EditArguments {
     std::string layers;
     OutputOptions output;
     BounceOption bounces;
-    /// Direction of the quick edit. Empty: LAYERS are given.
-    std::optional<glm::vec3> disc;
-    double radius_degrees = 10.0;
+    /// The quick edit. Empty: LAYERS are given.
+    std::optional<cubemap::Disc> disc;
     glm::vec3 gain{2.0f};
     std::string saved_environment;
     /// --who: a position. Empty: not asked for.
@@ -58,13 +55,9 @@ void check_saved_environment(const EditArguments& options) {
 
 /// The quick edit without a layer file: one gain layer.
 cubemap::LightLayer disc_layer(const EditArguments& options) {
-    if (!(glm::length(*options.disc) > 0.0f))
-        throw UsageError("--disc", fmt::format("expected a direction, got '{}'",
-                                               PointText::show(*options.disc)));
     cubemap::LightLayer layer;
     layer.name = "disc";
-    layer.region =
-        cubemap::Disc{.direction = *options.disc, .radius_degrees = options.radius_degrees};
+    layer.region = *options.disc;
     layer.effect = cubemap::Gain{.tint = options.gain};
     return layer;
 }
@@ -325,12 +318,9 @@ void add_edit(Command& program, Session& session) {
                     {.file = true}));
     options->output.add_to(command);
     options->bounces.add_to(command);
-    command.add(
-        row<PointText>("--disc", options->disc,
-                       "instead of LAYERS: multiply a disc around the direction X,Y,Z from the "
-                       "scene to the light"));
-    command.add(row("--radius", options->radius_degrees, "angular radius of the disc in degrees",
-                    {.min = 1e-6, .max = 180.0}));
+    command.add(row<DiscText>("--disc", options->disc,
+                              "instead of LAYERS: multiply a disc around the direction X,Y,Z from "
+                              "the scene to the light, RADIUS in degrees"));
     command.add(row<ColorText>("--gain", options->gain,
                                "factor on the disc's radiance: a number or R,G,B"));
     command.add(row("--save-env", options->saved_environment,

@@ -47,9 +47,8 @@ struct FitArguments {
 /// The options of a picture that also say how a target was made.
 OptionTable shown_options(relumine::OutputOptions& shown) {
     OptionTable table;
-    constexpr std::array<const char*, 8> Names = {"--albedo", "--exposure",    "--camera",
-                                                  "--front",  "--eye",         "--target",
-                                                  "--fov",    "--floor-albedo"};
+    constexpr std::array<const char*, 5> Names = {"--albedo", "--exposure", "--camera", "--view",
+                                                  "--floor-albedo"};
     for (OptionRow& row : options_of(shown))
         if (std::find(Names.begin(), Names.end(), row.name) != Names.end())
             table.push_back(std::move(row));
@@ -69,10 +68,10 @@ float brightness_of(const FitArguments& options) {
 Picture read_picture(const FitArguments& options, const Command& command, const Scene& scene) {
     bool has_camera = !prt::on_vertices(scene.layout) || own_camera(scene).has_value();
     for (const std::string& name : command.given_options())
-        has_camera = has_camera || name == "--camera" || name == "--eye" || name == "--fov";
+        has_camera = has_camera || name == "--camera" || name == "--view";
     if (!has_camera)
-        throw UsageError("TARGET", "expected the camera of the picture, --camera or --eye and "
-                                   "--target, got none");
+        throw UsageError("TARGET", "expected the camera of the picture, --camera or --view, "
+                                   "got none");
     Picture picture = cubemap::load_picture(options.target);
     for (glm::vec3& pixel : picture.pixels)
         pixel *= brightness_of(options);
@@ -199,8 +198,6 @@ std::string find_light(const FitArguments& options, LitScene& lit, const FitTarg
 }
 
 void check(const FitArguments& options) {
-    if (options.num_lights != 0 && !options.given.empty())
-        throw UsageError("--gains", "expected none beside --lights");
     if (options.num_lights != 0 || !options.given.empty())
         require_extension("--output", options.output, {".json"});
     else
@@ -280,26 +277,25 @@ void add_fit(Command& program, Session& session) {
                  {.file = true}))
         .required(true);
     command.add(row("--output,-o", options->output,
-                    "an environment (.exr, .hdr); a light list with --lights, and what --gains "
-                    "names with its gains (.json)",
+                    "an environment (.exr, .hdr); with --lights a light list, or the given lights "
+                    "with their gains (.json)",
                     {.file = true, .required = true}));
-    command.add(row("--lights", options->num_lights,
-                    "find so many distant lights in place of an environment",
-                    {.min = 1, .max = 128, .type = "N"}));
-    command.add(row("--gains", options->given,
-                    "find how bright each light of a light list has to be, or each layer of light "
-                    "layers over black",
-                    {.file = true}));
+    command.add(row(
+        "--lights",
+        [options](const std::string& text) {
+            constexpr std::uint32_t MostLights = 128;
+            const auto count = parse_number(text) ? parse_count(text).value_or(0) : 1;
+            if (count < 1 || count > MostLights)
+                refuse_text(fmt::format("1 to {} lights, or a file of lights", MostLights), text);
+            const bool is_file = !parse_number(text);
+            options->num_lights = is_file ? 0 : count;
+            options->given = is_file ? text : "";
+        },
+        "in place of an environment find N distant lights, or how bright each light of a FILE has "
+        "to be: of a light list, or of light layers over black",
+        {.file = true, .type = "N|FILE"}));
     command.add(row("--face-resolution", options->environment.face_resolution,
                     "R of the environment, 6 x R x R texels", {.min = 1, .max = 256}));
-    command.add(row("--smooth", options->environment.smoothness,
-                    "how much neighbouring texels of the environment resist to differ",
-                    {.min = 0, .max = 1e6}));
-    command.add(row("--sparse", options->environment.sparsity,
-                    "how much texels of the environment resist to shine; it leaves few",
-                    {.min = 0, .max = 1e6}));
-    command.add(row("--iterations", options->environment.max_iterations,
-                    "most steps towards an environment", {.min = 1, .max = 100000}));
     command.add_all(shown_options(options->shown));
     options->bounces.add_to(command);
     session.add_common_options(command);

@@ -13,6 +13,22 @@
 
 namespace relumine::app {
 
+cubemap::Disc DiscText::read(const std::string& text) {
+    const std::size_t last_comma = text.rfind(',');
+    const auto radius =
+        last_comma == std::string::npos ? std::nullopt : parse_number(text.substr(last_comma + 1));
+    if (!radius)
+        refuse_text("X,Y,Z,RADIUS with a RADIUS in degrees", text);
+    const cubemap::Disc disc{.direction = PointText::read(text.substr(0, last_comma)),
+                             .radius_degrees = *radius};
+    cubemap::validate(cubemap::Region(disc));
+    return disc;
+}
+
+std::string DiscText::show(const cubemap::Disc& disc) {
+    return fmt::format("{},{}", PointText::show(disc.direction), disc.radius_degrees);
+}
+
 cubemap::Region lit_by_region(const std::string& text,
                               std::span<const cubemap::LightLayer> layers) {
     const auto layer =
@@ -30,25 +46,15 @@ cubemap::Region lit_by_region(const std::string& text,
                         names.empty() ? "there is none" : files::joined(names, ", "), text, why,
                         files::did_you_mean(text, names)));
     };
-    const std::size_t last_comma = text.rfind(',');
-    if (last_comma == std::string::npos)
+    const auto numbers = parse_numbers(text);
+    if (!numbers || numbers->size() != 4)
         refuse("");
-    cubemap::Disc disc;
     try {
-        disc.direction = PointText::read(text.substr(0, last_comma));
-    } catch (const std::invalid_argument&) {
-        refuse("");
-    }
-    const std::optional<double> radius = parse_number(text.substr(last_comma + 1));
-    if (!radius)
-        refuse("");
-    disc.radius_degrees = *radius;
-    try {
-        cubemap::validate(cubemap::Region(disc));
+        return DiscText::read(text);
     } catch (const std::invalid_argument& error) {
         refuse(fmt::format(": {}", error.what()));
+        throw;
     }
-    return disc;
 }
 
 } // namespace relumine::app

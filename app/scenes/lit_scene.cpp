@@ -17,12 +17,9 @@ void SceneOptions::add_to(Command& command) {
                     "scene file from `relumine precompute`, or a mesh, which is precomputed first",
                     {.file = true, .required = true}));
     command.add(pose_row(pose));
-    command.add(row("--no-cache", no_cache,
-                    "SCENE is a mesh: precompute it, whether it was before or not, and do not keep "
-                    "the scene"));
     command.add(row("--clusters-only", clusters_only,
                     "light the sun through its cluster too, without shadow rays of its own"));
-    command.add_all(options_of(colors));
+    command.add(material_row(colors));
 }
 
 bool SceneOptions::is_first_picture() const {
@@ -40,7 +37,7 @@ Scene load(const SceneOptions& options, Session& session) {
         return load_scene(options.path);
     }
     if (options.is_first_picture())
-        return first_scene(options.path, options.pose, !options.no_cache, options.before, session);
+        return first_scene(options.path, options.pose, options.before, session);
     if (options.clusters_only)
         throw std::runtime_error(fmt::format(
             "{}: expected a scene file with --clusters-only, got a mesh", options.path));
@@ -53,14 +50,12 @@ void recolour(Scene& scene, const SceneOptions& options) {
         return;
     if (scene.receivers.surfaces.empty())
         throw UsageError(
-            colors.albedo     ? "--surface-albedo"
-            : colors.specular ? "--surface-specular"
-                              : "--surface-roughness",
+            "--material",
             fmt::format("expected a scene with materials, got {} without", options.path));
     try {
         set_colors(scene, colors);
     } catch (const std::invalid_argument& error) {
-        throw UsageError("--surface-roughness", fmt::format("{}: {}", options.path, error.what()));
+        throw UsageError("--material", fmt::format("{}: {}", options.path, error.what()));
     }
 }
 

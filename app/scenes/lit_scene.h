@@ -25,8 +25,6 @@ struct SceneOptions {
     std::uint32_t highlight_rays = DefaultHighlightRays;
     /// The moment of a mesh's animation (MeshOptions::pose)
     std::optional<mesh::Pose> pose = {};
-    /// Precomputes a mesh whether it was before or not, and does not keep its scene.
-    bool no_cache = false;
     /// Lights a mesh without a precompute, and so without an environment.
     bool lights_alone = false;
     /// Looks at a mesh before its precompute, where there is one. Empty: nobody does.

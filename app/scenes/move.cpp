@@ -69,9 +69,9 @@ void add_move(Command& program, Session& session) {
     command.add(row("SCENE", options->scene, "scene of `relumine precompute --movable`",
                     {.file = true, .required = true}));
     command.add(row<GroupStepText>(
-        "--group", options->steps,
-        "a group of the mesh, how far it moves, and by how many degrees it turns about the "
-        "vertical through its middle; may be given several times",
+        "STEP", options->steps,
+        "NAME=X,Y,Z[,DEGREES]: a group of the mesh, how far it moves, and by how many degrees it "
+        "turns about the vertical through its middle; any number of them",
         {.required = true, .example = "chair=0.5,0,0,90"}));
     command.add(row("-o,--output", options->output, "the scene to write, .prt; SCENE itself, too",
                     {.file = true, .required = true}));

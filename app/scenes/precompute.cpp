@@ -102,10 +102,7 @@ Scene precomputed(Mesh mesh, const PrecomputeOptions& options, const PrecomputeW
     try {
         return precompute(std::move(mesh), options, work, &report);
     } catch (const TooMuchWork& error) {
-        throw UsageError(error.cause == TooMuchWork::Cause::MinLevel ? "--min-depth"
-                         : options.epsilon                           ? "--epsilon"
-                                                                     : "--tolerance",
-                         error.what());
+        throw UsageError("--tolerance", error.what());
     } catch (const MemoryLimitExceeded& error) {
         throw std::runtime_error(with_checkpoint(error.what() + advice(error.part)));
     } catch (const std::exception& error) {
@@ -319,10 +316,9 @@ Mesh made_mesh(const PrecomputeArguments& options, Session& session) {
                                 "towards -Z; --up z turns it if it lies on its back",
                                 options.mesh));
     if (const auto crease = mesh::customary_crease(options.mesh);
-        crease && !options.mesh_options.crease &&
-        options.mesh_options.normals == mesh::NormalSource::File)
+        crease && !options.mesh_options.crease)
         session.say(fmt::format("{}: edges over {} degrees are sharp, by the custom of {}; "
-                                "--normals smooth where they are not",
+                                "--crease 180 where they are not",
                                 options.mesh, *crease, files::extension_of(options.mesh)));
     for (const std::string& line : mesh.geometry.notes)
         session.say(fmt::format("{}: {}", options.mesh, line));
@@ -376,13 +372,13 @@ void write_report(const PrecomputeArguments& options, const PrecomputeOptions& w
 
 void run(const PrecomputeArguments& options, const Command& command, Session& session) {
     if (options.parts.is_given() && session.team != nullptr)
-        throw UsageError("--plan", "expected a mesh: parts of a plan share nothing, `relumine "
+        throw UsageError("--part", "expected a mesh: parts of a plan share nothing, `relumine "
                                    "precompute` does them without mpirun");
     const PrecomputeWork work = precompute_work(session);
     if (options.parts.is_given())
-        return options.parts.run(command, options.output, options.precompute.engine, work, session);
-    if (options.mesh.empty())
-        throw UsageError("MESH", "expected a mesh, got none");
+        return options.parts.run(command, options.mesh, options.output, work, session);
+    if (extension_of(options.mesh) == ".plan")
+        throw UsageError("--part", "expected I/N with a plan, got none");
     say_how_to_go_on(options.output, session);
     if (!work.team.is_first()) {
         const Patience for_checkpoints;
@@ -417,16 +413,17 @@ void add_work_options(Command& command, PrecomputeArguments& options) {
                     "light so many of the mesh's vertices, those that shape it; all of its "
                     "triangles go on to throw shadows",
                     {.min = 4, .max = 4294967294.0, .type = "N", .shows_default = false}));
-    options.refine.add_to_precompute(command);
+    options.refine.add_to_precompute(command, options.precompute.no_refine);
     for (OptionRow& each : options_of(options.precompute))
-        if (!options.is_plan || (each.name != "--resume" && each.name != "--checkpoint-seconds"))
+        if (!each.library_only &&
+            (!options.is_plan || (each.name != "--resume" && each.name != "--checkpoint-seconds")))
             command.add(std::move(each));
     command.add(material_row(options.materials));
 }
 
 } // namespace
 
-Scene first_scene(const std::string& path, const std::optional<mesh::Pose>& pose, bool is_cached,
+Scene first_scene(const std::string& path, const std::optional<mesh::Pose>& pose,
                   const std::function<void(const Mesh&)>& before, Session& session) {
     Stopwatch watch;
     PrecomputeArguments options;
@@ -434,7 +431,7 @@ Scene first_scene(const std::string& path, const std::optional<mesh::Pose>& pose
     options.mesh_options.pose = pose;
     Mesh mesh = made_mesh(options, session);
     stand_on_floor(mesh);
-    const std::optional<SceneCache> cache = is_cached ? user_cache() : std::nullopt;
+    const std::optional<SceneCache> cache = user_cache();
     PrecomputeWork work = precompute_work(session);
     work.on_warning = [warn = work.on_warning](Warning kind, const std::string& message) {
         if (kind != Warning::HighlightsWithoutView) // the picture traces them
@@ -463,9 +460,11 @@ void add_precompute(Command& program, Session& session) {
     Command command =
         program.add_command("precompute", "compute a mesh's light transfer: MESH -> SCENE.prt");
     auto options = std::make_shared<PrecomputeArguments>();
-    command.add(row("MESH", options->mesh, "mesh: " + mesh::mesh_extensions(), {.file = true}));
+    command.add(row("MESH", options->mesh,
+                    "mesh: " + mesh::mesh_extensions() + "; or with --part a plan",
+                    {.file = true, .required = true}));
     command.add(row("-o,--output", options->output,
-                    "the scene file to write, .prt; with --plan the part",
+                    "the scene file to write, .prt; with --part the part",
                     {.file = true, .required = true}));
     options->parts.add_to(command);
     add_work_options(command, *options);

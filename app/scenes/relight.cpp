@@ -31,6 +31,9 @@ namespace relumine::app {
 
 namespace {
 
+/// Nine coefficients a channel, the first four of which are those of order 2.
+constexpr std::uint32_t HarmonicsOrder = 3;
+
 struct RelightArguments {
     SceneOptions scene;
     EnvironmentOptions environment;
@@ -38,18 +41,13 @@ struct RelightArguments {
     std::string lights;
     OutputOptions output;
     BounceOption bounces;
-    bool only_bounces = false;
     /// A file for the arriving light; empty: none
     std::string harmonics;
-    std::uint32_t harmonics_order = 3;
     /// count is 0 until --part is given.
     prt::Part part = {.index = 0, .count = 0};
 };
 
-void keep_bounces(Lighting& lighting, std::span<const glm::vec3> bounced, const std::string& path) {
-    if (bounced.empty())
-        throw std::runtime_error(
-            fmt::format("{}: expected bounces for --only-bounces, got none", path));
+void keep_bounces(Lighting& lighting, std::span<const glm::vec3> bounced) {
     lighting.radiance = bounced;
     lighting.soft.clear();
     lighting.lights.clear();
@@ -181,7 +179,7 @@ void report_light(const RelightArguments& options, Session& session, const Lit& 
 std::function<void(const Mesh&)> first_sight(const RelightArguments& options, const Light& light,
                                              Session& session) {
     const std::string extension = files::extension_of(options.output.path);
-    if ((extension != ".png" && extension != ".exr") || options.only_bounces ||
+    if ((extension != ".png" && extension != ".exr") || options.bounces.are_alone() ||
         options.scene.colors != SurfaceColors())
         return {};
     return [&options, &light, &session, watch = Stopwatch()](const Mesh& mesh) {
@@ -245,8 +243,8 @@ void light_scene(const RelightArguments& options, Session& session) {
         return;
     }
     const std::vector<glm::vec3> bounced = relumine::bounced(lit);
-    if (options.only_bounces)
-        keep_bounces(lighting, bounced, options.scene.path);
+    if (options.bounces.are_alone())
+        keep_bounces(lighting, bounced);
     Painter painter(lit, output);
     painter.on_progress(session.progress("picture"));
     painter.save(options.output.path, lighting);
@@ -337,16 +335,11 @@ void add_relight(Command& program, Session& session) {
                     "harmonics: .npy, .exr (layers; not of vertices), .json (three.js; of points "
                     "and grids)",
                     {.file = true}));
-    command.add(row("--harmonics-order", options->harmonics_order,
-                    "2 or 3: 4 or 9 coefficients a channel",
-                    {.min = 2, .max = 3, .needs = "--harmonics"}));
-    options->bounces.add_to(command);
-    command.add(row("--only-bounces", options->only_bounces,
-                    "what surfaces add to the direct light, alone"));
+    options->bounces.add_to(command, true, true);
     session.add_common_options(command);
     command.on_run([options, command, &session] {
         if (!options->harmonics.empty())
-            options->scene.harmonics = options->harmonics_order;
+            options->scene.harmonics = HarmonicsOrder;
         options->scene.highlight_rays = options->output.picture.highlight_rays;
         options->scene.lights_alone = options->environment.path.empty();
         run(*options, command, session);

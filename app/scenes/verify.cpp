@@ -19,14 +19,18 @@ struct VerifyArguments {
     SceneOptions scene;
     EnvironmentOptions environment;
     std::size_t num_samples = 2000;
-    std::size_t num_surface_points = VerifyOptions{}.num_surface_points;
-    std::uint64_t seed = 1;
     BounceOption bounces;
     float albedo = 0.5f;
     std::uint32_t num_paths = VerifyOptions{}.num_paths;
     std::optional<glm::vec3> eye;
     EyeOptions eye_options;
 };
+
+/// Points of the surface, beside the receivers: as many as these, and no more than are enough.
+std::size_t surface_points(const VerifyArguments& options) {
+    const std::size_t enough = VerifyOptions{}.num_surface_points;
+    return options.num_samples == 0 ? enough : std::min(enough, options.num_samples);
+}
 
 /// One sentence that says what a picture has to expect, and how much worse it is elsewhere.
 std::string headline(const Verification& check, std::string_view receiver) {
@@ -94,8 +98,7 @@ void run(const VerifyArguments& options, Session& session) {
     Stopwatch watch;
     const Verification check = verify(lit,
                                       {.num_samples = options.num_samples,
-                                       .seed = options.seed,
-                                       .num_surface_points = options.num_surface_points,
+                                       .num_surface_points = surface_points(options),
                                        .num_paths = options.num_paths,
                                        .eye = options.eye,
                                        .eye_options = options.eye_options},
@@ -150,18 +153,15 @@ void add_verify(Command& program, Session& session) {
     auto options = std::make_shared<VerifyArguments>();
     options->scene.add_to(command);
     options->environment.add_to(command);
-    command.add(row("--samples", options->num_samples, "receivers chosen at random, 0 for all"));
-    command.add(row("--surface", options->num_surface_points,
-                    "points of the surface chosen at random, where exact light is compared with "
-                    "what the vertices interpolate; 0 for none",
-                    {.min = 0, .max = 1u << 24, .type = "N"}));
-    command.add(row("--seed", options->seed, "seed of the choice"));
+    command.add(row("--samples", options->num_samples,
+                    "receivers chosen at random, 0 for all; and as many points of the surface, 500 "
+                    "at most, where exact light is compared with what the vertices interpolate"));
     options->bounces.add_to(command, false);
     command.add(
         row("--albedo", options->albedo, "of all surfaces, for bounces", {.min = 0.0, .max = 1.0}));
     command.add(row("--paths", options->num_paths, "paths per receiver that bounces are held to",
                     {.min = 1, .max = 1u << 24}));
-    command.add(row<PointText>("--eye", options->eye,
+    command.add(row<PointText>("--view", options->eye,
                                "X,Y,Z: compares the light towards this eye, of a scene of glossy "
                                "vertices without --view, at the vertices",
                                {.example = "1,2,3"}));

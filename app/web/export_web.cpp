@@ -44,12 +44,10 @@ struct ExportWebArguments {
     std::string output;
     float tolerance = 0.0275f;
     std::size_t num_samples = 500;
-    std::size_t bounce_samples = 64;
-    bool single_file = false;
-    bool no_bounces = false;
-    bool force = false;
+    std::string bounces = "auto";
     std::optional<double> max_bytes;
-    std::string title;
+
+    [[nodiscard]] bool is_single_file() const { return extension_of(output) == ".html"; }
 };
 
 /// What the page's runtime opens.
@@ -196,7 +194,7 @@ WebFile& file_named(WebFiles& files, std::string_view name) {
 /// All that is written.
 WebFiles written(const Page& page, const WebFiles& parts, const ExportWebArguments& options,
                  const PageWords& words) {
-    if (options.single_file)
+    if (options.is_single_file())
         return {{"index.html", bytes_of(single_page(parts, page.files, words.title))}};
     WebFiles all = {{"index.html", bytes_of(folder_page(parts, words.title))}};
     for (const WebFile& part : parts)
@@ -273,9 +271,11 @@ double error_of_bounces(const Scene& scene, const prt::BounceMatrix& other) {
 }
 
 void thin_bounces(Scene& scene, const ExportWebArguments& options, PageWords& words) {
-    if (!scene.bounces || options.bounce_samples == 0)
+    // That a receiver's light from surfaces has in the mean.
+    constexpr std::size_t Samples = 64;
+    if (!scene.bounces || options.bounces == "all")
         return;
-    prt::BounceMatrix few = prt::thinned(*scene.bounces, options.bounce_samples);
+    prt::BounceMatrix few = prt::thinned(*scene.bounces, Samples);
     if (few.emitters.places.size() == scene.bounces->emitters.places.size())
         return;
     words.thinned_error = error_of_bounces(scene, few);
@@ -295,7 +295,7 @@ Scene scene_of_page(const ExportWebArguments& options, PageWords& words, Session
             options.scene, prt::kind_of(scene.layout).name));
     if (!has_clusters(scene))
         throw std::runtime_error(fmt::format("{}: expected a scene with clusters", options.scene));
-    if (options.no_bounces)
+    if (options.bounces == "0")
         scene.bounces.reset();
     words.left_out = left_out_of(scene);
     for (const std::string& what : words.left_out)
@@ -311,18 +311,14 @@ Scene scene_of_page(const ExportWebArguments& options, PageWords& words, Session
 
 void export_web(const ExportWebArguments& options, Session& session) {
     const std::filesystem::path output = options.output;
-    if (options.single_file)
-        require_extension("--output", options.output, {".html"});
     std::vector<std::string> inputs = options.environments;
     inputs.push_back(options.scene);
-    if (options.single_file)
+    if (options.is_single_file())
         check_output(options.output, inputs);
     else
-        check_folder(output, options.force);
+        check_folder(output);
     const WebFiles parts = find_page_parts();
-    PageWords words{.title = options.title.empty()
-                                 ? std::filesystem::path(options.scene).stem().string()
-                                 : options.title};
+    PageWords words{.title = std::filesystem::path(options.scene).stem().string()};
     Scene scene = scene_of_page(options, words, session);
     if (options.max_bytes)
         scene = fitted(std::move(scene), options, parts, words, session);
@@ -333,7 +329,7 @@ void export_web(const ExportWebArguments& options, Session& session) {
     std::uint64_t of_environments = 0;
     for (const WebFile& file : page.files)
         of_environments += file.name.starts_with("environments/") ? file.bytes.size() : 0;
-    if (options.single_file) {
+    if (options.is_single_file()) {
         files.front().name = output.filename().string();
         write_folder(output.parent_path().empty() ? "." : output.parent_path(), files);
     } else {
@@ -373,7 +369,8 @@ void add_export_web(Command& group, Session& session) {
     command.add(row("ENV", options->environments,
                     "environments to choose from; none: some are made", {.file = true}));
     command.add(row("-o,--output", options->output,
-                    "the folder to write, or OUT.html of a single file",
+                    "the folder to write, or OUT.html: one file with all within, which opens by a "
+                    "double click",
                     {.folder = true, .required = true}));
     command.add(
         row("--tolerance", options->tolerance,
@@ -381,16 +378,13 @@ void add_export_web(Command& group, Session& session) {
             {.min = 1e-6, .max = 1.0}));
     command.add(row("--samples", options->num_samples,
                     "receivers whose light is compared with exact integration, 0 for none"));
-    command.add(row("--title", options->title, "of the page (the scene's name)"));
-    command.add(row("--bounce-samples", options->bounce_samples,
-                    "samples that a receiver's light from surfaces has in the mean; 0: all"));
-    command.add(row("--no-bounces", options->no_bounces, "leaves out the light between surfaces"));
-    command.add(row("--single-file", options->single_file,
-                    "one .html with all within, which opens by a double click"));
+    command.add(row("--bounces", options->bounces,
+                    "the light between surfaces: from 64 samples a receiver in the mean, from all "
+                    "that the scene has, or 0 for none",
+                    {.choices = {"auto", "all", "0"}}));
     command.add(row("--max-bytes", options->max_bytes,
                     "largest size of all files: bounces and clusters are given up for it",
                     {.min = 1, .type = "BYTES"}));
-    command.add(row("--force", options->force, "writes into a folder that is not empty"));
     session.add_common_options(command);
     command.on_run([options, &session] { export_web(*options, session); });
 }

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "data_gen/environments.h"
+#include "files/pixel_values.h"
 #include "relumine/ask/questions.h"
 #include "relumine/in/environment.h"
 #include "relumine/in/environment_files.h"
@@ -68,7 +69,7 @@ std::vector<std::byte> thumbnail(const cubemap::CubeMap& map) {
         const glm::vec3 shown = relight::on_screen(relight::ToneCurve::Agx, pixel * exposure);
         for (const float value : {shown.r, shown.g, shown.b})
             bytes.push_back(
-                static_cast<std::uint8_t>(std::lround(255.0f * mesh::srgb_of_linear(value))));
+                static_cast<std::uint8_t>(std::lround(255.0f * files::srgb_of_linear(value))));
     }
     return relight::encode_png(ThumbWidth, ThumbHeight, 3, bytes);
 }

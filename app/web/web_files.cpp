@@ -122,16 +122,18 @@ std::string single_page(const WebFiles& parts, const WebFiles& scene, const std:
     return page;
 }
 
-void check_folder(const std::filesystem::path& folder, bool force) {
+void check_folder(const std::filesystem::path& folder) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(folder, error);
     if (!std::filesystem::exists(status))
         return;
     if (!std::filesystem::is_directory(status))
         throw std::runtime_error(fmt::format("{}: expected a folder", folder.string()));
-    if (!force && !std::filesystem::is_empty(folder))
-        throw std::runtime_error(
-            fmt::format("{}: the folder is not empty; --force writes into it", folder.string()));
+    const bool has_page = std::filesystem::exists(folder / "index.html") &&
+                          std::filesystem::exists(folder / "scene.json");
+    if (!has_page && !std::filesystem::is_empty(folder))
+        throw std::runtime_error(fmt::format(
+            "{}: expected an empty folder, or one with a page, got other files", folder.string()));
 }
 
 void write_folder(const std::filesystem::path& folder, const WebFiles& files) {

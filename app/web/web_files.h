@@ -41,7 +41,8 @@ bytes_written(std::string_view name,
 /// Throws:  std::runtime_error naming the path.
 void write_folder(const std::filesystem::path& folder, const WebFiles& files);
 
-/// Throws std::runtime_error unless the folder may be written to: it is absent, empty, or `force`.
-void check_folder(const std::filesystem::path& folder, bool force);
+/// Throws std::runtime_error unless the folder may be written to: it is absent, empty, or has a
+/// page already.
+void check_folder(const std::filesystem::path& folder);
 
 } // namespace relumine::app

@@ -11,6 +11,7 @@
 
 #include "app/web/web_look.h"
 #include "files/gzip.h"
+#include "files/pixel_values.h"
 #include "relumine/in/emission.h"
 #include "relumine/light/bounces.h"
 #include "relumine/light/lit_scene.h"
@@ -20,8 +21,6 @@
 namespace relumine::app {
 
 namespace {
-
-constexpr float LargestHalf = 65504.0f;
 
 /// Factors that leave one lamp.
 std::vector<EmissionGain> only(const std::vector<std::string>& names, const std::string& shining) {
@@ -37,7 +36,7 @@ std::vector<std::byte> halves(std::span<const glm::vec3> values) {
     result.reserve(3 * values.size());
     for (const glm::vec3& value : values)
         for (const float channel : {value.x, value.y, value.z})
-            result.push_back(glm::packHalf1x16(std::min(channel, LargestHalf)));
+            result.push_back(glm::packHalf1x16(std::min(channel, files::LargestHalf)));
     const auto bytes = std::as_bytes(std::span(result));
     return {bytes.begin(), bytes.end()};
 }

@@ -9,12 +9,12 @@
 
 #include "cubemap/doctor/sky_angles.h"
 #include "cubemap/image/image_layout.h"
+#include "files/pixel_values.h"
 
 namespace relumine::cubemap {
 
 namespace {
 
-constexpr float LargestHalf = 65504.0f;
 /// Clipped pixels are equal. Compression may change them a little.
 constexpr float AtMaximum = 0.998f;
 constexpr std::size_t LeastPlateau = 4;
@@ -124,7 +124,7 @@ std::optional<ClippedSun> clipped_sun(const EnvironmentImage& image, const SunSe
         return ClippedSun{brightest.peak_direction,
                           fmt::format("{} pixels are infinite", image.bad_pixels.num_infinite)};
     const float maximum = largest_value(image);
-    if (maximum == LargestHalf)
+    if (maximum == files::LargestHalf)
         return ClippedSun{brightest.peak_direction, "its pixels are at the largest half, 65504"};
     if (auto plateau = clipped_plateau(image, search, maximum))
         return plateau;

@@ -13,6 +13,7 @@
 
 #include "files/counted.h"
 #include "files/parallel.h"
+#include "files/pixel_values.h"
 
 namespace relumine::cubemap {
 
@@ -76,8 +77,7 @@ float linear(float value, Transfer transfer) {
     };
     switch (transfer) {
     case Transfer::Srgb:
-        return size <= 0.04045f ? value / 12.92f
-                                : std::copysign(std::pow((size + 0.055f) / 1.055f, 2.4f), value);
+        return std::copysign(files::linear_of_srgb(size), value);
     case Transfer::Gamma22:
         return power(2.2f);
     case Transfer::Gamma18:

@@ -15,6 +15,7 @@
 #include "files/extension.h"
 #include "files/joined.h"
 #include "files/output_file.h"
+#include "files/pixel_values.h"
 
 namespace relumine::cubemap {
 
@@ -124,8 +125,7 @@ bool are_fixed(const BadPixels& bad, const LoadOptions& options, const std::stri
 }
 
 float least_infinity(const ImageFile& file) {
-    constexpr float MostOfHalves = 65504.0f;
-    return file.is_half ? MostOfHalves : 0.0f;
+    return file.is_half ? files::LargestHalf : 0.0f;
 }
 
 float largest_finite(const glm::vec3& pixel, float largest) {

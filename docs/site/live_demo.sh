@@ -9,4 +9,4 @@ for environment in sun_sky soft_boxes; do
     "$relumine" generate "$environment" -o "$scratch" -q
 done
 "$relumine" precompute "$scratch/colonnade.ply" -o "$scratch/colonnade.prt" --tolerance 0.02 --bounces -q
-"$relumine" export web "$scratch/colonnade.prt" "$scratch/soft_boxes.exr" "$scratch/sun_sky.exr" -o "$folder" --title Colonnade --force -q
+"$relumine" export web "$scratch/colonnade.prt" "$scratch/soft_boxes.exr" "$scratch/sun_sky.exr" -o "$folder" -q

@@ -125,7 +125,7 @@ std::vector<glm::vec3> complete_normals(PolygonSoup& soup, std::span<const Trian
         num_flat += is_missing && is_flat ? 1 : 0;
     });
     if (num_flat != 0)
-        soup.notes.push_back(fmt::format("{} without normals {} flat; --normals smooth rounds them",
+        soup.notes.push_back(fmt::format("{} without normals {} flat; --crease 180 rounds them",
                                          files::counted(num_flat, "face"),
                                          num_flat == 1 ? "is" : "are"));
     if (num_missing != 0 && (!soup.normals.empty() || !soup.corner_normals.empty()))

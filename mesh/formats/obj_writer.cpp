@@ -1,10 +1,9 @@
 #include "mesh/formats/obj_writer.h"
+#include "files/pixel_values.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
-
-#include "mesh/materials/srgb.h"
 
 namespace relumine::mesh {
 
@@ -23,7 +22,8 @@ std::string obj(const TriangleMesh& mesh, const std::string& library) {
         }
         if (!mesh.colors.empty()) // other programs have them as sRGB
             for (int k = 0; k < 3; ++k)
-                text += fmt::format(" {}", srgb_of_linear(std::max(mesh.colors[i][k], 0.0f)));
+                text +=
+                    fmt::format(" {}", files::srgb_of_linear(std::max(mesh.colors[i][k], 0.0f)));
         text += '\n';
     }
     for (const glm::vec3& n : mesh.normals)

@@ -1,4 +1,5 @@
 #include "mesh/formats/soup_colors.h"
+#include "files/pixel_values.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +7,6 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
-
-#include "mesh/materials/srgb.h"
 
 namespace relumine::mesh {
 
@@ -85,7 +84,7 @@ void settle_colors(PolygonSoup& soup, std::optional<ColorCurve> curve) {
         for (glm::vec3& color : *colors) {
             color = glm::max(color, glm::vec3(0.0f));
             for (int i = 0; i < 3 && is_srgb; ++i)
-                color[i] = linear_of_srgb(color[i]);
+                color[i] = files::linear_of_srgb(color[i]);
         }
     if (!custom.reason.empty() && !curve)
         soup.notes.push_back(

@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "files/free_memory.h"
+#include "files/pixel_values.h"
 #include "mesh/materials/image_decoder.h"
-#include "mesh/materials/srgb.h"
 
 namespace relumine::mesh {
 
@@ -17,7 +17,7 @@ using Channels = std::array<std::uint8_t, 3>;
 std::array<float, 256> srgb_table() {
     std::array<float, 256> table{};
     for (std::size_t i = 0; i < table.size(); ++i)
-        table[i] = static_cast<float>(linear_of_srgb(static_cast<double>(i) / 255.0));
+        table[i] = static_cast<float>(files::linear_of_srgb(static_cast<double>(i) / 255.0));
     return table;
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "files/parallel.h"
+#include "files/seconds.h"
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/clusters/lattice.h"
 #include "prt/free_memory.h"
@@ -312,9 +313,7 @@ void Clustering::work() {
         depths_.fill(0);
         trace_batch();
         decide_batch();
-        estimate_.add(
-            level, depths_,
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        estimate_.add(level, depths_, files::seconds_since(start));
         steps_.look_up();
     }
 }

@@ -18,6 +18,7 @@
 
 #include "files/packed_parts.h"
 #include "files/parallel.h"
+#include "files/seconds.h"
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/free_memory.h"
 #include "prt/glossy/brdf.h"
@@ -333,7 +334,7 @@ GlossyTransfer precompute_glossy(const Receivers& receivers, const Blockers& blo
     GlossyStatistics local;
     GlossyTransfer glossy =
         GlossyPrecompute(receivers, blockers, transfer, options, work).run(local);
-    local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    local.seconds = files::seconds_since(start);
     if (statistics != nullptr)
         *statistics = local;
     return glossy;

@@ -16,6 +16,7 @@
 #include <glm/vec2.hpp>
 
 #include "files/parallel.h"
+#include "files/seconds.h"
 #include "prt/clusters/cluster_kernels.h"
 #include "prt/clusters/horizon.h"
 #include "prt/clusters/lattice.h"
@@ -448,7 +449,7 @@ CountsPatch recounted(const Receivers& receivers, const Blockers& blockers,
     std::sort(patch.words.begin(), patch.words.end(),
               [](const auto& a, const auto& b) { return a.word < b.word; });
     sums.num_changed = patch.num_pairs();
-    sums.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    sums.seconds = files::seconds_since(start);
     if (statistics != nullptr)
         *statistics = sums;
     return patch;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "files/seconds.h"
 #include "mesh/half_edge/curved_surface.h"
 #include "mesh/half_edge/split_mesh.h"
 #include "prt/refinement/edge_errors.h"
@@ -204,7 +205,7 @@ mesh::TriangleMesh refine(const mesh::TriangleMesh& mesh, const Blockers& blocke
     const auto start = std::chrono::steady_clock::now();
     RefineReport local;
     mesh::TriangleMesh result = Refinement(mesh, blockers, options, work, local).run();
-    local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    local.seconds = files::seconds_since(start);
     if (report != nullptr)
         *report = local;
     return result;

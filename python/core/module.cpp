@@ -38,7 +38,7 @@ PYBIND11_MODULE(_core, module) {
             std::rethrow_exception(error);
         } catch (const relumine::MemoryLimitExceeded& limit) {
             PyErr_SetString(PyExc_MemoryError, limit.what());
-        } catch (const relumine::OptionError& wrong) { // floor_fade for --floor-fade
+        } catch (const relumine::OptionError& wrong) { // floor_albedo for --floor-albedo
             const std::string name = relumine::OptionRow{{}, wrong.option}.key();
             const std::string text = name.empty() ? wrong.what() : name + ": " + wrong.reason;
             PyErr_SetString(PyExc_ValueError, text.c_str());

@@ -14,7 +14,7 @@ namespace py = pybind11;
 /// Sets options from keyword arguments. None is the same as not given. A list counts as its values
 /// with commas between, so everything is read as the command line reads it.
 ///
-/// Throws:  OptionError "--floor-fade: expected X, got 'Y'"; py::type_error for a name that the
+/// Throws:  OptionError "--floor-albedo: expected X, got 'Y'"; py::type_error for a name that the
 ///          table does not have.
 void take(const OptionTable& table, const py::dict& given);
 

@@ -85,9 +85,7 @@ MeshPointer loaded_mesh(const Path& path, const py::dict& given) {
 py::tuple refined_mesh(const MeshPointer& mesh, const py::dict& given, const py::object& progress) {
     using Result = std::pair<MeshPointer, RefineReport>;
     RefineOptions chosen;
-    OptionTable table = options_of(chosen);
-    table.push_back(row("--bias", chosen.bias, ""));
-    take(table, given);
+    take(options_of(chosen), given);
     const Result result =
         in_background(progress, [mesh, options = std::move(chosen)](const Reins& reins) {
             Result found;
@@ -248,11 +246,9 @@ py::tuple planned(const MeshPointer& mesh, const py::dict& given, const py::obje
 }
 
 void do_part(const Path& plan_path, std::uint32_t index, std::uint32_t count, const Path& output,
-             const py::dict& given, const py::object& progress) {
-    const PartOptions options{.plan = plan_path,
-                              .part = {.index = index, .count = count},
-                              .output = output,
-                              .engine = options_from<PrecomputeOptions>(given).engine};
+             const py::object& progress) {
+    const PartOptions options{
+        .plan = plan_path, .part = {.index = index, .count = count}, .output = output};
     in_background(progress, [options](const Reins& reins) {
         precompute_part(options,
                         {.stop = reins.stop, .on_progress = [&reins](Stage stage, double fraction) {

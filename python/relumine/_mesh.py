@@ -263,40 +263,35 @@ class Mesh:
     def refined(
         self,
         *,
-        error: float = 0.01,
+        tolerance: float = 0.01,
+        vertices: Optional[int] = None,
         max_edge: Optional[float] = None,
-        min_edge: Optional[float] = None,
-        max_vertices: Optional[int] = None,
         curved: bool = False,
-        bias: Optional[float] = None,
         progress: Optional[Callable[[float], object]] = None,
     ) -> "Mesh":
         """The mesh with more vertices where its light changes between two of them.
 
-        error         RMS of the transfer, in 1/sr, by which the middle of an edge may differ from
-                      the mean of its ends
-        max_edge      longer edges are split in any case
-        min_edge      edges shorter than twice this are not; by default 1/1000 of the diagonal
-        max_vertices  then the edges that matter most are split first
-        curved        new vertices lie on a smooth surface, not in the middle of the old edge
+        tolerance  RMS of the transfer, in 1/sr, by which the middle of an edge may differ from the
+                   mean of its ends
+        vertices   the most that the mesh gets: the edges that matter most are split first
+        max_edge   longer edges are split in any case
+        curved     new vertices lie on a smooth surface, not in the middle of the old edge
 
         Vertices keep index and position, but for those of a floor, which follow the new ones. The
         original triangles go on blocking the light. `report` of the result has figures.
 
         >>> box = relumine.Mesh.load("boulder.ply", floor=2)
-        >>> fine = box.refined(error=0.03, max_vertices=7000)
+        >>> fine = box.refined(tolerance=0.03, vertices=7000)
         >>> len(box.vertices), len(fine.vertices), fine.report["is_at_limit"]
         (6916, 7000, True)
         """
         options: Dict[str, Any] = {
-            "error": error,
+            "tolerance": tolerance,
+            "vertices": vertices,
             "max_edge": max_edge,
-            "min_edge": min_edge,
-            "max_vertices": max_vertices,
             "curved": curved,
-            "bias": bias,
         }
-        for name in ("error", "max_edge", "min_edge", "max_vertices"):
+        for name in ("tolerance", "vertices", "max_edge"):
             value = options[name]
             if value is not None and not value > 0:
                 raise ValueError(f"{name}: expected more than 0, got {value}")

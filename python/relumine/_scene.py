@@ -69,9 +69,12 @@ def _materials(material: Union[Material, Mapping[str, Material], None]) -> List[
     return result
 
 
-def _receivers(receivers: Union[str, ArrayLike]) -> Any:
+def _receivers(receivers: Union[str, ArrayLike], box: Any) -> Any:
+    if box is not None and not (isinstance(receivers, str) and receivers.startswith("grid:")):
+        raise ValueError("box: expected receivers='grid:NXxNYxNZ' with it")
     if isinstance(receivers, str):
-        return receivers
+        corners = "" if box is None else ",".join(map(str, np.ravel(box)))
+        return receivers + (":" + corners if corners else "")
     return floats("receivers", receivers, None, 3)
 
 
@@ -91,11 +94,9 @@ def precompute(
     triangles: Optional[ArrayLike] = None,
     *,
     tolerance: Optional[float] = None,
-    epsilon: Optional[float] = None,
     min_depth: Optional[int] = None,
     face_resolution: Optional[int] = None,
     bias: Optional[float] = None,
-    engine: str = "beam",
     blockers_function: Optional[BlockersFunction] = None,
     receivers: Union[str, ArrayLike] = "vertices",
     box: Any = None,
@@ -120,7 +121,8 @@ def precompute(
                `triangles` (M, 3)
     tolerance  RMS error of the transfer allowed within a cluster, in 1/sr (0.0135; 0.025 where
                vertices were added; 0.1 for points)
-    epsilon    the paper's form of it; excludes `tolerance`
+    min_depth  every cube face is split at least so often (3; at least 6 for points)
+    bias       lift of the rays' origins off the surface, in the mesh's unit; None: by its size
     blockers_function
                what blocks light in place of the mesh's triangles: called with (N, 3) origins and
                (N, 3) unit directions, some thousand rays at a time, it returns (N,) booleans, True
@@ -146,7 +148,8 @@ def precompute(
                that `resume` goes on from
     progress   called with a fraction in [0, 1], in this thread
 
-    The other options are those of `relumine precompute`. Ctrl-C raises KeyboardInterrupt.
+    The other options are those of `relumine precompute`, which has no `min_depth`, `bias` and
+    `ggx`. Ctrl-C raises KeyboardInterrupt.
 
     >>> scene = relumine.precompute(relumine.Mesh.load("boulder.ply"), tolerance=0.05)
     >>> scene
@@ -165,13 +168,10 @@ def precompute(
         mesh = Mesh(mesh, triangles)
     options: Dict[str, Any] = {
         "tolerance": tolerance,
-        "epsilon": epsilon,
         "min_depth": min_depth,
         "face_resolution": face_resolution,
         "bias": bias,
-        "engine": engine,
-        "receivers": _receivers(receivers),
-        "box": box,
+        "receivers": _receivers(receivers, box),
         "no_refine": not refine,
         "view": view,
         "material": _materials(material),
@@ -202,7 +202,6 @@ def plan(
     output: Path,
     *,
     tolerance: Optional[float] = None,
-    epsilon: Optional[float] = None,
     min_depth: Optional[int] = None,
     face_resolution: Optional[int] = None,
     bias: Optional[float] = None,
@@ -226,12 +225,10 @@ def plan(
     """
     options: Dict[str, Any] = {
         "tolerance": tolerance,
-        "epsilon": epsilon,
         "min_depth": min_depth,
         "face_resolution": face_resolution,
         "bias": bias,
-        "receivers": _receivers(receivers),
-        "box": box,
+        "receivers": _receivers(receivers, box),
         "no_refine": not refine,
         "view": view,
         "output": os.fspath(output),
@@ -248,7 +245,6 @@ def precompute_part(
     count: int,
     output: Path,
     *,
-    engine: str = "beam",
     progress: Optional[Progress] = None,
 ) -> None:
     """Does part 0 .. count - 1 of a plan and writes its file.
@@ -259,7 +255,7 @@ def precompute_part(
     part = whole("part", part, 0, count - 1)
     with errors(plan, only=True):
         _core.precompute_part(
-            os.fspath(plan), part, count, os.fspath(output), {"engine": engine}, progress
+            os.fspath(plan), part, count, os.fspath(output), progress
         )
 
 

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
+#include "files/seconds.h"
 #include "relight/bounces/bounce_product.h"
 #include "relight/bounces/coarse_bounces.h"
 #include "relight/bounces/point_gather.h"
@@ -121,7 +122,7 @@ public:
         if (has_points() && !(sends_ && limits.num_bounces))
             send();
         publish(limits.num_bounces != 0u);
-        report.seconds = seconds_since(start);
+        report.seconds = files::seconds_since(start);
         return report;
     }
 
@@ -143,7 +144,7 @@ public:
         if (has_points())
             send();
         publish(true);
-        report.seconds = seconds_since(start);
+        report.seconds = files::seconds_since(start);
         return report;
     }
 
@@ -167,10 +168,6 @@ private:
         num_steps_ = 0;
         last_step_ = 0.0;
         last_ratio_ = 0.0;
-    }
-
-    static double seconds_since(std::chrono::steady_clock::time_point start) {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
 
     void set_direct(std::span<const glm::vec3> direct) {

@@ -13,6 +13,7 @@
 
 #include "cubemap/luminance.h"
 #include "files/parallel.h"
+#include "files/seconds.h"
 #include "prt/glossy/brdf.h"
 #include "relight/moving_eye/eye_cut.h"
 #include "relight/moving_eye/eye_kernel.h"
@@ -380,8 +381,7 @@ std::span<const glm::vec3> MovingEye::look(const glm::vec3& eye,
     report.num_cells = num_cells;
     report.num_blocks = num_blocks;
     report.num_updated = num_updated;
-    report.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    report.seconds = files::seconds_since(start);
     return impl_->result;
 }
 

@@ -12,7 +12,7 @@
 #include "files/extension.h"
 #include "files/output_file.h"
 #include "files/parallel.h"
-#include "mesh/materials/srgb.h"
+#include "files/pixel_values.h"
 #include "relight/pictures/png_file.h"
 
 namespace relumine::relight {
@@ -21,7 +21,7 @@ namespace {
 
 std::uint8_t srgb_byte(float linear) {
     const float x = std::clamp(linear, 0.0f, 1.0f);
-    return static_cast<std::uint8_t>(std::lround(mesh::srgb_of_linear(x) * 255.0f));
+    return static_cast<std::uint8_t>(std::lround(files::srgb_of_linear(x) * 255.0f));
 }
 
 /// Puts the colours of some pixels through a tone curve.
@@ -34,8 +34,8 @@ void curve(std::span<glm::vec3> colors, const Development& development) {
     // The display's values are encoded; the file will encode them again.
     development.display->apply(colors);
     for (glm::vec3& color : colors)
-        color = {mesh::linear_of_srgb(color.r), mesh::linear_of_srgb(color.g),
-                 mesh::linear_of_srgb(color.b)};
+        color = {files::linear_of_srgb(color.r), files::linear_of_srgb(color.g),
+                 files::linear_of_srgb(color.b)};
 }
 
 /// Exposes the picture and puts its colours through a tone curve.

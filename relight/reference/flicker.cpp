@@ -9,7 +9,6 @@
 
 #include "lights/lat_long_grid.h"
 #include "relight/pictures/array_file.h"
-#include "relight/pictures/plot.h"
 
 namespace relumine::relight {
 
@@ -177,23 +176,6 @@ FlickerReport measure_flicker(std::span<const std::filesystem::path> frames,
         ++count;
     }
     return meter.report();
-}
-
-std::string inconsistency_plot(std::span<const NamedReport> reports, const std::string& title) {
-    Plot plot{.title = title,
-              .x_label = "frame",
-              .y_label = "temporal inconsistency",
-              .y_scale = Scale::Log};
-    for (const NamedReport& named : reports) {
-        Plot::Series series{
-            .name = fmt::format("{}: {:.2g}", named.name, named.report.mean_inconsistency),
-            .x = {},
-            .y = named.report.inconsistency};
-        for (std::size_t t = 0; t < series.y.size(); ++t)
-            series.x.push_back(static_cast<double>(t));
-        plot.series.push_back(std::move(series));
-    }
-    return svg(plot);
 }
 
 } // namespace relumine::relight

@@ -70,14 +70,4 @@ private:
                                             std::span<const std::filesystem::path> reference,
                                             double exposure = 1.0);
 
-/// An animation's name and its figures.
-struct NamedReport {
-    std::string name;
-    FlickerReport report;
-};
-
-/// Returns E(t) over frames as an SVG document, one curve for each report [S, Fig. 3].
-[[nodiscard]] std::string inconsistency_plot(std::span<const NamedReport> reports,
-                                             const std::string& title);
-
 } // namespace relumine::relight

@@ -14,6 +14,8 @@
 #include "cubemap/resample/load_averaged.h"
 #include "cubemap/resample/resample.h"
 #include "files/joined.h"
+#include "files/pixel_values.h"
+#include "files/seconds.h"
 #include "lights/sun_split.h"
 #include "relumine/options/option_table.h"
 
@@ -187,11 +189,11 @@ std::vector<std::string> warnings_about(const cubemap::EnvironmentImage& image,
         result.push_back(fmt::format("{} negative pixels became 0 ({:.2g} % of the light)",
                                      bad.num_negative, 100.0 * bad.negative_share));
     if (image.fixed && bad.num_infinite > 0)
-        result.push_back(
-            fmt::format("{} infinite pixels became {:g}, {}: the light there was brighter",
-                        bad.num_infinite, image.infinity_became,
-                        image.infinity_became == 65504.0f ? "the most that 16-bit floats hold"
-                                                          : "the largest radiance of the others"));
+        result.push_back(fmt::format(
+            "{} infinite pixels became {:g}, {}: the light there was brighter", bad.num_infinite,
+            image.infinity_became,
+            image.infinity_became == files::LargestHalf ? "the most that 16-bit floats hold"
+                                                        : "the largest radiance of the others"));
     if (image.num_transparent != 0)
         result.push_back(fmt::format("{} of {} pixels have an alpha of 0: no light comes from them",
                                      image.num_transparent, image.num_file_pixels));
@@ -229,7 +231,7 @@ Environment environment_of(const std::shared_ptr<const cubemap::EnvironmentImage
     const glm::dmat3 turn = world_from_image(image->layout, options);
     Environment result =
         told_of(image, cubemap::turned(unturned_cube_map_of(*image, options), turn), turn);
-    result.seconds_resample = std::chrono::duration<double>(Clock::now() - start).count();
+    result.seconds_resample = files::seconds_since(start);
     return result;
 }
 
@@ -239,7 +241,7 @@ Environment environment_of(const std::shared_ptr<const cubemap::EnvironmentImage
     const Clock::time_point start = Clock::now();
     const glm::dmat3 turn = world_from_image(image->layout, options);
     Environment result = told_of(image, cubemap::turned(resampled, turn), turn);
-    result.seconds_resample = std::chrono::duration<double>(Clock::now() - start).count();
+    result.seconds_resample = files::seconds_since(start);
     return result;
 }
 
@@ -249,7 +251,7 @@ Environment load_environment(const std::filesystem::path& path, const Environmen
     const std::uint32_t most_width = 4 * std::max(FinestResolution, options.face_resolution);
     const auto image = std::make_shared<const cubemap::EnvironmentImage>(as_convention_has_it(
         cubemap::load_averaged(path, load_options(options), most_width), path.string(), options));
-    const double seconds_load = std::chrono::duration<double>(Clock::now() - start).count();
+    const double seconds_load = files::seconds_since(start);
     Environment result = environment_of(image, options);
     if (lights::has_sun_file(path)) // what is left may well be darker above
         result.warnings = warnings_about(*image, 0.0);

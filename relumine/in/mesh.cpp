@@ -152,10 +152,11 @@ OptionTable options_of(MeshOptions& o) {
             {.type = "[N]", .bare = "auto", .example = "193"}),
         row("--floor-scale", o.floor_scale,
             "side of the floor over the mesh's width, or half its height if that is more",
-            {.min = 1e-6, .max = 1e6, .needs = "--floor"}),
+            {.min = 1e-6, .max = 1e6, .library_only = true}),
         row("--up", o.up, "the mesh's axis that points up (y; z for .stl, which comes from CAD)"),
         row("--normals", o.normals,
-            "vertex normals: the file's where it has them, or always smooth"),
+            "vertex normals: the file's where it has them, or always smooth",
+            {.library_only = true}),
         row("--vertex-colors", o.vertex_colors,
             "what colours of vertices and faces mean (srgb for .obj, .off and bytes of .ply; "
             "linear "
@@ -170,16 +171,13 @@ OptionTable options_of(MeshOptions& o) {
 }
 
 OptionTable options_of(RefineOptions& o) {
-    return {row("--error", o.error,
+    return {row("--tolerance", o.error,
                 "split edges while the light at their middle may differ so much from the mean of "
                 "their ends: RMS of the transfer, 1/sr",
                 {.min = 0, .max = 1}),
-            row("--max-vertices", o.max_vertices,
+            row("--vertices", o.max_vertices,
                 "let the mesh grow to so many vertices; the edges that matter most come first",
                 {.min = 1, .max = 4294967294.0, .type = "N", .shows_default = false}),
-            row("--min-edge", o.min_edge,
-                "leave no edges shorter than this, in the mesh's unit (1/1000 of its diagonal)",
-                {.min = 0, .max = LargestPosition, .type = "LENGTH"}),
             row("--max-edge", o.max_edge, "split all edges that are longer than this",
                 {.min = 0, .max = LargestPosition, .type = "LENGTH"}),
             row("--curved", o.curved,

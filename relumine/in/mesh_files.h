@@ -9,7 +9,6 @@
 #include "mesh/half_edge/winding.h"
 #include "mesh/load.h"
 #include "mesh/materials/brdf_table.h"
-#include "mesh/materials/srgb.h"
 #include "mesh/normals.h"
 #include "mesh/pose.h"
 #include "mesh/save.h"

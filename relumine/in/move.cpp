@@ -14,6 +14,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "files/nearest_name.h"
+#include "files/seconds.h"
 #include "prt/moves/resampled_bounces.h"
 #include "prt/visibility/beam_scene.h"
 #include "relight/probe_lights.h"
@@ -96,7 +97,7 @@ public:
             change_.counts = std::move(counts);
             if (has_bounces_)
                 bounce(rays, resampled);
-            report.seconds_bounces = seconds_since(start_bounces);
+            report.seconds_bounces = files::seconds_since(start_bounces);
         } catch (...) {
             prt::exchange(scene_, change_);
             throw;
@@ -107,15 +108,11 @@ public:
         report.num_all =
             std::uint64_t{scene_.transfer.counts.num_blocks()} * scene_.transfer.counts.num_leaves;
         report.leaves_box = !is_inside(mesh::bounds(scene_.mesh), box);
-        report.seconds = seconds_since(start);
+        report.seconds = files::seconds_since(start);
         return std::move(change_);
     }
 
 private:
-    static double seconds_since(std::chrono::steady_clock::time_point start) {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    }
-
     prt::CountsPatch recounted(const prt::RayScene& rays, MoveReport& report) const {
         const prt::BeamScene beams(scene_.blocking_mesh(), rays);
         return prt::recounted(

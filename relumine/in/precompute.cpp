@@ -56,11 +56,6 @@ private:
     std::clock_t processors_before_ = std::clock();
 };
 
-/// All processes trace rays as the first one does.
-Engine shared_engine(prt::Team& team, Engine engine) {
-    return static_cast<Engine>(team.broadcast({static_cast<std::byte>(engine)}).front());
-}
-
 /// Computes the light of a plan with all processes of a team. The first one's scene gets it.
 void compute(prt::Plan& plan, const prt::RayScene& rays, const Stages::Options& options,
              const PrecomputeWork& work, PrecomputeReport& report) {
@@ -288,14 +283,12 @@ private:
                 prt::Quadtree::of([=](const prt::Cell& cell) { return cell.level < level; });
             scene_.transfer.order = prt::spatial_order(scene_.receivers);
             prt::share_plan(work_.team, plan_);
-            static_cast<void>(shared_engine(work_.team, options_.engine));
         }
         compute(plan_, rays, stage_options(), work_, report_);
     }
 
     [[nodiscard]] Stages::Options stage_options() {
-        Stages::Options options{.engine = options_.engine,
-                                .blockers = options_.blockers,
+        Stages::Options options{.blockers = options_.blockers,
                                 .max_memory = options_.max_memory,
                                 .prefix = prefix_,
                                 .checkpoint = checkpoint_.get()};
@@ -511,11 +504,10 @@ Scene precompute(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWo
 void assist(const PrecomputeWork& work) {
     prt::Plan plan;
     prt::share_plan(work.team, plan);
-    const Engine engine = shared_engine(work.team, {});
     prt::TeamCheckpoint checkpoint(work.team, nullptr);
     PrecomputeReport report;
-    compute(plan, ray_scene(plan.scene.blocking_mesh(), ""),
-            {.engine = engine, .checkpoint = &checkpoint}, work, report);
+    compute(plan, ray_scene(plan.scene.blocking_mesh(), ""), {.checkpoint = &checkpoint}, work,
+            report);
 }
 
 void plan(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWork& work,
@@ -532,8 +524,8 @@ void precompute_part(const PartOptions& options, const PrecomputeWork& work,
     prt::Alone part(options.part);
     const PrecomputeWork of_part{.team = part, .stop = work.stop, .on_progress = work.on_progress};
     PrecomputeReport report;
-    const prt::PartLight light = Stages(plan, of_part, report, {.engine = options.engine})
-                                     .run(ray_scene(plan.scene.blocking_mesh(), ""));
+    const prt::PartLight light =
+        Stages(plan, of_part, report, {}).run(ray_scene(plan.scene.blocking_mesh(), ""));
     prt::save_part(options.output, plan, options.part, light);
     if (statistics != nullptr)
         *statistics = report.clusters;

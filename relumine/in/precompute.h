@@ -51,7 +51,6 @@ struct PartOptions {
     prt::Part part = {};
     /// The file of the part to write
     std::filesystem::path output = {};
-    Engine engine = Engine::Beams;
 };
 
 /// Does one part of a plan and writes its file. Parts know nothing of each other: they run in any

@@ -59,6 +59,8 @@ struct Points {
 /// The middles of nx x ny x nz cells of a box are lit, as Points.
 struct Grid {
     std::uint32_t nx = 0, ny = 0, nz = 0;
+    /// Empty: the box around the mesh, without a floor that was added to it.
+    std::optional<mesh::Bounds> box = {};
 };
 
 /// What is lit.
@@ -68,14 +70,6 @@ using ReceiverChoice = std::variant<Vertices, Pixels, Texels, Points, Grid>;
 struct View {
     /// Empty: a camera that shows the whole mesh.
     std::optional<prt::Camera> camera = {};
-};
-
-/// How rays are traced. Both engines give the same results, bit by bit.
-enum class Engine {
-    /// Whole beams of rays at once: the fast one
-    Beams,
-    /// Each ray with Embree: less memory, no beam tree
-    Embree,
 };
 
 /// Parts of a precompute that take time.
@@ -144,7 +138,6 @@ struct PrecomputeOptions {
     std::uint32_t face_resolution = prt::PrecomputeOptions{}.face_resolution;
     /// Lift of the rays' origins off the surface, in the mesh's unit; automatic unless given
     std::optional<float> bias = {};
-    Engine engine = Engine::Beams;
     /// What blocks light in place of the mesh's triangles; null: these do. It must outlive the
     /// call. The scene does not keep it: LightOptions::blockers. The mesh then gets no vertices
     /// where its own shadows are, light does not bounce unless it is asked for, which is refused,
@@ -153,8 +146,6 @@ struct PrecomputeOptions {
 
     /// What is lit
     ReceiverChoice receivers = Vertices{};
-    /// The box of a Grid. Empty: the box around the mesh, without a floor that was added to it.
-    std::optional<mesh::Bounds> box = {};
     /// The mesh keeps its vertices. Otherwise vertices, those behind bounces included, become more
     /// where the mesh is coarse: refined_by_itself().
     bool no_refine = false;

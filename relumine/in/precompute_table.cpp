@@ -131,7 +131,8 @@ struct Parser {
 };
 
 constexpr const char* ReceiversForms =
-    "vertices, pixels:WxH, pixels:WxH:N, texels:WxH, points:FILE or grid:NXxNYxNZ";
+    "vertices, pixels:WxH, pixels:WxH:N, texels:WxH, points:FILE, grid:NXxNYxNZ or "
+    "grid:NXxNYxNZ:X0,Y0,Z0,X1,Y1,Z1";
 
 Points read_points(const std::string& text) {
     Points points{.file = text.substr(text.find(':') + 1)};
@@ -142,7 +143,10 @@ Points read_points(const std::string& text) {
 }
 
 Grid read_grid(const std::string& text) {
-    const std::vector<std::string> sides = split(text.substr(text.find(':') + 1), 'x');
+    const std::vector<std::string> parts = split(text, ':');
+    if (parts.size() > 3)
+        refuse_text(ReceiversForms, text);
+    const std::vector<std::string> sides = split(parts[1], 'x');
     std::array<std::uint32_t, 3> cells{};
     for (std::size_t i = 0; i < cells.size(); ++i) {
         const auto count = sides.size() == cells.size() ? parse_count(sides[i]) : std::nullopt;
@@ -150,7 +154,9 @@ Grid read_grid(const std::string& text) {
             refuse_text(ReceiversForms, text);
         cells[i] = *count;
     }
-    const Grid grid{.nx = cells[0], .ny = cells[1], .nz = cells[2]};
+    Grid grid{.nx = cells[0], .ny = cells[1], .nz = cells[2]};
+    if (parts.size() == 3)
+        grid.box = BoxText::read(parts[2]);
     check(grid);
     return grid;
 }
@@ -201,7 +207,8 @@ std::string ReceiversText::show(const Value& receivers) {
     if (const auto* points = std::get_if<Points>(&receivers))
         return fmt::format("points:{}", points->file.string());
     if (const auto* grid = std::get_if<Grid>(&receivers))
-        return fmt::format("grid:{}x{}x{}", grid->nx, grid->ny, grid->nz);
+        return fmt::format("grid:{}x{}x{}", grid->nx, grid->ny, grid->nz) +
+               (grid->box ? ":" + BoxText::show(*grid->box) : "");
     return "vertices";
 }
 
@@ -311,39 +318,35 @@ OptionTable options_of(PrecomputeOptions& o) {
             {.min = 0, .max = 1e6}),
         row("--epsilon", o.epsilon,
             "the paper's form of the tolerance: grows lax with the mesh's size",
-            {.min = 0, .max = 1e6, .excludes = "--tolerance"}),
+            {.min = 0, .max = 1e6, .excludes = "--tolerance", .library_only = true}),
         row("--min-depth", o.min_level,
             fmt::format("every cell is split at least this often; for points at least {} times",
                         prt::MinLevelOfPoints),
-            {.min = 0, .max = prt::MaxLevel}),
+            {.min = 0, .max = prt::MaxLevel, .library_only = true}),
         row("--face-resolution", o.face_resolution,
             "R: cells stop at single texels of a 6 x R x R environment",
             {.min = 1, .max = 1u << prt::MaxLevel}),
         row("--bias", o.bias, "lift of the rays' origins off the surface, in the mesh's unit",
-            {.min = 0, .max = LargestPosition}),
-        row("--engine", o.engine,
-            "how visibility is traced: whole beams of rays, or each ray with Embree; the "
-            "results are the same"),
+            {.min = 0, .max = LargestPosition, .library_only = true}),
         row<ReceiversText>("--receivers", o.receivers,
                            "what is lit: vertices, pixels:WxH[:N] (of --view, N x N samples "
                            "each), texels:WxH (a lightmap on the mesh's uvs), points:FILE (.npy, "
-                           ".ply: points in space) or grid:NXxNYxNZ (the middles of the cells of "
-                           "--box)",
+                           ".ply: points in space) or grid:NXxNYxNZ[:X0,Y0,Z0,X1,Y1,Z1] (the "
+                           "middles of the cells of a box; without it of the mesh's, without its "
+                           "floor)",
                            {.example = "texels:64x32"}),
-        row<BoxText>("--box", o.box,
-                     "the box of a grid: X0,Y0,Z0,X1,Y1,Z1; without it the mesh's, without its "
-                     "floor",
-                     {.example = "-1,0,-1,1,2,1"}),
         row("--no-refine", o.no_refine,
             "keep the mesh's vertices; otherwise a coarse mesh gets more where its light needs "
-            "them"),
+            "them",
+            {.library_only = true}), // --refine off
         row<ViewText>("--view", o.view,
                       "the camera of pixels, and the eye that highlights are for: "
                       "EX,EY,EZ,TX,TY,TZ[,FOV] (eye, target, vertical degrees: 35) or auto",
                       {.example = "0,1,5,0,0,0,40"}),
         row("--ggx", o.ggx,
             "highlights of materials with roughness: whole (what scatters between the facets comes "
-            "back, and a white surface stays white), or published (glTF's formula)"),
+            "back, and a white surface stays white), or published (glTF's formula)",
+            {.library_only = true}),
         row("--highlights", o.highlights,
             "stored in the scene, exact and free of noise, or traced: rays find them when pixels "
             "are lit (by default pixels trace them, vertices and texels store them)"),
@@ -400,8 +403,6 @@ void check(const PrecomputeOptions& options) {
 
 void check_points(const PrecomputeOptions& options) {
     const bool is_grid = std::holds_alternative<Grid>(options.receivers);
-    if (options.box && !is_grid)
-        throw OptionError("--box", "expected --receivers grid:NXxNYxNZ with a box");
     if (!is_grid && !std::holds_alternative<Points>(options.receivers))
         return;
     if (options.view)

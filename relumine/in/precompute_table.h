@@ -14,10 +14,6 @@
 
 namespace relumine {
 
-inline constexpr std::array<std::string_view, 2> EngineWords = {"beam", "embree"};
-template<>
-inline constexpr std::span<const std::string_view> WordsOf<Engine> = EngineWords;
-
 inline constexpr std::array<std::string_view, 2> GgxWords = {"whole", "published"};
 template<>
 inline constexpr std::span<const std::string_view> WordsOf<prt::GgxForm> = GgxWords;
@@ -70,7 +66,7 @@ struct MaterialText {
 
 /// Throws OptionError for options that contradict each other.
 void check(const PrecomputeOptions& options);
-/// Throws OptionError for a box without a grid, and for a view with points or a grid.
+/// Throws OptionError for a view with points or a grid.
 void check_points(const PrecomputeOptions& options);
 /// Throws std::invalid_argument for a grid of no cell or of too many.
 void check(const Grid& grid);

@@ -121,7 +121,7 @@ private:
         check(grid);
         const std::size_t num_own = first_floor_vertex(scene_).value_or(scene_.mesh.num_vertices());
         const mesh::Bounds box =
-            options_.box.value_or(mesh::bounds(std::span(scene_.mesh.positions).first(num_own)));
+            grid.box.value_or(mesh::bounds(std::span(scene_.mesh.positions).first(num_own)));
         prt::GridLayout layout{
             .nx = grid.nx, .ny = grid.ny, .nz = grid.nz, .low = box.min, .high = box.max};
         add_points(prt::grid_points(layout));

@@ -69,6 +69,42 @@ OptionTable options_of(SurfaceColors& o) {
                 {.min = 0, .max = 1})};
 }
 
+OptionRow material_row(SurfaceColors& colors) {
+    return row(
+        "--material",
+        [&colors](const std::string& text) {
+            // NAME=VALUE,NAME=VALUE: words without = belong to the name before them.
+            std::vector<std::pair<std::string, std::string>> values;
+            for (const std::string& word : split(text, ',')) {
+                const std::size_t equals = word.find('=');
+                if (equals != std::string::npos)
+                    values.emplace_back(word.substr(0, equals), word.substr(equals + 1));
+                else if (!values.empty())
+                    values.back().second += "," + word;
+                else
+                    refuse_text("albedo=A,f0=F,roughness=R", text);
+            }
+            SurfaceColors read;
+            for (const auto& [name, value] : values) {
+                if (name == "albedo")
+                    read.albedo = ColorText::read(value);
+                else if (name == "f0")
+                    read.specular = ColorText::read(value);
+                else if (name == "roughness")
+                    read.roughness = ValueText<float>::read(value);
+                else
+                    refuse_text("albedo, f0 or roughness", name);
+            }
+            if (read.roughness && !(*read.roughness >= 0.0f && *read.roughness <= 1.0f))
+                refuse_text("a roughness from 0 to 1", text);
+            colors = read;
+        },
+        "scenes with materials: albedo=A,f0=F,roughness=R (numbers or R,G,B; any of them) of all "
+        "surfaces in place of the precompute's; a roughness is for highlights that follow the eye, "
+        "and a texture multiplies it",
+        {.type = "TEXT"});
+}
+
 bool has_ggx(const mesh::Material& material) {
     return prt::has_highlight(material) && material.model != mesh::MaterialModel::Phong &&
            material.model != mesh::MaterialModel::Measured;

@@ -64,6 +64,8 @@ struct SurfaceColors {
 };
 
 [[nodiscard]] OptionTable options_of(SurfaceColors& colors);
+/// --material albedo=A,f0=F,roughness=R: all of them as one option, any of which may be absent.
+[[nodiscard]] OptionRow material_row(SurfaceColors& colors);
 
 /// Colours are no part of the transfer, so they may change without a new precompute.
 ///

@@ -65,8 +65,7 @@ prt::RayScene ray_scene(const mesh::TriangleMesh& mesh, const std::string& prefi
 prt::SceneSizes Stages::sizes() const {
     return {.num_vertices = scene_.mesh.num_vertices(),
             .num_triangles = scene_.mesh.num_triangles(),
-            .num_receivers = scene_.receivers.size(),
-            .has_beams = options_.engine == Engine::Beams};
+            .num_receivers = scene_.receivers.size()};
 }
 
 MemoryLimitExceeded Stages::exceeded(MemoryLimitExceeded::Part part, const std::string& expected,
@@ -129,7 +128,7 @@ prt::Work Stages::work_for(Stage stage, bool more_follows) const {
 template<typename Find>
 void Stages::find_clusters(const prt::RayScene& rays, const Find& find) {
     std::optional<prt::BeamScene> beams;
-    if (options_.engine == Engine::Beams && options_.blockers == nullptr)
+    if (options_.blockers == nullptr)
         beams.emplace(scene_.blocking_mesh(), rays);
     const prt::Blockers& of_mesh = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
     const prt::Blockers& blockers = options_.blockers != nullptr ? *options_.blockers : of_mesh;

@@ -25,7 +25,6 @@ void note(const PrecomputeWork& work, const std::string& message);
 class Stages {
 public:
     struct Options {
-        Engine engine = Engine::Beams;
         /// What blocks light; null: the mesh's triangles (PrecomputeOptions::blockers)
         const prt::Blockers* blockers = nullptr;
         /// Most bytes that the work may take; empty: no limit (PrecomputeOptions::max_memory)

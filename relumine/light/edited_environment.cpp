@@ -25,8 +25,7 @@ UpdateReport set_environment(Light& light, relight::Relighter& relighter) {
         return relighter.set_environment(std::move(*map));
     if (const auto* shared = std::get_if<SharedMap>(&light.environment))
         return relighter.set_environment(*shared);
-    return relighter.set_frame(std::move(std::get<BinnedEnvironment>(light.environment)),
-                               light.bound);
+    return relighter.set_frame(std::move(std::get<BinnedEnvironment>(light.environment)));
 }
 
 } // namespace

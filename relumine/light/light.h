@@ -48,9 +48,6 @@ struct Light {
     std::filesystem::path path = {};
     /// Each has shadow rays of its own or, with LightOptions::clusters_only, its cluster's.
     std::vector<lights::DistantLight> lights = {};
-    /// The part of a cluster's light up to which changes of a binned environment are left out
-    /// (relight::Relighter::set_frame()).
-    double bound = 0.0;
 };
 
 /// The environment below layers. States share it.

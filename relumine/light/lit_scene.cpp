@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "files/seconds.h"
 #include "relight/harmonics/harmonics.h"
 #include "relight/receiver_light.h"
 #include "relight/sharp/light_packets.h"
@@ -24,10 +25,6 @@ namespace relumine {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Returns the map of a light, or null.
 const cubemap::CubeMap* map_of(const Light& light) {
@@ -228,7 +225,7 @@ BounceReport LitScene::Impl::find_bounces(bool is_step) {
 void LitScene::Impl::finish(UpdateReport& report) {
     const auto start = Clock::now();
     lamps.find();
-    report.seconds_lamps = seconds_since(start);
+    report.seconds_lamps = files::seconds_since(start);
     total.clear();
     if (relighter && std::none_of(terms.begin() + 1, terms.end(),
                                   [](const auto& term) { return term->is_lit(); }))
@@ -242,7 +239,7 @@ void LitScene::Impl::finish(UpdateReport& report) {
     }
     // The last term is that of the highlights.
     if (mirrors.is_needed())
-        report.seconds_highlights = seconds_since(start_term);
+        report.seconds_highlights = files::seconds_since(start_term);
 }
 
 UpdateReport LitScene::light(Light light) {
@@ -272,7 +269,7 @@ UpdateReport LitScene::light(Light light) {
     own.forget_bounces();
     own.is_lit = true;
     own.finish(report);
-    report.seconds = seconds_since(start);
+    report.seconds = files::seconds_since(start);
     return report;
 }
 

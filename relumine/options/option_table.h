@@ -21,13 +21,13 @@
 
 namespace relumine {
 
-/// An option that does not fit: "--fov: expected 0.01 to 179, got '200'".
+/// An option that does not fit: "--fps: expected 0.01 to 1000, got '2000'".
 class OptionError : public std::invalid_argument {
 public:
     explicit OptionError(const std::string& message) : std::invalid_argument(message) {}
     OptionError(std::string name, const std::string& why)
         : std::invalid_argument(name + ": " + why), option(std::move(name)), reason(why) {}
-    /// "--fov"; empty where the message is of no single option
+    /// "--fps"; empty where the message is of no single option
     std::string option = {};
     std::string reason = {};
 };
@@ -64,6 +64,8 @@ struct OptionFacts {
     bool shows_default = true;
     /// Files made under another value differ: the record of `animate --resume` has the option.
     bool shapes_frames = true;
+    /// Of the library and of Python alone: commands leave it out.
+    bool library_only = false;
     /// Scenes of other receivers have no use for it: "camera" is what they have not.
     unsigned receivers = OnAll;
     std::string part = {};
@@ -71,7 +73,7 @@ struct OptionFacts {
 
 /// One option, bound to its variable, which must outlive the row.
 struct OptionRow : OptionFacts {
-    /// "--fov", "-o,--output"; "MESH" for an argument
+    /// "--fps", "-o,--output"; "MESH" for an argument
     std::string name = {};
     std::string help = {};
     bool is_flag = false;
@@ -89,7 +91,7 @@ struct OptionRow : OptionFacts {
     [[nodiscard]] std::vector<std::string> names() const;
     /// "--output"; "MESH" for an argument
     [[nodiscard]] std::string long_name() const;
-    /// "floor_fade" of --floor-fade: as Python spells it
+    /// "floor_albedo" of --floor-albedo: as Python spells it
     [[nodiscard]] std::string key() const;
     /// "0.01 to 179"; empty: all numbers
     [[nodiscard]] std::string range() const;

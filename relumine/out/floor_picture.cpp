@@ -17,8 +17,9 @@
 
 namespace relumine {
 
-relight::FadingFloor picture_floor(const Scene& scene, const OutputOptions& options) {
-    const float fade = options.floor_fade;
+relight::FadingFloor picture_floor(const Scene& scene) {
+    // The outer part of the radius over which the floor fades into the background.
+    constexpr float Fade = 0.6f;
     const std::optional<std::size_t> first = first_floor_vertex(scene);
     if (!first)
         return {};
@@ -26,9 +27,8 @@ relight::FadingFloor picture_floor(const Scene& scene, const OutputOptions& opti
     const float half_side = 0.5f * (floor.max.x - floor.min.x);
     return {.first_vertex = static_cast<std::uint32_t>(*first),
             .center = 0.5f * glm::vec2(floor.min.x + floor.max.x, floor.min.z + floor.max.z),
-            // Without a fade, the corners are opaque, too.
-            .opaque_radius = (fade > 0.0f ? 1.0f - std::min(fade, 1.0f) : 2.0f) * half_side,
-            .end_radius = (fade > 0.0f ? 1.0f : 2.0f) * half_side,
+            .opaque_radius = (1.0f - Fade) * half_side,
+            .end_radius = half_side,
             .gap = mesh::floor_gap(scene.mesh, *first)};
 }
 

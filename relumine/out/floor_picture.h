@@ -18,8 +18,7 @@ namespace relumine {
 inline constexpr float FloorAlbedo = 0.3f;
 
 /// Returns how pictures fade the added floor out.
-[[nodiscard]] relight::FadingFloor picture_floor(const Scene& scene,
-                                                 const OutputOptions& options = {});
+[[nodiscard]] relight::FadingFloor picture_floor(const Scene& scene);
 
 /// Returns the ground that the environment is projected to, under an added floor.
 ///

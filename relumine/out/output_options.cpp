@@ -143,33 +143,40 @@ OptionRow size_row(std::uint32_t& width, std::uint32_t& height, std::string help
     return result;
 }
 
-OptionRow transparent_row(Background& background, OptionFacts facts) {
-    OptionRow result{std::move(facts), "--transparent", "the same as --background none"};
-    result.is_flag = true;
-    result.initial = "false";
-    result.read = [&background](std::span<const std::string> texts) {
-        if (!ValueText<bool>::read(texts.back()))
-            return;
-        const std::string given = BackgroundText::show(background);
-        if (given != "none" && given != BackgroundText::show({}))
-            throw std::invalid_argument("expected no --background beside it");
-        background = NothingBehind{};
-    };
-    result.show = [] {
-        return "false"; // the background tells
-    };
-    return result;
+OptionRow view_row(OutputOptions& options, OptionFacts facts) {
+    facts.type = "TEXT";
+    return row(
+        "--view",
+        [&options](const std::string& text) {
+            constexpr double LargestFov = 179.0;
+            const auto numbers = parse_numbers(text);
+            const std::size_t count = numbers ? numbers->size() : 0;
+            const auto is_place = [](double number) {
+                return std::abs(number) <= LargestPosition;
+            };
+            if ((count != 3 && count != 6 && count != 7) ||
+                !std::all_of(numbers->begin(), numbers->end(), is_place))
+                refuse_text(fmt::format("EX,EY,EZ[,TX,TY,TZ[,FOV]] within {}", LargestPosition),
+                            text);
+            if (count == 7 && !is_in(numbers->back(), LargestFov))
+                refuse_text(fmt::format("a field of view of up to {} degrees", LargestFov), text);
+            const std::vector<double>& own = *numbers;
+            options.eye.emplace(own[0], own[1], own[2]);
+            options.target.reset();
+            options.fov_degrees.reset();
+            if (count > 3)
+                options.target.emplace(own[3], own[4], own[5]);
+            if (count == 7)
+                options.fov_degrees = static_cast<float>(own[6]);
+        },
+        "in place of --camera: EX,EY,EZ[,TX,TY,TZ[,FOV]], the eye, the point that it looks at "
+        "(automatic) and the vertical field of view in degrees (35)",
+        std::move(facts));
 }
 
 void check(const OutputOptions& options) {
-    if (!options.camera_place)
-        return;
-    if (options.eye)
-        throw OptionError("--camera", "expected either --camera or --eye, got both");
-    if (options.camera_place->fov_degrees && options.fov_degrees)
-        throw OptionError("--camera", fmt::format("expected either a field of view here or --fov, "
-                                                  "got '{}'",
-                                                  CameraText::show(*options.camera_place)));
+    if (options.camera_place && options.eye)
+        throw OptionError("--camera", "expected either --camera or --view, got both");
 }
 
 Camera camera_of(const Scene& scene, const OutputOptions& options) {
@@ -177,15 +184,12 @@ Camera camera_of(const Scene& scene, const OutputOptions& options) {
         return *options.camera;
     check(options);
     const CameraPlace place = options.camera_place.value_or(CameraPlace{});
-    const bool is_x = options.front == Front::PositiveX || options.front == Front::NegativeX;
-    const bool is_negative = options.front == Front::NegativeX || options.front == Front::NegativeZ;
-    relight::Framing framing{
-        .angles = place.angles,
-        .front = (is_negative ? -1.0 : 1.0) * (is_x ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 0, 1)),
-        .aspect = static_cast<float>(options.width) / static_cast<float>(options.height)};
+    relight::Framing framing{.angles = place.angles,
+                             .aspect = static_cast<float>(options.width) /
+                                       static_cast<float>(options.height)};
     if (const auto fov = place.fov_degrees ? place.fov_degrees : options.fov_degrees)
         framing.fov_degrees = *fov;
-    const bool is_plain = !options.camera_place && options.front == Front::PositiveZ;
+    const bool is_plain = !options.camera_place;
     const std::optional<Camera> own = is_plain ? own_camera(scene, framing.aspect) : std::nullopt;
     const bool chooses_side = is_plain && !options.eye && !options.target;
     Camera camera = own            ? *own
@@ -244,9 +248,6 @@ OptionTable options_of(OutputOptions& o) {
                           "their own: a number or R,G,B; NAME=GAIN[,R,G,B] for one group that "
                           "glows or one light of the mesh's file",
                           {.example = "0.5"}),
-        row("--floor-fade", o.floor_fade,
-            "outer part of the floor's radius over which it fades into the background",
-            {.min = 0, .max = 1}),
         row<ExposureText>("--exposure", o.exposure_ev,
                           "stops that brighten pictures and colours, or auto: what suits what is "
                           "seen; 0 for .exr and .npy",
@@ -257,28 +258,18 @@ OptionTable options_of(OutputOptions& o) {
                         "AZIMUTH,ELEVATION[,DISTANCE][,FOV]: degrees to the right of the "
                         "front and above the horizon (24,20), distance (fills two thirds)",
                         {.example = "30,40", .receivers = OnVertices, .part = "camera"}),
-        row("--front", o.front, "the side that the mesh shows a camera of azimuth 0",
-            {.receivers = OnVertices, .part = "camera"}),
-        row<PointText>("--eye", o.eye, "camera position X,Y,Z in place of --camera",
-                       {.example = "1,2,3", .receivers = OnVertices, .part = "camera"}),
-        row<PointText>("--target", o.target, "point that the camera looks at, X,Y,Z (automatic)",
-                       {.example = "0,0.1,0", .receivers = OnVertices, .part = "camera"}),
-        row("--fov", o.fov_degrees, "vertical field of view in degrees (35)",
-            {.min = 0.01, .max = 179, .receivers = OnVertices, .part = "camera"}),
+        view_row(o, {.example = "1,2,3,0,0.1,0,50", .receivers = OnVertices, .part = "camera"}),
         size_row(o.width, o.height, "picture size WIDTHxHEIGHT",
                  {.receivers = OnVertices, .part = "camera"}),
         row<BackgroundText>("--background", o.background,
                             "behind the mesh: sharp or blur=DEG (the environment), none (alpha; "
                             "premultiplied in .exr), a number or R,G,B",
                             {.example = "blur=5", .receivers = NoTexels, .part = "background"}),
-        transparent_row(o.background, {.receivers = NoTexels, .part = "background"}),
         row("--sun", o.sun, "pictures of vertices: where shadows of the sun are traced"),
         row("--highlight-rays", o.highlight_rays,
             "rays a pixel that find what glossy surfaces mirror, where the scene stores no "
             "highlights; 0: none, all is matte (of pixels: relight, edit and animate)",
-            {.min = 0, .max = 4096, .receivers = NoTexels, .part = "highlights"}),
-        row("--gutter", o.gutter, "lightmaps: texels filled around the charts",
-            {.min = 0, .max = 16384})};
+            {.min = 0, .max = 4096, .receivers = NoTexels, .part = "highlights"})};
 }
 
 } // namespace relumine

@@ -74,12 +74,6 @@ inline constexpr std::array<std::string_view, 4> FloorLookNames = {"auto", "phot
 template<>
 inline constexpr std::span<const std::string_view> WordsOf<FloorLook> = FloorLookNames;
 
-/// The side that a mesh shows a camera of azimuth 0.
-enum class Front { PositiveZ, NegativeZ, PositiveX, NegativeX };
-inline constexpr std::array<std::string_view, 4> FrontNames = {"+z", "-z", "+x", "-x"};
-template<>
-inline constexpr std::span<const std::string_view> WordsOf<Front> = FrontNames;
-
 /// Where a camera stands that looks at a mesh, and its field of view.
 struct CameraPlace {
     relight::CameraAngles angles = {};
@@ -99,8 +93,6 @@ struct OutputOptions {
     /// Factors on the light that the scene gives of its own. Pictures show them on what glows;
     /// LitScene::dim() lets the light follow.
     std::vector<EmissionGain> emission = {};
-    /// The outer part of an added floor's radius over which it fades into the background; 0: none.
-    float floor_fade = 0.6f;
     /// Exposure in stops. Empty: what suits the lit surfaces that are seen, for .png, .ply and
     /// .glb; 0 for .exr and .npy. save() applies it, draw() does not.
     std::optional<double> exposure_ev = {};
@@ -118,7 +110,6 @@ struct OutputOptions {
     std::optional<Camera> camera = {};
     /// Empty: camera_of() the scene, moved as `eye` and `target` say.
     std::optional<CameraPlace> camera_place = {};
-    Front front = Front::PositiveZ;
     std::optional<glm::vec3> eye = {};
     std::optional<glm::vec3> target = {};
     std::optional<float> fov_degrees = {};
@@ -129,8 +120,6 @@ struct OutputOptions {
 
     /// Not for scenes of texels.
     Background background = EnvironmentBehind{};
-    /// How many texels are filled around the charts. Only for scenes of texels.
-    std::uint32_t gutter = 16;
 };
 
 /// Throws OptionError for options that contradict each other.
@@ -168,8 +157,8 @@ struct CameraText {
 /// --size WIDTHxHEIGHT, each side from `min` (1) to prt::MaxPictureSize.
 [[nodiscard]] OptionRow size_row(std::uint32_t& width, std::uint32_t& height, std::string help,
                                  OptionFacts facts);
-/// --transparent, another word for a background of none.
-[[nodiscard]] OptionRow transparent_row(Background& background, OptionFacts facts);
+/// --view EX,EY,EZ[,TX,TY,TZ[,FOV]]: eye, target and field of view.
+[[nodiscard]] OptionRow view_row(OutputOptions& options, OptionFacts facts);
 
 /// All options of a picture.
 [[nodiscard]] OptionTable options_of(OutputOptions& o);

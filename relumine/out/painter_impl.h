@@ -27,7 +27,7 @@ namespace relumine {
 struct Painter::Impl {
     Impl(const LitScene& lit, const OutputOptions& given)
         : scene(lit.scene()), rays(lit.rays().of_mesh()), beams(lit.rays().for_moving_lights()),
-          options(given), floor(picture_floor(scene, options)) {
+          options(given), floor(picture_floor(scene)) {
         take_emission();
         // The transfer of a scene that processes share has no highlights.
         if (is_on_vertices())
@@ -180,8 +180,7 @@ struct Painter::Impl {
     [[nodiscard]] std::vector<glm::vec3> opacity(const Lighting& lighting) {
         std::vector<glm::vec3> result;
         const std::optional<glm::vec3> open = open_floor(scene, lighting, look(lighting), eye());
-        if (floor.first_vertex >= scene.mesh.num_vertices() ||
-            (!open && !(options.floor_fade > 0.0f)))
+        if (floor.first_vertex >= scene.mesh.num_vertices())
             return result;
         const prt::Receivers& receivers = scene.receivers;
         result.assign(receivers.num_own(), glm::vec3(1.0f));
@@ -217,7 +216,7 @@ struct Painter::Impl {
     }
     [[nodiscard]] Picture composed(const prt::TexelLayout& texels,
                                    std::span<const glm::vec3> colors, const Lighting&) const {
-        return relight::compose(texels, colors, options.gutter);
+        return relight::compose(texels, colors);
     }
     [[nodiscard]] Picture composed(const prt::PointLayout& points,
                                    std::span<const glm::vec3> colors, const Lighting&) const {

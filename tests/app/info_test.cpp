@@ -1,4 +1,5 @@
 // `relumine info`: what it tells.
+#include "prt/scene/scene_file.h"
 #include "tests/app/command.h"
 #include "tests/app/small_files.h"
 
@@ -27,8 +28,8 @@ TEST_F(Info, Mesh) {
 TEST_F(Info, NamesInFilesDoNotCommandTheTerminal) {
     const std::string name = "\x1b]0;title\a\xff.obj";
     write(name, octahedron_obj());
-    succeed({"precompute", name, "-o", "scene.prt", "--tolerance", "1", "--min-depth", "0", "-q",
-             "--no-refine", "--bounces", "0"});
+    succeed({"precompute", name, "-o", "scene.prt", "--tolerance", "1", "-q", "--refine", "off",
+             "--bounces", "0"});
     const std::string out = succeed("info scene.prt").out;
     EXPECT_NE(out.find("from ?]0;title?"), std::string::npos) << out;
     EXPECT_EQ(out.find_first_of("\x1b\a\xff"), std::string::npos) << out;
@@ -68,12 +69,11 @@ TEST_F(Info, PoseOfAMesh) {
     EXPECT_EQ(low({"--pose", "up@0.5"}), 1.0);
     EXPECT_EQ(low({"--pose", "0@3"}), 2.0);
     write("white.hdr", white_hdr());
-    succeed("relight lift.gltf white.hdr --no-cache --pose up@1 -o posed.png --size 32x32");
+    succeed("relight lift.gltf white.hdr --pose up@1 -o posed.png --size 32x32");
     fail("info lift.gltf --pose down@1", {"lift.gltf", "down"});
     fail("info mesh.obj --pose 0@1", {"expected .glb or .gltf for a pose"});
     misuse("info white.hdr --pose 0@1", "--pose");
-    succeed(
-        "precompute mesh.obj -o scene.prt --tolerance 1 --min-depth 0 -q --no-refine --bounces 0");
+    succeed("precompute mesh.obj -o scene.prt --tolerance 1 -q --refine off --bounces 0");
     misuse("info scene.prt --pose 0@1", "--pose");
     misuse("relight scene.prt white.hdr --pose 0@1 -o posed.png", "--pose");
 }
@@ -124,7 +124,7 @@ TEST_F(Info, HowAMeshIsReadIsSaidAsByTheFirstPicture) {
     EXPECT_EQ(info["notes"], nlohmann::json{note});
     EXPECT_EQ(info["left_out"], nlohmann::json{warning});
     const Result first = succeed({"precompute", "tent.obj", "-o", "tent.prt", "--face-resolution",
-                                  "8", "--no-refine", "--bounces", "0"});
+                                  "8", "--refine", "off", "--bounces", "0"});
     EXPECT_NE(first.out.find("tent.obj: " + note), std::string::npos) << first.described();
     EXPECT_NE(first.err.find("tent.obj: " + warning), std::string::npos) << first.described();
 }
@@ -137,7 +137,7 @@ TEST_F(Info, ExtensionsInCapitals) {
 }
 
 TEST_F(Info, CheckFindsEveryFlippedBit) {
-    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 -q --no-refine");
+    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 -q --refine off");
     EXPECT_NE(succeed("info scene.prt --check").out.find("checked: whole and sound"),
               std::string::npos);
     EXPECT_EQ(succeed("info scene.prt --check --json").json()["checked"], true);
@@ -160,19 +160,21 @@ TEST_F(Info, CheckFindsEveryFlippedBit) {
 }
 
 TEST_F(Info, Scene) {
-    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --tolerance 0.25 --min-depth 2 "
-            "--bias 0.125 --floor 4 --no-refine");
+    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --tolerance 0.25 --floor 4 "
+            "--refine off");
     const nlohmann::json info = succeed("info scene.prt --json").json();
     EXPECT_EQ(info["kind"], "scene");
     EXPECT_EQ(info["vertices"], 22);
     EXPECT_EQ(info["tolerance"], 0.25);
-    EXPECT_EQ(info["min_depth"], 2);
+    EXPECT_EQ(info["min_depth"], 3);
     EXPECT_EQ(info["face_resolution"], 16);
-    EXPECT_EQ(info["bias"], 0.125);
+    EXPECT_GT(info["bias"], 0.0);
     EXPECT_EQ(info["floor"], 4);
     EXPECT_EQ(info["source"], "mesh.obj");
     EXPECT_FALSE(info.contains("epsilon"));
-    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --epsilon 0.5 --no-refine");
+    prt::Scene scene = prt::load_scene(folder() / "scene.prt");
+    scene.settings.epsilon = 0.5f; // the paper's form, of the library
+    prt::save_scene(folder() / "scene.prt", scene);
     EXPECT_EQ(succeed("info scene.prt --json").json()["epsilon"], 0.5);
 }
 

@@ -72,7 +72,7 @@ TEST_F(MalformedData, Environments) {
     if (environments.empty())
         GTEST_SKIP() << absent_data("envs/robustness");
     write("mesh.obj", octahedron_obj());
-    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 -q --no-refine");
+    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 -q --refine off");
     for (const fs::path& environment : environments)
         for (const std::vector<std::string>& more : {std::vector<std::string>{},
                                                      {"--layout", "latlong"},

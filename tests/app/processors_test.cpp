@@ -45,7 +45,7 @@ protected:
         std::vector<std::string> command = {"precompute"};
         command.insert(command.end(), arguments.begin(), arguments.end());
         command.insert(command.end(),
-                       {"--tolerance", "0.06", "--no-refine", "-q", "-o", "scene.prt"});
+                       {"--tolerance", "0.06", "--refine", "off", "-q", "-o", "scene.prt"});
         succeed(command);
         const std::string best = read("scene.prt");
         const Limit limit("avx2");
@@ -63,16 +63,15 @@ TEST_F(ProcessorsTest, BouncesToPixels) {
         {"painted_room.ply", "--receivers", "pixels:60x40", "--view", "auto", "--bounces", "0.05"});
 }
 
-TEST_F(ProcessorsTest, HighlightsWithEitherEngine) {
-    for (const char* engine : {"beam", "embree"})
-        expect_the_same({"colonnade.ply", "--view", "auto", "--material", "ggx:roughness=0.4",
-                         "--engine", engine, "--bounces", "0"});
+TEST_F(ProcessorsTest, Highlights) {
+    expect_the_same(
+        {"colonnade.ply", "--view", "auto", "--material", "ggx:roughness=0.4", "--bounces", "0"});
 }
 
 TEST_F(ProcessorsTest, OfOtherKindsShareNoWork) {
-    succeed("plan colonnade.ply -o scene.plan --tolerance 0.06 --no-refine --bounces 0 -q");
-    const std::vector<std::string> part = {"precompute", "--plan", "scene.plan", "--part",
-                                           "1/2",        "-o",     "part",       "-q"};
+    succeed("plan colonnade.ply -o scene.plan --tolerance 0.06 --refine off --bounces 0 -q");
+    const std::vector<std::string> part = {"precompute", "scene.plan", "--part", "1/2",
+                                           "-o",         "part",       "-q"};
     succeed(part);
     {
         const Limit limit("avx2");

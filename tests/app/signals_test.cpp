@@ -73,7 +73,7 @@ TEST_F(Signals, WorkOfLibrariesThatDoNotPollStopsAtOnce) {
                "large.exr", "-q"},
               {SIGINT}, std::chrono::milliseconds(1000));
     succeed("generate blob -o . --vertices 2000 -q");
-    succeed("precompute blob.ply -o scene.prt --tolerance 0.1 --no-refine --bounces 0 -q");
+    succeed("precompute blob.ply -o scene.prt --tolerance 0.1 --refine off --bounces 0 -q");
     interrupt(
         {"relight", "scene.prt", "white.hdr", "--size", "12000x12000", "-o", "large.png", "-q"},
         {SIGTERM}, std::chrono::milliseconds(1000));
@@ -122,16 +122,16 @@ private:
 TEST_F(FullDisk, LeavesTheOldFile) {
     write("mesh.obj", octahedron_obj());
     write("white.hdr", white_hdr());
-    succeed("precompute mesh.obj -o disk/scene.prt --no-refine --face-resolution 16 -q");
+    succeed("precompute mesh.obj -o disk/scene.prt --refine off --face-resolution 16 -q");
     succeed("relight disk/scene.prt white.hdr -o disk/lit.npy");
     const std::vector<std::string> no_space = {"cannot write", "No space left"};
     fail("generate blob -o disk --vertices 3000", no_space);
 
     succeed("generate blob -o . --vertices 7000 -q");
-    succeed("precompute blob.ply -o scene.prt --no-refine --bounces 0 --face-resolution 16");
+    succeed("precompute blob.ply -o scene.prt --refine off --bounces 0 --face-resolution 16");
     for (const char* name : {"disk/lit.npy", "disk/lit.ply", "disk/lit.glb"})
         fail({"relight", "scene.prt", "white.hdr", "-o", name}, no_space);
-    fail("precompute blob.ply -o disk/scene.prt --no-refine --bounces 0 --face-resolution 16 -q",
+    fail("precompute blob.ply -o disk/scene.prt --refine off --bounces 0 --face-resolution 16 -q",
          no_space);
     succeed("info disk/scene.prt");
 }

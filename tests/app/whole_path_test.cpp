@@ -16,7 +16,7 @@ protected:
     nlohmann::json precompute(const std::string& scene, int num_vertices,
                               const std::string& tolerance = "0.03") const {
         succeed({"generate", scene, "-o", ".", "--vertices", std::to_string(num_vertices), "-q"});
-        return succeed({"precompute", scene + ".ply", "--no-refine", "-o", "scene.prt",
+        return succeed({"precompute", scene + ".ply", "--refine", "off", "-o", "scene.prt",
                         "--tolerance", tolerance, "--face-resolution", "64", "--json"})
             .json();
     }
@@ -80,8 +80,8 @@ TEST_F(WholePath, GeneratePrecomputeInfoRelightEditVerify) {
     EXPECT_EQ(ply["vertices"], vertices);
     EXPECT_EQ(ply["colors"], true);
 
-    const nlohmann::json edit = succeed("edit scene.prt soft_boxes.exr -o edited.npy --disc 0,1,0 "
-                                        "--radius 20 --gain 3 --save-env edited.exr --json")
+    const nlohmann::json edit = succeed("edit scene.prt soft_boxes.exr -o edited.npy "
+                                        "--disc 0,1,0,20 --gain 3 --save-env edited.exr --json")
                                     .json();
     EXPECT_GT(edit["clusters_touched"], 0);
     EXPECT_LT(edit["clusters_touched"], edit["clusters"]);
@@ -92,7 +92,7 @@ TEST_F(WholePath, GeneratePrecomputeInfoRelightEditVerify) {
     EXPECT_GT(relative_l2(edited, lit), 0.01);
 
     const nlohmann::json verified =
-        succeed("verify scene.prt soft_boxes.exr --samples 100 --surface 20 --json").json();
+        succeed("verify scene.prt soft_boxes.exr --samples 100 --json").json();
     EXPECT_EQ(verified["samples"], 100);
     EXPECT_LT(verified["relative_l2"], 0.02);
     EXPECT_LE(verified["mean_abs"], verified["max_abs"]);
@@ -104,8 +104,8 @@ TEST_F(WholePath, ErrorIsSmallUnderEveryGeneratedEnvironment) {
         generate(name, 64);
         for (const char* file : {"", "_latlong"}) {
             const nlohmann::json error =
-                succeed({"verify", "scene.prt", fmt::format("{}{}.exr", name, file), "--surface",
-                         "0", "--samples", "100", "--json"})
+                succeed({"verify", "scene.prt", fmt::format("{}{}.exr", name, file), "--samples",
+                         "100", "--json"})
                     .json();
             EXPECT_LT(error["relative_l2"], 0.02) << name << file;
             EXPECT_GT(error["mean_radiance"], 0.0) << name << file;
@@ -159,7 +159,7 @@ TEST_F(WholePath, ThreadsDoNotChangeABit) {
         run({"precompute", "knot.ply", "-o", name(".prt"), "--floor", "20", "--tolerance", "0.03",
              "--face-resolution", "64"});
         run({"relight", name(".prt"), "sun_sky.exr", "-o", name(".npy")});
-        run({"edit", name(".prt"), "sun_sky.exr", "-o", name("e.npy"), "--disc", "1,1,0"});
+        run({"edit", name(".prt"), "sun_sky.exr", "-o", name("e.npy"), "--disc", "1,1,0,10"});
         run({"relight", name(".prt"), "sun_sky.exr", "-o", name(".png"), "--size", "32x24"});
     }
     for (const char* file : {".prt", ".npy", "e.npy", ".png"})

@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 
 #include "data_gen/environments.h"
-#include "mesh/materials/srgb.h"
+#include "files/pixel_values.h"
 #include "mesh/normals.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/pixel_receivers.h"
@@ -237,7 +237,7 @@ glm::vec3 shown(const glm::vec3& radiance, double exposure) {
     glm::vec3 color =
         relight::on_screen(ToneCurve::Neutral, static_cast<float>(std::exp2(exposure)) * radiance);
     for (int i = 0; i < 3; ++i)
-        color[i] = mesh::srgb_of_linear(color[i]);
+        color[i] = files::srgb_of_linear(color[i]);
     return 255.0f * color;
 }
 

@@ -14,8 +14,8 @@
 #include "prt/precompute.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
-#include "relight/pictures/plot.h"
 #include "relight/relighter.h"
+#include "tests/bench/plot.h"
 #include "tests/bench/process_usage.h"
 #include "tests/bench/program.h"
 #include "tests/bench/times.h"
@@ -101,9 +101,9 @@ double exponent(const std::vector<Cost>& costs, double Cost::* y) {
     return xy / xx;
 }
 
-relight::Plot::Series series(const std::string& name, const std::vector<Cost>& costs,
-                             double Cost::* y) {
-    relight::Plot::Series result;
+bench::Plot::Series series(const std::string& name, const std::vector<Cost>& costs,
+                           double Cost::* y) {
+    bench::Plot::Series result;
     result.name = fmt::format("{}, exponent {:.2f}", name, exponent(costs, y));
     for (const Cost& cost : costs) {
         result.x.push_back(cost.x);
@@ -134,14 +134,14 @@ nlohmann::json report(const std::string& what, const std::vector<Cost>& costs,
     }
     fmt::print("\n");
     std::fflush(stdout);
-    const relight::Plot plot{.title = fmt::format("Cost against {}", what),
-                             .x_label = what,
-                             .y_label = "seconds",
-                             .x_scale = relight::Scale::Log,
-                             .y_scale = relight::Scale::Log,
-                             .series = {series("precompute (processor)", costs, &Cost::precompute),
-                                        series("relight", costs, &Cost::relight)}};
-    std::ofstream(folder / fmt::format("growth_{}.svg", what)) << relight::svg(plot);
+    const bench::Plot plot{.title = fmt::format("Cost against {}", what),
+                           .x_label = what,
+                           .y_label = "seconds",
+                           .x_scale = bench::Scale::Log,
+                           .y_scale = bench::Scale::Log,
+                           .series = {series("precompute (processor)", costs, &Cost::precompute),
+                                      series("relight", costs, &Cost::relight)}};
+    std::ofstream(folder / fmt::format("growth_{}.svg", what)) << bench::svg(plot);
     return rows;
 }
 

@@ -18,11 +18,11 @@
 #include "lights/light_clusters.h"
 #include "lights/luminance.h"
 #include "lights/place_lights.h"
-#include "relight/pictures/plot.h"
 #include "relight/reference/flicker.h"
 #include "relight/sharp/shadow_rays.h"
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
+#include "tests/bench/plot.h"
 #include "tests/bench/times.h"
 #include "tests/lights/importance_lights.h"
 
@@ -62,11 +62,11 @@ struct Sequence {
 std::string light_positions_plot(const lights::FrameLights& lights, std::size_t first_frame,
                                  std::size_t num_frames, const std::string& title) {
     constexpr double Degrees = 180.0 * std::numbers::inv_pi;
-    relight::Plot plot{
+    bench::Plot plot{
         .title = title, .x_label = "longitude (degrees, from +Z to +X)", .y_label = "latitude"};
     const std::size_t end = std::min(first_frame + num_frames, lights.num_frames());
     for (std::size_t frame = first_frame; frame < end; ++frame) {
-        relight::Plot::Series series{
+        bench::Plot::Series series{
             .name = fmt::format("frame {}", frame), .x = {}, .y = {}, .line = false};
         for (const lights::DistantLight& light : lights.at(frame)) {
             series.x.push_back(Degrees * std::atan2(light.direction.x, light.direction.z));
@@ -74,7 +74,7 @@ std::string light_positions_plot(const lights::FrameLights& lights, std::size_t 
         }
         plot.series.push_back(std::move(series));
     }
-    return relight::svg(plot);
+    return bench::svg(plot);
 }
 
 /// Those of `relumine generate sequence` that the tables of docs/measurements.md show.
@@ -318,18 +318,34 @@ nlohmann::json json_of(const Sequence& sequence, const std::vector<Row>& rows) {
     return {{"sequence", sequence.name}, {"methods", methods}};
 }
 
+/// Returns E(t) over frames as an SVG document, one curve for each method [S, Fig. 3].
+std::string inconsistency_plot(const std::vector<Row>& rows, const std::string& title) {
+    bench::Plot plot{.title = title,
+                     .x_label = "frame",
+                     .y_label = "temporal inconsistency",
+                     .y_scale = bench::Scale::Log};
+    for (const Row& row : rows) {
+        if (row.method != Importance && row.method != EvenClusters &&
+            row.method != FollowedClusters && row.method != "prt")
+            continue;
+        bench::Plot::Series series{
+            .name = fmt::format("{}: {:.2g}", row.method, row.report.mean_inconsistency),
+            .x = {},
+            .y = row.report.inconsistency};
+        for (std::size_t t = 0; t < series.y.size(); ++t)
+            series.x.push_back(static_cast<double>(t));
+        plot.series.push_back(std::move(series));
+    }
+    return bench::svg(plot);
+}
+
 void write_plots(const Settings& settings, std::size_t index, const Sequence& sequence,
                  const std::vector<Row>& rows, const Experiment& experiment) {
     fs::create_directories(settings.plots);
     const auto write = [&](const char* what, const std::string& text) {
         std::ofstream(settings.plots / fmt::format("video{}_{}.svg", index + 1, what)) << text;
     };
-    std::vector<relight::NamedReport> reports;
-    for (const Row& row : rows)
-        if (row.method == Importance || row.method == EvenClusters ||
-            row.method == FollowedClusters || row.method == "prt")
-            reports.push_back({row.method, row.report});
-    write("inconsistency", relight::inconsistency_plot(reports, sequence.name));
+    write("inconsistency", inconsistency_plot(rows, sequence.name));
     write("clusters", light_positions_plot(experiment.cluster_lights(), settings.num_frames / 2, 5,
                                            fmt::format("{}: clusters", sequence.name)));
     const lights::FrameLights jumping = lights::importance_lights(

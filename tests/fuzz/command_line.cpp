@@ -80,20 +80,20 @@ void write(const fs::path& path, const std::string& content) {
 /// Lines that work in the folder with the small files. All that they write begins with "new".
 const std::vector<Words>& working_lines() {
     static const std::vector<Words> All = {
-        {"precompute", "mesh.obj", "-o", "new.prt", "--face-resolution", "8", "--no-refine"},
+        {"precompute", "mesh.obj", "-o", "new.prt", "--face-resolution", "8", "--refine", "off"},
         {"precompute", "mesh.obj", "-o", "new.prt", "--face-resolution", "8", "--receivers",
          "pixels:4x4", "--view", "0,0,3,0,0,0"},
         {"relight", "scene.prt", "env.0.hdr", "-o", "new.npy"},
         {"relight", "scene.prt", "env.0.hdr", "-o", "new.exr", "--size", "8x8"},
-        {"edit", "scene.prt", "env.0.hdr", "-o", "new.npy", "--disc", "0,1,0"},
-        {"edit", "scene.prt", "env.0.hdr", "-o", "new.exr", "--disc", "0,1,0", "--who", "0,1,0"},
+        {"edit", "scene.prt", "env.0.hdr", "-o", "new.npy", "--disc", "0,1,0,10"},
+        {"edit", "scene.prt", "env.0.hdr", "-o", "new.exr", "--disc", "0,1,0,10", "--who", "0,1,0"},
         {"animate", "scene.prt", "env.%d.hdr", "-o", "new.%d.exr", "--size", "8x8"},
         {"animate", "scene.prt", "env.%d.hdr", "--vertices", "new.npy", "--method", "clusters"},
-        {"verify", "scene.prt", "env.0.hdr", "--samples", "2", "--surface", "2"},
+        {"verify", "scene.prt", "env.0.hdr", "--samples", "2"},
         {"lights", "env.0.hdr", "-o", "new.json"},
         {"lights", "env.0.hdr", "--scene", "scene.prt", "-n", "4", "-o", "new.json"},
         {"info", "scene.prt"},
-        {"mesh", "refine", "mesh.obj", "-o", "new.ply", "--error", "0.05", "--max-vertices", "40"},
+        {"mesh", "refine", "mesh.obj", "-o", "new.ply", "--tolerance", "0.05", "--vertices", "40"},
         {"mesh", "repair", "mesh.obj", "-o", "new.obj", "--weld"},
         {"env", "convert", "env.0.hdr", "-o", "new.exr", "--size", "8x4"},
         {"generate", "blob", "-o", "new", "--vertices", "1000"},
@@ -116,7 +116,7 @@ const fs::path& working_folder() {
         app::CommandLine program("relumine", "");
         app::add_commands(program, fresh_session());
         static_cast<void>(program.run({"precompute", "mesh.obj", "-o", "scene.prt",
-                                       "--face-resolution", "8", "--no-refine", "-q"}));
+                                       "--face-resolution", "8", "--refine", "off", "-q"}));
         return path;
     }();
     return Path;
@@ -164,7 +164,7 @@ void set(Words& line, const OptionRow& option, const std::string& value) {
             line.erase(at, at + 2);
     line.push_back(fmt::format("{}={}", option.long_name(), value));
     if (option.long_name() == "--refine") // a mesh as fine as an error of 0 asks for takes too long
-        line.emplace_back("--max-vertices=40");
+        line.emplace_back("--vertices=40");
 }
 
 /// Removes what a line has written. What a .npy file holds is finite.

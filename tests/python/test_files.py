@@ -180,7 +180,7 @@ def test_parts_of_a_plan_make_one_scene_whatever_their_number(folder, arrays):
 
 def test_meshes_are_refined_and_simplified(arrays):
     mesh = relumine.Mesh(*arrays)
-    fine = mesh.refined(error=0.004, max_vertices=len(mesh.vertices) + 500)
+    fine = mesh.refined(tolerance=0.004, vertices=len(mesh.vertices) + 500)
     assert len(fine.vertices) == len(mesh.vertices) + 500
     assert (fine.vertices[: len(mesh.vertices)] == mesh.vertices).all()
     assert fine.report["rounds"] > 0 and mesh.report == {}

@@ -102,7 +102,7 @@ rm -f shared.npy
 light bouncing .npy
 light bouncing .png --size 200x150
 light bouncing .ply --bounces 2
-light bouncing_texels .exr --only-bounces
+light bouncing_texels .exr --bounces only
 "$relumine" lights sun_sky.exr --number 12 -o lamps.json -q
 light bouncing .png --size 120x90 --lights lamps.json
 light glossy .npy --lights lamps.json
@@ -112,15 +112,15 @@ for ranks in 1 3 8; do
     check "a list of lights, $ranks ranks" cmp -s whole.npy shared.npy
 done
 
-"$relumine" verify bouncing.prt sun_sky.exr --samples 60 --surface 30 --paths 8 --json -q | grep -v '"seconds"' >whole.json
+"$relumine" verify bouncing.prt sun_sky.exr --samples 60 --paths 8 --json -q | grep -v '"seconds"' >whole.json
 for ranks in 1 2 3 8; do
-    start "$ranks" verify bouncing.prt sun_sky.exr --samples 60 --surface 30 --paths 8 --threads 1 --json |
+    start "$ranks" verify bouncing.prt sun_sky.exr --samples 60 --paths 8 --threads 1 --json |
         grep -v '"seconds"' >shared.json
     check "verify, $ranks ranks" cmp -s whole.json shared.json
 done
 
 # Frames, also those of a second run that goes on.
-"$relumine" generate sequence sun -o frames --num-frames 4 --face-resolution 32 -q
+"$relumine" generate sequence sun -o frames --frames 4 --face-resolution 32 -q
 mkdir whole shared
 animate=(animate bouncing.prt 'frames/sun.####.exr' --size 120x90 -q)
 "$relumine" "${animate[@]}" -o 'whole/f.####.png' --vertices whole/v.npy
@@ -218,7 +218,7 @@ for command in "relight vertices.prt sun_sky.exr -o out.npy" "verify vertices.pr
         mpirun "${as_root[@]}" --oversubscribe --mca btl self,vader \
         --wdir "$folder" -n 1 "$relumine_mpi" $command -q : --wdir "$folder/other" -n 1 "$relumine_mpi" $command -q
 done
-refuses "parts" 2 "expected a mesh" start 2 precompute --plan knot.plan --part 1/2 -o out.prt
+refuses "parts" 2 "expected a mesh" start 2 precompute knot.plan --part 1/2 -o out.prt
 refuses "a limit of memory" 1 "no limit of memory" start 2 precompute knot.ply --max-memory 1G -o out.prt
 if mkdir small && mount -t tmpfs -o size=100k none small 2>/dev/null; then
     refuses "a full disk" 1 "small/out.prt: cannot write" start 3 precompute "${vertices[@]}" -o small/out.prt -q

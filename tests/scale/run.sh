@@ -26,11 +26,11 @@ compare() { # NAME FILE
 
 relumine generate knot -o . --vertices 20000 -q
 relumine plan knot.ply -o knot.plan --tolerance 0.04 --floor 40 --bounces 0.02 -q
-relumine precompute --plan knot.plan --part 1/1 -o whole.part -q
+relumine precompute knot.plan --part 1/1 -o whole.part -q
 relumine join whole.part -o whole.prt -q
 
 if command -v parallel >/dev/null; then
-    parallel --will-cite -j 2 relumine precompute --plan knot.plan --part {}/5 -o parallel.part.{} -q ::: 1 2 3 4 5
+    parallel --will-cite -j 2 relumine precompute knot.plan --part {}/5 -o parallel.part.{} -q ::: 1 2 3 4 5
     relumine join parallel.part.* -o parallel.prt -q
     compare "GNU parallel, 5 parts" parallel.prt
 else
@@ -42,7 +42,7 @@ if command -v mpirun >/dev/null; then
     [ "$(id -u)" -ne 0 ] || as_root=(--allow-run-as-root)
     # shellcheck disable=SC2016 # the ranks expand it
     mpirun "${as_root[@]}" --oversubscribe --mca btl self,vader -n 3 sh -c 'relumine precompute \
-        --plan knot.plan --part $((OMPI_COMM_WORLD_RANK + 1))/$OMPI_COMM_WORLD_SIZE \
+        knot.plan --part $((OMPI_COMM_WORLD_RANK + 1))/$OMPI_COMM_WORLD_SIZE \
         -o mpi.part.$OMPI_COMM_WORLD_RANK --threads 1 -q'
     relumine join mpi.part.* -o mpi.prt -q
     compare "mpirun, 3 ranks" mpi.prt
@@ -51,12 +51,12 @@ else
 fi
 
 # A task that was killed is done again by its command; nothing half written is left.
-relumine precompute --plan knot.plan --part 2/2 -o killed.part.2 -q &
+relumine precompute knot.plan --part 2/2 -o killed.part.2 -q &
 sleep 0.3
 kill -9 $! 2>/dev/null || true
 wait $! 2>/dev/null || true
 [ ! -e killed.part.2 ] || echo "killed: the part was done before"
-for i in 1 2; do relumine precompute --plan knot.plan --part $i/2 -o killed.part.$i -q; done
+for i in 1 2; do relumine precompute knot.plan --part $i/2 -o killed.part.$i -q; done
 relumine join killed.part.1 killed.part.2 -o killed.prt -q
 compare "a task that was killed and done again" killed.prt
 

@@ -55,14 +55,14 @@ try:
     run("generate", "knot", "-o", ".", "--vertices", "1000")
     run("generate", "still_life", "-o", ".", "--vertices", "1000")
     run("generate", "sun_sky", "-o", ".", "--face-resolution", "32")
-    run("precompute", "knot.ply", "-o", "knot.prt", "--no-refine", "--tolerance", "0.1")
+    run("precompute", "knot.ply", "-o", "knot.prt", "--refine", "off", "--tolerance", "0.1")
     for name in ("lit.glb", "lit.npy", "lit.png", "lit.exr"):
         size = ["--size", "40x30"] if name in ("lit.png", "lit.exr") else []
         run("relight", "knot.prt", "sun_sky.exr", "--exposure", "4", "-o", name, *size)
     run("mesh", "repair", "knot.ply", "-o", "repaired.glb")
     run("mesh", "repair", "still_life.glb", "-o", "materials.glb")
     run("lights", "sun_sky.exr", "-n", "8", "-o", "lights.gltf")
-    run("env", "convert", "sun_sky.exr", "--to-layout", "cube", "-o", "cube.exr")
+    run("env", "convert", "sun_sky.exr", "--to", "cube", "-o", "cube.exr")
     for name in ("lit.glb", "still_life.glb", "repaired.glb", "materials.glb", "lights.gltf"):
         check_gltf(name)
     for name in ("lit.exr", "sun_sky.exr", "cube.exr"):

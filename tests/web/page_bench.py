@@ -48,7 +48,7 @@ def percentile(values, part):
 def main():
     shutil.rmtree(folder, ignore_errors=True)
     options = ["--samples", "300"]
-    for name, more in (("page", []), ("without bounces", ["--no-bounces"]), ("full tolerance", ["--tolerance", "1e-6"])):
+    for name, more in (("page", []), ("without bounces", ["--bounces", 0]), ("full tolerance", ["--tolerance", "1e-6"])):
         shutil.rmtree(folder, ignore_errors=True)
         subprocess.run([program, "export", "web", scene, *environments, "-o", folder, *options, *more, "-q"], check=True)
         size = sum(file.stat().st_size for file in folder.rglob("*") if file.is_file() and file.parent.name != "environments")

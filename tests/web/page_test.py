@@ -86,7 +86,7 @@ class Exported(unittest.TestCase):
 
 
 class Light(Exported):
-    options = ["--bounce-samples", 0]
+    options = ["--bounces", "all"]
 
     def test_of_bounces_is_the_native_one(self):
         expected = self.native(self.site / "environments/1.hdr", "--bounces", "all")
@@ -142,7 +142,7 @@ def drag(browser, selector, dx, dy):
 
 
 class Lights(Exported):
-    options = ["--no-bounces"]
+    options = ["--bounces", 0]
 
     def test_are_dragged_undone_and_saved(self):
         plain = self.radiance()
@@ -192,7 +192,7 @@ class Lights(Exported):
 
 
 class Files(Exported):
-    options = ["--no-bounces"]
+    options = ["--bounces", 0]
 
     def drop(self, path, name=None):
         self.browser.run("""
@@ -234,7 +234,7 @@ class Files(Exported):
 
 class Phone(Exported):
     size = (390, 844)
-    options = ["--no-bounces"]
+    options = ["--bounces", 0]
 
     def test_is_readable_in_both_themes(self):
         for theme in ("dark", "light"):
@@ -300,8 +300,8 @@ class Lamps(unittest.TestCase):
         text += "o box\nusemtl grey\nf 3 4 8 7\nf 1 2 4 3\nf 5 7 8 6\nf 2 6 8 4\nf 1 3 7 5\n"
         text += "v -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\no lamp\nusemtl bulb\nf 9 10 11 12\n"
         (folder / "lamp.obj").write_text(text)
-        relumine("precompute", "lamp.obj", "-o", "lamp.prt", "--tolerance", 0.06, "--bounces", "--no-refine", "--floor", 9)
-        relumine("export", "web", "lamp.prt", "-o", "lamp", "--force", "--samples", 0, "--tolerance", 0.06)
+        relumine("precompute", "lamp.obj", "-o", "lamp.prt", "--tolerance", 0.06, "--bounces", "--refine", "off", "--floor", 9)
+        relumine("export", "web", "lamp.prt", "-o", "lamp", "--samples", 0, "--tolerance", 0.06)
         light = {}
         for gain, bounces in ((0, "all"), (1, "all"), (0, 0), (1, 0)):
             relumine("relight", "lamp.prt", "lamp/environments/1.hdr", "--clusters-only", "--bounces", bounces,
@@ -332,8 +332,8 @@ SIZE = (640, 480)
 
 def camera_options(site):
     camera = json.loads((site / "scene.json").read_text())["camera"]
-    return ["--eye", ",".join(map(str, camera["eye"])), "--target", ",".join(map(str, camera["target"])),
-            "--fov", camera["fov"], "--size", f"{SIZE[0]}x{SIZE[1]}"]
+    return ["--view", ",".join(map(str, [*camera["eye"], *camera["target"], camera["fov"]])),
+            "--size", f"{SIZE[0]}x{SIZE[1]}"]
 
 
 class Shown:
@@ -367,7 +367,7 @@ class Highlights(unittest.TestCase):
         relumine("precompute", scene.with_suffix(".ply"), "-o", "shiny.prt", "--floor", 20, "--tolerance", 0.03, "--bounces", 0,
                  "--material", "ggx:roughness=0.3,albedo=0.15,f0=0.6")
         site = folder / "shiny"
-        text = relumine("export", "web", "shiny.prt", "-o", site, "--force", "--samples", 0).stderr
+        text = relumine("export", "web", "shiny.prt", "-o", site, "--samples", 0).stderr
         self.assertNotIn("left out", text)
         relumine("relight", "shiny.prt", site / "environments/1.hdr", *camera_options(site), "--bounces", 0,
                  "--background", "none", "--floor", "grey", "-o", "shiny_native.png")
@@ -413,7 +413,7 @@ class Highlights(unittest.TestCase):
         (folder / "even.hdr").write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32 +X 64\n" + bytes([128, 128, 128, 129] * 2048))
         relumine("precompute", "wall.obj", "-o", "wall.prt", "--tolerance", 0.015, "--bounces", 0)
         site = folder / "wall"
-        relumine("export", "web", "wall.prt", "even.hdr", "-o", site, "--force", "--samples", 0, "--tolerance", 0.015)
+        relumine("export", "web", "wall.prt", "even.hdr", "-o", site, "--samples", 0, "--tolerance", 0.015)
         relumine("relight", "wall.prt", "even.hdr", *camera_options(site), "--bounces", 0, "-o", "wall_native.png")
         native, shown = Picture(folder / "wall_native.png"), Shown(site, folder / "wall_page.png")
         camera = json.loads((site / "scene.json").read_text())["camera"]
@@ -444,7 +444,7 @@ class Failing(unittest.TestCase):
     def setUpClass(cls):
         cls.site = folder / "failing"
         shutil.rmtree(cls.site, ignore_errors=True)
-        relumine("export", "web", scene, "-o", cls.site, "--samples", 0, "--tolerance", 0.06, "--no-bounces")
+        relumine("export", "web", scene, "-o", cls.site, "--samples", 0, "--tolerance", 0.06, "--bounces", 0)
 
     def sentence(self, url, prelude=""):
         browser = Browser()
@@ -483,14 +483,14 @@ class Failing(unittest.TestCase):
             browser.open((self.site / "index.html").as_uri())
             self.assertEqual(browser.run("await new Promise((r) => setTimeout(r, 500)); return v.textContent;"),
                              "A browser does not let a page read other files of this computer. Put the folder on a web "
-                             "server, or export with --single-file.")
+                             "server, or export one file: -o page.html.")
         finally:
             browser.close()
 
 
 class SingleFile(unittest.TestCase):
     def test_opens_from_a_file(self):
-        relumine("export", "web", scene, "-o", "single.html", "--single-file", "--samples", 0, "--tolerance", 0.06)
+        relumine("export", "web", scene, "-o", "single.html", "--samples", 0, "--tolerance", 0.06)
         browser = Browser()
         try:
             browser.open((folder / "single.html").as_uri())
@@ -505,7 +505,7 @@ class SingleFile(unittest.TestCase):
     def test_is_an_element_of_other_pages(self):
         site = folder / "element"
         shutil.rmtree(site, ignore_errors=True)
-        relumine("export", "web", scene, "-o", site / "bunny", "--samples", 0, "--tolerance", 0.06, "--no-bounces")
+        relumine("export", "web", scene, "-o", site / "bunny", "--samples", 0, "--tolerance", 0.06, "--bounces", 0)
         (site / "index.html").write_text(
             "<!doctype html><style>relumine-viewer { height: 360px; width: 640px; }</style><h1>Mine</h1>"
             "<script type=module src=bunny/relumine-viewer.js></script><relumine-viewer src=bunny theme=light></relumine-viewer>")

@@ -15,15 +15,15 @@ protected:
         write("env.hdr", white_hdr());
     }
     void precompute() const {
-        succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --no-refine");
+        succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --refine off");
     }
 
     /// One command line per subcommand that does its work.
     const std::vector<std::vector<std::string>> all_ = {
-        {"precompute", "mesh.obj", "-o", "new.prt", "--face-resolution", "16", "--no-refine"},
+        {"precompute", "mesh.obj", "-o", "new.prt", "--face-resolution", "16", "--refine", "off"},
         {"relight", "scene.prt", "env.hdr", "-o", "new.npy"},
-        {"edit", "scene.prt", "env.hdr", "-o", "new.npy", "--disc", "0,1,0"},
-        {"verify", "scene.prt", "env.hdr", "--surface", "10"},
+        {"edit", "scene.prt", "env.hdr", "-o", "new.npy", "--disc", "0,1,0,10"},
+        {"verify", "scene.prt", "env.hdr"},
         {"info", "scene.prt"},
         {"info", "mesh.obj"},
         {"info", "env.hdr"},
@@ -73,13 +73,12 @@ TEST_F(CommandLineTest, EmptyValuesAreWrongUsage) {
     // What a script passes when a variable is not set. An empty tolerance must not mean 0.
     misuse({"precompute", "", "-o", "new.prt"}, "MESH");
     misuse({"precompute", "mesh.obj", "-o", ""}, "--output");
-    for (const char* option :
-         {"--tolerance", "--epsilon", "--bias", "--min-depth", "--face-resolution", "--threads"})
+    for (const char* option : {"--tolerance", "--face-resolution", "--threads"})
         misuse({"precompute", "mesh.obj", "-o", "new.prt", option, ""}, option);
     misuse({"relight", "", "env.hdr", "-o", "new.npy"}, "SCENE");
     misuse({"relight", "scene.prt", "", "-o", "new.npy"}, "ENV");
     for (const char* option :
-         {"--rotate", "--exposure", "--albedo", "--eye", "--target", "--fov", "--size", "--layout"})
+         {"--rotate", "--exposure", "--albedo", "--view", "--size", "--layout"})
         misuse({"relight", "scene.prt", "env.hdr", "-o", "new.npy", option, ""}, option);
     misuse({"verify", "scene.prt", "env.hdr", "--samples", ""}, "--samples");
     misuse({"info", ""}, "FILE");
@@ -142,7 +141,7 @@ TEST_F(CommandLineTest, OddFileNamesWork) {
         write(name + ".obj", octahedron_obj());
         write(name + ".hdr", white_hdr());
         const Result made = succeed({"precompute", name + ".obj", "-o", name + ".prt",
-                                     "--face-resolution", "16", "--no-refine", "--json"});
+                                     "--face-resolution", "16", "--refine", "off", "--json"});
         EXPECT_EQ(made.json().value("vertices", 0), 6) << name;
         succeed({"relight", name + ".prt", name + ".hdr", "-o", name + ".npy"});
         EXPECT_TRUE(fs::exists(folder() / (name + ".npy"))) << name;
@@ -190,8 +189,8 @@ TEST_F(CommandLineTest, NamesMayBeAsLongAsTheSystemAllows) {
     const std::string name(245, 'n');
     for (const char* extension : {".npy", ".exr", ".png", ".ply"})
         succeed({"relight", "scene.prt", "env.hdr", "-o", name + extension, "--size", "8x8"});
-    succeed(
-        {"precompute", "mesh.obj", "-o", name + ".prt", "--face-resolution", "16", "--no-refine"});
+    succeed({"precompute", "mesh.obj", "-o", name + ".prt", "--face-resolution", "16", "--refine",
+             "off"});
     succeed({"info", name + ".prt", "--check"});
     fail({"relight", "scene.prt", "env.hdr", "-o", std::string(252, 'n') + ".npy"},
          {"cannot write"});
@@ -206,8 +205,12 @@ TEST_F(CommandLineTest, AMisspeltNameIsToldTheNearest) {
            "--exposrue: no option of `relumine relight`; did you mean --exposure? (see relumine "
            "relight --help)");
     misuse("relight a.prt b.exr --exposrue=1 -o x.png", "relumine: --exposrue: ");
-    misuse("precompute a.obj -o b.prt --engine embre",
-           "--engine: expected beam or embree, got 'embre'; did you mean embree?");
+    misuse("precompute a.obj -o b.prt --highlights store",
+           "--highlights: expected stored or traced, got 'store'; did you mean stored?");
+    // What older versions had.
+    for (const char* old : {"precompute a.obj -o b.prt --no-refine", "verify a.prt b.exr --seed 2",
+                            "relight a.prt b.exr -o c.png --eye 1,2,3"})
+        misuse(old, ": no option of `relumine ");
     misuse("lights env.hdr --zzz", "--zzz: no option of `relumine lights` (see");
     misuse("generate knto -o x", "did you mean knot?");
     precompute();
@@ -286,12 +289,11 @@ TEST_F(CommandLineTest, NumbersThatOverflowAreRefused) {
         fail({"relight", "scene.prt", "bright.hdr", "-o", output, "--size", "8x8", "--exposure",
               "100"},
              {output, ": expected radiance times albedo and exposure within"});
-    for (const char* option : {"--eye", "--target"})
-        misuse({"relight", "scene.prt", "env.hdr", "-o", "new.png", option, "1e19,0,0"}, option);
+    for (const char* view : {"1e19,0,0", "0,0,3,1e19,0,0", "0,0,3,0,0,0,1e30"})
+        misuse({"relight", "scene.prt", "env.hdr", "-o", "new.png", "--view", view}, "--view");
     misuse("relight scene.prt env.hdr -o new.png --size 4294967297x1",
            "--size: expected WIDTHxHEIGHT, got '4294967297x1'");
     misuse("relight scene.prt env.hdr -o new.png --size 0x1", "--size");
-    misuse("relight scene.prt env.hdr -o new.png --fov 1e30", "--fov");
 }
 
 TEST_F(CommandLineTest, JsonCarriesWarningsAndReplacedPixels) {

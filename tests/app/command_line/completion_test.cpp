@@ -74,7 +74,7 @@ TEST_F(Completion, BashCompletesOptionsAndValues) {
     EXPECT_THAT(offered({"relumine", "animate", "--method", "=", "i"}), ElementsAre("importance"));
     EXPECT_THAT(offered({"relumine", "animate", "--method", "="}),
                 UnorderedElementsAre("prt", "clusters", "importance"));
-    EXPECT_THAT(offered({"relumine", "env", "convert", "--to-l"}), ElementsAre("--to-layout"));
+    EXPECT_THAT(offered({"relumine", "env", "convert", "--split"}), ElementsAre("--split-sun"));
     EXPECT_THAT(offered({"relumine", "verify", "--samples", ""}), IsEmpty());
     EXPECT_THAT(offered({"relumine", "generate", "colon"}), ElementsAre("colonnade"));
 }

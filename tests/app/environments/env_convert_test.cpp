@@ -26,7 +26,7 @@ protected:
     }
     void make_scene() const {
         write("mesh.obj", octahedron_obj());
-        succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --no-refine -q");
+        succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --refine off -q");
         write("lamp.hdr", lamp_hdr(32)); // a lamp at +X
     }
     static void expect_same(const std::vector<float>& expected, const std::vector<float>& got,
@@ -47,8 +47,8 @@ TEST_F(EnvConvert, EveryLayoutLightsTheSame) {
             if (extension == "HDR" && layout != "strip" && layout != "octahedral")
                 continue;
             const std::string out = fmt::format("{}.{}", layout, extension);
-            const auto report = succeed({"env", "convert", "lamp.hdr", "-o", out, "--to-layout",
-                                         layout, "--face-resolution", "32", "--json"})
+            const auto report = succeed({"env", "convert", "lamp.hdr", "-o", out, "--to", layout,
+                                         "--face-resolution", "32", "--json"})
                                     .json();
             EXPECT_NEAR(report["output"]["mean_radiance"][1].get<double>() /
                             report["input"]["mean_radiance"][1].get<double>(),
@@ -69,7 +69,7 @@ TEST_F(EnvConvert, SixFilesInAndOut) {
     succeed("env convert sky_{face}.exr -o back.exr");
     std::filesystem::remove(folder() / "sky_nz.exr");
     fail("info sky_{face}.exr", {"sky_nz.exr"});
-    succeed("env convert lamp.hdr -o sky_nz.exr --to-layout octahedral --size 31");
+    succeed("env convert lamp.hdr -o sky_nz.exr --to octahedral --size 31");
     fail("info sky_{face}.exr", {"sky_nz.exr", "32x32", "31x31"});
     fail("env convert sky_{face}.exr -o sky_px.exr", {"sky_px.exr", "input"});
 }
@@ -81,8 +81,8 @@ TEST_F(EnvConvert, ConventionsThereAndBackLightTheSame) {
          {"usd", "mitsuba", "blender", "threejs", "opengl", "directx", "pbrt"}) {
         succeed({"env", "convert", "lamp.hdr", "-o", "there.exr", "--to", name, "--face-resolution",
                  "32"});
-        succeed({"env", "convert", "there.exr", "-o", "back.exr", "--from", name, "--to-layout",
-                 "latlong", "--size", "128"});
+        succeed({"env", "convert", "there.exr", "-o", "back.exr", "--from", name, "--to", "latlong",
+                 "--size", "128"});
         expect_same(expected, lit("back.exr"), name);
     }
     // A wrong reading shows: Blender's middle is a quarter turn away from OpenEXR's.
@@ -123,7 +123,7 @@ TEST_F(EnvConvert, SaysWhatIsWrong) {
     write("square.hdr",
           hdr_file(32, 32, [](std::uint32_t, std::uint32_t) { return Rgb{1, 1, 1}; }));
     fail("env convert square.hdr -o out.exr", {"square.hdr", "--layout", "32x32"});
-    succeed("env convert square.hdr -o ok.exr --from pbrt --to-layout latlong --size 32");
+    succeed("env convert square.hdr -o ok.exr --from pbrt --to latlong --size 32");
     fail("env convert square.hdr -o out.exr --layout cross", {"square.hdr", "3:4"});
     fail("env convert env.hdr -o out.exr --from opengl", {"env.hdr", "cube", "opengl"});
     misuse("env convert env.hdr -o out.png",
@@ -133,16 +133,15 @@ TEST_F(EnvConvert, SaysWhatIsWrong) {
     fail("env convert missing.hdr -o out.exr", {"missing.hdr"});
     fail("env convert env.hdr -o env.hdr", {"env.hdr", "input"});
     misuse("env convert env.hdr -o out.exr --to maya", "maya");
-    misuse("env convert env.hdr -o out.exr --to pbrt --to-layout cube", "octahedral");
+    misuse("env convert env.hdr -o out.exr --to pbrt,cube", "octahedral");
     misuse("env convert env.hdr -o out.exr --from usd --layout cube", "latlong");
-    misuse("env convert env.hdr -o out.exr --to-layout fisheye", "fisheye");
-    misuse("env convert env.hdr -o out_{face}.exr --to-layout cross", "six files");
+    misuse("env convert env.hdr -o out.exr --to fisheye", "fisheye");
+    misuse("env convert env.hdr -o out_{face}.exr --to cross", "six files");
     for (const char* size : {"0", "-4", "12x", "x12", "64x33x1", "1e3", "99999999"})
-        misuse(
-            {"env", "convert", "env.hdr", "-o", "out.exr", "--to-layout", "cross", "--size", size},
-            "--size");
-    misuse("env convert env.hdr -o out.exr --to-layout cross --size 64", "multiple of 3");
-    misuse("env convert env.hdr -o out.exr --to-layout cube --size 8x9", "8x9");
+        misuse({"env", "convert", "env.hdr", "-o", "out.exr", "--to", "cross", "--size", size},
+               "--size");
+    misuse("env convert env.hdr -o out.exr --to cross --size 64", "multiple of 3");
+    misuse("env convert env.hdr -o out.exr --to cube --size 8x9", "8x9");
     misuse("env convert env.hdr -o out.exr --size 8 --face-resolution 8", "--face-resolution");
     misuse("env convert env.hdr -o out.exr --face-resolution 99999", "16384");
     misuse("env");

@@ -18,7 +18,7 @@ class EnvironmentFiles : public AppTest {
 protected:
     EnvironmentFiles() {
         write("mesh.obj", octahedron_obj());
-        succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --no-refine -q");
+        succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --refine off -q");
     }
     void refused(const std::string& name, const std::string& content,
                  const std::vector<std::string>& parts = {}) const {
@@ -91,7 +91,7 @@ TEST_F(EnvironmentFiles, BadPixelsAreCountedRefusedAndFixedOnRequest) {
     fail("relight scene.prt bad.exr -o new.npy",
          {"bad.exr", "--fix-env", "5 NaN/Inf", "4 negative", "(0, 8)"});
     fail("verify scene.prt bad.exr", {"bad.exr", "--fix-env"});
-    fail("edit scene.prt bad.exr -o new.npy --disc 0,1,0", {"bad.exr", "--fix-env"});
+    fail("edit scene.prt bad.exr -o new.npy --disc 0,1,0,10", {"bad.exr", "--fix-env"});
 
     const Result fixed = succeed("relight scene.prt bad.exr -o new.npy --fix-env");
     EXPECT_NE(fixed.out.find("replaced 9 bad pixels"), std::string::npos) << fixed.described();
@@ -134,7 +134,7 @@ TEST_F(EnvironmentFiles, BlackIsAnEnvironment) {
     for (const auto& value : npy_values(read("black.npy")))
         EXPECT_EQ(value[0], 0.0f);
     EXPECT_EQ(succeed("verify scene.prt black.hdr --json").json()["max_abs"], 0.0);
-    succeed("edit scene.prt black.hdr -o black.npy --disc 0,1,0 --gain 5");
+    succeed("edit scene.prt black.hdr -o black.npy --disc 0,1,0,10 --gain 5");
     succeed("relight scene.prt black.hdr -o black.png --size 8x8");
 }
 

@@ -30,16 +30,12 @@ protected:
                                const std::vector<std::string>& options = {"--face-resolution",
                                                                           "64"}) const {
         write("mesh.obj", obj);
-        std::vector<std::string> arguments = {"precompute", "mesh.obj", "-o",         "mesh.prt",
-                                              "--bounces",  "0",        "--no-refine"};
+        std::vector<std::string> arguments = {"precompute", "mesh.obj", "-o",       "mesh.prt",
+                                              "--bounces",  "0",        "--refine", "off"};
         arguments.insert(arguments.end(), options.begin(), options.end());
         succeed(arguments);
         succeed({"relight", "mesh.prt", environment, "-o", "lit.npy", "--albedo", "1"});
         return npy_values(read("lit.npy"));
-    }
-    [[nodiscard]] Radiance lit_with(const char* engine, const std::string& obj,
-                                    const std::string& environment) const {
-        return lit(obj, environment, {"--face-resolution", "64", "--engine", engine});
     }
     /// Down to single texels, so that clusters do not depend on what else is in the mesh.
     [[nodiscard]] Radiance finely_lit(const std::string& obj,
@@ -106,13 +102,11 @@ TEST_F(Degenerate, SizeMakesNoDifference) {
     // Powers of two change no digit of any coordinate, so that not one bit of the result may change
     // either.
     const mesh::TriangleMesh mesh = scenes::sphere_and_box_on_floor();
-    for (const char* engine : {"beam", "embree"})
-        for (const char* environment : {"white.hdr", "lamp.hdr"}) {
-            const Radiance unit = lit_with(engine, text(mesh), environment);
-            for (const float scale : {0x1p23f, 0x1p-23f}) // 8e6 and 1e-7
-                EXPECT_EQ(lit_with(engine, text(mesh, scale), environment), unit)
-                    << engine << ' ' << environment << ' ' << scale;
-        }
+    for (const char* environment : {"white.hdr", "lamp.hdr"}) {
+        const Radiance unit = lit(text(mesh), environment);
+        for (const float scale : {0x1p23f, 0x1p-23f}) // 8e6 and 1e-7
+            EXPECT_EQ(lit(text(mesh, scale), environment), unit) << environment << ' ' << scale;
+    }
 }
 
 TEST_F(Degenerate, NorDoesAPlaceFarAway) {
@@ -173,17 +167,14 @@ TEST_F(Degenerate, InsideAClosedBoxThereIsNoLight) {
     inner.positions = {{0, 0, 0}, {0, 0, 0.1f}, {0.1f, 0, 0}};
     inner.triangles = {{0, 1, 2}};
     const mesh::TriangleMesh mesh = scenes::joined(scenes::box({-1, -1, -1}, {1, 1, 1}), inner);
-    for (const char* engine : {"beam", "embree"})
-        for (const char* environment : {"white.hdr", "lamp.hdr"}) {
-            const Radiance radiance = lit_with(engine, text(mesh), environment);
-            expect_black(radiance, 8, 11);
-            EXPECT_GT(*std::max_element(radiance.begin(), radiance.begin() + 8),
-                      (std::array<float, 3>{}))
-                << "outside there is";
-        }
-    EXPECT_LT(succeed("verify mesh.prt white.hdr --surface 100 --json")
-                  .json()["relative_l2"]
-                  .get<double>(),
+    for (const char* environment : {"white.hdr", "lamp.hdr"}) {
+        const Radiance radiance = lit(text(mesh), environment);
+        expect_black(radiance, 8, 11);
+        EXPECT_GT(*std::max_element(radiance.begin(), radiance.begin() + 8),
+                  (std::array<float, 3>{}))
+            << "outside there is";
+    }
+    EXPECT_LT(succeed("verify mesh.prt white.hdr --json").json()["relative_l2"].get<double>(),
               0.02);
 }
 

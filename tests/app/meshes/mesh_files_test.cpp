@@ -116,7 +116,7 @@ TEST_F(MeshFiles, UnknownKindsAndPaths) {
 
 TEST_F(MeshFiles, OneKindUnderTheNameOfAnother) {
     write("mesh.obj", octahedron_obj());
-    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --no-refine");
+    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 --refine off");
     refused("scene.ply", read("scene.prt"));
     refused("scene.off", read("scene.prt"));
     refused("scene.obj", read("scene.prt"));

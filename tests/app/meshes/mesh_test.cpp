@@ -106,19 +106,18 @@ TEST_F(MeshCommand, CreasesAndSimpler) {
 TEST_F(MeshCommand, RefinedFloorsHaveShadows) {
     const auto surface_error = [&](const std::vector<std::string>& more) {
         std::vector<std::string> arguments = {
-            "precompute",        "box.obj", "-o",          "scene.prt", "--crease",    "40",
-            "--floor",           "2",       "--tolerance", "0.03",      "--min-depth", "2",
-            "--face-resolution", "64",      "--json"};
+            "precompute", "box.obj", "-o",          "scene.prt", "--crease",          "40",
+            "--floor",    "2",       "--tolerance", "0.03",      "--face-resolution", "64",
+            "--json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const nlohmann::json report = succeed(arguments).json();
-        EXPECT_EQ(report.contains("refine"), more.front() == "--refine");
-        const nlohmann::json verified =
-            succeed("verify scene.prt lamp.hdr --samples 20 --surface 500 --json").json();
+        EXPECT_EQ(report.contains("refine"), more[1] != "off");
+        const nlohmann::json verified = succeed("verify scene.prt lamp.hdr --json").json();
         EXPECT_EQ(verified["surface"]["points"], 500);
         return verified["surface"]["relative_l2"].get<double>();
     };
-    const double coarse = surface_error({"--no-refine"});
-    const double fine = surface_error({"--refine", "0", "--max-vertices", "600"});
+    const double coarse = surface_error({"--refine", "off"});
+    const double fine = surface_error({"--refine", "0", "--vertices", "600"});
     EXPECT_LT(fine, 0.5 * coarse);
     const nlohmann::json scene = succeed("info scene.prt --check --json").json();
     EXPECT_LE(scene["vertices"], 600);
@@ -131,8 +130,8 @@ TEST_F(MeshCommand, RefinedFloorsHaveShadows) {
 }
 
 TEST_F(MeshCommand, RefinedForAnEnvironment) {
-    std::vector<std::string> arguments = {"mesh",    "refine", "parts.obj",      "-o",  "any.ply",
-                                          "--error", "0",      "--max-vertices", "400", "-q"};
+    std::vector<std::string> arguments = {"mesh",        "refine", "parts.obj",  "-o",  "any.ply",
+                                          "--tolerance", "0",      "--vertices", "400", "-q"};
     // A shelf over a floor.
     write("parts.obj", "v -4 0 -4\nv 4 0 -4\nv 4 0 4\nv -4 0 4\nv -1 1 -1\nv 1 1 -1\nv 1 1 1\n"
                        "v -1 1 1\nf 4 3 2 1\nf 8 7 6 5\n");
@@ -164,18 +163,16 @@ TEST_F(MeshCommand, GlbIsWrittenToo) {
     EXPECT_EQ(info("box.ply")["diagnosis"], box["diagnosis"]);
 }
 
-TEST_F(MeshCommand, SurfaceErrorsAreSeeded) {
-    succeed("precompute box.obj -o scene.prt --face-resolution 16 --no-refine");
-    const auto verified = [&](const std::string& seed) {
-        return succeed(
-                   {"verify", "scene.prt", "lamp.hdr", "--surface", "20", "--seed", seed, "--json"})
+TEST_F(MeshCommand, SurfaceErrorsAreRepeated) {
+    succeed("precompute box.obj -o scene.prt --face-resolution 16 --refine off");
+    const auto surface = [&](const std::string& samples) {
+        return succeed({"verify", "scene.prt", "lamp.hdr", "--samples", samples, "--json"})
             .json()["surface"];
     };
-    EXPECT_EQ(verified("1"), verified("1"));
-    EXPECT_NE(verified("1"), verified("2"));
-    EXPECT_FALSE(
-        succeed("verify scene.prt lamp.hdr --surface 0 --json").json().contains("surface"));
-    EXPECT_NE(succeed("verify scene.prt white.hdr --surface 10").out.find("between the vertices"),
+    EXPECT_EQ(surface("20"), surface("20"));
+    EXPECT_EQ(surface("20")["points"], 20);
+    EXPECT_EQ(surface("0")["points"], 500);
+    EXPECT_NE(succeed("verify scene.prt white.hdr").out.find("between the vertices"),
               std::string::npos);
 }
 
@@ -187,29 +184,29 @@ TEST_F(MeshCommand, SimplifiedReceiversHaveTheShadowsOfAll) {
     const nlohmann::json scene = succeed("info light.prt --check --json").json();
     EXPECT_LT(scene["triangles"], all);
     // Exact light knows the blockers, so the vertices agree with it.
-    EXPECT_LT(
-        succeed("verify light.prt lamp.hdr --samples 200 --surface 0 --json").json()["relative_l2"],
-        0.1);
+    EXPECT_LT(succeed("verify light.prt lamp.hdr --samples 200 --json").json()["relative_l2"], 0.1);
 }
 
 TEST_F(MeshCommand, WindingThatMakesBlackIsWarnedOf) {
-    const Result sound = succeed("precompute box.obj -o a.prt --face-resolution 8 --no-refine");
+    const Result sound = succeed("precompute box.obj -o a.prt --face-resolution 8 --refine off");
     EXPECT_EQ(sound.err.find("wound"), std::string::npos) << sound.described();
     std::string inside_out = box_obj();
     inside_out.replace(inside_out.find("f 5 8 7 6"), 9, "f 6 7 8 5");
     write("inside.obj", inside_out);
-    const Result black = succeed("precompute inside.obj -o a.prt --face-resolution 8 --no-refine");
+    const Result black = succeed("precompute inside.obj -o a.prt --face-resolution 8 --refine off");
     EXPECT_NE(black.err.find("2 of 12 triangles are wound the wrong way round"), std::string::npos)
         << black.described();
 }
 
 TEST_F(MeshCommand, LimitsThatContradictEachOtherAreRefused) {
-    misuse("precompute box.obj -o a.prt --max-vertices 100", "--max-vertices");
+    misuse("precompute box.obj -o a.prt --vertices 100", "--vertices");
+    misuse("precompute box.obj -o a.prt --refine off --vertices 100", "--vertices");
     misuse("precompute box.obj -o a.prt --curved", "--curved");
-    misuse("precompute box.obj -o a.prt --refine --max-edge 1 --min-edge 2", "--min-edge");
-    misuse("precompute box.obj -o a.prt --refine 2", "--refine");
+    for (const char* error : {"2", "-1", "nan", "on"})
+        misuse({"precompute", "box.obj", "-o", "a.prt", "--refine", error},
+               "--refine: expected off or an error from 0 to 1");
     misuse("precompute box.obj -o a.prt --refine --view auto --receivers pixels:8x8", "--refine");
-    fail("precompute box.obj -o a.prt --refine --max-vertices 5",
+    fail("precompute box.obj -o a.prt --refine --vertices 5",
          {"box.obj: expected a limit of at least the mesh's 8 vertices, got 5"});
     write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
     fail("mesh refine flat.obj -o a.ply",

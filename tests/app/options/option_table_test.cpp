@@ -94,8 +94,8 @@ TEST_F(OptionTables, OnlyWhatShapesNoFrameIsNotInTheRecord) {
         if (!option.shapes_frames)
             others.push_back(option.long_name());
     EXPECT_THAT(others, testing::UnorderedElementsAre(
-                            "FRAMES", "--frames", "--vertices", "--measure", "--plot", "--mp4",
-                            "--fps", "--resume", "--json", "--threads", "--quiet", "--verbose"));
+                            "FRAMES", "--frames", "--vertices", "--measure", "--mp4", "--fps",
+                            "--resume", "--json", "--threads", "--quiet", "--verbose"));
 }
 
 TEST_F(OptionTables, ThePageNamesEach) {

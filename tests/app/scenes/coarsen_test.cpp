@@ -23,8 +23,8 @@ protected:
 
     void precompute(const std::vector<std::string>& options) {
         std::vector<std::string> arguments = {
-            "precompute", "mesh.obj",          "-o",  "scene.prt",   "--floor",
-            "17",         "--face-resolution", "256", "--no-refine", "-q"};
+            "precompute",        "mesh.obj", "-o",       "scene.prt", "--floor", "17",
+            "--face-resolution", "256",      "--refine", "off",       "-q"};
         arguments.insert(arguments.end(), options.begin(), options.end());
         succeed(arguments);
     }
@@ -86,7 +86,7 @@ TEST_F(Coarsen, KeepsTexels) {
 }
 
 TEST_F(Coarsen, KeepsPoints) {
-    precompute({"--tolerance", "0.05", "--receivers", "grid:4x4x4", "--box", "-2,1.5,-2,2,3,2"});
+    precompute({"--tolerance", "0.05", "--receivers", "grid:4x4x4:-2,1.5,-2,2,3,2"});
     expect_the_same_light({}, 1e-2, "0.2");
 }
 

@@ -17,7 +17,7 @@ protected:
     Edit() {
         write("mesh.obj", octahedron_obj());
         write("white.hdr", white_hdr());
-        succeed("precompute mesh.obj -o scene.prt --face-resolution 32 -q --no-refine");
+        succeed("precompute mesh.obj -o scene.prt --face-resolution 32 -q --refine off");
     }
     [[nodiscard]] static std::vector<std::string> command(const std::vector<std::string>& options) {
         std::vector<std::string> arguments = {"edit", "scene.prt", "white.hdr", "-o", "new.npy"};
@@ -28,7 +28,7 @@ protected:
 
 TEST_F(Edit, BrightensTheSideThatFacesTheDisc) {
     const nlohmann::json report =
-        succeed(command({"--disc", "1,0,0", "--radius", "20", "--gain", "4,2,1", "--json"})).json();
+        succeed(command({"--disc", "1,0,0,20", "--gain", "4,2,1", "--json"})).json();
     for (const char* key : {"clusters_touched", "clusters", "seconds_edit", "seconds_full"})
         EXPECT_TRUE(report.contains(key)) << key;
     const auto values = npy_values(read("new.npy"));
@@ -43,7 +43,7 @@ TEST_F(Edit, BrightensTheSideThatFacesTheDisc) {
 }
 
 TEST_F(Edit, GainZeroAndAWholeSphereTurnTheLightOff) {
-    succeed(command({"--disc", "0,1,0", "--radius", "180", "--gain", "0"}));
+    succeed(command({"--disc", "0,1,0,180", "--gain", "0"}));
     for (const auto& value : npy_values(read("new.npy")))
         // The point opposite is the disc's rim; the coverage of the texel it lies in is good to 0.5
         // %.
@@ -52,7 +52,7 @@ TEST_F(Edit, GainZeroAndAWholeSphereTurnTheLightOff) {
 
 TEST_F(Edit, TheSavedEnvironmentGivesTheSame) {
     for (const char* name : {"new.exr", "new.hdr"}) {
-        succeed(command({"--disc", "0,1,1", "--gain", "8", "--save-env", name}));
+        succeed(command({"--disc", "0,1,1,10", "--gain", "8", "--save-env", name}));
         succeed({"relight", "scene.prt", name, "-o", "again.npy"});
         EXPECT_LT(relative_l2(npy_values(read("again.npy")), npy_values(read("new.npy"))), 5e-3)
             << name;
@@ -60,28 +60,29 @@ TEST_F(Edit, TheSavedEnvironmentGivesTheSame) {
 }
 
 TEST_F(Edit, BadOptionsAreRefused) {
-    for (const char* disc : {"0,0,0", "up", "0,1", "0,1,0,0", "nan,0,0", "inf,0,0"})
+    for (const char* disc :
+         {"0,0,0,10", "up", "0,1", "0,1,0", "0,1,0,0", "nan,0,0,10", "inf,0,0,10"})
         misuse(command({"--disc", disc}), "--disc");
     for (const char* gain : {"nan", "inf", "-1", "1,2", "1,2,-3", "much"})
-        misuse(command({"--disc", "0,1,0", "--gain=" + std::string(gain)}), "--gain");
+        misuse(command({"--disc", "0,1,0,10", "--gain=" + std::string(gain)}), "--gain");
     for (const char* radius : {"nan", "-1", "181", "wide", "inf"})
-        misuse(command({"--disc", "0,1,0", "--radius", radius}), "--radius");
-    misuse("edit scene.prt white.hdr -o new.bmp --disc 0,1,0", "new.bmp");
+        misuse(command({"--disc", "0,1,0," + std::string(radius)}), "--disc");
+    misuse("edit scene.prt white.hdr -o new.bmp --disc 0,1,0,10", "new.bmp");
 }
 
 TEST_F(Edit, ABadSavedEnvironmentIsFoundOutBeforeAnythingIsWritten) {
     for (const char* name : {"saved.txt", "saved", "new.npy", "."})
-        misuse(command({"--disc", "0,1,0", "--save-env", name}), "--save-env");
+        misuse(command({"--disc", "0,1,0,10", "--save-env", name}), "--save-env");
     for (const char* name : {"missing/saved.exr", "/proc/saved.exr"})
-        fail(command({"--disc", "0,1,0", "--save-env", name}), {name});
-    fail(command({"--disc", "0,1,0", "--save-env", "white.hdr"}), {"white.hdr"});
-    fail("edit scene.prt white.hdr -o same.exr --size 8x8 --disc 0,1,0 --save-env ./same.exr",
+        fail(command({"--disc", "0,1,0,10", "--save-env", name}), {name});
+    fail(command({"--disc", "0,1,0,10", "--save-env", "white.hdr"}), {"white.hdr"});
+    fail("edit scene.prt white.hdr -o same.exr --size 8x8 --disc 0,1,0,10 --save-env ./same.exr",
          {"same.exr"});
 }
 
 TEST_F(Edit, GainBeyondWhatAFloatHoldsIsRefused) {
-    misuse(command({"--disc", "0,1,0", "--gain", "3e38"}), "--gain");
-    misuse(command({"--disc", "0,1,0", "--gain", "1e39"}), "--gain");
+    misuse(command({"--disc", "0,1,0,10", "--gain", "3e38"}), "--gain");
+    misuse(command({"--disc", "0,1,0,10", "--gain", "1e39"}), "--gain");
 }
 
 constexpr const char* Lamp = R"({"version": 1, "layers": [
@@ -144,7 +145,7 @@ TEST_F(Edit, WhoShowsTheLightOfThatPoint) {
     // The lamp is the only light, and on the other side.
     write("black.hdr",
           hdr_file(64, 32, [](std::uint32_t, std::uint32_t) { return Rgb{0.0f, 0.0f, 0.0f}; }));
-    EXPECT_NE(succeed("edit scene.prt black.hdr --disc 0,1,0 --who 1,0,0 -o who.png")
+    EXPECT_NE(succeed("edit scene.prt black.hdr --disc 0,1,0,10 --who 1,0,0 -o who.png")
                   .err.find("who.png: black, since no light reaches vertex"),
               std::string::npos);
 }
@@ -154,7 +155,7 @@ TEST_F(Edit, LitByShowsWhatARegionLights) {
     // nothing on the other side.
     const nlohmann::json disc =
         succeed(
-            "edit scene.prt white.hdr --disc 0,1,0 --gain 1 --lit-by 1,0,0,30 -o new.npy --json")
+            "edit scene.prt white.hdr --disc 0,1,0,10 --gain 1 --lit-by 1,0,0,30 -o new.npy --json")
             .json();
     EXPECT_NEAR(npy_values(read("new.npy"))[0][0], 0.25, 0.01);
     EXPECT_EQ(npy_values(read("new.npy"))[1][0], 0.0f);
@@ -192,7 +193,7 @@ TEST_F(Edit, KeepsTheExposureOfTheLightBefore) {
     const auto exposure = [&](const std::string& command) {
         return succeed((command + " -o new.png --size 32x32 --json").c_str()).json()["exposure"];
     };
-    const std::string brighter = " --disc 0,1,0 --radius 40 --gain 50";
+    const std::string brighter = " --disc 0,1,0,40 --gain 50";
     const nlohmann::json before = exposure("relight scene.prt white.hdr");
     EXPECT_EQ(exposure("edit scene.prt white.hdr" + brighter), before);
     EXPECT_EQ(exposure("edit scene.prt white.hdr --lit-by 0,1,0,40" + brighter), before);

@@ -19,8 +19,8 @@ protected:
 
     void precompute(const std::vector<std::string>& options) {
         std::vector<std::string> arguments = {
-            "precompute",        "mesh.obj", "-o",          "scene.prt",
-            "--face-resolution", "32",       "--no-refine", "-q"};
+            "precompute", "mesh.obj", "-o",  "scene.prt", "--face-resolution",
+            "32",         "--refine", "off", "-q"};
         arguments.insert(arguments.end(), options.begin(), options.end());
         succeed(arguments);
     }

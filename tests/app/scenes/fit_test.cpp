@@ -8,6 +8,9 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "cubemap/resample/save_environment.h"
+#include "relight/pictures/array_file.h"
+#include "relumine/ask/fit.h"
 #include "tests/app/command.h"
 #include "tests/app/formats.h"
 #include "tests/app/small_files.h"
@@ -22,7 +25,7 @@ protected:
             {"direction": [0.48, 0.64, 0.6], "irradiance": [3.0, 2.4, 1.5]},
             {"direction": [-0.8, 0.36, 0.48], "irradiance": [0.4, 0.8, 1.6]}]})");
         succeed("generate colonnade --vertices 4000 -o . -q");
-        succeed("precompute colonnade.ply -o c.prt --tolerance 0.06 --no-refine --bounces 0 -q");
+        succeed("precompute colonnade.ply -o c.prt --tolerance 0.06 --refine off --bounces 0 -q");
         succeed("relight c.prt --lights lamps.json -o lit.npy -q");
     }
 
@@ -64,7 +67,7 @@ TEST_F(Fit, FindsTwoLampsAgainFromNumbersAndFromAPicture) {
 }
 
 TEST_F(Fit, AColourWithoutBlueTellsNothingOfBlueLight) {
-    succeed("precompute colonnade.ply -o gold.prt --tolerance 0.06 --no-refine --bounces 0 "
+    succeed("precompute colonnade.ply -o gold.prt --tolerance 0.06 --refine off --bounces 0 "
             "--material ggx:roughness=0.5,albedo=0.7,0.4,0,f0=0.04 -q");
     succeed("relight gold.prt --lights lamps.json -o gold.npy -q");
     // What is not the scene's own light: a hundredth of the mean.
@@ -84,7 +87,7 @@ TEST_F(Fit, AColourWithoutBlueTellsNothingOfBlueLight) {
 }
 
 TEST_F(Fit, FindsGainsAndAnEnvironment) {
-    succeed("fit c.prt lit.npy --gains lamps.json -o gains.json -q");
+    succeed("fit c.prt lit.npy --lights lamps.json -o gains.json -q");
     expect_lamps("gains.json", 0.01, 1e-4);
     // A smooth environment of its own kind comes back nearly whole.
     write("white.hdr", white_hdr());
@@ -105,12 +108,18 @@ struct FittedEnvironment {
 
 class FitEnvironment : public Fit {
 protected:
-    FittedEnvironment fit(const std::string& smooth, const std::string& sparse) {
-        FittedEnvironment result;
-        result.distance =
-            succeed({"fit", "c.prt", "lit.npy", "-o", "env.exr", "--face-resolution", "4",
-                     "--iterations", "2000", "--smooth", smooth, "--sparse", sparse, "--json"})
-                .json()["relative_l2"];
+    FittedEnvironment fit(double smooth, double sparse) {
+        LitScene scene(load_scene(folder() / "c.prt"), {.clusters_only = true});
+        const relight::VectorArray target = relight::load_npy(folder() / "lit.npy");
+        const std::vector<glm::vec3> white(target.values.size(), glm::vec3(1.0f));
+        const FitTarget wanted = target_of_values(scene.scene(), target.values, white);
+        cubemap::save_environment(folder() / "env.exr", fit_environment(scene, wanted,
+                                                                        {.face_resolution = 4,
+                                                                         .smoothness = smooth,
+                                                                         .sparsity = sparse,
+                                                                         .max_iterations = 2000},
+                                                                        {}));
+        FittedEnvironment result{.distance = distance_to(wanted, scene)};
         const std::vector<float> green = exr_channels(folder() / "env.exr").at("G");
         const Size size = exr_size(read("env.exr"));
         result.brightest = *std::max_element(green.begin(), green.end());
@@ -136,7 +145,7 @@ protected:
 
 /// The more it weighs, the more alike neighbours are, and the farther the light is from the target.
 TEST_F(FitEnvironment, SmoothMakesNeighboursAlike) {
-    const FittedEnvironment rough = fit("0", "0"), some = fit("0.1", "0"), much = fit("1000", "0");
+    const FittedEnvironment rough = fit(0, 0), some = fit(0.1, 0), much = fit(1000, 0);
     EXPECT_LT(some.roughness, 0.5 * rough.roughness);
     EXPECT_LT(much.roughness, 1e-3 * some.roughness);
     EXPECT_GT(some.distance, rough.distance);
@@ -147,8 +156,8 @@ TEST_F(FitEnvironment, SmoothMakesNeighboursAlike) {
 
 /// The more it weighs, the less light there is, from fewer directions.
 TEST_F(FitEnvironment, SparseLeavesLittleLight) {
-    const FittedEnvironment full = fit("0", "0"), some = fit("0", "0.3"), few = fit("0", "1"),
-                            none = fit("0", "1000000");
+    const FittedEnvironment full = fit(0, 0), some = fit(0, 0.3), few = fit(0, 1),
+                            none = fit(0, 1e6);
     EXPECT_LT(some.mean, 0.7 * full.mean);
     EXPECT_LT(few.mean, 0.7 * some.mean);
     EXPECT_LT(some.lit_part, 0.8 * full.lit_part);
@@ -168,7 +177,10 @@ TEST_F(Fit, RefusesWhatCannotBeFitted) {
     misuse("fit c.prt lit.exr -o env.exr", "the camera of the picture");
     write("mesh.obj", octahedron_obj());
     fail("fit c.prt mesh.obj -o env.exr", {"mesh.obj", "vertex colours"});
-    misuse("fit c.prt lit.npy --gains lamps.json --lights 2 -o x.json", "--gains");
+    for (const char* lights : {"0", "129", "-1", "1.5"})
+        misuse({"fit", "c.prt", "lit.npy", "--lights", lights, "-o", "x.json"},
+               "--lights: expected 1 to 128 lights, or a file of lights");
+    fail("fit c.prt lit.npy --lights none.json -o x.json", {"none.json"});
     misuse("fit c.prt lit.npy --lights 2 -o x.exr", ".json");
 }
 

@@ -19,8 +19,9 @@ protected:
     }
     nlohmann::json make(const std::string& scene, const std::vector<std::string>& more) const {
         std::vector<std::string> arguments = {
-            "precompute", "mesh.obj", "--no-refine", "-o",     scene,         "--face-resolution",
-            "64",         "--floor",  "9",           "--json", "--tolerance", "0.03"};
+            "precompute", "mesh.obj",          "--refine", "off",     "-o",
+            scene,        "--face-resolution", "64",       "--floor", "9",
+            "--json",     "--tolerance",       "0.03"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return succeed(arguments).json();
     }
@@ -30,9 +31,7 @@ TEST_F(Glossy, HighlightsOnVerticesAreVerified) {
     const nlohmann::json made =
         make("s.prt", {"--material", "ggx:roughness=0.4,albedo=0.3,f0=0.5", "--view", "auto"});
     EXPECT_GT(made["glossy"]["cells"], 100);
-    EXPECT_LT(
-        succeed("verify s.prt white.hdr --samples 200 --surface 100 --json").json()["relative_l2"],
-        0.02);
+    EXPECT_LT(succeed("verify s.prt white.hdr --samples 200 --json").json()["relative_l2"], 0.02);
     succeed("relight s.prt white.hdr -o lit.png --size 32x24");
     EXPECT_EQ(png_size(read("lit.png")), (Size{32, 24}));
     const auto warnings = [&](const std::string& camera) {
@@ -69,9 +68,7 @@ TEST_F(Glossy, PixelsTexelsEditsAndFramesTakeThem) {
                    "pixels:24x16"});
     succeed("relight s.prt white.hdr -o lit.exr");
     EXPECT_EQ(exr_size(read("lit.exr")), (Size{24, 16}));
-    EXPECT_LT(
-        succeed("verify s.prt white.hdr --samples 200 --surface 100 --json").json()["relative_l2"],
-        0.03);
+    EXPECT_LT(succeed("verify s.prt white.hdr --samples 200 --json").json()["relative_l2"], 0.03);
     write("layers.json",
           R"({"version": 1, "layers": [{"name": "lamp", "type": "disc", "direction": [0, 1, 0.2],
         "radius_degrees": 10, "effect": "emit", "radiance": [5, 4, 3]}]})");
@@ -114,14 +111,15 @@ TEST_F(Glossy, ColoursMayChangeAfterwards) {
     const std::string shape = "ggx:roughness=0.4,";
     make("one.prt", {"--material", shape + "albedo=0.2,f0=0.9", "--view", "auto"});
     make("two.prt", {"--material", shape + "albedo=0.7,0.5,0.3,f0=0.1", "--view", "auto"});
-    succeed(
-        "relight one.prt white.hdr -o one.npy --surface-albedo 0.7,0.5,0.3 --surface-specular 0.1");
+    succeed("relight one.prt white.hdr -o one.npy --material albedo=0.7,0.5,0.3,f0=0.1");
     succeed("relight two.prt white.hdr -o two.npy");
     EXPECT_EQ(npy_values(read("one.npy")), npy_values(read("two.npy")));
     make("plain.prt", {});
-    misuse("relight plain.prt white.hdr -o n.npy --surface-albedo 0.5",
-           "--surface-albedo: expected a scene with materials");
-    misuse("relight one.prt white.hdr -o n.npy --surface-albedo -1", "--surface-albedo");
+    misuse("relight plain.prt white.hdr -o n.npy --material albedo=0.5",
+           "--material: expected a scene with materials");
+    for (const char* wrong : {"albedo=-1", "albedo", "0.5", "kd=0.5", "albedo=0.1,0.2", "f0="})
+        misuse(fmt::format("relight one.prt white.hdr -o n.npy --material {}", wrong).c_str(),
+               "--material: expected ");
 }
 
 TEST_F(Glossy, RoughnessMayChangeWhereHighlightsFollowTheEye) {
@@ -135,24 +133,25 @@ TEST_F(Glossy, RoughnessMayChangeWhereHighlightsFollowTheEye) {
         succeed(arguments);
         return read("lit.exr");
     };
-    EXPECT_TRUE(picture("one.prt", {"--surface-roughness", "0.7"}) == picture("two.prt", {}));
-    EXPECT_EQ(succeed("verify one.prt white.hdr --eye 3,2,5 --surface-roughness 0.7 --json")
+    EXPECT_TRUE(picture("one.prt", {"--material", "roughness=0.7"}) == picture("two.prt", {}));
+    EXPECT_EQ(succeed("verify one.prt white.hdr --view 3,2,5 --material roughness=0.7 --json")
                   .json()["relative_l2"],
-              succeed("verify two.prt white.hdr --eye 3,2,5 --json").json()["relative_l2"]);
+              succeed("verify two.prt white.hdr --view 3,2,5 --json").json()["relative_l2"]);
     make("fixed.prt", {"--material", "ggx:roughness=0.4," + colors, "--view", "auto"});
-    misuse("relight fixed.prt white.hdr -o n.npy --surface-roughness 0.5",
-           "--surface-roughness: fixed.prt: expected highlights that follow the eye");
+    misuse("relight fixed.prt white.hdr -o n.npy --material roughness=0.5",
+           "--material: fixed.prt: expected highlights that follow the eye");
     make("matt.prt", {"--material", "lambert:albedo=0.3"});
-    misuse("relight matt.prt white.hdr -o n.npy --surface-roughness 0.5",
-           "--surface-roughness: matt.prt: expected surfaces with GGX highlights");
-    misuse("relight one.prt white.hdr -o n.npy --surface-roughness 2", "--surface-roughness");
+    misuse("relight matt.prt white.hdr -o n.npy --material roughness=0.5",
+           "--material: matt.prt: expected surfaces with GGX highlights");
+    misuse("relight one.prt white.hdr -o n.npy --material roughness=2",
+           "--material: expected a roughness from 0 to 1");
 }
 
 TEST_F(Glossy, EyesWithoutSenseAreToldOf) {
     make("live.prt", {"--material", "ggx:roughness=0.05,albedo=0.2,f0=0.9"});
     make("matt.prt", {});
     const auto verified = [&](const std::string& eye) {
-        return succeed({"verify", "live.prt", "white.hdr", "--eye", eye, "--json"})
+        return succeed({"verify", "live.prt", "white.hdr", "--view", eye, "--json"})
             .json()["warnings"]
             .dump();
     };
@@ -161,21 +160,21 @@ TEST_F(Glossy, EyesWithoutSenseAreToldOf) {
     EXPECT_THAT(outside, testing::Not(testing::HasSubstr("inside")));
     EXPECT_THAT(outside, testing::HasSubstr("smoother than roughness 0.11"));
     const std::string drawn =
-        succeed("relight live.prt white.hdr -o in.png --size 8x6 --eye 0,0.01,0 --json")
+        succeed("relight live.prt white.hdr -o in.png --size 8x6 --view 0,0.01,0 --json")
             .json()["warnings"]
             .dump();
     EXPECT_THAT(drawn, testing::HasSubstr("is inside of the mesh"));
-    const Result refused = fail("verify matt.prt white.hdr --eye 3,2,5");
+    const Result refused = fail("verify matt.prt white.hdr --view 3,2,5");
     EXPECT_THAT(refused.err, testing::HasSubstr("expected vertices with glossy materials"));
 }
 
 TEST_F(Glossy, LimitsAreSaid) {
     const std::string sharp = "ggx:roughness=0.05,f0=0.5";
     const Result warned = succeed({"precompute", "mesh.obj", "-o", "s.prt", "--face-resolution",
-                                   "16", "--material", sharp, "--view", "auto", "--no-refine"});
+                                   "16", "--material", sharp, "--view", "auto", "--refine", "off"});
     EXPECT_NE(warned.err.find("smoother than roughness"), std::string::npos) << warned.described();
     const Result no_view = succeed({"precompute", "mesh.obj", "-o", "d.prt", "--face-resolution",
-                                    "16", "--material", sharp, "--no-refine"});
+                                    "16", "--material", sharp, "--refine", "off"});
     EXPECT_NE(no_view.err.find("--view"), std::string::npos) << no_view.described();
     misuse("precompute mesh.obj -o n.prt --material glass", "--material");
     misuse("precompute mesh.obj -o n.prt --glossy-tolerance 0", "--glossy-tolerance");

@@ -21,8 +21,8 @@ protected:
     }
     void precompute(const std::vector<std::string>& options) {
         std::vector<std::string> arguments = {
-            "precompute", "mesh.obj",          "-o", "scene.prt",   "--floor", "17", "--tolerance",
-            "0.05",       "--face-resolution", "64", "--no-refine", "-q"};
+            "precompute", "mesh.obj",          "-o", "scene.prt", "--floor", "17", "--tolerance",
+            "0.05",       "--face-resolution", "64", "--refine",  "off",     "-q"};
         arguments.insert(arguments.end(), options.begin(), options.end());
         succeed(arguments);
     }
@@ -36,8 +36,7 @@ TEST_F(Move, MovesAndComesBack) {
     precompute({"--movable", "--bounces", "0.05"});
     const std::vector<Rgb> before = light_of("scene.prt");
     const nlohmann::json report =
-        succeed("move scene.prt --group mesh=0.5,0,0 --group mesh=0.25,0,0 -o moved.prt --json")
-            .json();
+        succeed("move scene.prt mesh=0.5,0,0 mesh=0.25,0,0 -o moved.prt --json").json();
     ASSERT_EQ(report["moves"].size(), 2u);
     EXPECT_EQ(report["moves"][0]["name"], "mesh");
     EXPECT_GT(report["moves"][0]["pairs_changed"], 0);
@@ -46,7 +45,7 @@ TEST_F(Move, MovesAndComesBack) {
     EXPECT_NE(light_of("moved.prt"), before);
     EXPECT_TRUE(prt::load_scene(folder() / "moved.prt").bounces.has_value());
     // Steps that floats hold exactly lead back to the same scene.
-    succeed("move moved.prt --group mesh=-0.75,0,0 -o moved.prt -q");
+    succeed("move moved.prt mesh=-0.75,0,0 -o moved.prt -q");
     const prt::Scene back = prt::load_scene(folder() / "moved.prt"),
                      first = prt::load_scene(folder() / "scene.prt");
     EXPECT_EQ(back.mesh.positions, first.mesh.positions);
@@ -71,19 +70,19 @@ TEST_F(Move, WhoDoesNotAskGetsTheSameFile) {
 
 TEST_F(Move, Refuses) {
     precompute({"--movable"});
-    fail("move scene.prt --group mush=1,0,0 -o moved.prt",
+    fail("move scene.prt mush=1,0,0 -o moved.prt",
          {"scene.prt: expected one of 2 groups, got 'mush'; did you mean mesh?"});
-    fail("move scene.prt --group floor=1,0,0 -o moved.prt", {"scene.prt: expected", "added floor"});
-    fail("move scene.prt --group mesh=1e30,0,0 -o moved.prt", {"scene.prt: expected coordinates"});
-    fail("move absent.prt --group mesh=1,0,0 -o moved.prt", {"absent.prt"});
-    misuse("move scene.prt --group mesh=1,0 -o moved.prt", "--group");
-    misuse("move scene.prt -o moved.prt", "--group");
-    misuse("move scene.prt --group mesh=1,0,0 -o moved.ply", "--output");
+    fail("move scene.prt floor=1,0,0 -o moved.prt", {"scene.prt: expected", "added floor"});
+    fail("move scene.prt mesh=1e30,0,0 -o moved.prt", {"scene.prt: expected coordinates"});
+    fail("move absent.prt mesh=1,0,0 -o moved.prt", {"absent.prt"});
+    misuse("move scene.prt mesh=1,0 -o moved.prt", "STEP");
+    misuse("move scene.prt -o moved.prt", "STEP");
+    misuse("move scene.prt mesh=1,0,0 -o moved.ply", "--output");
     EXPECT_FALSE(std::filesystem::exists(folder() / "moved.prt"));
     precompute({});
-    fail("move scene.prt --group mesh=1,0,0 -o moved.prt", {"scene.prt: expected", "--movable"});
+    fail("move scene.prt mesh=1,0,0 -o moved.prt", {"scene.prt: expected", "--movable"});
     precompute({"--movable", "--receivers", "pixels:24x16", "--view", "auto"});
-    fail("move scene.prt --group mesh=1,0,0 -o moved.prt", {"scene.prt: expected", "pixels"});
+    fail("move scene.prt mesh=1,0,0 -o moved.prt", {"scene.prt: expected", "pixels"});
     fail("precompute mesh.obj -o other.prt --movable -q",
          {"mesh.obj: expected a mesh with groups"});
 }

@@ -1,4 +1,4 @@
-// `relumine plan`, `relumine precompute --plan` and `relumine join`.
+// `relumine plan`, `relumine precompute --part` and `relumine join`.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -22,7 +22,7 @@ protected:
     [[nodiscard]] static std::vector<std::string> part(const std::string& which,
                                                        const std::string& output,
                                                        const std::string& plan = "scene.plan") {
-        return {"precompute", "--plan", plan, "--part", which, "-o", output, "-q"};
+        return {"precompute", plan, "--part", which, "-o", output, "-q"};
     }
 };
 
@@ -36,9 +36,9 @@ TEST_F(PlanTest, AnyNumberOfPartsInAnyOrderMakesTheSameScene) {
         succeed("join part.4 part.1 part.3 part.2 -o four.prt --json").json();
     EXPECT_EQ(report["parts"], 4);
     EXPECT_EQ(read("one.prt"), read("four.prt"));
-    std::vector<std::string> other_engine = part("2/2", "second");
-    other_engine.insert(other_engine.end(), {"--engine", "embree", "--threads", "1"});
-    succeed(other_engine);
+    std::vector<std::string> by_one_thread = part("2/2", "second");
+    by_one_thread.insert(by_one_thread.end(), {"--threads", "1"});
+    succeed(by_one_thread);
     succeed(part("1/2", "first"));
     succeed("join first second -o two.prt -q");
     EXPECT_EQ(read("one.prt"), read("two.prt"));
@@ -61,7 +61,7 @@ TEST_F(PlanTest, BouncesAreTheSameFromAnyNumberOfParts) {
     EXPECT_EQ(read("1.prt"), read("3.prt"));
     succeed("info 3.prt --check");
     write("sky.hdr", lamp_hdr(40));
-    succeed("relight 3.prt sky.hdr --only-bounces -o bounced.npy -q");
+    succeed("relight 3.prt sky.hdr --bounces only -o bounced.npy -q");
     fail("relight 3.prt sky.hdr --part 1/2 -o part", {"3.prt: expected a scene without bounces"});
 }
 
@@ -73,8 +73,7 @@ TEST_F(PlanTest, AJoinedSceneIsAsExactAsAPlainOne) {
     succeed("precompute knot.ply -o plain.prt --tolerance 0.02 --floor 20 --bounces 0 -q");
     write("sky.hdr", lamp_hdr(40));
     const auto error = [&](const std::string& scene) {
-        return succeed({"verify", scene, "sky.hdr", "--samples", "0", "--surface", "0",
-                        "--clusters-only", "--json"})
+        return succeed({"verify", scene, "sky.hdr", "--samples", "0", "--clusters-only", "--json"})
             .json()["relative_l2"]
             .get<double>();
     };
@@ -83,8 +82,8 @@ TEST_F(PlanTest, AJoinedSceneIsAsExactAsAPlainOne) {
 
 TEST_F(PlanTest, PartsKnowTheRefinedAndTheSimplifiedMesh) {
     const std::vector<std::string> work = {
-        "knot.ply",       "--floor", "2",           "--simplify", "3000",      "--refine", "0",
-        "--max-vertices", "3500",    "--tolerance", "0.05",       "--bounces", "0"};
+        "knot.ply",   "--floor", "2",           "--simplify", "3000",      "--refine", "0",
+        "--vertices", "3500",    "--tolerance", "0.05",       "--bounces", "0"};
     const auto with = [&](std::vector<std::string> arguments) {
         arguments.insert(arguments.begin() + 1, work.begin(), work.end());
         return arguments;
@@ -103,8 +102,7 @@ TEST_F(PlanTest, PartsKnowTheRefinedAndTheSimplifiedMesh) {
     EXPECT_GT(info("joined.prt")[0], 3400);
     write("sky.hdr", lamp_hdr(40));
     const auto error = [&](const std::string& scene) {
-        return succeed(
-                   {"verify", scene, "sky.hdr", "--samples", "200", "--surface", "100", "--json"})
+        return succeed({"verify", scene, "sky.hdr", "--samples", "200", "--json"})
             .json()["relative_l2"]
             .get<double>();
     };
@@ -154,15 +152,15 @@ TEST_F(PlanTest, LightOfPartsIsTheLightOfTheScene) {
 
 TEST_F(PlanTest, WrongUsageIsNamed) {
     plan();
-    misuse("precompute --plan scene.plan -o part", "--part");
-    misuse("precompute --part 1/2 -o part", "--plan");
+    misuse("precompute scene.plan -o part", "--part");
+    misuse("precompute --part 1/2 -o part", "MESH");
     misuse("precompute -o scene.prt", "MESH");
     for (const char* which : {"0/4", "5/4", "1", "a/b", "1/", "/2", "1/70000", "1/2/3"})
         misuse(part(which, "part"), "--part");
     std::vector<std::string> twice = part("1/2", "part");
     twice.insert(twice.end(), {"--tolerance", "0.1"});
     misuse(twice, "--tolerance");
-    misuse("precompute knot.ply --plan scene.plan --part 1/2 -o part", "MESH");
+    misuse("precompute knot.ply scene.plan --part 1/2 -o part", "expected no argument more");
     misuse("plan knot.ply -o scene.prt", "--output");
     misuse("plan knot.ply -o scene.plan --bounces 7", "--bounces");
     misuse("plan knot.ply -o scene.plan --two-sided", "--two-sided");

@@ -18,8 +18,8 @@ protected:
     }
     /// The command line for new.prt, at R = 16 unless the options say otherwise.
     [[nodiscard]] static std::vector<std::string> command(const std::vector<std::string>& options) {
-        std::vector<std::string> arguments = {"precompute", "mesh.obj", "-o", "new.prt",
-                                              "--no-refine"};
+        std::vector<std::string> arguments = {"precompute", "mesh.obj", "-o",
+                                              "new.prt",    "--refine", "off"};
         if (options.empty() || options[0] != "--face-resolution")
             arguments.insert(arguments.end(), {"--face-resolution", "16"});
         arguments.insert(arguments.end(), options.begin(), options.end());
@@ -57,12 +57,11 @@ TEST_F(Precompute, TheFloorHasTheVerticesAskedFor) {
               std::string::npos);
     EXPECT_EQ(succeed("info new.prt --json").json()["floor"], 5);
     // Without a number, last on the line or before another option.
-    const nlohmann::json automatic = made({"--min-depth", "1", "--tolerance", "0.2", "--floor"});
+    const nlohmann::json automatic = made({"--tolerance", "0.2", "--floor"});
     EXPECT_EQ(automatic["floor"]["vertices"], 25);
     EXPECT_GT(automatic["floor"]["added"], 50);
     EXPECT_EQ(automatic["vertices"], 6 + 25 * 25 + automatic["floor"]["added"].get<int>());
     EXPECT_NEAR(automatic["floor"]["side"].get<double>(), 8.0, 1e-5);
-    EXPECT_EQ(made({"--floor", "3", "--floor-scale", "8"})["vertices"], 6 + 9);
 }
 
 TEST_F(Precompute, ACoarseMeshGetsVerticesUnlessItMustNot) {
@@ -79,26 +78,22 @@ TEST_F(Precompute, ACoarseMeshGetsVerticesUnlessItMustNot) {
     EXPECT_NE(refined.find("refined: 8 vertices became "), std::string::npos) << refined;
     EXPECT_NE(refined.find("at most 45000 more for the mesh"), std::string::npos) << refined;
     EXPECT_GT(succeed("info by_itself.prt --json").json()["vertices"], 100);
-    EXPECT_EQ(said({"--no-refine"}).find("refined"), std::string::npos);
+    EXPECT_EQ(said({"--refine", "off"}).find("refined"), std::string::npos);
     EXPECT_EQ(succeed("info by_itself.prt --json").json()["vertices"], 8);
     // Who says how wants it so.
     EXPECT_EQ(said({"--max-edge", "100"}).find("at most"), std::string::npos);
 }
 
-TEST_F(Precompute, ToleranceAndDepthChangeTheClusters) {
-    EXPECT_EQ(made({"--tolerance", "1", "--min-depth", "0"})["clusters"], 6);
-    EXPECT_EQ(made({"--tolerance", "1", "--min-depth", "2"})["clusters"], 6 * 16);
-    EXPECT_EQ(made({"--tolerance", "0", "--min-depth", "0"})["clusters"], 6 * 16 * 16)
-        << "down to single texels";
-    EXPECT_EQ(made({"--epsilon", "0"})["clusters"], 6 * 16 * 16);
-    EXPECT_EQ(made({"--face-resolution", "1", "--tolerance", "0", "--min-depth", "0"})["clusters"],
-              6);
+TEST_F(Precompute, ToleranceAndResolutionChangeTheClusters) {
+    EXPECT_EQ(made({"--tolerance", "1"})["clusters"], 6 * 8 * 8);
+    EXPECT_EQ(made({"--tolerance", "0"})["clusters"], 6 * 16 * 16) << "down to single texels";
+    EXPECT_EQ(made({"--face-resolution", "1", "--tolerance", "0"})["clusters"], 6);
 }
 
-TEST_F(Precompute, SmoothNormalsReplaceTheFiles) {
+TEST_F(Precompute, NormalsOfFacesReplaceTheFiles) {
     write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 0 -1\nvn 0 -1 0\nf 1//1 2//1 3//1\n");
-    const auto radiance = [&](const std::string& normals) {
-        succeed(command({"--normals", normals}));
+    const auto radiance = [&](const std::vector<std::string>& crease) {
+        succeed(command(crease));
         write("sky.hdr", hdr_file(64, 32, [](std::uint32_t, std::uint32_t y) {
                   const float sky = y < 16 ? 1.0f : 0.0f;
                   return Rgb{sky, sky, sky};
@@ -106,36 +101,29 @@ TEST_F(Precompute, SmoothNormalsReplaceTheFiles) {
         succeed("relight new.prt sky.hdr -o lit.npy");
         return npy_values(read("lit.npy")).at(0)[0];
     };
-    EXPECT_NEAR(radiance("smooth"), 1.0f, 0.01f);
-    EXPECT_NEAR(radiance("file"), 0.0f, 0.01f);
+    EXPECT_NEAR(radiance({"--crease", "180"}), 1.0f, 0.01f);
+    EXPECT_NEAR(radiance({}), 0.0f, 0.01f);
 }
 
 TEST_F(Precompute, BadOptionsAreRefused) {
-    for (const char* option : {"--tolerance", "--epsilon", "--bias"}) {
+    for (const char* option : {"--tolerance", "--glossy-tolerance"}) {
         for (const char* value : {"nan", "-1", "inf", "-inf"})
             misuse(command({option, value}), std::string(option) + ": expected ");
         for (const char* value : {"much", "1x", "", "1,2"})
             misuse(command({option, value}), option);
     }
-    misuse(command({"--min-depth", "15"}), "--min-depth: expected 0 to 14, got '15'");
-    misuse(command({"--min-depth", "-1"}), "--min-depth");
-    misuse(command({"--min-depth", "1.5"}), "--min-depth");
     for (const char* resolution : {"0", "16385", "4294967295"})
         misuse(command({"--face-resolution", resolution}), "--face-resolution: expected 1 to");
     misuse(command({"--face-resolution", "4294967296"}));
     misuse(command({"--face-resolution", "-16"}));
     misuse(command({"--face-resolution", "sixteen"}));
-    misuse(command({"--normals", "flat"}), "--normals");
+    misuse(command({"--crease", "flat"}), "--crease");
     misuse(command({"--tolerance", "1", "--tolerance", "2"}), "--tolerance");
 }
 
 TEST_F(Precompute, NumbersBeyondTheRaysRangeAreRefused) {
-    misuse(command({"--bias", "1e19"}), "--bias: expected 0 to 1e+18, got '1e19'");
     misuse(command({"--view", "1e19,0,0,0,0,0"}), "--view: expected");
     misuse(command({"--view", "0,0,3,0,1e19,0"}), "--view: expected");
-    // A mesh so large that the lift leads out of the range.
-    write("mesh.obj", "v 1.8e18 0 0\nv -1.8e18 1e17 0\nv 1.8e18 0 1e17\nf 1 2 3\n");
-    fail(command({"--bias", "1e17"}), {"expected receivers and bias within 1.844e+18"});
     write("mesh.obj", "v 1e19 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n");
     fail(command({}), {"mesh.obj: expected coordinates within 1.844e+18"});
 }
@@ -150,9 +138,6 @@ TEST_F(Precompute, WorkThatWouldTakeHoursIsRefused) {
     const std::string error = misuse(with({"--tolerance", "0"}), "--tolerance: expected ").err;
     EXPECT_NE(error.find("6.29e+06 clusters"), std::string::npos) << error;
     EXPECT_NE(error.find(" rays and "), std::string::npos) << error;
-    misuse(with({"--epsilon", "0"}), "--epsilon: expected ");
-    misuse(with({"--min-depth", "10"}), "--min-depth: expected ");
-    misuse(with({"--tolerance", "0.1", "--epsilon", "0.1"}), "--tolerance excludes --epsilon");
 }
 
 TEST_F(Precompute, OptionsThatAreOftenMistaken) {
@@ -169,9 +154,6 @@ TEST_F(Precompute, BadFloorsAreRefused) {
         misuse(command({"--floor", n}), "--floor: expected auto or a number from 2 to 65535");
     misuse(command({"--floor", "-3"}), "--floor");
     misuse(command({"--floor", "tiles"}), "--floor");
-    for (const char* scale : {"0", "-1", "nan", "inf", "1e38"})
-        misuse(command({"--floor", "3", "--floor-scale", scale}), "--floor-scale: expected");
-    misuse(command({"--floor-scale", "2"}), "--floor");
 }
 
 TEST_F(Precompute, TheOutputIsNeverTheInputNorAnythingButAScene) {
@@ -240,7 +222,7 @@ TEST_F(Precompute, StlHasZUpByCustomAndSaysSo) {
     };
     EXPECT_NE(said({}).find("edges over 40 degrees are sharp, by the custom of .stl"),
               std::string::npos);
-    EXPECT_EQ(said({"--normals", "smooth"}).find("edges over"), std::string::npos);
+    EXPECT_EQ(said({"--crease", "180"}).find("edges over"), std::string::npos);
     EXPECT_EQ(said({"--crease", "30"}).find("edges over"), std::string::npos);
     EXPECT_TRUE(top_is_lit({}));
     EXPECT_TRUE(top_is_lit({"--up", "z"}));

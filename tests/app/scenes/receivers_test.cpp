@@ -30,7 +30,7 @@ protected:
     }
     void make_pixels(const std::string& receivers = "pixels:24x16:2") const {
         succeed({"precompute", "mesh.obj", "-o", "px.prt", "--face-resolution", "16", "--tolerance",
-                 "0.05", "--receivers", receivers, "--view", "auto", "-q", "--no-refine"});
+                 "0.05", "--receivers", receivers, "--view", "auto", "-q", "--refine", "off"});
     }
     void make_texels() const {
         succeed("precompute square.ply -o tx.prt --face-resolution 32 --receivers texels:8x8 -q");
@@ -40,7 +40,7 @@ protected:
 TEST_F(Receivers, PixelsBecomeThePictureOfTheirView) {
     const nlohmann::json made =
         succeed("precompute mesh.obj -o px.prt --face-resolution 16 --tolerance 0.05 --receivers "
-                "pixels:24x16:2 --view 0,1,5,0,0,0,40 --json --no-refine")
+                "pixels:24x16:2 --view 0,1,5,0,0,0,40 --json --refine off")
             .json();
     EXPECT_EQ(made["layout"]["kind"], "pixels");
     EXPECT_EQ(made["vertices"], 6);
@@ -51,7 +51,7 @@ TEST_F(Receivers, PixelsBecomeThePictureOfTheirView) {
     EXPECT_EQ(png_size(read("lit.png")), (Size{24, 16}));
     succeed("relight px.prt white.hdr -o lit.exr");
     EXPECT_EQ(exr_size(read("lit.exr")), (Size{24, 16}));
-    succeed("relight px.prt white.hdr -o cut.exr --transparent");
+    succeed("relight px.prt white.hdr -o cut.exr --background none");
     EXPECT_EQ(exr_size(read("cut.exr")), (Size{24, 16}));
     succeed("relight px.prt white.hdr -o lit.npy");
     const auto values = npy_values(read("lit.npy"));
@@ -78,9 +78,9 @@ TEST_F(Receivers, AllCommandsTakePixels) {
     EXPECT_EQ(png_size(read("lit.0002.png")), (Size{24, 16}));
     succeed("relight px.prt frame.0002.hdr -o one.png --exposure 1");
     EXPECT_EQ(read("lit.0002.png"), read("one.png"));
-    succeed("edit px.prt white.hdr -o edited.png --disc 0,1,0 --gain 3");
+    succeed("edit px.prt white.hdr -o edited.png --disc 0,1,0,10 --gain 3");
     EXPECT_EQ(png_size(read("edited.png")), (Size{24, 16}));
-    succeed("edit px.prt white.hdr -o who.exr --disc 0,1,0 --who 0,1,0");
+    succeed("edit px.prt white.hdr -o who.exr --disc 0,1,0,10 --who 0,1,0");
     const nlohmann::json verified =
         succeed("verify px.prt white.hdr --face-resolution 16 --samples 50 --json").json();
     EXPECT_LT(verified["relative_l2"], 0.05);
@@ -96,7 +96,7 @@ TEST_F(Receivers, TexelsBecomeALightmap) {
     make_texels();
     succeed("relight tx.prt white.hdr -o map.exr");
     EXPECT_EQ(exr_size(read("map.exr")), (Size{8, 8}));
-    succeed("relight tx.prt white.hdr -o map.png --gutter 0");
+    succeed("relight tx.prt white.hdr -o map.png");
     EXPECT_EQ(png_size(read("map.png")), (Size{8, 8}));
     succeed("relight tx.prt white.hdr -o map.npy");
     const auto values = npy_values(read("map.npy"));
@@ -139,16 +139,16 @@ TEST_F(Receivers, OutputsThatDoNotFit) {
         for (const char* output : {"new.ply", "new.glb"}) {
             misuse({"relight", scene, "white.hdr", "-o", output},
                    "--output: expected .png, .exr or .npy");
-            misuse({"edit", scene, "white.hdr", "-o", output, "--disc", "0,1,0"}, output);
+            misuse({"edit", scene, "white.hdr", "-o", output, "--disc", "0,1,0,10"}, output);
         }
-        misuse({"relight", scene, "white.hdr", "-o", "new.png", "--eye", "1,2,3"},
-               "--eye: expected no camera");
+        misuse({"relight", scene, "white.hdr", "-o", "new.png", "--view", "1,2,3"},
+               "--view: expected no camera");
         misuse({"relight", scene, "white.hdr", "-o", "new.png", "--size", "8x8"},
                "--size: expected no camera");
         fail({"view", scene, "white.hdr", "--screenshot", "new.png"}, {});
     }
-    misuse("relight tx.prt white.hdr -o new.png --transparent",
-           "--transparent: expected no background for a scene whose receivers are texels");
+    misuse("relight tx.prt white.hdr -o new.png --background none",
+           "--background: expected no background for a scene whose receivers are texels");
     misuse("relight px.prt white.hdr -o new.npy --albedo mesh", "--albedo");
 }
 

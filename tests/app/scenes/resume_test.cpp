@@ -18,8 +18,8 @@ protected:
     /// Options of a run that leaves a checkpoint whenever it can.
     [[nodiscard]] static std::vector<std::string> run(const std::vector<std::string>& more = {}) {
         std::vector<std::string> words = {
-            "precompute", "knot.ply", "--no-refine",          "-o",
-            "scene.prt",  "-q",       "--checkpoint-seconds", "0.001"};
+            "precompute",           "knot.ply", "--refine", "off", "-o", "scene.prt", "-q",
+            "--checkpoint-seconds", "0.001"};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
@@ -88,8 +88,8 @@ TEST_F(Resume, KilledWithACheckpointItIsTakenUp) {
         static_cast<void>(process.wait());
     }
     ASSERT_TRUE(fs::exists(state));
-    std::vector<std::string> again = {"precompute", "knot.ply", "--no-refine", "-o",
-                                      "scene.prt",  "-v",       "--resume"};
+    std::vector<std::string> again = {"precompute", "knot.ply",  "--refine", "off",
+                                      "-o",         "scene.prt", "-v",       "--resume"};
     again.insert(again.end(), scene.begin(), scene.end());
     EXPECT_NE(succeed(again).out.find("going on from scene.prt.checkpoint"), std::string::npos);
     EXPECT_EQ(read("scene.prt"), expected);
@@ -97,9 +97,8 @@ TEST_F(Resume, KilledWithACheckpointItIsTakenUp) {
 
 TEST_F(Resume, WithoutACheckpointItSaysThatItBeginsAnew) {
     write("mesh.obj", octahedron_obj());
-    std::vector<std::string> words = {"precompute", "mesh.obj",    "-o",
-                                      "scene.prt",  "--no-refine", "--tolerance",
-                                      "1",          "--min-depth", "0"};
+    std::vector<std::string> words = {"precompute", "mesh.obj", "-o",          "scene.prt",
+                                      "--refine",   "off",      "--tolerance", "1"};
     EXPECT_EQ(succeed(words).out.find("anew"), std::string::npos);
     words.emplace_back("--resume");
     EXPECT_EQ(succeed(words).out.find(
@@ -204,7 +203,7 @@ TEST_F(Resume, AnOutputThatIsALinkIsWrittenThrough) {
     write("mesh.obj", octahedron_obj());
     fs::create_directory(folder() / "far");
     fs::create_symlink("far/scene.prt", folder() / "scene.prt");
-    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 -q --no-refine");
+    succeed("precompute mesh.obj -o scene.prt --face-resolution 16 -q --refine off");
     EXPECT_TRUE(fs::is_symlink(folder() / "scene.prt"));
     EXPECT_TRUE(fs::is_regular_file(folder() / "far" / "scene.prt"));
     succeed("info scene.prt");

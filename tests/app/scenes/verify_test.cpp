@@ -14,12 +14,12 @@ protected:
     Verify() {
         write("mesh.obj", octahedron_obj());
         write("white.hdr", white_hdr());
-        succeed("precompute mesh.obj -o scene.prt --face-resolution 32 --no-refine -q");
+        succeed("precompute mesh.obj -o scene.prt --face-resolution 32 --refine off -q");
     }
 };
 
 TEST_F(Verify, AllKeysOfTheReport) {
-    const nlohmann::json report = succeed("verify scene.prt white.hdr --surface 20 --json").json();
+    const nlohmann::json report = succeed("verify scene.prt white.hdr --json").json();
     for (const char* key : {"relative_l2", "mean_abs", "max_abs", "samples"}) {
         ASSERT_TRUE(report.contains(key)) << key;
         EXPECT_TRUE(report[key].is_number()) << key;
@@ -31,7 +31,7 @@ TEST_F(Verify, AllKeysOfTheReport) {
 }
 
 TEST_F(Verify, WhatAPictureShowsIsSaidFirst) {
-    std::vector<std::string> verify = {"verify", "scene.prt", "white.hdr", "--surface", "20"};
+    std::vector<std::string> verify = {"verify", "scene.prt", "white.hdr"};
     const auto run = succeed(verify);
     verify.emplace_back("--json");
     const nlohmann::json report = succeed(verify).json();
@@ -48,21 +48,11 @@ TEST_F(Verify, WhatAPictureShowsIsSaidFirst) {
     EXPECT_EQ(run.out.find("; elsewhere by") != std::string::npos, is_worse) << run.out;
 }
 
-TEST_F(Verify, SamplesAreChosenBySeed) {
-    const auto worst = [&](const std::string& seed) {
-        return succeed({"verify", "scene.prt", "white.hdr", "--samples", "1", "--surface", "0",
-                        "--seed", seed, "--json"})
-            .json();
-    };
-    EXPECT_EQ(worst("1")["samples"], 1);
-    EXPECT_EQ(worst("1")["worst_vertex"], worst("1")["worst_vertex"]);
-    std::vector<int> seen(6);
-    for (int seed = 0; seed < 12; ++seed)
-        ++seen.at(worst(std::to_string(seed))["worst_vertex"].get<std::size_t>());
-    for (const int count : seen)
-        EXPECT_LT(count, 12) << "another seed never chose another receiver";
-    EXPECT_EQ(
-        succeed("verify scene.prt white.hdr --samples 0 --surface 0 --json").json()["samples"], 6);
+TEST_F(Verify, SamplesAreAsManyAsWereAskedFor) {
+    const auto some = succeed("verify scene.prt white.hdr --samples 1 --json").json();
+    EXPECT_EQ(some["samples"], 1);
+    EXPECT_EQ(some["surface"]["points"], 1);
+    EXPECT_EQ(succeed("verify scene.prt white.hdr --samples 0 --json").json()["samples"], 6);
 }
 
 TEST_F(Verify, ItIsTheSceneFileThatIsTested) {
@@ -71,8 +61,8 @@ TEST_F(Verify, ItIsTheSceneFileThatIsTested) {
     write("lamp.hdr", lamp_hdr(40));
     const auto error = [&](const std::string& tolerance) {
         succeed({"precompute", "colonnade.ply", "-o", "c.prt", "--tolerance", tolerance,
-                 "--min-depth", "1", "--face-resolution", "64", "--no-refine"});
-        return succeed("verify c.prt lamp.hdr --samples 200 --surface 0 --clusters-only --json")
+                 "--face-resolution", "64", "--refine", "off"});
+        return succeed("verify c.prt lamp.hdr --samples 200 --clusters-only --json")
             .json()["relative_l2"]
             .get<double>();
     };
@@ -82,8 +72,6 @@ TEST_F(Verify, ItIsTheSceneFileThatIsTested) {
 TEST_F(Verify, BadOptionsAreRefused) {
     for (const char* samples : {"-5", "nan", "1.5", "all"})
         misuse({"verify", "scene.prt", "white.hdr", "--samples", samples}, "--samples");
-    misuse("verify scene.prt white.hdr --surface 4294967296", "--surface");
-    misuse("verify scene.prt white.hdr --seed -1", "--seed");
     fail("verify missing.prt white.hdr", {"missing.prt"});
     fail("verify scene.prt missing.hdr", {"missing.hdr"});
     fail("verify scene.prt mesh.obj", {"mesh.obj"});

@@ -85,7 +85,7 @@ TEST_F(GltfTest, FacesWithoutNormalsAreFlat) {
                                       glm::normalize(area_normal(mesh.positions, t))),
                         0.0, 1e-6);
     EXPECT_THAT(mesh.notes,
-                ElementsAre("4 faces without normals are flat; --normals smooth rounds them",
+                ElementsAre("4 faces without normals are flat; --crease 180 rounds them",
                             "2 vertices are added behind the 6 of the file, where normals or "
                             "colours of faces differ"));
     EXPECT_EQ(gltf(model.embedded(), NormalSource::Smooth).num_vertices(), 6u);

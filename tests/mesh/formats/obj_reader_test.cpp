@@ -1,5 +1,5 @@
+#include "files/pixel_values.h"
 #include "mesh/edge_uses.h"
-#include "mesh/materials/srgb.h"
 #include "tests/mesh/mesh_files.h"
 
 namespace relumine::mesh {
@@ -138,7 +138,7 @@ TEST(ObjReader, SmoothingGroups) {
     const TriangleMesh off = obj(cube_obj({"s off", "s off", "s off", "s 0", "s off", "s off"}));
     EXPECT_EQ(off.num_vertices(), 24u);
     expect_flat(off);
-    EXPECT_THAT(off.notes, testing::Contains("6 faces without normals are flat; --normals smooth "
+    EXPECT_THAT(off.notes, testing::Contains("6 faces without normals are flat; --crease 180 "
                                              "rounds them"));
     const TriangleMesh smooth = obj(cube_obj({"", "", "", "", "", ""}));
     EXPECT_EQ(smooth.num_vertices(), 8u);
@@ -176,7 +176,7 @@ TEST(ObjReader, ColorsOfVertices) {
         return glm::distance(a, b) < 1e-5f;
     };
     // Other programs write sRGB.
-    const glm::vec3 linear(1.0f, linear_of_srgb(0.5f), linear_of_srgb(0.25f));
+    const glm::vec3 linear(1.0f, files::linear_of_srgb(0.5f), files::linear_of_srgb(0.25f));
     const TriangleMesh fractions = obj(box_obj(" 1 0.5 0.25"));
     EXPECT_EQ(fractions.colors, std::vector<glm::vec3>(8, linear));
     EXPECT_THAT(fractions.notes,
@@ -187,12 +187,14 @@ TEST(ObjReader, ColorsOfVertices) {
         to_mesh(read_obj(bytes_of(box_obj(" 1 0.5 0.25"))), NormalSource::File, ColorCurve::Linear);
     EXPECT_EQ(chosen.colors, std::vector<glm::vec3>(8, {1.0f, 0.5f, 0.25f}));
     EXPECT_TRUE(chosen.notes.empty());
-    EXPECT_TRUE(near(obj(box_obj(" 255 0 51")).colors[3], {1.0f, 0.0f, linear_of_srgb(0.2f)}));
+    EXPECT_TRUE(
+        near(obj(box_obj(" 255 0 51")).colors[3], {1.0f, 0.0f, files::linear_of_srgb(0.2f)}));
     EXPECT_TRUE(near(obj(box_obj(" 204.5 0 51")).colors[3],
-                     {linear_of_srgb(204.5f / 255.0f), 0.0f, linear_of_srgb(0.2f)}));
+                     {files::linear_of_srgb(204.5f / 255.0f), 0.0f, files::linear_of_srgb(0.2f)}));
     EXPECT_THAT(obj(box_obj(" 204.5 0 51")).notes,
                 testing::Contains("colours are taken as numbers of 0 to 255"));
-    EXPECT_TRUE(near(obj(box_obj(" 65535 0 13107")).colors[3], {1.0f, 0.0f, linear_of_srgb(0.2f)}));
+    EXPECT_TRUE(
+        near(obj(box_obj(" 65535 0 13107")).colors[3], {1.0f, 0.0f, files::linear_of_srgb(0.2f)}));
     EXPECT_GT(obj(box_obj(" 1.5 0 0")).colors[3].r, 1.5f) << "not by the look of it";
     EXPECT_EQ(obj(box_obj(" -0.5 0 0")).colors[3], glm::vec3(0.0f));
 }
@@ -203,7 +205,7 @@ TEST(ObjReader, AVertexWithoutAColorIsWhite) {
         const TriangleMesh mesh = obj(replace_all(box_obj(" 255 0 51"), "v 1 2 3 255 0 51", odd));
         ASSERT_EQ(mesh.colors.size(), 8u);
         EXPECT_EQ(mesh.colors[6], glm::vec3(1.0f));
-        EXPECT_NEAR(mesh.colors[5].b, linear_of_srgb(0.2f), 1e-6f);
+        EXPECT_NEAR(mesh.colors[5].b, files::linear_of_srgb(0.2f), 1e-6f);
         EXPECT_THAT(mesh.warnings,
                     testing::ElementsAre("1 of 8 vertices have no colour, or none that is a "
                                          "number: they are white"));

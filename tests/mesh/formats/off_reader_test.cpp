@@ -1,6 +1,6 @@
 #include <bit>
 
-#include "mesh/materials/srgb.h"
+#include "files/pixel_values.h"
 #include "tests/mesh/mesh_files.h"
 
 namespace relumine::mesh {
@@ -27,7 +27,7 @@ TEST(OffReader, LineEndsAndCommentsAnywhere) {
 }
 
 TEST(OffReader, ColorsOfFaces) {
-    const float half = linear_of_srgb(0.5f);
+    const float half = files::linear_of_srgb(0.5f);
     expect_box(off(box_off("OFF", "", " 1.0 0.5 0 1")));
     EXPECT_EQ(off(box_off("OFF", "", " 1.0 0.5 0 1")).colors[0], glm::vec3(1.0f, half, 0.0f));
     EXPECT_EQ(off(box_off("OFF", "", " 255 0 0")).colors[0], glm::vec3(1.0f, 0.0f, 0.0f));
@@ -52,13 +52,13 @@ TEST(OffReader, EveryLayoutOfVertices) {
     const auto near = [](const glm::vec3& a, const glm::vec3& b) {
         return glm::distance(a, b) < 1e-6f;
     };
-    const glm::vec3 orange(1.0f, linear_of_srgb(0.2f), 0.0f);
+    const glm::vec3 orange(1.0f, files::linear_of_srgb(0.2f), 0.0f);
     const TriangleMesh bytes = off(box_off("COFF", " 255 51 0 255"));
     expect_box(bytes);
     EXPECT_TRUE(near(bytes.colors[7], orange)) << "as other programs write them";
     EXPECT_EQ(off(box_off("COFF", " 255 51 0")).colors, bytes.colors);
     EXPECT_EQ(off(box_off("COFF", " 1 0.5 0.25 1")).colors[7],
-              glm::vec3(1.0f, linear_of_srgb(0.5f), linear_of_srgb(0.25f)));
+              glm::vec3(1.0f, files::linear_of_srgb(0.5f), files::linear_of_srgb(0.25f)));
     EXPECT_EQ(off(box_off("COFF", " 1 1 1 1")).colors[7], glm::vec3(1.0f));
     EXPECT_TRUE(off(box_off("COFF", " nan 0 0 1")).colors.empty());
 

@@ -1,4 +1,4 @@
-#include "mesh/materials/srgb.h"
+#include "files/pixel_values.h"
 #include "tests/mesh/mesh_files.h"
 
 namespace relumine::mesh {
@@ -31,7 +31,7 @@ TEST_P(PlyReaderTest, ExtraPropertiesListsAndElements) {
                                            .faces_first = true,
                                            .other_element = true}));
     expect_box(mesh);
-    EXPECT_EQ(mesh.colors, std::vector<glm::vec3>(8, {1.0f, linear_of_srgb(0.2f), 0.0f}));
+    EXPECT_EQ(mesh.colors, std::vector<glm::vec3>(8, {1.0f, files::linear_of_srgb(0.2f), 0.0f}));
 }
 
 TEST_P(PlyReaderTest, LineEndsOfTheHeader) {
@@ -122,7 +122,7 @@ TEST(PlyReader, ColorsOfVertices) {
         return mesh.colors.size() == 3 && glm::distance(mesh.colors[2], color) < 1e-6f;
     };
     // Whole numbers are a screen's, as in other programs.
-    const glm::vec3 linear(1.0f, linear_of_srgb(0.2f), 0.0f);
+    const glm::vec3 linear(1.0f, files::linear_of_srgb(0.2f), 0.0f);
     for (const auto& [type, values] : {std::pair{"uchar", "255 51 0"},
                                        {"ushort", "65535 13107 0"},
                                        {"int", "255 51 0"},

@@ -131,15 +131,6 @@ TEST(Flicker, OfFilesIsThatOfArrays) {
     fs::remove_all(folder);
 }
 
-TEST(Flicker, PlotsHaveTheirCurves) {
-    const NamedReport report{
-        "clusters", measure_flicker(RadianceFrames{grey({1.0}), grey({1.5}), grey({1.0})},
-                                    RadianceFrames{grey({1.0}), grey({1.0}), grey({1.0})})};
-    const std::string svg = inconsistency_plot(std::vector{report}, "sun");
-    EXPECT_THAT(svg, testing::HasSubstr("clusters"));
-    EXPECT_THAT(svg, testing::HasSubstr("<polyline"));
-}
-
 /// RadianceFrames of a method on the test scene, all receivers.
 template<class Light>
 RadianceFrames rendered(std::size_t num_frames, const Light& light) {

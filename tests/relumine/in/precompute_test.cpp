@@ -149,12 +149,6 @@ TEST(Precompute, TakesABias) {
     EXPECT_EQ(precompute(boulder(), {.tolerance = Tolerance, .bias = 0.02f}).settings.bias, 0.02f);
 }
 
-TEST(Precompute, OfBothEnginesIsTheSame) {
-    prt::expect_same(
-        precompute(boulder(), {.tolerance = Tolerance, .engine = Engine::Beams}).transfer,
-        precompute(boulder(), {.tolerance = Tolerance, .engine = Engine::Embree}).transfer);
-}
-
 TEST(Precompute, LightsPixelsOfAView) {
     const mesh::TriangleMesh mesh = boulder().geometry;
     const Camera camera{.eye = {0, 3, 6}, .target = {0, 0.5f, 0}};

@@ -205,7 +205,7 @@ TEST_F(Output, AFloorWithoutShadowsIsThePhotograph) {
         LitScene lit(precompute(mesh, how));
         lit.light(sunny());
         ASSERT_FALSE(on_pixels ? lit.radiance().empty() : lit.lighting().lights.empty());
-        OutputOptions options{.floor_fade = 0.0f, .samples_per_axis = 1};
+        OutputOptions options{.samples_per_axis = 1};
         if (!on_pixels) {
             options.width = 20;
             options.height = 15;

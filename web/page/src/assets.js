@@ -36,7 +36,7 @@ export class Assets {
         const url = new URL(name, this.base);
         if (url.protocol === 'file:')
             throw new PageError('A browser does not let a page read other files of this computer. Put the folder on a ' +
-                                'web server, or export with --single-file.');
+                                'web server, or export one file: -o page.html.');
         let response;
         try {
             response = await fetch(url);

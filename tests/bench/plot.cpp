@@ -1,4 +1,4 @@
-#include "relight/pictures/plot.h"
+#include "tests/bench/plot.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace relumine::relight {
+namespace relumine::bench {
 
 namespace {
 
@@ -224,4 +224,4 @@ std::string svg(const Plot& plot) {
     return Writer(plot).document();
 }
 
-} // namespace relumine::relight
+} // namespace relumine::bench

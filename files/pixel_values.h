@@ -1,9 +1,13 @@
-// The curve of sRGB, IEC 61966-2-1, between a screen's values and light.
+// What numbers of pixels mean: the curve of sRGB, IEC 61966-2-1, between a screen's values and
+// light, and the range of 16-bit floats.
 #pragma once
 
 #include <cmath>
 
-namespace relumine::mesh {
+namespace relumine::files {
+
+/// The largest finite 16-bit float.
+inline constexpr float LargestHalf = 65504.0f;
 
 /// Returns the light of a screen's value; both from 0 to 1.
 template<typename Real>
@@ -20,4 +24,4 @@ template<typename Real>
                : Real(1.055) * std::pow(linear, Real(1) / Real(2.4)) - Real(0.055);
 }
 
-} // namespace relumine::mesh
+} // namespace relumine::files

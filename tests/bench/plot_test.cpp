@@ -1,11 +1,11 @@
-#include "relight/pictures/plot.h"
+#include "tests/bench/plot.h"
 
 #include <stdexcept>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace relumine::relight {
+namespace relumine::bench {
 namespace {
 
 using testing::HasSubstr;
@@ -47,4 +47,4 @@ TEST(Plot, TextIsEscapedAndNothingToShowIsAPlotToo) {
 }
 
 } // namespace
-} // namespace relumine::relight
+} // namespace relumine::bench

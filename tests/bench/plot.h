@@ -1,10 +1,10 @@
-// Line plots as SVG: error against the number of lights, flicker over frames.
+// Line plots as SVG: cost against size, flicker over frames.
 #pragma once
 
 #include <string>
 #include <vector>
 
-namespace relumine::relight {
+namespace relumine::bench {
 
 enum class Scale { Linear, Log };
 
@@ -32,4 +32,4 @@ struct Plot {
 /// Throws:  std::invalid_argument for a series whose x and y differ in number.
 [[nodiscard]] std::string svg(const Plot& plot);
 
-} // namespace relumine::relight
+} // namespace relumine::bench
