@@ -31,7 +31,7 @@ done
 step edit edit "$folder/knot.prt" "$folder/soft_boxes.exr" --disc 0.85,0.35,0.4,25 --gain 4 \
     -o "$folder/knot_soft_boxes_edited.png" --size 720x480
 
-camera=(--view 1.2,3.3,4.2,0.05,0.4,0.15,28)
+camera=(--eye 1.2,3.3,4.2 --target 0.05,0.4,0.15 --fov 28)
 step still_life generate still_life -o "$folder" --vertices 20000
 step still_life_precompute precompute "$folder/still_life.glb" -o "$folder/still_life.prt"
 step still_life_soft_boxes relight "$folder/still_life.prt" "$folder/soft_boxes.exr" -o "$folder/still_life_soft_boxes.png" \

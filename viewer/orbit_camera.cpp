@@ -82,10 +82,10 @@ relight::Camera picture_camera(const OrbitCamera& camera) {
 }
 
 std::string camera_options(const OrbitCamera& camera) {
-    const glm::vec3 eye = camera.eye();
-    return fmt::format("--view {:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.4g}", eye.x, eye.y,
-                       eye.z, camera.target.x, camera.target.y, camera.target.z,
-                       camera.fov_degrees);
+    constexpr float Degrees = 90.0f / QuarterTurn;
+    return fmt::format("--camera {:.2f},{:.2f},{:.5g},{:.4g} --target {:.5g},{:.5g},{:.5g}",
+                       camera.yaw * Degrees, camera.pitch * Degrees, camera.distance,
+                       camera.fov_degrees, camera.target.x, camera.target.y, camera.target.z);
 }
 
 CameraFrame frame(const OrbitCamera& camera, const PixelRectangle& viewport) {

@@ -55,7 +55,7 @@ struct CameraFrame {
 /// Returns the camera with the same view as another: right way up, target at the same place.
 [[nodiscard]] OrbitCamera orbit_camera(const relight::Camera& camera);
 [[nodiscard]] relight::Camera picture_camera(const OrbitCamera& camera);
-/// Returns the options of `relumine relight` for this view: "--view 1,2,3,0,1,0,35".
+/// Returns the options of `relumine relight` for this view: "--camera 24,20,3,35 --target 0,1,0".
 [[nodiscard]] std::string camera_options(const OrbitCamera& camera);
 [[nodiscard]] CameraFrame frame(const OrbitCamera& camera, const PixelRectangle& viewport);
 /// Returns the matrix from world to OpenGL's clip space. `reach` is how far the scene extends from

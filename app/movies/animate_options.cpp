@@ -76,7 +76,8 @@ void AnimateOptions::load_camera() {
     };
     refuse_beside(turntable > 0, "--turntable");
     refuse_beside(picture.camera_place.has_value(), "--camera");
-    refuse_beside(picture.eye.has_value(), "--view");
+    refuse_beside(picture.eye.has_value(), "--eye");
+    refuse_beside(picture.target.has_value(), "--target");
     const std::string extension = extension_of(output.path);
     if (extension != ".png" && extension != ".exr")
         throw UsageError(
@@ -94,6 +95,8 @@ Camera AnimateOptions::camera_on_path(std::int64_t number, const Camera& other) 
 
 std::vector<cubemap::FrameFile> AnimateOptions::frame_files() const {
     std::optional<cubemap::FrameRange> chosen;
+    refuse_beside(camera_path->names_fov && picture.fov_degrees.has_value(),
+                  "--fov where the file has fov_degrees");
     try {
         if (!range.empty())
             chosen = cubemap::FrameRange::parse(range);

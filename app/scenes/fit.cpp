@@ -47,8 +47,8 @@ struct FitArguments {
 /// The options of a picture that also say how a target was made.
 OptionTable shown_options(relumine::OutputOptions& shown) {
     OptionTable table;
-    constexpr std::array<const char*, 5> Names = {"--albedo", "--exposure", "--camera", "--view",
-                                                  "--floor-albedo"};
+    constexpr std::array<const char*, 7> Names = {
+        "--albedo", "--exposure", "--camera", "--eye", "--target", "--fov", "--floor-albedo"};
     for (OptionRow& row : options_of(shown))
         if (std::find(Names.begin(), Names.end(), row.name) != Names.end())
             table.push_back(std::move(row));
@@ -68,10 +68,10 @@ float brightness_of(const FitArguments& options) {
 Picture read_picture(const FitArguments& options, const Command& command, const Scene& scene) {
     bool has_camera = !prt::on_vertices(scene.layout) || own_camera(scene).has_value();
     for (const std::string& name : command.given_options())
-        has_camera = has_camera || name == "--camera" || name == "--view";
+        has_camera = has_camera || name == "--camera" || name == "--eye" || name == "--fov";
     if (!has_camera)
-        throw UsageError("TARGET", "expected the camera of the picture, --camera or --view, "
-                                   "got none");
+        throw UsageError("TARGET", "expected the camera of the picture, --camera or --eye and "
+                                   "--target, got none");
     Picture picture = cubemap::load_picture(options.target);
     for (glm::vec3& pixel : picture.pixels)
         pixel *= brightness_of(options);

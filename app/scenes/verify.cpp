@@ -161,7 +161,7 @@ void add_verify(Command& program, Session& session) {
         row("--albedo", options->albedo, "of all surfaces, for bounces", {.min = 0.0, .max = 1.0}));
     command.add(row("--paths", options->num_paths, "paths per receiver that bounces are held to",
                     {.min = 1, .max = 1u << 24}));
-    command.add(row<PointText>("--view", options->eye,
+    command.add(row<PointText>("--eye", options->eye,
                                "X,Y,Z: compares the light towards this eye, of a scene of glossy "
                                "vertices without --view, at the vertices",
                                {.example = "1,2,3"}));

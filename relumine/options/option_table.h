@@ -21,13 +21,13 @@
 
 namespace relumine {
 
-/// An option that does not fit: "--fps: expected 0.01 to 1000, got '2000'".
+/// An option that does not fit: "--fov: expected 0.01 to 179, got '200'".
 class OptionError : public std::invalid_argument {
 public:
     explicit OptionError(const std::string& message) : std::invalid_argument(message) {}
     OptionError(std::string name, const std::string& why)
         : std::invalid_argument(name + ": " + why), option(std::move(name)), reason(why) {}
-    /// "--fps"; empty where the message is of no single option
+    /// "--fov"; empty where the message is of no single option
     std::string option = {};
     std::string reason = {};
 };
@@ -73,7 +73,7 @@ struct OptionFacts {
 
 /// One option, bound to its variable, which must outlive the row.
 struct OptionRow : OptionFacts {
-    /// "--fps", "-o,--output"; "MESH" for an argument
+    /// "--fov", "-o,--output"; "MESH" for an argument
     std::string name = {};
     std::string help = {};
     bool is_flag = false;

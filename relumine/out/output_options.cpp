@@ -143,40 +143,15 @@ OptionRow size_row(std::uint32_t& width, std::uint32_t& height, std::string help
     return result;
 }
 
-OptionRow view_row(OutputOptions& options, OptionFacts facts) {
-    facts.type = "TEXT";
-    return row(
-        "--view",
-        [&options](const std::string& text) {
-            constexpr double LargestFov = 179.0;
-            const auto numbers = parse_numbers(text);
-            const std::size_t count = numbers ? numbers->size() : 0;
-            const auto is_place = [](double number) {
-                return std::abs(number) <= LargestPosition;
-            };
-            if ((count != 3 && count != 6 && count != 7) ||
-                !std::all_of(numbers->begin(), numbers->end(), is_place))
-                refuse_text(fmt::format("EX,EY,EZ[,TX,TY,TZ[,FOV]] within {}", LargestPosition),
-                            text);
-            if (count == 7 && !is_in(numbers->back(), LargestFov))
-                refuse_text(fmt::format("a field of view of up to {} degrees", LargestFov), text);
-            const std::vector<double>& own = *numbers;
-            options.eye.emplace(own[0], own[1], own[2]);
-            options.target.reset();
-            options.fov_degrees.reset();
-            if (count > 3)
-                options.target.emplace(own[3], own[4], own[5]);
-            if (count == 7)
-                options.fov_degrees = static_cast<float>(own[6]);
-        },
-        "in place of --camera: EX,EY,EZ[,TX,TY,TZ[,FOV]], the eye, the point that it looks at "
-        "(automatic) and the vertical field of view in degrees (35)",
-        std::move(facts));
-}
-
 void check(const OutputOptions& options) {
-    if (options.camera_place && options.eye)
-        throw OptionError("--camera", "expected either --camera or --view, got both");
+    if (!options.camera_place)
+        return;
+    if (options.eye)
+        throw OptionError("--camera", "expected either --camera or --eye, got both");
+    if (options.camera_place->fov_degrees && options.fov_degrees)
+        throw OptionError("--camera", fmt::format("expected either a field of view here or --fov, "
+                                                  "got '{}'",
+                                                  CameraText::show(*options.camera_place)));
 }
 
 Camera camera_of(const Scene& scene, const OutputOptions& options) {
@@ -258,7 +233,12 @@ OptionTable options_of(OutputOptions& o) {
                         "AZIMUTH,ELEVATION[,DISTANCE][,FOV]: degrees to the right of the "
                         "front and above the horizon (24,20), distance (fills two thirds)",
                         {.example = "30,40", .receivers = OnVertices, .part = "camera"}),
-        view_row(o, {.example = "1,2,3,0,0.1,0,50", .receivers = OnVertices, .part = "camera"}),
+        row<PointText>("--eye", o.eye, "camera position X,Y,Z in place of --camera",
+                       {.example = "1,2,3", .receivers = OnVertices, .part = "camera"}),
+        row<PointText>("--target", o.target, "point that the camera looks at, X,Y,Z (automatic)",
+                       {.example = "0,0.1,0", .receivers = OnVertices, .part = "camera"}),
+        row("--fov", o.fov_degrees, "vertical field of view in degrees (35)",
+            {.min = 0.01, .max = 179, .receivers = OnVertices, .part = "camera"}),
         size_row(o.width, o.height, "picture size WIDTHxHEIGHT",
                  {.receivers = OnVertices, .part = "camera"}),
         row<BackgroundText>("--background", o.background,

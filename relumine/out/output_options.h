@@ -157,8 +157,6 @@ struct CameraText {
 /// --size WIDTHxHEIGHT, each side from `min` (1) to prt::MaxPictureSize.
 [[nodiscard]] OptionRow size_row(std::uint32_t& width, std::uint32_t& height, std::string help,
                                  OptionFacts facts);
-/// --view EX,EY,EZ[,TX,TY,TZ[,FOV]]: eye, target and field of view.
-[[nodiscard]] OptionRow view_row(OutputOptions& options, OptionFacts facts);
 
 /// All options of a picture.
 [[nodiscard]] OptionTable options_of(OutputOptions& o);

@@ -246,14 +246,12 @@ def test_every_option_of_pictures_is_a_keyword(relighter, command_line, folder):
 
 def test_a_camera_has_a_field_of_view(relighter):
     both = relighter.picture(size=(40, 30), camera=(30, 25, None, 60))
+    assert (both == relighter.picture(size=(40, 30), camera=(30, 25), fov=60)).all()
     assert (both == relighter.picture(size=(40, 30), camera="30,25,,60")).all()
     numbers = (np.float64(30), np.int64(25), None, np.float32(60))
     assert (both == relighter.picture(size=(40, 30), camera=numbers)).all()
-    with pytest.raises(ValueError, match="^camera: expected either"):
-        relighter.picture(camera=(30, 25, 5, 60), view=(1, 2, 3))
-    wide = relighter.picture(size=(40, 30), view=((1, 2, 3), (0, 0, 0), 60))
-    assert (wide == relighter.picture(size=(40, 30), view="1,2,3,0,0,0,60")).all()
-    assert (wide != relighter.picture(size=(40, 30), view=((1, 2, 3), (0, 0, 0)))).any()
+    with pytest.raises(ValueError, match="^camera: expected either a field of view here or fov"):
+        relighter.picture(camera=(30, 25, 5, 60), fov=50)
 
 
 def test_equals_the_command_line(relighter, sky, folder, command_line):

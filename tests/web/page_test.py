@@ -332,8 +332,8 @@ SIZE = (640, 480)
 
 def camera_options(site):
     camera = json.loads((site / "scene.json").read_text())["camera"]
-    return ["--view", ",".join(map(str, [*camera["eye"], *camera["target"], camera["fov"]])),
-            "--size", f"{SIZE[0]}x{SIZE[1]}"]
+    return ["--eye", ",".join(map(str, camera["eye"])), "--target", ",".join(map(str, camera["target"])),
+            "--fov", camera["fov"], "--size", f"{SIZE[0]}x{SIZE[1]}"]
 
 
 class Shown:

@@ -78,7 +78,7 @@ TEST_F(CommandLineTest, EmptyValuesAreWrongUsage) {
     misuse({"relight", "", "env.hdr", "-o", "new.npy"}, "SCENE");
     misuse({"relight", "scene.prt", "", "-o", "new.npy"}, "ENV");
     for (const char* option :
-         {"--rotate", "--exposure", "--albedo", "--view", "--size", "--layout"})
+         {"--rotate", "--exposure", "--albedo", "--eye", "--target", "--fov", "--size", "--layout"})
         misuse({"relight", "scene.prt", "env.hdr", "-o", "new.npy", option, ""}, option);
     misuse({"verify", "scene.prt", "env.hdr", "--samples", ""}, "--samples");
     misuse({"info", ""}, "FILE");
@@ -289,8 +289,9 @@ TEST_F(CommandLineTest, NumbersThatOverflowAreRefused) {
         fail({"relight", "scene.prt", "bright.hdr", "-o", output, "--size", "8x8", "--exposure",
               "100"},
              {output, ": expected radiance times albedo and exposure within"});
-    for (const char* view : {"1e19,0,0", "0,0,3,1e19,0,0", "0,0,3,0,0,0,1e30"})
-        misuse({"relight", "scene.prt", "env.hdr", "-o", "new.png", "--view", view}, "--view");
+    for (const char* option : {"--eye", "--target"})
+        misuse({"relight", "scene.prt", "env.hdr", "-o", "new.png", option, "1e19,0,0"}, option);
+    misuse("relight scene.prt env.hdr -o new.png --fov 1e30", "--fov");
     misuse("relight scene.prt env.hdr -o new.png --size 4294967297x1",
            "--size: expected WIDTHxHEIGHT, got '4294967297x1'");
     misuse("relight scene.prt env.hdr -o new.png --size 0x1", "--size");

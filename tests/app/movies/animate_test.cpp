@@ -47,31 +47,25 @@ protected:
 /// Frames of --turntable are what relight draws with the camera, the environment or both turned.
 TEST_F(Animate, ATurntableTurnsTheCameraTheObjectOrTheEnvironment) {
     write("lamp.hdr", lamp_hdr(10));
-    const std::vector<std::string> common = {"--size", "40x30", "--background", "none", "-q"};
+    const std::vector<std::string> common = {"--size", "40x30", "--background", "none", "--target",
+                                             "0,0,0",  "-q"};
     const auto with = [&](std::vector<std::string> arguments) {
         arguments.insert(arguments.end(), common.begin(), common.end());
         return arguments;
     };
-    // At a distance of 4 from the middle of the mesh, 30 degrees up.
-    const auto view = [](int azimuth) {
-        constexpr double Degrees = 57.29577951308232;
-        const double up = 30.0 / Degrees, turn = azimuth / Degrees;
-        return fmt::format("{},{},{},0,0,0", 4.0 * std::cos(up) * std::sin(turn),
-                           4.0 * std::sin(up), 4.0 * std::cos(up) * std::cos(turn));
-    };
     for (const std::string turns : {"camera", "object", "environment"}) {
         const nlohmann::json report =
             succeed({"animate", "scene.prt", "lamp.hdr", "-o", "turn.%d.exr", "--turntable", "4",
-                     "--turns", turns, "--view", view(20), "--size", "40x30", "--background",
-                     "none", "--json"})
+                     "--turns", turns, "--camera", "20,30,4", "--size", "40x30", "--background",
+                     "none", "--target", "0,0,0", "--json"})
                 .json();
         EXPECT_EQ(report["frames"], 4);
         for (int frame = 0; frame < 4; ++frame) {
             const int degrees = turns == "object" ? -90 * frame : 90 * frame;
             const int camera = turns == "environment" ? 20 : 20 + degrees;
             const int light = turns == "camera" ? 0 : degrees;
-            succeed(with({"relight", "scene.prt", "lamp.hdr", "-o", "one.exr", "--view",
-                          view(camera), "--rotate", fmt::format("{}", light)}));
+            succeed(with({"relight", "scene.prt", "lamp.hdr", "-o", "one.exr", "--camera",
+                          fmt::format("{},30,4", camera), "--rotate", fmt::format("{}", light)}));
             const auto expected = exr_channels(folder() / "one.exr");
             const auto seen = exr_channels(folder() / fmt::format("turn.{}.exr", frame));
             double difference = 0.0, sum = 0.0;
@@ -111,8 +105,7 @@ TEST_F(Animate, ACameraGoesAlongItsPath) {
                                                           {"6", "3,1,3", "0,0.5,0", "20"}};
     for (const auto& [frame, eye, target, fov] : keys) {
         succeed({"relight", "scene.prt", "lamp.hdr", "-o", "one.exr", "--size", "40x30",
-                 "--background", "none", "--view", fmt::format("{},{},{}", eye, target, fov),
-                 "-q"});
+                 "--background", "none", "--eye", eye, "--target", target, "--fov", fov, "-q"});
         const auto expected = exr_channels(folder() / "one.exr");
         const auto seen = exr_channels(folder() / ("walk." + frame + ".exr"));
         double difference = 0.0, sum = 0.0;
@@ -142,9 +135,10 @@ TEST_F(Animate, HighlightsFollowACameraPath) {
     succeed("animate shiny.prt lamp.hdr -o walk.%d.exr --size 24x18 --background none "
             "--camera-path walk.json -q");
     const auto picture = [&](const std::string& eye, const std::vector<std::string>& more) {
-        std::vector<std::string> command = {
-            "relight", "shiny.prt",    "lamp.hdr", "-o",     "one.exr",         "--size",
-            "24x18",   "--background", "none",     "--view", eye + ",0,0,0,35", "-q"};
+        std::vector<std::string> command = {"relight", "shiny.prt", "lamp.hdr", "-o",
+                                            "one.exr", "--size",    "24x18",    "--background",
+                                            "none",    "--eye",     eye,        "--target",
+                                            "0,0,0",   "--fov",     "35",       "-q"};
         command.insert(command.end(), more.begin(), more.end());
         succeed(command);
         return exr_channels(folder() / "one.exr");
@@ -183,8 +177,9 @@ TEST_F(Animate, ACameraPathThatCannotBeIsToldInOneLine) {
     fail(with("one.json", pictures), {"one.json:1: expected at least 2 key frames, got 1"});
     fail(with("none.json", pictures), {"none.json: cannot read"});
     misuse(with("path.json", {"-o", "bad.%d.npy"}), "--camera-path: expected --output with .png");
-    for (const std::vector<std::string>& other :
-         {std::vector<std::string>{"--turntable", "4"}, {"--view", "1,2,3"}}) {
+    for (const std::vector<std::string>& other : {std::vector<std::string>{"--turntable", "4"},
+                                                  {"--eye", "1,2,3"},
+                                                  {"--target", "0,0,1"}}) {
         std::vector<std::string> both = pictures;
         both.insert(both.end(), other.begin(), other.end());
         misuse(with("path.json", both), "got both");

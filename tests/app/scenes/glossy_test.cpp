@@ -134,9 +134,9 @@ TEST_F(Glossy, RoughnessMayChangeWhereHighlightsFollowTheEye) {
         return read("lit.exr");
     };
     EXPECT_TRUE(picture("one.prt", {"--material", "roughness=0.7"}) == picture("two.prt", {}));
-    EXPECT_EQ(succeed("verify one.prt white.hdr --view 3,2,5 --material roughness=0.7 --json")
+    EXPECT_EQ(succeed("verify one.prt white.hdr --eye 3,2,5 --material roughness=0.7 --json")
                   .json()["relative_l2"],
-              succeed("verify two.prt white.hdr --view 3,2,5 --json").json()["relative_l2"]);
+              succeed("verify two.prt white.hdr --eye 3,2,5 --json").json()["relative_l2"]);
     make("fixed.prt", {"--material", "ggx:roughness=0.4," + colors, "--view", "auto"});
     misuse("relight fixed.prt white.hdr -o n.npy --material roughness=0.5",
            "--material: fixed.prt: expected highlights that follow the eye");
@@ -151,7 +151,7 @@ TEST_F(Glossy, EyesWithoutSenseAreToldOf) {
     make("live.prt", {"--material", "ggx:roughness=0.05,albedo=0.2,f0=0.9"});
     make("matt.prt", {});
     const auto verified = [&](const std::string& eye) {
-        return succeed({"verify", "live.prt", "white.hdr", "--view", eye, "--json"})
+        return succeed({"verify", "live.prt", "white.hdr", "--eye", eye, "--json"})
             .json()["warnings"]
             .dump();
     };
@@ -160,11 +160,11 @@ TEST_F(Glossy, EyesWithoutSenseAreToldOf) {
     EXPECT_THAT(outside, testing::Not(testing::HasSubstr("inside")));
     EXPECT_THAT(outside, testing::HasSubstr("smoother than roughness 0.11"));
     const std::string drawn =
-        succeed("relight live.prt white.hdr -o in.png --size 8x6 --view 0,0.01,0 --json")
+        succeed("relight live.prt white.hdr -o in.png --size 8x6 --eye 0,0.01,0 --json")
             .json()["warnings"]
             .dump();
     EXPECT_THAT(drawn, testing::HasSubstr("is inside of the mesh"));
-    const Result refused = fail("verify matt.prt white.hdr --view 3,2,5");
+    const Result refused = fail("verify matt.prt white.hdr --eye 3,2,5");
     EXPECT_THAT(refused.err, testing::HasSubstr("expected vertices with glossy materials"));
 }
 

@@ -141,8 +141,8 @@ TEST_F(Receivers, OutputsThatDoNotFit) {
                    "--output: expected .png, .exr or .npy");
             misuse({"edit", scene, "white.hdr", "-o", output, "--disc", "0,1,0,10"}, output);
         }
-        misuse({"relight", scene, "white.hdr", "-o", "new.png", "--view", "1,2,3"},
-               "--view: expected no camera");
+        misuse({"relight", scene, "white.hdr", "-o", "new.png", "--eye", "1,2,3"},
+               "--eye: expected no camera");
         misuse({"relight", scene, "white.hdr", "-o", "new.png", "--size", "8x8"},
                "--size: expected no camera");
         fail({"view", scene, "white.hdr", "--screenshot", "new.png"}, {});

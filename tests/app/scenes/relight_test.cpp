@@ -187,15 +187,14 @@ TEST_F(Relight, CameraByAngles) {
     };
     EXPECT_TRUE(bytes({}) == bytes({"--camera", "24,20"}));
     EXPECT_TRUE(bytes({"--camera", "24,20"}) == bytes({"--camera", "24,20,,35"}));
+    EXPECT_TRUE(bytes({"--camera", "24,20", "--fov", "60"}) == bytes({"--camera", "24,20,,60"}));
     EXPECT_FALSE(bytes({"--camera", "24,20"}) == bytes({"--camera", "24,20,9"}));
-    EXPECT_TRUE(bytes({"--camera=0,0,5"}) == bytes({"--view", "0,0,5,0,0,0"}));
-    EXPECT_TRUE(bytes({"--camera=0,0,5,60"}) == bytes({"--view", "0,0,5,0,0,0,60"}));
-    EXPECT_FALSE(bytes({"--view", "0,0,5,0,0,0"}) == bytes({"--view", "0,0,5,1,0,0"}));
-    EXPECT_FALSE(bytes({"--view", "0,0,5"}) == bytes({"--view", "0,0,6"}));
+    EXPECT_TRUE(bytes({"--camera=0,0,5"}) == bytes({"--eye", "0,0,5", "--target", "0,0,0"}));
     for (const char* camera : {"1", "a,b", "1,2,3,4,5", "1,2,", "0,91", "0,0,-1", "0,0,0", "nan,0",
                                "0,0,,180", "0,0,5,0", ",1"})
         refuse({"--camera", camera}, 2);
-    refuse({"--camera", "1,2", "--view", "1,2,3"}, 2);
+    refuse({"--camera", "1,2", "--eye", "1,2,3"}, 2);
+    refuse({"--camera", "1,2,,30", "--fov", "30"}, 2);
 }
 
 TEST_F(Relight, Backgrounds) {
@@ -244,7 +243,8 @@ TEST_F(Relight, PictureHasTheSizeAskedFor) {
         const Size got = png_size(read("lit.png"));
         EXPECT_EQ(std::to_string(got.width) + "x" + std::to_string(got.height), size);
     }
-    succeed("relight scene.prt white.hdr -o lit.exr --size 20x10 --view 3,1,2,0,0,0,60");
+    succeed(
+        "relight scene.prt white.hdr -o lit.exr --size 20x10 --eye 3,1,2 --target 0,0,0 --fov 60");
     EXPECT_EQ(exr_size(read("lit.exr")), (Size{20, 10}));
 }
 
@@ -253,12 +253,14 @@ TEST_F(Relight, BadOptionsAreRefused) {
         refuse({"--size", size}, 2);
     for (const char* size : {"0x0", "0x5", "16385x1", "99999x99999"})
         refuse({"--size", size}, 2);
-    for (const char* vector : {"1,2", "1,2,3,4", "a,b,c", "1;2;3", "nan,0,0", "0,inf,0", "1,2,",
-                               ",", "1,2,3,4,5", "1,2,3,4,5,nan", "1,2,3,4,5,6,7,8"})
-        refuse({"--view", vector}, 2);
-    refuse({"--view", "1,1,1,1,1,1"}, 1);
+    for (const char* vector :
+         {"1,2", "1,2,3,4", "a,b,c", "1;2;3", "nan,0,0", "0,inf,0", "1,2,", ","}) {
+        refuse({"--eye", vector}, 2);
+        refuse({"--target", vector}, 2);
+    }
+    refuse({"--eye", "1,1,1", "--target", "1,1,1"}, 1);
     for (const char* fov : {"0", "180", "-10", "nan", "inf"})
-        refuse({"--view", "1,2,3,0,0,0," + std::string(fov)}, 2);
+        refuse({"--fov", fov}, 2);
     for (const char* albedo : {"red", "1,2", "nan", "inf", "1,2,3,4", "Mesh"})
         refuse({"--albedo", albedo}, 2);
     refuse({"--layout", "fisheye"}, 2);
