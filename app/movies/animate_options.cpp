@@ -99,8 +99,8 @@ void AnimateOptions::load_camera() {
                   "--fov where the file has fov_degrees");
 }
 
-Camera AnimateOptions::camera_on_path(std::int64_t number, const Camera& other) const {
-    Camera camera = camera_at(camera_path.value(), static_cast<double>(number));
+PlacedCamera AnimateOptions::camera_on_path(std::int64_t number, const Camera& other) const {
+    PlacedCamera camera = camera_at(camera_path.value(), static_cast<double>(number));
     if (!camera_path->names_fov)
         camera.fov_degrees = other.fov_degrees;
     return camera;

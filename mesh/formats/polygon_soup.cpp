@@ -185,8 +185,8 @@ void centre(PolygonSoup& soup) {
     for (std::size_t i = 0; i < soup.light_positions.size(); ++i)
         soup.lights[i].position = glm::vec3(soup.light_positions[i] - offset);
     soup.notes.push_back(fmt::format(
-        "coordinates are far from the origin: ({}, {}, {}) is taken off them, and put back into "
-        "meshes that are written; places of options count without it",
+        "coordinates are far from the origin: ({}, {}, {}) is taken off them while the mesh is "
+        "computed with; places in options and in written files count as in this file",
         offset.x, offset.y, offset.z));
 }
 

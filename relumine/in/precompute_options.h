@@ -14,17 +14,16 @@
 
 #include <glm/vec3.hpp>
 
-#include "mesh/triangle_mesh.h"
 #include "prt/bounces/bounce_precompute.h"
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/memory_estimate.h"
 #include "prt/precompute_options.h"
-#include "prt/receivers/camera.h"
 #include "prt/receivers/texel_receivers.h"
 #include "prt/refinement/refine.h"
 #include "prt/visibility/blockers.h"
 #include "prt/work.h"
+#include "relumine/in/places.h"
 
 namespace relumine {
 
@@ -49,7 +48,8 @@ struct Texels {
     std::uint32_t height = 1024;
 };
 
-/// Points in space are lit, which have no surface: each sees the whole sphere.
+/// Points in space are lit, which have no surface: each sees the whole sphere. Those of a file are
+/// among the coordinates of the mesh's file; `positions` count as the mesh's own do.
 struct Points {
     /// A .npy file of [count x 3] numbers, or the vertices of a .ply file. Empty: `positions`.
     std::filesystem::path file = {};
@@ -64,10 +64,10 @@ struct Grid {
 /// What is lit.
 using ReceiverChoice = std::variant<Vertices, Pixels, Texels, Points, Grid>;
 
-/// A view of the scene.
+/// A view of the scene, among the coordinates of the mesh's file.
 struct View {
     /// Empty: a camera that shows the whole mesh.
-    std::optional<prt::Camera> camera = {};
+    std::optional<PlacedCamera> camera = {};
 };
 
 /// How rays are traced. Both engines give the same results, bit by bit.
@@ -153,8 +153,9 @@ struct PrecomputeOptions {
 
     /// What is lit
     ReceiverChoice receivers = Vertices{};
-    /// The box of a Grid. Empty: the box around the mesh, without a floor that was added to it.
-    std::optional<mesh::Bounds> box = {};
+    /// The box of a Grid, among the coordinates of the mesh's file. Empty: the box around the mesh,
+    /// without a floor that was added to it.
+    std::optional<PlacedBox> box = {};
     /// The mesh keeps its vertices. Otherwise vertices, those behind bounces included, become more
     /// where the mesh is coarse: refined_by_itself().
     bool no_refine = false;
