@@ -1,16 +1,25 @@
 #include "relumine/in/mesh_remarks.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
 #include <fmt/format.h>
 
 #include "files/extension.h"
+#include "mesh/subject.h"
 #include "relumine/in/mesh_files.h"
 
 namespace relumine {
 
 namespace {
+
+/// Whether a mesh lies far along Y, not along Z, and is flat along Z: eastings, northings, heights.
+bool is_like_a_map(const mesh::TriangleMesh& mesh) {
+    constexpr float Flat = 0.5f;
+    const glm::vec3 size = mesh::extent(mesh).box.size();
+    return mesh.offset.y != 0.0 && mesh.offset.z == 0.0 && size.z < Flat * std::min(size.x, size.y);
+}
 
 /// Says which way is up where the file does not.
 void add_up_axis(const Mesh& mesh, const MeshOptions& options, std::vector<std::string>& notes) {
@@ -21,6 +30,9 @@ void add_up_axis(const Mesh& mesh, const MeshOptions& options, std::vector<std::
     if (mesh::customary_up(mesh.source) == mesh::UpAxis::Z)
         notes.push_back(fmt::format("+Z is up, by the custom of {}; --up y where it is not",
                                     files::extension_of(mesh.source)));
+    else if (is_like_a_map(mesh.geometry))
+        notes.emplace_back("+Y is taken as up, but coordinates are those of a map, with heights "
+                           "along Z; --up z turns it");
     else if (mesh::stands_on_z(mesh.geometry, num_own))
         notes.emplace_back("+Y is taken as up, but the mesh stands flat on its side towards -Z; "
                            "--up z turns it if it lies on its back");

@@ -16,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr glm::dvec3 Place(691234.0, 520.0, 5334567.0);
+constexpr glm::dvec3 Place(691236.0, 520.0, 5334568.0);
 
 /// An octahedron over a plate, so that light differs.
 std::string mesh_at(const glm::dvec3& place) {
@@ -82,7 +82,7 @@ TEST_F(FarPlaces, EyesAndTargets) {
     EXPECT_THAT(succeed({"relight", "far.prt", "lamp.hdr", "-o", "seen.png", "--size", "8x8",
                          "--eye", text_of({0.1, 0.2, 0.1}, Place)})
                     .err,
-                HasSubstr("the eye 691234.1,520.2,5334567.1 is inside of the mesh"));
+                HasSubstr("the eye 691236.1,520.2,5334568.1 is inside of the mesh"));
 }
 
 TEST_F(FarPlaces, ViewsOfAPrecompute) {
@@ -95,10 +95,10 @@ TEST_F(FarPlaces, ViewsOfAPrecompute) {
     }
     EXPECT_EQ(read("near.npy"), read("far.npy"));
     EXPECT_THAT(succeed("info far.prt").out,
-                HasSubstr("view                from (691236.5, 521.5, 5334570) to (691234, 520, "
-                          "5334567), 35 degrees"));
+                HasSubstr("view                from (691238.5, 521.5, 5334571) to (691236, 520, "
+                          "5334568), 35 degrees"));
     const nlohmann::json info = succeed("info far.prt --json").json();
-    EXPECT_EQ(info["layout"]["eye"], (nlohmann::json{691236.5, 521.5, 5334570.0}));
+    EXPECT_EQ(info["layout"]["eye"], (nlohmann::json{691238.5, 521.5, 5334571.0}));
 }
 
 TEST_F(FarPlaces, BoxesOfGrids) {
@@ -111,17 +111,18 @@ TEST_F(FarPlaces, BoxesOfGrids) {
     }
     EXPECT_EQ(read("near.npy"), read("far.npy"));
     const nlohmann::json probes = nlohmann::json::parse(read("far.json"))["object"];
-    EXPECT_EQ(probes["userData"]["low"], (nlohmann::json{691232.0, 521.25, 5334565.0}));
-    EXPECT_EQ(probes["children"][0]["matrix"][12], 691233.0);
-    EXPECT_EQ(probes["children"][0]["matrix"][14], 5334566.0);
+    EXPECT_EQ(probes["userData"]["low"], (nlohmann::json{691234.0, 521.25, 5334566.0}));
+    EXPECT_EQ(probes["children"][0]["matrix"][12], 691235.0);
+    EXPECT_EQ(probes["children"][0]["matrix"][14], 5334568.0);
 }
 
 TEST_F(FarPlaces, WhoAndPathsAndReports) {
     precompute("near");
     precompute("far");
-    const Result who = succeed(
-        {"edit", "far.prt", "lamp.hdr", "-o", "who.exr", "--who", text_of({1.1, 0.1, 0.0}, Place)});
-    EXPECT_THAT(who.out, HasSubstr("what lights vertex 0 (691235, 520, 5334567)"));
+    write("layers.json", R"({"version": 1, "layers": []})");
+    const Result who = succeed({"edit", "far.prt", "lamp.hdr", "layers.json", "-o", "who.exr",
+                                "--who", text_of({1.1, 0.1, 0.0}, Place)});
+    EXPECT_THAT(who.out, HasSubstr("what lights vertex 0 (691237, 520, 5334568)"));
     for (const auto& [name, offset] :
          {std::pair("near", glm::dvec3(0.0)), std::pair("far", Place)}) {
         const auto key = [&](int frame, const glm::dvec3& eye) {
@@ -138,9 +139,23 @@ TEST_F(FarPlaces, WhoAndPathsAndReports) {
                   read(std::string("far.") + frame + ".png"));
     EXPECT_NE(read("far.0.png"), read("far.1.png"));
     const nlohmann::json info = succeed("info far.obj --json").json();
-    EXPECT_EQ(info["min"], (nlohmann::json{691232.0, 519.0, 5334565.0}));
+    EXPECT_EQ(info["min"], (nlohmann::json{691234.0, 519.0, 5334566.0}));
     EXPECT_THAT(succeed("info far.obj").out,
-                HasSubstr("box                 (691232, 519, 5334565) to (691236, 521, 5334570)"));
+                HasSubstr("box                 (691234, 519, 5334566) to (691238, 521, 5334571)"));
+}
+
+/// A flat town whose heights are along Z, as map programs write it.
+TEST_F(FarPlaces, MapsWithHeightsAlongZAreDoubted) {
+    std::string town;
+    for (const glm::dvec3& p :
+         {glm::dvec3(0, 0, 0.5), {900.25, 0, 0.5}, {900.25, 800, 9.5}, {0, 800, 9.5}})
+        town += fmt::format("v {} {} {}\n", p.x - 15593.52441, p.y - 81362.74536, p.z);
+    write("town.obj", town + "f 1 2 3 4\n");
+    const char* const doubt = "+Y is taken as up, but coordinates are those of a map, with heights "
+                              "along Z; --up z turns it";
+    EXPECT_THAT(succeed("info town.obj").out, HasSubstr(doubt));
+    EXPECT_THAT(succeed("info far.obj").out, testing::Not(HasSubstr("of a map")));
+    precompute("town", {"--up", "z"});
 }
 
 } // namespace

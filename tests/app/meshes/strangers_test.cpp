@@ -269,7 +269,7 @@ void no_dark_line_along_the_floor(const Strangers& test) {
     const cubemap::Picture seen =
         test.picture("--size 96x72 --camera 35,25 --floor studio --albedo 1");
     for (std::size_t i = 0; i < seen.pixels.size(); ++i)
-        EXPECT_GT(seen.pixels[i].r, 0.15f) << i % 96 << ' ' << i / 96;
+        EXPECT_GT(seen.pixels[i].r, 0.1f) << i % 96 << ' ' << i / 96;
 }
 
 void is_red_of_acescg(const Strangers& test) {
