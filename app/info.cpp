@@ -18,6 +18,7 @@
 #include "relumine/in/environment_files.h"
 #include "relumine/in/mesh.h"
 #include "relumine/in/mesh_files.h"
+#include "relumine/in/place_report.h"
 #include "relumine/in/shared_work.h"
 
 namespace relumine::app {
@@ -121,9 +122,9 @@ void say_receivers(const prt::Scene& scene, const Session& session) {
                             scene.receivers.num_own(), prt::description(scene.layout),
                             100.0 * coverage_of(scene), prt::kind_of(scene.layout).whole));
     if (const prt::Camera* camera = prt::own_camera(scene.layout))
-        session.say(fmt::format("view                from ({}, {}, {}) to ({}, {}, {}), {} degrees",
-                                camera->eye.x, camera->eye.y, camera->eye.z, camera->target.x,
-                                camera->target.y, camera->target.z, camera->fov_degrees));
+        session.say(fmt::format("view                from ({}) to ({}), {} degrees",
+                                place_text(scene.mesh, camera->eye),
+                                place_text(scene.mesh, camera->target), camera->fov_degrees));
 }
 
 void describe_scene(const InfoArguments& options, const Session& session) {

@@ -21,6 +21,7 @@
 #include "app/scenes/lit_scene.h"
 #include "relumine/light/light_parts.h"
 #include "relumine/out/first_sight.h"
+#include "relumine/out/level_camera.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
 #include "viewer/view.h"
@@ -78,7 +79,7 @@ viewer::Shading shading_of(const ProbeBalls& balls, const Scene& scene) {
 void report(const viewer::ViewReport& result, const viewer::ViewState& state, const LitScene& lit,
             const Session& session) {
     const std::vector<double>& seconds = result.drag_seconds;
-    const std::string camera = viewer::camera_options(state.camera);
+    const std::string camera = viewer::camera_options(state.camera, lit.scene().mesh.offset);
     double sum = 0.0;
     double worst = 0.0;
     for (const double value : seconds) {
@@ -112,6 +113,14 @@ struct Beginning {
     std::optional<viewer::SceneLook> scene_look = {};
     std::optional<viewer::EnvironmentLook> environment_look = {};
 };
+
+/// The window stays level.
+void warn_of_roll(const Scene& scene, const Options& options, const Session& session) {
+    if (const float roll = leveled(camera_of(scene, options.picture)).roll_degrees; roll != 0.0f)
+        session.warn(fmt::format("{}: its camera is turned by {:.3g} degrees about its view, but "
+                                 "the window stands level",
+                                 options.scene.path, roll));
+}
 
 /// Reads environments as the options say.
 auto loader(const Options& options, Session& session) {
@@ -172,6 +181,8 @@ void show(LitScene& lit, const Options& options, viewer::ViewOptions view, bool 
     if (is_quick)
         state.message = "A first sight: the whole scene is on its way.";
     view.camera = beginning.camera;
+    if (!is_quick)
+        warn_of_roll(lit.scene(), options, session);
     const viewer::ViewReport result = viewer::view(state, view);
     if (is_quick)
         session.add_to_report("frames_of_first_sight", result.num_frames);

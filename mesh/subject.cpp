@@ -198,6 +198,21 @@ void leave_out_strays(const TriangleMesh& mesh, Extent& extent) {
     extent.counts = std::move(counts);
 }
 
+/// Whether what lies below a height is a plate: seen from above, it covers some of the box. Low
+/// houses of a town do not.
+bool is_plate(const TriangleMesh& mesh, const Extent& extent, float height, const Bounds& box) {
+    constexpr double Covered = 0.25;
+    double area = 0.0;
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i) {
+        const Triangle& triangle = mesh.triangles[i];
+        if ((extent.counts.empty() || extent.counts[i]) &&
+            std::all_of(triangle.begin(), triangle.end(),
+                        [&](std::uint32_t v) { return mesh.positions[v].y <= height; }))
+            area += 0.5 * std::abs(area_normal(mesh.positions, triangle).y);
+    }
+    return area >= Covered * double{box.size().x} * double{box.size().z};
+}
+
 } // namespace
 
 Extent extent(const TriangleMesh& mesh) {
@@ -220,17 +235,6 @@ std::vector<std::string> doubts_of_size(const TriangleMesh& mesh) {
         lines.push_back(fmt::format("{} triangles lie {:.3g} away, all others within {:.3g}: "
                                     "camera and floor are placed without them",
                                     found.num_stray, found.stray_reach, found.reach));
-    // Shapes are rounded to the spacing of floats.
-    constexpr float LeastSpacings = 2000.0f;
-    const Bounds& box = found.box;
-    const glm::vec3 farthest = glm::max(glm::abs(box.min), glm::abs(box.max));
-    const float spacing =
-        std::numeric_limits<float>::epsilon() * std::max({farthest.x, farthest.y, farthest.z});
-    if (const float size = box.diagonal(); size < LeastSpacings * spacing)
-        lines.push_back(fmt::format(
-            "coordinates are about {:.3g} apart from each other at ({:.0f}, {:.0f}, {:.0f}), which "
-            "is coarse for a mesh of {:.3g}: move it to the origin before it is exported",
-            spacing, box.center().x, box.center().y, box.center().z, size));
     return lines;
 }
 
@@ -255,7 +259,8 @@ std::vector<bool> subject(const TriangleMesh& mesh, const Extent& extent) {
         const MarkedBox upper = box_of(mesh, above(mesh, stands, height));
         if (!upper.any)
             return stands;
-        if (width(whole.box) > Wider * width(upper.box))
+        if (width(whole.box) > Wider * width(upper.box) &&
+            is_plate(mesh, extent, height, whole.box))
             return inside(mesh, stands, upper.box);
     }
     return stands;

@@ -29,8 +29,7 @@ struct Extent {
 /// Cost:    O(triangles).
 [[nodiscard]] Extent extent(const TriangleMesh& mesh);
 
-/// Returns what a user may not expect of a mesh's size, a line each: triangles that do not count,
-/// and coordinates so far from the origin that floats round the shape away.
+/// Returns what a user may not expect of a mesh's size, a line each: triangles that do not count.
 [[nodiscard]] std::vector<std::string> doubts_of_size(const TriangleMesh& mesh);
 
 /// Marks the vertices of the objects on the ground: triangles that count and do not lie wholly in

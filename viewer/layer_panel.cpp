@@ -370,7 +370,7 @@ void status_panel(const ViewState& state, const PanelLayout& layout) {
         cost.report.num_receivers, lit.radiance().size());
     ImGui::TextUnformatted(last.c_str());
     ImGui::SameLine(0.0f, 22.0f);
-    const std::string camera = camera_options(state.camera);
+    const std::string camera = camera_options(state.camera, lit.scene().mesh.offset);
     if (ImGui::SmallButton(camera.c_str()))
         ImGui::SetClipboardText(camera.c_str());
     hint("a click copies these options of relumine relight");

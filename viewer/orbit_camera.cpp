@@ -9,6 +9,8 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 
+#include "relumine/out/level_camera.h"
+
 namespace relumine::viewer {
 
 namespace {
@@ -63,7 +65,8 @@ void OrbitCamera::zoom(float steps) {
     distance *= std::exp2(-0.2f * std::clamp(steps, -20.0f, 20.0f));
 }
 
-OrbitCamera orbit_camera(const relight::Camera& camera) {
+OrbitCamera orbit_camera(const relight::Camera& of_picture) {
+    const relight::Camera camera = leveled(of_picture);
     const glm::vec3 from_target = camera.eye - camera.target;
     OrbitCamera result{.target = camera.target,
                        .distance = glm::length(from_target),
@@ -81,11 +84,13 @@ relight::Camera picture_camera(const OrbitCamera& camera) {
     return {.eye = camera.eye(), .target = camera.target, .fov_degrees = camera.fov_degrees};
 }
 
-std::string camera_options(const OrbitCamera& camera) {
+std::string camera_options(const OrbitCamera& camera, const glm::dvec3& offset) {
     constexpr float Degrees = 90.0f / QuarterTurn;
-    return fmt::format("--camera {:.2f},{:.2f},{:.5g},{:.4g} --target {:.5g},{:.5g},{:.5g}",
+    const glm::dvec3 target = glm::dvec3(camera.target) + offset;
+    const int digits = offset == glm::dvec3(0.0) ? 5 : 11;
+    return fmt::format("--camera {:.2f},{:.2f},{:.5g},{:.4g} --target {:.{}g},{:.{}g},{:.{}g}",
                        camera.yaw * Degrees, camera.pitch * Degrees, camera.distance,
-                       camera.fov_degrees, camera.target.x, camera.target.y, camera.target.z);
+                       camera.fov_degrees, target.x, digits, target.y, digits, target.z, digits);
 }
 
 CameraFrame frame(const OrbitCamera& camera, const PixelRectangle& viewport) {

@@ -52,11 +52,13 @@ struct CameraFrame {
     glm::vec3 forward{0.0f, 0.0f, -1.0f};
 };
 
-/// Returns the camera with the same view as another: right way up, target at the same place.
-[[nodiscard]] OrbitCamera orbit_camera(const relight::Camera& camera);
+/// Returns the camera with the same view as another: right way up, target at the same place. What
+/// leveled() leaves out of its roll is left out.
+[[nodiscard]] OrbitCamera orbit_camera(const relight::Camera& of_picture);
 [[nodiscard]] relight::Camera picture_camera(const OrbitCamera& camera);
 /// Returns the options of `relumine relight` for this view: "--camera 24,20,3,35 --target 0,1,0".
-[[nodiscard]] std::string camera_options(const OrbitCamera& camera);
+/// `offset` is that of the mesh: options count as its file does.
+[[nodiscard]] std::string camera_options(const OrbitCamera& camera, const glm::dvec3& offset);
 [[nodiscard]] CameraFrame frame(const OrbitCamera& camera, const PixelRectangle& viewport);
 /// Returns the matrix from world to OpenGL's clip space. `reach` is how far the scene extends from
 /// the target.

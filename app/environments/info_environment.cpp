@@ -11,6 +11,7 @@
 #include "app/options/output_options.h"
 #include "files/joined.h"
 #include "relumine/ask/environment_doctor.h"
+#include "relumine/in/environment.h"
 #include "relumine/in/environment_files.h"
 #include "relumine/light/light_lists.h"
 #include "relumine/out/pictures.h"
@@ -29,6 +30,8 @@ struct Findings {
     std::vector<cubemap::SeamFault> faults;
     /// The sun was split off the map; what is left may be darker above.
     bool has_sun_file = false;
+    /// What a first picture says
+    std::vector<std::string> warnings = {};
 };
 
 std::string direction_text(const glm::dvec3& w) {
@@ -99,8 +102,8 @@ std::optional<std::string> upside_down(const Findings& found) {
 }
 
 void say_doubts(const Findings& found, const Session& session) {
-    if (const auto doubt = upside_down(found))
-        session.say(fmt::format("suspect             {}", *doubt));
+    for (const std::string& warning : found.warnings)
+        session.say(fmt::format("suspect             {}", warning));
     if (found.clipped)
         session.say(
             fmt::format("suspect             a clipped or veiled sun is likely towards {}: {}",
@@ -139,6 +142,7 @@ Report report(const cubemap::EnvironmentImage& image, const Findings& found) {
                      {"irradiance", irradiance},
                      {"light_from_below", s.light_from_below},
                      {"upside_down", upside_down(found).has_value()},
+                     {"warnings", found.warnings},
                      {"pixel_diameter_degrees", found.search.pixel_diameter_degrees},
                      {"num_nan", image.bad_pixels.num_nan},
                      {"num_infinite", image.bad_pixels.num_infinite},
@@ -184,6 +188,8 @@ void describe_environment(const EnvironmentInfoOptions& options, const Session& 
                    .clipped = {},
                    .faults = cubemap::seam_faults(image),
                    .has_sun_file = lights::has_sun_file(options.path)};
+    found.warnings =
+        warnings_about(image, found.has_sun_file ? 0.0 : found.statistics.light_from_below);
     found.clipped = cubemap::clipped_sun(image, found.search, found.statistics);
     session.poll();
     if (!options.picture.empty()) {

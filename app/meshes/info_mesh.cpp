@@ -13,6 +13,9 @@
 #include "files/counted.h"
 #include "relumine/in/material_report.h"
 #include "relumine/in/mesh_files.h"
+#include "relumine/in/mesh_remarks.h"
+#include "relumine/in/place_report.h"
+#include "relumine/in/places.h"
 #include "relumine/out/pictures.h"
 
 namespace relumine::app {
@@ -145,9 +148,10 @@ std::string text_of(const mesh::TriangleMesh& mesh, const std::vector<mesh::Vert
     if (edges.empty())
         return "0";
     const auto& [a, b] = edges.front();
-    const glm::vec3 middle = 0.5f * (mesh.positions[a] + mesh.positions[b]);
-    return fmt::format("{}, the first between vertices {} and {} at ({:.6g}, {:.6g}, {:.6g})",
-                       edges.size(), a, b, middle.x, middle.y, middle.z);
+    const glm::dvec3 middle = place_of(mesh, 0.5f * (mesh.positions[a] + mesh.positions[b]));
+    const int digits = mesh.offset == glm::dvec3(0.0) ? 6 : 10;
+    return fmt::format("{}, the first between vertices {} and {} at ({:.{}g}, {:.{}g}, {:.{}g})",
+                       edges.size(), a, b, middle.x, digits, middle.y, digits, middle.z, digits);
 }
 
 std::string text_of(const char* what, const std::vector<std::uint32_t>& items) {
@@ -228,12 +232,10 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
     const mesh::Diagnosis diagnosis = mesh::diagnose(mesh);
     if (!options.picture.empty())
         relight::save_mesh_picture(options.picture, mesh, diagnosis);
-    if (mesh.has_normals)
-        mesh::settle_normals(mesh); // its warnings are those of a first picture
     session.say(fmt::format("mesh                {} vertices, {}", mesh.num_vertices(),
                             files::counted(mesh.num_triangles(), "triangle")));
-    session.say(fmt::format("box                 ({}, {}, {}) to ({}, {}, {})", box.min.x,
-                            box.min.y, box.min.z, box.max.x, box.max.y, box.max.z));
+    session.say(fmt::format("box                 ({}) to ({})", place_text(mesh, box.min),
+                            place_text(mesh, box.max)));
     session.say(fmt::format("colours, uvs        {}, {}", mesh.colors.empty() ? "no" : "yes",
                             !mesh.uvs.empty()          ? "yes"
                             : !mesh.corner_uvs.empty() ? "per corner"
@@ -247,27 +249,34 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
         session.say(fmt::format("group               {}", group));
     const std::vector<std::string> lamps = prt::lamps_of(mesh).names();
     say_lamps(lamps, session);
-    for (const std::string& name : mesh.missing)
-        session.say(fmt::format("not found           {}", name));
-    for (const std::string& note : mesh.notes)
-        session.say(fmt::format("read                {}", note));
-    for (const std::string& warning : mesh.warnings)
-        session.say(fmt::format("left out            {}", warning));
     const Report faults = diagnosis_report(mesh, diagnosis, session);
-    session.report({{"kind", "mesh"},
-                    {"vertices", mesh.num_vertices()},
-                    {"triangles", mesh.num_triangles()},
-                    {"min", box.min},
-                    {"max", box.max},
-                    {"diagnosis", faults},
-                    {"colors", !mesh.colors.empty()},
-                    {"uvs", !mesh.uvs.empty() || !mesh.corner_uvs.empty()},
-                    {"materials", materials},
-                    {"groups", mesh.groups},
-                    {"lamps", lamps},
-                    {"missing", mesh.missing},
-                    {"notes", mesh.notes},
-                    {"left_out", mesh.warnings}});
+    Report report = {{"kind", "mesh"},
+                     {"vertices", mesh.num_vertices()},
+                     {"triangles", mesh.num_triangles()},
+                     {"min", place_json(mesh, box.min)},
+                     {"max", place_json(mesh, box.max)},
+                     {"diagnosis", faults},
+                     {"colors", !mesh.colors.empty()},
+                     {"uvs", !mesh.uvs.empty() || !mesh.corner_uvs.empty()},
+                     {"materials", materials},
+                     {"groups", mesh.groups},
+                     {"lamps", lamps}};
+    // What a first picture says.
+    const MeshRemarks remarks =
+        remarks_on(prepared(std::move(mesh), options.path, {.pose = options.pose}));
+    const auto say = [&](const char* name, const std::vector<std::string>& lines) {
+        for (const std::string& line : lines)
+            session.say(fmt::format("{:20}{}", name, line));
+    };
+    say("not found", remarks.missing);
+    say("read", remarks.notes);
+    say("left out", remarks.left_out);
+    say("suspect", remarks.doubts);
+    files::update(report, {{"missing", remarks.missing},
+                           {"notes", remarks.notes},
+                           {"left_out", remarks.left_out},
+                           {"suspect", remarks.doubts}});
+    session.report(report);
 }
 
 } // namespace relumine::app

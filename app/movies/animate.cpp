@@ -143,7 +143,7 @@ private:
     /// The camera on its path, or turned about its target.
     [[nodiscard]] Camera camera_of_frame(std::size_t frame) const {
         if (options_.camera_path)
-            return options_.camera_on_path(sequence_.number(frame), *camera_);
+            return options_.camera_on_path(sequence_.number(frame), *camera_).in(scene().mesh);
         Camera camera = *camera_;
         camera.eye = camera.target + glm::vec3(cubemap::turn_about_y(options_.turn_degrees(frame)) *
                                                glm::dvec3(camera.eye - camera.target));

@@ -86,8 +86,8 @@ void AnimateOptions::load_camera() {
     camera_path = load_camera_path(camera_file);
 }
 
-Camera AnimateOptions::camera_on_path(std::int64_t number, const Camera& other) const {
-    Camera camera = camera_at(camera_path.value(), static_cast<double>(number));
+PlacedCamera AnimateOptions::camera_on_path(std::int64_t number, const Camera& other) const {
+    PlacedCamera camera = camera_at(camera_path.value(), static_cast<double>(number));
     if (!camera_path->names_fov)
         camera.fov_degrees = other.fov_degrees;
     return camera;

@@ -65,7 +65,7 @@ struct AnimateOptions {
     [[nodiscard]] double turn_degrees(std::size_t frame) const;
     /// The camera of --camera-path at the frame of a number. Without a field of view in the file it
     /// has that of `other`.
-    [[nodiscard]] Camera camera_on_path(std::int64_t number, const Camera& other) const;
+    [[nodiscard]] PlacedCamera camera_on_path(std::int64_t number, const Camera& other) const;
     /// Refuses what cannot be done before any work is.
     void check(const cubemap::FrameSequence& sequence) const;
     /// The pattern of -o, nothing without -o. Throws std::runtime_error where the number has no

@@ -22,12 +22,11 @@ void require_live_highlights(const Scene& scene, const std::filesystem::path& pa
             path.string()));
 }
 
-void warn_of_eye_inside(const LitScene& lit, const std::optional<glm::vec3>& eye,
+void warn_of_eye_inside(const LitScene& lit, const std::optional<glm::dvec3>& eye,
                         const Session& session) {
-    if (eye && is_inside(lit, *eye))
-        session.warn(fmt::format("the eye {:.4g},{:.4g},{:.4g} is inside of the mesh: it sees the "
-                                 "backs of surfaces",
-                                 eye->x, eye->y, eye->z));
+    if (eye && is_inside(lit, place_in(lit.scene().mesh, *eye)))
+        session.warn(fmt::format("the eye {} is inside of the mesh: it sees the backs of surfaces",
+                                 PointText::show(*eye)));
 }
 
 void warn_of_smooth_surfaces(std::size_t num_receivers, const Session& session) {

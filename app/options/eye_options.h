@@ -19,8 +19,8 @@ namespace relumine::app {
 /// Throws std::runtime_error "path: expected X, got Y" for a scene without live highlights.
 void require_live_highlights(const Scene& scene, const std::filesystem::path& path);
 
-/// Warns where an eye, if there is one, is inside of the mesh.
-void warn_of_eye_inside(const LitScene& lit, const std::optional<glm::vec3>& eye,
+/// Warns where an eye, if there is one, is inside of the mesh. It is a place of the mesh's file.
+void warn_of_eye_inside(const LitScene& lit, const std::optional<glm::dvec3>& eye,
                         const Session& session);
 
 /// Warns of highlights that come out wider than they are.

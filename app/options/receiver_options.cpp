@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "relumine/in/place_report.h"
+
 namespace relumine::app {
 
 namespace {
@@ -38,6 +40,12 @@ Report layout_json(const prt::Scene& scene) {
             own.members(member);
         },
         layout);
+    for (const char* const place : {"eye", "target", "low", "high"})
+        if (const Report* const found = report.find(place); found != nullptr) {
+            const Report::Array& p = found->values();
+            const glm::dvec3 at(p.at(0).number(), p.at(1).number(), p.at(2).number());
+            report.set(place, place_json(scene.mesh, glm::vec3(at)));
+        }
     report.set("coverage", coverage_of(scene));
     return report;
 }

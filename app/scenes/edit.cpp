@@ -18,6 +18,7 @@
 #include "app/scenes/lit_scene.h"
 #include "files/counted.h"
 #include "relumine/in/environment_files.h"
+#include "relumine/in/place_report.h"
 #include "relumine/light/layers.h"
 #include "relumine/out/light_mix.h"
 #include <fmt/format.h>
@@ -37,7 +38,7 @@ struct EditArguments {
     glm::vec3 gain{2.0f};
     std::string saved_environment;
     /// --who: a position. Empty: not asked for.
-    std::optional<glm::vec3> who;
+    std::optional<glm::dvec3> who;
     /// --lit-by: a layer's name, or a disc X,Y,Z,RADIUS. Empty: not asked for.
     std::string lit_by;
     bool watch = false;
@@ -225,7 +226,8 @@ private:
 
     /// The environment weighted by what it gives to the receiver nearest to the position.
     void save_who() const {
-        const std::uint32_t receiver = nearest_receiver(lit_.scene(), *options_.who);
+        const std::uint32_t receiver =
+            nearest_receiver(lit_.scene(), place_in(lit_.scene().mesh, *options_.who));
         const glm::vec3& nearest = lit_.scene().receivers.positions[receiver];
         const cubemap::CubeMap map = contribution_map(lit_, {&receiver, 1});
         const auto is_dark = [](const glm::vec3& texel) {
@@ -237,9 +239,9 @@ private:
                 "that it sees is dark; name a point that is in the open",
                 options_.output.path, prt::kind_of(lit_.scene().layout).one, receiver));
         save_map(options_.output.path, map, options_.output.picture.exposure_ev.value_or(0.0));
-        session_.say(fmt::format("{}: what lights {} {} ({}, {}, {})", options_.output.path,
-                                 prt::kind_of(lit_.scene().layout).one, receiver, nearest.x,
-                                 nearest.y, nearest.z));
+        session_.say(fmt::format("{}: what lights {} {} ({})", options_.output.path,
+                                 prt::kind_of(lit_.scene().layout).one, receiver,
+                                 place_text(lit_.scene().mesh, nearest)));
     }
 
     /// The scene as a region of the environment lights it, with that region behind it.

@@ -22,6 +22,7 @@
 #include "files/counted.h"
 #include "files/extension.h"
 #include "relumine/in/mesh_files.h"
+#include "relumine/in/mesh_remarks.h"
 #include "relumine/in/precompute_table.h"
 #include "relumine/in/scene_cache.h"
 
@@ -253,25 +254,6 @@ std::string where_time_went(const PrecomputeReport& facts, double seconds) {
                        std::max(seconds - facts.clusters.seconds - highlights - bounces, 0.0));
 }
 
-/// Triangles that are wound the wrong way round look inwards, where it is dark, unless the file's
-/// normals say otherwise.
-void warn_of_winding(const mesh::TriangleMesh& mesh, const std::string& path,
-                     const Session& session) {
-    const mesh::Winding winding = mesh::find_winding(mesh);
-    std::size_t num_black = 0;
-    std::uint32_t first = 0;
-    for (std::uint32_t i = static_cast<std::uint32_t>(mesh.num_triangles()); i-- > 0;)
-        if (winding.is_wrong[i] && mesh::faces_with_normals(mesh, i)) {
-            ++num_black;
-            first = i;
-        }
-    if (num_black != 0)
-        session.warn(fmt::format(
-            "{}: {} of {} triangles are wound the wrong way round, the first is triangle {}: they "
-            "look inwards and stay dark; `relumine mesh repair` turns them",
-            path, num_black, mesh.num_triangles(), first));
-}
-
 /// What there is to say of a plan.
 void write_plan(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWork& work,
                 const Stopwatch& watch, Session& session) {
@@ -305,26 +287,15 @@ Mesh made_mesh(const PrecomputeArguments& options, Session& session) {
     MeshOptions mesh_options = options.mesh_options;
     mesh_options.max_memory = options.precompute.max_memory;
     Mesh mesh = load_mesh(options.mesh, mesh_options);
-    if (turns_by_custom(options))
-        session.say(fmt::format("{}: +Z is up, by the custom of {}; --up y where it is not",
-                                options.mesh, files::extension_of(options.mesh)));
-    else if (!options.mesh_options.up &&
-             mesh::stands_on_z(mesh.geometry,
-                               mesh.geometry.num_vertices() -
-                                   std::size_t{mesh.floor_vertices} * mesh.floor_vertices))
-        session.say(fmt::format("{}: +Y is taken as up, but the mesh stands flat on its side "
-                                "towards -Z; --up z turns it if it lies on its back",
-                                options.mesh));
-    if (const auto crease = mesh::customary_crease(options.mesh);
-        crease && !options.mesh_options.crease)
-        session.say(fmt::format("{}: edges over {} degrees are sharp, by the custom of {}; "
-                                "--crease 180 where they are not",
-                                options.mesh, *crease, files::extension_of(options.mesh)));
-    for (const std::string& line : mesh.geometry.notes)
+    const MeshRemarks remarks = remarks_on(mesh, mesh_options);
+    for (const std::string& line : remarks.notes)
         session.say(fmt::format("{}: {}", options.mesh, line));
-    for (const std::string& line : mesh::left_out(mesh.geometry))
+    for (const std::string& line : remarks.left_out)
         session.warn(fmt::format("{}: {}", options.mesh, line));
-    warn_of_winding(mesh.geometry, options.mesh, session);
+    for (const std::string& name : remarks.missing)
+        session.warn(fmt::format("{}: no {} is found", options.mesh, name));
+    for (const std::string& line : remarks.doubts)
+        session.warn(fmt::format("{}: {}", options.mesh, line));
     session.detail(fmt::format("{}: {} vertices, {} triangles", options.mesh,
                                mesh.geometry.num_vertices(), mesh.geometry.num_triangles()));
     if (options.simplify != 0)

@@ -9,6 +9,7 @@
 #include "app/options/environment_options.h"
 #include "app/options/eye_options.h"
 #include "app/scenes/lit_scene.h"
+#include "relumine/in/place_report.h"
 #include "relumine/in/shared_work.h"
 
 namespace relumine::app {
@@ -22,7 +23,7 @@ struct VerifyArguments {
     BounceOption bounces;
     float albedo = 0.5f;
     std::uint32_t num_paths = VerifyOptions{}.num_paths;
-    std::optional<glm::vec3> eye;
+    std::optional<glm::dvec3> eye;
     EyeOptions eye_options;
 };
 
@@ -55,16 +56,16 @@ Report surface_report(std::string_view place, const mesh::TriangleMesh& mesh,
     const glm::vec3 worst =
         prt::value_at(mesh, mesh.positions, surface.points[error.worst_receiver]);
     session.say(fmt::format("{}, {} points of the surface: relative L2 {:.5f}, "
-                            "mean error {:.3f} %, largest {:.2f} % at ({}, {}, {})",
+                            "mean error {:.3f} %, largest {:.2f} % at ({})",
                             place, surface.points.size(), error.relative_l2, 100.0 * error.mean_abs,
-                            100.0 * error.max_abs, worst.x, worst.y, worst.z));
+                            100.0 * error.max_abs, place_text(mesh, worst)));
     return {{"points", surface.points.size()},
             {"relative_l2", error.relative_l2},
             {"mean_abs", error.mean_abs},
             {"max_abs", error.max_abs},
             {"bias", error.bias},
             {"mean_radiance", error.mean_radiance},
-            {"worst_position", worst}};
+            {"worst_position", place_json(mesh, worst)}};
 }
 
 /// The error at the receivers, for people.
@@ -96,11 +97,13 @@ void run(const VerifyArguments& options, Session& session) {
         options.bounces.bounce(lit, {.albedo = glm::vec3(options.albedo)}, options.scene.path);
 
     Stopwatch watch;
+    const std::optional<glm::vec3> eye =
+        options.eye ? std::optional(place_in(lit.scene().mesh, *options.eye)) : std::nullopt;
     const Verification check = verify(lit,
                                       {.num_samples = options.num_samples,
                                        .num_surface_points = surface_points(options),
                                        .num_paths = options.num_paths,
-                                       .eye = options.eye,
+                                       .eye = eye,
                                        .eye_options = options.eye_options},
                                       {.team = session.processes(),
                                        .stop = session.stop(),
@@ -118,8 +121,8 @@ void run(const VerifyArguments& options, Session& session) {
             fmt::format("with {} bounces at albedo {}, against {} paths per receiver, whose "
                         "noise is {:.5f} of the relative L2",
                         bounces->num_bounces, options.albedo, options.num_paths, check.noise));
-    session.say(fmt::format("largest at {} {} ({}, {}, {})", name, error.worst_receiver, worst.x,
-                            worst.y, worst.z));
+    session.say(fmt::format("largest at {} {} ({})", name, error.worst_receiver,
+                            place_text(lit.scene().mesh, worst)));
     Report report = {{"relative_l2", error.relative_l2},
                      {"mean_abs", error.mean_abs},
                      {"max_abs", error.max_abs},
@@ -129,7 +132,7 @@ void run(const VerifyArguments& options, Session& session) {
                      {"samples", check.receivers.size()},
                      {"mean_radiance", error.mean_radiance},
                      {name == "vertex" ? "worst_vertex" : "worst_receiver", error.worst_receiver},
-                     {"worst_position", worst},
+                     {"worst_position", place_json(lit.scene().mesh, worst)},
                      {"face_resolution", environment_of(lit).resolution},
                      {"seconds", seconds}};
     if (check.surface)

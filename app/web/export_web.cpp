@@ -30,6 +30,7 @@
 #include "relumine/light/bounces.h"
 #include "relumine/light/light_parts.h"
 #include "relumine/light/live_eye.h"
+#include "relumine/out/level_camera.h"
 #include "relumine/out/pictures.h"
 #include "relumine/out/receiver_colors.h"
 #include "relumine/version.h"
@@ -66,6 +67,8 @@ std::vector<std::string> left_out_of(const Scene& scene) {
                                material.transmission > 0.0f;
                     }))
         left.push_back("alpha and glass: surfaces are opaque, though light passes them");
+    if (const float roll = leveled(camera_of(scene)).roll_degrees; roll != 0.0f)
+        left.push_back(fmt::format("the camera's turn by {:.3g} degrees about its view", roll));
     return left;
 }
 
@@ -112,7 +115,10 @@ std::vector<std::byte> runtime_scene(Scene scene) {
 }
 
 files::Json camera_of_page(const Scene& scene) {
-    const Camera camera = camera_of(scene);
+    // The page lets nobody farther away than 40 radii.
+    constexpr float Farthest = 15.0f;
+    const float radius = 0.5f * relight::subject_bounds(scene.mesh).diagonal();
+    const Camera camera = brought_near(leveled(camera_of(scene)), Farthest * radius);
     return {{"eye", camera.eye}, {"target", camera.target}, {"fov", camera.fov_degrees}};
 }
 

@@ -30,6 +30,7 @@ private:
     template<class Decode>
     [[nodiscard]] std::optional<Texture> decoded(std::uint64_t index, const Decode& decode);
     void join_uv_sets(Material& material);
+    double alpha_of_both(const Json& description, double of_extension);
     void read_specular_glossiness(const Json& description, Material& material);
     void read_emission(const Json& description, Material& material);
     void read_glass(const Json& extensions, Material& material);
@@ -197,6 +198,22 @@ std::vector<double> MaterialReader::factors(const Json& object, const char* key,
     return values;
 }
 
+/// Returns the alpha of a material that says it twice. That of KHR_materials_pbrSpecularGlossiness
+/// counts. But where that is 1, a surface that is to be blended would be opaque: then it is the
+/// other one. Assimp writes opacity there alone.
+double MaterialReader::alpha_of_both(const Json& description, double of_extension) {
+    const double other =
+        factors(child(description, "pbrMetallicRoughness"), "baseColorFactor", {1.0, 1.0, 1.0, 1.0})
+            .at(3);
+    if (of_extension < 1.0 || other == 1.0 || text(description, "alphaMode", "OPAQUE") != "BLEND")
+        return of_extension;
+    result_.warnings.push_back(fmt::format(
+        "the material {} is to be blended, with an alpha of 1 in "
+        "KHR_materials_pbrSpecularGlossiness and {:.3g} in baseColorFactor: it has {:.3g}",
+        name_, other, other));
+    return other;
+}
+
 /// Reads KHR_materials_pbrSpecularGlossiness. Glossiness times the texture's alpha becomes a
 /// texture of roughness.
 void MaterialReader::read_specular_glossiness(const Json& description, Material& material) {
@@ -208,7 +225,7 @@ void MaterialReader::read_specular_glossiness(const Json& description, Material&
     material.model = MaterialModel::SpecularGlossiness;
     material.base_color = glm::vec3(diffuse[0], diffuse[1], diffuse[2]);
     material.base_color_texture = slot(extension, "diffuseTexture", true);
-    read_alpha(description, diffuse[3], material);
+    read_alpha(description, alpha_of_both(description, diffuse[3]), material);
     material.specular = glm::vec3(specular[0], specular[1], specular[2]);
     material.specular_texture = slot(extension, "specularGlossinessTexture", true);
     material.roughness = 1.0f - glossiness;

@@ -385,6 +385,13 @@ void choose_colors(PolygonSoup& soup) {
                                         takes_vertices ? "vertices" : "faces"));
 }
 
+/// Whether the file has such elements.
+bool header_has(const Header& header, std::string_view name) {
+    return std::any_of(header.elements.begin(), header.elements.end(), [&](const Element& element) {
+        return element.name == name && element.count > 0;
+    });
+}
+
 template<class Values>
 PolygonSoup read_body(const Header& header, Values values) {
     check_sizes(header, values.num_bytes(), Values::IsBinary);
@@ -407,6 +414,8 @@ PolygonSoup read_body(const Header& header, Values values) {
             skip(element, values);
     }
     values.expect_end();
+    if (soup.face_ends.empty() && header_has(header, "range_grid"))
+        soup.why_no_faces = "; its range_grid is not read, MeshLab makes faces of it";
     if (!soup.face_colors.empty()) {
         soup.face_colors.resize(soup.face_ends.size(), no_color());
         choose_colors(soup);

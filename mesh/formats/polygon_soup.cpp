@@ -74,8 +74,8 @@ void triangulate(const PolygonSoup& soup, TriangleMesh& mesh) {
     }
     if (mesh.triangles.empty())
         throw std::runtime_error(
-            fmt::format("expected faces with three or more corners, got {} vertices and {} faces",
-                        soup.positions.size(), soup.face_ends.size()));
+            fmt::format("expected faces with three or more corners, got {} vertices and {} faces{}",
+                        soup.positions.size(), soup.face_ends.size(), soup.why_no_faces));
     if (num_skipped > 0)
         mesh.warnings.push_back(fmt::format("{} of {} faces have fewer than three corners",
                                             num_skipped, soup.face_ends.size()));
@@ -104,6 +104,19 @@ void enlarge(PolygonSoup& soup) {
         "coordinates are at most {:.3g}, too small to compute with; the mesh is read 2^{} times as "
         "large",
         size, exponent));
+}
+
+/// Returns how far floats are apart at a place.
+double spacing_at(const glm::dvec3& place) {
+    const glm::dvec3 far = glm::abs(place);
+    return double{std::numeric_limits<float>::epsilon()} * std::max({far.x, far.y, far.z});
+}
+
+/// Whether floats round shapes, cameras and rays away at the place of a box.
+bool is_coarse(const Bounds& box) {
+    constexpr double LeastSpacings = 2000.0;
+    const double size = box.diagonal();
+    return size > 0.0 && size < LeastSpacings * spacing_at(glm::dvec3(box.center()));
 }
 
 /// Returns the value that half of the others are below.
@@ -155,8 +168,10 @@ void centre(PolygonSoup& soup) {
     const auto is_one = [](const glm::vec3& position) {
         return is_finite(position);
     };
-    if (soup.remainders.empty() ||
-        !std::all_of(soup.positions.begin(), soup.positions.end(), is_one))
+    if (!std::all_of(soup.positions.begin(), soup.positions.end(), is_one))
+        return;
+    const bool has_digits = !soup.remainders.empty();
+    if (!has_digits && !is_coarse(bounds(soup.positions)))
         return;
     const std::size_t count = soup.positions.size();
     // A few vertices may lie anywhere.
@@ -184,9 +199,14 @@ void centre(PolygonSoup& soup) {
     soup.move_back(offset);
     for (std::size_t i = 0; i < soup.light_positions.size(); ++i)
         soup.lights[i].position = glm::vec3(soup.light_positions[i] - offset);
+    if (!has_digits)
+        soup.warnings.push_back(fmt::format(
+            "coordinates are about {:.3g} apart from each other at ({:.0f}, {:.0f}, {:.0f}), which "
+            "is coarse for a mesh of {:.3g}: move it to the origin before it is exported",
+            spacing_at(middle), middle.x, middle.y, middle.z, bounds(soup.positions).diagonal()));
     soup.notes.push_back(fmt::format(
-        "coordinates are far from the origin: ({}, {}, {}) is taken off them, and put back into "
-        "meshes that are written; places of options count without it",
+        "coordinates are far from the origin: ({}, {}, {}) is taken off them while the mesh is "
+        "computed with; places in options and in written files count as in this file",
         offset.x, offset.y, offset.z));
 }
 

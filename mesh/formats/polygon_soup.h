@@ -41,6 +41,8 @@ struct PolygonSoup {
     glm::dvec3 offset{0.0};
     /// Vertex indices of all faces, one face after the other. They may be out of range.
     std::vector<std::uint32_t> corners;
+    /// What is said behind a refusal of a mesh without faces.
+    std::string why_no_faces;
     /// [num_faces], the end of each face in `corners`.
     std::vector<std::size_t> face_ends;
     /// [num_vertices] of any length, or empty.
@@ -89,8 +91,8 @@ struct PolygonSoup {
 };
 
 /// Takes an offset off all coordinates, those of lights among them, if most vertices lie nearer to
-/// each other than a sixteenth of their distance from the origin, and floats rounded them. A second
-/// call does nothing.
+/// each other than a sixteenth of their distance from the origin, and floats rounded them or are
+/// about to round what is computed. A second call does nothing.
 void centre(PolygonSoup& soup);
 
 /// Checks the soup, centres it, cuts its polygons into triangles, completes the normals and makes

@@ -563,11 +563,12 @@ void bind_relighters(py::module_& module) {
                  return owned(quickly(own, [](LitScene& lit) { return relumine::bounced(lit); }));
              })
         .def("towards",
-             [](Lit& own, const std::array<float, 3>& eye, float tolerance) {
+             [](Lit& own, const std::array<double, 3>& eye, float tolerance) {
                  own.refuse_reentry();
                  std::vector<glm::vec3> radiance = [&] {
                      const Release release;
-                     return own.towards({eye[0], eye[1], eye[2]}, {.tolerance = tolerance});
+                     return own.towards(place_in(own.scene().mesh, {eye[0], eye[1], eye[2]}),
+                                        {.tolerance = tolerance});
                  }();
                  return owned(std::move(radiance));
              })

@@ -321,6 +321,10 @@ py::dict settings_of(const Scene& scene) {
 template<typename Class, typename Geometry>
 void bind_mesh_arrays(Class& type, Geometry geometry) {
     using Pointer = typename Class::holder_type;
+    type.def_property_readonly("offset", [=](const Pointer& own) {
+        const glm::dvec3& offset = geometry(*own).offset;
+        return std::array<double, 3>{offset.x, offset.y, offset.z};
+    });
     type.def_property_readonly(
         "vertices", [=](const Pointer& own) { return view(own, geometry(*own).positions); });
     type.def_property_readonly("triangles", [=](const Pointer& own) {
@@ -378,8 +382,8 @@ void bind_scenes(py::module_& module) {
                                    return owned(std::vector(places.begin(), places.end()));
                                })
         .def_property_readonly("settings", &settings_of)
-        .def("nearest_receiver", [](const Scene& scene, const std::array<float, 3>& p) {
-            return nearest_receiver(scene, {p[0], p[1], p[2]});
+        .def("nearest_receiver", [](const Scene& scene, const std::array<double, 3>& p) {
+            return nearest_receiver(scene, place_in(scene.mesh, {p[0], p[1], p[2]}));
         });
 
     module.def("make_mesh", &make_mesh);

@@ -214,8 +214,18 @@ class Mesh:
         return self._core.notes
 
     @property
+    def offset(self) -> Tuple[float, float, float]:
+        """What is taken off coordinates that are far from the origin, as those of maps are: (x, y, z).
+
+        `vertices` and all other arrays of places have it taken off. `vertices + offset`, in float64,
+        are the file's own. What is given as a single place, such as `eye`, counts as in the file.
+        (0, 0, 0) for all other meshes.
+        """
+        return self._core.offset
+
+    @property
     def vertices(self) -> Floats:
-        """(N, 3) float32, read-only, the floor's included."""
+        """(N, 3) float32, read-only, the floor's included; `offset` is taken off."""
         result: Floats = view(self._core.vertices)
         return result
 

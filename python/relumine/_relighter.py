@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Floats, Indices, expect, floats, indices, real, view, whole
+from ._arrays import Floats, Indices, doubles, expect, floats, indices, real, view, whole
 from ._blockers import BlockersFunction, asked
 from ._environment import Environment, _options
 from ._files import Path, errors
@@ -331,13 +331,13 @@ class Relighter:
         for the eye, so it may go anywhere, in milliseconds. Receivers that face away from the eye
         have no highlight. It shows the present light, bounces of bounce() included.
 
-        eye        x, y, z
+        eye        x, y, z, as in the mesh's file
         tolerance  relative L2 error, as a part of what a white matt surface sends
 
         Raises ValueError for a scene without such highlights.
         """
         self._require_light()
-        x, y, z = (float(each) for each in floats("eye", eye, 3))
+        x, y, z = (float(each) for each in doubles("eye", eye, 3))
         tolerance = real("tolerance", tolerance)
         if not 1e-5 <= tolerance <= 1.0:
             raise ValueError(f"tolerance: expected 1e-5 to 1, got {tolerance}")

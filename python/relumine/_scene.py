@@ -344,7 +344,7 @@ class Scene:
 
     @property
     def positions(self) -> Floats:
-        """(num_receivers, 3) float32, read-only: the points that are lit."""
+        """(num_receivers, 3) float32, read-only: the points that are lit; `offset` is taken off."""
         result: Floats = view(self._core.receiver_positions)
         return result
 
@@ -371,8 +371,13 @@ class Scene:
         return result
 
     @property
+    def offset(self) -> Tuple[float, float, float]:
+        """What is taken off the coordinates of the mesh's file: Mesh.offset."""
+        return self._core.offset
+
+    @property
     def vertices(self) -> Floats:
-        """(N, 3) float32, read-only: the mesh."""
+        """(N, 3) float32, read-only: the mesh; `offset` is taken off."""
         result: Floats = view(self._core.vertices)
         return result
 
@@ -394,7 +399,7 @@ class Scene:
         return self._core.settings
 
     def nearest_receiver(self, position: Sequence[float]) -> int:
-        """The index of the receiver nearest to a point (x, y, z)."""
+        """The index of the receiver nearest to a place (x, y, z) of the mesh's file."""
         x, y, z = position
         return self._core.nearest_receiver((float(x), float(y), float(z)))
 

@@ -189,6 +189,11 @@ Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
                                                 .pose = options.pose,
                                                 .colors = options.vertex_colors,
                                                 .lightmap_uvs = options.uv_set.value_or(1)});
+    return prepared(std::move(loaded), path, options);
+}
+
+Mesh prepared(mesh::LoadedMesh loaded, const std::filesystem::path& path,
+              const MeshOptions& options) {
     Mesh mesh;
     mesh.source_hash = loaded.hash;
     mesh.camera = loaded.camera;

@@ -116,6 +116,10 @@ struct MeshOptions {
 ///          MemoryLimitExceeded.
 [[nodiscard]] Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options = {});
 
+/// Does the rest of load_mesh() with what mesh::load() gave of the file. Throws as it does.
+[[nodiscard]] Mesh prepared(mesh::LoadedMesh loaded, const std::filesystem::path& path,
+                            const MeshOptions& options = {});
+
 using prt::RefineOptions;
 using prt::RefineReport;
 

@@ -14,17 +14,16 @@
 
 #include <glm/vec3.hpp>
 
-#include "mesh/triangle_mesh.h"
 #include "prt/bounces/bounce_precompute.h"
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/memory_estimate.h"
 #include "prt/precompute_options.h"
-#include "prt/receivers/camera.h"
 #include "prt/receivers/texel_receivers.h"
 #include "prt/refinement/refine.h"
 #include "prt/visibility/blockers.h"
 #include "prt/work.h"
+#include "relumine/in/places.h"
 
 namespace relumine {
 
@@ -49,7 +48,8 @@ struct Texels {
     std::uint32_t height = 1024;
 };
 
-/// Points in space are lit, which have no surface: each sees the whole sphere.
+/// Points in space are lit, which have no surface: each sees the whole sphere. Those of a file are
+/// among the coordinates of the mesh's file; `positions` count as the mesh's own do.
 struct Points {
     /// A .npy file of [count x 3] numbers, or the vertices of a .ply file. Empty: `positions`.
     std::filesystem::path file = {};
@@ -59,17 +59,18 @@ struct Points {
 /// The middles of nx x ny x nz cells of a box are lit, as Points.
 struct Grid {
     std::uint32_t nx = 0, ny = 0, nz = 0;
-    /// Empty: the box around the mesh, without a floor that was added to it.
-    std::optional<mesh::Bounds> box = {};
+    /// Among the coordinates of the mesh's file. Empty: the box around the mesh, without a floor
+    /// that was added to it.
+    std::optional<PlacedBox> box = {};
 };
 
 /// What is lit.
 using ReceiverChoice = std::variant<Vertices, Pixels, Texels, Points, Grid>;
 
-/// A view of the scene.
+/// A view of the scene, among the coordinates of the mesh's file.
 struct View {
     /// Empty: a camera that shows the whole mesh.
-    std::optional<prt::Camera> camera = {};
+    std::optional<PlacedCamera> camera = {};
 };
 
 /// Parts of a precompute that take time.

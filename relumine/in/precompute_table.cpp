@@ -212,13 +212,12 @@ std::string ReceiversText::show(const Value& receivers) {
     return "vertices";
 }
 
-mesh::Bounds BoxText::read(const std::string& text) {
+PlacedBox BoxText::read(const std::string& text) {
     const auto numbers = parse_numbers(text);
     if (!numbers || numbers->size() != 6)
         refuse_text("X0,Y0,Z0,X1,Y1,Z1", text);
-    const std::vector<float> values(numbers->begin(), numbers->end());
-    const mesh::Bounds box{.min = {values[0], values[1], values[2]},
-                           .max = {values[3], values[4], values[5]}};
+    const std::vector<double>& values = *numbers;
+    const PlacedBox box({values[0], values[1], values[2]}, {values[3], values[4], values[5]});
     for (int axis = 0; axis < 3; ++axis)
         if (!(box.min[axis] <= box.max[axis] && box.min[axis] >= -LargestPosition &&
               box.max[axis] <= LargestPosition))
@@ -226,7 +225,7 @@ mesh::Bounds BoxText::read(const std::string& text) {
     return box;
 }
 
-std::string BoxText::show(const mesh::Bounds& box) {
+std::string BoxText::show(const PlacedBox& box) {
     return fmt::format("{},{}", PointText::show(box.min), PointText::show(box.max));
 }
 
@@ -241,12 +240,15 @@ View ViewText::read(const std::string& text) {
         !std::all_of(numbers->begin(), numbers->end(), is_near))
         refuse_text(fmt::format("auto or EX,EY,EZ,TX,TY,TZ[,FOV] within {}", LargestPosition),
                     text);
-    const std::vector<float> values(numbers->begin(), numbers->end());
-    prt::Camera camera{.eye = {values[0], values[1], values[2]},
-                       .target = {values[3], values[4], values[5]}};
+    const std::vector<double>& values = *numbers;
+    PlacedCamera camera;
+    camera.eye = {values[0], values[1], values[2]};
+    camera.target = {values[3], values[4], values[5]};
     if (values.size() == 7)
-        camera.fov_degrees = values[6];
-    static_cast<void>(prt::axes_of(camera, 1.0f)); // which checks it
+        camera.fov_degrees = static_cast<float>(values[6]);
+    prt::Camera ahead{.target = glm::vec3(camera.target - camera.eye),
+                      .fov_degrees = camera.fov_degrees};
+    static_cast<void>(prt::axes_of(ahead, 1.0f)); // which checks it
     return View{camera};
 }
 

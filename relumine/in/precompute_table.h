@@ -34,8 +34,8 @@ struct ReceiversText {
 /// "X0,Y0,Z0,X1,Y1,Z1": two corners
 struct BoxText {
     static constexpr const char* Type = "TEXT";
-    static mesh::Bounds read(const std::string& text);
-    static std::string show(const mesh::Bounds& box);
+    static PlacedBox read(const std::string& text);
+    static std::string show(const PlacedBox& box);
 };
 
 /// "auto" or "EX,EY,EZ,TX,TY,TZ[,FOV]"

@@ -66,8 +66,8 @@ public:
             }
             // Receivers that are no pixels of the view but seen from it.
             if (options_.view && !std::holds_alternative<Pixels>(options_.receivers)) {
-                const std::optional<prt::Camera>& own = options_.view->camera;
-                scene_.settings.view = own ? *own : camera_of(scene_);
+                const std::optional<PlacedCamera>& own = options_.view->camera;
+                scene_.settings.view = own ? own->in(scene_.mesh) : camera_of(scene_);
                 prt::look_from(scene_.receivers, scene_.settings.view->eye);
             }
             if (adds_vertices) {
@@ -121,7 +121,8 @@ private:
         check(grid);
         const std::size_t num_own = first_floor_vertex(scene_).value_or(scene_.mesh.num_vertices());
         const mesh::Bounds box =
-            grid.box.value_or(mesh::bounds(std::span(scene_.mesh.positions).first(num_own)));
+            grid.box ? grid.box->in(scene_.mesh)
+                     : mesh::bounds(std::span(scene_.mesh.positions).first(num_own));
         prt::GridLayout layout{
             .nx = grid.nx, .ny = grid.ny, .nz = grid.nz, .low = box.min, .high = box.max};
         add_points(prt::grid_points(layout));
@@ -143,7 +144,7 @@ private:
     void place_pixels(const Pixels& size) {
         const bool has_camera = options_.view && options_.view->camera;
         const prt::Camera camera = has_camera
-                                       ? *options_.view->camera
+                                       ? options_.view->camera->in(scene_.mesh)
                                        : camera_of(scene_, static_cast<float>(size.width) /
                                                                static_cast<float>(size.height));
         prt::PixelReceivers pixels =

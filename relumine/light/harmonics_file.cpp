@@ -15,6 +15,7 @@
 #include "relight/pictures/array_file.h"
 #include "relight/pictures/layered_picture.h"
 #include "relight/pictures/receiver_picture.h"
+#include "relumine/in/place_report.h"
 
 namespace relumine {
 
@@ -102,7 +103,7 @@ void save_npy(const std::filesystem::path& path, std::span<const glm::vec3> ligh
 
 files::Json probe_json(const Scene& scene, std::size_t index, std::span<const glm::vec3> light) {
     const prt::Receivers& receivers = scene.receivers;
-    const glm::vec3& at = receivers.places()[index];
+    const files::Json at = place_json(scene.mesh, receivers.places()[index]);
     files::Json::Array sh;
     for (std::size_t k = 0; k < relight::MaxHarmonics; ++k)
         for (int channel = 0; channel < 3; ++channel)
@@ -111,8 +112,10 @@ files::Json probe_json(const Scene& scene, std::size_t index, std::span<const gl
     probe.set("type", "LightProbe");
     probe.set("uuid", fmt::format("00000000-0000-4000-8000-{:012x}", index + 1));
     probe.set("name", fmt::format("probe {}", index));
-    probe.set("matrix",
-              files::Json::Array{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, at.x, at.y, at.z, 1});
+    files::Json::Array matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    matrix.insert(matrix.end(), at.values().begin(), at.values().end());
+    matrix.emplace_back(1);
+    probe.set("matrix", std::move(matrix));
     probe.set("intensity", 1);
     probe.set("sh", std::move(sh));
     if (receivers.is_inside(index)) {
@@ -136,8 +139,8 @@ void save_three_json(const std::filesystem::path& path, const Scene& scene,
     if (const auto* grid = std::get_if<prt::GridLayout>(&scene.layout)) {
         files::Json data = files::Json::Object();
         data.set("cells", files::Json::Array{grid->nx, grid->ny, grid->nz});
-        data.set("low", grid->low);
-        data.set("high", grid->high);
+        data.set("low", place_json(scene.mesh, grid->low));
+        data.set("high", place_json(scene.mesh, grid->high));
         group.set("userData", std::move(data));
     }
     files::Json metadata = files::Json::Object();

@@ -36,16 +36,16 @@ std::optional<T> whole_number(std::string_view text) {
     return value;
 }
 
-std::optional<glm::vec3> three_numbers(const std::string& text) {
+std::optional<glm::dvec3> three_numbers(const std::string& text) {
     const auto numbers = parse_numbers(text);
     if (!numbers || numbers->size() != 3)
         return std::nullopt;
-    return glm::vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+    return glm::dvec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
 }
 
-bool are_within(const glm::vec3& values, double min, double max) {
+bool are_within(const glm::dvec3& values, double min, double max) {
     for (int i = 0; i < 3; ++i)
-        if (!(double{values[i]} >= min && double{values[i]} <= max))
+        if (!(values[i] >= min && values[i] <= max))
             return false;
     return true;
 }
@@ -205,14 +205,14 @@ bool ValueText<bool>::read(const std::string& text) {
 }
 
 glm::vec3 ColorText::read(const std::string& text) {
-    const std::optional<glm::vec3> color = three_numbers(
+    const std::optional<glm::dvec3> color = three_numbers(
         text.find(',') == std::string::npos ? fmt::format("{0},{0},{0}", text) : text);
     if (!color)
         refuse_text("R,G,B or one number", text);
     constexpr float Largest = 1e6f; // what it multiplies stays a float
     if (!are_within(*color, 0.0, Largest))
         refuse_text(fmt::format("numbers of 0 to {}", Largest), text);
-    return *color;
+    return glm::vec3(*color);
 }
 
 std::string ColorText::show(const glm::vec3& color) {
@@ -220,8 +220,8 @@ std::string ColorText::show(const glm::vec3& color) {
                                                     : PointText::show(color);
 }
 
-glm::vec3 PointText::read(const std::string& text) {
-    const std::optional<glm::vec3> point = three_numbers(text);
+glm::dvec3 PointText::read(const std::string& text) {
+    const std::optional<glm::dvec3> point = three_numbers(text);
     if (!point)
         refuse_text("X,Y,Z", text);
     if (!are_within(*point, -LargestPosition, LargestPosition))
@@ -229,8 +229,12 @@ glm::vec3 PointText::read(const std::string& text) {
     return *point;
 }
 
-std::string PointText::show(const glm::vec3& point) {
-    return fmt::format("{},{},{}", point.x, point.y, point.z);
+std::string PointText::show(const glm::dvec3& point) {
+    const auto text = [](double value) {
+        const auto rounded = static_cast<float>(value);
+        return double{rounded} == value ? fmt::format("{}", rounded) : fmt::format("{}", value);
+    };
+    return fmt::format("{},{},{}", text(point.x), text(point.y), text(point.z));
 }
 
 } // namespace relumine

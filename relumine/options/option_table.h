@@ -204,8 +204,9 @@ inline constexpr double LargestPosition = 1e18;
 /// A point or a direction "X,Y,Z", each within LargestPosition
 struct PointText {
     static constexpr const char* Type = "TEXT";
-    static glm::vec3 read(const std::string& text);
-    static std::string show(const glm::vec3& point);
+    static glm::dvec3 read(const std::string& text);
+    /// In the digits of a float where it is one.
+    static std::string show(const glm::dvec3& point);
 };
 
 /// Declares one option. `Text` says how its value is written; otherwise its type does.

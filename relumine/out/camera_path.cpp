@@ -75,13 +75,13 @@ private:
         return result;
     }
 
-    glm::vec3 point(const files::Json& value, std::string_view what) const {
+    glm::dvec3 point(const files::Json& value, std::string_view what) const {
         const glm::dvec3 result = json_.vector(value, what);
         for (int axis = 0; axis < 3; ++axis)
             if (!(std::abs(result[axis]) <= LargestPosition))
                 json_.refuse(value, fmt::format("{} within {}", what, LargestPosition),
                              fmt::format("{}", result[axis]));
-        return glm::vec3(result);
+        return result;
     }
 
     float fov_degrees(const files::Json& value) const {
@@ -116,7 +116,7 @@ bool turns_back(const glm::dvec3&, const glm::dvec3&) {
 template<typename Value>
 struct Curve {
     std::span<const CameraKey> keys;
-    Value (*value_of)(const Camera&);
+    Value (*value_of)(const PlacedCamera&);
 
     [[nodiscard]] Value value(std::size_t key) const { return value_of(keys[key].camera); }
     [[nodiscard]] double duration(std::size_t key) const {
@@ -151,13 +151,13 @@ struct Curve {
     }
 };
 
-glm::dvec3 eye_of(const Camera& camera) {
-    return glm::dvec3(camera.eye);
+glm::dvec3 eye_of(const PlacedCamera& camera) {
+    return camera.eye;
 }
-glm::dvec3 target_of(const Camera& camera) {
-    return glm::dvec3(camera.target);
+glm::dvec3 target_of(const PlacedCamera& camera) {
+    return camera.target;
 }
-double fov_of(const Camera& camera) {
+double fov_of(const PlacedCamera& camera) {
     return camera.fov_degrees;
 }
 
@@ -172,7 +172,7 @@ CameraPath load_camera_path(const std::filesystem::path& path) {
     return CameraPathReader(json).read(path);
 }
 
-Camera camera_at(const CameraPath& path, double frame) {
+PlacedCamera camera_at(const CameraPath& path, double frame) {
     const std::span<const CameraKey> keys = path.keys;
     if (keys.empty())
         throw std::invalid_argument("expected a camera path with keys, got none");
@@ -187,14 +187,18 @@ Camera camera_at(const CameraPath& path, double frame) {
     // Rounding must not carry the field of view out of the range of its keys.
     const auto [least, most] =
         std::minmax({keys[key].camera.fov_degrees, keys[key + 1].camera.fov_degrees});
-    return {.eye = glm::vec3(Curve<glm::dvec3>{keys, eye_of}.at(key, t)),
-            .target = glm::vec3(Curve<glm::dvec3>{keys, target_of}.at(key, t)),
-            .fov_degrees = std::clamp(static_cast<float>(Curve<double>{keys, fov_of}.at(key, t)),
-                                      least, most)};
+    PlacedCamera result;
+    result.eye = Curve<glm::dvec3>{keys, eye_of}.at(key, t);
+    result.target = Curve<glm::dvec3>{keys, target_of}.at(key, t);
+    result.fov_degrees =
+        std::clamp(static_cast<float>(Curve<double>{keys, fov_of}.at(key, t)), least, most);
+    return result;
 }
 
-bool has_direction(const Camera& camera) {
-    return glm::length(camera.target - camera.eye) > 0.0f;
+bool has_direction(const PlacedCamera& camera) {
+    constexpr double Rounding = 1e-14;
+    return glm::distance(camera.eye, camera.target) >
+           Rounding * std::max(glm::length(camera.eye), glm::length(camera.target));
 }
 
 } // namespace relumine

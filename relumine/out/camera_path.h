@@ -5,16 +5,14 @@
 #include <filesystem>
 #include <vector>
 
-#include "mesh/camera.h"
+#include "relumine/in/places.h"
 
 namespace relumine {
 
-using mesh::Camera;
-
-/// Where the camera stands at a frame.
+/// Where the camera stands at a frame, among the coordinates of the mesh's file.
 struct CameraKey {
     double frame = 0.0;
-    Camera camera = {};
+    PlacedCamera camera = {};
     bool operator==(const CameraKey&) const = default;
 };
 
@@ -46,9 +44,9 @@ inline constexpr double LastCameraFrame = 99999.0;
 ///
 /// Between keys eye and target may meet: has_direction() tells.
 /// Throws:  std::invalid_argument for a path without keys.
-[[nodiscard]] Camera camera_at(const CameraPath& path, double frame);
+[[nodiscard]] PlacedCamera camera_at(const CameraPath& path, double frame);
 
 /// Whether eye and target are apart.
-[[nodiscard]] bool has_direction(const Camera& camera);
+[[nodiscard]] bool has_direction(const PlacedCamera& camera);
 
 } // namespace relumine

@@ -179,10 +179,12 @@ Camera camera_of(const Scene& scene, const OutputOptions& options) {
     if (options.target || options.eye)
         camera.roll_degrees = 0.0f; // that of the file's own view
     if (options.target) {
-        camera.eye += *options.target - camera.target;
-        camera.target = *options.target;
+        const glm::vec3 target = place_in(scene.mesh, *options.target);
+        camera.eye += target - camera.target;
+        camera.target = target;
     }
-    camera.eye = options.eye.value_or(camera.eye);
+    if (options.eye)
+        camera.eye = place_in(scene.mesh, *options.eye);
     return camera;
 }
 

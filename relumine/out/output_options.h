@@ -110,8 +110,9 @@ struct OutputOptions {
     std::optional<Camera> camera = {};
     /// Empty: camera_of() the scene, moved as `eye` and `target` say.
     std::optional<CameraPlace> camera_place = {};
-    std::optional<glm::vec3> eye = {};
-    std::optional<glm::vec3> target = {};
+    /// Among the coordinates of the mesh's file
+    std::optional<glm::dvec3> eye = {};
+    std::optional<glm::dvec3> target = {};
     std::optional<float> fov_degrees = {};
     SunShadows sun = SunShadows::Pixels;
     /// Rays that find what a pixel mirrors, where the scene has no highlights of its own; 0:

@@ -163,8 +163,22 @@ TEST_F(FarCoordinates, OthersStayAsTheyAre) {
     EXPECT_EQ(near.offset, glm::dvec3(0.0));
     EXPECT_EQ(near.positions[0], glm::vec3(10.1f, 0, 0));
     EXPECT_TRUE(near.notes.empty());
-    // Floats that are far have no more digits to give.
+    // So have those of a file of floats that is less far than they round it away.
     EXPECT_EQ(stl(box_binary_stl()).offset, glm::dvec3(0.0));
+    EXPECT_EQ(obj("v 100 0 0\nv 101 0 0\nv 100 1 0\nf 1 2 3\n").offset, glm::dvec3(0.0));
+}
+
+/// Floats that are far have no more digits to give. Cameras and rays beside the mesh have.
+TEST_F(FarCoordinates, CoordinatesThatWereRoundedAreTold) {
+    const TriangleMesh mesh = obj("v 691234 520 5334567\nv 691235 520 5334567\n"
+                                  "v 691234 521 5334567\nf 1 2 3\n");
+    EXPECT_EQ(mesh.offset, glm::dvec3(691234, 520, 5334567));
+    EXPECT_EQ(mesh.positions[1], glm::vec3(1, 0, 0));
+    EXPECT_THAT(mesh.warnings,
+                testing::ElementsAre(testing::HasSubstr("coordinates are about 0.636 apart from "
+                                                        "each other at (691234, 520, 5334567), "
+                                                        "which is coarse for a mesh of 1.41")));
+    EXPECT_THAT(mesh.notes, testing::ElementsAre(testing::HasSubstr("far from the origin")));
 }
 
 } // namespace

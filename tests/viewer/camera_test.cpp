@@ -7,6 +7,7 @@
 #include <glm/vec4.hpp>
 #include <gtest/gtest.h>
 
+#include "relumine/out/level_camera.h"
 #include "viewer/look.h"
 #include "viewer/panel_layout.h"
 
@@ -29,6 +30,29 @@ TEST(OrbitCamera, SeesWhatTheCameraItWasMadeFromSees) {
     EXPECT_LT(glm::length(camera.eye() - other.eye), 1e-5f);
     EXPECT_EQ(camera.target, other.target);
     EXPECT_EQ(camera.fov_degrees, 40.0f);
+}
+
+/// Straight down, a turn about the view is a direction.
+TEST(OrbitCamera, StraightDownItTakesTheTurnOfAFilesCamera) {
+    for (const float roll : {0.0f, 90.0f, -30.0f}) {
+        const relight::Camera above{
+            .eye = {1, 5, 2}, .target = {1, 0, 2}, .fov_degrees = 40.0f, .roll_degrees = roll};
+        EXPECT_EQ(leveled(above).roll_degrees, 0.0f);
+        const OrbitCamera camera = orbit_camera(above);
+        const glm::vec3 up = mesh::rolled_axes({0, -1, 0}, roll).up;
+        const glm::vec3 found = glm::normalize(frame(camera, Viewport).up);
+        EXPECT_LT(glm::distance(found, up), 0.02f) << roll;
+    }
+    EXPECT_EQ(leveled({.eye = {1, 2, 3}, .target = {0, 0, 0}, .roll_degrees = 30}).roll_degrees,
+              30.0f);
+}
+
+TEST(OrbitCamera, OptionsCountAsInTheMeshsFile) {
+    const OrbitCamera camera{.target = {0.5f, 1.0f, -0.25f}, .distance = 3.0f};
+    EXPECT_EQ(camera_options(camera, glm::dvec3(0.0)),
+              "--camera 0.00,0.00,3,35 --target 0.5,1,-0.25");
+    EXPECT_EQ(camera_options(camera, {691234, 520, 5334567}),
+              "--camera 0.00,0.00,3,35 --target 691234.5,521,5334566.75");
 }
 
 TEST(OrbitCamera, FromTheFrontXIsToTheRightAndYUp) {

@@ -1,5 +1,7 @@
 // `relumine export web`: what is in the folder and in the single file, and what is refused.
 // Browsers look at real pages in tests/web/page_test.py.
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -43,6 +45,38 @@ protected:
         return nlohmann::json::parse(read("site/scene.json"));
     }
 };
+
+/// A page stands level, and lets nobody farther away than 40 radii: orthographic cameras come near.
+TEST_F(ExportWeb, CamerasOfFiles) {
+    const auto camera_of = [&](const std::string& camera, const std::string& rotation) {
+        write("a.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+            "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 4], "rotation": )" +
+                            rotation + R"(}], "cameras": [)" + camera + R"(],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "buffers": [{"byteLength": 36, "uri": "a.bin"}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                           "min": [0, 0, 0], "max": [1, 1, 0]}]})");
+        constexpr std::array<float, 9> Corners = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+        write("a.bin", std::string(reinterpret_cast<const char*>(Corners.data()), sizeof Corners));
+        succeed("precompute a.gltf -o scene.prt --face-resolution 8 --refine off -q");
+        return succeed("export web scene.prt white.hdr -o site --samples 0").err;
+    };
+    const std::string perspective =
+        R"({"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}})";
+    EXPECT_THAT(camera_of(perspective, "[0, 0, 0.258819, 0.965926]"),
+                HasSubstr("left out: the camera's turn by 30 degrees about its view"));
+    EXPECT_THAT(camera_of(perspective, "[0, 0, 0, 1]"), Not(HasSubstr("camera")));
+    EXPECT_THAT(camera_of(R"({"type": "orthographic", "orthographic":
+                          {"xmag": 1, "ymag": 1, "znear": 0.1, "zfar": 10}})",
+                          "[0, 0, 0, 1]"),
+                Not(HasSubstr("camera")));
+    const nlohmann::json found = manifest();
+    const double radius = found["subject"]["radius"], distance = found["camera"]["eye"][2],
+                 half_fov = 0.5 * found["camera"]["fov"].get<double>() * 3.14159265 / 180.0;
+    EXPECT_LT(distance, 40.0 * radius);
+    EXPECT_NEAR(distance * std::tan(half_fov), 1.0, 1e-3) << "ymag";
+}
 
 TEST_F(ExportWeb, WritesAFolderThatTheRuntimeReads) {
     precompute({"--tolerance", "0.02", "--bounces", "0.05"});

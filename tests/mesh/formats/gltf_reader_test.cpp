@@ -540,6 +540,30 @@ TEST_F(GltfTest, SpecularGlossiness) {
                     "expected 0 to 1 as \"specularFactor\", got 2: it counts as 1")));
 }
 
+/// As assimp writes it: opacity is beside the extension alone.
+TEST_F(GltfTest, AlphaBesideSpecularGlossinessCountsWhereItWouldBeOpaque) {
+    Model model = square();
+    const auto material = [](double of_extension, double beside, const char* mode) {
+        return Json{{"name", mode},
+                    {"alphaMode", mode},
+                    {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, beside}}}},
+                    {"extensions",
+                     {{"KHR_materials_pbrSpecularGlossiness",
+                       {{"diffuseFactor", {1, 1, 1, of_extension}}}}}}};
+    };
+    model.json["materials"] = {material(1.0, 0.25, "BLEND"), material(0.5, 0.25, "BLEND"),
+                               material(1.0, 1.0, "BLEND"), material(1.0, 0.25, "OPAQUE")};
+    const TriangleMesh mesh = load(write("a.gltf", model.embedded()));
+    EXPECT_EQ(mesh.materials[0].alpha, 0.25f);
+    EXPECT_EQ(mesh.materials[1].alpha, 0.5f) << "the extension says it";
+    EXPECT_EQ(mesh.materials[2].alpha, 1.0f);
+    EXPECT_EQ(mesh.materials[3].alpha_mode, AlphaMode::Opaque);
+    EXPECT_THAT(mesh.warnings,
+                ElementsAre("the material BLEND is to be blended, with an alpha of 1 in "
+                            "KHR_materials_pbrSpecularGlossiness and 0.25 in baseColorFactor: it "
+                            "has 0.25"));
+}
+
 TEST_F(GltfTest, AlphaCutsOut) {
     Model model = square();
     static_cast<void>(write("leaf.webp", webp(2, 1, {{255, 128, 0, 255}, {0, 0, 0, 51}})));

@@ -266,6 +266,18 @@ TEST(PlyReader, RefusesWhatItWouldMisread) {
     expect_refusal([] { return ply("ply\nformat ascii 1.0\nend_header\n"); }, "vertices, got none");
 }
 
+/// What scanners write before anyone makes faces of it.
+TEST(PlyReader, RangeGridsAreNamed) {
+    expect_refusal(
+        [] {
+            return ply("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                       "property float y\nproperty float z\nelement range_grid 2\n"
+                       "property list uchar int vertex_indices\nend_header\n"
+                       "0 0 0\n1 0 0\n0 1 0\n1 0\n0\n");
+        },
+        "got 3 vertices and 0 faces; its range_grid is not read, MeshLab makes faces of it");
+}
+
 /// Strips as trimesh2 and Stanford's tools write them: one list, -1 between strips.
 TEST(PlyReader, StripsOfTriangles) {
     const std::string header = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\n"

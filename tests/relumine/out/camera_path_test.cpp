@@ -15,7 +15,7 @@ namespace {
 
 CameraKey key_at(double frame, const glm::vec3& eye, float fov_degrees = 35.0f) {
     return {.frame = frame,
-            .camera = {.eye = eye, .target = glm::vec3(0.0f), .fov_degrees = fov_degrees}};
+            .camera = Camera{.eye = eye, .target = glm::vec3(0.0f), .fov_degrees = fov_degrees}};
 }
 
 /// A way with uneven times and turns.
@@ -29,8 +29,8 @@ CameraPath winding() {
 TEST(CameraPath, GoesThroughItsKeysAndRestsOutsideOfThem) {
     const CameraPath path = winding();
     for (const CameraKey& key : path.keys) {
-        const Camera camera = camera_at(path, key.frame);
-        EXPECT_LT(glm::distance(camera.eye, key.camera.eye), 1e-6f) << key.frame;
+        const PlacedCamera camera = camera_at(path, key.frame);
+        EXPECT_LT(glm::distance(camera.eye, key.camera.eye), 1e-6) << key.frame;
         EXPECT_FLOAT_EQ(camera.fov_degrees, key.camera.fov_degrees) << key.frame;
     }
     EXPECT_EQ(camera_at(path, 0.0), path.keys.front().camera);
@@ -52,11 +52,11 @@ TEST(CameraPath, PassesKeysWithoutAJerk) {
     constexpr double Step = 2e-3;
     for (std::size_t i = 1; i + 1 < path.keys.size(); ++i) {
         const double frame = path.keys[i].frame;
-        const glm::vec3 here = camera_at(path, frame).eye;
-        const glm::vec3 before = here - camera_at(path, frame - Step).eye;
-        const glm::vec3 after = camera_at(path, frame + Step).eye - here;
-        EXPECT_GT(glm::length(after), 1e-4f) << i;
-        EXPECT_LT(glm::length(after - before), 0.1f * glm::length(after)) << i;
+        const glm::dvec3 here = camera_at(path, frame).eye;
+        const glm::dvec3 before = here - camera_at(path, frame - Step).eye;
+        const glm::dvec3 after = camera_at(path, frame + Step).eye - here;
+        EXPECT_GT(glm::length(after), 1e-4) << i;
+        EXPECT_LT(glm::length(after - before), 0.1 * glm::length(after)) << i;
     }
 }
 
@@ -64,8 +64,8 @@ TEST(CameraPath, StandsStillBetweenKeysThatAreTheSame) {
     const CameraPath path{.keys = {key_at(0, {0, 0, 2}), key_at(4, {3, 0, 2}), key_at(9, {3, 0, 2}),
                                    key_at(12, {5, 1, 2})}};
     for (const double frame : {4.5, 6.0, 8.9})
-        EXPECT_LT(glm::distance(camera_at(path, frame).eye, glm::vec3(3, 0, 2)), 1e-6f) << frame;
-    EXPECT_GT(glm::distance(camera_at(path, 10.0).eye, glm::vec3(3, 0, 2)), 0.1f);
+        EXPECT_LT(glm::distance(camera_at(path, frame).eye, glm::dvec3(3, 0, 2)), 1e-6) << frame;
+    EXPECT_GT(glm::distance(camera_at(path, 10.0).eye, glm::dvec3(3, 0, 2)), 0.1);
 }
 
 /// A slow way and then a fast one in the same direction: the camera never goes back.
@@ -74,7 +74,7 @@ TEST(CameraPath, DoesNotGoBackOnAStraightWay) {
                                    key_at(21, {9, 0, 2}), key_at(40, {10, 0, 2})}};
     float last = -1e-6f;
     for (int i = 0; i <= 400; ++i) {
-        const float x = camera_at(path, 0.1 * i).eye.x;
+        const double x = camera_at(path, 0.1 * i).eye.x;
         EXPECT_GE(x, last - 1e-6f) << i;
         last = x;
     }
@@ -101,10 +101,10 @@ TEST(CameraPath, KeepsTheFieldOfViewWithinItsKeys) {
 
 /// The way does not depend on the axes: a path turned about +Y is the way turned.
 TEST(CameraPath, TurnsWithItsKeys) {
-    const auto turned = [](const glm::vec3& point) {
-        constexpr float Cosine = 0.6f, Sine = 0.8f;
-        return glm::vec3(Cosine * point.x + Sine * point.z, point.y,
-                         Cosine * point.z - Sine * point.x);
+    const auto turned = [](const glm::dvec3& point) {
+        constexpr double Cosine = 0.6, Sine = 0.8;
+        return glm::dvec3(Cosine * point.x + Sine * point.z, point.y,
+                          Cosine * point.z - Sine * point.x);
     };
     const CameraPath path = winding();
     CameraPath other = path;
@@ -112,7 +112,7 @@ TEST(CameraPath, TurnsWithItsKeys) {
         key.camera.eye = turned(key.camera.eye);
     for (double frame = 2.0; frame < 30.0; frame += 0.7)
         EXPECT_LT(glm::distance(camera_at(other, frame).eye, turned(camera_at(path, frame).eye)),
-                  1e-5f)
+                  1e-5)
             << frame;
 }
 
