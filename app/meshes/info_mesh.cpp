@@ -223,7 +223,8 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
         require_extension("--picture", options.picture, {".png"});
         check_output(options.picture, {options.path});
     }
-    mesh::LoadedMesh mesh = mesh::load(options.path, {.pose = options.pose});
+    mesh::LoadedMesh mesh =
+        mesh::load(options.path, {.pose = options.pose, .variant = options.variant});
     const mesh::Bounds box = mesh::bounds(mesh);
     const mesh::Diagnosis diagnosis = mesh::diagnose(mesh);
     if (!options.picture.empty())
@@ -247,6 +248,8 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
         session.say(fmt::format("group               {}", group));
     const std::vector<std::string> lamps = prt::lamps_of(mesh).names();
     say_lamps(lamps, session);
+    for (const std::string& name : mesh.variants)
+        session.say(fmt::format("variant             {}", name));
     for (const std::string& name : mesh.missing)
         session.say(fmt::format("not found           {}", name));
     for (const std::string& note : mesh.notes)
@@ -265,6 +268,7 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
                     {"materials", materials},
                     {"groups", mesh.groups},
                     {"lamps", lamps},
+                    {"variants", mesh.variants},
                     {"missing", mesh.missing},
                     {"notes", mesh.notes},
                     {"left_out", mesh.warnings}});

@@ -12,12 +12,12 @@
 namespace relumine::app {
 
 /// Precomputes a mesh on a floor, with the options that `relumine precompute` has by itself, or
-/// takes the scene from the user's cache. Says what took long. `is_cached`: whether the cache is
-/// asked. `before`: looks at the mesh before it is precomputed, if it is; may be empty.
+/// takes the scene from the user's cache. Says what took long. `read`: how the mesh is read,
+/// without a floor. `is_cached`: whether the cache is asked. `before`: looks at the mesh before it
+/// is precomputed, if it is; may be empty.
 ///
 /// Throws:  as load_mesh() and precompute().
-[[nodiscard]] Scene first_scene(const std::string& path, const std::optional<mesh::Pose>& pose,
-                                bool is_cached, const std::function<void(const Mesh&)>& before,
-                                Session& session);
+[[nodiscard]] Scene first_scene(const std::string& path, const MeshOptions& read, bool is_cached,
+                                const std::function<void(const Mesh&)>& before, Session& session);
 
 } // namespace relumine::app

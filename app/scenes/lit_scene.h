@@ -23,8 +23,8 @@ struct SceneOptions {
     std::uint32_t harmonics_of_points = 0;
     /// Rays that find a pixel's highlights; 0: none (LightOptions::highlight_rays)
     std::uint32_t highlight_rays = DefaultHighlightRays;
-    /// The moment of a mesh's animation (MeshOptions::pose)
-    std::optional<mesh::Pose> pose = {};
+    /// What a mesh leaves open: open_choices() alone
+    MeshOptions mesh = {};
     /// Precomputes a mesh whether it was before or not, and does not keep its scene.
     bool no_cache = false;
     /// Lights a mesh without a precompute, and so without an environment.
