@@ -227,7 +227,8 @@ std::vector<std::string> left_out(const Document& document, const GltfOptions& o
 }
 
 bool is_of_materials(std::string_view extension) {
-    return extension.starts_with("KHR_materials_") && extension != "KHR_materials_variants";
+    return (extension.starts_with("KHR_materials_") || extension.starts_with("EXT_materials_")) &&
+           extension != "KHR_materials_variants";
 }
 
 } // namespace relumine::mesh::gltf

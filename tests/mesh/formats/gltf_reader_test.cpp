@@ -675,6 +675,7 @@ TEST_F(GltfTest, SaysWhatIsLeftOut) {
                         {"KHR_materials_sheen", {{"sheenColorFactor", {0.5, 0, 0}}}},
                         {"KHR_materials_specular", {{"specularColorFactor", {0.5, 1, 1}}}},
                         {"KHR_materials_ior", {{"ior", 1.25}}},
+                        {"EXT_materials_bump", {{"bumpFactor", 1}}},
                         {"VENDOR_fur", {{"length", 2}}}};
     model.json["samplers"] = {{{"magFilter", 9728}}};
     model.json["textures"] = {{{"sampler", 0}}};
@@ -699,6 +700,8 @@ TEST_F(GltfTest, SaysWhatIsLeftOut) {
             "environment, which does not light the scene",
             "1 material with KHR_materials_anisotropy, which is not read: highlights are round",
             "1 material with 'VENDOR_fur', which is not read: what it describes is left out",
+            "1 material with 'EXT_materials_bump', which is not read: what it describes is left "
+            "out",
             "1 material with an occlusion map, which is not read: rays find what blocks the light",
             "2 materials with textures of hard pixels (NEAREST), which are not kept: they are "
             "sampled bilinearly",
