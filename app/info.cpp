@@ -111,7 +111,8 @@ struct InfoArguments {
     std::optional<cubemap::Layout> layout;
     std::string picture;
     bool check = false;
-    std::optional<mesh::Pose> pose;
+    /// open_choices() alone
+    MeshOptions mesh = {};
 };
 
 /// One line more where they are not the vertices.
@@ -203,8 +204,8 @@ void run(const InfoArguments& options, const Session& session) {
             fmt::format("expected an environment or a mesh to draw, got '{}'", options.path));
     if (options.check && !is_of_prt)
         throw UsageError("--check", fmt::format("expected a scene (.prt), got '{}'", options.path));
-    if (options.pose && !mesh::has_mesh_extension(options.path))
-        throw UsageError("--pose",
+    if ((options.mesh.pose || options.mesh.variant) && !mesh::has_mesh_extension(options.path))
+        throw UsageError(options.mesh.pose ? "--pose" : "--variant",
                          fmt::format("expected a mesh (.glb, .gltf), got '{}'", options.path));
     if (kind == prt::SceneFileKind::Scene)
         describe_scene(options, session);
@@ -215,7 +216,8 @@ void run(const InfoArguments& options, const Session& session) {
     else if (is_environment(options.path))
         describe_environment({options.path, options.layout, options.picture}, session);
     else
-        describe_mesh({options.path, options.picture, options.pose}, session);
+        describe_mesh({options.path, options.picture, options.mesh.pose, options.mesh.variant},
+                      session);
 }
 
 } // namespace
@@ -235,7 +237,7 @@ void add_info(Command& program, Session& session) {
                     "draw an environment, lat-long with the axes and the sun marked, or a mesh "
                     "with its faults marked: .png",
                     {.file = true}));
-    command.add(pose_row(options->pose));
+    command.add_all(open_choices(options->mesh));
     command.add(row(
         "--check", options->check,
         "verify a scene: all checksums, sections and what must hold between them; exit code 1 and "

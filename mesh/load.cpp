@@ -60,11 +60,18 @@ LoadedMesh load(const std::filesystem::path& path, const LoadOptions& options) {
         if (options.pose && !format->has_animations)
             throw std::runtime_error(
                 fmt::format("expected .glb or .gltf for a pose, got '{}'", format->extension));
-        PolygonSoup soup =
-            format->read({bytes, path.parent_path(), options.pose, options.lightmap_uvs});
+        if (options.variant && !format->has_animations)
+            throw std::runtime_error(
+                fmt::format("expected .glb or .gltf for a variant, got '{}'", format->extension));
+        PolygonSoup soup = format->read({bytes,
+                                         path.parent_path(),
+                                         {.pose = options.pose,
+                                          .variant = options.variant,
+                                          .lightmap_uvs = options.lightmap_uvs}});
         LoadedMesh result;
         result.hash = files::hash_of(bytes);
         result.camera = soup.camera;
+        result.variants = soup.variants;
         result.has_normals = options.normals == NormalSource::File && has_normals(soup);
         static_cast<TriangleMesh&>(result) =
             to_mesh(std::move(soup), options.normals, options.colors);

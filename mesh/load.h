@@ -21,6 +21,8 @@ struct LoadOptions {
     NormalSource normals = NormalSource::File;
     /// A moment of an animation, in place of the pose that the nodes of a glTF file say
     std::optional<Pose> pose = {};
+    /// The name of a look that a glTF file offers (KHR_materials_variants)
+    std::optional<std::string> variant = {};
     /// What colours of vertices and faces mean. Empty: sRGB for bytes and for text, linear for
     /// floats of PLY and for glTF
     std::optional<ColorCurve> colors = {};
@@ -36,6 +38,8 @@ struct LoadedMesh : TriangleMesh {
     bool has_normals = false;
     /// The first perspective camera of a glTF scene, or its first orthographic one, from afar
     std::optional<Camera> camera = {};
+    /// Names of the looks that a glTF file offers
+    std::vector<std::string> variants = {};
 };
 
 /// Reads a mesh. The extension tells the format (mesh_extensions(), any case).
@@ -59,12 +63,13 @@ struct LoadedMesh : TriangleMesh {
 /// does not stop it either, nor a material that cannot be read: TriangleMesh::warnings says so, and
 /// the surface is grey or without its texture.
 ///
-/// The skins and morph targets of a glTF file are as its nodes say, or as the pose does.
+/// The skins and morph targets of a glTF file are as its nodes say, or as the pose does. Nodes that
+/// the file hides are not there.
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y" if the file cannot be read, has no face of
 ///          three corners, has an index out of range or a position that is not finite, or declares
-///          more or less than it holds; for a pose of a file that is no glTF, or does not have
-///          the animation.
+///          more or less than it holds; for a pose or a variant of a file that is no glTF, or
+///          does not have it.
 [[nodiscard]] LoadedMesh load(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// Reads the vertices of a .ply file, which need not have faces or be finite. `offset` is taken off

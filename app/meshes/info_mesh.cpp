@@ -227,7 +227,8 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
         require_extension("--picture", options.picture, {".png"});
         check_output(options.picture, {options.path});
     }
-    mesh::LoadedMesh mesh = mesh::load(options.path, {.pose = options.pose});
+    mesh::LoadedMesh mesh =
+        mesh::load(options.path, {.pose = options.pose, .variant = options.variant});
     const mesh::Bounds box = mesh::bounds(mesh);
     const mesh::Diagnosis diagnosis = mesh::diagnose(mesh);
     if (!options.picture.empty())
@@ -249,6 +250,8 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
         session.say(fmt::format("group               {}", group));
     const std::vector<std::string> lamps = prt::lamps_of(mesh).names();
     say_lamps(lamps, session);
+    for (const std::string& name : mesh.variants)
+        session.say(fmt::format("variant             {}", name));
     const Report faults = diagnosis_report(mesh, diagnosis, session);
     Report report = {{"kind", "mesh"},
                      {"vertices", mesh.num_vertices()},
@@ -260,10 +263,11 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
                      {"uvs", !mesh.uvs.empty() || !mesh.corner_uvs.empty()},
                      {"materials", materials},
                      {"groups", mesh.groups},
-                     {"lamps", lamps}};
+                     {"lamps", lamps},
+                     {"variants", mesh.variants}};
     // What a first picture says.
-    const MeshRemarks remarks =
-        remarks_on(prepared(std::move(mesh), options.path, {.pose = options.pose}));
+    const MeshRemarks remarks = remarks_on(prepared(
+        std::move(mesh), options.path, {.pose = options.pose, .variant = options.variant}));
     const auto say = [&](const char* name, const std::vector<std::string>& lines) {
         for (const std::string& line : lines)
             session.say(fmt::format("{:20}{}", name, line));

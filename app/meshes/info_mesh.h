@@ -14,8 +14,8 @@ struct MeshInfoOptions {
     std::string path;
     /// The .png to draw. Empty: none.
     std::string picture;
-    /// The moment of a glTF animation that the mesh is posed at (MeshOptions::pose)
     std::optional<mesh::Pose> pose = {};
+    std::optional<std::string> variant = {};
 };
 
 /// Says the names of what glows, as --emission takes them: a line each.

@@ -12,11 +12,11 @@
 namespace relumine::app {
 
 /// Precomputes a mesh on a floor, with the options that `relumine precompute` has by itself, or
-/// takes the scene from the user's cache. Says what took long. `before`: looks at the mesh before
-/// it is precomputed, if it is; may be empty.
+/// takes the scene from the user's cache. Says what took long. `read`: how the mesh is read,
+/// without a floor. `before`: looks at the mesh before it is precomputed, if it is; may be empty.
 ///
 /// Throws:  as load_mesh() and precompute().
-[[nodiscard]] Scene first_scene(const std::string& path, const std::optional<mesh::Pose>& pose,
+[[nodiscard]] Scene first_scene(const std::string& path, const MeshOptions& read,
                                 const std::function<void(const Mesh&)>& before, Session& session);
 
 } // namespace relumine::app

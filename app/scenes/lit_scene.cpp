@@ -16,7 +16,7 @@ void SceneOptions::add_to(Command& command) {
     command.add(row("SCENE", path,
                     "scene file from `relumine precompute`, or a mesh, which is precomputed first",
                     {.file = true, .required = true}));
-    command.add(pose_row(pose));
+    command.add_all(open_choices(mesh));
     command.add(row("--clusters-only", clusters_only,
                     "light the sun through its cluster too, without shadow rays of its own"));
     command.add(material_row(colors));
@@ -30,18 +30,19 @@ namespace {
 
 Scene load(const SceneOptions& options, Session& session) {
     if (!mesh::has_mesh_extension(options.path)) {
-        if (options.pose)
-            throw UsageError("--pose", fmt::format("expected a mesh (.glb, .gltf), got {}, which "
-                                                   "has the pose of its precompute",
-                                                   options.path));
+        if (options.mesh.pose || options.mesh.variant)
+            throw UsageError(options.mesh.pose ? "--pose" : "--variant",
+                             fmt::format("expected a mesh (.glb, .gltf), got {}, which has that of "
+                                         "its precompute",
+                                         options.path));
         return load_scene(options.path);
     }
     if (options.is_first_picture())
-        return first_scene(options.path, options.pose, options.before, session);
+        return first_scene(options.path, options.mesh, options.before, session);
     if (options.clusters_only)
         throw std::runtime_error(fmt::format(
             "{}: expected a scene file with --clusters-only, got a mesh", options.path));
-    return unclustered_scene(load_mesh(options.path, {.pose = options.pose}));
+    return unclustered_scene(load_mesh(options.path, options.mesh));
 }
 
 void recolour(Scene& scene, const SceneOptions& options) {

@@ -23,8 +23,8 @@ struct SceneOptions {
     std::uint32_t harmonics_of_points = 0;
     /// Rays that find a pixel's highlights; 0: none (LightOptions::highlight_rays)
     std::uint32_t highlight_rays = DefaultHighlightRays;
-    /// The moment of a mesh's animation (MeshOptions::pose)
-    std::optional<mesh::Pose> pose = {};
+    /// What a mesh leaves open: open_choices() alone
+    MeshOptions mesh = {};
     /// Lights a mesh without a precompute, and so without an environment.
     bool lights_alone = false;
     /// Looks at a mesh before its precompute, where there is one. Empty: nobody does.

@@ -394,12 +394,12 @@ void add_work_options(Command& command, PrecomputeArguments& options) {
 
 } // namespace
 
-Scene first_scene(const std::string& path, const std::optional<mesh::Pose>& pose,
+Scene first_scene(const std::string& path, const MeshOptions& read,
                   const std::function<void(const Mesh&)>& before, Session& session) {
     Stopwatch watch;
     PrecomputeArguments options;
     options.mesh = path;
-    options.mesh_options.pose = pose;
+    options.mesh_options = read;
     Mesh mesh = made_mesh(options, session);
     stand_on_floor(mesh);
     const std::optional<SceneCache> cache = user_cache();

@@ -206,6 +206,10 @@ Floats read_floats(Document& document, std::uint64_t accessor, std::uint32_t num
     return result;
 }
 
+std::uint32_t num_components(const Document& document, std::uint64_t accessor) {
+    return num_components_of(text(document.element("accessors", accessor), "type"));
+}
+
 std::vector<std::uint32_t> read_indices(Document& document, std::uint64_t accessor) {
     const Elements elements = elements_of(document, accessor, 1);
     std::vector<std::uint32_t> indices(elements.count);

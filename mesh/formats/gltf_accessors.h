@@ -18,6 +18,9 @@ struct Floats {
 [[nodiscard]] Floats read_floats(Document& document, std::uint64_t accessor,
                                  std::uint32_t num_components);
 
+/// Returns how many components an accessor has: 3 for VEC3.
+[[nodiscard]] std::uint32_t num_components(const Document& document, std::uint64_t accessor);
+
 /// Returns the values of an accessor of unsigned integers with one component.
 [[nodiscard]] std::vector<std::uint32_t> read_indices(Document& document, std::uint64_t accessor);
 

@@ -168,9 +168,10 @@ std::string_view lost_without(std::string_view extension) {
     constexpr std::string_view Images = "its images are left out; without another image, a surface "
                                         "has its factors alone";
     constexpr std::array<Loss, 8> Losses = {{
+        {"EXT_lights_ies", "lamps with a measured profile are left out"},
+        {"EXT_lights_image_based",
+         "the file brings its own environment, which does not light the scene"},
         {"EXT_texture_avif", Images},
-        {"KHR_materials_variants", "the first look of each surface is shown"},
-        {"KHR_node_visibility", "hidden nodes are shown"},
         {"KHR_texture_basisu", Images},
         {"KHR_xmp", "its metadata are left out"},
         {"KHR_xmp_json_ld", "its metadata are left out"},
@@ -323,10 +324,11 @@ void Document::split_glb(std::span<const std::byte> file) {
 }
 
 void Document::check_extensions() {
-    constexpr std::array<std::string_view, 8> Understood = {
-        "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression", "EXT_texture_webp",
-        "KHR_draco_mesh_compression", "KHR_lights_punctual",     "KHR_mesh_quantization",
-        "KHR_meshopt_compression",    "KHR_texture_transform"};
+    constexpr std::array<std::string_view, 11> Understood = {
+        "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",    "EXT_texture_webp",
+        "KHR_animation_pointer",   "KHR_draco_mesh_compression", "KHR_lights_punctual",
+        "KHR_materials_variants",  "KHR_mesh_quantization",      "KHR_meshopt_compression",
+        "KHR_node_visibility",     "KHR_texture_transform"};
     const auto names = [this](const char* key) {
         std::set<std::string> result;
         for (const Json& name : items(root_, key)) {

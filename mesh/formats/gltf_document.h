@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "files/json.h"
+#include "mesh/formats/gltf_pointers.h"
 
 namespace relumine::mesh::gltf {
 
@@ -53,6 +54,10 @@ public:
              std::uint64_t max_bytes);
 
     [[nodiscard]] const Json& root() const { return root_; }
+    /// Sets properties of the file. References to its JSON are invalid then.
+    void change(const Changes& changes, std::vector<std::string>& lost) {
+        root_ = changes.applied(root_, lost);
+    }
     /// Returns the size of the file and of the buffers beside it that were needed so far.
     [[nodiscard]] std::uint64_t num_bytes() const;
     /// Counts memory that a mesh needs beyond the file's bytes: a file may repeat what it holds.

@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 
 #include "files/counted.h"
+#include "mesh/formats/gltf_variants.h"
+#include "mesh/formats/polygon_soup.h"
 #include "mesh/text_reader.h"
 
 namespace relumine::mesh::gltf {
@@ -29,9 +31,10 @@ constexpr std::array<Extension, 5> Extensions = {{
     {"KHR_materials_anisotropy", "anisotropyStrength", 0.0, "highlights are round"},
     {"KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", 0.0,
      "no light shines through surfaces"},
-    {"KHR_materials_dispersion", "dispersion", 0.0, "surfaces are opaque"},
+    {"KHR_materials_dispersion", "dispersion", 0.0, "glass bends all colours alike"},
     {"KHR_materials_iridescence", "iridescenceFactor", 0.0, "thin films are left out"},
-    {"KHR_materials_volume_scatter", "multiscatterColor", 0.0, "surfaces are opaque"},
+    {"KHR_materials_volume_scatter", "multiscatterColor", 0.0,
+     "bodies are clear inside, not milky"},
 }};
 
 /// Those that are read.
@@ -72,7 +75,8 @@ bool is_neutral(const Extension& extension, const Json& object) {
 
 class LeftOut {
 public:
-    LeftOut(const Document& document, bool has_pose) : document_(document), has_pose_(has_pose) {}
+    LeftOut(const Document& document, const GltfOptions& options)
+        : document_(document), options_(options) {}
     std::vector<std::string> lines();
 
 private:
@@ -84,7 +88,7 @@ private:
     void count(const std::string& kind, std::string_view loss);
 
     const Document& document_;
-    bool has_pose_;
+    const GltfOptions& options_;
     /// How many materials have each kind, what is lost, in the order they were met.
     std::vector<std::string> order_;
     std::map<std::string, std::pair<std::size_t, std::string>> kinds_;
@@ -191,10 +195,14 @@ void LeftOut::primitives() {
 void LeftOut::scenes() {
     if (const std::size_t count = document_.count("scenes"); count > 1)
         lines_.push_back(fmt::format("{} of {} scenes: the default one is read", count - 1, count));
-    if (const std::size_t count = document_.count("animations"); count > 0 && !has_pose_)
+    if (const std::size_t count = document_.count("animations"); count > 0 && !options_.pose)
         lines_.push_back(fmt::format("{}: nodes stand as they are; --pose ANIMATION@SECONDS "
                                      "chooses a moment",
                                      files::counted(count, "animation")));
+    if (const std::size_t count = variants(document_).size(); count > 0 && !options_.variant)
+        lines_.push_back(fmt::format("{} of materials: surfaces have their own; --variant NAME "
+                                     "chooses one, info lists them",
+                                     files::counted(count, "variant")));
 }
 
 std::vector<std::string> LeftOut::lines() {
@@ -214,12 +222,13 @@ std::vector<std::string> LeftOut::lines() {
 
 } // namespace
 
-std::vector<std::string> left_out(const Document& document, bool has_pose) {
-    return LeftOut(document, has_pose).lines();
+std::vector<std::string> left_out(const Document& document, const GltfOptions& options) {
+    return LeftOut(document, options).lines();
 }
 
 bool is_of_materials(std::string_view extension) {
-    return extension.starts_with("KHR_materials_") && extension != "KHR_materials_variants";
+    return (extension.starts_with("KHR_materials_") || extension.starts_with("EXT_materials_")) &&
+           extension != "KHR_materials_variants";
 }
 
 } // namespace relumine::mesh::gltf

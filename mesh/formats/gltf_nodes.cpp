@@ -12,6 +12,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 
+#include "files/counted.h"
 #include "mesh/formats/gltf_accessors.h"
 #include "mesh/text_reader.h"
 
@@ -51,7 +52,13 @@ Interpolation interpolation_of(const Json& sampler) {
         excerpt(name)));
 }
 
-Keys read_keys(Document& document, const Json& sampler, const std::string& path) {
+/// What the keys of a channel are: vectors, or lists of numbers of any length.
+struct KeyType {
+    std::uint32_t num_components = 1;
+    bool is_list = false;
+};
+
+Keys read_keys(Document& document, const Json& sampler, const std::string& path, KeyType type) {
     Keys keys;
     keys.interpolation = interpolation_of(sampler);
     keys.times = read_floats(document, whole(sampler, "input"), 1).values;
@@ -62,12 +69,11 @@ Keys read_keys(Document& document, const Json& sampler, const std::string& path)
                      [](float time) { return std::isfinite(time); }) ||
         std::adjacent_find(keys.times.begin(), keys.times.end(), is_late) != keys.times.end())
         throw std::runtime_error("expected ascending times of an animation's keys, got others");
-    const std::uint32_t num_components = path == "weights" ? 1 : path == "rotation" ? 4 : 3;
-    const Floats values = read_floats(document, whole(sampler, "output"), num_components);
+    const Floats values = read_floats(document, whole(sampler, "output"), type.num_components);
     keys.values = values.values;
     const std::size_t num_keys =
         keys.times.size() * (keys.interpolation == Interpolation::Cubic ? 3 : 1);
-    keys.width = path == "weights" ? values.count / num_keys : num_components;
+    keys.width = type.is_list ? values.count / num_keys : type.num_components;
     if (keys.width == 0 || keys.values.size() != keys.width * num_keys)
         throw std::runtime_error(
             fmt::format("expected {} values of an animation's \"{}\", one for each key, got {}",
@@ -141,7 +147,31 @@ std::uint64_t index_of(const Document& document, const std::string& animation) {
                     count == 0 ? "which has none" : names, excerpt(animation)));
 }
 
+/// Returns the value that a channel gives to the property at a pointer.
+Json pointed_value(Document& document, const Json& sampler, const std::string& pointer,
+                   double seconds) {
+    const std::uint64_t output = whole(sampler, "output");
+    const Json& accessor = document.element("accessors", output);
+    const bool is_list = pointer.ends_with("/weights");
+    const std::uint32_t width = is_list ? 1 : num_components(document, output);
+    const Keys keys = read_keys(document, sampler, pointer, {width, is_list});
+    document.take_memory(keys.width * sizeof(Json));
+    const std::vector<double> value =
+        value_at(keys, seconds, pointer.ends_with("/rotation") && pointer.starts_with("/nodes/"));
+    if (keys.width > 1 || is_list)
+        return value;
+    constexpr std::uint64_t Byte = 5121;
+    if (whole(accessor, "componentType") == Byte && !flag(accessor, "normalized"))
+        return value[0] != 0.0;
+    return value[0];
+}
+
 } // namespace
+
+bool is_hidden(const Json& node) {
+    const Json& extension = child(child(node, "extensions"), "KHR_node_visibility");
+    return extension.find("visible") != nullptr && !flag(extension, "visible");
+}
 
 glm::dmat4 matrix_of(const Placement& placement) {
     const auto& [t, r, s] = placement;
@@ -154,28 +184,50 @@ glm::dmat4 matrix_of(const Placement& placement) {
             glm::dvec4(rotation[2] * s[2], 0.0), glm::dvec4(t[0], t[1], t[2], 1.0)};
 }
 
-NodePoses read_pose(Document& document, const Pose& pose) {
+NodePoses read_pose(Document& document, const Pose& pose, std::vector<std::string>& warnings) {
     const Json& animation = document.element("animations", index_of(document, pose.animation));
     const Json::Array& samplers = items(animation, "samplers");
     NodePoses poses;
+    Changes changes;
     for (const Json& channel : items(animation, "channels")) {
         const Json& target = child(channel, "target");
         const std::string path = text(target, "path");
-        if (!target.find("node") ||
-            (path != "translation" && path != "rotation" && path != "scale" && path != "weights"))
+        const Json& pointer = child(child(target, "extensions"), "KHR_animation_pointer");
+        const bool is_pointer = path == "pointer" && pointer.find("pointer") != nullptr;
+        if (!is_pointer && (!target.find("node") || (path != "translation" && path != "rotation" &&
+                                                     path != "scale" && path != "weights")))
             continue; // of extensions
-        const std::uint64_t node = whole(target, "node"), sampler = whole(channel, "sampler");
-        static_cast<void>(document.element("nodes", node)); // checks the range
+        const std::uint64_t sampler = whole(channel, "sampler");
         if (sampler >= samplers.size())
             throw std::runtime_error(fmt::format(
                 "expected an animation's samplers below {}, got {}", samplers.size(), sampler));
-        const Keys keys = read_keys(document, samplers[sampler], path);
+        if (is_pointer) {
+            const std::string property = text(pointer, "pointer");
+            changes.add(property,
+                        pointed_value(document, samplers[sampler], property, pose.seconds));
+            continue;
+        }
+        const std::uint64_t node = whole(target, "node");
+        static_cast<void>(document.element("nodes", node)); // checks the range
+        const bool is_list = path == "weights";
+        const Keys keys = read_keys(document, samplers[sampler], path,
+                                    {is_list              ? 1u
+                                     : path == "rotation" ? 4u
+                                                          : 3u,
+                                     is_list});
         NodePose& moved = poses[node];
         (path == "translation" ? moved.translation
          : path == "rotation"  ? moved.rotation
          : path == "scale"     ? moved.scale
                                : moved.weights) = value_at(keys, pose.seconds, path == "rotation");
     }
+    std::vector<std::string> lost;
+    if (!changes.empty())
+        document.change(changes, lost);
+    if (!lost.empty())
+        warnings.push_back(fmt::format("{} of the animation, which the file does not have: {}",
+                                       files::counted(lost.size(), "pointer"),
+                                       excerpt(lost.front())));
     return poses;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -33,10 +34,15 @@ struct NodePose {
 /// By node.
 using NodePoses = std::map<std::uint64_t, NodePose>;
 
-/// Returns what an animation moves.
+/// Returns what an animation moves. What it sets elsewhere, by KHR_animation_pointer, is set in the
+/// document: call this first. A pointer that leads nowhere is a warning.
 /// Throws:  std::runtime_error "expected X, got Y" for an animation that the file does not have,
 ///          and for keys that are broken.
-[[nodiscard]] NodePoses read_pose(Document& document, const Pose& pose);
+[[nodiscard]] NodePoses read_pose(Document& document, const Pose& pose,
+                                  std::vector<std::string>& warnings);
+
+/// Returns whether KHR_node_visibility hides the node, and so all below it.
+[[nodiscard]] bool is_hidden(const Json& node);
 
 /// Returns the node's place in its parent.
 [[nodiscard]] glm::dmat4 local_transform(const Json& node, const NodePose& moved);

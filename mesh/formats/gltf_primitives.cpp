@@ -122,6 +122,22 @@ std::uint32_t PrimitiveReader::default_material() {
     return *default_material_;
 }
 
+/// Returns the material of the variant, or else the primitive's own one.
+std::uint32_t PrimitiveReader::material(const Json& description) {
+    const auto checked = [this](std::uint64_t index) {
+        static_cast<void>(document_.element("materials", index)); // checks the range
+        return static_cast<std::uint32_t>(index);
+    };
+    if (variant_)
+        for (const Json& mapping :
+             items(child(child(description, "extensions"), "KHR_materials_variants"), "mappings"))
+            for (const Json& variant : items(mapping, "variants"))
+                if (whole_value(variant, "variants") == *variant_)
+                    return checked(whole(mapping, "material"));
+    return description.find("material") ? checked(whole(description, "material"))
+                                        : default_material();
+}
+
 /// The accessors of compressed arrays say how many elements there are. Some encoders leave the
 /// counts of the mesh before compression; the data govern then, as in other readers.
 void PrimitiveReader::check_counts(const Json& description, const DracoMesh& mesh) {
@@ -188,13 +204,7 @@ std::optional<Primitive> PrimitiveReader::read(const Json& description) {
     read(is_lit ? "_RADIANCE" : "COLOR_0", result.colors);
     if (!result.colors.empty())
         scale_colors(description, result.colors);
-    if (description.find("material")) {
-        const std::uint64_t material = whole(description, "material");
-        static_cast<void>(document_.element("materials", material)); // checks the range
-        result.material = static_cast<std::uint32_t>(material);
-    } else {
-        result.material = default_material();
-    }
+    result.material = material(description);
     const auto& sets = materials_.uv_sets[result.material];
     read(fmt::format("TEXCOORD_{}", sets[0].value_or(0)), result.uvs);
     const std::uint32_t first = sets[0].value_or(0);

@@ -43,12 +43,14 @@ struct Primitive {
 };
 
 /// Reads primitives. Document and materials must outlive it; a primitive without a material adds
-/// the format's default one. `lightmap_uvs`: LoadOptions.
+/// the format's default one. `lightmap_uvs`: LoadOptions. `variant`: its number in the file, of
+/// KHR_materials_variants; the primitives that do not know it keep their own materials.
 class PrimitiveReader {
 public:
     PrimitiveReader(Document& document, Materials& materials,
-                    std::optional<std::uint32_t> lightmap_uvs)
-        : document_(document), materials_(materials), lightmap_uvs_(lightmap_uvs) {}
+                    std::optional<std::uint32_t> lightmap_uvs, std::optional<std::uint64_t> variant)
+        : document_(document), materials_(materials), lightmap_uvs_(lightmap_uvs),
+          variant_(variant) {}
 
     /// Returns nothing for points and lines. `description` must outlive the result.
     /// Throws:  std::runtime_error "expected X, got Y".
@@ -57,6 +59,7 @@ public:
 private:
     [[nodiscard]] std::vector<Triangle> triangles(const Json& description, std::uint64_t mode,
                                                   std::size_t num_vertices);
+    [[nodiscard]] std::uint32_t material(const Json& description);
     [[nodiscard]] std::uint32_t default_material();
     void scale_colors(const Json& description, std::vector<glm::vec3>& colors);
     void check_counts(const Json& description, const DracoMesh& mesh);
@@ -64,6 +67,7 @@ private:
     Document& document_;
     Materials& materials_;
     std::optional<std::uint32_t> lightmap_uvs_;
+    std::optional<std::uint64_t> variant_;
     std::optional<std::uint32_t> default_material_;
 };
 

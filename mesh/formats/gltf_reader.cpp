@@ -24,6 +24,7 @@
 #include "mesh/formats/gltf_materials.h"
 #include "mesh/formats/gltf_nodes.h"
 #include "mesh/formats/gltf_primitives.h"
+#include "mesh/formats/gltf_variants.h"
 #include "mesh/formats/polygon_soup.h"
 
 namespace relumine::mesh {
@@ -66,10 +67,11 @@ Camera looking_at(const std::vector<glm::vec3>& positions, const gltf::FileCamer
 class GltfReader {
 public:
     GltfReader(std::span<const std::byte> bytes, const std::filesystem::path& folder,
-               const std::optional<Pose>& pose, std::uint64_t max_bytes,
-               std::optional<std::uint32_t> lightmap_uvs)
-        : document_(bytes, folder, max_bytes), pose_(pose),
-          primitives_(document_, materials_, lightmap_uvs) {}
+               const GltfOptions& options)
+        : document_(bytes, folder, options.max_bytes), options_(options),
+          primitives_(document_, materials_, options.lightmap_uvs,
+                      options.variant ? std::optional(gltf::variant(document_, *options.variant))
+                                      : std::nullopt) {}
     PolygonSoup read();
 
 private:
@@ -89,10 +91,12 @@ private:
     [[nodiscard]] std::uint32_t group(const Json& node, std::uint64_t mesh);
 
     gltf::Document document_;
-    std::optional<Pose> pose_;
+    const GltfOptions& options_;
     gltf::NodePoses moved_;
     /// [nodes] in the scene; empty: not met yet.
     std::vector<std::optional<glm::dmat4>> worlds_;
+    /// [nodes] They, or nodes above them, are hidden.
+    std::vector<bool> are_hidden_;
     std::optional<gltf::FileCamera> camera_;
     gltf::Materials materials_;
     gltf::PrimitiveReader primitives_;
@@ -312,6 +316,7 @@ std::vector<std::uint64_t> GltfReader::place(const std::vector<std::uint64_t>& r
     struct Visit {
         std::uint64_t node;
         glm::dmat4 parent;
+        bool is_hidden = false;
     };
     const bool is_scene = std::none_of(worlds_.begin(), worlds_.end(),
                                        [](const auto& world) { return world.has_value(); });
@@ -329,10 +334,12 @@ std::vector<std::uint64_t> GltfReader::place(const std::vector<std::uint64_t>& r
         if (worlds_[visit.node])
             continue;
         worlds_[visit.node] = visit.parent * gltf::local_transform(node, moved_[visit.node]);
+        are_hidden_[visit.node] = is_scene && (visit.is_hidden || gltf::is_hidden(node));
         order.push_back(visit.node);
         const Json::Array& children = gltf::items(node, "children");
         for (std::size_t i = children.size(); i-- > 0;)
-            to_visit.push_back({gltf::whole_value(children[i], "children"), *worlds_[visit.node]});
+            to_visit.push_back({gltf::whole_value(children[i], "children"), *worlds_[visit.node],
+                                are_hidden_[visit.node]});
     }
     return order;
 }
@@ -356,12 +363,17 @@ void GltfReader::finish() {
     soup_.materials = std::move(materials_.materials);
     soup_.textures = std::move(materials_.textures);
     soup_.missing = std::move(materials_.missing);
+    soup_.variants = gltf::variants(document_);
+    if (const auto hidden = std::count(are_hidden_.begin(), are_hidden_.end(), true); hidden > 0)
+        soup_.notes.push_back(
+            fmt::format("{} (KHR_node_visibility): neither drawn, nor shadow, nor light",
+                        files::counted(static_cast<std::size_t>(hidden), "hidden node")));
     std::vector<std::string> warnings = document_.warnings();
     const auto add = [&](const std::vector<std::string>& more) {
         warnings.insert(warnings.end(), more.begin(), more.end());
     };
     add(materials_.warnings);
-    add(gltf::left_out(document_, pose_.has_value()));
+    add(gltf::left_out(document_, options_));
     if (const auto unit = gltf::unit_of_lights(document_); unit && !soup_.lights.empty())
         add({*unit});
     if (num_odd_weights_ > 0)
@@ -395,16 +407,18 @@ void GltfReader::add_light(const Json& node, const glm::dmat4& world) {
 }
 
 PolygonSoup GltfReader::read() {
+    if (options_.pose)
+        moved_ = gltf::read_pose(document_, *options_.pose, soup_.warnings);
     materials_ = gltf::read_materials(document_);
-    meshes_.resize(document_.count("meshes"));
     worlds_.resize(document_.count("nodes"));
-    if (pose_)
-        moved_ = gltf::read_pose(document_, *pose_);
+    are_hidden_.resize(document_.count("nodes"));
+    meshes_.resize(document_.count("meshes"));
     for (const std::uint64_t index : place(root_nodes())) {
         const Json& node = document_.element("nodes", index);
-        if (node.find("mesh"))
+        if (node.find("mesh") && !are_hidden_[index])
             append_node(index);
-        add_light(node, *worlds_[index]);
+        if (!are_hidden_[index])
+            add_light(node, *worlds_[index]);
         if (node.find("camera"))
             add_camera(document_.element("cameras", gltf::whole(node, "camera")), *worlds_[index]);
     }
@@ -415,10 +429,9 @@ PolygonSoup GltfReader::read() {
 } // namespace
 
 PolygonSoup read_gltf(std::span<const std::byte> bytes, const std::filesystem::path& folder,
-                      const std::optional<Pose>& pose, std::uint64_t max_bytes,
-                      std::optional<std::uint32_t> lightmap_uvs) {
+                      const GltfOptions& options) {
     try {
-        return GltfReader(bytes, folder, pose, max_bytes, lightmap_uvs).read();
+        return GltfReader(bytes, folder, options).read();
     } catch (const files::JsonError&) {
         throw std::runtime_error("expected glTF's JSON, got a value of another type");
     }

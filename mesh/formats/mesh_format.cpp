@@ -3,15 +3,13 @@
 #include <algorithm>
 
 #include "files/extension.h"
-#include "files/free_memory.h"
 
 namespace relumine::mesh {
 
 namespace {
 
 PolygonSoup gltf(const MeshFile& file) {
-    return read_gltf(file.bytes, file.folder, file.pose, files::free_memory() / 2,
-                     file.lightmap_uvs);
+    return read_gltf(file.bytes, file.folder, file.gltf);
 }
 PolygonSoup obj(const MeshFile& file) {
     return read_obj(file.bytes, file.folder);

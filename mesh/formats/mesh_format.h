@@ -16,9 +16,7 @@ struct MeshFile {
     std::span<const std::byte> bytes;
     std::filesystem::path folder = {};
     /// For formats that have animations
-    std::optional<Pose> pose = {};
-    /// As LoadOptions has it
-    std::optional<std::uint32_t> lightmap_uvs = {};
+    GltfOptions gltf = {};
 };
 
 struct MeshFormat {
@@ -26,6 +24,7 @@ struct MeshFormat {
     std::string_view extension;
     /// A reader of polygon_soup.h
     PolygonSoup (*read)(const MeshFile& file);
+    /// It has animations, and materials in variants.
     bool has_animations = false;
     /// The axis that files have up by custom
     UpAxis up = UpAxis::Y;

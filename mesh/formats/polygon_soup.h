@@ -74,6 +74,8 @@ struct PolygonSoup {
     std::vector<Material> materials;
     std::vector<std::string> groups;
     std::vector<Texture> textures;
+    /// Names of the looks that a glTF file offers (KHR_materials_variants).
+    std::vector<std::string> variants;
     std::vector<PunctualLight> lights;
     /// [lights], or empty: their positions are exact.
     std::vector<glm::dvec3> light_positions;
@@ -101,17 +103,23 @@ void centre(PolygonSoup& soup);
 [[nodiscard]] TriangleMesh to_mesh(PolygonSoup soup, NormalSource source,
                                    std::optional<ColorCurve> curve = {});
 
+/// What a glTF file leaves open.
+struct GltfOptions {
+    /// LoadOptions has these three.
+    std::optional<Pose> pose = {};
+    std::optional<std::string> variant = {};
+    std::optional<std::uint32_t> lightmap_uvs = {};
+    /// A mesh of several nodes is repeated for each node, up to so much in all.
+    std::uint64_t max_bytes = files::free_memory() / 2;
+};
+
 /// The readers, one per format. They take a whole file's bytes, never read outside them, and
 /// allocate no more than a small multiple of their size. Other files that a file names are looked
-/// up from its `folder`. A glTF mesh of several nodes is repeated for each node, up to `max_bytes`
-/// in all; its skins and morph targets are as its nodes say, or in the `pose` of an animation.
-/// `lightmap_uvs`: LoadOptions.
+/// up from its `folder`.
 /// Throws:  std::runtime_error "expected X, got Y"; load() puts the path in front.
 [[nodiscard]] PolygonSoup read_gltf(std::span<const std::byte> bytes,
                                     const std::filesystem::path& folder,
-                                    const std::optional<Pose>& pose = {},
-                                    std::uint64_t max_bytes = files::free_memory() / 2,
-                                    std::optional<std::uint32_t> lightmap_uvs = {});
+                                    const GltfOptions& options = {});
 [[nodiscard]] PolygonSoup read_obj(std::span<const std::byte> bytes,
                                    const std::filesystem::path& folder = {});
 [[nodiscard]] PolygonSoup read_off(std::span<const std::byte> bytes);

@@ -130,6 +130,7 @@ class Mesh:
         vertex_colors: Optional[str] = None,
         uv_set: Optional[int] = None,
         pose: Optional[str] = None,
+        variant: Optional[str] = None,
         floor: Union[int, str, None] = None,
         floor_scale: float = 4.0,
     ) -> "Mesh":
@@ -145,6 +146,7 @@ class Mesh:
                  is within 0 to 1 and does not overlap
         pose     glTF: "ANIMATION@SECONDS", the moment in which skins and morph targets stand; None:
                  as the file's nodes say
+        variant  glTF: the variant of its materials, by name; None: each surface has its own
 
         Raises OSError with the file's name.
 
@@ -158,6 +160,7 @@ class Mesh:
             "vertex_colors": vertex_colors,
             "uv_set": uv_set,
             "pose": pose,
+            "variant": variant,
             "floor": floor,
             "floor_scale": floor_scale,
         }

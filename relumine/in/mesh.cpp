@@ -135,16 +135,20 @@ OptionRow crease_row(std::optional<float>& degrees) {
                {.min = 0, .max = 180, .type = "DEGREES"});
 }
 
-OptionRow pose_row(std::optional<mesh::Pose>& pose) {
-    return row<PoseText>(
-        "--pose", pose,
-        "glTF: the moment of an animation in which skins, morph targets and nodes stand: its name "
-        "or number, and seconds (they stand as the nodes say)",
-        {.type = "ANIMATION@SECONDS", .example = "0@0.5"});
+OptionTable open_choices(MeshOptions& o) {
+    return {row<PoseText>(
+                "--pose", o.pose,
+                "glTF: the moment of an animation in which skins, morph targets and nodes stand: "
+                "its name or number, and seconds (they stand as the nodes say)",
+                {.type = "ANIMATION@SECONDS", .example = "0@0.5"}),
+            row("--variant", o.variant,
+                "glTF: the variant of its materials, by name; `info` lists them (each surface has "
+                "its own material)",
+                {.type = "NAME", .example = "red"})};
 }
 
 OptionTable options_of(MeshOptions& o) {
-    return {
+    OptionTable table = {
         row<FloorText>(
             "--floor", o.floor_vertices,
             "add a floor under the mesh: a grid of N x N vertices, or auto, when no N is "
@@ -166,8 +170,10 @@ OptionTable options_of(MeshOptions& o) {
             "to "
             "1 and does not overlap, or 0)",
             {.min = 0, .max = 255, .type = "N"}),
-        crease_row(o.crease),
-        pose_row(o.pose)};
+        crease_row(o.crease)};
+    for (OptionRow& each : open_choices(o))
+        table.push_back(std::move(each));
+    return table;
 }
 
 OptionTable options_of(RefineOptions& o) {
@@ -187,6 +193,7 @@ OptionTable options_of(RefineOptions& o) {
 Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
     mesh::LoadedMesh loaded = mesh::load(path, {.normals = options.normals,
                                                 .pose = options.pose,
+                                                .variant = options.variant,
                                                 .colors = options.vertex_colors,
                                                 .lightmap_uvs = options.uv_set.value_or(1)});
     return prepared(std::move(loaded), path, options);

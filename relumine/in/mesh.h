@@ -80,6 +80,8 @@ struct MeshOptions {
     mesh::NormalSource normals = mesh::NormalSource::File;
     /// The moment of one of a glTF file's animations. Empty: as its nodes say.
     std::optional<mesh::Pose> pose = {};
+    /// The name of a look that a glTF file offers. Empty: each surface has its own material.
+    std::optional<std::string> variant = {};
     /// What colours of vertices and faces mean. Empty: by the custom of the format.
     std::optional<mesh::ColorCurve> vertex_colors = {};
     /// The set of uvs that a lightmap takes, TEXCOORD_n of glTF. Empty: 1 where it is an unwrap.
@@ -96,8 +98,8 @@ struct MeshOptions {
 };
 
 [[nodiscard]] OptionTable options_of(MeshOptions& options);
-/// The row of --pose alone.
-[[nodiscard]] OptionRow pose_row(std::optional<mesh::Pose>& pose);
+/// What a glTF file leaves open: --pose and --variant alone
+[[nodiscard]] OptionTable open_choices(MeshOptions& options);
 
 /// --crease of MeshOptions alone
 [[nodiscard]] OptionRow crease_row(std::optional<float>& degrees);

@@ -1,6 +1,7 @@
 // `relumine info`: what it tells.
 #include "prt/scene/scene_file.h"
 #include "tests/app/command.h"
+#include "tests/app/formats.h"
 #include "tests/app/small_files.h"
 
 namespace relumine::app {
@@ -76,6 +77,40 @@ TEST_F(Info, PoseOfAMesh) {
     succeed("precompute mesh.obj -o scene.prt --tolerance 1 -q --refine off --bounces 0");
     misuse("info scene.prt --pose 0@1", "--pose");
     misuse("relight scene.prt white.hdr --pose 0@1 -o posed.png", "--pose");
+}
+
+/// A triangle that is black, or white as the variant "snow".
+TEST_F(Info, VariantsOfAMesh) {
+    write("coat.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0},
+            "material": 0, "extensions": {"KHR_materials_variants": {"mappings": [
+            {"material": 1, "variants": [1]}]}}}]}],
+        "extensionsUsed": ["KHR_materials_variants"],
+        "extensions": {"KHR_materials_variants": {"variants": [{"name": "coal"},
+                                                               {"name": "snow"}]}},
+        "materials": [{"doubleSided": true, "pbrMetallicRoughness":
+                       {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0}},
+                      {"doubleSided": true, "pbrMetallicRoughness": {"metallicFactor": 0}}],
+        "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,)"
+                       "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"
+                       R"("}], "bufferViews": [{"buffer": 0, "byteLength": 36}], "accessors": [
+        {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+         "max": [1, 1, 0]}]})");
+    write("white.hdr", white_hdr());
+    EXPECT_EQ(succeed("info coat.gltf --json").json()["variants"],
+              (nlohmann::json{"coal", "snow"}));
+    const auto first_vertex = [&](const std::vector<std::string>& variant) {
+        std::vector<std::string> arguments = {"relight",    "coat.gltf", "white.hdr",
+                                              "--no-cache", "-o",        "coat.npy"};
+        arguments.insert(arguments.end(), variant.begin(), variant.end());
+        succeed(arguments);
+        return npy_values(read("coat.npy"))[0][0];
+    };
+    EXPECT_LT(first_vertex({}), 0.05f);
+    EXPECT_GT(first_vertex({"--variant", "snow"}), 0.3f);
+    fail("relight coat.gltf white.hdr --variant ice -o coat.png", {"'coal', 'snow'", "'ice'"});
+    fail("info mesh.obj --variant snow", {"expected .glb or .gltf for a variant"});
+    misuse("info white.hdr --variant snow", "--variant");
 }
 
 TEST_F(Info, MaterialsOfAMesh) {

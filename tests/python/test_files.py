@@ -1,7 +1,9 @@
 """Files in and out, and the errors that name them."""
 
 import errno
+import json
 import os
+import pickle
 import subprocess
 import sys
 
@@ -62,6 +64,48 @@ def test_materials_of_a_mesh(folder):
     assert material["roughness"] == 0.25
     assert material["base_color"] == [1, 1, 1]
     assert "coat" not in material
+
+
+def test_variants_of_a_mesh(folder):
+    corners = np.eye(3, dtype=np.float32)
+    (folder / "a.bin").write_bytes(corners.tobytes())
+    mapping = {"mappings": [{"material": 1, "variants": [0]}]}
+    document = {
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [
+            {
+                "primitives": [
+                    {
+                        "attributes": {"POSITION": 0},
+                        "material": 0,
+                        "extensions": {"KHR_materials_variants": mapping},
+                    }
+                ]
+            }
+        ],
+        "materials": [
+            {"pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0}},
+            {"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "metallicFactor": 0}},
+        ],
+        "extensions": {"KHR_materials_variants": {"variants": [{"name": "winter"}]}},
+        "buffers": [{"uri": "a.bin", "byteLength": 36}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    }
+    (folder / "a.gltf").write_text(json.dumps(document))
+    with pytest.warns(UserWarning, match="1 variant of materials"):
+        plain = relumine.Mesh.load(folder / "a.gltf")
+    winter = relumine.Mesh.load(folder / "a.gltf", variant="winter")
+    white = relumine.Environment(np.ones((8, 16, 3), np.float32))
+    for mesh, least, most in ((plain, 0, 0.05), (winter, 0.5, 1.05), (pickle.loads(pickle.dumps(winter)), 0.5, 1.05)):
+        relighter = relumine.Relighter(relumine.precompute(mesh, refine=False))
+        relighter.set_environment(white)
+        relighter.save("lit.npy")
+        assert least <= np.load("lit.npy").max() <= most
+    with pytest.raises(OSError, match="'winter'.*got 'summer'"):
+        relumine.Mesh.load(folder / "a.gltf", variant="summer")
 
 
 def test_missing_files(folder):

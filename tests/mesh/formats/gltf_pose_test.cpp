@@ -126,6 +126,91 @@ Model turning_square() {
     return model;
 }
 
+/// The square with a material, a light and an animation of whatever pointers lead to, from 0 to 2
+/// seconds.
+class Pointing {
+public:
+    Pointing() {
+        model.json["materials"] = {{{"doubleSided", true}, {"alphaMode", "MASK"}}};
+        model.json["meshes"][0]["primitives"][0]["material"] = 0;
+        model.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+        model.json["nodes"].push_back({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+        model.json["nodes"].push_back({{"mesh", 0}});
+        model.json["scenes"][0]["nodes"] = {0, 1, 2};
+        model.json["nodes"][2]["extensions"]["KHR_node_visibility"] = Json::object();
+        model.json["extensionsUsed"] =
+            model.json["extensionsRequired"] = {"KHR_animation_pointer", "KHR_node_visibility"};
+        times_ = model.add<float>({0.0f, 2.0f}, 5126, "SCALAR");
+        model.json["animations"] = {{{"name", "Glow"}}};
+    }
+    void point(const std::string& pointer, std::size_t output,
+               const std::string& interpolation = "LINEAR") {
+        Json& animation = model.json["animations"][0];
+        animation["channels"].push_back(
+            {{"sampler", animation["samplers"].size()},
+             {"target",
+              {{"path", "pointer"},
+               {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}});
+        animation["samplers"].push_back(
+            {{"input", times_}, {"output", output}, {"interpolation", interpolation}});
+    }
+
+    Model model = square();
+
+private:
+    std::size_t times_;
+};
+
+TEST_F(GltfPoseTest, PointersOfAnimations) {
+    Pointing pointing;
+    Model& model = pointing.model;
+    pointing.point("/materials/0/pbrMetallicRoughness/baseColorFactor",
+                   model.add<glm::vec4>({{1, 0, 0, 1}, {0, 1, 0, 1}}, 5126, "VEC4"));
+    pointing.point("/materials/0/alphaCutoff", model.add<float>({0.25f, 0.75f}, 5126, "SCALAR"));
+    pointing.point("/extensions/KHR_lights_punctual/lights/0/intensity",
+                   model.add<float>({0, 8}, 5126, "SCALAR"));
+    pointing.point("/nodes/0/translation",
+                   model.add<glm::vec3>({{0, 0, 0}, {0, 0, 4}}, 5126, "VEC3"));
+    const float h = std::sqrt(0.5f);
+    pointing.point("/nodes/1/rotation",
+                   model.add<glm::vec4>({{0, 0, 0, 1}, {0, h, 0, h}}, 5126, "VEC4"));
+    pointing.point("/nodes/2/extensions/KHR_node_visibility/visible",
+                   model.add<std::array<std::uint8_t, 4>>({{1, 0, 0, 0}}, 5121, "SCALAR", false, 2),
+                   "STEP");
+    const auto path = write("a.gltf", model.embedded());
+    const LoadedMesh mesh = load(path, {.pose = Pose{"Glow", 0.5}});
+    EXPECT_THAT(mesh.warnings, ElementsAre());
+    EXPECT_EQ(mesh.materials[0].base_color, glm::vec3(0.75f, 0.25f, 0.0f));
+    EXPECT_EQ(mesh.materials[0].alpha_cutoff, 0.375f);
+    EXPECT_EQ(mesh.lights.at(0).intensity, glm::vec3(2.0f));
+    // A quarter of the turn from -Z to -X.
+    EXPECT_NEAR(mesh.lights[0].direction.x, -std::sin(std::numbers::pi / 8.0), 1e-6);
+    EXPECT_EQ(mesh.num_vertices(), 8u);
+    EXPECT_EQ(mesh.positions[0], glm::vec3(0, 0, 1));
+    EXPECT_EQ(load(path, {.pose = Pose{"Glow", 2.0}}).num_vertices(), 4u) << "hidden by then";
+    EXPECT_EQ(load(path).materials[0].base_color, glm::vec3(1.0f)) << "no pose is asked for";
+}
+
+TEST_F(GltfPoseTest, PointersThatLeadNowhere) {
+    Pointing pointing;
+    const auto ones = pointing.model.add<float>({1, 1}, 5126, "SCALAR");
+    for (const char* pointer : {"/materials/1/alphaCutoff", "/materials/00/alphaCutoff", "nodes/0",
+                                "/nodes/0/extensions/KHR_node_visibility/visible", "/scene/0", ""})
+        pointing.point(pointer, ones);
+    pointing.point(std::string(100000, '/'), ones);
+    const auto path = write("a.gltf", pointing.model.embedded());
+    EXPECT_THAT(load(path, {.pose = Pose{"Glow", 0.5}}).warnings,
+                ElementsAre("7 pointers of the animation, which the file does not have: "
+                            "'nodes/0'"));
+    // A type that the property does not have.
+    Pointing wrong;
+    wrong.point("/nodes/0/translation", ones);
+    static_cast<void>(wrong.model.add<float>({1, 1}, 5126, "SCALAR"));
+    const auto other = write("b.gltf", wrong.model.embedded());
+    expect_refusal([&] { static_cast<void>(load(other, {.pose = Pose{"Glow", 0.5}})); },
+                   "3 numbers as \"translation\"");
+}
+
 TEST_F(GltfPoseTest, PosesOfAnimations) {
     const Model model = turning_square();
     const auto path = write("turn.gltf", model.embedded());

@@ -689,8 +689,9 @@ TEST_F(GltfTest, Instances) {
 TEST_F(GltfTest, SaysWhatIsLeftOut) {
     Model model = square();
     EXPECT_THAT(gltf(model.embedded()).warnings, ElementsAre());
-    model.json["extensionsUsed"] = {"KHR_materials_anisotropy", "VENDOR_wind", "KHR_texture_basisu",
-                                    "KHR_texture_transform", "KHR_materials_anisotropy"};
+    model.json["extensionsUsed"] = {"KHR_materials_anisotropy", "VENDOR_wind",
+                                    "KHR_texture_basisu",       "KHR_texture_transform",
+                                    "KHR_materials_anisotropy", "EXT_lights_image_based"};
     model.json["extensionsRequired"] = {"KHR_texture_basisu"};
     const Json coats = {{"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}}},
                         {"KHR_materials_iridescence", {{"iridescenceFactor", 0}}},
@@ -698,6 +699,7 @@ TEST_F(GltfTest, SaysWhatIsLeftOut) {
                         {"KHR_materials_sheen", {{"sheenColorFactor", {0.5, 0, 0}}}},
                         {"KHR_materials_specular", {{"specularColorFactor", {0.5, 1, 1}}}},
                         {"KHR_materials_ior", {{"ior", 1.25}}},
+                        {"EXT_materials_bump", {{"bumpFactor", 1}}},
                         {"VENDOR_fur", {{"length", 2}}}};
     model.json["samplers"] = {{{"magFilter", 9728}}};
     model.json["textures"] = {{{"sampler", 0}}};
@@ -718,8 +720,12 @@ TEST_F(GltfTest, SaysWhatIsLeftOut) {
             "the extension 'KHR_texture_basisu' is not read: its images are left out; "
             "without another image, a surface has its factors alone",
             "the extension 'VENDOR_wind' is not read: what it describes is left out",
+            "the extension 'EXT_lights_image_based' is not read: the file brings its own "
+            "environment, which does not light the scene",
             "1 material with KHR_materials_anisotropy, which is not read: highlights are round",
             "1 material with 'VENDOR_fur', which is not read: what it describes is left out",
+            "1 material with 'EXT_materials_bump', which is not read: what it describes is left "
+            "out",
             "1 material with an occlusion map, which is not read: rays find what blocks the light",
             "2 materials with textures of hard pixels (NEAREST), which are not kept: they are "
             "sampled bilinearly",
@@ -839,7 +845,7 @@ TEST_F(GltfTest, RepetitionHasALimit) {
         return model.embedded();
     };
     const auto read = [](const std::string& file, std::uint64_t max_bytes) {
-        return read_gltf(bytes_of(file), {}, {}, max_bytes);
+        return read_gltf(bytes_of(file), {}, {.max_bytes = max_bytes});
     };
     const std::string file = repeated(2000, 20);
     EXPECT_EQ(read(file, 1u << 26).positions.size(), 4u * 2000 * 20);
@@ -970,6 +976,75 @@ TEST_F(GltfTest, LightsStandAtTheirNodes) {
     EXPECT_EQ(sun.lights.at(0).name, "light 0");
     EXPECT_EQ(sun.lights[0].intensity, glm::vec3(1.0f));
     EXPECT_TRUE(std::isinf(sun.lights[0].range));
+}
+
+TEST_F(GltfTest, VariantsOfMaterials) {
+    Model model = square();
+    model.json["extensionsUsed"] = model.json["extensionsRequired"] = {"KHR_materials_variants"};
+    model.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "red"}},
+                                                                      {{"name", "blue"}}};
+    model.json["materials"] = {{{"name", "plain"}}, {{"name", "a"}}, {{"name", "b"}}};
+    Json& primitives = model.json["meshes"][0]["primitives"];
+    primitives[0]["material"] = 0;
+    primitives.push_back(primitives[0]); // knows red alone
+    primitives.push_back(primitives[0]); // knows none
+    const auto mappings = [](const Json& all) {
+        return Json{{"KHR_materials_variants", {{"mappings", all}}}};
+    };
+    primitives[0]["extensions"] =
+        mappings({{{"material", 2}, {"variants", {1}}}, {{"material", 1}, {"variants", {0}}}});
+    primitives[1]["extensions"] = mappings(Json::array({{{"material", 1}, {"variants", {0}}}}));
+    const auto path = write("a.gltf", model.embedded());
+    const auto materials = [&](const std::optional<std::string>& variant) {
+        const LoadedMesh mesh = load(path, {.variant = variant});
+        EXPECT_THAT(mesh.variants, ElementsAre("red", "blue"));
+        EXPECT_EQ(mesh.warnings.size(), variant ? 0u : 1u);
+        return mesh.triangle_materials;
+    };
+    EXPECT_THAT(materials({}), ElementsAre(0, 0, 0, 0, 0, 0));
+    EXPECT_THAT(materials("red"), ElementsAre(1, 1, 1, 1, 0, 0));
+    EXPECT_THAT(materials("blue"), ElementsAre(2, 2, 0, 0, 0, 0));
+    expect_refusal([&] { return load(path, {.variant = "green"}); },
+                   "a.gltf: expected a variant of the file ('red', 'blue'), got 'green'");
+    EXPECT_THAT(load(path).warnings,
+                ElementsAre("2 variants of materials: surfaces have their own; --variant NAME "
+                            "chooses one, info lists them"));
+    primitives[0]["extensions"] = mappings(Json::array({{{"material", 3}, {"variants", {0}}}}));
+    const auto broken = write("b.gltf", model.embedded());
+    expect_refusal([&] { return load(broken, {.variant = "red"}); },
+                   "indices of \"materials\" below 3, got 3");
+    expect_refusal([&] { return load(write("c.gltf", square().embedded()), {.variant = "red"}); },
+                   "expected a variant of the file (which has none), got 'red'");
+    expect_refusal([&] { return load(write("d.ply", box_ply()), {.variant = "red"}); },
+                   "expected .glb or .gltf for a variant, got '.ply'");
+}
+
+/// The square, a second one with a child, and a light below that child.
+Model hidden_squares() {
+    Model model = square_with_light({{"type", "point"}});
+    model.json["nodes"].push_back({{"mesh", 0}, {"translation", {0, 5, 0}}, {"children", {3}}});
+    model.json["nodes"].push_back({{"mesh", 0}, {"translation", {0, 0, 7}}, {"children", {1}}});
+    model.json["scenes"][0]["nodes"] = {0, 2};
+    model.json["extensionsUsed"].push_back("KHR_node_visibility");
+    return model;
+}
+
+TEST_F(GltfTest, HiddenNodesAreNotThere) {
+    Model model = hidden_squares();
+    EXPECT_EQ(gltf(model.embedded()).num_vertices(), 12u);
+    Json& visibility = model.json["nodes"][2]["extensions"]["KHR_node_visibility"];
+    visibility = Json::object();
+    EXPECT_EQ(gltf(model.embedded()).num_vertices(), 12u) << "visible unless it says otherwise";
+    visibility["visible"] = false;
+    const TriangleMesh mesh = gltf(model.embedded());
+    EXPECT_EQ(mesh.num_vertices(), 4u) << "what is below a hidden node is hidden, too";
+    EXPECT_THAT(mesh.lights, testing::IsEmpty());
+    EXPECT_THAT(mesh.warnings, testing::IsEmpty());
+    EXPECT_THAT(mesh.notes,
+                testing::Contains("3 hidden nodes (KHR_node_visibility): neither drawn, nor "
+                                  "shadow, nor light"));
+    visibility["visible"] = 0;
+    expect_refusal([&] { return gltf(model.embedded()); }, "true or false as \"visible\", got '0'");
 }
 
 // Its exporter writes 683 lumens for a watt of a light, and emission as radiance.
