@@ -45,7 +45,7 @@ def view_of(asset, pose):
 def picture(asset, environment, view, pose, png):
     """Without more vertices and bounces, so that nothing but the file decides."""
     scene = png.with_suffix(".prt")
-    quick = ["--no-refine", "--bounces", "0", "--tolerance", "0.1", "--face-resolution", "32"]
+    quick = ["--refine", "off", "--bounces", "0", "--tolerance", "0.1", "--face-resolution", "32"]
     run(PROGRAM, "precompute", asset, "-o", scene, "-q", *quick, *pose)
     run(PROGRAM, "relight", scene, environment, "-o", png, "-q", "--size", "320x240", "--exposure", "0.35", *view)
     scene.unlink()
