@@ -51,8 +51,8 @@ std::array<glm::vec3, Count> light_at(const prt::GridLayout& grid, std::span<con
 }
 
 int walk(const char* mesh, const char* environment, const char* output) {
-    PrecomputeOptions options{.receivers = Grid{.nx = 8, .ny = 4, .nz = 8}};
-    options.box = mesh::Bounds{.min = {-3.0f, 0.0f, -3.0f}, .max = {3.0f, 3.0f, 3.0f}};
+    const mesh::Bounds box{.min = {-3.0f, 0.0f, -3.0f}, .max = {3.0f, 3.0f, 3.0f}};
+    const PrecomputeOptions options{.receivers = Grid{.nx = 8, .ny = 4, .nz = 8, .box = box}};
     LitScene lit(precompute(load_mesh(mesh, {.floor_vertices = 33}), options), {.harmonics = 3});
     lit.light(load_environment(environment));
     save_harmonics(lit, output);

@@ -84,6 +84,8 @@ void AnimateOptions::load_camera() {
             "--camera-path",
             fmt::format("expected --output with .png or .exr frames, got '{}'", output.path));
     camera_path = load_camera_path(camera_file);
+    refuse_beside(camera_path->names_fov && picture.fov_degrees.has_value(),
+                  "--fov where the file has fov_degrees");
 }
 
 PlacedCamera AnimateOptions::camera_on_path(std::int64_t number, const Camera& other) const {
@@ -95,8 +97,6 @@ PlacedCamera AnimateOptions::camera_on_path(std::int64_t number, const Camera& o
 
 std::vector<cubemap::FrameFile> AnimateOptions::frame_files() const {
     std::optional<cubemap::FrameRange> chosen;
-    refuse_beside(camera_path->names_fov && picture.fov_degrees.has_value(),
-                  "--fov where the file has fov_degrees");
     try {
         if (!range.empty())
             chosen = cubemap::FrameRange::parse(range);

@@ -224,7 +224,8 @@ class Mesh:
         are the file's own. What is given as a single place, such as `eye`, counts as in the file.
         (0, 0, 0) for all other meshes.
         """
-        return self._core.offset
+        x, y, z = self._core.offset
+        return x, y, z
 
     @property
     def vertices(self) -> Floats:

@@ -373,7 +373,8 @@ class Scene:
     @property
     def offset(self) -> Tuple[float, float, float]:
         """What is taken off the coordinates of the mesh's file: Mesh.offset."""
-        return self._core.offset
+        x, y, z = self._core.offset
+        return x, y, z
 
     @property
     def vertices(self) -> Floats:

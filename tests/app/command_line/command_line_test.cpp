@@ -209,7 +209,7 @@ TEST_F(CommandLineTest, AMisspeltNameIsToldTheNearest) {
            "--highlights: expected stored or traced, got 'store'; did you mean stored?");
     // What older versions had.
     for (const char* old : {"precompute a.obj -o b.prt --no-refine", "verify a.prt b.exr --seed 2",
-                            "relight a.prt b.exr -o c.png --eye 1,2,3"})
+                            "relight a.prt b.exr -o c.png --transparent"})
         misuse(old, ": no option of `relumine ");
     misuse("lights env.hdr --zzz", "--zzz: no option of `relumine lights` (see");
     misuse("generate knto -o x", "did you mean knot?");

@@ -72,10 +72,10 @@ TEST(CameraPath, StandsStillBetweenKeysThatAreTheSame) {
 TEST(CameraPath, DoesNotGoBackOnAStraightWay) {
     const CameraPath path{.keys = {key_at(0, {0, 0, 2}), key_at(20, {1, 0, 2}),
                                    key_at(21, {9, 0, 2}), key_at(40, {10, 0, 2})}};
-    float last = -1e-6f;
+    double last = -1e-6f;
     for (int i = 0; i <= 400; ++i) {
         const double x = camera_at(path, 0.1 * i).eye.x;
-        EXPECT_GE(x, last - 1e-6f) << i;
+        EXPECT_GE(x, last - 1e-6) << i;
         last = x;
     }
 }
