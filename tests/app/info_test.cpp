@@ -100,8 +100,8 @@ TEST_F(Info, VariantsOfAMesh) {
     EXPECT_EQ(succeed("info coat.gltf --json").json()["variants"],
               (nlohmann::json{"coal", "snow"}));
     const auto first_vertex = [&](const std::vector<std::string>& variant) {
-        std::vector<std::string> arguments = {"relight",    "coat.gltf", "white.hdr",
-                                              "--no-cache", "-o",        "coat.npy"};
+        std::vector<std::string> arguments = {"relight", "coat.gltf", "white.hdr", "-o",
+                                              "coat.npy"};
         arguments.insert(arguments.end(), variant.begin(), variant.end());
         succeed(arguments);
         return npy_values(read("coat.npy"))[0][0];
