@@ -23,4 +23,9 @@ tar -C "$cache/$name" -xf "$cache/$name.tar"
 cp /etc/resolv.conf "$cache/$name/etc/resolv.conf"
 cp -r /etc/apt/apt.conf.d/. "$cache/$name/etc/apt/apt.conf.d/"
 [ ! -f /etc/pip.conf ] || cp /etc/pip.conf "$cache/$name/etc/"
+# So are certificates that this machine trusts beside the usual ones.
+if compgen -G '/usr/local/share/ca-certificates/*.crt' >/dev/null; then
+    cp /usr/local/share/ca-certificates/*.crt "$cache/$name/usr/local/share/ca-certificates/"
+    chroot "$cache/$name" update-ca-certificates >/dev/null 2>&1
+fi
 echo "$cache/$name"
