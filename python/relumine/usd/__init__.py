@@ -23,7 +23,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
 import numpy as np
 
 try:
-    from pxr import Sdf, Tf, Usd, UsdUtils  # type: ignore[import]
+    from pxr import Sdf, Tf, Usd, UsdUtils  # type: ignore
 except ImportError as error:
     raise ImportError(
         "relumine.usd: expected OpenUSD's Python: pip install relumine[usd]"

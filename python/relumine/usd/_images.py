@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import importlib
 import io
 from dataclasses import dataclass
 from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Ar  # type: ignore[import]
+from pxr import Ar  # type: ignore
 
 from ._glb import Glb
 from ._notes import Notes
@@ -143,7 +144,7 @@ class Images:
         if data[:4] == b"\x76\x2f\x31\x01" or data[:2] == b"#?":
             return self._of_environment(path, data)
         try:
-            from PIL import Image as Pillow  # type: ignore[import]
+            Pillow = importlib.import_module("PIL.Image")
         except ImportError:
             self._notes.add(
                 "a texture is left out: its channels are read by pillow "

@@ -12,7 +12,7 @@ from typing import Any, Dict, List, Optional, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Usd, UsdGeom, UsdLux  # type: ignore[import]
+from pxr import Usd, UsdGeom, UsdLux  # type: ignore
 
 from .._environment import Environment
 from .._layers import SHAPES, Emit, Layer
@@ -385,7 +385,7 @@ def environment_of(domes: List[Dome], load: Any, least: int) -> Optional[Environ
     if not domes:
         return None
     parts: List[Environment] = []
-    constant = np.zeros(3)
+    constant: Array = np.zeros(3)
     for dome in domes:
         picture = None if dome.texture is None else load(dome)
         if picture is None:

@@ -10,7 +10,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Sdf, Usd, UsdShade  # type: ignore[import]
+from pxr import Sdf, Usd, UsdShade  # type: ignore
 
 from ._glb import Glb
 from ._images import Image, Images, Input, Place

@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Usd, UsdGeom  # type: ignore[import]
+from pxr import Usd, UsdGeom  # type: ignore
 
 from . import _subdivide
 from ._notes import Notes
@@ -250,7 +250,8 @@ def _refine(
     lengths = given(mesh.GetCreaseLengthsAttr()).astype(np.int64)
     indices = given(mesh.GetCreaseIndicesAttr()).astype(np.int64)
     sharp = given(mesh.GetCreaseSharpnessesAttr()).astype(float)
-    edges, creases = np.zeros((0, 2), np.int64), np.zeros(0)
+    edges: Array = np.zeros((0, 2), np.int64)
+    creases: Array = np.zeros(0)
     if len(lengths) and (lengths >= 2).all() and lengths.sum() == len(indices):
         ends = np.cumsum(lengths)
         first = np.setdiff1d(np.arange(len(indices)), ends - 1)

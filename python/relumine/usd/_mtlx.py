@@ -6,7 +6,7 @@ import os
 from typing import Any, Dict, Optional, Tuple
 from xml.etree import ElementTree
 
-from pxr import Gf, Sdf, Usd, UsdShade  # type: ignore[import]
+from pxr import Gf, Sdf, Usd, UsdShade  # type: ignore
 
 from ._notes import Notes
 

@@ -6,7 +6,7 @@ from typing import Any, List, Optional, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Usd, UsdGeom  # type: ignore[import]
+from pxr import Usd, UsdGeom  # type: ignore
 
 from ._mesh import Polygons, Unfit, Values
 
@@ -94,7 +94,7 @@ def shape(prim: Usd.Prim, time: Usd.TimeCode) -> Optional[Polygons]:
         points, normals, counts, corners = _profile(ball * number("radius"), ball)
     elif prim.IsA(UsdGeom.Cube):
         h = 0.5 * number("size")
-        faces = []
+        faces: List[Tuple[Array, Array, Array, Array]] = []
         for k in range(3):
             for sign in (-1.0, 1.0):
                 n = np.eye(3)[k] * sign

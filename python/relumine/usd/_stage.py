@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Gf, Tf, Usd, UsdGeom, UsdLux, UsdShade, UsdSkel  # type: ignore[import]
+from pxr import Gf, Tf, Usd, UsdGeom, UsdLux, UsdShade, UsdSkel  # type: ignore
 
 from . import _mesh
 from ._glb import Glb

@@ -9,7 +9,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdShade, Vt  # type: ignore[import]
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdShade, Vt  # type: ignore
 
 from .. import _relighter
 from .._arrays import view
