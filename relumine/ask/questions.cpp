@@ -339,7 +339,8 @@ std::vector<glm::vec3> lat_long_adjoint(const cubemap::CubeMap& by_texels, std::
         cubemap::to_image(map, cubemap::Layout::LatLong, width, height);
     std::vector<glm::vec3> result(image.pixels.begin(), image.pixels.end());
     for (std::size_t i = 0; i < result.size(); ++i) {
-        const double row = std::numbers::pi / height, top = static_cast<double>(i / width) * row;
+        const std::size_t rows_above = i / width;
+        const double row = std::numbers::pi / height, top = static_cast<double>(rows_above) * row;
         const double solid_angle =
             2.0 * std::numbers::pi / width * (std::cos(top) - std::cos(top + row));
         result[i] *= static_cast<float>(solid_angle);
