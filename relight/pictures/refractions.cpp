@@ -20,8 +20,8 @@ namespace {
 /// Spreads less than a pixel does.
 constexpr float SmoothAlpha = 0.003f;
 
-/// What metals behind smooth glass mirror is blurred over 2 degrees: a sample has one ray.
-constexpr float LeastSpread = 1e-3f;
+/// What metals behind smooth glass mirror is blurred over 6 degrees: a sample has one ray.
+constexpr float LeastSpread = 1e-2f;
 
 /// Surfaces that a ray meets before it is let go where it is.
 constexpr int MostSurfaces = 16;
