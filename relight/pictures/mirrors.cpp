@@ -60,7 +60,39 @@ glm::vec2 shift_of(std::uint32_t x, std::uint32_t y) {
     return ray_shift(number);
 }
 
+/// Returns a normal that the eye sees: a normal map may turn one away from it.
+glm::vec3 seen_normal(const glm::vec3& normal, const glm::vec3& to_eye) {
+    constexpr float LeastCosine = 0.01f;
+    const float cosine = glm::dot(normal, to_eye);
+    return cosine < LeastCosine ? glm::normalize(normal + (LeastCosine - cosine) * to_eye) : normal;
+}
+
 } // namespace
+
+std::optional<Mirror> mirror_of(const mesh::TriangleMesh& mesh, const prt::MeshPoint& point,
+                                const prt::Surface& surface, const glm::vec3& to_eye) {
+    if (!(glm::dot(prt::shading_normal(mesh, point), to_eye) > 0.0f))
+        return std::nullopt;
+    Mirror mirror{surface, seen_normal(prt::mapped_normal(mesh, point), to_eye), to_eye};
+    if (prt::has_coat(mirror.surface))
+        mirror.surface.coat_normal = seen_normal(prt::coat_normal(mesh, point), to_eye);
+    return mirror;
+}
+
+glm::vec3 seen_in_mirror(const Reflections& reflections, const MetSurface& met,
+                         const LitMirror& lit, const Reflections::Surfaces& matte) {
+    const glm::vec3 as_matte = lit.light * prt::without_highlight(lit.surface).albedo;
+    const std::uint32_t count = asked_for(met, lit.surface);
+    if (count == 0)
+        return as_matte;
+    const std::optional<Mirror> mirror = mirror_of(lit.mesh, lit.at, lit.surface, -met.direction);
+    if (!mirror)
+        return as_matte;
+    const glm::vec3 whole = reflections.in_mirror(
+        met, mirror->surface, prt::value_at(lit.mesh, lit.mesh.positions, lit.at), mirror->normal,
+        lit.light, matte);
+    return glm::max(as_matte + static_cast<float>(count) * (whole - as_matte), 0.0f);
+}
 
 void Mirrors::begin_tile(std::uint32_t left, std::uint32_t top, std::uint32_t width,
                          std::span<const std::optional<prt::MeshPoint>> middles) {
@@ -129,23 +161,11 @@ std::optional<MirroredLight> Mirrors::shared(const Mirror& mirror,
 }
 
 std::optional<Mirror> Mirrors::at(const prt::MeshPoint& point) const {
-    if (!light_.eye)
-        return std::nullopt;
-    if (light_.reflections == nullptr || light_.textures == nullptr ||
+    if (light_.reflections == nullptr || light_.textures == nullptr || !light_.eye ||
         !light_.textures->mirrors(point.triangle))
         return std::nullopt;
-    return mirror_of(light_.textures->mirror(point, &view_), point,
+    return mirror_of(mesh_, point, light_.textures->mirror(point, &view_),
                      glm::normalize(*light_.eye - prt::value_at(mesh_, mesh_.positions, point)));
-}
-
-std::optional<Mirror> Mirrors::mirror_of(const prt::Surface& surface, const prt::MeshPoint& point,
-                                         const glm::vec3& to_eye) const {
-    if (!(glm::dot(prt::shading_normal(mesh_, point), to_eye) > 0.0f))
-        return std::nullopt;
-    Mirror mirror{surface, seen_normal(prt::mapped_normal(mesh_, point), to_eye), to_eye};
-    if (prt::has_coat(mirror.surface))
-        mirror.surface.coat_normal = seen_normal(prt::coat_normal(mesh_, point), to_eye);
-    return mirror;
 }
 
 glm::vec3 Mirrors::soft(const Mirror& mirror, const prt::MeshPoint& point,
@@ -205,29 +225,17 @@ prt::MeshPoint Mirrors::point_of(const MetSurface& met) const {
 
 glm::vec3 Mirrors::seen(const MetSurface& met) const {
     const prt::MeshPoint at = point_of(met);
-    if (floor_.has(mesh_.triangles[at.triangle]))
-        return floor(at, met);
     const SurfaceColors& colors = *light_.textures;
-    if (!colors.mirrors(at.triangle))
-        return matte(met);
+    if (floor_.has(mesh_.triangles[at.triangle]) || !colors.mirrors(at.triangle))
+        return matte(at, met);
     const prt::Surface surface = colors.mirror(at);
-    const glm::vec3 light = colors.light(light_.mirrored, at);
-    const glm::vec3 emission = light_.emission_gain(at.triangle) * surface.emission;
-    const glm::vec3 matte = light * prt::without_highlight(surface).albedo;
-    const std::uint32_t count = asked_for(met, surface);
-    if (count == 0)
-        return matte + emission;
-    const std::optional<Mirror> mirror = mirror_of(surface, at, -met.direction);
-    if (!mirror)
-        return matte + emission;
-    const glm::vec3 whole = light_.reflections->in_mirror(
-        met, mirror->surface, prt::value_at(mesh_, mesh_.positions, at), mirror->normal, light,
-        [this](const MetSurface& behind) { return this->matte(behind); });
-    return glm::max(matte + static_cast<float>(count) * (whole - matte), 0.0f) + emission;
+    return seen_in_mirror(
+               *light_.reflections, met, {mesh_, at, surface, colors.light(light_.mirrored, at)},
+               [this](const MetSurface& behind) { return matte(point_of(behind), behind); }) +
+           light_.emission_gain(at.triangle) * surface.emission;
 }
 
-glm::vec3 Mirrors::matte(const MetSurface& met) const {
-    const prt::MeshPoint at = point_of(met);
+glm::vec3 Mirrors::matte(const prt::MeshPoint& at, const MetSurface& met) const {
     if (floor_.has(mesh_.triangles[at.triangle]))
         return floor(at, met);
     const SurfaceColors& colors = *light_.textures;

@@ -19,6 +19,28 @@ struct Mirror {
     glm::vec3 normal, to_eye;
 };
 
+/// Returns the mirror at a point, whose surface is given, for an eye or a ray that comes from the
+/// side of `to_eye`; none where the point looks away from there.
+[[nodiscard]] std::optional<Mirror> mirror_of(const mesh::TriangleMesh& mesh,
+                                              const prt::MeshPoint& point,
+                                              const prt::Surface& surface, const glm::vec3& to_eye);
+
+/// A surface that mirrors, and its diffuse light, which is the radiance of albedo 1.
+struct LitMirror {
+    const mesh::TriangleMesh& mesh;
+    prt::MeshPoint at;
+    prt::Surface surface;
+    glm::vec3 light;
+};
+
+/// Returns what such a surface sends to the ray of a highlight that met it, but for what it gives
+/// of its own. `matte`: what other surfaces send to it.
+///
+/// Cost:    none to 3 rays, as asked_for() says.
+/// Threads: any.
+[[nodiscard]] glm::vec3 seen_in_mirror(const Reflections& reflections, const MetSurface& met,
+                                       const LitMirror& lit, const Reflections::Surfaces& matte);
+
 /// The mirrors that the samples of a picture's pixels see. Samples of a pixel share their rays
 /// where they see nearly the same surface; so do neighbouring pixels, where the lobe is wide and
 /// blurs more than that: each has other rays of it [Keller and Heidrich 2001, "Interleaved
@@ -60,12 +82,8 @@ public:
     [[nodiscard]] const glm::vec2& shift() const { return shift_; }
 
 private:
-    /// at() for a ray that comes from the side of `to_eye`.
-    [[nodiscard]] std::optional<Mirror> mirror_of(const prt::Surface& surface,
-                                                  const prt::MeshPoint& point,
-                                                  const glm::vec3& to_eye) const;
     /// seen() of what mirrors nothing.
-    [[nodiscard]] glm::vec3 matte(const MetSurface& met) const;
+    [[nodiscard]] glm::vec3 matte(const prt::MeshPoint& at, const MetSurface& met) const;
     [[nodiscard]] glm::vec3 floor(const prt::MeshPoint& at, const MetSurface& met) const;
     [[nodiscard]] prt::MeshPoint point_of(const MetSurface& met) const;
 

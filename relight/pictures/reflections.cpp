@@ -88,12 +88,6 @@ glm::vec2 ray_shift(std::uint64_t i) {
         glm::fract(static_cast<double>(i) * glm::dvec2(0.75487766624669276, 0.56984029099805327)));
 }
 
-glm::vec3 seen_normal(const glm::vec3& normal, const glm::vec3& to_eye) {
-    constexpr float LeastCosine = 0.01f;
-    const float cosine = glm::dot(normal, to_eye);
-    return cosine < LeastCosine ? glm::normalize(normal + (LeastCosine - cosine) * to_eye) : normal;
-}
-
 float lobe_alpha(const prt::Surface& surface) {
     if (surface.highlight == prt::Highlight::BlinnPhong)
         return std::max(std::sqrt(2.0f / (surface.roughness_or_exponent + 2.0f)), 1e-3f);

@@ -81,7 +81,7 @@ public:
     /// `environment` may have no texels, which is black. `bias` is that of prt::PrecomputeOptions.
     /// The rays must outlive this object.
     ///
-    /// Cost:    O(texels), a third more than a copy of the environment.
+    /// Cost:    O(texels): a third more than a copy of the environment, with lights twice as much.
     Reflections(const prt::RayScene& rays, float bias, std::uint32_t num_rays,
                 const cubemap::CubeMap& environment, std::span<const SharpLight> without);
 
@@ -144,9 +144,6 @@ private:
     /// there are no lights.
     Levels whole_;
 };
-
-/// Returns a normal that the eye sees: a normal map may turn one away from it.
-[[nodiscard]] glm::vec3 seen_normal(const glm::vec3& normal, const glm::vec3& to_eye);
 
 /// Returns the alpha of the GGX lobe that is about as wide as a surface's highlight.
 [[nodiscard]] float lobe_alpha(const prt::Surface& surface);

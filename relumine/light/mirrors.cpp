@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 
 #include "files/parallel.h"
 #include "prt/glossy/brdf.h"
@@ -12,6 +11,7 @@
 #include "prt/receivers/mesh_point.h"
 #include "prt/visibility/twin_triangles.h"
 #include "relight/pictures/highlight_rays.h"
+#include "relight/pictures/mirrors.h"
 
 namespace relumine {
 
@@ -51,23 +51,13 @@ public:
     [[nodiscard]] glm::vec3 radiance(const relight::MetSurface& met) const {
         const prt::MeshPoint at = point_of(met);
         if (!has_highlight(at))
-            return matte(met);
-        prt::Surface surface =
+            return matte(at);
+        const prt::Surface surface =
             prt::surface_at(mesh_, at.triangle, at.barycentric, prt::GgxForm::Whole);
-        const glm::vec3 emission = gain(at) * surface.emission;
-        const glm::vec3 matte_part = prt::without_highlight(surface).albedo * diffuse(at);
-        const std::uint32_t count = relight::asked_for(met, surface);
-        const glm::vec3 to_eye = -met.direction;
-        if (count == 0 || !(glm::dot(prt::shading_normal(mesh_, at), to_eye) > 0.0f))
-            return matte_part + emission;
-        if (prt::has_coat(surface))
-            surface.coat_normal = relight::seen_normal(prt::coat_normal(mesh_, at), to_eye);
-        const glm::vec3 whole = reflections_.in_mirror(
-            met, surface, prt::value_at(mesh_, mesh_.positions, at),
-            relight::seen_normal(prt::mapped_normal(mesh_, at), to_eye), diffuse(at),
-            [this](const relight::MetSurface& behind) { return matte(behind); });
-        return glm::max(matte_part + static_cast<float>(count) * (whole - matte_part), 0.0f) +
-               emission;
+        return relight::seen_in_mirror(
+                   reflections_, met, {mesh_, at, surface, diffuse(at)},
+                   [this](const relight::MetSurface& behind) { return matte(point_of(behind)); }) +
+               gain(at) * surface.emission;
     }
 
 private:
@@ -87,8 +77,7 @@ private:
         return light_.empty() ? glm::vec3(0.0f) : prt::value_at(mesh_, light_, at);
     }
     /// radiance() of what mirrors nothing.
-    [[nodiscard]] glm::vec3 matte(const relight::MetSurface& met) const {
-        const prt::MeshPoint at = point_of(met);
+    [[nodiscard]] glm::vec3 matte(const prt::MeshPoint& at) const {
         if (mesh_.triangle_materials.empty() ||
             !has_own_color_[mesh_.triangle_materials[at.triangle]])
             return light_.empty() ? glm::vec3(0.0f)
