@@ -49,30 +49,27 @@ struct Parser {
         refuse_text(files::joined_by_or(forms), text);
     }
 
-    /// key=number,number,number,key=number: words without = belong to the key before them.
+    /// key=number,number,number,key=number
     void read_values(const std::string& list) {
         std::vector<std::string_view> keys = {model->albedo, model->specular, model->shape};
         std::erase(keys, "");
-        auto current = values.end();
-        for (const std::string& word : split(list, ',')) {
-            const std::size_t equals = word.find('=');
-            if (equals != std::string::npos) {
-                const auto key = std::find(keys.begin(), keys.end(), word.substr(0, equals));
-                if (key == keys.end())
-                    refuse_text(fmt::format("{} of {}", files::joined(keys, ", "), model->name),
-                                word.substr(0, equals));
-                if (values.contains(*key))
-                    refuse_text(fmt::format("{} once", *key), text);
-                current = values.try_emplace(*key).first;
+        const std::string form = fmt::format("{}:NAME=VALUE,...", model->name);
+        for (const auto& [name, value] : named_texts(list, form, text)) {
+            const auto key = std::find(keys.begin(), keys.end(), name);
+            if (key == keys.end())
+                refuse_text(fmt::format("{} of {}", files::joined(keys, ", "), model->name), name);
+            if (values.contains(*key))
+                refuse_text(fmt::format("{} once", *key), text);
+            const float max = *key == model->shape ? model->largest_shape : 1.0f;
+            std::vector<float>& numbers = values[*key];
+            for (const std::string& number : split(value, ',')) {
+                if (number.empty() && !numbers.empty())
+                    refuse_text(form, text);
+                const auto read = parse_number(number);
+                if (!read || !(*read >= 0.0 && *read <= double{max}))
+                    refuse_text(fmt::format("numbers of 0 to {} as {}", max, *key), number);
+                numbers.push_back(static_cast<float>(option_text::real(number, 1e6)));
             }
-            if (current == values.end() || word.empty())
-                refuse_text(fmt::format("{}:NAME=VALUE,...", model->name), text);
-            const float max = current->first == model->shape ? model->largest_shape : 1.0f;
-            const std::string number = word.substr(equals + 1); // npos + 1 is 0
-            const auto value = parse_number(number);
-            if (!value || !(*value >= 0.0 && *value <= double{max}))
-                refuse_text(fmt::format("numbers of 0 to {} as {}", max, current->first), number);
-            current->second.push_back(static_cast<float>(option_text::real(number, 1e6)));
         }
     }
 

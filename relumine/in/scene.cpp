@@ -73,19 +73,8 @@ OptionRow material_row(SurfaceColors& colors) {
     return row(
         "--material",
         [&colors](const std::string& text) {
-            // NAME=VALUE,NAME=VALUE: words without = belong to the name before them.
-            std::vector<std::pair<std::string, std::string>> values;
-            for (const std::string& word : split(text, ',')) {
-                const std::size_t equals = word.find('=');
-                if (equals != std::string::npos)
-                    values.emplace_back(word.substr(0, equals), word.substr(equals + 1));
-                else if (!values.empty())
-                    values.back().second += "," + word;
-                else
-                    refuse_text("albedo=A,f0=F,roughness=R", text);
-            }
             SurfaceColors read;
-            for (const auto& [name, value] : values) {
+            for (const auto& [name, value] : named_texts(text, "albedo=A,f0=F,roughness=R", text)) {
                 if (name == "albedo")
                     read.albedo = ColorText::read(value);
                 else if (name == "f0")

@@ -148,6 +148,21 @@ std::vector<std::string> split(std::string_view text, char separator) {
     return words;
 }
 
+std::vector<std::pair<std::string, std::string>>
+named_texts(const std::string& list, const std::string& form, const std::string& whole) {
+    std::vector<std::pair<std::string, std::string>> result;
+    for (const std::string& word : split(list, ',')) {
+        const std::size_t equals = word.find('=');
+        if (equals != std::string::npos)
+            result.emplace_back(word.substr(0, equals), word.substr(equals + 1));
+        else if (!result.empty())
+            result.back().second += "," + word;
+        else
+            refuse_text(form, whole);
+    }
+    return result;
+}
+
 std::optional<std::vector<double>> parse_numbers(const std::string& text) {
     std::vector<double> numbers;
     for (const std::string& word : split(text, ',')) {

@@ -121,6 +121,11 @@ parse_sides(std::string_view text);
 /// "a,b" as its words; an empty text is one empty word.
 [[nodiscard]] std::vector<std::string> split(std::string_view text, char separator);
 
+/// Splits NAME=TEXT,NAME=TEXT into names and their texts. A word without = belongs to the text
+/// before it, with its comma. Throws as refuse_text(form, whole) where the first word has none.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>>
+named_texts(const std::string& list, const std::string& form, const std::string& whole);
+
 /// Numbers with commas between. None for other text.
 [[nodiscard]] std::optional<std::vector<double>> parse_numbers(const std::string& text);
 
