@@ -216,8 +216,7 @@ void run(const InfoArguments& options, const Session& session) {
     else if (is_environment(options.path))
         describe_environment({options.path, options.layout, options.picture}, session);
     else
-        describe_mesh({options.path, options.picture, options.mesh.pose, options.mesh.variant},
-                      session);
+        describe_mesh({options.path, options.picture, options.mesh}, session);
 }
 
 } // namespace

@@ -57,12 +57,10 @@ LoadedMesh load(const std::filesystem::path& path, const LoadOptions& options) {
                                              files::extension_of(path), hint_of_stage(path)));
     const std::vector<std::byte> bytes = files::read(path);
     try {
-        if (options.pose && !format->has_animations)
-            throw std::runtime_error(
-                fmt::format("expected .glb or .gltf for a pose, got '{}'", format->extension));
-        if (options.variant && !format->has_animations)
-            throw std::runtime_error(
-                fmt::format("expected .glb or .gltf for a variant, got '{}'", format->extension));
+        if ((options.pose || options.variant) && !format->has_animations)
+            throw std::runtime_error(fmt::format("expected .glb or .gltf for a {}, got '{}'",
+                                                 options.pose ? "pose" : "variant",
+                                                 format->extension));
         PolygonSoup soup = format->read({bytes,
                                          path.parent_path(),
                                          {.pose = options.pose,

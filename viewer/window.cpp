@@ -1,5 +1,4 @@
 #include "viewer/window.h"
-#include "files/pixel_values.h"
 
 #include <array>
 #include <cmath>
@@ -16,7 +15,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
-#include "relumine/in/mesh_files.h"
+#include "files/pixel_values.h"
 
 namespace relumine::viewer {
 

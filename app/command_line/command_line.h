@@ -49,7 +49,7 @@ public:
     /// where it repeats. Empty values are refused: an unset variable of a script must not read as 0
     /// or as the current folder.
     Option add(OptionRow row);
-    /// But those of the library alone.
+    /// Adds all rows but those of the library alone (OptionFacts::library_only).
     std::vector<Option> add_all(OptionTable table);
 
     /// Text below the options in the help.

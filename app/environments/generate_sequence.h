@@ -22,9 +22,8 @@ struct GenerateSequenceOptions {
     void add_to(Command& command);
 };
 
-/// Writes FOLDER/KIND.0000.exr and on. Without a face resolution: 128, or that of
-/// the environment. After
-/// Ctrl-C the frames that were written stay.
+/// Writes FOLDER/KIND.0000.exr and on. Without a face resolution it is 128, or the environment's.
+/// After Ctrl-C the frames that were written stay.
 void generate_sequence(const GenerateSequenceOptions& options, const std::string& folder,
                        std::optional<std::uint32_t> face_resolution, Session& session);
 

@@ -228,7 +228,7 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
         check_output(options.picture, {options.path});
     }
     mesh::LoadedMesh mesh =
-        mesh::load(options.path, {.pose = options.pose, .variant = options.variant});
+        mesh::load(options.path, {.pose = options.mesh.pose, .variant = options.mesh.variant});
     const mesh::Bounds box = mesh::bounds(mesh);
     const mesh::Diagnosis diagnosis = mesh::diagnose(mesh);
     if (!options.picture.empty())
@@ -266,8 +266,7 @@ void describe_mesh(const MeshInfoOptions& options, const Session& session) {
                      {"lamps", lamps},
                      {"variants", mesh.variants}};
     // What a first picture says.
-    const MeshRemarks remarks = remarks_on(prepared(
-        std::move(mesh), options.path, {.pose = options.pose, .variant = options.variant}));
+    const MeshRemarks remarks = remarks_on(prepared(std::move(mesh), options.path, options.mesh));
     const auto say = [&](const char* name, const std::vector<std::string>& lines) {
         for (const std::string& line : lines)
             session.say(fmt::format("{:20}{}", name, line));

@@ -1,12 +1,11 @@
 // `relumine info MESH`: the mesh doctor.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 
 #include "app/session.h"
-#include "relumine/in/mesh_files.h"
+#include "relumine/in/mesh.h"
 
 namespace relumine::app {
 
@@ -14,8 +13,8 @@ struct MeshInfoOptions {
     std::string path;
     /// The .png to draw. Empty: none.
     std::string picture;
-    std::optional<mesh::Pose> pose = {};
-    std::optional<std::string> variant = {};
+    /// open_choices() alone
+    MeshOptions mesh = {};
 };
 
 /// Says the names of what glows, as --emission takes them: a line each.

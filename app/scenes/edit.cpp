@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "app/commands.h"
 #include "app/file_watch.h"
 #include "app/options/bounce_option.h"
@@ -21,7 +23,6 @@
 #include "relumine/in/place_report.h"
 #include "relumine/light/layers.h"
 #include "relumine/out/light_mix.h"
-#include <fmt/format.h>
 
 namespace relumine::app {
 

@@ -284,11 +284,11 @@ void add_fit(Command& program, Session& session) {
         "--lights",
         [options](const std::string& text) {
             constexpr std::uint32_t MostLights = 128;
-            const auto count = parse_number(text) ? parse_count(text).value_or(0) : 1;
-            if (count < 1 || count > MostLights)
-                refuse_text(fmt::format("1 to {} lights, or a file of lights", MostLights), text);
             const bool is_file = !parse_number(text);
-            options->num_lights = is_file ? 0 : count;
+            const auto count = is_file ? 0 : parse_count(text).value_or(0);
+            if (!is_file && (count < 1 || count > MostLights))
+                refuse_text(fmt::format("1 to {} lights, or a file of lights", MostLights), text);
+            options->num_lights = count;
             options->given = is_file ? text : "";
         },
         "in place of an environment find N distant lights, or how bright each light of a FILE has "

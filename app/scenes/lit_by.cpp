@@ -35,11 +35,11 @@ cubemap::Region lit_by_region(const std::string& text,
         std::find_if(layers.begin(), layers.end(), [&](const auto& l) { return l.name == text; });
     if (layer != layers.end())
         return layer->region;
-    const auto refuse = [&](const std::string& why) {
+    const auto refusal = [&](const std::string& why) {
         std::vector<std::string> names;
         for (const cubemap::LightLayer& each : layers)
             names.push_back(each.name);
-        throw UsageError(
+        return UsageError(
             "--lit-by",
             fmt::format("expected a layer ({}) or X,Y,Z,RADIUS with a RADIUS in degrees, got "
                         "'{}'{}{}",
@@ -48,12 +48,11 @@ cubemap::Region lit_by_region(const std::string& text,
     };
     const auto numbers = parse_numbers(text);
     if (!numbers || numbers->size() != 4)
-        refuse("");
+        throw refusal("");
     try {
         return DiscText::read(text);
     } catch (const std::invalid_argument& error) {
-        refuse(fmt::format(": {}", error.what()));
-        throw;
+        throw refusal(fmt::format(": {}", error.what()));
     }
 }
 

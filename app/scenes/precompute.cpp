@@ -277,11 +277,6 @@ void write_plan(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWor
                     {"seconds", seconds}});
 }
 
-/// Whether the mesh is turned up by the custom of its format, which has Z up.
-bool turns_by_custom(const PrecomputeArguments& options) {
-    return !options.mesh_options.up && mesh::customary_up(options.mesh) == mesh::UpAxis::Z;
-}
-
 /// Loads the mesh, says what is odd about it, and gives it the vertices that are asked for.
 Mesh made_mesh(const PrecomputeArguments& options, Session& session) {
     MeshOptions mesh_options = options.mesh_options;
@@ -333,10 +328,8 @@ void write_report(const PrecomputeArguments& options, const PrecomputeOptions& w
         report.set("bounces", bounce_report(*facts.bounces, scene, session));
     if (session.team != nullptr)
         report.set("processes", process_report(facts.processes, session));
-    report.set("up", turns_by_custom(options)
-                         ? "z"
-                         : ValueText<mesh::UpAxis>::show(
-                               options.mesh_options.up.value_or(mesh::UpAxis::Y)));
+    report.set("up", ValueText<mesh::UpAxis>::show(
+                         options.mesh_options.up.value_or(mesh::customary_up(options.mesh))));
     report.set("seconds", seconds);
     session.report(report);
 }

@@ -1,9 +1,10 @@
 #include "mesh/formats/obj_writer.h"
-#include "files/pixel_values.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
+
+#include "files/pixel_values.h"
 
 namespace relumine::mesh {
 

@@ -1,5 +1,4 @@
 #include "mesh/formats/soup_colors.h"
-#include "files/pixel_values.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +6,8 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
+
+#include "files/pixel_values.h"
 
 namespace relumine::mesh {
 
