@@ -12,6 +12,10 @@
 
 namespace relumine::relight {
 
+/// The part of its share of the lobe over which a ray sees the mean. Over all of it, 32 rays of a
+/// rough metal under lamps were 9 of 255 brighter than many rays.
+inline constexpr float SeenShare = 0.5f;
+
 /// Rays of the whole lobe of a surface, and of its coat and its sheen, where a highlight has `num`.
 /// Wide lobes and sheen take twice as many: what a part of a share leaves out is noise.
 struct LobeRays {

@@ -22,10 +22,6 @@ namespace relumine::relight {
 
 namespace {
 
-/// The part of its share of the lobe over which a ray sees the mean. Over all of it, 32 rays of a
-/// rough metal under lamps were 9 of 255 brighter than many rays.
-constexpr float SeenPart = 0.5f;
-
 /// Sums of weights and of weighted radiance, by colour.
 struct Weighted {
     glm::vec3 weight{0.0f};
@@ -176,7 +172,7 @@ void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surface
             const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
             const glm::vec3 w = rays.directions.direction(lane);
             const float dense = rays.densities[lane];
-            const float seen = std::max(SeenPart / (num_rays * dense), behind.least_solid_angle);
+            const float seen = std::max(SeenShare / (num_rays * dense), behind.least_solid_angle);
             if ((met >> lane & 1u) == 0)
                 add(w, dense, mean(behind.levels, w, seen));
             else

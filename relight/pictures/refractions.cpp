@@ -1,6 +1,8 @@
 #include "relight/pictures/refractions.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
@@ -35,24 +37,85 @@ bool is_body(const mesh::Material& material) {
     return material.thickness > 0.0f;
 }
 
-/// Returns the half vector of a facet that a ray meets, which comes from the normal's side.
-glm::vec3 facet(const glm::vec3& normal, const glm::vec3& to_origin, float alpha,
-                const glm::vec2& u) {
-    if (alpha <= SmoothAlpha)
-        return normal;
-    const glm::mat3 frame = cubemap::frame_of(normal);
-    return glm::normalize(frame * visible_half(to_origin * frame, alpha, u));
+/// Returns the part of the light that leaves a rough surface in a direction and meets no other
+/// facet [Walter et al. 2007, Eq. 34].
+float unmasked(float cosine, float alpha) {
+    const float c2 = cosine * cosine, a2 = alpha * alpha;
+    return 2.0f * cosine / (cosine + std::sqrt(a2 + (1.0f - a2) * c2));
 }
 
-/// Returns a direction behind a sheet: a mirrored one, flipped to the other side.
-glm::vec3 through_sheet(const glm::vec3& direction, const glm::vec3& normal, float alpha,
-                        const glm::vec2& u) {
-    const glm::vec3 half = facet(normal, -direction, alpha, u);
-    const glm::vec3 mirrored = direction - 2.0f * glm::dot(direction, half) * half;
-    const float height = glm::dot(mirrored, normal);
-    // A facet that throws the light back onto the sheet's own side is taken to let it pass
-    // straight.
-    return height > 0.0f ? mirrored - 2.0f * height * normal : direction;
+/// Returns a point of the unit square for a surface that ray `number` of a pixel meets: Roberts' R4
+/// sequence, so that two surfaces after each other have all pairs of facets.
+glm::vec2 facet_point(const glm::vec2& shift, std::uint32_t number, int surface) {
+    constexpr glm::dvec2 First(0.85667488385450287, 0.73389185661127370),
+        Second(0.62870672025131850, 0.53859725722361216);
+    const double turn = number * static_cast<double>(1 + surface / 2);
+    return glm::fract(glm::dvec2(shift + ray_shift(static_cast<std::uint64_t>(surface))) +
+                      turn * (surface % 2 != 0 ? First : Second));
+}
+
+/// Returns a number in [0, 1) that has nothing to do with where a point is.
+float chance(const glm::vec2& u) {
+    std::uint64_t bits = std::bit_cast<std::uint64_t>(u) * 0x9e3779b97f4a7c15u;
+    bits = (bits ^ bits >> 29) * 0xbf58476d1ce4e5b9u;
+    return static_cast<float>(bits >> 40) * 0x1p-24f;
+}
+
+/// A direction, the solid angle that it stands for where one ray shows the whole lobe, and whether
+/// it is on the side that the ray came from.
+struct Bent {
+    glm::vec3 way;
+    float solid_angle = 0.0f;
+    bool is_back = false;
+};
+
+/// Returns where light goes on at a surface that it meets on the normal's side: as by_facet(half)
+/// says. A facet that sends it to the wrong side or against another facet is passed over: that
+/// light comes out elsewhere, as wide as the rest.
+template<typename ByFacet>
+Bent spread(const glm::vec3& direction, const glm::vec3& normal, float alpha, glm::vec2 u,
+            const ByFacet& by_facet) {
+    constexpr int MostFacets = 16;
+    const glm::mat3 frame = cubemap::frame_of(normal);
+    const glm::vec3 to_origin = -direction * frame;
+    for (int i = 0; i < MostFacets && alpha > SmoothAlpha; ++i) {
+        const glm::vec3 half = visible_half(to_origin, alpha, u);
+        Bent bent = by_facet(frame * half);
+        const float height = glm::dot(bent.way, bent.is_back ? normal : -normal);
+        if (height > 0.0f && chance(u) < unmasked(height, alpha)) {
+            bent.solid_angle /= mirrored_density(half, std::max(to_origin.z, 0.01f), alpha);
+            return bent;
+        }
+        u = glm::fract(u + glm::vec2(chance({u.x, static_cast<float>(i)}),
+                                     chance({static_cast<float>(i), u.y})));
+    }
+    Bent straight = by_facet(normal);
+    straight.solid_angle = 0.0f;
+    return straight;
+}
+
+/// A sheet: a mirrored direction, flipped to the other side.
+Bent through_sheet(const glm::vec3& direction, const glm::vec3& normal, float alpha,
+                   const glm::vec2& u) {
+    return spread(direction, normal, alpha, u, [&](const glm::vec3& half) {
+        const glm::vec3 mirrored = glm::reflect(direction, half);
+        return Bent{mirrored - 2.0f * glm::dot(mirrored, normal) * normal, 1.0f};
+    });
+}
+
+/// The surface of a body of glass: `ratio` is the index of the side where the ray is over the
+/// other's.
+Bent into_body(const glm::vec3& direction, const glm::vec3& normal, float alpha, float ratio,
+               const glm::vec2& u) {
+    return spread(direction, normal, alpha, u, [&](const glm::vec3& half) {
+        const glm::vec3 bent = glm::refract(direction, half, ratio);
+        if (bent == glm::vec3(0.0f))
+            return Bent{glm::reflect(direction, half), 1.0f, true};
+        // Of facets over that of mirrored directions [Walter et al. 2007, Eq. 14 and 17].
+        const float before = -glm::dot(direction, half), behind = -glm::dot(bent, half);
+        const float turn = ratio * before - behind;
+        return Bent{bent, turn * turn / (4.0f * before * behind)};
+    });
 }
 
 /// Returns what the highlight of a surface leaves of a white sky.
@@ -63,12 +126,6 @@ glm::vec3 passed_part(const Mirror& mirror) {
                         {surface, mirror.normal, mirror.to_eye});
 }
 
-glm::vec2 turned(const glm::vec2& u, int surface) {
-    // Of Roberts' R2 sequence: each surface has other facets.
-    const auto i = static_cast<float>(surface);
-    return glm::fract(u + i * glm::vec2(0.7548777f, 0.5698403f));
-}
-
 } // namespace
 
 struct Refractions::Ray {
@@ -76,10 +133,15 @@ struct Refractions::Ray {
     glm::vec3 throughput{1.0f};
     /// The body that the ray is in; null outside of all.
     const mesh::Material* body = nullptr;
+    /// Of the rays of its pixel, and how those are shifted
+    std::uint32_t number = 0;
+    glm::vec2 shift{0.0f};
     int num_surfaces = 0;
-    /// Solid angle that the ray stands for.
-    float spread = 0.0f;
+    /// Solid angle that the ray stands for, and its part of a lobe.
+    float spread = 0.0f, share = 0.0f;
 
+    /// What chooses the facet of the surface that it meets
+    [[nodiscard]] glm::vec2 point() const { return facet_point(shift, number, num_surfaces); }
     /// `face` is the normal of the triangle that the ray leaves, of either side.
     void go_on(const glm::vec3& position, const glm::vec3& way, const glm::vec3& face, float bias) {
         direction = glm::normalize(way);
@@ -99,38 +161,34 @@ glm::vec3 Refractions::light(const Mirror& mirror, const prt::MeshPoint& at, std
                              const glm::vec2& shift) const {
     const mesh::Material& material = mesh_.materials[mesh_.triangle_materials[at.triangle]];
     const float alpha = lobe_alpha(mirror.surface);
-    const bool is_rough = alpha > SmoothAlpha;
-    const std::uint32_t count = is_rough ? rays_through_glass(light_.reflections->num_rays()) : 1;
+    const std::uint32_t count =
+        alpha > SmoothAlpha ? rays_through_glass(light_.reflections->num_rays()) : 1;
     const glm::vec3 through =
         passed_part(mirror) * mesh::glass_tint(mesh_, at.triangle, at.barycentric);
     const glm::vec3 position = prt::value_at(mesh_, mesh_.positions, at);
     const glm::vec3 face = prt::face_normal(mesh_, at.triangle);
     glm::vec3 sum(0.0f);
     for (std::uint32_t i = 0; i < count; ++i) {
-        const glm::vec2 u =
-            turned(hammersley(i, count, shift), static_cast<int>(3 * sample % 1024));
-        const glm::vec3 half = facet(mirror.normal, mirror.to_eye, alpha, u);
-        Ray ray{.throughput = through, .num_surfaces = 1};
-        if (is_rough) {
-            const glm::vec3 local = half * cubemap::frame_of(mirror.normal);
-            const float dense = mirrored_density(
-                local, std::max(glm::dot(mirror.normal, mirror.to_eye), 0.01f), alpha);
-            ray.spread = 1.0f / (static_cast<float>(count) * dense);
-        }
-        if (!is_body(material)) {
-            ray.go_on(position, through_sheet(-mirror.to_eye, mirror.normal, alpha, u), face,
-                      light_.bias);
-        } else {
+        Ray ray{.throughput = through,
+                .number = sample * count + i,
+                .shift = shift,
+                .num_surfaces = 1,
+                .share = SeenShare / static_cast<float>(count)};
+        const glm::vec2 u = ray.point();
+        const Bent bent =
+            is_body(material)
+                ? into_body(-mirror.to_eye, mirror.normal, alpha, 1.0f / index_of(material), u)
+                : through_sheet(-mirror.to_eye, mirror.normal, alpha, u);
+        if (is_body(material))
             ray.body = &material;
-            ray.go_on(position, glm::refract(-mirror.to_eye, half, 1.0f / index_of(material)), face,
-                      light_.bias);
-        }
-        sum += followed(ray, u);
+        ray.spread = ray.share * bent.solid_angle;
+        ray.go_on(position, bent.way, face, light_.bias);
+        sum += followed(ray);
     }
     return sum / static_cast<float>(count);
 }
 
-glm::vec3 Refractions::followed(Ray ray, const glm::vec2& u) const {
+glm::vec3 Refractions::followed(Ray ray) const {
     while (true) {
         const auto hit =
             rays_.closest_hit(ray.origin, ray.direction,
@@ -142,7 +200,7 @@ glm::vec3 Refractions::followed(Ray ray, const glm::vec2& u) const {
             return ray.throughput * mirrors_.seen({.hit = *hit,
                                                    .direction = ray.direction,
                                                    .solid_angle = std::max(ray.spread, LeastSpread),
-                                                   .fan_shift = turned(u, ray.num_surfaces)});
+                                                   .fan_shift = ray.point()});
         };
         if (!hit)
             return sky();
@@ -154,13 +212,13 @@ glm::vec3 Refractions::followed(Ray ray, const glm::vec2& u) const {
             return seen();
         if (is_last)
             return sky();
-        if (!meet(ray, *hit, u))
+        if (!meet(ray, *hit))
             return seen();
     }
 }
 
 /// Lets a ray go on at a surface that is seen through. False: it is seen itself.
-bool Refractions::meet(Ray& ray, const prt::Hit& hit, const glm::vec2& u) const {
+bool Refractions::meet(Ray& ray, const prt::Hit& hit) const {
     const mesh::Material& material = mesh_.materials[mesh_.triangle_materials[hit.triangle]];
     const prt::MeshPoint at{.triangle = hit.triangle, .barycentric = hit.barycentric};
     const glm::vec3 position = prt::value_at(mesh_, mesh_.positions, at);
@@ -181,10 +239,11 @@ bool Refractions::meet(Ray& ray, const prt::Hit& hit, const glm::vec2& u) const 
         normal = -normal;
     const float roughness =
         light_.textures->mirrors(at.triangle) ? lobe_alpha(light_.textures->mirror(at)) : 0.0f;
-    const glm::vec2 own = turned(u, ray.num_surfaces);
+    const glm::vec2 own = ray.point();
     if (!is_body(material)) {
-        ray.go_on(position, through_sheet(ray.direction, normal, roughness, own), face,
-                  light_.bias);
+        const Bent bent = through_sheet(ray.direction, normal, roughness, own);
+        ray.go_on(position, bent.way, face, light_.bias);
+        ray.spread += ray.share * bent.solid_angle;
         ray.throughput *= tint;
         return true;
     }
@@ -195,15 +254,15 @@ bool Refractions::meet(Ray& ray, const prt::Hit& hit, const glm::vec2& u) const 
         return true;
     }
     const float index = index_of(material);
-    const glm::vec3 half = facet(normal, -ray.direction, roughness, own);
-    const glm::vec3 bent = glm::refract(ray.direction, half, leaves ? index : 1.0f / index);
-    if (bent == glm::vec3(0.0f)) {
-        ray.go_on(position, glm::reflect(ray.direction, half), face, light_.bias);
-        return true;
+    const float ratio = leaves ? index : 1.0f / index;
+    const Bent bent = into_body(ray.direction, normal, roughness, ratio, own);
+    ray.go_on(position, bent.way, face, light_.bias);
+    if (!bent.is_back) {
+        ray.spread *= ratio * ratio;
+        ray.throughput *= tint;
+        ray.body = leaves ? nullptr : &material;
     }
-    ray.throughput *= tint;
-    ray.go_on(position, bent, face, light_.bias);
-    ray.body = leaves ? nullptr : &material;
+    ray.spread += ray.share * bent.solid_angle;
     return true;
 }
 

@@ -20,7 +20,8 @@ namespace relumine::relight {
 /// Follows the eye's rays through bodies of glass (KHR_materials_volume), which refract them by
 /// their index and take light on the way, and through rough sheets, which spread them. At each
 /// surface a ray goes one way: on, or back where all of it is mirrored. What the inner side of a
-/// surface mirrors beyond that leaves elsewhere, and is taken to go on, so glass loses no light.
+/// surface mirrors beyond that leaves elsewhere, and is taken to go on, so glass loses no light. A
+/// facet of rough glass that would send a ray against another facet gives way to others.
 class Refractions {
 public:
     /// All must outlive this object. Used where `light` has reflections.
@@ -33,7 +34,7 @@ public:
     [[nodiscard]] bool bends(const Mirror& mirror, const prt::MeshPoint& at) const;
 
     /// Returns the radiance that goes on through such a point to the eye. `sample` numbers the
-    /// points of a pixel, of `num_samples`; `shift` is that of the pixel, as in MirrorPoint.
+    /// points of a pixel; `shift` is that of the pixel, as in MirrorPoint.
     ///
     /// Cost:    some three rays for each time that light enters glass and leaves it; of rough
     ///          glass, an eighth of the reflections' rays so often.
@@ -42,8 +43,8 @@ public:
 
 private:
     struct Ray;
-    [[nodiscard]] glm::vec3 followed(Ray ray, const glm::vec2& u) const;
-    [[nodiscard]] bool meet(Ray& ray, const prt::Hit& hit, const glm::vec2& u) const;
+    [[nodiscard]] glm::vec3 followed(Ray ray) const;
+    [[nodiscard]] bool meet(Ray& ray, const prt::Hit& hit) const;
 
     const mesh::TriangleMesh& mesh_;
     const prt::RayScene& rays_;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <optional>
+#include <random>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -10,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "cubemap/frame.h"
 #include "prt/glossy/surface_sampling.h"
 #include "relight/pictures/picture_view.h"
 #include "relight/pictures/visible_normals.h"
@@ -150,6 +152,73 @@ TEST(Refractions, LoseNoLight) {
         }
 }
 
+/// Smith's G1 of GGX.
+float unmasked(float cosine, float alpha) {
+    const float tangent2 = 1.0f / (cosine * cosine) - 1.0f;
+    return 2.0f / (1.0f + std::sqrt(1.0f + alpha * alpha * tangent2));
+}
+
+/// Follows one way of light through a rough ball of radius 1 by random facets, none of which sends
+/// it against another; returns where it leaves.
+glm::vec3 leaves_ball(const glm::vec3& enters, const glm::vec3& direction, float alpha, float index,
+                      std::mt19937& random) {
+    std::uniform_real_distribution<float> unit;
+    const auto bend = [&](const glm::vec3& way, const glm::vec3& normal, float ratio,
+                          bool& is_back) {
+        const glm::mat3 frame = cubemap::frame_of(normal);
+        while (true) {
+            const glm::vec3 half =
+                frame * visible_half(-way * frame, alpha, {unit(random), unit(random)});
+            glm::vec3 bent = glm::refract(way, half, ratio);
+            is_back = bent == glm::vec3(0.0f);
+            if (is_back)
+                bent = glm::reflect(way, half);
+            const float height = is_back ? glm::dot(bent, normal) : -glm::dot(bent, normal);
+            if (height > 1e-4f && unit(random) < unmasked(height, alpha))
+                return bent;
+        }
+    };
+    bool is_back = false;
+    glm::vec3 position = enters;
+    glm::vec3 way = bend(direction, enters, 1.0f / index, is_back);
+    do {
+        position = glm::normalize(position - 2.0f * glm::dot(position, way) * way);
+        way = bend(way, -position, index, is_back);
+    } while (is_back);
+    return way;
+}
+
+/// A rough ball shows the mean of what random ways through it find.
+TEST(Refractions, OfARoughBallAreThoseOfRandomFacets) {
+    constexpr float Index = 1.5f;
+    cubemap::CubeMap sky(64), white(8);
+    for (const cubemap::Face face : cubemap::AllFaces)
+        for (std::uint32_t y = 0; y < 64; ++y)
+            for (std::uint32_t x = 0; x < 64; ++x)
+                sky.at(face, x, y) =
+                    glm::vec3(cubemap::texel_direction(face, x, y, 64).y > 0.3 ? 1.0f : 0.1f);
+    white.texels.assign(white.texels.size(), glm::vec3(1.0f));
+    for (const float roughness : {0.3f, 0.6f, 0.9f})
+        for (const float height : {-0.4f, 0.1f, 0.7f}) {
+            const auto seen = [&](const cubemap::CubeMap& around) {
+                Scene scene(scenes::icosphere(5, 1.0f, {}), glass(roughness, 1.0f, Index), around,
+                            32'768);
+                return scene.seen({0.0f, height, 5.0f}, {0.0f, 0.0f, -1.0f}).value().g;
+            };
+            std::mt19937 random(7);
+            constexpr int NumWays = 20'000;
+            double expected = 0.0;
+            for (int i = 0; i < NumWays; ++i)
+                expected +=
+                    cubemap::sample(
+                        sky, leaves_ball({0.0f, height, std::sqrt(1.0f - height * height)},
+                                         {0.0f, 0.0f, -1.0f}, roughness * roughness, Index, random))
+                        .g;
+            EXPECT_NEAR(seen(sky) / seen(white), expected / NumWays, 0.015)
+                << roughness << " " << height;
+        }
+}
+
 /// A rough sheet spreads what is behind it as a mirror would, flipped to the other side.
 TEST(Refractions, OfARoughSheetAreAFlippedHighlight) {
     constexpr std::uint32_t Size = 64;
@@ -178,14 +247,20 @@ TEST(Refractions, OfARoughSheetAreAFlippedHighlight) {
     EXPECT_FALSE(seen(0.0f, sky)) << "straight on";
     for (const float roughness : {0.3f, 0.5f, 0.7f}) {
         const float alpha = roughness * roughness;
-        double expected = 0.0;
+        double bright = 0.0, all = 0.0;
         each([&](cubemap::Face, std::uint32_t x, std::uint32_t y, const glm::dvec3& w) {
-            if (!is_bright(w) || w.y >= 0.0)
+            if (w.y >= 0.0)
                 return;
             const glm::vec3 half = glm::normalize(to_eye + glm::vec3(w.x, -w.y, w.z));
-            const float dense = mirrored_density({half.x, half.z, half.y}, to_eye.y, alpha);
-            expected += static_cast<double>(dense) * solid_angles[std::size_t{y} * Size + x];
+            const float dense = mirrored_density({half.x, half.z, half.y}, to_eye.y, alpha) *
+                                unmasked(static_cast<float>(-w.y), alpha);
+            const double light =
+                static_cast<double>(dense) * solid_angles[std::size_t{y} * Size + x];
+            all += light;
+            if (is_bright(w))
+                bright += light;
         });
+        const double expected = bright / all;
         const float part = seen(roughness, sky).value().g / seen(roughness, white).value().g;
         EXPECT_NEAR(part, expected, 0.01) << roughness;
         EXPECT_TRUE(roughness < 0.4f || expected > 0.03) << "it would show no spread";
