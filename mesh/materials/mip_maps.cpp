@@ -41,6 +41,14 @@ Span span_of(std::uint32_t i, std::uint32_t from, std::uint32_t to) {
     return span;
 }
 
+/// Returns the normal that a texel of a normal map stands for; straight up where it is none.
+glm::vec3 unit_normal(const glm::vec3& texel) {
+    const glm::vec3 normal(normal_component(texel.x), normal_component(texel.y),
+                           std::max(normal_component(texel.z), 0.0f));
+    const float length = glm::length(normal);
+    return length > 0.0f ? normal / length : glm::vec3(0.0f, 0.0f, 1.0f);
+}
+
 /// Returns a level of half the width and height of one whose texels `texel(column, row)` returns.
 template<class Texel>
 Level halved(std::uint32_t width, std::uint32_t height, const Texel& texel) {
@@ -69,29 +77,37 @@ Level halved(std::uint32_t width, std::uint32_t height, const Texel& texel) {
 /// The levels of a texture above its own texels.
 class MipMaps::Pyramid {
 public:
-    [[nodiscard]] glm::vec3 sample(const Texture& texture, const TextureSlot& slot,
-                                   const glm::vec2& uv, std::size_t level) {
+    [[nodiscard]] glm::vec3 sample(const Texture& texture, Kind kind,
+                                   const std::array<Wrap, 2>& wrap, const glm::vec2& uv,
+                                   std::size_t level) {
         if (level == 0)
-            return bilinear(uv, {texture.width, texture.height}, slot.wrap,
+            return bilinear(uv, {texture.width, texture.height}, wrap,
                             [&](std::uint32_t column, std::uint32_t row) {
-                                return mesh::texel(texture, column, row, slot.is_srgb);
+                                return texel(texture, kind, column, row);
                             });
-        std::call_once(is_made_, [&] { make(texture, slot.is_srgb); });
+        std::call_once(is_made_, [&] { make(texture, kind); });
         if (levels_.empty())
-            return sample(texture, slot, uv, 0);
+            return sample(texture, kind, wrap, uv, 0);
         const Level& own = levels_[std::min(level, levels_.size()) - 1];
         return bilinear(
-            uv, {own.width, own.height}, slot.wrap,
+            uv, {own.width, own.height}, wrap,
             [&](std::uint32_t column, std::uint32_t row) { return own.texel(column, row); });
     }
 
 private:
-    void make(const Texture& texture, bool is_srgb) {
+    /// Normals are of unit length, their components in [0, 1].
+    static glm::vec3 texel(const Texture& texture, Kind kind, std::uint32_t column,
+                           std::uint32_t row) {
+        const glm::vec3 own = mesh::texel(texture, column, row, kind == Kind::Srgb);
+        return kind == Kind::Normals ? 0.5f * unit_normal(own) + 0.5f : own;
+    }
+
+    void make(const Texture& texture, Kind kind) {
         std::uint32_t width = texture.width, height = texture.height;
         while (width > 1 || height > 1) {
             if (levels_.empty())
                 levels_.push_back(halved(width, height, [&](std::uint32_t x, std::uint32_t y) {
-                    return mesh::texel(texture, x, y, is_srgb);
+                    return texel(texture, kind, x, y);
                 }));
             else
                 levels_.push_back(halved(width, height, [&](std::uint32_t x, std::uint32_t y) {
@@ -107,11 +123,31 @@ private:
 };
 
 MipMaps::MipMaps(const std::vector<Texture>& textures)
-    : textures_(&textures), pyramids_(std::make_unique<Pyramid[]>(2 * textures.size())) {}
+    : textures_(&textures), pyramids_(std::make_unique<Pyramid[]>(NumKinds * textures.size())) {}
 MipMaps::~MipMaps() = default;
 
 glm::vec3 MipMaps::sample(const TextureSlot& slot, const glm::vec2& mesh_uv,
                           const Footprint& footprint) const {
+    const auto found = mean(slot, mesh_uv, footprint, slot.is_srgb ? Kind::Srgb : Kind::Linear);
+    return found ? *found : mesh::sample((*textures_)[slot.texture], slot, mesh_uv);
+}
+
+glm::vec3 MipMaps::normal(const TextureSlot& slot, const glm::vec2& mesh_uv,
+                          const Footprint& footprint) const {
+    const auto found = mean(slot, mesh_uv, footprint, Kind::Normals);
+    if (!found)
+        return unit_normal(mesh::sample((*textures_)[slot.texture], slot, mesh_uv));
+    // What a level's 16 bits make of 0
+    constexpr float Least = 1e-4f;
+    glm::vec3 normal = 2.0f * *found - 1.0f;
+    for (int axis = 0; axis < 2; ++axis)
+        if (std::abs(normal[axis]) < Least)
+            normal[axis] = 0.0f;
+    return normal;
+}
+
+std::optional<glm::vec3> MipMaps::mean(const TextureSlot& slot, const glm::vec2& mesh_uv,
+                                       const Footprint& footprint, Kind kind) const {
     /// Looks along the longer axis.
     constexpr float MostLooks = 16.0f;
     const Texture& texture = (*textures_)[slot.texture];
@@ -122,7 +158,7 @@ glm::vec3 MipMaps::sample(const TextureSlot& slot, const glm::vec2& mesh_uv,
         std::swap(longer, other);
     const float length = glm::length(longer); // in texels
     if (!(length > 1.0f) || !std::isfinite(length))
-        return mesh::sample(texture, slot, mesh_uv);
+        return std::nullopt;
     const float width = std::abs(longer.x * other.y - longer.y * other.x) / length;
     const auto num_looks =
         static_cast<int>(std::ceil(std::min(length / std::max(width, 1.0f), MostLooks)));
@@ -131,13 +167,14 @@ glm::vec3 MipMaps::sample(const TextureSlot& slot, const glm::vec2& mesh_uv,
     const auto level = static_cast<std::size_t>(detail);
     const float rest = detail - static_cast<float>(level);
     const glm::vec2 uv = slot.uv_from_mesh_uv * mesh_uv + slot.uv_offset;
-    Pyramid& pyramid = pyramids_[2 * std::size_t{slot.texture} + (slot.is_srgb ? 1 : 0)];
+    Pyramid& pyramid =
+        pyramids_[NumKinds * std::size_t{slot.texture} + static_cast<std::size_t>(kind)];
     glm::vec3 sum(0.0f);
     for (int i = 0; i < num_looks; ++i) {
         const float place = (static_cast<float>(i) + 0.5f) / looks - 0.5f;
         const glm::vec2 at = uv + place * longer / size;
-        sum += glm::mix(pyramid.sample(texture, slot, at, level),
-                        pyramid.sample(texture, slot, at, level + 1), rest);
+        sum += glm::mix(pyramid.sample(texture, kind, slot.wrap, at, level),
+                        pyramid.sample(texture, kind, slot.wrap, at, level + 1), rest);
     }
     return sum / looks;
 }

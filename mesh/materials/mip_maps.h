@@ -5,7 +5,10 @@
 // along the longer axis).
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -35,10 +38,21 @@ public:
     [[nodiscard]] glm::vec3 sample(const TextureSlot& slot, const glm::vec2& mesh_uv,
                                    const Footprint& footprint) const;
 
+    /// Returns the mean of the unit normals of a normal map over a footprint, in tangent space:
+    /// shorter where they differ. Where the footprint is within a texel, it is the bilinear value
+    /// with unit length.
+    [[nodiscard]] glm::vec3 normal(const TextureSlot& slot, const glm::vec2& mesh_uv,
+                                   const Footprint& footprint) const;
+
 private:
     class Pyramid;
+    enum class Kind : std::uint8_t { Linear, Srgb, Normals };
+    static constexpr std::size_t NumKinds = 3;
+    [[nodiscard]] std::optional<glm::vec3> mean(const TextureSlot& slot, const glm::vec2& mesh_uv,
+                                                const Footprint& footprint, Kind kind) const;
+
     const std::vector<Texture>* textures_;
-    /// [textures][linear, sRGB]
+    /// [textures][kinds]
     std::unique_ptr<Pyramid[]> pyramids_;
 };
 

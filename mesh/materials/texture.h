@@ -68,6 +68,9 @@ private:
 [[nodiscard]] glm::vec3 texel(const Texture& texture, std::uint32_t column, std::uint32_t row,
                               bool is_srgb);
 
+/// Returns the component of a tangent-space normal that a texel's channel stands for, -1 to 1.
+[[nodiscard]] float normal_component(float channel);
+
 /// The two texels of a coordinate, and the weight of the second.
 struct TexelPair {
     std::uint32_t first, second;

@@ -226,25 +226,26 @@ Surface without_highlight(Surface surface) {
     return surface;
 }
 
-void widen(Surface& surface, float normal_spread) {
-    if (!(normal_spread > 0.0f) || surface.highlight == Highlight::None ||
-        surface.highlight == Highlight::Measured)
+void widen(Surface& surface, float normal_spread, float of_coat) {
+    if (surface.highlight == Highlight::None || surface.highlight == Highlight::Measured)
         return;
     // Of facets evenly in a disc nine tenths are within 1.8 of their variance, of GGX's within
     // 9 alpha^2: its tails are long, and of as much variance they would be far too wide.
     constexpr float OfSpread = 1.8f / 9.0f;
-    const auto widened = [&](float roughness) {
+    const auto widened = [](float roughness, float spread) {
         const float alpha = ggx_alpha(roughness);
-        return std::min(std::sqrt(std::sqrt(alpha * alpha + OfSpread * normal_spread)), 1.0f);
+        return std::min(std::sqrt(std::sqrt(alpha * alpha + OfSpread * spread)), 1.0f);
     };
+    if (surface.coat > 0.0f && of_coat > 0.0f)
+        surface.coat_roughness = widened(surface.coat_roughness, of_coat);
+    if (!(normal_spread > 0.0f))
+        return;
     if (facts_of(surface.highlight).is_roughness) {
-        surface.roughness_or_exponent = widened(surface.roughness_or_exponent);
+        surface.roughness_or_exponent = widened(surface.roughness_or_exponent, normal_spread);
     } else { // a lobe as wide as GGX of alpha^2 = 2 / (exponent + 2)
         const float square = 2.0f / (surface.roughness_or_exponent + 2.0f) + normal_spread;
         surface.roughness_or_exponent = std::max(2.0f / square - 2.0f, 0.0f);
     }
-    if (surface.coat > 0.0f)
-        surface.coat_roughness = widened(surface.coat_roughness);
 }
 
 std::vector<Surface> vertex_surfaces(const mesh::TriangleMesh& mesh,

@@ -60,11 +60,12 @@ enum class GgxForm { Whole, Published };
 [[nodiscard]] Surface without_highlight(Surface surface);
 
 /// Widens the highlights of a surface whose unit normals differ from their mean by this mean square
-/// over what it stands for: a narrower lobe would sparkle there. Tables stay as they are.
+/// over what it stands for, those of its coat by another: a narrower lobe would sparkle there.
+/// Tables stay as they are.
 ///
 /// Based on: Y. Tokuyoshi, A. Kaplanyan, "Improved Geometric Specular Antialiasing", I3D 2019 (the
 ///           variance of slopes adds to alpha^2; here a fifth of it, by where nine tenths lie).
-void widen(Surface& surface, float normal_spread);
+void widen(Surface& surface, float normal_spread, float of_coat);
 
 /// Replaces the surface of a triangle's points, given its own: materials from the command line.
 using SurfaceOverride = std::function<Surface(const mesh::TriangleMesh& mesh,

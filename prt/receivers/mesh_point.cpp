@@ -11,6 +11,7 @@
 #include "cubemap/split_mix64.h"
 #include "mesh/opacity.h"
 #include "mesh/tangents.h"
+#include "prt/receivers/texture_view.h"
 
 namespace relumine::prt {
 
@@ -28,14 +29,6 @@ constexpr float CosineOfLift = 0.8f;
 /// Whether a lift leads to the smooth surface. Points beside a vertex do not follow other lifts.
 bool leads_outwards(const glm::vec3& lift, const glm::vec3& normal) {
     return glm::dot(lift, normal) > CosineOfLift * glm::length(lift);
-}
-
-/// Returns a component of a normal map's vector. Bytes of 127 and 128 both mean 0, so that a flat
-/// map is flat, and 255 means 1.
-float map_component(float texel) {
-    const float value = 2.0f * texel - 1.0f, step = 1.0f / 255.0f;
-    const float length = std::max(std::abs(value) - step, 0.0f) / (1.0f - step);
-    return std::copysign(length < 1e-6f ? 0.0f : length, value);
 }
 
 } // namespace
@@ -121,18 +114,36 @@ struct NormalMap {
     float mesh::Material::* scale;
 };
 
-glm::vec3 normal_of(const mesh::TriangleMesh& mesh, const MeshPoint& point, const NormalMap& map) {
+/// Returns the normal of a texture, in tangent space and not of unit length, over what a sample of
+/// a view sees of it.
+glm::vec3 tangent_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point,
+                         const mesh::TextureSlot& slot, const TextureView* view) {
+    const glm::vec2 uv = uv_at(mesh, point, slot.uv_set);
+    if (view != nullptr && view->maps != nullptr)
+        return view->maps->normal(slot, uv, view->footprint(mesh, point, slot.uv_set));
+    const glm::vec3 texel = mesh::sample(mesh.textures[slot.texture], slot, uv);
+    return {mesh::normal_component(texel.x), mesh::normal_component(texel.y),
+            std::max(mesh::normal_component(texel.z), 0.0f)};
+}
+
+MappedNormal normal_of(const mesh::TriangleMesh& mesh, const MeshPoint& point, const NormalMap& map,
+                       const TextureView* view) {
     const glm::vec3 normal = shading_normal(mesh, point);
     if (mesh.corner_tangents.empty())
-        return normal;
+        return {normal};
     const mesh::Material& material = mesh.materials[mesh.triangle_materials[point.triangle]];
     if (!(material.*map.texture))
-        return normal;
-    const mesh::TextureSlot& slot = *(material.*map.texture);
-    const glm::vec3 texel =
-        mesh::sample(mesh.textures[slot.texture], slot, uv_at(mesh, point, slot.uv_set));
-    const glm::vec2 tilt =
-        material.*map.scale * glm::vec2(map_component(texel.x), map_component(texel.y));
+        return {normal};
+    const glm::vec3 mean = tangent_normal(mesh, point, *(material.*map.texture), view);
+    const float scale = material.*map.scale;
+    const glm::vec2 tilt = scale * glm::vec2(mean);
+    // What roundings make of equal normals is no spread.
+    constexpr float LeastSpread = 1e-3f;
+    float spread = 0.0f;
+    if (view != nullptr && view->maps != nullptr)
+        spread = std::min(scale * scale * (1.0f - glm::dot(mean, mean)), 1.0f);
+    if (!(spread > LeastSpread))
+        spread = 0.0f;
     const std::array<glm::vec4, 3>& corners = mesh.corner_tangents[point.triangle];
     const glm::vec2& w = point.barycentric;
     const glm::vec4 between = (1.0f - w.x - w.y) * corners[0] + w.x * corners[1] + w.y * corners[2];
@@ -140,23 +151,30 @@ glm::vec3 normal_of(const mesh::TriangleMesh& mesh, const MeshPoint& point, cons
         unit_or_zero(glm::dvec3(between) -
                      glm::dot(glm::dvec3(between), glm::dvec3(normal)) * glm::dvec3(normal));
     if (tilt == glm::vec2(0.0f) || along == glm::vec3(0.0f))
-        return normal;
+        return {normal, spread};
     const glm::vec3 bitangent = (between.w < 0.0f ? -1.0f : 1.0f) * glm::cross(normal, along);
-    const glm::vec3 mapped =
-        unit_or_zero(glm::dvec3(tilt.x * along + tilt.y * bitangent) +
-                     std::max(double{map_component(texel.z)}, 0.0) * glm::dvec3(normal));
-    return mapped == glm::vec3(0.0f) ? normal : mapped;
+    const glm::vec3 mapped = unit_or_zero(glm::dvec3(tilt.x * along + tilt.y * bitangent) +
+                                          double{mean.z} * glm::dvec3(normal));
+    return {mapped == glm::vec3(0.0f) ? normal : mapped, spread};
 }
 
 } // namespace
 
-glm::vec3 mapped_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
-    return normal_of(mesh, point, {&mesh::Material::normal_texture, &mesh::Material::normal_scale});
+MappedNormal seen_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point,
+                         const TextureView* view) {
+    return normal_of(mesh, point, {&mesh::Material::normal_texture, &mesh::Material::normal_scale},
+                     view);
 }
 
-glm::vec3 coat_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
+MappedNormal seen_coat_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point,
+                              const TextureView* view) {
     return normal_of(mesh, point,
-                     {&mesh::Material::coat_normal_texture, &mesh::Material::coat_normal_scale});
+                     {&mesh::Material::coat_normal_texture, &mesh::Material::coat_normal_scale},
+                     view);
+}
+
+glm::vec3 mapped_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
+    return seen_normal(mesh, point, nullptr).direction;
 }
 
 glm::vec3 smooth_position(const mesh::TriangleMesh& mesh, const MeshPoint& point) {

@@ -12,6 +12,8 @@
 
 namespace relumine::prt {
 
+struct TextureView;
+
 struct MeshPoint {
     std::uint32_t triangle = 0;
     /// Weights of the triangle's second and third vertex; each >= 0, their sum <= 1.
@@ -49,8 +51,22 @@ struct MeshPoint {
 /// has none, or where it is flat.
 [[nodiscard]] glm::vec3 mapped_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point);
 
+/// The mean of the normals that a sample of a picture stands for.
+struct MappedNormal {
+    /// Unit length.
+    glm::vec3 direction;
+    /// Mean square of their differences from the mean: 0 where all are equal.
+    float spread = 0.0f;
+};
+
+/// Returns mapped_normal() over what a sample of a view sees of the map; without a view, at the
+/// point.
+[[nodiscard]] MappedNormal seen_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point,
+                                       const TextureView* view);
+
 /// Returns the same of the material's clear coat.
-[[nodiscard]] glm::vec3 coat_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point);
+[[nodiscard]] MappedNormal seen_coat_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point,
+                                            const TextureView* view);
 
 /// Returns the point moved outwards to the smooth surface that the vertex normals pretend. Shadow
 /// rays that start there do not see the facets of a convex mesh where the light grazes it. Points

@@ -61,7 +61,7 @@ glm::vec2 shift_of(std::uint32_t x, std::uint32_t y) {
 }
 
 /// Returns a normal that the eye sees: a normal map may turn one away from it.
-glm::vec3 seen_normal(const glm::vec3& normal, const glm::vec3& to_eye) {
+glm::vec3 facing(const glm::vec3& normal, const glm::vec3& to_eye) {
     constexpr float LeastCosine = 0.01f;
     const float cosine = glm::dot(normal, to_eye);
     return cosine < LeastCosine ? glm::normalize(normal + (LeastCosine - cosine) * to_eye) : normal;
@@ -70,12 +70,19 @@ glm::vec3 seen_normal(const glm::vec3& normal, const glm::vec3& to_eye) {
 } // namespace
 
 std::optional<Mirror> mirror_of(const mesh::TriangleMesh& mesh, const prt::MeshPoint& point,
-                                const prt::Surface& surface, const glm::vec3& to_eye) {
+                                const prt::Surface& surface, const glm::vec3& to_eye,
+                                const prt::TextureView* view) {
     if (!(glm::dot(prt::shading_normal(mesh, point), to_eye) > 0.0f))
         return std::nullopt;
-    Mirror mirror{surface, seen_normal(prt::mapped_normal(mesh, point), to_eye), to_eye};
-    if (prt::has_coat(mirror.surface))
-        mirror.surface.coat_normal = seen_normal(prt::coat_normal(mesh, point), to_eye);
+    const prt::MappedNormal normal = prt::seen_normal(mesh, point, view);
+    Mirror mirror{surface, facing(normal.direction, to_eye), to_eye};
+    float of_coat = 0.0f;
+    if (prt::has_coat(mirror.surface)) {
+        const prt::MappedNormal coat = prt::seen_coat_normal(mesh, point, view);
+        mirror.surface.coat_normal = facing(coat.direction, to_eye);
+        of_coat = coat.spread;
+    }
+    prt::widen(mirror.surface, normal.spread, of_coat);
     return mirror;
 }
 
@@ -165,7 +172,8 @@ std::optional<Mirror> Mirrors::at(const prt::MeshPoint& point) const {
         !light_.textures->mirrors(point.triangle))
         return std::nullopt;
     return mirror_of(mesh_, point, light_.textures->mirror(point, &view_),
-                     glm::normalize(*light_.eye - prt::value_at(mesh_, mesh_.positions, point)));
+                     glm::normalize(*light_.eye - prt::value_at(mesh_, mesh_.positions, point)),
+                     &view_);
 }
 
 glm::vec3 Mirrors::soft(const Mirror& mirror, const prt::MeshPoint& point,

@@ -20,10 +20,12 @@ struct Mirror {
 };
 
 /// Returns the mirror at a point, whose surface is given, for an eye or a ray that comes from the
-/// side of `to_eye`; none where the point looks away from there.
+/// side of `to_eye`; none where the point looks away from there. For a sample of a view, the
+/// surface is as much rougher as the normals of its maps differ in what the sample sees.
 [[nodiscard]] std::optional<Mirror> mirror_of(const mesh::TriangleMesh& mesh,
                                               const prt::MeshPoint& point,
-                                              const prt::Surface& surface, const glm::vec3& to_eye);
+                                              const prt::Surface& surface, const glm::vec3& to_eye,
+                                              const prt::TextureView* view = nullptr);
 
 /// A surface that mirrors, and its diffuse light, which is the radiance of albedo 1.
 struct LitMirror {

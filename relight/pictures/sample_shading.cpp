@@ -37,7 +37,7 @@ glm::vec3 SampleShading::tilted(const prt::MeshPoint& at) const {
     if (light_.harmonics.empty())
         return glm::vec3(0.0f);
     const glm::vec3 normal = prt::shading_normal(mesh_, at);
-    const glm::vec3 mapped = prt::mapped_normal(mesh_, at);
+    const glm::vec3 mapped = prt::seen_normal(mesh_, at, &view_).direction;
     if (mapped == normal)
         return glm::vec3(0.0f);
     const std::size_t count = light_.harmonics.size() / mesh_.num_vertices();
@@ -85,7 +85,7 @@ glm::vec3 SampleShading::traced(const prt::MeshPoint& at, const std::optional<Mi
                                 std::span<const std::uint16_t> lights) {
     if (std::all_of(lights.begin(), lights.end(), [](std::uint16_t word) { return word == 0; }))
         return glm::vec3(0.0f);
-    const glm::vec3 normal = prt::mapped_normal(mesh_, at);
+    const glm::vec3 normal = prt::seen_normal(mesh_, at, &view_).direction;
     const glm::vec3 albedo =
         light_.albedo.empty() ? glm::vec3(1.0f) : prt::value_at(mesh_, light_.albedo, at);
     if (light_.surfaces.empty())

@@ -382,7 +382,8 @@ private:
             }
         }
         for (std::size_t i = 0; i < receivers.normal_spread.size(); ++i)
-            prt::widen(receivers.surfaces[i], receivers.normal_spread[i]);
+            prt::widen(receivers.surfaces[i], receivers.normal_spread[i],
+                       receivers.normal_spread[i]);
         set_coat_normals();
         if (receivers.to_eye.empty())
             leave_highlights_out();
@@ -415,7 +416,8 @@ private:
         for (std::size_t i = 0; i < receivers.num_own(); ++i) {
             if (!prt::has_coat(receivers.surfaces[i]))
                 continue;
-            const glm::vec3 normal = prt::coat_normal(scene_.mesh, receivers.points[i]);
+            const glm::vec3 normal =
+                prt::seen_coat_normal(scene_.mesh, receivers.points[i], nullptr).direction;
             receivers.surfaces[i].coat_normal =
                 glm::dot(normal, receivers.normals[i]) < 0.0f ? -normal : normal;
         }

@@ -51,4 +51,15 @@ inline mesh::TriangleMesh mapped_square(const std::array<std::uint8_t, 3>& color
     return mesh;
 }
 
+/// The same with a map of 64 columns that tilt to the right and to the left by 45 degrees in turn.
+inline mesh::TriangleMesh striped_square() {
+    mesh::TriangleMesh mesh = mapped_square({255, 128, 255});
+    mesh.textures[0].width = mesh.textures[0].height = 64;
+    mesh.textures[0].texels.clear();
+    for (int i = 0; i < 64 * 64; ++i)
+        mesh.textures[0].texels.push_back(
+            {i % 2 == 0 ? std::uint8_t{255} : std::uint8_t{0}, 128, 255});
+    return mesh;
+}
+
 } // namespace relumine::scenes

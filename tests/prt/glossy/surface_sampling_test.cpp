@@ -246,18 +246,18 @@ TEST(Widen, AddsTheSpreadOfNormalsToTheLobes) {
                   .coat = 0.5f,
                   .coat_roughness = 0.1f};
     const Surface before = metal;
-    widen(metal, 0.0f);
+    widen(metal, 0.0f, 0.0f);
     EXPECT_EQ(metal, before);
-    widen(metal, 0.01f);
+    widen(metal, 0.01f, 0.01f);
     EXPECT_NEAR(std::pow(alpha_of(metal.roughness_or_exponent), 2.0f), 0.0081f + 0.002f, 1e-5f);
     EXPECT_NEAR(std::pow(alpha_of(metal.coat_roughness), 2.0f), 0.0001f + 0.002f, 1e-5f);
-    widen(metal, 1.0f);
+    widen(metal, 1.0f, 1.0f);
     EXPECT_LE(metal.roughness_or_exponent, 1.0f);
     Surface phong{.highlight = Highlight::BlinnPhong, .roughness_or_exponent = 198.0f};
-    widen(phong, 0.01f); // as wide as GGX of alpha^2 = 2 / (exponent + 2)
+    widen(phong, 0.01f, 0.01f); // as wide as GGX of alpha^2 = 2 / (exponent + 2)
     EXPECT_NEAR(phong.roughness_or_exponent, 98.0f, 0.01f);
     Surface matte;
-    widen(matte, 0.5f);
+    widen(matte, 0.5f, 0.5f);
     EXPECT_EQ(matte, Surface());
 }
 

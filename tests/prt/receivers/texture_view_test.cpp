@@ -57,5 +57,28 @@ TEST(TextureView, FootprintsOfATiltedPlane) {
             glm::vec2(0.0f));
 }
 
+TEST(SeenNormal, IsTheMeanOfTheMapAndHowMuchItDiffers) {
+    const mesh::TriangleMesh square = scenes::striped_square();
+    const mesh::MipMaps maps(square.textures);
+    const Camera camera{.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = Fov};
+    const MeshPoint at{.triangle = 0, .barycentric = {0.2f, 0.7f}};
+    const MappedNormal there = seen_normal(square, at, nullptr);
+    EXPECT_EQ(there.direction, mapped_normal(square, at));
+    EXPECT_EQ(there.spread, 0.0f);
+    const TextureView near(maps, camera.eye, PictureRays(camera, 1000, 1000, 2));
+    EXPECT_LT(glm::distance(seen_normal(square, at, &near).direction, there.direction), 1e-5f);
+    EXPECT_EQ(seen_normal(square, at, &near).spread, 0.0f);
+    // Three stripes a sample
+    const TextureView far(maps, camera.eye, PictureRays(camera, 10, 10, 2));
+    const MappedNormal mean = seen_normal(square, at, &far);
+    EXPECT_LT(glm::distance(mean.direction, glm::vec3(0, 0, 1)), 1e-3f);
+    EXPECT_NEAR(mean.spread, 0.5f, 1e-3f) << "they differ by 45 degrees from their mean";
+    const mesh::TriangleMesh flat = scenes::mapped_square({127, 128, 255});
+    const mesh::MipMaps of_flat(flat.textures);
+    const TextureView of_all(of_flat, camera.eye, PictureRays(camera, 1, 1, 1));
+    EXPECT_EQ(seen_normal(flat, at, &of_all).direction, glm::vec3(0, 0, 1));
+    EXPECT_EQ(seen_normal(flat, at, &of_all).spread, 0.0f);
+}
+
 } // namespace
 } // namespace relumine::prt

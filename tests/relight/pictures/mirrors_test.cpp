@@ -1,0 +1,42 @@
+// What a pixel that stands for many normals mirrors.
+#include "relight/pictures/mirrors.h"
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "prt/glossy/surface_sampling.h"
+#include "tests/prt/textured_square.h"
+
+namespace relumine::relight {
+namespace {
+
+/// Normals that a sample does not tell apart make the surface rougher, and leave its coat alone.
+TEST(MirrorOf, IsRougherWhereNormalsDifferWithinASample) {
+    const mesh::TriangleMesh square = scenes::striped_square();
+    const mesh::MipMaps maps(square.textures);
+    const prt::Camera camera{.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = 28.0f};
+    const prt::Surface metal{.highlight = prt::Highlight::GgxWhole,
+                             .specular = glm::vec3(1.0f),
+                             .roughness_or_exponent = 0.2f,
+                             .coat = 1.0f,
+                             .coat_roughness = 0.1f};
+    const prt::MeshPoint at{.triangle = 0, .barycentric = {0.2f, 0.7f}};
+    const glm::vec3 to_eye(0, 0, 1);
+    const prt::TextureView near(maps, camera.eye, prt::PictureRays(camera, 1000, 1000, 1));
+    const Mirror sharp = mirror_of(square, at, metal, to_eye, &near).value();
+    EXPECT_EQ(sharp.surface.roughness_or_exponent, metal.roughness_or_exponent);
+    EXPECT_LT(sharp.normal.z, 0.9f) << "that of one stripe";
+    const prt::TextureView far(maps, camera.eye, prt::PictureRays(camera, 10, 10, 1));
+    const Mirror wide = mirror_of(square, at, metal, to_eye, &far).value();
+    EXPECT_LT(glm::distance(wide.normal, glm::vec3(0, 0, 1)), 1e-3f);
+    prt::Surface expected = metal;
+    prt::widen(expected, 0.5f, 0.0f);
+    EXPECT_NEAR(wide.surface.roughness_or_exponent, expected.roughness_or_exponent, 1e-3f);
+    EXPECT_GT(expected.roughness_or_exponent, 0.5f) << "it would show no widening";
+    EXPECT_EQ(wide.surface.coat_roughness, metal.coat_roughness);
+}
+
+} // namespace
+} // namespace relumine::relight
