@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -17,7 +18,7 @@ namespace relumine::relight {
 inline constexpr float SeenShare = 0.5f;
 
 /// Rays of the whole lobe of a surface, and of its coat and its sheen, where a highlight has `num`.
-/// Wide lobes and sheen take twice as many: what a part of a share leaves out is noise.
+/// Wide lobes, over which the weights of rays differ, and sheen take twice as many.
 struct LobeRays {
     LobeRays(const prt::Surface& surface, std::uint32_t num)
         : all(lobe_alpha(surface) > WideAlpha ? 2 * num : num), coat((num + 1) / 2),
@@ -36,11 +37,10 @@ private:
     LobeRays() = default;
 };
 
-/// Returns the rays of a pixel that shares none with its neighbours. Where a wide lobe turns from
-/// pixel to pixel, a pixel has as many as four would share. One of several normals adds half.
-[[nodiscard]] inline std::uint32_t rays_of_pixel(std::uint32_t num, bool is_wide, bool is_first) {
-    const std::uint32_t all = num * (is_wide ? 4 : 1);
-    return is_first ? all : (all + 1) / 2;
+/// Returns the rays of a pixel that shares none with its neighbours. One of several normals adds
+/// half.
+[[nodiscard]] inline std::uint32_t rays_of_pixel(std::uint32_t num, bool is_first) {
+    return is_first ? num : (num + 1) / 2;
 }
 
 /// Returns the rays that go on through rough glass.
@@ -49,22 +49,18 @@ private:
 }
 
 /// Returns the rays of a receiver, which shares none: those of a narrow lobe go one way, of sheen
-/// all, and a rough metal shows nothing but its rays. `shown` is the part of a pixel that it fills.
+/// all. `shown` is the part of a pixel that it fills. A power of two: the lobe can be parted.
 [[nodiscard]] inline std::uint32_t rays_of_receiver(const prt::Surface& surface, std::uint32_t num,
                                                     float shown) {
-    constexpr float WideFrom = 0.1f, LeastOfMetals = 0.25f, WideAlpha = 0.1f;
+    constexpr float WideFrom = 0.1f;
     constexpr std::uint32_t Least = 4;
     float part = 1.0f;
     if (prt::has_sheen(surface))
         part = 2.0f;
-    else if (std::max({surface.specular.r, surface.specular.g, surface.specular.b}) >
-                 LeastOfMetals &&
-             lobe_alpha(surface) > WideAlpha)
-        part = 4.0f;
     else if (prt::facts_of(surface.highlight).is_roughness && !prt::has_coat(surface))
         part = std::min(surface.roughness_or_exponent / WideFrom, 1.0f);
-    return std::max(static_cast<std::uint32_t>(std::ceil(static_cast<float>(num) * part * shown)),
-                    Least);
+    const float rays = static_cast<float>(num) * part * shown;
+    return std::bit_ceil(std::max(static_cast<std::uint32_t>(std::ceil(rays)), Least));
 }
 
 } // namespace relumine::relight

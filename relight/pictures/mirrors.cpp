@@ -198,17 +198,14 @@ MirroredLight Mirrors::light(const Mirror& mirror, const prt::MeshPoint& point) 
         return *light;
     }
     const std::optional<Middle>& middle = middles_[std::size_t{y_} * width_ + x_];
-    const bool is_wide = reach_of(lobe_alpha(mirror.surface)) > 0;
-    const std::uint32_t num_rays =
-        rays_of_pixel(light_.reflections->num_rays(), is_wide, traced_.empty());
     if (traced_.empty() && middle && are_alike(middle->traced.mirror, mirror)) {
         traced_.push_back(middle->traced);
-        if (is_wide)
-            traced_.back().light = trace(middle->traced.mirror, middle->point, num_rays);
         return traced_.back().light;
     }
     // A pixel of several normals sums their rays.
-    traced_.push_back({mirror, trace(mirror, point, num_rays)});
+    traced_.push_back(
+        {mirror,
+         trace(mirror, point, rays_of_pixel(light_.reflections->num_rays(), traced_.empty()))});
     return traced_.back().light;
 }
 

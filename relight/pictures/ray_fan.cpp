@@ -1,6 +1,7 @@
 #include "relight/pictures/ray_fan.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <type_traits>
@@ -8,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "cubemap/frame.h"
+#include "relight/pictures/visible_normals.h"
 
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
@@ -60,15 +62,22 @@ FanVector root(FanVector value) {
     return hn::Sqrt(hn::Max(value, hn::Zero(FanTag())));
 }
 
-/// Sets x and y of points i of the fan's hammersley().
-void hammersley_points(const RayFan& fan, hn::Vec<hn::RebindToUnsigned<FanTag>> i, FanVector& x,
-                       FanVector& y) {
+using FanIndices = hn::Vec<hn::RebindToUnsigned<FanTag>>;
+
+/// Points of the unit square.
+struct FanPoints {
+    FanVector x, y;
+};
+
+FanVector fraction(FanVector v) {
+    return hn::Sub(v, hn::Floor(v));
+}
+
+/// Returns points i of the fan's hammersley() without its shift.
+FanPoints hammersley_points(const RayFan& fan, FanIndices i) {
     const FanTag d;
     const hn::RebindToUnsigned<FanTag> du;
     const hn::RebindToSigned<FanTag> di;
-    const auto fraction = [&](FanVector v) {
-        return hn::Sub(v, hn::Floor(v));
-    };
     const auto to_float = [&](auto v) {
         return hn::ConvertTo(d, hn::BitCast(di, v));
     };
@@ -85,8 +94,29 @@ void hammersley_points(const RayFan& fan, hn::Vec<hn::RebindToUnsigned<FanTag>> 
     const FanVector inverse = hn::Mul(to_float(hn::ShiftRight<8>(bits)), constant(0x1p-24f));
     const FanVector along =
         hn::Div(hn::Add(to_float(i), constant(0.5f)), constant(static_cast<float>(fan.num_rays)));
-    x = fraction(hn::Add(along, constant(fan.shift.x)));
-    y = fraction(hn::Add(inverse, constant(fan.shift.y)));
+    return {along, inverse};
+}
+
+/// Returns points of a grid over the part of the square that has point i of a fan of 2^n rays
+/// alone: an elementary interval of the sequence.
+FanPoints part_points(const RayFan& fan, std::uint32_t i, FanIndices of_grid) {
+    constexpr std::uint32_t Side = 4;
+    static_assert(Side * Side == prt::PacketSize);
+    const FanTag d;
+    const hn::RebindToUnsigned<FanTag> du;
+    const hn::RebindToSigned<FanTag> di;
+    const std::uint32_t num_columns = hammersley_columns(fan.num_rays);
+    const FanVector columns = constant(static_cast<float>(num_columns));
+    const FanVector rows = constant(static_cast<float>(fan.num_rays / num_columns));
+    const FanPoints own = hammersley_points(fan, hn::Set(du, i));
+    const auto within = [&](FanIndices place) {
+        return hn::Mul(hn::Add(hn::ConvertTo(d, hn::BitCast(di, place)), constant(0.5f)),
+                       constant(1.0f / Side));
+    };
+    const FanVector x = within(hn::And(of_grid, hn::Set(du, Side - 1)));
+    const FanVector y = within(hn::ShiftRight<2>(of_grid));
+    return {hn::Div(hn::Add(hn::Floor(hn::Mul(own.x, columns)), x), columns),
+            hn::Div(hn::Add(hn::Floor(hn::Mul(own.y, rows)), y), rows)};
 }
 
 /// Returns directions in the frame of the normal, mirrored at half vectors of visible_half().
@@ -120,15 +150,15 @@ FanDirections mirrored(const FanFrame& frame, float alpha, FanVector u_x, FanVec
             hn::MulSub(along, half.z, eye.z)};
 }
 
-void fan_rays(const RayFan& fan, const FanFrame& frame, std::uint32_t first, FanRays& rays) {
+/// Sends rays at points(lanes) of the square, which the fan shifts along its height.
+template<typename Points>
+void send(const RayFan& fan, const FanFrame& frame, FanRays& rays, const Points& points) {
     constexpr float Turn = 2.0f * std::numbers::pi_v<float>;
     const FanTag d;
     const hn::RebindToUnsigned<FanTag> du;
     for (std::size_t lane = 0; lane < prt::PacketSize; lane += hn::Lanes(d)) {
-        const auto i = hn::Min(hn::Iota(du, first + static_cast<std::uint32_t>(lane)),
-                               hn::Set(du, fan.num_rays - 1));
-        FanVector u_x = hn::Zero(d), u_y = u_x;
-        hammersley_points(fan, i, u_x, u_y);
+        const FanPoints point = points(hn::Iota(du, static_cast<std::uint32_t>(lane)));
+        const FanVector u_x = point.x, u_y = fraction(hn::Add(point.y, constant(fan.shift.y)));
         const FanVector angle = hn::Mul(constant(Turn), u_y);
         const FanVector cosine = hn::Cos(d, angle), sine = hn::Sin(d, angle);
         FanVector density = constant(1.0f / Turn);
@@ -147,9 +177,27 @@ void fan_rays(const RayFan& fan, const FanFrame& frame, std::uint32_t first, Fan
         hn::Store(density, d, rays.densities.data() + lane);
         rays.above |= prt::HWY_NAMESPACE::bits_of(d, hn::Gt(local.z, hn::Zero(d))) << lane;
     }
+}
+
+void fan_rays(const RayFan& fan, const FanFrame& frame, std::uint32_t first, FanRays& rays) {
+    const hn::RebindToUnsigned<FanTag> du;
+    const FanVector columns = constant(static_cast<float>(hammersley_columns(fan.num_rays)));
+    send(fan, frame, rays, [&](FanIndices lanes) {
+        FanPoints points = hammersley_points(
+            fan, hn::Min(hn::Add(lanes, hn::Set(du, first)), hn::Set(du, fan.num_rays - 1)));
+        const FanVector x = hn::Mul(points.x, columns);
+        points.x =
+            hn::Div(hn::Add(hn::Floor(x), fraction(hn::Add(x, constant(fan.shift.x)))), columns);
+        return points;
+    });
     const std::uint32_t count = std::min<std::uint32_t>(fan.num_rays - first, prt::PacketSize);
     rays.above &= (1u << count) - 1;
     rays.directions.num_directions = count;
+}
+
+void fan_part(const RayFan& fan, const FanFrame& frame, std::uint32_t ray, FanRays& rays) {
+    send(fan, frame, rays, [&](FanIndices lanes) { return part_points(fan, ray, lanes); });
+    rays.directions.num_directions = prt::PacketSize;
 }
 
 } // namespace relumine::relight::HWY_NAMESPACE
@@ -160,6 +208,7 @@ namespace relumine::relight {
 
 namespace {
 HWY_EXPORT(fan_rays);
+HWY_EXPORT(fan_part);
 } // namespace
 
 FanFrame::FanFrame(const RayFan& fan)
@@ -175,6 +224,12 @@ FanFrame::FanFrame(const RayFan& fan)
 FanRays fan_rays(const RayFan& fan, const FanFrame& frame, std::uint32_t first) {
     FanRays rays;
     HWY_DYNAMIC_DISPATCH(fan_rays)(fan, frame, first, rays);
+    return rays;
+}
+
+FanRays fan_part(const RayFan& fan, const FanFrame& frame, std::uint32_t ray) {
+    FanRays rays;
+    HWY_DYNAMIC_DISPATCH(fan_part)(fan, frame, ray, rays);
     return rays;
 }
 

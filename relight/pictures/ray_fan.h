@@ -48,4 +48,8 @@ struct FanRays {
 /// Returns up to 16 rays of a fan, from ray `first` on. Lanes behind the last ray repeat it.
 [[nodiscard]] FanRays fan_rays(const RayFan& fan, const FanFrame& frame, std::uint32_t first);
 
+/// Returns 16 directions spread over the part of the lobe that one ray of a fan of 2^n stands for.
+/// The parts of all its rays are the whole lobe. The densities are those of the fan's rays.
+[[nodiscard]] FanRays fan_part(const RayFan& fan, const FanFrame& frame, std::uint32_t ray);
+
 } // namespace relumine::relight

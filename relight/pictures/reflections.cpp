@@ -10,6 +10,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "files/parallel.h"
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/ggx_energy.h"
 #include "prt/glossy/ggx_lobe.h"
@@ -17,6 +18,7 @@
 #include "relight/kernels/cluster_lights.h"
 #include "relight/pictures/highlight_rays.h"
 #include "relight/pictures/ray_fan.h"
+#include "relight/pictures/visible_normals.h"
 
 namespace relumine::relight {
 
@@ -129,6 +131,8 @@ Reflections::Reflections(const prt::RayScene& rays, float bias, std::uint32_t nu
     if (environment.resolution == 0)
         return;
     levels_ = halves(without_lights(environment, without));
+    for (std::size_t i = 1; i < levels_.size(); ++i)
+        evenness_.emplace_back(levels_[i], levels_[i - std::min<std::size_t>(i, 3)]);
     if (!without.empty()) {
         const cubemap::CubeMap* all = &environment;
         cubemap::CubeMap coarse;
@@ -140,28 +144,85 @@ Reflections::Reflections(const prt::RayScene& rays, float bias, std::uint32_t nu
     }
 }
 
+Reflections::Evenness::Evenness(const cubemap::CubeMap& level, const cubemap::CubeMap& finer)
+    : resolution(level.resolution), is_even(level.texels.size()) {
+    // One look is as far from the mean at most, which 32 rays share.
+    constexpr float LargestPart = 0.2f;
+    const std::uint32_t r = resolution, side = finer.resolution / r;
+    const auto around = [&](cubemap::Face face, std::uint32_t x, std::uint32_t y, int i) {
+        const int u = static_cast<int>(x) + i % 3 - 1, v = static_cast<int>(y) + i / 3 - 1;
+        const int last = static_cast<int>(r) - 1;
+        if (std::min(u, v) >= 0 && std::max(u, v) <= last)
+            return level.at(face, static_cast<std::uint32_t>(u), static_cast<std::uint32_t>(v));
+        return cubemap::sample(level, cubemap::direction(face, (u + 0.5) / r, (v + 0.5) / r));
+    };
+    files::parallel_for(std::uint32_t{0}, 6 * r, [&](std::uint32_t row) {
+        const auto face = static_cast<cubemap::Face>(row / r);
+        const std::uint32_t y = row % r;
+        for (std::uint32_t x = 0; x < r; ++x) {
+            const glm::vec3 own = level.at(face, x, y);
+            glm::vec3 least = own, most = own;
+            const auto count = [&](const glm::vec3& value) {
+                least = glm::min(least, value);
+                most = glm::max(most, value);
+            };
+            for (int i = 0; i < 9; ++i)
+                count(around(face, x, y, i));
+            for (std::uint32_t v = y * side; v < (y + 1) * side; ++v)
+                for (std::uint32_t u = x * side; u < (x + 1) * side; ++u)
+                    count(finer.at(face, u, v));
+            const glm::vec3 rest = LargestPart * own - (most - least);
+            is_even[std::size_t{row} * r + x] = std::min({rest.r, rest.g, rest.b}) >= 0.0f;
+        }
+    });
+}
+
+bool Reflections::Evenness::at(const glm::vec3& direction) const {
+    const cubemap::FacePoint point = cubemap::face_point(glm::dvec3(direction));
+    const auto texel = [&](double place) {
+        return std::min(static_cast<std::uint32_t>(place * resolution), resolution - 1);
+    };
+    const std::size_t row = static_cast<std::size_t>(point.face) * resolution + texel(point.t);
+    return is_even[row * resolution + texel(point.s)] != 0;
+}
+
 glm::vec3 Reflections::sky(const glm::vec3& direction, float solid_angle) const {
     return mean(levels_, direction, solid_angle);
+}
+
+std::size_t Reflections::level_of(const Levels& levels, float solid_angle) {
+    const auto r = static_cast<float>(levels[0].resolution);
+    // Bilinear values between means spread as far as squares of three times the area.
+    constexpr float Spread = 3.0f;
+    const float texels = solid_angle * 6.0f * r * r / (4.0f * std::numbers::pi_v<float>);
+    // The nearest whole number to half the logarithm
+    const auto half_level =
+        std::bit_width(static_cast<std::uint32_t>(std::max(2.0f * texels / Spread, 2.0f))) - 1;
+    return std::min(static_cast<std::size_t>(half_level / 2), levels.size() - 1);
 }
 
 glm::vec3 Reflections::mean(const Levels& levels, const glm::vec3& direction, float solid_angle) {
     if (levels.empty())
         return glm::vec3(0.0f);
-    const auto r = static_cast<float>(levels[0].resolution);
-    // Bilinear values between means spread as far as squares of three times the area.
-    constexpr float Spread = 3.0f;
-    const float texels = solid_angle * 6.0f * r * r / (4.0f * std::numbers::pi_v<float>);
-    const float level = 0.5f * std::log2(std::max(texels / Spread, 1.0f));
-    const auto last = static_cast<float>(levels.size() - 1);
-    return cubemap::sample(levels[static_cast<std::size_t>(std::min(level + 0.5f, last))],
-                           direction);
+    return cubemap::sample(levels[level_of(levels, solid_angle)], direction);
+}
+
+bool Reflections::has_detail(const glm::vec3& direction, float solid_angle) const {
+    // Some coarser, since a ray's part of the lobe is long; none is less than a texel.
+    const std::size_t level = level_of(levels_, 8.0f * solid_angle);
+    return level > 0 && !evenness_[level - 1].at(direction);
 }
 
 template<typename Add>
 void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surfaces& surfaces,
                        const Behind& behind, const Add& add) const {
     const FanFrame frame(fan);
-    const float num_rays = static_cast<float>(fan.num_rays) * behind.num_fans;
+    const float of_lobe = SeenShare / (static_cast<float>(fan.num_rays) * behind.num_fans);
+    // Several rays that are not blurred beyond their parts. The outermost parts have the lobe's
+    // whole tail.
+    const bool has_parts = fan.num_rays > 1 && std::has_single_bit(fan.num_rays) &&
+                           behind.least_solid_angle == 0.0f && !levels_.empty();
+    const std::uint32_t outermost = fan.num_rays - fan.num_rays / hammersley_columns(fan.num_rays);
     for (std::uint32_t first = 0; first < fan.num_rays; first += prt::PacketSize) {
         const FanRays rays = fan_rays(fan, frame, first);
         if (rays.above == 0)
@@ -172,15 +233,24 @@ void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surface
             const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
             const glm::vec3 w = rays.directions.direction(lane);
             const float dense = rays.densities[lane];
-            const float seen = std::max(SeenShare / (num_rays * dense), behind.least_solid_angle);
-            if ((met >> lane & 1u) == 0)
+            const float seen = std::max(of_lobe / dense, behind.least_solid_angle);
+            const std::uint32_t ray = first + static_cast<std::uint32_t>(lane);
+            if ((met >> lane & 1u) == 0 && has_parts && (ray >= outermost || has_detail(w, seen))) {
+                const FanRays looks = fan_part(fan, frame, ray);
+                for (std::uint32_t left = looks.above; left != 0; left &= left - 1) {
+                    const auto look = static_cast<std::size_t>(std::countr_zero(left));
+                    const glm::vec3 way = looks.directions.direction(look);
+                    const float of_all = prt::PacketSize * looks.densities[look];
+                    add(way, of_all, mean(behind.levels, way, of_lobe / of_all));
+                }
+            } else if ((met >> lane & 1u) == 0)
                 add(w, dense, mean(behind.levels, w, seen));
             else
                 add(w, dense,
                     surfaces({.hit = hits[lane],
                               .direction = w,
                               .solid_angle = seen,
-                              .ray = first + static_cast<std::uint32_t>(lane),
+                              .ray = ray,
                               .num_rays = fan.num_rays,
                               .fan_shift = fan.shift}));
         }

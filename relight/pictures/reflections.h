@@ -22,6 +22,7 @@
 
 namespace relumine::relight {
 
+struct FanFrame;
 struct LobeRays;
 struct RayFan;
 
@@ -118,18 +119,32 @@ public:
 private:
     /// The environment at R, R / 2, .. texels along an edge.
     using Levels = std::vector<cubemap::CubeMap>;
+    /// Whether the light of a texel of a level and of those around it is even: one look tells its
+    /// mean.
+    struct Evenness {
+        std::uint32_t resolution = 0;
+        std::vector<std::uint8_t> is_even; // [6 x resolution x resolution]
+        /// `finer` has the same map three levels finer, or the finest there is.
+        Evenness(const cubemap::CubeMap& level, const cubemap::CubeMap& finer);
+        [[nodiscard]] bool at(const glm::vec3& direction) const;
+    };
     /// What rays see that leave, how wide they are at least, and how many fans share a lobe.
     struct Behind {
         const Levels& levels;
         float least_solid_angle = 0.0f;
         float num_fans = 1.0f;
     };
+    [[nodiscard]] static std::size_t level_of(const Levels& levels, float solid_angle);
     [[nodiscard]] static glm::vec3 mean(const Levels& levels, const glm::vec3& direction,
                                         float solid_angle);
     [[nodiscard]] MirroredLight sum(const prt::Surface& surface, const MirrorPoint& point,
                                     const LobeRays& rays, const Surfaces& surfaces,
                                     const Behind& behind) const;
-    /// Calls add(direction, density of rays there, radiance) for each ray of a fan.
+    /// Whether one look cannot tell the mean about a direction.
+    [[nodiscard]] bool has_detail(const glm::vec3& direction, float solid_angle) const;
+    /// Calls add(direction, density of rays there, radiance) for each ray of a fan. Where one that
+    /// leaves would see detail, it does so for 16 looks into its part of the lobe: one of the whole
+    /// part's size has the shape of no part, and its error is grain.
     template<typename Add>
     void send(const glm::vec3& origin, const RayFan& fan, const Surfaces& surfaces,
               const Behind& behind, const Add& add) const;
@@ -140,6 +155,8 @@ private:
     float least_roughness_ = 0.0f;
     /// Without the lights
     Levels levels_;
+    /// Of levels 1 and on
+    std::vector<Evenness> evenness_;
     /// With the lights, from a resolution on that is enough for what is mirrored twice. Empty:
     /// there are no lights.
     Levels whole_;

@@ -14,8 +14,9 @@ glm::vec2 hammersley(std::uint32_t i, std::uint32_t n, const glm::vec2& shift) {
     float inverse = 0.0f;
     for (float digit = 0.5f; bits != 0; bits >>= 1, digit *= 0.5f)
         inverse += (bits & 1u) != 0 ? digit : 0.0f;
-    return glm::fract(glm::vec2((static_cast<float>(i) + 0.5f) / static_cast<float>(n), inverse) +
-                      shift);
+    const auto columns = static_cast<float>(hammersley_columns(n));
+    const float x = (static_cast<float>(i) + 0.5f) / static_cast<float>(n) * columns;
+    return {(std::floor(x) + glm::fract(x + shift.x)) / columns, glm::fract(inverse + shift.y)};
 }
 
 glm::vec3 visible_half(const glm::vec3& to_eye, float alpha, const glm::vec2& u) {

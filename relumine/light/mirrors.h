@@ -14,7 +14,7 @@
 namespace relumine {
 
 /// Rays of a pixel that find what its highlight mirrors.
-inline constexpr std::uint32_t DefaultHighlightRays = 32;
+inline constexpr std::uint32_t DefaultHighlightRays = 16;
 
 /// What highlights of receivers mirror: the environment without its sharp lights, whose highlights
 /// are exact, and other surfaces where vertices know their light.

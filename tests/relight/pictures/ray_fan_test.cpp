@@ -1,11 +1,15 @@
 #include "relight/pictures/ray_fan.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
 
 #include "cubemap/frame.h"
@@ -83,6 +87,50 @@ TEST(RayFan, IsThePlainOneOnEveryTarget) {
                          .shift = {0.3f, 0.9f}});
         EXPECT_GT(num_below, 100u) << "of a few thousand";
     });
+}
+
+/// Where a ray that is as dense everywhere lies in the square, less the shift of its height.
+glm::vec2 place_of(const glm::vec3& direction, const RayFan& fan) {
+    const glm::vec3 local = direction * cubemap::frame_of(fan.normal);
+    const float turn = std::atan2(local.y, local.x) / (2.0f * std::numbers::pi_v<float>);
+    return {local.z, glm::fract(turn - fan.shift.y)};
+}
+
+/// The looks of all rays are a grid over the lobe, and each ray is where its looks are.
+TEST(RayFan, PartsAreTheWholeLobe) {
+    for (const std::uint32_t num_rays : {2u, 16u, 32u, 128u}) {
+        const RayFan fan{.normal = {0.0f, 0.0f, 1.0f},
+                         .to_eye = {0.0f, 0.0f, 1.0f},
+                         .alpha = 0.0f,
+                         .num_rays = num_rays,
+                         .shift = {0.3f, 0.85f}};
+        const FanFrame frame(fan);
+        const std::uint32_t columns = 4 * hammersley_columns(num_rays);
+        const std::uint32_t rows = 16 * num_rays / columns;
+        const glm::vec2 size(columns, rows);
+        std::vector<int> seen(std::size_t{columns} * rows, 0);
+        for (std::uint32_t ray = 0; ray < num_rays; ++ray) {
+            const FanRays looks = fan_part(fan, frame, ray);
+            ASSERT_EQ(looks.above, 0xffffu);
+            glm::vec2 least(1.0f), most(0.0f);
+            for (std::size_t lane = 0; lane < prt::PacketSize; ++lane) {
+                const glm::vec2 place = place_of(looks.directions.direction(lane), fan);
+                least = glm::min(least, place);
+                most = glm::max(most, place);
+                const auto column = static_cast<std::uint32_t>(place.x * size.x);
+                const auto row = static_cast<std::uint32_t>(place.y * size.y);
+                ++seen[std::size_t{row} * columns + column];
+            }
+            const FanRays own = fan_rays(fan, frame, ray & ~15u);
+            const glm::vec2 place = place_of(own.directions.direction(ray & 15u), fan);
+            const glm::vec2 step = 0.51f / size;
+            EXPECT_TRUE(glm::all(glm::greaterThan(place, least - step)) &&
+                        glm::all(glm::lessThan(place, most + step)))
+                << num_rays << " " << ray;
+        }
+        EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; }))
+            << num_rays;
+    }
 }
 
 } // namespace

@@ -142,6 +142,33 @@ TEST(Reflections, AWhiteSkyHasNoNoise) {
         }
 }
 
+/// Neighbouring pixels, whose rays are shifted, find the same of a window in a dark room.
+TEST(Reflections, AWindowHasNoGrain) {
+    cubemap::CubeMap room(R);
+    for (cubemap::Face face : cubemap::AllFaces)
+        for (std::uint32_t y = 0; y < R; ++y)
+            for (std::uint32_t x = 0; x < R; ++x) {
+                const glm::dvec3 w = cubemap::texel_direction(face, x, y, R);
+                const bool is_window = w.z > 0.7 && std::abs(w.x + 0.2) < 0.15 && w.y > -0.1;
+                room.at(face, x, y) = glm::vec3(is_window ? 10.0f : 0.1f);
+            }
+    const Reflections reflections(nothing(), 1e-4f, 32, room, {});
+    for (const float roughness : {0.3f, 0.4f, 0.6f}) {
+        double sum = 0.0, square = 0.0;
+        constexpr std::uint32_t NumPixels = 200;
+        for (std::uint32_t i = 0; i < NumPixels; ++i) {
+            MirrorPoint point = seen_at(0.95f);
+            point.shift = ray_shift(i);
+            const double found = mirrored(reflections, metal(roughness), point).specular.g;
+            sum += found / NumPixels;
+            square += found * found / NumPixels;
+        }
+        EXPECT_LT(std::sqrt(std::max(square - sum * sum, 0.0)), 0.03 * sum) << roughness;
+        const double expected = integrated(metal(roughness), seen_at(0.95f), room).specular.g;
+        EXPECT_NEAR(sum, expected, 0.05 * expected) << roughness;
+    }
+}
+
 TEST(Reflections, AMirrorShowsWhatItLooksAt) {
     // A wall of radiance 3 stands where the mirror looks, and hides the sky.
     const prt::RayScene wall(scenes::box({-2.0f, -1.0f, 0.5f}, {-1.0f, 1.0f, 2.0f}));
