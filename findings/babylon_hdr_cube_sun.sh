@@ -2,7 +2,7 @@
 # Babylon.js HDRCubeTexture: whether a panorama's sun is on the cube is luck.
 #
 # Expected: the faces have the light of the .hdr, at least with supersample: a texel's mean is that of the pixels it covers.
-# Found:    a sun of one pixel of 1,024 x 512, moved by twelve pixels one after another, has 0 or 14.6 times its light on
+# Found:    a sun of one pixel of 1,024 x 512, moved by twelve pixels one after another, has 0 or 15 times its light on
 #           faces of 64, as each texel takes the one pixel that its corner meets. With `supersample` the twelve have between
 #           0 and 1.8 times: the looks are points, too, as many as there are pixels. The irradiance comes from these faces.
 # Tried:    @babylonjs/core 9.35.0 of npm, Node 20.

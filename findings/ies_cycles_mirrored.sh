@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Cycles shows the lamp of an IES file as the mirror image of what Radiance shows, and starts it at another side.
 #
-# Expected: horizontal angles go one way round, from one side: in LM-63 counter-clockwise, seen from above. Candela become
-#           W/sr by one number, in one program.
+# Expected: horizontal angles of a file go the same way round everywhere, so that a turn of the lamp makes two programs agree.
+#           Candela become W/sr by one number, in one program at least.
 # Found:    Radiance has C0 at +X and C90 at +Y. In Cycles C0 is at -Y and C90 at -X: clockwise, so that no turn of the lamp
 #           makes an asymmetric profile right. 100 candela are 100 / 177.83 W/sr for a point of 1 W there, and 100 / 179
 #           in Radiance; Blender's glTF exporter has 683.

@@ -4,7 +4,7 @@
 # Expected: `primvars:displayColor` with a colour for each vertex, corner or face, which is how baked light and scans are kept
 #           in USD, becomes colours of the geometry.
 # Found:    the first number of the list is the material's colour, the others are dropped, and nothing is said. The geometry
-#           has no attribute "color". PLYLoader and GLTFLoader show the same mesh in all its colours.
+#           has no attribute "color".
 # Tried:    three 0.187.0 of npm, Node 20.
 set -euo pipefail
 work=$(mktemp -d)

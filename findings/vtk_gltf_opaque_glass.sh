@@ -3,7 +3,7 @@
 #
 # Expected: an actor of opacity 0.4 becomes a material that lets 60 % through: alphaMode BLEND and an alpha of 0.4.
 # Found:    the alpha is written, alphaMode is not, and glTF's default is OPAQUE, for which alpha does not count. Hulls and
-#           glass of a scene hide what they showed. PyVista's export_gltf() is the same. Emission is left out as well.
+#           glass of a scene hide what they showed. PyVista's export_gltf() calls it. Emission is left out as well.
 # Tried:    vtk 9.7.2 of PyPI, Python 3.11.
 set -euo pipefail
 work=$(mktemp -d)

@@ -3,7 +3,7 @@
 #
 # Expected: charts are cut out, turned and moved, so that each triangle runs round the same way in the atlas as on the mesh.
 # Found:    whole charts run the other way: 10 of a box's 12 triangles. Lightmaps do not mind. Drawings and letters come out
-#           mirrored, and normal maps need a tangent whose sign is -1 there, which exporters that write one sign lose.
+#           mirrored, and normal maps need a tangent whose sign is -1 there.
 # Tried:    xatlas 0.0.11 and trimesh 5.2.0 of PyPI, Python 3.11.
 set -euo pipefail
 work=$(mktemp -d)
