@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -145,6 +147,28 @@ void normalize_normals(TriangleMesh& mesh) {
     }
 }
 
+/// Leaves out each set of texture coordinates that are not all numbers, with a warning.
+void check_uvs(TriangleMesh& mesh) {
+    const auto is_number = [](const glm::vec2& uv) {
+        return is_finite({uv, 0.0f});
+    };
+    const auto check_set = [&](auto& uvs, std::string_view owners, const auto& is_whole) {
+        const auto num_broken = static_cast<std::ptrdiff_t>(uvs.size()) -
+                                std::count_if(uvs.begin(), uvs.end(), is_whole);
+        if (num_broken == 0)
+            return;
+        mesh.warnings.push_back(fmt::format(
+            "{} of {} {} have texture coordinates that are no numbers: the set is left out",
+            num_broken, uvs.size(), owners));
+        uvs.clear();
+    };
+    check_set(mesh.uvs, "vertices", is_number);
+    check_set(mesh.second_uvs, "vertices", is_number);
+    check_set(mesh.corner_uvs, "triangles", [&](const auto& corners) {
+        return std::all_of(corners.begin(), corners.end(), is_number);
+    });
+}
+
 } // namespace
 
 void PolygonSoup::add_position(const glm::dvec3& position) {
@@ -244,16 +268,7 @@ TriangleMesh to_mesh(PolygonSoup soup, NormalSource source, std::optional<ColorC
         mesh.normals = smooth_normals(mesh);
     else
         normalize_normals(mesh);
-    const auto is_finite_uv = [](const glm::vec2& uv) {
-        return is_finite({uv, 0.0f});
-    };
-    for (std::vector<glm::vec2>* uvs : {&mesh.uvs, &mesh.second_uvs})
-        if (!std::all_of(uvs->begin(), uvs->end(), is_finite_uv))
-            uvs->clear();
-    if (!std::all_of(mesh.corner_uvs.begin(), mesh.corner_uvs.end(), [&](const auto& uvs) {
-            return std::all_of(uvs.begin(), uvs.end(), is_finite_uv);
-        }))
-        mesh.corner_uvs.clear();
+    check_uvs(mesh);
     set_tangents(mesh, soup.tangents);
     return mesh;
 }

@@ -93,8 +93,25 @@ TEST_F(MtlTest, UvsPerCorner) {
                 << t << ' ' << i;
     EXPECT_EQ(mesh.corner_uvs[2][0], glm::vec2(9, 9));
     EXPECT_EQ(mesh.corner_uvs[3][0], glm::vec2(0, 0));
-    EXPECT_TRUE(obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt nan 0\nf 1/1 2/2 3/1\nf 1/2 2/1 3/1\n")
-                    .corner_uvs.empty());
+}
+
+TEST_F(MtlTest, UvsThatAreNoNumbersAreLeftOutWithAWarning) {
+    const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    const TriangleMesh apart =
+        obj(corners + "vt 0 0\nvt nan 0\nf 1/1 2/2 3/1\nf 1/2 2/1 3/1\nf 1/1 2/1 3/1\n");
+    EXPECT_TRUE(apart.corner_uvs.empty());
+    EXPECT_THAT(
+        apart.warnings,
+        testing::Contains(
+            "2 of 3 triangles have texture coordinates that are no numbers: the set is left out"));
+    const TriangleMesh shared = obj(corners + "vt 0 0\nvt 1 0\nvt 0 inf\nf 1/1 2/2 3/3\n");
+    EXPECT_TRUE(shared.uvs.empty());
+    EXPECT_THAT(
+        shared.warnings,
+        testing::Contains(
+            "1 of 3 vertices have texture coordinates that are no numbers: the set is left out"));
+    EXPECT_THAT(obj(corners + "vt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n").warnings,
+                testing::IsEmpty());
 }
 
 TEST_F(MtlTest, TexturesWithTheirOptions) {
