@@ -24,7 +24,8 @@ void turn_up(TriangleMesh& mesh, UpAxis axis) {
     mesh.offset = turned(mesh.offset, axis);
     for (PunctualLight& light : mesh.lights) {
         light.position = turned(light.position, axis);
-        light.direction = turned(light.direction, axis);
+        for (glm::vec3* v : {&light.direction, &light.right, &light.up})
+            *v = turned(*v, axis);
     }
 }
 

@@ -90,7 +90,9 @@ glm::vec3 dimmer(const LightDesk& desk, const std::string& name) {
 
 void set_dimmer(LightDesk& desk, const std::string& name, const glm::vec3& gain) {
     std::vector<EmissionGain> gains = desk.lit().lamps().gains();
-    std::erase_if(gains, [&](const EmissionGain& one) { return one.name == name; });
+    std::erase_if(gains, [&](const EmissionGain& one) {
+        return one.name == name && one.profile_file.empty();
+    });
     gains.push_back({.name = name, .gain = gain});
     desk.dim(std::move(gains));
 }

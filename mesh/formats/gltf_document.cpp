@@ -167,8 +167,7 @@ std::string_view lost_without(std::string_view extension) {
     };
     constexpr std::string_view Images = "its images are left out; without another image, a surface "
                                         "has its factors alone";
-    constexpr std::array<Loss, 8> Losses = {{
-        {"EXT_lights_ies", "lamps with a measured profile are left out"},
+    constexpr std::array<Loss, 7> Losses = {{
         {"EXT_lights_image_based",
          "the file brings its own environment, which does not light the scene"},
         {"EXT_texture_avif", Images},
@@ -324,11 +323,11 @@ void Document::split_glb(std::span<const std::byte> file) {
 }
 
 void Document::check_extensions() {
-    constexpr std::array<std::string_view, 11> Understood = {
-        "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",    "EXT_texture_webp",
-        "KHR_animation_pointer",   "KHR_draco_mesh_compression", "KHR_lights_punctual",
-        "KHR_materials_variants",  "KHR_mesh_quantization",      "KHR_meshopt_compression",
-        "KHR_node_visibility",     "KHR_texture_transform"};
+    constexpr std::array<std::string_view, 12> Understood = {
+        "EXT_lights_ies",          "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",
+        "EXT_texture_webp",        "KHR_animation_pointer",   "KHR_draco_mesh_compression",
+        "KHR_lights_punctual",     "KHR_materials_variants",  "KHR_mesh_quantization",
+        "KHR_meshopt_compression", "KHR_node_visibility",     "KHR_texture_transform"};
     const auto names = [this](const char* key) {
         std::set<std::string> result;
         for (const Json& name : items(root_, key)) {

@@ -1,6 +1,8 @@
-// KHR_lights_punctual.
+// KHR_lights_punctual and EXT_lights_ies.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +23,29 @@ namespace relumine::mesh::gltf {
 [[nodiscard]] std::optional<PunctualLight> light_at(const Document& document, const Json& node,
                                                     const glm::dmat4& world,
                                                     std::vector<std::string>& warnings);
+
+/// Reads the lights with profiles of a document, and each profile once.
+class ProfiledLights {
+public:
+    /// The document and the lists of lines must outlive this object.
+    ProfiledLights(Document& document, std::vector<std::string>& warnings,
+                   std::vector<std::string>& notes)
+        : document_(document), warnings_(warnings), notes_(notes) {}
+
+    /// Returns the light of EXT_lights_ies at a node, as light_at() does. A note says how bright a
+    /// profile is.
+    ///
+    /// Throws:  as light_at(), and for a profile that is not there or cannot be read.
+    [[nodiscard]] std::optional<PunctualLight> at(const Json& node, const glm::dmat4& world);
+
+private:
+    [[nodiscard]] const LightProfile& profile(std::uint64_t index, const Json& description);
+
+    Document& document_;
+    std::vector<std::string>& warnings_;
+    std::vector<std::string>& notes_;
+    std::map<std::uint64_t, LightProfile> profiles_;
+};
 
 /// A line on how light_at() understands the unit of the file's lights, if not as the numbers are.
 [[nodiscard]] std::optional<std::string> unit_of_lights(const Document& document);

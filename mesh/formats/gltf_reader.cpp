@@ -103,6 +103,7 @@ private:
     std::vector<std::optional<std::vector<Primitive>>> meshes_;
     std::map<std::string, std::uint32_t> group_indices_;
     PolygonSoup soup_;
+    gltf::ProfiledLights profiled_lights_{document_, soup_.warnings, soup_.notes};
     bool has_colors_ = false, has_uvs_ = false;
     std::size_t num_odd_weights_ = 0, num_without_joints_ = 0;
 };
@@ -396,14 +397,18 @@ void GltfReader::add_camera(const Json& camera, const glm::dmat4& world) {
 
 /// One light never stops an asset.
 void GltfReader::add_light(const Json& node, const glm::dmat4& world) {
-    try {
-        if (auto light = gltf::light_at(document_, node, world, soup_.warnings)) {
-            soup_.lights.push_back(std::move(*light));
-            soup_.light_positions.emplace_back(world[3]);
+    const auto add = [&](const auto& read) {
+        try {
+            if (auto light = read()) {
+                soup_.lights.push_back(std::move(*light));
+                soup_.light_positions.emplace_back(world[3]);
+            }
+        } catch (const std::runtime_error& reason) {
+            soup_.warnings.push_back(fmt::format("a light is left out: {}", reason.what()));
         }
-    } catch (const std::runtime_error& reason) {
-        soup_.warnings.push_back(fmt::format("a light is left out: {}", reason.what()));
-    }
+    };
+    add([&] { return gltf::light_at(document_, node, world, soup_.warnings); });
+    add([&] { return profiled_lights_.at(node, world); });
 }
 
 PolygonSoup GltfReader::read() {

@@ -1,8 +1,13 @@
 #include "brdf.h"
 
+#include <span>
+#include <string_view>
+
+#include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
 #include "arrays.h"
+#include "relumine/in/emission.h"
 #include "run.h"
 
 namespace relumine::python {
@@ -43,6 +48,20 @@ BrdfPointer from_values(const py::buffer& array) {
     return std::make_shared<Brdf>(Brdf{std::make_shared<const mesh::BrdfTable>(std::move(values))});
 }
 
+/// Vertical and horizontal angles, candela [horizontal, vertical], the flux, and what is left out.
+py::tuple profile(const py::bytes& file) {
+    const std::string_view text = file;
+    const mesh::ReadLightProfile read =
+        mesh::read_light_profile(std::as_bytes(std::span(text.data(), text.size())));
+    const mesh::LightProfileTable& table = read.profile.table();
+    const auto num_vertical = static_cast<py::ssize_t>(table.vertical.size());
+    const auto num_horizontal = static_cast<py::ssize_t>(table.horizontal.size());
+    return py::make_tuple(owned(std::vector(table.vertical), {num_vertical}),
+                          owned(std::vector(table.horizontal), {num_horizontal}),
+                          owned(std::vector(table.candela), {num_horizontal, num_vertical}),
+                          read.profile.flux(), read.left_out);
+}
+
 } // namespace
 
 void bind_brdfs(py::module_& module) {
@@ -51,6 +70,7 @@ void bind_brdfs(py::module_& module) {
     module.def("brdf_questions", &questions);
     module.def("brdf_of", &from_answers);
     module.def("brdf_table", &from_values);
+    module.def("light_profile", &profile);
 }
 
 } // namespace relumine::python

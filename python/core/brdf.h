@@ -1,4 +1,4 @@
-// Measured BRDFs.
+// Measured BRDFs, and profiles of lamps.
 #pragma once
 
 #include <memory>

@@ -727,8 +727,8 @@ class Relighter:
         camera      (azimuth, elevation[, distance[, fov]]) in degrees; or eye and target (x, y, z)
         floor       "photo" (the environment's ground with shadows), "studio", "grey"; by default
                     what suits the environment
-        emission    factors on the scene's own lamps: a number, (r, g, b), "NAME=GAIN[,R,G,B]" or
-                    a list of these. `radiance` keeps the factors of the last picture
+        emission    factors on the scene's own lamps: a number, (r, g, b), "NAME=GAIN[,R,G,B]",
+                    "NAME=PROFILE.ies" or a list of these. `radiance` keeps the factors of the last picture
         background  "sharp" (the environment), "none" (alpha), a number or (r, g, b)
         blur        the environment out of focus, by so many degrees
         """

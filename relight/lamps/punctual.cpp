@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <glm/vec2.hpp>
 
 namespace relumine::relight {
 
@@ -26,6 +28,12 @@ Arriving arriving(const mesh::PunctualLight& light, const glm::dvec3& place) {
         const double inside =
             std::clamp((-glm::dot(result.direction, forward) - outer) * scale, 0.0, 1.0);
         part *= inside * inside;
+    } else if (light.kind == mesh::PunctualLight::Kind::Profile) {
+        const double along = -glm::dot(result.direction, forward);
+        const glm::dvec2 across(-glm::dot(result.direction, glm::dvec3(light.right)),
+                                -glm::dot(result.direction, glm::dvec3(light.up)));
+        part *= light.profile.at(glm::degrees(std::atan2(glm::length(across), along)),
+                                 glm::degrees(std::atan2(across.y, across.x)));
     }
     result.irradiance = intensity * part / (distance * distance);
     return result;

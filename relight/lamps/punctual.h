@@ -1,4 +1,5 @@
-// Lights without a surface: points, spots and directional ones, as KHR_lights_punctual has them.
+// Lights without a surface: points, spots and directional ones, as KHR_lights_punctual has them,
+// and those with a profile.
 #pragma once
 
 #include <limits>

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "files/extension.h"
 #include "files/joined.h"
 #include "prt/lamps/lamps.h"
 #include "relumine/options/option_table.h"
@@ -42,6 +44,13 @@ std::vector<glm::vec3> group_gains(const Scene& scene, std::span<const EmissionG
     return result;
 }
 
+/// Whether a light that has a place and no surface has this name.
+bool takes_profile(const prt::Lamps& lamps, const std::string& name) {
+    return std::any_of(lamps.lights.begin(), lamps.lights.end(), [&](const auto& light) {
+        return light.name == name && light.kind != mesh::PunctualLight::Kind::Directional;
+    });
+}
+
 const glm::vec3& at(const std::vector<glm::vec3>& gains, std::uint32_t group) {
     return group == prt::NoGroup ? gains.back() : gains[group];
 }
@@ -54,9 +63,13 @@ EmissionGain EmissionText::read(const std::string& text) {
         return {.gain = ColorText::read(text)};
     EmissionGain result{.name = text.substr(0, equals)};
     const std::string value = text.substr(equals + 1);
+    if (!result.name.empty() && files::extension_of(value) == ".ies") {
+        result.profile_file = value;
+        return result;
+    }
     const auto numbers = parse_numbers(value);
     if (result.name.empty() || !numbers || (numbers->size() != 1 && numbers->size() != 4))
-        refuse_text("a number, R,G,B or NAME=GAIN[,R,G,B]", text);
+        refuse_text("a number, R,G,B, NAME=GAIN[,R,G,B] or NAME=PROFILE.ies", text);
     const std::size_t comma = value.find(',');
     result.gain = ColorText::read(value.substr(0, comma));
     if (comma != std::string::npos)
@@ -65,6 +78,8 @@ EmissionGain EmissionText::read(const std::string& text) {
 }
 
 std::string EmissionText::show(const EmissionGain& gain) {
+    if (!gain.profile_file.empty())
+        return gain.name + "=" + gain.profile_file;
     std::string color = ColorText::show(gain.gain);
     if (gain.name.empty())
         return color;
@@ -79,11 +94,30 @@ glm::vec3 gain_of(std::span<const EmissionGain> gains, const std::string& name) 
     return result;
 }
 
+mesh::LightProfile profile_of(std::span<const EmissionGain> gains, const std::string& name) {
+    mesh::LightProfile result;
+    for (const EmissionGain& gain : gains)
+        if (gain.name == name && !gain.profile_file.empty())
+            result = gain.profile;
+    return result;
+}
+
+void load_profiles(std::vector<EmissionGain>& gains) {
+    for (EmissionGain& gain : gains)
+        if (!gain.profile_file.empty() && gain.profile.empty())
+            gain.profile = mesh::load_light_profile(gain.profile_file).profile;
+}
+
 void require_lamps(const Scene& scene, std::span<const EmissionGain> gains) {
     const std::vector<std::string> names = scene.lamps.names();
     for (const EmissionGain& gain : gains) {
-        if (gain.name.empty() || std::find(names.begin(), names.end(), gain.name) != names.end())
+        if (gain.name.empty() || std::find(names.begin(), names.end(), gain.name) != names.end()) {
+            if (!gain.profile_file.empty() && !takes_profile(scene.lamps, gain.name))
+                throw std::invalid_argument(
+                    fmt::format("expected a point or a spot without a surface for {}, got '{}'",
+                                gain.profile_file, gain.name));
             continue;
+        }
         constexpr std::size_t MostNames = 8;
         const auto shown = std::span(names).first(std::min(names.size(), MostNames));
         throw std::invalid_argument(
@@ -95,11 +129,24 @@ void require_lamps(const Scene& scene, std::span<const EmissionGain> gains) {
     }
 }
 
+void shape(mesh::PunctualLight& light, std::span<const EmissionGain> gains) {
+    mesh::LightProfile profile = profile_of(gains, light.name);
+    if (profile.empty() || light.kind == mesh::PunctualLight::Kind::Directional)
+        return;
+    light.kind = mesh::PunctualLight::Kind::Profile;
+    light.profile = std::move(profile);
+    const float strength = std::max({light.intensity.r, light.intensity.g, light.intensity.b});
+    if (strength > 0.0f)
+        light.intensity /= strength;
+}
+
 prt::Lamps dimmed(prt::Lamps lamps, std::span<const EmissionGain> gains) {
     for (prt::Emitter& emitter : lamps.emitters)
         emitter.radiance *= gain_of(gains, lamps.groups[emitter.group]);
-    for (mesh::PunctualLight& light : lamps.lights)
+    for (mesh::PunctualLight& light : lamps.lights) {
+        shape(light, gains);
         light.intensity *= gain_of(gains, light.name);
+    }
     return lamps;
 }
 

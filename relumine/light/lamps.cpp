@@ -15,7 +15,8 @@ SceneLamps::SceneLamps(const Scene& scene, const SceneRays& rays) : scene_(&scen
 
 void SceneLamps::set(std::vector<EmissionGain> gains) {
     require_lamps(*scene_, gains);
-    gains_ = std::move(gains);
+    load_profiles(gains);
+    const std::vector<EmissionGain> before = std::exchange(gains_, std::move(gains));
     if (sources_.empty())
         return;
     std::vector<std::string> names = {""};
@@ -34,7 +35,8 @@ void SceneLamps::set(std::vector<EmissionGain> gains) {
     std::vector<Source> sources;
     for (const std::string& name : names)
         if (const auto found = source_of(name);
-            found != sources_.end() && (!name.empty() || has_same_names))
+            found != sources_.end() && (!name.empty() || has_same_names) &&
+            profile_of(gains_, name) == profile_of(before, name))
             sources.push_back(std::move(*found));
         else
             sources.push_back({.name = name});
@@ -56,7 +58,7 @@ std::vector<glm::vec3> SceneLamps::light_of(const Source& source) const {
             emitters.push_back(emitter);
     for (const mesh::PunctualLight& light : scene_->lamps.lights)
         if (is_of_source(light.name))
-            lights.push_back(light);
+            shape(lights.emplace_back(light), gains_);
     return relight::lamp_light(scene_->mesh, emitters, lights,
                                {.positions = scene_->receivers.positions,
                                 .normals = scene_->receivers.normals,

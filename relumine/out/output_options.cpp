@@ -223,7 +223,8 @@ OptionTable options_of(OutputOptions& o) {
         row<EmissionText>("--emission", o.emission,
                           "factor on the light that lamps, screens and unlit surfaces give of "
                           "their own: a number or R,G,B; NAME=GAIN[,R,G,B] for one group that "
-                          "glows or one light of the mesh's file",
+                          "glows or one light of the mesh's file; NAME=PROFILE.ies gives a light "
+                          "the shape of a measured lamp",
                           {.example = "0.5"}),
         row<ExposureText>("--exposure", o.exposure_ev,
                           "stops that brighten pictures and colours, or auto: what suits what is "

@@ -22,6 +22,7 @@
     X(gain_map)                                                                                    \
     X(gltf)                                                                                        \
     X(hdr)                                                                                         \
+    X(ies)                                                                                         \
     X(ktx)                                                                                         \
     X(layers)                                                                                      \
     X(lights)                                                                                      \

@@ -21,7 +21,7 @@ export UBSAN_OPTIONS="print_stacktrace=1:${UBSAN_OPTIONS:-}"
 # fuzz TARGET SECONDS: one run of libFuzzer.
 fuzz() {
     local target=$1 max_len=16384
-    case $target in obj | mtl | off | stl | layers | lights | command_line) max_len=4096 ;; esac
+    case $target in ies | obj | mtl | off | stl | layers | lights | command_line) max_len=4096 ;; esac
     "tests/fuzz/fuzz_$target" "$PWD/corpus/$target" "$here/corpus/$target" "$TMPDIR/seeds" -max_total_time="$2" -timeout=10 \
         -rss_limit_mb=1024 -max_len="$max_len" -dict="$here/dictionaries/$target.dict" \
         -artifact_prefix="$PWD/found/$target-" -print_final_stats=1 >>"log/$target" 2>&1

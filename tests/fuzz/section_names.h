@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 97> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 98> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -103,6 +103,7 @@ inline constexpr std::array<std::string_view, 97> SectionNames = {"settings",
                                                                   "packed_counts",
                                                                   "packed_positions",
                                                                   "packed_normals",
-                                                                  "packed_triangles"};
+                                                                  "packed_triangles",
+                                                                  "light_profiles"};
 
 } // namespace relumine::fuzz

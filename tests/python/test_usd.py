@@ -148,6 +148,80 @@ def test_a_cylinder_light_shines_from_its_side_alone():
     assert radiance_of_card(text, (4, 0, 0), (-1, 0, 0)) == pytest.approx([0] * 3, abs=1e-6)
 
 
+def ies_file(folder, candela, vertical=range(0, 181, 5), horizontal=(0,), head="1 -1 1"):
+    """A file of LM-63 in a folder, and what it has at (vertical, horizontal)."""
+    rows = ["IESNA:LM-63-2002", "TILT=NONE"]
+    rows.append(f"{head} {len(vertical)} {len(horizontal)} 1 2 0 0 0\n1 1 1")
+    rows += [" ".join(map(str, vertical)), " ".join(map(str, horizontal))]
+    rows += [" ".join(f"{candela(v, h):.9g}" for v in vertical) for h in horizontal]
+    (folder / "lamp.ies").write_text("\n".join(rows) + "\n")
+    return ("asset", f"@{folder / 'lamp.ies'}@")
+
+
+IES, SCALE = "shaping:ies:file", "shaping:ies:angleScale"
+IES_NORMALIZE = "shaping:ies:normalize"
+
+
+@pytest.mark.parametrize("up, meters", [("Y", 1.0), ("Z", 0.01)])
+def test_profiles_shape_lights(tmp_path, up, meters):
+    def seen(kind, direction, **inputs):
+        """Radiance of a card around the light, times pi: intensity."""
+        d = np.array(direction, float) / np.linalg.norm(direction)
+        text = light(kind, **inputs)
+        return math.pi * 9.0 * radiance_of_card(text, tuple(3.0 * d), tuple(-d), up, meters).mean()
+
+    def at(v, h=0.0):
+        v, h = math.radians(v), math.radians(h)
+        return (math.sin(v) * math.cos(h), math.sin(v) * math.sin(h), -math.cos(v))
+
+    def slope(v, h):
+        return 100.0 - 0.5 * v + (0.1 * h if v else 0.0)
+
+    file = ies_file(tmp_path, slope, horizontal=(0, 90))
+    sphere = {"radius": number(0.5), IES: file}
+    own = 10 * math.pi * 0.25
+    for v, h in ((0, 0), (40, 0), (40, 90), (130, 45), (60, 210)):
+        expected = own * slope(v, {210: 30}.get(h, h))
+        assert seen("SphereLight", at(v, h), **sphere) == pytest.approx(expected, rel=0.003)
+    found = seen("SphereLight", at(40), **{**sphere, SCALE: number(2)})
+    assert found == pytest.approx(own * slope(20, 0), rel=0.003)
+    found = seen("SphereLight", at(140), **{**sphere, SCALE: number(-0.5)})
+    assert found == pytest.approx(own * slope(100, 0), rel=0.003)
+    # Half a degree beyond what is left of the angles there is nothing.
+    assert seen("SphereLight", at(89.0), **{**sphere, SCALE: number(-0.5)}) == 0.0
+    found = seen("SphereLight", at(40), normalize=ON, **sphere)
+    assert found == pytest.approx(10 / 4 * slope(40, 0), rel=0.003)
+    cone = {"shaping:cone:angle": number(60), "shaping:cone:softness": number(0.5)}
+    found = seen("SphereLight", at(45), **{**sphere, **cone})
+    assert found == pytest.approx(own * slope(45, 0) * 0.5, rel=0.005)
+    flat = {IES: ies_file(tmp_path, lambda v, h: 7.0), IES_NORMALIZE: ON}
+    for v in (0, 50, 85):
+        found = seen("RectLight", at(v), width=number(1), height=number(0.5), **flat)
+        assert found == pytest.approx(10 * 0.5 * math.cos(math.radians(v)), rel=0.003)
+        found = seen("DiskLight", at(v), radius=number(0.5), **flat)
+        assert found == pytest.approx(10 * math.pi / 4 * math.cos(math.radians(v)), rel=0.003)
+    assert seen("RectLight", at(95), width=number(1), height=number(0.5), **flat) == 0.0
+
+
+def test_profiles_of_half_a_sphere_are_normalized_by_half(tmp_path):
+    file = ies_file(tmp_path, lambda v, h: 5.0, range(0, 91, 5))
+    text = light("SphereLight", radius=number(0.5), **{IES: file, IES_NORMALIZE: ON})
+    found = radiance_of_card(text, (0, 0, -3), (0, 0, 1)).mean()
+    assert found == pytest.approx(10 * 0.25 / 9, rel=0.003)
+
+
+def test_profiles_that_cannot_be_read_are_named(tmp_path):
+    (tmp_path / "lamp.ies").write_text("no lamp\n")
+    for file in (f"@{tmp_path / 'lamp.ies'}@", "@gone.ies@"):
+        text = light("SphereLight", radius=number(0.5), **{IES: ("asset", file)})
+        asset = loaded(text + TRIANGLE + "}")
+        assert asset.lamps == ["L"]
+        assert any("its IES profile is left out: " in line for line in asset.notes)
+    file = ies_file(tmp_path, lambda v, h: 1.0)
+    asset = loaded(light("CylinderLight", **{IES: file}) + TRIANGLE + "}")
+    assert any("an IES profile of such a light is left out" in line for line in asset.notes)
+
+
 def test_colour_and_temperature():
     text = light("DistantLight", angle=number(20), color=("color3f", "(1, 0.5, 0.25)"),
                  enableColorTemperature=ON, colorTemperature=number(3000))  # fmt: skip

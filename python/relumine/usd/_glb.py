@@ -24,6 +24,7 @@ class Glb:
         self._lists: Dict[str, List[Any]] = {}
         self._extensions: Dict[str, None] = {}
         self._lights: List[Dict[str, Any]] = []
+        self._profiles: List[Dict[str, Any]] = []
         self._vertices: List[int] = []
         #: Of all nodes so far: where the next one's vertices begin in the scene.
         self.num_vertices = 0
@@ -85,6 +86,18 @@ class Glb:
         node = {"name": name, "matrix": matrix.reshape(-1).tolist(), "extensions": of_light}
         self._add("nodes", node)
 
+    def profile(self, file: bytes) -> int:
+        """A file of LM-63, for profiled()."""
+        self.use("EXT_lights_ies")
+        view = self._view(file)
+        self._profiles.append({"bufferView": view, "mimeType": "application/x-ies-lm-63"})
+        return len(self._profiles) - 1
+
+    def profiled(self, light: Dict[str, Any], name: str, matrix: Array) -> None:
+        """A light of EXT_lights_ies: index of its profile, multiplier, colour."""
+        node = {"name": name, "matrix": matrix.reshape(-1).tolist()}
+        self._add("nodes", {**node, "extensions": {"EXT_lights_ies": light}})
+
     def camera(self, camera: Dict[str, Any]) -> int:
         return self._add("cameras", camera)
 
@@ -108,8 +121,10 @@ class Glb:
         }
         if self.materials:
             document["materials"] = self.materials
-        if self._lights:
-            document["extensions"] = {"KHR_lights_punctual": {"lights": self._lights}}
+        lights = {"KHR_lights_punctual": self._lights, "EXT_lights_ies": self._profiles}
+        of_document = {name: {"lights": own} for name, own in lights.items() if own}
+        if of_document:
+            document["extensions"] = of_document
         if self._size:
             document["buffers"] = [{"byteLength": self._size}]
         if self._extensions:

@@ -17,6 +17,8 @@ from pxr import Usd, UsdGeom, UsdLux  # type: ignore
 from .._environment import Environment
 from .._layers import SHAPES, Emit, Layer
 from ._glb import Glb
+from ._ies import Shape, shaped
+from ._images import read_asset
 from ._notes import Notes
 
 Array = NDArray[Any]
@@ -65,13 +67,14 @@ def color_of(prim: Usd.Prim, time: Usd.TimeCode) -> Array:
     return result
 
 
+#: Lights whose IES profile counts.
+_PROFILED = (UsdLux.RectLight, UsdLux.DiskLight, UsdLux.SphereLight)
 #: Inputs of lights that change nothing here, and what they are when they say nothing.
 _LEFT_OUT = {
     "inputs:diffuse": (1.0, "a factor on diffuse light"),
     "inputs:specular": (1.0, "a factor on highlights"),
     "inputs:shadow:enable": (True, "light without shadows"),
     "inputs:shaping:focus": (0.0, "a focus"),
-    "inputs:shaping:ies:file": (None, "an IES profile"),
 }
 
 
@@ -81,7 +84,7 @@ def _name_left_out(prim: Usd.Prim, time: Usd.TimeCode, notes: Notes) -> None:
         if not attribute or not attribute.HasAuthoredValue():
             continue
         value = attribute.Get(time)
-        if value != nothing and not (nothing is None and not value.path):
+        if value != nothing:
             notes.add(f"{name} is left out: {words}", prim.GetPath())
     for relationship, words in (
         ("light:filters", "filters of lights are left out"),
@@ -200,6 +203,8 @@ class Placer:
                 return True
             return False
         _name_left_out(prim, time, self._notes)
+        if _profile(prim, time) and not any(prim.IsA(kind) for kind in _PROFILED):
+            self._notes.add("an IES profile of such a light is left out", prim.GetPath())
         color = color_of(prim, time)
         if not np.isfinite(color).all() or not np.isfinite(matrix).all():
             self._notes.add("a light that is not finite is left out", prim.GetPath())
@@ -266,6 +271,8 @@ class Placer:
         normalize = bool(UsdLux.LightAPI(prim).GetNormalizeAttr().Get(time))
         cone = _cone(prim, time)
         texture = None
+        if _profile(prim, time) and self._profiled(prim, matrix, time, color, cone, normalize):
+            return
         if prim.IsA(UsdLux.RectLight):
             points, triangles = _rectangle()
             size = [_get(prim, "inputs:width", time), _get(prim, "inputs:height", time), 1.0]
@@ -314,6 +321,70 @@ class Placer:
         material = self._materials.lamp(name, color, texture if uvs is not None else None, prim)
         self._add_surface(name, placed, triangles, uvs, material)
 
+    def _profiled(
+        self,
+        prim: Usd.Prim,
+        matrix: Array,
+        time: Usd.TimeCode,
+        color: Array,
+        cone: Optional[Tuple[float, float]],
+        normalize: bool,
+    ) -> bool:
+        """A light with an IES profile as a point. Returns whether it has one that can be read."""
+        if not any(prim.IsA(kind) for kind in _PROFILED):
+            return False
+        asset = _profile(prim, time)
+        is_flat = not prim.IsA(UsdLux.SphereLight)
+        shape = Shape(
+            angle_scale=_get(prim, "inputs:shaping:ies:angleScale", time),
+            normalize=bool(prim.GetAttribute("inputs:shaping:ies:normalize").Get(time)),
+            is_flat=is_flat,
+            cone=cone,
+        )
+        try:
+            if not asset.resolvedPath:
+                raise OSError("no such file")
+            file, left_out = shaped(read_asset(asset.resolvedPath), shape)
+        except (OSError, RuntimeError) as error:
+            self._notes.add(f"its IES profile is left out: {error}", prim.GetPath())
+            return False
+        for line in left_out:
+            self._notes.add(f"its IES profile is read without {line}", prim.GetPath())
+        size = abs(float(np.linalg.det(matrix[:3, :3]))) ** (1.0 / 3.0)
+        if prim.IsA(UsdLux.RectLight):
+            across = np.cross(matrix[0, :3], matrix[1, :3])
+            area = _get(prim, "inputs:width", time) * _get(prim, "inputs:height", time)
+            area *= float(np.linalg.norm(across))
+            if prim.GetAttribute("inputs:texture:file").Get(time):
+                self._notes.add("a texture beside an IES profile is left out", prim.GetPath())
+        elif prim.IsA(UsdLux.DiskLight):
+            across = np.cross(matrix[0, :3], matrix[1, :3])
+            area = math.pi * _get(prim, "inputs:radius", time) ** 2 * float(np.linalg.norm(across))
+        else:
+            area = math.pi * (_get(prim, "inputs:radius", time) * size) ** 2
+        # What a normalized light has, it has at any size: a sphere a quarter of it to each side.
+        intensity = color * (area if not normalize else 1.0 if is_flat else 0.25)
+        name = self._named(prim)
+        self.lights.lamps.append(name)
+        meters = float(np.linalg.norm(self._world[0, :3]))
+        strength = float((intensity * meters**2).max())
+        if not strength > 0.0 or not math.isfinite(strength):
+            self._notes.add("a light without power is left out", prim.GetPath())
+            return True
+        self._notes.add(
+            "an IES profile makes the light a point: its shadows are sharp", prim.GetPath()
+        )
+        self._glb.profiled(
+            {
+                "light": self._glb.profile(file),
+                "multiplier": strength,
+                "color": [float(x) for x in intensity * meters**2 / strength],
+            },
+            name,
+            matrix @ self._world,
+        )
+        return True
+
     def _add_surface(
         self, name: str, points: Array, triangles: Array, uvs: Optional[Array], material: int
     ) -> None:
@@ -354,6 +425,13 @@ class Placer:
             self._notes.add("a cone makes the sphere a spot: its shadows are sharp", prim.GetPath())
         # Candela of glTF falls with metres, the stage's light with its own unit.
         self._materials.punctual(name, intensity * meters**2, cone, matrix @ self._world)
+
+
+def _profile(prim: Usd.Prim, time: Usd.TimeCode) -> Any:
+    """The asset path of an IES profile, or None."""
+    attribute = prim.GetAttribute("inputs:shaping:ies:file")
+    asset = attribute.Get(time) if attribute else None
+    return asset if asset is not None and asset.path else None
 
 
 def _cone(prim: Usd.Prim, time: Usd.TimeCode) -> Optional[Tuple[float, float]]:

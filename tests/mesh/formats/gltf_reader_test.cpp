@@ -963,7 +963,9 @@ TEST_F(GltfTest, LightsStandAtTheirNodes) {
     PunctualLight light = mesh.lights[0];
     // -Z of the node looks down.
     EXPECT_LT(glm::distance(light.direction, glm::vec3(0, -1, 0)), 1e-6f);
+    EXPECT_LT(glm::distance(light.up, glm::vec3(0, 0, -1)), 1e-6f);
     light.direction = {0, -1, 0};
+    light.up = {0, 0, -1};
     EXPECT_EQ(light, (PunctualLight{.name = "lamp",
                                     .kind = PunctualLight::Kind::Spot,
                                     .intensity = {20, 10, 0},
@@ -971,11 +973,100 @@ TEST_F(GltfTest, LightsStandAtTheirNodes) {
                                     .direction = {0, -1, 0},
                                     .range = 9,
                                     .inner_cone = 0.25f,
-                                    .outer_cone = 0.5f}));
+                                    .outer_cone = 0.5f,
+                                    .up = {0, 0, -1}}));
     const TriangleMesh sun = gltf(square_with_light({{"type", "directional"}}).embedded());
     EXPECT_EQ(sun.lights.at(0).name, "light 0");
     EXPECT_EQ(sun.lights[0].intensity, glm::vec3(1.0f));
     EXPECT_TRUE(std::isinf(sun.lights[0].range));
+}
+
+constexpr const char* SmallProfile = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 2 2 1 1 2 0 0 0\n1 1 5\n"
+                                     "0 90\n0\n30 0\n";
+
+/// A square, and a node of EXT_lights_ies that says `own` of the light.
+Model square_with_profile(const Json& profile, const Json& own = {{"light", 0}}) {
+    Model model = square();
+    model.json["extensionsUsed"] = model.json["extensionsRequired"] = {"EXT_lights_ies"};
+    model.json["extensions"]["EXT_lights_ies"]["lights"] = {profile};
+    const std::size_t node = model.json["nodes"].size();
+    model.json["nodes"].push_back({{"translation", {1, 2, 3}},
+                                   {"rotation", {std::sqrt(0.5), 0, 0, -std::sqrt(0.5)}},
+                                   {"scale", {7, 7, 7}},
+                                   {"extensions", {{"EXT_lights_ies", own}}}});
+    model.json["scenes"][0]["nodes"].push_back(node);
+    return model;
+}
+
+TEST_F(GltfTest, LightsWithProfilesStandAtTheirNodes) {
+    const std::string path = "data:application/x-ies-lm-63;base64," + base64(SmallProfile);
+    const Json own = {{"light", 0}, {"multiplier", 4}, {"color", {1, 0.5, 0}}};
+    const TriangleMesh mesh =
+        gltf(square_with_profile({{"uri", path}, {"name", "lamp"}}, own).embedded());
+    EXPECT_THAT(mesh.warnings, testing::IsEmpty());
+    EXPECT_THAT(mesh.notes, testing::Contains("profile 0 has 137 lumen, at most 60 candela"));
+    ASSERT_EQ(mesh.lights.size(), 1u);
+    const PunctualLight& light = mesh.lights[0];
+    EXPECT_EQ(light.name, "lamp");
+    EXPECT_EQ(light.kind, PunctualLight::Kind::Profile);
+    EXPECT_EQ(light.intensity, glm::vec3(4, 2, 0));
+    EXPECT_EQ(light.position, glm::vec3(1, 2, 3));
+    // -Z of the node, vertical 0, looks down; +X, horizontal 0, stays, and +Y looks to -Z.
+    EXPECT_LT(glm::distance(light.direction, glm::vec3(0, -1, 0)), 1e-6f);
+    EXPECT_LT(glm::distance(light.right, glm::vec3(1, 0, 0)), 1e-6f);
+    EXPECT_LT(glm::distance(light.up, glm::vec3(0, 0, -1)), 1e-6f);
+    EXPECT_EQ(light.profile.at(0.0, 0.0), 60.0);
+
+    Model in_buffer = square_with_profile({{"mimeType", "application/x-ies-lm-63"}});
+    in_buffer.json["extensions"]["EXT_lights_ies"]["lights"][0]["bufferView"] =
+        in_buffer.add_view(SmallProfile);
+    const TriangleMesh second = gltf(in_buffer.embedded());
+    ASSERT_EQ(second.lights.size(), 1u);
+    EXPECT_EQ(second.lights[0].profile, light.profile);
+    EXPECT_EQ(second.lights[0].intensity, glm::vec3(1.0f));
+    EXPECT_EQ(second.lights[0].name, "light 0");
+
+    static_cast<void>(write("lamp.ies", SmallProfile));
+    const LoadedMesh third =
+        load(write("a.gltf", square_with_profile({{"uri", "lamp.ies"}}).embedded()));
+    ASSERT_EQ(third.lights.size(), 1u);
+    EXPECT_EQ(third.lights[0].profile, light.profile);
+    EXPECT_THAT(third.notes, testing::Contains(testing::HasSubstr("'lamp.ies' has 137 lumen")));
+}
+
+TEST_F(GltfTest, MirroredNodesMirrorProfiles) {
+    const std::string path = "data:;base64," + base64(SmallProfile);
+    Model model = square_with_profile({{"uri", path}});
+    model.json["nodes"].back()["scale"] = {1, -2, 1};
+    const TriangleMesh mesh = gltf(model.embedded());
+    ASSERT_EQ(mesh.lights.size(), 1u);
+    EXPECT_LT(glm::distance(mesh.lights[0].up, glm::vec3(0, 0, 1)), 1e-6f);
+    EXPECT_LT(glm::distance(mesh.lights[0].right, glm::vec3(1, 0, 0)), 1e-6f);
+    // A flat one still has axes.
+    model.json["nodes"].back()["scale"] = {0, 1, 1};
+    const PunctualLight flat = gltf(model.embedded()).lights.at(0);
+    EXPECT_NEAR(glm::length(flat.right), 1.0f, 1e-6f);
+    EXPECT_NEAR(glm::dot(flat.right, flat.direction), 0.0f, 1e-6f);
+    EXPECT_NEAR(glm::dot(flat.right, flat.up), 0.0f, 1e-6f);
+}
+
+TEST_F(GltfTest, BrokenProfilesCostTheirLight) {
+    const auto warnings = [](const Model& model) {
+        const TriangleMesh mesh = gltf(model.embedded());
+        EXPECT_THAT(mesh.lights, testing::IsEmpty());
+        return mesh.warnings;
+    };
+    EXPECT_THAT(
+        warnings(square_with_profile({{"uri", "none.ies"}})),
+        ElementsAre("a light is left out: expected the file 'none.ies' beside it, got none"));
+    EXPECT_THAT(
+        warnings(square_with_profile({{"uri", "data:;base64," + base64("TILT=NONE\n1")}})),
+        ElementsAre("a light is left out: profile 0: expected lumens of a lamp in line 2, got "
+                    "the end of the file"));
+    EXPECT_THAT(warnings(square_with_profile({{"uri", "none.ies"}}, {{"light", 1}})),
+                ElementsAre("a light is left out: expected indices of lights below 1, got 1"));
+    EXPECT_THAT(warnings(square_with_profile({{"bufferView", 99}})),
+                ElementsAre(testing::StartsWith("a light is left out: profile 0: ")));
 }
 
 TEST_F(GltfTest, VariantsOfMaterials) {

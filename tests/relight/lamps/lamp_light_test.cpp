@@ -1,6 +1,7 @@
 // Lamps against closed forms and integrals.
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -193,6 +194,92 @@ TEST(PunctualLight, SpotsHaveCones) {
     const double between = (std::cos(0.45) - std::cos(0.6)) / (std::cos(0.3) - std::cos(0.6));
     EXPECT_NEAR(part(0.45), between * between, 1e-5);
     EXPECT_EQ(part(0.61), 0.0);
+}
+
+/// A profile of one intensity, or of the cosine to its axis.
+mesh::LightProfile profile_of(const std::vector<float>& horizontal, double last,
+                              const std::function<double(double, double)>& candela) {
+    mesh::LightProfileTable table{.horizontal = horizontal};
+    for (double v = 0.0; v <= last; v += 0.5)
+        table.vertical.push_back(static_cast<float>(v));
+    for (const float h : horizontal)
+        for (const float v : table.vertical)
+            table.candela.push_back(static_cast<float>(candela(double{v}, double{h})));
+    return mesh::LightProfile(table);
+}
+
+TEST(PunctualLight, ConstantProfilesArePoints) {
+    const mesh::PunctualLight point{.intensity = {0, 6, 0}, .position = {0.1f, 2, 0.2f}};
+    mesh::PunctualLight light = point;
+    light.kind = Kind::Profile;
+    light.intensity = {0, 2, 0};
+    light.profile = profile_of({0}, 180.0, [](double, double) { return 3.0; });
+    for (const glm::vec3& place : {glm::vec3(0.0f), glm::vec3(3, 0, 0), glm::vec3(0, 1.9f, -5)})
+        EXPECT_NEAR(on_floor(light, place) / on_floor(point, place), 1.0, 1e-6);
+}
+
+// A lamp of Lambert's law over a floor: I cos^4 / h^2.
+TEST(PunctualLight, CosineProfilesHaveTheClosedForm) {
+    const mesh::PunctualLight light{
+        .kind = Kind::Profile,
+        .position = {0, 2, 0},
+        .direction = {0, -1, 0},
+        .profile =
+            profile_of({0}, 90.0, [](double v, double) { return 5.0 * std::cos(v * Pi / 180.0); }),
+        .right = {1, 0, 0},
+        .up = {0, 0, -1}};
+    for (const double angle : {0.0, 0.3, 0.8, 1.3}) {
+        const double x = 2.0 * std::tan(angle);
+        EXPECT_NEAR(on_floor(light, {static_cast<float>(x), 0, 0}) /
+                        (5.0 * std::pow(std::cos(angle), 4.0) / 4.0 / Pi),
+                    1.0, 1e-4);
+    }
+}
+
+// What a closed ball around the lamp receives is its flux.
+TEST(PunctualLight, AllOfTheFluxArrives) {
+    const mesh::PunctualLight light{
+        .kind = Kind::Profile,
+        .direction = glm::normalize(glm::vec3(1, -2, 0.5f)),
+        .profile = profile_of({0, 90, 180, 270, 360}, 120.0,
+                              [](double v, double h) { return (v + 1.0) * (h < 300 ? h + 5 : 5); }),
+        .right = glm::normalize(glm::vec3(2, 1, 0)),
+        .up = glm::normalize(glm::cross(glm::vec3(2, 1, 0), glm::vec3(1, -2, 0.5f)))};
+    constexpr int Steps = 400;
+    double sum = 0.0;
+    for (int i = 0; i < Steps; ++i)
+        for (int j = 0; j < Steps; ++j) {
+            const double theta = (i + 0.5) * Pi / Steps, phi = (j + 0.5) * 2.0 * Pi / Steps;
+            sum +=
+                std::sin(theta) *
+                arriving(light, 3.0 * glm::dvec3(std::sin(theta) * std::cos(phi), std::cos(theta),
+                                                 std::sin(theta) * std::sin(phi)))
+                    .irradiance.r *
+                9.0;
+        }
+    EXPECT_NEAR(sum * 2.0 * Pi * Pi / (Steps * Steps) / light.profile.flux(), 1.0, 2e-3);
+}
+
+// Down is vertical 0; from above, horizontal angles go from right to up, counter-clockwise.
+TEST(PunctualLight, ProfilesAreOriented) {
+    const mesh::PunctualLight light{
+        .kind = Kind::Profile,
+        .direction = {0, -1, 0},
+        .profile = profile_of(
+            {0, 90, 180, 270, 360}, 180.0,
+            [](double v, double h) { return 1000.0 * v + (v > 0.0 && h < 360.0 ? h : 0.0); }),
+        .right = {1, 0, 0},
+        .up = {0, 0, -1}};
+    const auto candela = [&](const glm::dvec3& place) {
+        return arriving(light, place).irradiance.r * glm::dot(place, place);
+    };
+    EXPECT_NEAR(candela({0, -2, 0}), 0.0, 1e-6);
+    EXPECT_NEAR(candela({2, 0, 0}), 90e3 + 0.0, 1e-2);
+    EXPECT_NEAR(candela({0, 0, -2}), 90e3 + 90.0, 1e-2);
+    EXPECT_NEAR(candela({-2, 0, 0}), 90e3 + 180.0, 1e-2);
+    EXPECT_NEAR(candela({0, 0, 2}), 90e3 + 270.0, 1e-2);
+    EXPECT_NEAR(candela({0, 2, 0}), 180e3, 300.0);
+    EXPECT_NEAR(candela({1, -1, 0}), 45e3, 1e-2);
 }
 
 TEST(PunctualLight, DirectionalOnesComeFromFarAway) {

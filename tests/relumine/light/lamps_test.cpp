@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -147,6 +148,39 @@ TEST(SceneLamps, AFactorIsTheSameOnAnyWay) {
     EXPECT_THAT(lit.radiance(), testing::ElementsAreArray(light_of(half)));
 }
 
+// A profile has the candela of its file and the light's colour; its own factor multiplies it.
+TEST(SceneLamps, LightsGetProfiles) {
+    const std::filesystem::path path =
+        std::filesystem::path(testing::TempDir()) / "lights_get_profiles.ies";
+    std::ofstream(path) << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 5\n0 180\n0\n"
+                           "7 7\n";
+    Scene scene = room();
+    scene.lamps = {};
+    scene.lamps.lights = {
+        {.name = "bulb", .intensity = {1, 2, 0.5f}, .position = {0.3f, 0.2f, 0.1f}},
+        {.name = "sun", .kind = mesh::PunctualLight::Kind::Directional}};
+    const EmissionGain off{"sun", glm::vec3(0.0f)},
+        shaped = EmissionText::read("bulb=" + path.string());
+    LitScene lit(scene);
+    lit.dim({off});
+    lit.light(cubemap::CubeMap(8));
+    const std::vector<glm::vec3> point(lit.radiance().begin(), lit.radiance().end());
+    const auto expect_times = [&](float factor) {
+        for (std::size_t i = 0; i < point.size(); ++i)
+            EXPECT_LT(glm::distance(lit.radiance()[i], factor * point[i]), 1e-4f);
+    };
+    lit.dim({off, shaped});
+    expect_times(3.5f);
+    lit.dim({off, shaped, {"bulb", glm::vec3(2.0f)}});
+    expect_times(7.0f);
+    lit.dim({off});
+    expect_times(1.0f);
+    EXPECT_THROW(lit.dim({EmissionText::read("sun=" + path.string())}), std::invalid_argument);
+    EXPECT_THROW(lit.dim({EmissionText::read("bulb=none.ies")}), std::runtime_error);
+    expect_times(1.0f);
+    std::filesystem::remove(path);
+}
+
 TEST(SceneLamps, StayInTheFile) {
     const std::filesystem::path path =
         std::filesystem::path(testing::TempDir()) / "scene_lamps.prt";
@@ -166,7 +200,7 @@ TEST(SceneLamps, StayInTheFile) {
 }
 
 TEST(Emission, IsReadAndShown) {
-    for (const char* text : {"0.5", "1,2,3", "lamp=0.5", "a=b=1,0.25,0.5,2"})
+    for (const char* text : {"0.5", "1,2,3", "lamp=0.5", "a=b=1,0.25,0.5,2", "a=b.ies"})
         EXPECT_EQ(EmissionText::show(EmissionText::read(text)), text);
     EXPECT_EQ(EmissionText::read("neon=2,1,0.5,0"), (EmissionGain{"neon", {2, 1, 0}}));
     for (const char* text : {"", "lamp=", "=1", "lamp=1,2,3", "lamp=-1", "lamp=x"})
