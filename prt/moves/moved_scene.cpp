@@ -246,7 +246,8 @@ SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& mat
 
     SceneChange change;
     change.group = group;
-    change.rim_step = scene.settings.rim_step.value_or(automatic_bias(scene.mesh));
+    change.rim_step =
+        scene.settings.rim_step ? *scene.settings.rim_step : automatic_bias(scene.mesh);
     change.difference.around = {no_box(), no_box()};
     const auto add_boxes = [&](const mesh::TriangleMesh& mesh, std::size_t side) {
         for (const mesh::Bounds& box : boxes_around(mesh)) {
