@@ -15,6 +15,20 @@
 
 namespace relumine::relight {
 
+namespace {
+
+/// Calls visit(block, bit) for blocks of a tile, each one's number in the scene and its bit.
+template<typename Visit>
+void for_blocks(const prt::VisibleCounts& counts, std::size_t tile, std::uint64_t blocks,
+                const Visit& visit) {
+    for (blocks &= counts.tile_blocks(tile); blocks != 0; blocks &= blocks - 1) {
+        const auto bit = static_cast<std::size_t>(std::countr_zero(blocks));
+        visit(counts.tile_begin(tile) + bit, std::uint64_t{1} << bit);
+    }
+}
+
+} // namespace
+
 ReceiverLight::ReceiverLight(const prt::Transfer& transfer, const ShadowRays& rays,
                              std::uint32_t harmonics)
     : transfer_(transfer), traced_(transfer, rays), normals_(block_normals(transfer.normals)),
@@ -93,16 +107,36 @@ void ReceiverLight::sum(const ClusterSums& sums) {
                                 lights_.set(cluster, sums.without_sharp(cluster));
                         });
     lights_.sum_prefix();
+    is_updated_ = false;
+    light_blocks(std::vector<std::uint64_t>(transfer_.counts.num_tiles(), ~std::uint64_t{0}));
+    write_points();
+}
+
+void ReceiverLight::light_blocks(std::span<const std::uint64_t> blocks) {
     const BlockScene scene = block_scene();
     files::parallel_for(std::size_t{0}, transfer_.counts.num_tiles(), [&](std::size_t tile) {
-        light_tile(scene, tile, lights_, light_);
-        for (std::size_t block = transfer_.counts.tile_begin(tile);
-             block < transfer_.counts.tile_begin(tile + 1); ++block) {
+        if (blocks[tile] == 0)
+            return;
+        light_tile(scene, tile, lights_, light_, blocks[tile]);
+        for_blocks(transfer_.counts, tile, blocks[tile], [&](std::size_t block, std::uint64_t) {
             light_glossy(block);
             light_[block].brightness.set_summed(write_radiance(block));
-        }
+        });
     });
-    write_points();
+}
+
+void ReceiverLight::follow(const ClusterSums& sums, const prt::SceneChange& change) {
+    for (const std::uint32_t place : change.places)
+        set_normal(normals_, place, transfer_.normals[place]);
+    std::vector<std::uint64_t> changed = prt::changed_blocks(transfer_.counts, change);
+    relight::update(words_, transfer_, normals_, changed);
+    traced_.follow(sums.sharp, change.difference, changed);
+    if (harmonics_)
+        harmonics_->take_traced(sums.sharp, traced_);
+    if (is_updated_ || harmonics_ || !has_surfaces())
+        sum(sums);
+    else
+        light_blocks(changed);
 }
 
 std::size_t ReceiverLight::update(const ClusterSums& sums, std::span<const std::uint32_t> changed,
@@ -118,20 +152,14 @@ std::size_t ReceiverLight::update(const ClusterSums& sums, std::span<const std::
         changes_.set(lights_, cluster, sums.without_sharp(cluster));
     const BlockScene scene = block_scene();
     const std::size_t num_tiles = transfer_.counts.num_tiles();
-    // Calls visit(block, bit) for blocks of a tile, each one's number in the scene and its bit.
-    const auto for_blocks = [&](std::size_t tile, std::uint64_t blocks, const auto& visit) {
-        for (; blocks != 0; blocks &= blocks - 1) {
-            const auto bit = static_cast<std::size_t>(std::countr_zero(blocks));
-            visit(transfer_.counts.tile_begin(tile) + bit, std::uint64_t{1} << bit);
-        }
-    };
+    is_updated_ = true;
     dimmed_.assign(num_tiles, 0);
     std::atomic<std::size_t> num_blocks = 0;
     files::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
         std::uint64_t touched = update_tile(scene, tile, changes_, light_);
         if (sharp_changed || transfer_.glossy)
             touched = transfer_.counts.tile_blocks(tile);
-        for_blocks(tile, touched, [&](std::size_t block, std::uint64_t bit) {
+        for_blocks(transfer_.counts, tile, touched, [&](std::size_t block, std::uint64_t bit) {
             light_glossy(block);
             if (light_[block].brightness.has_dimmed_to(write_radiance(block)))
                 dimmed_[tile] |= bit;
@@ -147,9 +175,10 @@ std::size_t ReceiverLight::update(const ClusterSums& sums, std::span<const std::
             if (dimmed_[tile] == 0)
                 return;
             light_tile(scene, tile, lights_, light_, dimmed_[tile]);
-            for_blocks(tile, dimmed_[tile], [&](std::size_t block, std::uint64_t) {
-                light_[block].brightness.set_summed(write_radiance(block));
-            });
+            for_blocks(transfer_.counts, tile, dimmed_[tile],
+                       [&](std::size_t block, std::uint64_t) {
+                           light_[block].brightness.set_summed(write_radiance(block));
+                       });
         });
     }
     write_points();

@@ -9,6 +9,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "prt/moves/moved_scene.h"
 #include "prt/transfer/transfer.h"
 #include "relight/harmonics/harmonic_light.h"
 #include "relight/kernels/block_kernels.h"
@@ -39,6 +40,9 @@ public:
 
     /// Sums all clusters [JN, Eq. 8].
     void sum(const ClusterSums& sums);
+    /// Takes what a move changed in the transfer and before the sharp lights, which are those of
+    /// the last trace(). The radiance is then that of sum() with these.
+    void follow(const ClusterSums& sums, const prt::SceneChange& change);
     /// Updates the radiance for the clusters in `changed`, which ascend and whose sums are new.
     /// Returns the number of receivers that see any of them.
     std::size_t update(const ClusterSums& sums, std::span<const std::uint32_t> changed,
@@ -86,6 +90,8 @@ public:
     [[nodiscard]] const TracedLight& traced() const { return traced_; }
 
 private:
+    /// Sums all clusters of some blocks, a bit each in the word of their tile.
+    void light_blocks(std::span<const std::uint64_t> blocks);
     void light_glossy(std::size_t block);
     [[nodiscard]] bool has_surfaces() const { return transfer_.num_points < radiance_.size(); }
     /// The radiance of points without a surface.
@@ -122,6 +128,8 @@ private:
     std::vector<glm::vec3> diffuse_;
     /// Scratch: how clusters change.
     LightChanges changes_;
+    /// Whether there were updates since the last sum of all.
+    bool is_updated_ = false;
     /// Scratch, [num_tiles]: blocks that are summed anew after a change.
     std::vector<std::uint64_t> dimmed_;
 };

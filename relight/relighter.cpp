@@ -270,6 +270,10 @@ void Relighter::set_cells() {
         pyramid->set(*environment_, *binning_, sharp_lights_);
 }
 
+void Relighter::follow(const prt::SceneChange& change) {
+    light_->follow({.all = sums_, .sharp = sharp_lights_}, change);
+}
+
 void Relighter::resum() {
     light_->sum({.all = sums_, .sharp = sharp_lights_});
 }

@@ -15,6 +15,7 @@
 #include "cubemap/texel_rectangle.h"
 #include "lights/light_list.h"
 #include "prt/glossy/lobes.h"
+#include "prt/moves/moved_scene.h"
 #include "prt/transfer/transfer.h"
 #include "relight/binned_environment.h"
 #include "relight/sharp/shadow_rays.h"
@@ -120,6 +121,14 @@ public:
     ///          has changed then.
     UpdateReport update_regions(std::span<const TexelRectangle> rectangles,
                                 const std::function<void(cubemap::CubeMap&)>& edit);
+
+    /// Takes a move of a group of the scene (prt/moves/moved_scene.h), or its undo: transfer and
+    /// shadow rays have changed. The radiance is then bit by bit that of another Relighter of the
+    /// scene as it stands, under the same light.
+    ///
+    /// Cost:    only blocks of receivers whose counts, normals or sharp lights differ are summed
+    ///          anew, unless there were updates, harmonics or points.
+    void follow(const prt::SceneChange& change);
 
     /// Sums all clusters anew. After updates the radiance equals a full relighting except for the
     /// last bits. After this call it is bit by bit the result of set_environment() of the same map.

@@ -11,7 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "relumine/in/mesh_files.h"
-#include "relumine/light/rays.h"
+#include "relumine/in/scene_rays.h"
 #include "relumine/out/pictures.h"
 
 namespace relumine::viewer {

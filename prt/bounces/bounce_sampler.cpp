@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
 #include "cubemap/face.h"
 #include "cubemap/frame.h"
@@ -41,7 +42,6 @@ public:
     }
 
     [[nodiscard]] glm::dvec3 operator[](std::uint32_t i) const {
-        constexpr double StepS = 0.7548776662466927, StepT = 0.5698402909980532;
         const double s = fraction(shift_s_ + StepS * i);
         const double t = fraction(shift_t_ + StepT * i);
         const double radius = std::sqrt(s);
@@ -50,8 +50,57 @@ public:
                std::sqrt(1.0 - s) * normal_;
     }
 
+    /// Calls visit(i) for those of the first so many directions that lie in a cone, and for some
+    /// beside it: about ten times as fast as finding the directions.
+    template<typename Visit>
+    void for_near(std::uint32_t count, std::span<const DirectionCone> cones,
+                  const Visit& visit) const {
+        // Angles in 2^-12 of a turn make an error of 8e-4, heights near 0 one of 3e-4.
+        constexpr float Slack = 2e-3f;
+        struct Local {
+            float x, y, z, least;
+        };
+        std::vector<Local> local;
+        for (const DirectionCone& cone : cones) {
+            const glm::dvec3 axis(cone.axis);
+            local.push_back({static_cast<float>(glm::dot(axis, tangent_)),
+                             static_cast<float>(glm::dot(axis, bitangent_)),
+                             static_cast<float>(glm::dot(axis, normal_)), cone.cosine - Slack});
+        }
+        std::uint32_t s = fixed(shift_s_), t = fixed(shift_t_);
+        for (std::uint32_t i = 0; i < count; ++i, s += fixed(StepS), t += fixed(StepT)) {
+            const float squared = 0x1p-32f * static_cast<float>(s);
+            const float radius = std::sqrt(squared), height = std::sqrt(1.0f - squared);
+            const glm::vec2& turn = turns()[t >> (32u - TurnBits)];
+            for (const auto& [x, y, z, least] : local)
+                if (radius * (turn.x * x + turn.y * y) + height * z >= least) {
+                    visit(i);
+                    break;
+                }
+        }
+    }
+
 private:
+    static constexpr double StepS = 0.7548776662466927, StepT = 0.5698402909980532;
+    static constexpr std::uint32_t TurnBits = 12;
+
     static double fraction(double value) { return value - std::floor(value); }
+    /// Returns a part of 1 in 2^-32.
+    static std::uint32_t fixed(double value) {
+        return static_cast<std::uint32_t>(static_cast<std::uint64_t>(value * 0x1p32));
+    }
+    /// Cosines and sines of the middles of equal parts of a turn
+    static const std::vector<glm::vec2>& turns() {
+        static const std::vector<glm::vec2> values = [] {
+            std::vector<glm::vec2> result;
+            for (std::uint32_t i = 0; i < 1u << TurnBits; ++i) {
+                const double angle = 2.0 * std::numbers::pi * (i + 0.5) / (1u << TurnBits);
+                result.emplace_back(std::cos(angle), std::sin(angle));
+            }
+            return result;
+        }();
+        return values;
+    }
 
     glm::dvec3 normal_;
     double shift_s_;
@@ -135,15 +184,16 @@ BounceSampler::look(const PartReceiver& receiver, std::span<const std::uint32_t>
 
 std::vector<std::uint32_t> BounceSampler::chosen(
     const PartReceiver& receiver, std::uint32_t num_directions,
+    std::span<const DirectionCone> cones,
     const std::function<bool(const glm::dvec3&, std::uint32_t)>& is_wanted) const {
     const CosineDirections directions(transfer_.normals[receiver.place],
                                       transfer_.order[receiver.place]);
     std::vector<std::uint32_t> result;
-    for (std::uint32_t i = 0; i < num_directions; ++i) {
+    directions.for_near(num_directions, cones, [&](std::uint32_t i) {
         const glm::dvec3 direction = directions[i];
         if (is_wanted(direction, transfer_.quadtree.leaf_at(cubemap::face_point(direction))))
             result.push_back(i);
-    }
+    });
     return result;
 }
 

@@ -43,6 +43,13 @@ struct RayFate {
     double inverse_distance = 0.0;
 };
 
+/// All directions within an angle of an axis of length 1.
+struct DirectionCone {
+    glm::vec3 axis{0.0f};
+    /// Of the angle
+    float cosine = -1.0f;
+};
+
 /// A receiver of the part that is worked on: its place among all, and its index in the part.
 struct PartReceiver {
     std::size_t place = 0;
@@ -74,9 +81,11 @@ public:
     std::uint64_t look(const PartReceiver& receiver, std::span<const std::uint32_t> directions,
                        const std::function<void(std::uint32_t, const RayFate&)>& visit) const;
 
-    /// Returns the numbers of the first so many directions that `is_wanted(direction, cluster)`.
+    /// Returns the numbers of those of the first so many directions that lie in one of the cones
+    /// and `is_wanted(direction, cluster)`. Some just outside of the cones are asked for as well.
     [[nodiscard]] std::vector<std::uint32_t>
     chosen(const PartReceiver& receiver, std::uint32_t num_directions,
+           std::span<const DirectionCone> cones,
            const std::function<bool(const glm::dvec3&, std::uint32_t)>& is_wanted) const;
 
     /// Finds what a point in space sees in each direction: the place of an emitter, or NoEmitter.

@@ -33,7 +33,7 @@ struct CountsPatch {
 
 /// Exchanges the counts of a patch with those of a transfer. A second call undoes the first.
 ///
-/// Cost:    O(all counts), a copy of memory.
+/// Cost:    O(all counts), which move within their memory.
 void exchange(VisibleCounts& counts, CountsPatch& patch);
 
 } // namespace relumine::prt

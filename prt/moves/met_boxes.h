@@ -2,7 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -43,6 +46,32 @@ inline void include(mesh::Bounds& box, const mesh::Bounds& other) {
     return result;
 }
 
+/// Directions, as MetBoxes asks for many of them: the inverse() of each, in words of 64.
+class InverseDirections {
+public:
+    static constexpr std::size_t WordSize = 64;
+
+    void add(const glm::vec3& direction) {
+        if (size_++ % WordSize == 0)
+            words_.emplace_back();
+        const glm::vec3 values = inverse(direction);
+        for (int axis = 0; axis < 3; ++axis)
+            words_.back()[static_cast<std::size_t>(axis)][(size_ - 1) % WordSize] = values[axis];
+    }
+    /// [words] x, y and z; those beyond the last direction are 0.
+    using Word = std::array<std::array<float, WordSize>, 3>;
+    [[nodiscard]] std::span<const Word> words() const { return words_; }
+    /// Returns the directions of a word, a bit each.
+    [[nodiscard]] std::uint64_t bits(std::size_t word) const {
+        const std::size_t rest = size_ - word * WordSize;
+        return rest >= WordSize ? ~std::uint64_t{0} : (std::uint64_t{1} << rest) - 1;
+    }
+
+private:
+    std::vector<Word> words_;
+    std::size_t size_ = 0;
+};
+
 /// Boxes as seen from a box of places: a ray from any of these that meets a box meets the box's
 /// difference from the places when it starts at the origin.
 ///
@@ -67,6 +96,10 @@ public:
                std::any_of(boxes_.begin(), boxes_.end(),
                            [&](const mesh::Bounds& box) { return meets(box, inverse_direction); });
     }
+    /// Returns those of the `asked` directions of a word that meet a box. Vectorised with run-time
+    /// dispatch.
+    [[nodiscard]] std::uint64_t meeting(const InverseDirections::Word& word,
+                                        std::uint64_t asked) const;
 
 private:
     static mesh::Bounds difference(const mesh::Bounds& box, const mesh::Bounds& places) {

@@ -12,6 +12,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "prt/moves/met_boxes.h"
 #include "prt/visibility/bias.h"
 #include "prt/visibility/ray_scene.h"
 
@@ -70,62 +71,106 @@ private:
     glm::dvec3 offset_, shift_;
 };
 
-/// The triangles of a group, and which vertices are theirs.
-struct GroupParts {
-    std::vector<mesh::Triangle> triangles;
-    /// [num_vertices]
-    std::vector<bool> vertices;
+/// A group by itself: a mesh of its triangles, with their numbers and those of its vertices.
+struct GroupMesh {
+    mesh::TriangleMesh mesh;
+    /// Ascending
+    std::vector<std::uint32_t> triangles, vertices;
 };
 
+std::vector<glm::vec3> chosen(const std::vector<glm::vec3>& values,
+                              const std::vector<std::uint32_t>& at) {
+    std::vector<glm::vec3> result;
+    for (std::size_t i = 0; i < at.size() && !values.empty(); ++i)
+        result.push_back(values[at[i]]);
+    return result;
+}
+
 /// `name`: of the group.
-GroupParts parts_of(const mesh::TriangleMesh& mesh, const std::string& name) {
-    GroupParts parts;
-    parts.vertices.resize(mesh.num_vertices());
-    const auto is_of_group = [&](std::size_t triangle) {
-        return mesh.groups[mesh.triangle_groups[triangle]] == name;
-    };
-    for (std::size_t i = 0; i < mesh.num_triangles(); ++i) {
-        if (!is_of_group(i))
-            continue;
-        parts.triangles.push_back(mesh.triangles[i]);
-        for (const std::uint32_t vertex : mesh.triangles[i])
-            parts.vertices[vertex] = true;
-    }
+GroupMesh group_of(const mesh::TriangleMesh& mesh, const std::string& name) {
+    const auto group =
+        static_cast<std::uint32_t>(std::ranges::find(mesh.groups, name) - mesh.groups.begin());
+    GroupMesh result;
+    constexpr std::uint32_t None = ~std::uint32_t{0};
+    std::vector<std::uint32_t> index(mesh.num_vertices(), None);
+    for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i)
+        if (mesh.triangle_groups[i] == group) {
+            result.triangles.push_back(i);
+            for (const std::uint32_t vertex : mesh.triangles[i])
+                index[vertex] = 0;
+        }
+    for (std::uint32_t vertex = 0; vertex < index.size(); ++vertex)
+        if (index[vertex] != None) {
+            index[vertex] = static_cast<std::uint32_t>(result.vertices.size());
+            result.vertices.push_back(vertex);
+        }
     for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
         for (const std::uint32_t vertex : mesh.triangles[i])
-            if (parts.vertices[vertex] && !is_of_group(i))
+            if (mesh.triangle_groups[i] != group && index[vertex] != None)
                 throw std::invalid_argument(fmt::format(
                     "expected a group with vertices of its own, got {}, which shares some with {}",
                     name, mesh.groups[mesh.triangle_groups[i]]));
-    return parts;
+    for (const std::uint32_t i : result.triangles) {
+        const auto [a, b, c] = mesh.triangles[i];
+        result.mesh.triangles.push_back({index[a], index[b], index[c]});
+    }
+    result.mesh.positions = chosen(mesh.positions, result.vertices);
+    result.mesh.normals = chosen(mesh.normals, result.vertices);
+    result.mesh.lifts = chosen(mesh.lifts, result.vertices);
+    return result;
 }
 
-/// Moves the values of some vertices.
-template<typename Move>
-void move_some(std::vector<glm::vec3>& values, const std::vector<bool>& which, const Move& move) {
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (which[i])
-            values[i] = move(values[i]);
+template<typename Value, typename Move>
+void move_all(std::vector<Value>& values, const Move& move) {
+    for (Value& value : values)
+        value = move(value);
 }
 
-/// Gives the change the receivers at their new places. `after` is the mesh there.
-void move_receivers(const Scene& scene, const mesh::TriangleMesh& after,
-                    const std::vector<bool>& vertices, const Motion& motion, SceneChange& change) {
+/// Exchanges some values.
+template<typename Value>
+void exchange(std::vector<Value>& all, const std::vector<std::uint32_t>& at,
+              std::vector<Value>& some) {
+    for (std::size_t i = 0; i < some.size(); ++i)
+        std::swap(all[at[i]], some[i]);
+}
+
+/// Gives the change the receivers that differ, at their new places. `after` is the group there.
+void move_receivers(const Scene& scene, const GroupMesh& before, const mesh::TriangleMesh& after,
+                    const Motion& motion, SceneChange& change) {
     const Receivers& receivers = scene.receivers;
+    const auto add = [&](std::uint32_t i, const glm::vec3& position, const glm::vec3& normal) {
+        if (position == receivers.positions[i] && normal == receivers.normals[i])
+            return;
+        change.receivers.push_back(i);
+        change.receiver_positions.push_back(position);
+        change.receiver_normals.push_back(normal);
+        change.difference.receivers[i] = true;
+    };
+    change.difference.receivers.resize(receivers.size());
     if (on_vertices(scene.layout)) {
         Receivers next = vertex_receivers(after, *change.rim_step);
-        next.surfaces = receivers.surfaces;
+        for (std::size_t i = 0; i < before.vertices.size() && !receivers.surfaces.empty(); ++i)
+            next.surfaces.push_back(receivers.surfaces[before.vertices[i]]);
         leave_unlit_out(next);
-        change.receiver_positions = std::move(next.positions);
-        change.receiver_normals = std::move(next.normals);
-        return;
+        for (std::size_t i = 0; i < before.vertices.size(); ++i)
+            add(before.vertices[i], next.positions[i], next.normals[i]);
+    } else {
+        std::vector<bool> is_of_group(scene.mesh.num_triangles());
+        for (const std::uint32_t triangle : before.triangles)
+            is_of_group[triangle] = true;
+        for (std::size_t i = receivers.num_points(); i < receivers.size(); ++i)
+            if (is_of_group[receivers.points[i].triangle])
+                add(static_cast<std::uint32_t>(i), motion.place(receivers.positions[i]),
+                    motion.normal(receivers.normals[i]));
     }
-    change.receiver_positions = receivers.positions;
-    change.receiver_normals = receivers.normals;
-    for (std::size_t i = receivers.num_points(); i < receivers.size(); ++i)
-        if (vertices[scene.mesh.triangles[receivers.points[i].triangle][0]]) {
-            change.receiver_positions[i] = motion.place(receivers.positions[i]);
-            change.receiver_normals[i] = motion.normal(receivers.normals[i]);
+    const std::vector<std::uint32_t>& order = scene.transfer.order;
+    for (std::uint32_t place = 0; place < order.size(); ++place)
+        if (change.difference.receivers[order[place]]) {
+            const auto found = std::ranges::lower_bound(change.receivers, order[place]);
+            change.places.push_back(place);
+            change.normals_by_place.push_back(
+                change
+                    .receiver_normals[static_cast<std::size_t>(found - change.receivers.begin())]);
         }
 }
 
@@ -141,22 +186,34 @@ void require_places(const std::vector<glm::vec3>& positions, float bias) {
 } // namespace
 
 void exchange(Scene& scene, SceneChange& change) {
-    scene.mesh.positions.swap(change.positions);
-    scene.mesh.normals.swap(change.normals);
-    scene.mesh.lifts.swap(change.lifts);
-    scene.mesh.corner_tangents.swap(change.corner_tangents);
+    exchange(scene.mesh.positions, change.vertices, change.positions);
+    exchange(scene.mesh.normals, change.vertices, change.normals);
+    exchange(scene.mesh.lifts, change.vertices, change.lifts);
+    exchange(scene.mesh.corner_tangents, change.triangles, change.corner_tangents);
     if (scene.blockers)
-        scene.blockers->positions.swap(change.blocker_positions);
-    scene.receivers.positions.swap(change.receiver_positions);
-    scene.receivers.normals.swap(change.receiver_normals);
-    scene.transfer.normals.swap(change.normals_by_place);
+        exchange(scene.blockers->positions, change.blocker_vertices, change.blocker_positions);
+    exchange(scene.receivers.positions, change.receivers, change.receiver_positions);
+    exchange(scene.receivers.normals, change.receivers, change.receiver_normals);
+    exchange(scene.transfer.normals, change.places, change.normals_by_place);
     exchange(scene.transfer.counts, change.counts);
     scene.bounces.swap(change.bounces);
     scene.settings.rim_step.swap(change.rim_step);
 }
 
-SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& matrix,
-                  SceneDifference& difference) {
+std::vector<std::uint64_t> changed_blocks(const VisibleCounts& counts, const SceneChange& change) {
+    std::vector<std::uint64_t> result(counts.num_tiles());
+    const auto mark = [&](std::size_t block) {
+        result[block / VisibleCounts::TileBlocks] |= std::uint64_t{1}
+                                                     << block % VisibleCounts::TileBlocks;
+    };
+    for (const CountsPatch::Word& word : change.counts.words)
+        mark(counts.block_of(word.word));
+    for (const std::uint32_t place : change.places)
+        mark(place / BlockSize);
+    return result;
+}
+
+SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& matrix) {
     const Motion motion(matrix, scene.mesh.offset);
     if (!scene.receivers.to_eye.empty())
         throw std::invalid_argument(
@@ -171,56 +228,56 @@ SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& mat
         throw std::invalid_argument(
             "expected a scene that was precomputed with --movable, got one without groups");
     const std::string& name = scene.mesh.groups[group];
-    const GroupParts parts = parts_of(scene.mesh, name);
+    GroupMesh before = group_of(scene.mesh, name);
     const std::size_t num_floor =
         std::size_t{scene.settings.floor_vertices} * scene.settings.floor_vertices +
         scene.settings.floor_added;
-    if (std::find(parts.vertices.end() - static_cast<std::ptrdiff_t>(num_floor),
-                  parts.vertices.end(), true) != parts.vertices.end())
+    if (!before.vertices.empty() && before.vertices.back() + num_floor >= scene.mesh.num_vertices())
         throw std::invalid_argument("expected a group of the mesh, got its added floor");
 
-    mesh::TriangleMesh after = scene.mesh;
+    mesh::TriangleMesh after = before.mesh;
     const auto place = [&](const glm::vec3& position) {
         return motion.place(position);
     };
-    move_some(after.positions, parts.vertices, place);
-    move_some(after.normals, parts.vertices, [&](const auto& n) { return motion.normal(n); });
-    move_some(after.lifts, parts.vertices, [&](const auto& way) { return motion.way(way); });
-    for (std::size_t i = 0; i < after.corner_tangents.size(); ++i)
-        if (parts.vertices[after.triangles[i][0]])
-            for (glm::vec4& tangent : after.corner_tangents[i])
-                tangent = motion.tangent(tangent);
+    move_all(after.positions, place);
+    move_all(after.normals, [&](const glm::vec3& normal) { return motion.normal(normal); });
+    move_all(after.lifts, [&](const glm::vec3& way) { return motion.way(way); });
     require_places(after.positions, scene.settings.bias);
 
     SceneChange change;
-    change.rim_step = scene.settings.rim_step.value_or(automatic_bias(scene.mesh));
-    const auto add_boxes = [&](const mesh::TriangleMesh& mesh,
-                               const std::vector<mesh::Triangle>& triangles) {
-        std::ranges::move(boxes_around(mesh, triangles), std::back_inserter(difference.boxes));
+    change.group = group;
+    change.rim_step =
+        scene.settings.rim_step ? *scene.settings.rim_step : automatic_bias(scene.mesh);
+    change.difference.around = {no_box(), no_box()};
+    const auto add_boxes = [&](const mesh::TriangleMesh& mesh, std::size_t side) {
+        for (const mesh::Bounds& box : boxes_around(mesh)) {
+            change.difference.boxes.push_back(box);
+            include(change.difference.around[side], box);
+        }
     };
     if (scene.blockers) {
-        const GroupParts of_blockers = parts_of(*scene.blockers, name);
-        mesh::TriangleMesh next;
-        next.positions = scene.blockers->positions;
-        move_some(next.positions, of_blockers.vertices, place);
-        require_places(next.positions, scene.settings.bias);
-        add_boxes(*scene.blockers, of_blockers.triangles);
-        add_boxes(next, of_blockers.triangles);
-        change.blocker_positions = std::move(next.positions);
+        GroupMesh of_blockers = group_of(*scene.blockers, name);
+        add_boxes(of_blockers.mesh, 0);
+        move_all(of_blockers.mesh.positions, place);
+        require_places(of_blockers.mesh.positions, scene.settings.bias);
+        add_boxes(of_blockers.mesh, 1);
+        change.blocker_vertices = std::move(of_blockers.vertices);
+        change.blocker_positions = std::move(of_blockers.mesh.positions);
     }
-    add_boxes(scene.mesh, parts.triangles);
-    add_boxes(after, parts.triangles);
-    move_receivers(scene, after, parts.vertices, motion, change);
-    difference.receivers.resize(scene.receivers.size());
-    for (std::size_t i = 0; i < scene.receivers.size(); ++i)
-        difference.receivers[i] = change.receiver_positions[i] != scene.receivers.positions[i] ||
-                                  change.receiver_normals[i] != scene.receivers.normals[i];
-    for (const std::uint32_t receiver : scene.transfer.order)
-        change.normals_by_place.push_back(change.receiver_normals[receiver]);
+    add_boxes(before.mesh, 0);
+    add_boxes(after, 1);
+    if (!scene.mesh.corner_tangents.empty())
+        for (const std::uint32_t triangle : before.triangles) {
+            change.triangles.push_back(triangle);
+            change.corner_tangents.push_back(scene.mesh.corner_tangents[triangle]);
+            for (glm::vec4& tangent : change.corner_tangents.back())
+                tangent = motion.tangent(tangent);
+        }
+    move_receivers(scene, before, after, motion, change);
+    change.vertices = std::move(before.vertices);
     change.positions = std::move(after.positions);
     change.normals = std::move(after.normals);
     change.lifts = std::move(after.lifts);
-    change.corner_tangents = std::move(after.corner_tangents);
     return change;
 }
 

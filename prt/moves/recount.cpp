@@ -73,7 +73,8 @@ private:
 /// The directions in which the clusters are sampled. Neighbours in the quadtree stand side by side.
 struct Samples {
     std::vector<LatticePoint> points;
-    std::vector<glm::vec3> directions, inverses;
+    std::vector<glm::vec3> directions;
+    InverseDirections inverses;
     /// Distances to neighbours on the cube [-1, 1]^3
     std::vector<float> spacings;
     /// [clusters] indices of the nine points; those of a cell that is a texel are all its centre
@@ -96,7 +97,7 @@ struct Samples {
                     continue;
                 points.push_back(point);
                 directions.push_back(direction(point));
-                inverses.push_back(inverse(directions.back()));
+                inverses.add(directions.back());
                 spacings.push_back(static_cast<float>(cell.size()));
             }
         }
@@ -245,19 +246,27 @@ private:
             boxes.emplace_back(difference_.boxes, group.places[block]);
         }
         const MetBoxes from_group(difference_.boxes, place);
-        for (std::uint32_t point = 0; point < samples_.points.size(); ++point) {
-            const glm::vec3& inverse_direction = samples_.inverses[point];
-            if (!from_group.meets(inverse_direction))
+        const std::span<const InverseDirections::Word> words = samples_.inverses.words();
+        for (std::size_t word = 0; word < words.size(); ++word) {
+            const std::uint64_t met = from_group.meeting(words[word], samples_.inverses.bits(word));
+            if (met == 0)
                 continue;
-            std::uint8_t blocks = 0;
             for (std::size_t block = 0; block < group.num_blocks; ++block)
-                if ((group.whole >> block & 1u) == 0 &&
-                    may_be_above(group.facing[block], samples_.directions[point]) &&
-                    boxes[block].meets(inverse_direction))
-                    blocks |= static_cast<std::uint8_t>(1u << block);
-            if (blocks != 0)
-                for (std::uint32_t i = samples_.begin[point]; i < samples_.begin[point + 1]; ++i)
-                    scratch.add(samples_.clusters[i], blocks);
+                if ((group.whole >> block & 1u) == 0)
+                    add_met(word * InverseDirections::WordSize,
+                            boxes[block].meeting(words[word], met), group, block, scratch);
+        }
+    }
+
+    /// Adds the clusters of samples, a bit each from the first on, for a block that may see them.
+    void add_met(std::size_t first, std::uint64_t met, const Group& group, std::size_t block,
+                 Scratch& scratch) const {
+        for (; met != 0; met &= met - 1) {
+            const std::size_t point = first + static_cast<std::size_t>(std::countr_zero(met));
+            if (!may_be_above(group.facing[block], samples_.directions[point]))
+                continue;
+            for (std::uint32_t i = samples_.begin[point]; i < samples_.begin[point + 1]; ++i)
+                scratch.add(samples_.clusters[i], static_cast<std::uint8_t>(1u << block));
         }
     }
 
@@ -397,9 +406,8 @@ private:
 
 } // namespace
 
-std::vector<mesh::Bounds> boxes_around(const mesh::TriangleMesh& mesh,
-                                       const std::vector<mesh::Triangle>& triangles) {
-    const TriangleTree tree = triangle_tree(mesh.positions, triangles);
+std::vector<mesh::Bounds> boxes_around(const mesh::TriangleMesh& mesh) {
+    const TriangleTree tree = triangle_tree(mesh.positions, mesh.triangles);
     std::vector<mesh::Bounds> boxes;
     if (tree.nodes.empty())
         return boxes;

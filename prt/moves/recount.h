@@ -2,6 +2,7 @@
 // met keep their fate.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -19,14 +20,15 @@ namespace relumine::prt {
 struct SceneDifference {
     /// They hold all triangles that block or send light in one of the two alone.
     std::vector<mesh::Bounds> boxes;
+    /// Boxes around those of each of the two
+    std::array<mesh::Bounds, 2> around;
     /// [num_receivers] true where a receiver has another position or another normal.
     std::vector<bool> receivers;
 };
 
-/// Returns boxes around some of a mesh's triangles: up to 16, which leave out much of what a single
-/// box would hold.
-[[nodiscard]] std::vector<mesh::Bounds> boxes_around(const mesh::TriangleMesh& mesh,
-                                                     const std::vector<mesh::Triangle>& triangles);
+/// Returns boxes around a mesh's triangles: up to 16, which leave out much of what a single box
+/// would hold.
+[[nodiscard]] std::vector<mesh::Bounds> boxes_around(const mesh::TriangleMesh& mesh);
 
 struct RecountStatistics {
     /// Pairs of blocks and clusters that were counted anew, and those whose counts are others.

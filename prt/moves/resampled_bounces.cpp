@@ -1,10 +1,17 @@
 #include "prt/moves/resampled_bounces.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
 #include <iterator>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
+#include <glm/geometric.hpp>
+
+#include "cubemap/face.h"
 #include "files/parallel.h"
 #include "prt/bounces/bounce_precompute.h"
 #include "prt/bounces/bounce_sampler.h"
@@ -36,6 +43,78 @@ std::vector<std::uint64_t> changed_clusters(const VisibleCounts& counts, const C
     return result;
 }
 
+/// A cone around a centre and all within an angle of it.
+DirectionCone cone(const glm::dvec3& centre, double angle) {
+    constexpr double Roundings = 1e-5;
+    return {.axis = glm::vec3(glm::normalize(centre)),
+            .cosine = angle < std::numbers::pi
+                          ? static_cast<float>(std::cos(angle + Roundings) - Roundings)
+                          : -1.0f};
+}
+
+/// Finds cones with all directions from a block's places that may meet a box of a difference or lie
+/// in a cluster whose counts changed.
+class ConesOfBlocks {
+public:
+    ConesOfBlocks(const Quadtree& quadtree, const SceneDifference& difference)
+        : difference_(difference) {
+        for (const Cell& cell : quadtree.leaves()) {
+            const auto at = [&](double x, double y) {
+                return cubemap::direction(cell.face, (cell.x + x) * cell.size(),
+                                          (cell.y + y) * cell.size());
+            };
+            const glm::dvec3 centre = at(0.5, 0.5);
+            double least = 1.0;
+            for (std::uint32_t i = 0; i < 4; ++i)
+                least = std::min(least, glm::dot(centre, at(i & 1u, i >> 1u)));
+            cells_.push_back({centre, std::acos(least)});
+        }
+    }
+
+    /// `places`: the box of the block's origins. `for_changed(visit)` calls visit(cluster).
+    template<typename ForChanged>
+    [[nodiscard]] std::array<DirectionCone, 2> of(const mesh::Bounds& places,
+                                                  const ForChanged& for_changed) const {
+        std::array<Cap, 2> caps;
+        for (std::size_t side = 0; side < caps.size(); ++side)
+            caps[side] = cap_of(difference_.around[side], places);
+        for_changed([&](std::uint32_t cluster) {
+            const Cap& cell = cells_[cluster];
+            const auto needed = [&](const Cap& cap) {
+                return std::acos(std::clamp(glm::dot(cap.centre, cell.centre), -1.0, 1.0)) +
+                       cell.angle;
+            };
+            const std::array<double, 2> angles = {needed(caps[0]), needed(caps[1])};
+            const std::size_t side = angles[0] - caps[0].angle <= angles[1] - caps[1].angle ? 0 : 1;
+            caps[side].angle = std::max(caps[side].angle, angles[side]);
+        });
+        return {cone(caps[0].centre, caps[0].angle), cone(caps[1].centre, caps[1].angle)};
+    }
+
+private:
+    /// Directions within an angle of a centre.
+    struct Cap {
+        glm::dvec3 centre{0.0, 1.0, 0.0};
+        double angle = 0.0;
+    };
+
+    /// Returns what a box fills as seen from places: a sphere around it.
+    static Cap cap_of(const mesh::Bounds& box, const mesh::Bounds& places) {
+        constexpr double Margin = 1e-5; // more than that of MetBoxes
+        if (!(box.min.x <= box.max.x))
+            return {};
+        const glm::dvec3 way = glm::dvec3(box.center()) - glm::dvec3(places.center());
+        const double distance = glm::length(way);
+        const double radius = 0.5 * static_cast<double>(box.diagonal() + places.diagonal()) +
+                              Margin * static_cast<double>(reach(box) + reach(places));
+        return distance > radius ? Cap{way / distance, std::asin(radius / distance)}
+                                 : Cap{{0.0, 1.0, 0.0}, std::numbers::pi};
+    }
+
+    const SceneDifference& difference_;
+    std::vector<Cap> cells_;
+};
+
 std::vector<std::uint32_t> without(std::span<const std::uint32_t> row,
                                    const std::vector<std::uint32_t>& some) {
     std::vector<std::uint32_t> result;
@@ -58,35 +137,54 @@ ResampledBounces::ResampledBounces(const BounceView& before, const SceneDifferen
     const BounceRays& rays = before.scene.bounces->rays;
     const Asked asked(before);
     const std::vector<std::uint64_t> changed = changed_clusters(transfer.counts, counts);
+    const ConesOfBlocks cones_of(transfer.quadtree, difference);
     Progress progress(work);
-    files::parallel_for(std::size_t{0}, rows_.size(), [&](std::size_t place) {
+    const auto origin_of = [&](std::size_t place) {
+        return ray_origin(receivers.positions[transfer.order[place]], transfer.normals[place],
+                          before.scene.settings.bias);
+    };
+    files::parallel_for(std::size_t{0}, transfer.counts.num_blocks(), [&](std::size_t block) {
         progress.poll();
-        Row& row = rows_[place];
-        const std::uint32_t receiver = transfer.order[place];
-        const PartReceiver own{.place = place, .index = place};
-        // Who saw no surface looked into no direction.
-        row.is_whole = difference.receivers[receiver] || asked.sampler.closure_of(own) == 0.0;
-        if (row.is_whole)
-            return;
-        const glm::vec3 origin = ray_origin(receivers.positions[receiver], transfer.normals[place],
-                                            before.scene.settings.bias);
-        const MetBoxes boxes(difference.boxes, {origin, origin});
-        const std::size_t block = place / BlockSize;
-        row.directions = asked.sampler.chosen(
-            own, rays.num_directions[place],
-            [&](const glm::dvec3& direction, std::uint32_t cluster) {
-                return (changed[transfer.counts.word(block, cluster / 64)] >> cluster % 64 & 1u) !=
-                           0 ||
-                       boxes.meets(inverse(glm::vec3(direction)));
-            });
-        asked.sampler.look(own, row.directions, [&](std::uint32_t direction, const RayFate& fate) {
-            ++row.num_hits;
-            if (fate.emitter != NoEmitter)
-                row.emitters.push_back(fate.emitter);
-            if (direction < asked.options.min_directions)
-                row.sum_inverse_distances += fate.inverse_distance;
+        const std::size_t begin = block * BlockSize;
+        const std::size_t end = std::min(begin + BlockSize, rows_.size());
+        const auto word_of = [&](std::size_t w) {
+            return changed[transfer.counts.word(block, w)];
+        };
+        mesh::Bounds places = no_box();
+        for (std::size_t place = begin; place < end; ++place)
+            include(places, origin_of(place));
+        const auto cones = cones_of.of(places, [&](const auto& visit) {
+            for (std::size_t w = 0; w < transfer.counts.words_per_block(); ++w)
+                for (std::uint64_t bits = word_of(w); bits != 0; bits &= bits - 1)
+                    visit(static_cast<std::uint32_t>(64 * w) +
+                          static_cast<std::uint32_t>(std::countr_zero(bits)));
         });
-        std::ranges::sort(row.emitters);
+        for (std::size_t place = begin; place < end; ++place) {
+            Row& row = rows_[place];
+            const PartReceiver own{.place = place, .index = place};
+            // Who saw no surface looked into no direction.
+            row.is_whole =
+                difference.receivers[transfer.order[place]] || asked.sampler.closure_of(own) == 0.0;
+            if (row.is_whole)
+                continue;
+            const glm::vec3 origin = origin_of(place);
+            const MetBoxes boxes(difference.boxes, {origin, origin});
+            row.directions =
+                asked.sampler.chosen(own, rays.num_directions[place], cones,
+                                     [&](const glm::dvec3& direction, std::uint32_t cluster) {
+                                         return (word_of(cluster / 64) >> cluster % 64 & 1u) != 0 ||
+                                                boxes.meets(inverse(glm::vec3(direction)));
+                                     });
+            asked.sampler.look(own, row.directions,
+                               [&](std::uint32_t direction, const RayFate& fate) {
+                                   ++row.num_hits;
+                                   if (fate.emitter != NoEmitter)
+                                       row.emitters.push_back(fate.emitter);
+                                   if (direction < asked.options.min_directions)
+                                       row.sum_inverse_distances += fate.inverse_distance;
+                               });
+            std::ranges::sort(row.emitters);
+        }
     });
 }
 
@@ -99,15 +197,19 @@ BounceSamples ResampledBounces::samples(const BounceView& now, const BounceMatri
     BounceSamples result;
     result.open_parts.assign(now.open_parts.begin(), now.open_parts.end());
     result.num_directions = before.rays.num_directions;
-    result.num_hits.resize(rows_.size());
-    result.distances.resize(rows_.size());
+    result.num_hits = before.rays.num_hits;
+    result.distances = before.rays.distances;
     std::vector<std::vector<std::uint32_t>> rows(rows_.size());
+    std::vector<std::uint8_t> is_other(rows_.size());
     Progress progress(work);
     files::parallel_for(std::size_t{0}, rows_.size(), [&](std::size_t place) {
         progress.poll();
         Row& row = rows_[place];
         const PartReceiver own{.place = place, .index = place};
         const bool is_whole = row.is_whole || asked.sampler.closure_of(own) == 0.0;
+        if (!is_whole && row.directions.empty())
+            return;
+        is_other[place] = 1;
         const float distance = before.rays.distances[place];
         std::uint32_t num_hits = 0;
         double sum = 0.0, sum_before = 0.0;
@@ -134,8 +236,14 @@ BounceSamples ResampledBounces::samples(const BounceView& now, const BounceMatri
             sum > Roundings * sum_before ? static_cast<float>(first_look / sum) : 0.0f;
         row = {};
     });
-    for (const std::vector<std::uint32_t>& row : rows)
-        result.emitters.append(row);
+    std::size_t num_emitters = 0;
+    for (std::size_t place = 0; place < rows.size(); ++place)
+        num_emitters += is_other[place] != 0 ? rows[place].size() : before.emitters[place].size();
+    result.emitters.places.reserve(num_emitters);
+    result.emitters.begin.reserve(rows.size() + 1);
+    for (std::size_t place = 0; place < rows.size(); ++place)
+        result.emitters.append(is_other[place] != 0 ? std::span<const std::uint32_t>(rows[place])
+                                                    : before.emitters[place]);
     std::vector<std::uint32_t> all(rows.size());
     std::iota(all.begin(), all.end(), 0u);
     result.averaged =

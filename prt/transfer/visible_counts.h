@@ -77,6 +77,12 @@ struct VisibleCounts {
         const std::size_t width = tile_begin(block / TileBlocks + 1) - begin;
         return begin * words_per_block() + w * width + (block - begin);
     }
+    /// Returns the block that has a word of word().
+    [[nodiscard]] std::size_t block_of(std::size_t word) const {
+        const std::size_t tile = word / (TileBlocks * words_per_block());
+        const std::size_t begin = tile_begin(tile);
+        return begin + (word - begin * words_per_block()) % (tile_begin(tile + 1) - begin);
+    }
     [[nodiscard]] std::size_t num_mixed() const { return counts.size() / BlockSize; }
 
     /// Returns the 16 counts of a mixed pair: word = word(block, leaf / 64), bit = leaf % 64.

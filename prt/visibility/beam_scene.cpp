@@ -4,19 +4,21 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
+#include "files/parallel.h"
 #include "mesh/flat_regions.h"
 #include "mesh/opacity.h"
 #include "prt/visibility/beam_kernels.h"
 #include "prt/visibility/bit_matrix.h"
 #include "prt/visibility/group_origins.h"
+#include "prt/visibility/grouped_tree.h"
 #include "prt/visibility/parallel_rays.h"
 #include "prt/visibility/ray_scene.h"
 #include "prt/visibility/see_through.h"
 #include "prt/visibility/shaft.h"
 #include "prt/visibility/shaft_leaves.h"
-#include "prt/visibility/triangle_tree.h"
 
 namespace relumine::prt {
 namespace {
@@ -155,23 +157,27 @@ struct ChosenTriangles {
     std::vector<std::uint32_t> numbers;
 };
 
-/// Returns the triangles of a mesh that stop all rays, or those that stop some of them.
-ChosenTriangles chosen_triangles(const mesh::TriangleMesh& mesh, const SeeThrough& see_through,
-                                 RayOf of, SeeThrough::All all) {
-    ChosenTriangles chosen;
-    chosen.mesh.positions = mesh.positions;
-    for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i)
-        if (see_through.all_at(i, of) == all) {
-            chosen.mesh.triangles.push_back(mesh.triangles[i]);
-            chosen.numbers.push_back(i);
-        }
-    return chosen;
+/// Takes away all vertices without a triangle.
+void drop_vertices(mesh::TriangleMesh& mesh) {
+    std::vector<std::uint32_t> used;
+    for (const mesh::Triangle& triangle : mesh.triangles)
+        used.insert(used.end(), triangle.begin(), triangle.end());
+    std::ranges::sort(used);
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    std::vector<glm::vec3> positions;
+    for (const std::uint32_t vertex : used)
+        positions.push_back(mesh.positions[vertex]);
+    for (mesh::Triangle& triangle : mesh.triangles)
+        for (std::uint32_t& vertex : triangle)
+            vertex =
+                static_cast<std::uint32_t>(std::ranges::lower_bound(used, vertex) - used.begin());
+    mesh.positions = std::move(positions);
 }
 
 /// Returns the tree of triangles that stop all rays, with flat regions merged: numbers of merged
 /// triangles mean nothing.
-TriangleTree opaque_tree(const mesh::TriangleMesh& mesh) {
-    TriangleTree tree = triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh));
+TriangleTree opaque_tree(const mesh::TriangleMesh& mesh, const std::optional<glm::vec3>& centre) {
+    TriangleTree tree = triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh), centre);
     tree.triangles = {};
     return tree;
 }
@@ -179,28 +185,76 @@ TriangleTree opaque_tree(const mesh::TriangleMesh& mesh) {
 } // namespace
 
 struct BeamScene::Trees {
-    Trees(const mesh::TriangleMesh& mesh, std::shared_ptr<const SeeThrough> passed, RayOf whose)
-        : see_through(std::move(passed)), of(whose) {
-        if (!mesh::lets_light_pass(mesh)) {
-            opaque = opaque_tree(mesh);
-            return;
-        }
-        const auto chosen = [&](SeeThrough::All all) {
-            return chosen_triangles(mesh, *see_through, of, all);
-        };
-        opaque = opaque_tree(chosen(SeeThrough::All::Stop).mesh);
-        const auto [thin, numbers] = chosen(SeeThrough::All::Differ);
-        some_pass = triangle_tree(thin.positions, thin.triangles);
-        for (std::size_t leaf = 0; leaf < some_pass.leaves.size(); ++leaf)
-            for (std::size_t lane = 0; lane < some_pass.leaves[leaf].size; ++lane) {
-                std::uint32_t& number = some_pass.triangles[leaf][lane];
-                number = numbers[number];
-            }
+    /// `groups`: the triangles of each group that may move; empty: none does.
+    Trees(const mesh::TriangleMesh& mesh, std::shared_ptr<const SeeThrough> passed, RayOf whose,
+          std::span<const std::span<const std::uint32_t>> groups)
+        : see_through(std::move(passed)), of(whose), lets_pass(mesh::lets_light_pass(mesh)) {
+        if (!groups.empty())
+            centre = mesh::bounds(mesh).center();
+        std::vector<TriangleTree> all_opaque(std::max<std::size_t>(groups.size(), 1)),
+            all_some_pass(all_opaque.size());
+        files::parallel_for(std::size_t{0}, all_opaque.size(), [&](std::size_t i) {
+            if (groups.empty() && !lets_pass)
+                all_opaque[i] = opaque_tree(mesh, {});
+            else
+                find_trees(mesh, groups.empty() ? std::nullopt : std::optional(groups[i]),
+                           all_opaque[i], all_some_pass[i]);
+        });
+        opaque = GroupedTree(std::move(all_opaque));
+        some_pass = GroupedTree(std::move(all_some_pass));
     }
+
+    void follow(const mesh::TriangleMesh& mesh, std::uint32_t group,
+                std::span<const std::uint32_t> numbers) {
+        TriangleTree of_opaque, of_some_pass;
+        find_trees(mesh, numbers, of_opaque, of_some_pass);
+        opaque.replace(group, of_opaque);
+        if (lets_pass)
+            some_pass.replace(group, of_some_pass);
+    }
+
     std::shared_ptr<const SeeThrough> see_through;
     RayOf of;
+    bool lets_pass;
+    /// Of all trees, where groups move
+    std::optional<glm::vec3> centre;
     /// Trees of the triangles that stop all rays, and of those that stop some of them.
-    TriangleTree opaque, some_pass;
+    GroupedTree opaque, some_pass;
+
+private:
+    using Numbers = std::optional<std::span<const std::uint32_t>>;
+
+    /// Returns those triangles of some numbers, or of all, that stop all rays, or some.
+    [[nodiscard]] ChosenTriangles chosen(const mesh::TriangleMesh& mesh, const Numbers& numbers,
+                                         SeeThrough::All all) const {
+        ChosenTriangles result;
+        result.mesh.positions = mesh.positions;
+        const std::size_t count = numbers ? numbers->size() : mesh.num_triangles();
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::uint32_t number = numbers ? (*numbers)[i] : static_cast<std::uint32_t>(i);
+            if (lets_pass && see_through->all_at(number, of) != all)
+                continue;
+            result.mesh.triangles.push_back(mesh.triangles[number]);
+            result.numbers.push_back(number);
+        }
+        if (numbers)
+            drop_vertices(result.mesh);
+        return result;
+    }
+
+    void find_trees(const mesh::TriangleMesh& mesh, const Numbers& numbers, TriangleTree& stopping,
+                    TriangleTree& passing) const {
+        stopping = opaque_tree(chosen(mesh, numbers, SeeThrough::All::Stop).mesh, centre);
+        if (!lets_pass)
+            return;
+        const auto [thin, in_mesh] = chosen(mesh, numbers, SeeThrough::All::Differ);
+        passing = triangle_tree(thin.positions, thin.triangles, centre);
+        for (std::size_t leaf = 0; leaf < passing.leaves.size(); ++leaf)
+            for (std::size_t lane = 0; lane < passing.leaves[leaf].size; ++lane) {
+                std::uint32_t& number = passing.triangles[leaf][lane];
+                number = in_mesh[number];
+            }
+    }
 };
 
 BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const RayScene& exact,
@@ -209,21 +263,29 @@ BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const RayScene& exact,
 
 BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact,
                      std::shared_ptr<const SeeThrough> see_through, std::size_t crowded_shaft)
-    : trees_(std::make_unique<const Trees>(mesh, see_through, RayOf::Light)), exact_(&exact),
-      crowded_shaft_(std::min(crowded_shaft, CrowdedShaft)) {
+    : exact_(&exact), crowded_shaft_(std::min(crowded_shaft, CrowdedShaft)) {
+    std::vector<std::span<const std::uint32_t>> groups;
+    if (const RayScene* rays = exact.ray_scene())
+        groups = rays->groups();
+    trees_ = std::make_unique<Trees>(mesh, see_through, RayOf::Light, groups);
     if (const Blockers* settled = exact.settled())
         settled_.reset(new BeamScene(
-            std::make_unique<const Trees>(mesh, std::move(see_through), RayOf::SettledLight),
+            std::make_unique<Trees>(mesh, std::move(see_through), RayOf::SettledLight, groups),
             *settled, crowded_shaft_));
 }
 
-BeamScene::BeamScene(std::unique_ptr<const Trees> trees, const Blockers& exact,
-                     std::size_t crowded_shaft)
+BeamScene::BeamScene(std::unique_ptr<Trees> trees, const Blockers& exact, std::size_t crowded_shaft)
     : trees_(std::move(trees)), exact_(&exact), crowded_shaft_(crowded_shaft) {}
 
 BeamScene::~BeamScene() = default;
 BeamScene::BeamScene(BeamScene&&) noexcept = default;
 BeamScene& BeamScene::operator=(BeamScene&&) noexcept = default;
+
+void BeamScene::follow(const mesh::TriangleMesh& mesh, std::uint32_t group) {
+    trees_->follow(mesh, group, exact_->ray_scene()->groups()[group]);
+    if (settled_)
+        settled_->trees_->follow(mesh, group, exact_->ray_scene()->groups()[group]);
+}
 
 std::uint32_t BeamScene::occluded(const glm::vec3& origin, const DirectionPacket& directions,
                                   std::uint32_t active) const {
@@ -237,15 +299,15 @@ void BeamScene::clear_blocked(const ReceiverGroup& group, const DirectionPatch& 
     const PatchPlane plane = patch_plane(patch);
     const Asked asked{group, patch, plane};
     RayWords doubts{};
-    if (!clear_by_tree(trees_->opaque, nullptr, crowded_shaft_, asked, rays,
+    if (!clear_by_tree(trees_->opaque.tree(), nullptr, crowded_shaft_, asked, rays,
                        std::span(doubts).first(rays.size()))) {
         exact_->clear_blocked(group, patch, rays);
         return;
     }
-    if (!trees_->some_pass.nodes.empty()) {
+    if (!trees_->some_pass.tree().nodes.empty()) {
         const PassedTriangles passed{*trees_->see_through, trees_->of};
         RayWords more{};
-        if (!clear_by_tree(trees_->some_pass, &passed, crowded_shaft_, asked, rays,
+        if (!clear_by_tree(trees_->some_pass.tree(), &passed, crowded_shaft_, asked, rays,
                            std::span(more).first(rays.size())))
             std::copy(rays.begin(), rays.end(), more.begin());
         for (std::size_t i = 0; i < rays.size(); ++i)

@@ -61,6 +61,11 @@ public:
     BeamScene(BeamScene&&) noexcept;
     BeamScene& operator=(BeamScene&&) noexcept;
 
+    /// Takes a group of the mesh as it stands there, after `exact` did. Only where its groups move.
+    ///
+    /// Cost:    O(the group's triangles), and a copy of all trees.
+    void follow(const mesh::TriangleMesh& mesh, std::uint32_t group);
+
     [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
                                          std::uint32_t active) const override;
     void clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
@@ -70,12 +75,12 @@ public:
 
 private:
     struct Trees;
-    BeamScene(std::unique_ptr<const Trees> trees, const Blockers& exact, std::size_t crowded_shaft);
+    BeamScene(std::unique_ptr<Trees> trees, const Blockers& exact, std::size_t crowded_shaft);
 
-    std::unique_ptr<const Trees> trees_;
+    std::unique_ptr<Trees> trees_;
     const Blockers* exact_;
     std::size_t crowded_shaft_;
-    std::unique_ptr<const BeamScene> settled_;
+    std::unique_ptr<BeamScene> settled_;
 };
 
 } // namespace relumine::prt

@@ -40,9 +40,25 @@ void LazyBeamScene::prepare(std::uint64_t num_rays) const {
     num_rays_ += num_rays;
     if (beams_ || num_rays_ < RaysPerTriangle * mesh_.num_triangles())
         return;
-    // Isolated: a thread that waits inside must not take up work that asks for this lock.
-    files::run_isolated([&] { beams_ = std::make_unique<const BeamScene>(mesh_, exact_); });
+    prepare_beams();
+}
+
+/// Under the lock. Isolated: a thread that waits inside must not take up work that asks for it.
+void LazyBeamScene::prepare_beams() const {
+    files::run_isolated([&] { beams_ = std::make_unique<BeamScene>(mesh_, exact_); });
     ready_ = beams_.get();
+}
+
+const BeamScene& LazyBeamScene::beams() const {
+    const std::scoped_lock lock(mutex_);
+    if (!beams_)
+        prepare_beams();
+    return *beams_;
+}
+
+void LazyBeamScene::follow(std::uint32_t group) {
+    if (beams_)
+        beams_->follow(mesh_, group);
 }
 
 } // namespace relumine::prt

@@ -32,13 +32,19 @@ public:
     void prepare(std::uint64_t num_rays) const override;
 
     [[nodiscard]] bool has_beams() const { return ready_ != nullptr; }
+    /// Returns the beams, prepared now if they were not.
+    [[nodiscard]] const BeamScene& beams() const;
+    /// Takes a group of the mesh as it stands there, after `exact` did (BeamScene::follow()).
+    void follow(std::uint32_t group);
 
 private:
+    void prepare_beams() const;
+
     const mesh::TriangleMesh& mesh_;
     const RayScene& exact_;
     mutable std::mutex mutex_;
     mutable std::uint64_t num_rays_ = 0;
-    mutable std::unique_ptr<const BeamScene> beams_;
+    mutable std::unique_ptr<BeamScene> beams_;
     /// beams_, once it is whole.
     mutable std::atomic<const BeamScene*> ready_ = nullptr;
 };

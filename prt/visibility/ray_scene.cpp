@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -40,22 +41,55 @@ bool has_no_area(const mesh::TriangleMesh& mesh, const mesh::Triangle& triangle)
                       glm::dvec3(mesh.positions[triangle[2]]) - corner) == glm::dvec3(0.0);
 }
 
-/// Copies an array into a geometry buffer, padded as Embree's kernels need it. Returns the buffer.
-template<typename Element>
-const Element* fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format,
-                           const std::vector<Element>& elements) {
-    void* buffer =
-        rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Element), elements.size());
-    if (buffer != nullptr && !elements.empty())
-        std::memcpy(buffer, elements.data(), elements.size() * sizeof(Element));
-    return static_cast<const Element*>(buffer);
-}
+/// The triangles that rays are traced against.
+///
+/// A triangle without area blocks nothing. But Embree's edge functions are all zero for it, and say
+/// "hit" to rays that pass beside it in a plane with it. It gets a corner that is not a number, so
+/// Embree drops it. The other triangles keep their numbers.
+struct TracedMesh {
+    explicit TracedMesh(const mesh::TriangleMesh& mesh)
+        : see_through(std::make_shared<const SeeThrough>(mesh)) {
+        positions.reserve(mesh.num_vertices() + NumMore);
+        positions = mesh.positions;
+        positions.resize(mesh.num_vertices() + NumMore,
+                         glm::vec3(std::numeric_limits<float>::quiet_NaN()));
+        triangles.reserve(mesh.num_triangles() + 1); // Embree reads a number beyond the last
+        triangles = mesh.triangles;
+        for (std::uint32_t i = 0; i < triangles.size(); ++i)
+            static_cast<void>(take(mesh, i));
+    }
 
-/// Embree's copy of a mesh.
-struct Buffers {
-    const glm::vec3* positions = nullptr;
-    const mesh::Triangle* triangles = nullptr;
+    /// Takes a triangle as it stands in the mesh. Returns whether it blocks rays, and did not
+    /// before, or the other way round.
+    bool take(const mesh::TriangleMesh& mesh, std::uint32_t i) {
+        const auto nowhere = static_cast<std::uint32_t>(mesh.num_vertices());
+        for (const std::uint32_t vertex : mesh.triangles[i])
+            positions[vertex] = mesh.positions[vertex];
+        const bool is_dropped = has_no_area(mesh, mesh.triangles[i]) || see_through->is_cut_out(i);
+        const mesh::Triangle before =
+            std::exchange(triangles[i], is_dropped ? mesh::Triangle{nowhere, nowhere, nowhere}
+                                                   : mesh.triangles[i]);
+        return before != triangles[i];
+    }
+
+    /// Behind those of the mesh: a corner that is not a number, and what Embree reads beyond it
+    static constexpr std::size_t NumMore = 2;
+    std::vector<glm::vec3> positions;
+    std::vector<mesh::Triangle> triangles;
     std::shared_ptr<const SeeThrough> see_through;
+};
+
+/// Triangles that Embree has a tree of.
+struct TracedPart {
+    const TracedMesh* all = nullptr;
+    /// Their numbers in the mesh, ascending; empty: they are those of the mesh.
+    std::span<const std::uint32_t> numbers = {};
+    /// Null: it has none.
+    RTCGeometry geometry = nullptr;
+
+    [[nodiscard]] std::uint32_t number_of(unsigned int primitive) const {
+        return numbers.empty() ? primitive : numbers[primitive];
+    }
 };
 
 /// The nearest hit of a ray so far.
@@ -101,29 +135,31 @@ struct Candidate {
     std::uint32_t ray;
     std::uint32_t triangle;
     glm::vec3 origin;
-    const Buffers& buffers;
+    const TracedMesh& mesh;
 
     Candidate(const RTCFilterFunctionNArguments* hits, unsigned int i)
         : direction(RTCRayN_dir_x(hits->ray, hits->N, i), RTCRayN_dir_y(hits->ray, hits->N, i),
                     RTCRayN_dir_z(hits->ray, hits->N, i)),
-          ray(RTCRayN_id(hits->ray, hits->N, i)), triangle(RTCHitN_primID(hits->hit, hits->N, i)),
+          ray(RTCRayN_id(hits->ray, hits->N, i)),
+          triangle(static_cast<const TracedPart*>(hits->geometryUserPtr)
+                       ->number_of(RTCHitN_primID(hits->hit, hits->N, i))),
           origin(RTCRayN_org_x(hits->ray, hits->N, i), RTCRayN_org_y(hits->ray, hits->N, i),
                  RTCRayN_org_z(hits->ray, hits->N, i)),
-          buffers(*static_cast<const Buffers*>(hits->geometryUserPtr)) {
+          mesh(*static_cast<const TracedPart*>(hits->geometryUserPtr)->all) {
         for (std::size_t k = 0; k < 3; ++k)
             corners[k] =
-                glm::dvec3(buffers.positions[buffers.triangles[triangle][k]]) - glm::dvec3(origin);
+                glm::dvec3(mesh.positions[mesh.triangles[triangle][k]]) - glm::dvec3(origin);
     }
 
     /// Whether the ray goes on behind the triangle.
     [[nodiscard]] bool passes(RayOf of) const {
         if (!is_eye(of))
-            return buffers.see_through->light_passes(triangle, corners, origin,
-                                                     glm::vec3(direction), of);
-        if (!buffers.see_through->may_pass(triangle, of))
+            return mesh.see_through->light_passes(triangle, corners, origin, glm::vec3(direction),
+                                                  of);
+        if (!mesh.see_through->may_pass(triangle, of))
             return false;
         const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-        return buffers.see_through->passes(
+        return mesh.see_through->passes(
             {.triangle = triangle,
              .barycentric = glm::vec2(meeting_of(corners, direction).barycentric),
              .origin = origin,
@@ -153,11 +189,11 @@ struct Candidate {
     }
 
     [[nodiscard]] RayScene::Crossing crossing() const {
-        const auto& [a, b, c] = buffers.triangles[triangle];
+        const auto& [a, b, c] = mesh.triangles[triangle];
         return {.part = static_cast<float>(meeting_of(corners, direction).distance),
                 .is_front = glm::dot(glm::cross(corners[1] - corners[0], corners[2] - corners[0]),
                                      direction) < 0.0,
-                .corners = {buffers.positions[a], buffers.positions[b], buffers.positions[c]}};
+                .corners = {mesh.positions[a], mesh.positions[b], mesh.positions[c]}};
     }
 
     [[nodiscard]] bool is_in_doubt(const Query& query) const {
@@ -269,8 +305,28 @@ std::string ray_engine() {
 }
 
 struct RayScene::Impl {
-    /// Embree holds its address.
-    Buffers buffers;
+    Impl(const mesh::TriangleMesh& mesh, Groups groups);
+
+    void add(TracedPart& part);
+    /// Gives Embree the triangles of a part that has numbers.
+    void fill(const TracedPart& part) const {
+        auto* const buffer = static_cast<mesh::Triangle*>(
+            rtcGetGeometryBufferData(part.geometry, RTC_BUFFER_TYPE_INDEX, 0));
+        for (std::size_t i = 0; i < part.numbers.size(); ++i)
+            buffer[i] = mesh.triangles[part.numbers[i]];
+    }
+    void find_coplanar() {
+        coplanar.emplace(
+            std::span(mesh.positions).first(mesh.positions.size() - TracedMesh::NumMore + 1),
+            std::span(mesh.triangles));
+    }
+
+    /// Embree holds its address, and those of its positions and of the parts.
+    TracedMesh mesh;
+    /// The triangles' numbers, one group behind the other; empty where groups stay.
+    std::vector<std::uint32_t> numbers;
+    /// [groups], or one
+    std::vector<TracedPart> parts;
     embree::DeviceHandle device;
     SceneHandle scene;
     embree::Flags packets = embree::Coherent;
@@ -303,10 +359,54 @@ private:
     const Impl& impl_;
 };
 
-RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
-    : impl_(std::make_unique<Impl>()) {
-    if (packets == Packets::Wide)
-        impl_->packets = embree::Incoherent;
+RayScene::Impl::Impl(const mesh::TriangleMesh& from, Groups groups)
+    : mesh(from), device(embree::new_device()), scene(rtcNewScene(device.get())) {
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    if (groups == Groups::Stay || from.triangle_groups.empty()) {
+        parts.push_back({.all = &mesh});
+    } else {
+        // Of low quality are the trees over groups. Each group has one as ever, which stays as long
+        // as the group does.
+        rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_LOW);
+        numbers.resize(from.num_triangles());
+        std::iota(numbers.begin(), numbers.end(), 0u);
+        const auto group_of = [&](std::uint32_t triangle) {
+            return from.triangle_groups[triangle];
+        };
+        std::ranges::stable_sort(numbers, {}, group_of);
+        for (std::uint32_t group = 0; group < from.groups.size(); ++group)
+            parts.push_back({.all = &mesh,
+                             .numbers = std::span<const std::uint32_t>(
+                                 std::ranges::equal_range(numbers, group, {}, group_of))});
+    }
+    for (TracedPart& part : parts)
+        if (parts.size() == 1 || !part.numbers.empty())
+            add(part);
+    find_coplanar();
+}
+
+/// Lets Embree build a tree of a part.
+void RayScene::Impl::add(TracedPart& part) {
+    part.geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(part.geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               mesh.positions.data(), 0, sizeof(glm::vec3),
+                               mesh.positions.size() - 1);
+    if (part.numbers.empty())
+        rtcSetSharedGeometryBuffer(part.geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                   mesh.triangles.data(), 0, sizeof(mesh::Triangle),
+                                   mesh.triangles.size());
+    else if (rtcSetNewGeometryBuffer(part.geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                     sizeof(mesh::Triangle), part.numbers.size()) != nullptr)
+        fill(part);
+    rtcSetGeometryUserData(part.geometry, &part);
+    rtcSetGeometryOccludedFilterFunction(part.geometry, keep_blockers);
+    rtcSetGeometryIntersectFilterFunction(part.geometry, keep_nearest);
+    rtcCommitGeometry(part.geometry);
+    rtcAttachGeometry(scene.get(), part.geometry);
+    rtcReleaseGeometry(part.geometry); // the scene holds it
+}
+
+RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets, Groups groups) {
     for (const mesh::Triangle& triangle : mesh.triangles)
         for (const std::uint32_t vertex : triangle)
             for (int axis = 0; axis < 3; ++axis)
@@ -314,39 +414,38 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
                     !(std::abs(x) < LargestCoordinate))
                     throw std::runtime_error(fmt::format("expected coordinates within {}, got {}",
                                                          LargestCoordinate, x));
-    impl_->device = embree::new_device();
-    RTCDevice device = impl_->device.get();
-    impl_->scene.reset(rtcNewScene(device));
-    rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);
-
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    // A triangle without area blocks nothing. But Embree's edge functions are all zero for it, and
-    // say "hit" to rays that pass beside it in a plane with it. It gets a corner that is not a
-    // number, so Embree drops it. The other triangles keep their numbers.
-    std::vector<glm::vec3> positions = mesh.positions;
-    std::vector<mesh::Triangle> triangles = mesh.triangles;
-    const auto nowhere = static_cast<std::uint32_t>(positions.size());
-    positions.emplace_back(std::numeric_limits<float>::quiet_NaN());
-    auto see_through = std::make_shared<const SeeThrough>(mesh);
-    for (std::uint32_t i = 0; i < triangles.size(); ++i)
-        if (has_no_area(mesh, triangles[i]) || see_through->is_cut_out(i))
-            triangles[i] = {nowhere, nowhere, nowhere};
-    impl_->buffers = {
-        .positions = fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions),
-        .triangles = fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles),
-        .see_through = std::move(see_through)};
-    impl_->coplanar.emplace(std::span(impl_->buffers.positions, positions.size()),
-                            std::span(impl_->buffers.triangles, triangles.size()));
-    rtcSetGeometryUserData(geometry, &impl_->buffers);
-    rtcSetGeometryOccludedFilterFunction(geometry, keep_blockers);
-    rtcSetGeometryIntersectFilterFunction(geometry, keep_nearest);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(impl_->scene.get(), geometry);
-    rtcReleaseGeometry(geometry);
+    impl_ = std::make_unique<Impl>(mesh, groups);
+    if (packets == Packets::Wide)
+        impl_->packets = embree::Incoherent;
     rtcCommitScene(impl_->scene.get());
-    embree::throw_on_error(device, "build the ray accelerator");
-    if (impl_->buffers.see_through->has_thin())
+    embree::throw_on_error(impl_->device.get(), "build the ray accelerator");
+    if (impl_->mesh.see_through->has_thin())
         impl_->settled = std::make_unique<const Settled>(*impl_);
+}
+
+std::vector<std::span<const std::uint32_t>> RayScene::groups() const {
+    std::vector<std::span<const std::uint32_t>> result;
+    for (const TracedPart& part : impl_->parts)
+        if (!impl_->numbers.empty())
+            result.push_back(part.numbers);
+    return result;
+}
+
+void RayScene::follow(const mesh::TriangleMesh& mesh, std::uint32_t group) {
+    const TracedPart& part = impl_->parts[group];
+    if (part.geometry == nullptr)
+        return;
+    bool is_other = false;
+    for (const std::uint32_t triangle : part.numbers)
+        is_other = impl_->mesh.take(mesh, triangle) || is_other;
+    if (is_other)
+        impl_->find_coplanar();
+    impl_->fill(part);
+    rtcUpdateGeometryBuffer(part.geometry, RTC_BUFFER_TYPE_INDEX, 0);
+    rtcUpdateGeometryBuffer(part.geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+    rtcCommitGeometry(part.geometry);
+    rtcCommitScene(impl_->scene.get());
+    embree::throw_on_error(impl_->device.get(), "build the ray accelerator anew");
 }
 
 RayScene::~RayScene() = default;
@@ -453,15 +552,15 @@ const Blockers* RayScene::settled() const {
 }
 
 bool RayScene::is_thin(std::uint32_t triangle) const {
-    return impl_->buffers.see_through->is_thin(triangle);
+    return impl_->mesh.see_through->is_thin(triangle);
 }
 
 const std::shared_ptr<const SeeThrough>& RayScene::see_through() const {
-    return impl_->buffers.see_through;
+    return impl_->mesh.see_through;
 }
 
 RayScene::Stops RayScene::stops(std::uint32_t triangle) const {
-    const SeeThrough& see_through = *impl_->buffers.see_through;
+    const SeeThrough& see_through = *impl_->mesh.see_through;
     if (see_through.may_pass(triangle, RayOf::Light))
         return Stops::Somewhere;
     return see_through.is_one_sided(triangle) ? Stops::Front : Stops::BothSides;
@@ -502,7 +601,7 @@ void RayScene::layers(const glm::vec3& origin, const glm::vec3& direction,
         if (!impl_->trace(origin, direction, query))
             return;
         const Hit hit = hit_of(nearest);
-        layers.push_back({hit, impl_->buffers.see_through->veil(hit.triangle, hit.barycentric)});
+        layers.push_back({hit, impl_->mesh.see_through->veil(hit.triangle, hit.barycentric)});
         if (layers.back().veil.through == glm::vec3(0.0f))
             return;
         last = nearest;

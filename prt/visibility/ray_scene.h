@@ -37,9 +37,9 @@ struct Hit {
     float distance = 0.0f;
 };
 
-/// Triangles prepared for ray queries; immutable. Triangles block from both sides. Rays are traced
-/// watertight (Embree's robust mode): no ray slips through a shared edge. Where the mesh's
-/// materials let a ray pass (prt/visibility/see_through.h), it goes on behind the triangle.
+/// Triangles prepared for ray queries; immutable but for follow(). Triangles block from both sides.
+/// Rays are traced watertight (Embree's robust mode): no ray slips through a shared edge. Where the
+/// mesh's materials let a ray pass (prt/visibility/see_through.h), it goes on behind the triangle.
 ///
 /// A ray's answer does not depend on the rays that are asked with it. x86 processors from AVX2 on
 /// give the same answers.
@@ -49,16 +49,27 @@ class RayScene final : public Blockers {
 public:
     /// Whether the directions of most packets lie close together. Answers are the same.
     enum class Packets { Narrow, Wide };
+    /// Whether groups of the mesh move: follow().
+    enum class Groups { Stay, Move };
 
     /// Builds the accelerator. The mesh need not outlive this object.
     ///
     /// Cost:    O(n log n), about 100 bytes per triangle.
     /// Throws:  std::runtime_error when Embree fails (out of memory, for example), is built without
     ///          packets or filters, or a triangle lies beyond LargestCoordinate.
-    explicit RayScene(const mesh::TriangleMesh& mesh, Packets packets = Packets::Narrow);
+    explicit RayScene(const mesh::TriangleMesh& mesh, Packets packets = Packets::Narrow,
+                      Groups groups = Groups::Stay);
     ~RayScene() override;
     RayScene(RayScene&&) noexcept;
     RayScene& operator=(RayScene&&) noexcept;
+
+    /// Takes a group of the mesh as it stands there. The rest of the mesh is as before. Only with
+    /// Groups::Move, and while no query runs.
+    ///
+    /// Cost:    O(the group's triangles), and a tree over all groups.
+    void follow(const mesh::TriangleMesh& mesh, std::uint32_t group);
+    /// The triangles of each group, ascending; none where groups stay.
+    [[nodiscard]] std::vector<std::span<const std::uint32_t>> groups() const;
 
     [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
                                          std::uint32_t active) const override;

@@ -201,7 +201,7 @@ public:
         std::vector<TriangleTree> large = large_children(parts);
         reserve_for(large);
         for (std::size_t i = 0; i < parts.size(); ++i) {
-            const std::int32_t child = !large[i].nodes.empty() ? append(std::exchange(large[i], {}))
+            const std::int32_t child = !large[i].nodes.empty() ? add(std::exchange(large[i], {}))
                                        : parts[i].fits_leaf()  ? ~leaf(parts[i])
                                                                : node(parts[i]);
             TriangleTree::Node& node = tree_.nodes[index];
@@ -238,22 +238,8 @@ private:
         tree_.leaves.reserve(num_leaves);
         tree_.triangles.reserve(num_leaves);
     }
-    /// Adds the nodes and leaves of another tree and returns the index of its root.
-    std::int32_t append(const TriangleTree& other) {
-        const auto root = static_cast<std::int32_t>(tree_.nodes.size());
-        const auto first_leaf = static_cast<std::int32_t>(tree_.leaves.size());
-        tree_.nodes.insert(tree_.nodes.end(), other.nodes.begin(), other.nodes.end());
-        for (auto node = tree_.nodes.begin() + root; node != tree_.nodes.end(); ++node)
-            for (std::size_t lane = 0; lane < Width; ++lane) {
-                std::int32_t& child = node->child[lane];
-                if (node->bounds[0][lane] > node->bounds[3][lane])
-                    continue; // unused
-                child = child >= 0 ? child + root : child - first_leaf;
-            }
-        tree_.leaves.insert(tree_.leaves.end(), other.leaves.begin(), other.leaves.end());
-        tree_.triangles.insert(tree_.triangles.end(), other.triangles.begin(),
-                               other.triangles.end());
-        return root;
+    std::int32_t add(const TriangleTree& other) {
+        return static_cast<std::int32_t>(append(tree_, other, whole(other)).first_node);
     }
     std::int32_t leaf(const Part& part) {
         TriangleTree::Leaf& leaf = tree_.leaves.emplace_back();
@@ -284,8 +270,41 @@ private:
 
 } // namespace
 
+TreePart whole(const TriangleTree& tree) {
+    return {.end_node = tree.nodes.size(), .end_leaf = tree.leaves.size()};
+}
+
+TreePart append(TriangleTree& to, const TriangleTree& from, const TreePart& part) {
+    const TreePart result{.first_node = to.nodes.size(),
+                          .end_node = to.nodes.size() + part.end_node - part.first_node,
+                          .first_leaf = to.leaves.size(),
+                          .end_leaf = to.leaves.size() + part.end_leaf - part.first_leaf};
+    const auto add = [](auto& all, const auto& more, std::size_t first, std::size_t end) {
+        all.insert(all.end(), more.begin() + static_cast<std::ptrdiff_t>(first),
+                   more.begin() + static_cast<std::ptrdiff_t>(end));
+    };
+    add(to.nodes, from.nodes, part.first_node, part.end_node);
+    add(to.leaves, from.leaves, part.first_leaf, part.end_leaf);
+    if (!from.triangles.empty())
+        add(to.triangles, from.triangles, part.first_leaf, part.end_leaf);
+    const auto by_nodes =
+        static_cast<std::int32_t>(result.first_node) - static_cast<std::int32_t>(part.first_node);
+    const auto by_leaves =
+        static_cast<std::int32_t>(result.first_leaf) - static_cast<std::int32_t>(part.first_leaf);
+    for (std::size_t i = result.first_node; i < result.end_node; ++i)
+        for (std::size_t lane = 0; lane < Width; ++lane) {
+            TriangleTree::Node& node = to.nodes[i];
+            if (node.bounds[0][lane] > node.bounds[3][lane])
+                continue; // unused
+            std::int32_t& child = node.child[lane];
+            child += child >= 0 ? by_nodes : -by_leaves;
+        }
+    return result;
+}
+
 TriangleTree triangle_tree(std::span<const glm::vec3> positions,
-                           std::span<const mesh::Triangle> triangles) {
+                           std::span<const mesh::Triangle> triangles,
+                           const std::optional<glm::vec3>& centre) {
     TriangleTree tree;
     if (triangles.empty())
         return tree;
@@ -293,7 +312,7 @@ TriangleTree triangle_tree(std::span<const glm::vec3> positions,
     for (const mesh::Triangle& triangle : triangles)
         for (const std::uint32_t vertex : triangle)
             box.include(positions[vertex]);
-    tree.centre = 0.5f * (box.low + box.high);
+    tree.centre = centre.value_or(0.5f * (box.low + box.high));
     std::vector<Item> items(triangles.size());
     files::parallel_for(std::size_t{0}, items.size(), [&](std::size_t i) {
         items[i].triangle = static_cast<std::uint32_t>(i);

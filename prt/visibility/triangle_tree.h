@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,8 +48,19 @@ struct TriangleTree {
 
 /// Builds the tree by the surface area heuristic. The same triangles give the same tree.
 ///
+/// centre:  that of the tree; without one it is that of the triangles.
 /// Cost:    O(n log n).
 [[nodiscard]] TriangleTree triangle_tree(std::span<const glm::vec3> positions,
-                                         std::span<const mesh::Triangle> triangles);
+                                         std::span<const mesh::Triangle> triangles,
+                                         const std::optional<glm::vec3>& centre = {});
+
+/// Nodes and leaves of a tree that hang together; the first node is over all others.
+struct TreePart {
+    std::size_t first_node = 0, end_node = 0, first_leaf = 0, end_leaf = 0;
+};
+/// Returns all of a tree.
+[[nodiscard]] TreePart whole(const TriangleTree& tree);
+/// Adds a part of one tree behind another's nodes and leaves. Returns where it is there.
+TreePart append(TriangleTree& to, const TriangleTree& from, const TreePart& part);
 
 } // namespace relumine::prt

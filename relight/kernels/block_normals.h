@@ -18,6 +18,13 @@ struct alignas(64) BlockNormals {
     std::array<std::array<float, prt::BlockSize>, 3> axes{};
 };
 
+/// Sets the normal of a place.
+inline void set_normal(std::span<BlockNormals> blocks, std::size_t place, const glm::vec3& normal) {
+    for (int axis = 0; axis < 3; ++axis)
+        blocks[place / prt::BlockSize]
+            .axes[static_cast<std::size_t>(axis)][place % prt::BlockSize] = normal[axis];
+}
+
 /// Returns the normals in blocks.
 ///
 /// Shape:   [ceil(normals.size() / 16)].
@@ -25,9 +32,7 @@ struct alignas(64) BlockNormals {
     auto blocks =
         files::large_vector<BlockNormals>((normals.size() + prt::BlockSize - 1) / prt::BlockSize);
     for (std::size_t i = 0; i < normals.size(); ++i)
-        for (int axis = 0; axis < 3; ++axis)
-            blocks[i / prt::BlockSize].axes[static_cast<std::size_t>(axis)][i % prt::BlockSize] =
-                normals[i][axis];
+        set_normal(blocks, i, normals[i]);
     return blocks;
 }
 

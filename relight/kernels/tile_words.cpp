@@ -148,14 +148,36 @@ struct NormalBounds {
 } // namespace
 
 TileWords tile_words(const prt::Transfer& transfer, std::span<const BlockNormals> normals) {
+    TileWords result;
+    result.words.resize(transfer.counts.num_tiles() * transfer.counts.words_per_block());
+    update(result, transfer, normals,
+           std::vector<std::uint64_t>(transfer.counts.num_tiles(), ~std::uint64_t{0}));
+    return result;
+}
+
+void update(TileWords& result, const prt::Transfer& transfer, std::span<const BlockNormals> normals,
+            std::span<const std::uint64_t> changed) {
     const prt::VisibleCounts& counts = transfer.counts;
     const CellBounds cells(transfer.quadtree);
     const std::size_t num_words = counts.words_per_block();
-    TileWords result;
-    result.words.resize(counts.num_tiles() * num_words);
+    // Where the entries of each tile begin.
+    std::vector<std::ptrdiff_t> begins;
+    for (std::size_t tile = 0; tile < counts.num_tiles(); ++tile)
+        begins.push_back(static_cast<std::ptrdiff_t>(result.words[tile * num_words].across_before));
+    begins.push_back(static_cast<std::ptrdiff_t>(result.across.size()));
     std::vector<std::vector<std::uint64_t>> across_of_tiles(counts.num_tiles());
     files::parallel_for(std::size_t{0}, counts.num_tiles(), [&](std::size_t tile) {
         const std::size_t begin = counts.tile_begin(tile);
+        if (changed[tile] == 0) {
+            across_of_tiles[tile].assign(result.across.begin() + begins[tile],
+                                         result.across.begin() + begins[tile + 1]);
+            for (std::size_t w = 0; w < num_words; ++w) {
+                TileWord& of_tile = result.words[tile * num_words + w];
+                of_tile.across_before -= static_cast<std::uint64_t>(begins[tile]);
+                of_tile.mixed_before = counts.mixed_before[counts.word(begin, w)];
+            }
+            return;
+        }
         const std::size_t end = counts.tile_begin(tile + 1);
         std::vector<std::uint64_t>& all_across = across_of_tiles[tile];
         std::vector<NormalBounds> blocks;
@@ -164,6 +186,7 @@ TileWords tile_words(const prt::Transfer& transfer, std::span<const BlockNormals
         std::vector<std::uint64_t> last(end - begin, 0); // of each block: the word before
         for (std::size_t w = 0; w < num_words; ++w) {
             TileWord& of_tile = result.words[tile * num_words + w];
+            of_tile = {};
             of_tile.across_before = all_across.size();
             of_tile.mixed_before = counts.mixed_before[counts.word(begin, w)];
             of_tile.whole_for_all = ~std::uint64_t{0};
@@ -200,13 +223,13 @@ TileWords tile_words(const prt::Transfer& transfer, std::span<const BlockNormals
             }
         }
     });
+    result.across.clear();
     for (std::size_t tile = 0; tile < counts.num_tiles(); ++tile) {
         for (std::size_t w = 0; w < num_words; ++w)
             result.words[tile * num_words + w].across_before += result.across.size();
         result.across.insert(result.across.end(), across_of_tiles[tile].begin(),
                              across_of_tiles[tile].end());
     }
-    return result;
 }
 
 } // namespace relumine::relight

@@ -69,5 +69,10 @@ struct TileWords {
 /// Cost:    O(visible pairs near the horizon); parallel (TBB).
 [[nodiscard]] TileWords tile_words(const prt::Transfer& transfer,
                                    std::span<const BlockNormals> normals);
+/// Finds it anew where blocks of a tile have other counts or normals than before.
+///
+/// Shape:   `changed` is [num_tiles], 0 where all are the same.
+void update(TileWords& words, const prt::Transfer& transfer, std::span<const BlockNormals> normals,
+            std::span<const std::uint64_t> changed);
 
 } // namespace relumine::relight

@@ -14,6 +14,7 @@
 #include <glm/vec3.hpp>
 
 #include "prt/glossy/brdf.h"
+#include "prt/moves/recount.h"
 #include "prt/transfer/transfer.h"
 #include "relight/kernels/block_kernels.h"
 #include "relight/kernels/block_normals.h"
@@ -41,6 +42,12 @@ public:
     ///          now.
     /// Memory:  a bit for each receiver and light.
     std::size_t trace(std::span<const SharpLight> lights);
+    /// Takes what a move changed in the transfer and before the lights, which are those of the last
+    /// trace(). Only rays that may meet what moved, and those of blocks in `changed`, are traced.
+    ///
+    /// changed: as prt::changed_blocks(); gets the blocks that lights reach otherwise than before.
+    void follow(std::span<const SharpLight> lights, const prt::SceneDifference& difference,
+                std::span<std::uint64_t> changed);
 
     /// Returns a block's radiance for albedo 1, or null where nothing is traced.
     [[nodiscard]] const TracedRadiance* diffuse(std::size_t block) const {
@@ -79,15 +86,27 @@ private:
     static Key key_of(const SharpLight& light);
     static void add(std::vector<FreshPatch>& patches, const SharpLight& light, Reached* reached);
 
-    /// Sets the bit of a direction for the receivers that must ask it, and what others see of it.
-    void choose_rays(const FreshPatch& patch, std::size_t direction, std::size_t first,
-                     std::span<const BlockNormals> normals, std::span<std::uint64_t> rays) const;
-    void find_reached(const FreshPatch& patch, std::size_t first, const prt::ReceiverGroup& group,
-                      std::span<const BlockNormals> normals) const;
-    void light_block(std::span<const SharpLight> lights, std::span<Reached* const> of_light,
-                     const BlockNormals& normals, std::size_t block);
-    void light_glossy_block(std::span<const SharpLight> lights, std::span<Reached* const> of_light,
-                            std::size_t block);
+    /// Blocks of a group, a bit each.
+    using BlockBits = std::uint8_t;
+    static constexpr BlockBits AllBlocks = 0xff;
+    /// Receivers that are traced together.
+    struct Group;
+
+    [[nodiscard]] std::size_t num_groups() const;
+    [[nodiscard]] Group group_at(std::size_t index, bool has_origins) const;
+    /// Sets the bit of a direction for the receivers of some blocks that must ask it, and what
+    /// others see of it.
+    void choose_rays(const FreshPatch& patch, std::size_t direction, const Group& group,
+                     BlockBits blocks, std::span<std::uint64_t> rays) const;
+    /// `blocks`: of each direction.
+    void find_reached(const FreshPatch& patch, const Group& group,
+                      std::span<const BlockBits> blocks) const;
+    BlockBits follow(std::span<const SharpLight> lights, std::span<const FreshPatch> patches,
+                     const Group& group, const prt::SceneDifference& difference, BlockBits changed);
+    void light(std::span<const SharpLight> lights, const BlockNormals& normals, std::size_t block);
+    void light_block(std::span<const SharpLight> lights, const BlockNormals& normals,
+                     std::size_t block);
+    void light_glossy_block(std::span<const SharpLight> lights, std::size_t block);
 
     const prt::Transfer& transfer_;
     ShadowRays rays_;

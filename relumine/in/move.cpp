@@ -16,8 +16,7 @@
 #include "files/nearest_name.h"
 #include "files/seconds.h"
 #include "prt/moves/resampled_bounces.h"
-#include "prt/visibility/beam_scene.h"
-#include "relight/probe_lights.h"
+#include "relight/relighter.h"
 #include "relumine/in/stages.h"
 #include "relumine/options/option_table.h"
 
@@ -27,7 +26,7 @@ namespace {
 
 std::uint32_t group_named(const Scene& scene, const std::string& name) {
     const std::vector<std::string>& names = scene.mesh.groups;
-    if (scene.mesh.triangle_groups.empty())
+    if (!scene.settings.is_movable || scene.mesh.triangle_groups.empty())
         throw std::invalid_argument("expected a scene that was precomputed with --movable, got one "
                                     "without groups");
     const auto found = std::find(names.begin(), names.end(), name);
@@ -70,41 +69,43 @@ void find_bounces(Scene& scene, const prt::RayScene& rays, const PrecomputeWork&
 
 /// The open part of each receiver's hemisphere, by place.
 std::vector<float> open_parts(const Scene& scene) {
+    relight::Relighter relighter(scene.transfer);
+    relighter.set_environment(cubemap::CubeMap(1, glm::vec3(1.0f)));
     std::vector<float> result;
-    for (const prt::ProbeRadiance& probe : relight::probe_radiance(scene.transfer))
-        result.push_back(probe.front());
+    for (const std::uint32_t receiver : scene.transfer.order)
+        result.push_back(relighter.diffuse_radiance()[receiver].g);
     return result;
 }
 
 /// A move, step by step. The scene's bounces stay in the change as long as there are no others.
 class Move {
 public:
-    Move(Scene& scene, const GroupMove& to, const PrecomputeWork& work)
-        : scene_(scene), work_(work),
-          change_(prt::moved(scene, group_named(scene, to.name), to.matrix, difference_)),
+    Move(Scene& scene, const GroupMove& to, SceneRays& rays, const PrecomputeWork& work)
+        : scene_(scene), rays_(rays), work_(work),
+          change_(prt::moved(scene, group_named(scene, to.name), to.matrix)),
           has_bounces_(scene.bounces.has_value()) {}
 
     prt::SceneChange run(MoveReport& report) {
         const auto start = std::chrono::steady_clock::now();
         const mesh::Bounds box = mesh::bounds(scene_.mesh);
-        prt::exchange(scene_, change_);
+        exchange();
         try {
-            const prt::RayScene rays = ray_scene(scene_.blocking_mesh(), "");
-            prt::CountsPatch counts = recounted(rays, report);
+            prt::CountsPatch counts = prt::recounted(
+                scene_.receivers, rays_.beams(), scene_.transfer, change_.difference,
+                {.face_resolution = scene_.settings.face_resolution, .bias = scene_.settings.bias},
+                work_.of(Stage::Clusters), &report.counts);
             const auto start_bounces = std::chrono::steady_clock::now();
             std::optional<prt::ResampledBounces> resampled = bounces_before(counts);
             prt::exchange(scene_.transfer.counts, counts);
             change_.counts = std::move(counts);
             if (has_bounces_)
-                bounce(rays, resampled);
+                bounce(resampled);
             report.seconds_bounces = files::seconds_since(start_bounces);
         } catch (...) {
-            prt::exchange(scene_, change_);
+            exchange();
             throw;
         }
-        prt::set_surfaces(scene_.transfer, scene_.receivers);
-        report.num_moved = static_cast<std::size_t>(
-            std::count(difference_.receivers.begin(), difference_.receivers.end(), true));
+        report.num_moved = change_.receivers.size();
         report.num_all =
             std::uint64_t{scene_.transfer.counts.num_blocks()} * scene_.transfer.counts.num_leaves;
         report.leaves_box = !is_inside(mesh::bounds(scene_.mesh), box);
@@ -113,51 +114,47 @@ public:
     }
 
 private:
-    prt::CountsPatch recounted(const prt::RayScene& rays, MoveReport& report) const {
-        const prt::BeamScene beams(scene_.blocking_mesh(), rays);
-        return prt::recounted(
-            scene_.receivers, beams, scene_.transfer, difference_,
-            {.face_resolution = scene_.settings.face_resolution, .bias = scene_.settings.bias},
-            work_.of(Stage::Clusters), &report.counts);
+    /// Moves the group, or moves it back.
+    void exchange() {
+        prt::exchange(scene_, change_);
+        rays_.follow(change_.group);
     }
 
     /// Finds what the bounces' rays met that are to be traced anew. Nothing where all are.
     std::optional<prt::ResampledBounces> bounces_before(const prt::CountsPatch& counts) {
-        prt::exchange(scene_, change_);
         std::optional<prt::ResampledBounces> result;
+        if (!has_bounces_)
+            return result;
+        exchange();
         try {
             if (prt::ResampledBounces::are_possible(scene_)) {
                 const std::vector<float> open = open_parts(scene_);
-                result.emplace(prt::BounceView{scene_, open, ray_scene(scene_.mesh, "")},
-                               difference_, counts, work_.of(Stage::Bounces).part(0.0, 0.5));
+                result.emplace(prt::BounceView{scene_, open, rays_.of_mesh()}, change_.difference,
+                               counts, work_.of(Stage::Bounces).part(0.0, 0.5));
             }
         } catch (...) {
-            prt::exchange(scene_, change_);
+            exchange();
             throw;
         }
-        prt::exchange(scene_, change_);
+        exchange();
         return result;
     }
 
-    void bounce(const prt::RayScene& rays, std::optional<prt::ResampledBounces>& resampled) {
+    void bounce(std::optional<prt::ResampledBounces>& resampled) {
         if (!resampled) {
-            find_bounces(scene_, rays, work_);
+            find_bounces(scene_, rays_.blockers(), work_);
             return;
         }
-        std::optional<prt::RayScene> of_mesh;
-        if (scene_.blockers)
-            of_mesh.emplace(ray_scene(scene_.mesh, ""));
         const std::vector<float> open = open_parts(scene_);
         std::vector<prt::BounceSamples> samples;
-        samples.push_back(resampled->samples({scene_, open, of_mesh ? *of_mesh : rays},
-                                             *change_.bounces,
+        samples.push_back(resampled->samples({scene_, open, rays_.of_mesh()}, *change_.bounces,
                                              work_.of(Stage::Bounces).part(0.5, 0.5)));
         scene_.bounces = prt::join_bounces(scene_.receivers, scene_.transfer, std::move(samples));
     }
 
     Scene& scene_;
+    SceneRays& rays_;
     const PrecomputeWork& work_;
-    prt::SceneDifference difference_;
     prt::SceneChange change_;
     bool has_bounces_;
 };
@@ -193,11 +190,15 @@ GroupMove move_of(const Scene& scene, const GroupStep& step) {
 }
 
 prt::SceneChange move(Scene& scene, const GroupMove& to, const PrecomputeWork& work,
-                      MoveReport* report) {
+                      MoveReport* report, SceneRays* rays) {
     if (!has_clusters(scene))
         throw std::invalid_argument("expected a precomputed scene, got a mesh without clusters");
     MoveReport local;
-    return Move(scene, to, work).run(report != nullptr ? *report : local);
+    std::optional<SceneRays> own;
+    if (rays == nullptr)
+        own.emplace(scene);
+    return Move(scene, to, rays != nullptr ? *rays : *own, work)
+        .run(report != nullptr ? *report : local);
 }
 
 } // namespace relumine

@@ -10,6 +10,7 @@
 #include "prt/moves/moved_scene.h"
 #include "relumine/in/precompute_options.h"
 #include "relumine/in/scene.h"
+#include "relumine/in/scene_rays.h"
 
 namespace relumine {
 
@@ -59,9 +60,10 @@ struct MoveReport {
 ///
 /// Returns what undoes the move: prt::exchange(scene, change). A second exchange makes it again.
 /// Report:  where given, filled.
+/// Rays:    those of the scene, which follow it. Without them they are made for the move.
 /// Throws:  std::invalid_argument for a scene without groups, a name that no group has, and as
 ///          prt::moved(); Cancelled. Nothing has changed then.
 prt::SceneChange move(Scene& scene, const GroupMove& to, const PrecomputeWork& work = {},
-                      MoveReport* report = nullptr);
+                      MoveReport* report = nullptr, SceneRays* rays = nullptr);
 
 } // namespace relumine

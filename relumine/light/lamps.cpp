@@ -112,6 +112,13 @@ void SceneLamps::set_bounces(const relight::SurfaceBounces& surfaces,
         source.bounced.clear();
 }
 
+void SceneLamps::forget_light() {
+    for (Source& source : sources_)
+        source.light.clear();
+    bounces_.unset();
+    forget_bounces();
+}
+
 void SceneLamps::forget_bounces() {
     bounces_now_ = false;
 }

@@ -10,8 +10,8 @@
 #include "relight/bounces/bounce_light.h"
 #include "relumine/in/emission.h"
 #include "relumine/in/scene.h"
+#include "relumine/in/scene_rays.h"
 #include "relumine/light/bounces.h"
-#include "relumine/light/rays.h"
 
 namespace relumine {
 
@@ -42,6 +42,8 @@ public:
     void set_bounces(const relight::SurfaceBounces& surfaces, const relight::SharedRows& rows);
     /// Ends the bounces until the next set_bounces().
     void forget_bounces();
+    /// The scene is another: the next find() finds all light anew, without bounces.
+    void forget_light();
 
     /// [num_receivers] what lamps give to the receivers' own surfaces without a bounce; empty
     /// without lamps. Good until the next find().

@@ -14,9 +14,9 @@
 #include "relight/sharp/light_packets.h"
 #include "relight/sharp/shadow_rays.h"
 #include "relumine/in/move.h"
+#include "relumine/in/scene_rays.h"
 #include "relumine/light/layer_compositor.h"
 #include "relumine/light/listed_light.h"
-#include "relumine/light/rays.h"
 #include "relumine/light/shared_receivers.h"
 #include "relumine/light/terms.h"
 
@@ -60,8 +60,6 @@ struct LitScene::Impl {
         return relighter && relighter->environment().resolution != 0;
     }
 
-    /// What it was made with
-    LightOptions given;
     std::shared_ptr<const Scene> scene;
     /// The same, where nobody else has it.
     Scene* own_scene = nullptr;
@@ -95,8 +93,7 @@ struct LitScene::Impl {
 
 LitScene::Impl::Impl(std::shared_ptr<const Scene> whole, std::unique_ptr<prt::ScenePart> part,
                      const LightOptions& options)
-    : given(options),
-      scene(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(whole)),
+    : scene(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(whole)),
       rays(*scene), receivers(*scene, std::move(part), options.team, options.path),
       harmonics(options.harmonics), own_blockers(options.blockers), lamps(*scene, rays),
       mirrors(*scene, rays, options.highlight_rays) {
@@ -354,41 +351,6 @@ void LitScene::set_roughness(float roughness) {
     relumine::set_roughness(*impl_->own_scene, roughness);
 }
 
-/// Makes all that follows from the scene anew, and lights it by the same light.
-void LitScene::follow() {
-    Impl& before = *impl_;
-    auto next = std::make_unique<Impl>(before.scene, nullptr, before.given);
-    next->own_scene = before.own_scene;
-    next->moves = std::move(before.moves);
-    next->undone_moves = std::move(before.undone_moves);
-    next->lamps.set(before.lamps.gains());
-    std::optional<Light> light;
-    if (before.is_lit)
-        light.emplace(before.listed_lights);
-    if (light && before.has_environment()) {
-        const std::shared_ptr<const LightBase> base = before.environment.state().base;
-        light->environment =
-            before.environment.is_edited()
-                ? base->map()
-                : std::make_shared<const cubemap::CubeMap>(before.relighter->environment());
-        if (base) {
-            light->file = base->file();
-            light->path = base->path();
-        }
-    }
-    next->environment = std::move(before.environment);
-    const bool are_bounced = before.bounces.is_set();
-    relight::SurfaceBounces surfaces = before.bounces.surfaces();
-    impl_ = std::move(next);
-    if (light)
-        this->light(std::move(*light));
-    if (light && are_bounced) {
-        surfaces.matrix = &*impl_->scene->bounces;
-        impl_->bounces.set(*impl_->scene, std::move(surfaces), impl_->receivers.rows());
-        bounce();
-    }
-}
-
 void LitScene::Impl::require_own() const {
     if (own_scene == nullptr || receivers.are_in_others())
         throw std::logic_error("expected a scene that is not shared, to move its groups");
@@ -396,36 +358,69 @@ void LitScene::Impl::require_own() const {
         throw std::logic_error("expected triangles that block light where groups move, got others");
 }
 
+/// Lights what a move has changed, by the same light.
+void LitScene::follow(const prt::SceneChange& change) {
+    Impl& own = *impl_;
+    own.lamps.forget_light();
+    if (own.relighter)
+        own.relighter->follow(change);
+    if (!own.is_lit)
+        return;
+    const bool are_bounced = own.bounces.is_set();
+    relight::SurfaceBounces surfaces = own.bounces.surfaces();
+    own.bounces.unset();
+    if (!own.listed.radiance.empty()) {
+        Light light(own.listed_lights);
+        if (own.has_environment()) {
+            // A list beside an environment has the Relighter for a while.
+            const std::shared_ptr<const LightBase> base = own.environment.state().base;
+            light.environment =
+                own.environment.is_edited()
+                    ? base->map()
+                    : std::make_shared<const cubemap::CubeMap>(own.relighter->environment());
+            if (base) {
+                light.file = base->file();
+                light.path = base->path();
+            }
+        }
+        this->light(std::move(light));
+    } else {
+        UpdateReport report;
+        own.finish(report);
+    }
+    if (are_bounced) {
+        surfaces.matrix = &*own.scene->bounces;
+        own.bounces.set(*own.scene, std::move(surfaces), own.receivers.rows());
+        bounce();
+    }
+}
+
 MoveReport LitScene::move(const GroupMove& to, const PrecomputeWork& work) {
     constexpr std::size_t MostMoves = 32;
-    impl_->require_own();
+    Impl& own = *impl_;
+    own.require_own();
     MoveReport report;
-    try {
-        prt::SceneChange change = relumine::move(*impl_->own_scene, to, work, &report);
-        std::vector<prt::SceneChange>& moves = impl_->moves;
-        moves.push_back(std::move(change));
-        if (moves.size() > MostMoves)
-            moves.erase(moves.begin());
-        impl_->undone_moves.clear();
-    } catch (...) {
-        follow();
-        throw;
-    }
-    follow();
+    prt::SceneChange change = relumine::move(*own.own_scene, to, work, &report, &own.rays);
+    own.moves.push_back(std::move(change));
+    if (own.moves.size() > MostMoves)
+        own.moves.erase(own.moves.begin());
+    own.undone_moves.clear();
+    follow(own.moves.back());
     return report;
 }
 
 bool LitScene::exchange_move(bool is_undo) {
-    impl_->require_own();
-    std::vector<prt::SceneChange>& from = is_undo ? impl_->moves : impl_->undone_moves;
-    std::vector<prt::SceneChange>& to = is_undo ? impl_->undone_moves : impl_->moves;
+    Impl& own = *impl_;
+    own.require_own();
+    std::vector<prt::SceneChange>& from = is_undo ? own.moves : own.undone_moves;
+    std::vector<prt::SceneChange>& to = is_undo ? own.undone_moves : own.moves;
     if (from.empty())
         return false;
-    prt::exchange(*impl_->own_scene, from.back());
-    prt::set_surfaces(impl_->own_scene->transfer, impl_->own_scene->receivers);
+    prt::exchange(*own.own_scene, from.back());
+    own.rays.follow(from.back().group);
     to.push_back(std::move(from.back()));
     from.pop_back();
-    follow();
+    follow(to.back());
     return true;
 }
 

@@ -17,6 +17,7 @@
 #include "relight/relighter.h"
 #include "relumine/in/precompute_options.h"
 #include "relumine/in/scene.h"
+#include "relumine/in/scene_rays.h"
 #include "relumine/light/bounces.h"
 #include "relumine/light/edited_environment.h"
 #include "relumine/light/lamps.h"
@@ -24,7 +25,6 @@
 #include "relumine/light/lighting.h"
 #include "relumine/light/listed_light.h"
 #include "relumine/light/mirrors.h"
-#include "relumine/light/rays.h"
 #include "relumine/light/shared_receivers.h"
 
 namespace relumine {
@@ -164,15 +164,16 @@ public:
     void set_roughness(float roughness);
 
     /// Moves a group of the scene's mesh (include relumine/in/move.h), and lights the scene again
-    /// by the light that it has: environment, layers, lists, lamps and bounces. Of what this object
-    /// gave, only scene() stays valid.
+    /// by the light that it has: environment, layers, lists, lamps and bounces. The radiance is
+    /// bit by bit that of another LitScene of the moved scene in this light.
     ///
     /// Throws:  as relumine::move(); std::logic_error where the scene is shared, by other users or
     ///          processes, or others than its triangles block light.
-    /// Cost:    what the move changes, and once the light of the scene.
+    /// Cost:    what the move changes. Lamps, bounces, and lists beside an environment are found
+    ///          anew (docs/moves.md).
     MoveReport move(const GroupMove& to, const PrecomputeWork& work = {});
     /// Undoes the last move that is not undone, or makes it again. Nothing of it is traced anew but
-    /// the sharp lights. The last 32 moves are kept. Returns whether there was one.
+    /// what lights of their own need. The last 32 moves are kept. Returns whether there was one.
     bool undo_move();
     bool redo_move();
 
@@ -199,7 +200,7 @@ public:
     [[nodiscard]] Lighting lighting(bool is_drawn = true) const;
 
 private:
-    void follow();
+    void follow(const prt::SceneChange& change);
     bool exchange_move(bool is_undo);
 
     struct Impl;

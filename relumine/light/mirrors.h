@@ -9,7 +9,7 @@
 #include "relight/relighter.h"
 #include "relumine/in/emission.h"
 #include "relumine/in/scene.h"
-#include "relumine/light/rays.h"
+#include "relumine/in/scene_rays.h"
 
 namespace relumine {
 

@@ -54,19 +54,32 @@ const Scene& before() {
     return scene;
 }
 
-/// A sky with a sharp sun, a layer over it, a distant light, dimmed lamps, and bounces.
-void light(LitScene& lit) {
+/// What lights a scene.
+struct Lit {
+    bool has_sky = true, has_list = true, has_layer = true, has_bounces = true;
+    std::uint32_t harmonics = 0;
+};
+
+/// A sky with a sharp sun, a layer over it, a distant light, dimmed lamps, and bounces; or some of
+/// these.
+void light(LitScene& lit, const Lit& how = {}) {
     lit.dim({{.name = "lamp", .gain = glm::vec3(0.5f)}});
-    Light light(data_gen::sun_and_sky(64));
-    light.lights = {{.direction = glm::normalize(glm::dvec3(-1.0, 1.0, 0.2)),
-                     .irradiance = glm::dvec3(0.5, 0.1, 0.1)}};
+    Light light;
+    if (how.has_sky)
+        light.environment = data_gen::sun_and_sky(64);
+    if (how.has_list)
+        light.lights = {{.direction = glm::normalize(glm::dvec3(-1.0, 1.0, 0.2)),
+                         .irradiance = glm::dvec3(0.5, 0.1, 0.1)}};
     lit.light(std::move(light));
-    set_layers(lit,
-               {{.name = "key",
-                 .region = cubemap::Disc{.direction = {0.0f, 1.0f, 0.3f}, .radius_degrees = 20.0},
-                 .effect = cubemap::Gain{.tint = glm::vec3(3.0f)}}});
-    mark(lit); // the light is that of the state, whichever edits led to it
-    lit.bounce({.albedo = bounce_albedo(lit.scene())});
+    if (how.has_layer) {
+        set_layers(
+            lit, {{.name = "key",
+                   .region = cubemap::Disc{.direction = {0.0f, 1.0f, 0.3f}, .radius_degrees = 20.0},
+                   .effect = cubemap::Gain{.tint = glm::vec3(3.0f)}}});
+        mark(lit); // the light is that of the state, whichever edits led to it
+    }
+    if (how.has_bounces)
+        lit.bounce({.albedo = bounce_albedo(lit.scene())});
 }
 
 std::vector<glm::vec3> radiance_of(const LitScene& lit) {
@@ -75,27 +88,81 @@ std::vector<glm::vec3> radiance_of(const LitScene& lit) {
 
 const GroupStep Step{.name = "ball", .by = {-1.5, 0.1, 0.2}, .degrees = 30.0};
 
-TEST(Moves, TheLightIsThatOfTheMovedScene) {
-    LitScene lit(before());
-    light(lit);
-    const std::vector<glm::vec3> at_first = radiance_of(lit);
-    MoveReport report = lit.move(move_of(lit.scene(), Step));
-    EXPECT_GT(report.num_moved, 600u);
-    EXPECT_LT(report.counts.num_pairs, report.num_all);
-    Scene moved = before();
-    move(moved, move_of(moved, Step));
-    LitScene anew(std::move(moved));
-    light(anew);
-    EXPECT_NE(radiance_of(lit), at_first);
-    EXPECT_EQ(radiance_of(lit), radiance_of(anew));
-    ASSERT_EQ(lit.state().layers.size(), 1u);
-
-    EXPECT_TRUE(lit.undo_move());
-    EXPECT_EQ(radiance_of(lit), at_first);
+/// Several moves, undone and made again: each time all light is that of another LitScene.
+void expect_that_light_follows(const Lit& how) {
+    const LightOptions options{.harmonics = how.harmonics};
+    LitScene lit(before(), options);
+    light(lit, how);
+    Scene scene = before();
+    std::vector<std::vector<glm::vec3>> seen = {radiance_of(lit)};
+    for (const GroupStep& step :
+         {Step, GroupStep{.name = "lamp", .by = {1.0, -0.2, 0.5}, .degrees = 70.0},
+          GroupStep{.name = "ball", .by = {0.1, -0.3, 0.0}}}) {
+        MoveReport report = lit.move(move_of(lit.scene(), step));
+        EXPECT_GT(report.num_moved, 0u);
+        EXPECT_LT(report.counts.num_pairs, report.num_all);
+        EXPECT_EQ(lit.state().layers.size(), how.has_layer ? 1u : 0u);
+        move(scene, move_of(scene, step));
+        LitScene anew(scene, options);
+        light(anew, how);
+        EXPECT_EQ(radiance_of(lit), radiance_of(anew));
+        EXPECT_NE(radiance_of(lit), seen.back());
+        EXPECT_EQ(lit.lighting().soft, anew.lighting().soft);
+        if (how.harmonics != 0) {
+            EXPECT_EQ(lit.harmonics(), anew.harmonics());
+        }
+        seen.push_back(radiance_of(lit));
+    }
+    for (std::size_t i = seen.size(); --i > 0;) {
+        EXPECT_EQ(radiance_of(lit), seen[i]);
+        EXPECT_TRUE(lit.undo_move());
+    }
     EXPECT_FALSE(lit.undo_move());
+    EXPECT_EQ(radiance_of(lit), seen[0]);
     EXPECT_TRUE(lit.redo_move());
+    EXPECT_EQ(radiance_of(lit), seen[1]);
+}
+
+TEST(Moves, TheLightIsThatOfTheMovedScene) {
+    expect_that_light_follows({});
+}
+
+TEST(Moves, EachLightFollowsByItself) {
+    constexpr Lit Sky{.has_list = false, .has_layer = false, .has_bounces = false};
+    expect_that_light_follows(Sky);
+    Lit how = Sky;
+    how.has_layer = true;
+    expect_that_light_follows(how);
+    how = Sky;
+    how.has_bounces = true;
+    expect_that_light_follows(how);
+    how = Sky;
+    how.harmonics = 2;
+    expect_that_light_follows(how);
+    how = Sky;
+    how.has_sky = false;
+    how.has_list = true;
+    expect_that_light_follows(how);
+}
+
+TEST(Moves, LightThatWasUpdatedIsSummedAnew) {
+    const auto lit_after_edits = [](LitScene& lit) {
+        lit.light(data_gen::sun_and_sky(64));
+        for (const float tint : {1e5f, 1.5f})
+            set_layers(lit, {{.name = "key",
+                              .region = cubemap::Disc{.direction = {0.3f, 1.0f, 0.3f},
+                                                      .radius_degrees = 40.0},
+                              .effect = cubemap::Gain{.tint = glm::vec3(tint)}}});
+    };
+    LitScene lit(before());
+    lit_after_edits(lit);
+    lit.move(move_of(lit.scene(), Step));
+    Scene scene = before();
+    move(scene, move_of(scene, Step));
+    LitScene anew(std::move(scene));
+    lit_after_edits(anew);
+    mark(anew);
     EXPECT_EQ(radiance_of(lit), radiance_of(anew));
-    EXPECT_FALSE(lit.redo_move());
 }
 
 TEST(Moves, TheLightIsAboutThatOfAPrecomputeAnew) {
