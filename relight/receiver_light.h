@@ -9,7 +9,6 @@
 
 #include <glm/vec3.hpp>
 
-#include "prt/moves/moved_scene.h"
 #include "prt/transfer/transfer.h"
 #include "relight/harmonics/harmonic_light.h"
 #include "relight/kernels/block_kernels.h"
@@ -23,6 +22,10 @@
 #include "relight/sharp/shadow_rays.h"
 #include "relight/sharp/sharp_lights.h"
 #include "relight/sharp/traced_light.h"
+
+namespace relumine::prt {
+struct SceneChange;
+} // namespace relumine::prt
 
 namespace relumine::relight {
 

@@ -15,11 +15,14 @@
 #include "cubemap/texel_rectangle.h"
 #include "lights/light_list.h"
 #include "prt/glossy/lobes.h"
-#include "prt/moves/moved_scene.h"
 #include "prt/transfer/transfer.h"
 #include "relight/binned_environment.h"
 #include "relight/sharp/shadow_rays.h"
 #include "relight/sharp/sharp_lights.h"
+
+namespace relumine::prt {
+struct SceneChange;
+} // namespace relumine::prt
 
 namespace relumine::relight {
 

@@ -14,12 +14,15 @@
 #include <glm/vec3.hpp>
 
 #include "prt/glossy/brdf.h"
-#include "prt/moves/recount.h"
 #include "prt/transfer/transfer.h"
 #include "relight/kernels/block_kernels.h"
 #include "relight/kernels/block_normals.h"
 #include "relight/sharp/shadow_rays.h"
 #include "relight/sharp/sharp_lights.h"
+
+namespace relumine::prt {
+struct SceneDifference;
+} // namespace relumine::prt
 
 namespace relumine::relight {
 
