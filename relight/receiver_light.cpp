@@ -11,7 +11,7 @@
 
 #include "files/large_vector.h"
 #include "files/parallel.h"
-#include "prt/moves/moved_scene.h"
+#include "prt/moves/scene_change.h"
 #include "relight/kernels/update_kernel.h"
 
 namespace relumine::relight {

@@ -15,7 +15,7 @@
 
 #include "files/parallel.h"
 #include "files/seconds.h"
-#include "prt/moves/moved_scene.h"
+#include "prt/moves/scene_change.h"
 #include "relight/harmonics/harmonics.h"
 #include "relight/receiver_light.h"
 #include "relight/sharp/light_packets.h"

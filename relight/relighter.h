@@ -125,7 +125,7 @@ public:
     UpdateReport update_regions(std::span<const TexelRectangle> rectangles,
                                 const std::function<void(cubemap::CubeMap&)>& edit);
 
-    /// Takes a move of a group of the scene (prt/moves/moved_scene.h), or its undo: transfer and
+    /// Takes a move of a group of the scene (prt/moves/scene_change.h), or its undo: transfer and
     /// shadow rays have changed. The radiance is then bit by bit that of another Relighter of the
     /// scene as it stands, under the same light.
     ///

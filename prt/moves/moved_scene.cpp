@@ -13,6 +13,7 @@
 #include <glm/matrix.hpp>
 
 #include "prt/moves/met_boxes.h"
+#include "prt/moves/recount.h"
 #include "prt/visibility/bias.h"
 #include "prt/visibility/ray_scene.h"
 

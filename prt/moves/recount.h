@@ -2,12 +2,11 @@
 // met keep their fate.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "mesh/triangle_mesh.h"
-#include "prt/moves/counts_patch.h"
+#include "prt/moves/scene_change.h"
 #include "prt/precompute_options.h"
 #include "prt/receivers/receivers.h"
 #include "prt/transfer/transfer.h"
@@ -15,16 +14,6 @@
 #include "prt/work.h"
 
 namespace relumine::prt {
-
-/// What differs between a scene and the one that its counts were made for.
-struct SceneDifference {
-    /// They hold all triangles that block or send light in one of the two alone.
-    std::vector<mesh::Bounds> boxes;
-    /// Boxes around those of each of the two
-    std::array<mesh::Bounds, 2> around;
-    /// [num_receivers] true where a receiver has another position or another normal.
-    std::vector<bool> receivers;
-};
 
 /// Returns boxes around a mesh's triangles: up to 16, which leave out much of what a single box
 /// would hold.

@@ -8,7 +8,7 @@
 #include "files/large_vector.h"
 #include "files/parallel.h"
 #include "prt/moves/met_boxes.h"
-#include "prt/moves/recount.h"
+#include "prt/moves/scene_change.h"
 #include "relight/sharp/light_packets.h"
 #include "relight/sharp/traced_kernel.h"
 

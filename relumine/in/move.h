@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "prt/moves/moved_scene.h"
+#include "prt/moves/recount.h"
 #include "relumine/in/precompute_options.h"
 #include "relumine/in/scene.h"
 #include "relumine/in/scene_rays.h"

@@ -1,0 +1,59 @@
+// What is another in a scene after a move.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "mesh/triangle_mesh.h"
+#include "prt/bounces/bounce_matrix.h"
+#include "prt/moves/counts_patch.h"
+
+namespace relumine::prt {
+
+/// What differs between a scene and the one that its counts were made for.
+struct SceneDifference {
+    /// They hold all triangles that block or send light in one of the two alone.
+    std::vector<mesh::Bounds> boxes;
+    /// Boxes around those of each of the two
+    std::array<mesh::Bounds, 2> around;
+    /// [num_receivers] true where a receiver has another position or another normal.
+    std::vector<bool> receivers;
+};
+
+/// What a move changes in a scene, to be exchanged with what the scene has.
+///
+/// Memory:  some 80 bytes for each vertex of the group, and the counts and bounces that are others.
+struct SceneChange {
+    /// Of the scene's mesh
+    std::uint32_t group = 0;
+    /// The group's vertices, and what they have: as TriangleMesh
+    std::vector<std::uint32_t> vertices;
+    std::vector<glm::vec3> positions, normals, lifts;
+    /// The group's triangles, where they have tangents
+    std::vector<std::uint32_t> triangles;
+    std::vector<std::array<glm::vec4, 3>> corner_tangents;
+    /// Of the blockers, where the mesh is none
+    std::vector<std::uint32_t> blocker_vertices;
+    std::vector<glm::vec3> blocker_positions;
+    /// The receivers that differ, and their places
+    std::vector<std::uint32_t> receivers, places;
+    std::vector<glm::vec3> receiver_positions, receiver_normals, normals_by_place;
+    CountsPatch counts;
+    std::optional<BounceMatrix> bounces;
+    /// SceneSettings::rim_step
+    std::optional<float> rim_step;
+    /// The same in both directions
+    SceneDifference difference;
+};
+
+/// Returns the blocks whose counts or receivers differ: for each tile of VisibleCounts a bit for
+/// each of its blocks.
+[[nodiscard]] std::vector<std::uint64_t> changed_blocks(const VisibleCounts& counts,
+                                                        const SceneChange& change);
+
+} // namespace relumine::prt
