@@ -45,7 +45,7 @@ private:
 
 /// Returns the rays that go on through rough glass.
 [[nodiscard]] inline std::uint32_t rays_through_glass(std::uint32_t num) {
-    return (num + 7) / 8;
+    return (num + 3) / 4;
 }
 
 /// Returns the rays of a receiver, which shares none: those of a narrow lobe go one way, of sheen

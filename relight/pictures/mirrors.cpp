@@ -114,8 +114,7 @@ void Mirrors::begin_tile(std::uint32_t left, std::uint32_t top, std::uint32_t wi
                                   top + static_cast<std::uint32_t>(i / width));
                 middles_[i] = {
                     {*mirror, trace(*mirror, *middles[i], light_.reflections->num_rays())},
-                    prt::value_at(mesh_, mesh_.positions, *middles[i]),
-                    *middles[i]};
+                    prt::value_at(mesh_, mesh_.positions, *middles[i])};
             }
 }
 

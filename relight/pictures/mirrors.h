@@ -97,7 +97,6 @@ private:
     struct Middle {
         Traced traced;
         glm::vec3 position;
-        prt::MeshPoint point;
     };
 
     [[nodiscard]] MirroredLight light(const Mirror& mirror, const prt::MeshPoint& point);

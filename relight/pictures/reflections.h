@@ -22,7 +22,6 @@
 
 namespace relumine::relight {
 
-struct FanFrame;
 struct LobeRays;
 struct RayFan;
 

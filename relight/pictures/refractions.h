@@ -37,7 +37,7 @@ public:
     /// points of a pixel; `shift` is that of the pixel, as in MirrorPoint.
     ///
     /// Cost:    some three rays for each time that light enters glass and leaves it; of rough
-    ///          glass, an eighth of the reflections' rays so often.
+    ///          glass, a quarter of the reflections' rays so often.
     [[nodiscard]] glm::vec3 light(const Mirror& mirror, const prt::MeshPoint& at,
                                   std::uint32_t sample, const glm::vec2& shift) const;
 
