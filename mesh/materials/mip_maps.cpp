@@ -43,8 +43,7 @@ Span span_of(std::uint32_t i, std::uint32_t from, std::uint32_t to) {
 
 /// Returns the normal that a texel of a normal map stands for; straight up where it is none.
 glm::vec3 unit_normal(const glm::vec3& texel) {
-    const glm::vec3 normal(normal_component(texel.x), normal_component(texel.y),
-                           std::max(normal_component(texel.z), 0.0f));
+    const glm::vec3 normal = tangent_vector(texel);
     const float length = glm::length(normal);
     return length > 0.0f ? normal / length : glm::vec3(0.0f, 0.0f, 1.0f);
 }

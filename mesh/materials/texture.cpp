@@ -100,11 +100,13 @@ glm::vec3 texel(const Texture& texture, std::uint32_t column, std::uint32_t row,
     return decoded(texture.texels[std::size_t{row} * texture.width + column], is_srgb);
 }
 
-// Bytes of 127 and 128 both mean 0, so that a flat map is flat, and 255 means 1.
-float normal_component(float channel) {
-    const float value = 2.0f * channel - 1.0f, step = 1.0f / 255.0f;
-    const float length = std::max(std::abs(value) - step, 0.0f) / (1.0f - step);
-    return std::copysign(length < 1e-6f ? 0.0f : length, value);
+glm::vec3 tangent_vector(const glm::vec3& texel) {
+    const auto component = [](float channel) {
+        const float value = 2.0f * channel - 1.0f, step = 1.0f / 255.0f;
+        const float length = std::max(std::abs(value) - step, 0.0f) / (1.0f - step);
+        return std::copysign(length < 1e-6f ? 0.0f : length, value);
+    };
+    return {component(texel.x), component(texel.y), std::max(component(texel.z), 0.0f)};
 }
 
 TexelPair texels_beside(float coordinate, std::uint32_t size, Wrap wrap) {

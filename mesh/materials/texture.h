@@ -68,8 +68,9 @@ private:
 [[nodiscard]] glm::vec3 texel(const Texture& texture, std::uint32_t column, std::uint32_t row,
                               bool is_srgb);
 
-/// Returns the component of a tangent-space normal that a texel's channel stands for, -1 to 1.
-[[nodiscard]] float normal_component(float channel);
+/// Returns the tangent-space vector that a value of a normal map stands for, of any length. Bytes
+/// of 127 and 128 both mean 0, so that a flat map is flat, and 255 means 1.
+[[nodiscard]] glm::vec3 tangent_vector(const glm::vec3& texel);
 
 /// The two texels of a coordinate, and the weight of the second.
 struct TexelPair {

@@ -119,11 +119,9 @@ struct NormalMap {
 glm::vec3 tangent_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point,
                          const mesh::TextureSlot& slot, const TextureView* view) {
     const glm::vec2 uv = uv_at(mesh, point, slot.uv_set);
-    if (view != nullptr && view->maps != nullptr)
+    if (view != nullptr)
         return view->maps->normal(slot, uv, view->footprint(mesh, point, slot.uv_set));
-    const glm::vec3 texel = mesh::sample(mesh.textures[slot.texture], slot, uv);
-    return {mesh::normal_component(texel.x), mesh::normal_component(texel.y),
-            std::max(mesh::normal_component(texel.z), 0.0f)};
+    return mesh::tangent_vector(mesh::sample(mesh.textures[slot.texture], slot, uv));
 }
 
 MappedNormal normal_of(const mesh::TriangleMesh& mesh, const MeshPoint& point, const NormalMap& map,
@@ -134,16 +132,16 @@ MappedNormal normal_of(const mesh::TriangleMesh& mesh, const MeshPoint& point, c
     const mesh::Material& material = mesh.materials[mesh.triangle_materials[point.triangle]];
     if (!(material.*map.texture))
         return {normal};
+    if (view != nullptr && view->maps == nullptr)
+        view = nullptr;
     const glm::vec3 mean = tangent_normal(mesh, point, *(material.*map.texture), view);
     const float scale = material.*map.scale;
     const glm::vec2 tilt = scale * glm::vec2(mean);
     // What roundings make of equal normals is no spread.
     constexpr float LeastSpread = 1e-3f;
-    float spread = 0.0f;
-    if (view != nullptr && view->maps != nullptr)
-        spread = std::min(scale * scale * (1.0f - glm::dot(mean, mean)), 1.0f);
-    if (!(spread > LeastSpread))
-        spread = 0.0f;
+    const float found =
+        view != nullptr ? std::min(scale * scale * (1.0f - glm::dot(mean, mean)), 1.0f) : 0.0f;
+    const float spread = found > LeastSpread ? found : 0.0f;
     const std::array<glm::vec4, 3>& corners = mesh.corner_tangents[point.triangle];
     const glm::vec2& w = point.barycentric;
     const glm::vec4 between = (1.0f - w.x - w.y) * corners[0] + w.x * corners[1] + w.y * corners[2];

@@ -728,7 +728,8 @@ class Relighter:
         floor       "photo" (the environment's ground with shadows), "studio", "grey"; by default
                     what suits the environment
         emission    factors on the scene's own lamps: a number, (r, g, b), "NAME=GAIN[,R,G,B]",
-                    "NAME=PROFILE.ies" or a list of these. `radiance` keeps the factors of the last picture
+                    "NAME=PROFILE.ies" or a list of these. `radiance` keeps the factors of the last
+                    picture
         background  "sharp" (the environment), "none" (alpha), a number or (r, g, b)
         blur        the environment out of focus, by so many degrees
         """

@@ -1,7 +1,6 @@
 #include "relight/pictures/ray_fan.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 #include <type_traits>
@@ -9,7 +8,6 @@
 #include <glm/geometric.hpp>
 
 #include "cubemap/frame.h"
-#include "relight/pictures/visible_normals.h"
 
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
@@ -73,7 +71,7 @@ FanVector fraction(FanVector v) {
     return hn::Sub(v, hn::Floor(v));
 }
 
-/// Returns points i of the fan's hammersley() without its shift.
+/// Returns points i of the fan, without its shift.
 FanPoints hammersley_points(const RayFan& fan, FanIndices i) {
     const FanTag d;
     const hn::RebindToUnsigned<FanTag> du;
@@ -105,7 +103,7 @@ FanPoints part_points(const RayFan& fan, std::uint32_t i, FanIndices of_grid) {
     const FanTag d;
     const hn::RebindToUnsigned<FanTag> du;
     const hn::RebindToSigned<FanTag> di;
-    const std::uint32_t num_columns = hammersley_columns(fan.num_rays);
+    const std::uint32_t num_columns = fan_columns(fan.num_rays);
     const FanVector columns = constant(static_cast<float>(num_columns));
     const FanVector rows = constant(static_cast<float>(fan.num_rays / num_columns));
     const FanPoints own = hammersley_points(fan, hn::Set(du, i));
@@ -181,7 +179,7 @@ void send(const RayFan& fan, const FanFrame& frame, FanRays& rays, const Points&
 
 void fan_rays(const RayFan& fan, const FanFrame& frame, std::uint32_t first, FanRays& rays) {
     const hn::RebindToUnsigned<FanTag> du;
-    const FanVector columns = constant(static_cast<float>(hammersley_columns(fan.num_rays)));
+    const FanVector columns = constant(static_cast<float>(fan_columns(fan.num_rays)));
     send(fan, frame, rays, [&](FanIndices lanes) {
         FanPoints points = hammersley_points(
             fan, hn::Min(hn::Add(lanes, hn::Set(du, first)), hn::Set(du, fan.num_rays - 1)));

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include <glm/mat3x3.hpp>
@@ -21,9 +22,16 @@ struct RayFan {
     /// Alpha of a GGX lobe; 0: rays are as dense everywhere above the surface.
     float alpha;
     std::uint32_t num_rays;
-    /// The shift of hammersley()
+    /// Shifts rays around their columns and around the height of the square.
     glm::vec2 shift;
 };
+
+/// Into how many columns the points of a fan, which are Hammersley's, part the unit square from the
+/// middle of a lobe to its tail. Each ray keeps its column. Of 2^n rays each column has as many
+/// rows with one ray, or half.
+[[nodiscard]] constexpr std::uint32_t fan_columns(std::uint32_t num_rays) {
+    return 1u << std::bit_width(num_rays) / 2;
+}
 
 /// What all rays of a fan share. Coordinates are along two axes across the normal, and along it.
 struct FanFrame {

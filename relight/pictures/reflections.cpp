@@ -18,7 +18,6 @@
 #include "relight/kernels/cluster_lights.h"
 #include "relight/pictures/highlight_rays.h"
 #include "relight/pictures/ray_fan.h"
-#include "relight/pictures/visible_normals.h"
 
 namespace relumine::relight {
 
@@ -146,7 +145,7 @@ Reflections::Reflections(const prt::RayScene& rays, float bias, std::uint32_t nu
 
 Reflections::Evenness::Evenness(const cubemap::CubeMap& level, const cubemap::CubeMap& finer)
     : resolution(level.resolution), is_even(level.texels.size()) {
-    // One look is as far from the mean at most, which 32 rays share.
+    // A look is off by as much at most, and a highlight's rays share that.
     constexpr float LargestPart = 0.2f;
     const std::uint32_t r = resolution, side = finer.resolution / r;
     const auto around = [&](cubemap::Face face, std::uint32_t x, std::uint32_t y, int i) {
@@ -222,7 +221,7 @@ void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surface
     // whole tail.
     const bool has_parts = fan.num_rays > 1 && std::has_single_bit(fan.num_rays) &&
                            behind.least_solid_angle == 0.0f && !levels_.empty();
-    const std::uint32_t outermost = fan.num_rays - fan.num_rays / hammersley_columns(fan.num_rays);
+    const std::uint32_t outermost = fan.num_rays - fan.num_rays / fan_columns(fan.num_rays);
     for (std::uint32_t first = 0; first < fan.num_rays; first += prt::PacketSize) {
         const FanRays rays = fan_rays(fan, frame, first);
         if (rays.above == 0)

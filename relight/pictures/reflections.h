@@ -81,7 +81,8 @@ public:
     /// `environment` may have no texels, which is black. `bias` is that of prt::PrecomputeOptions.
     /// The rays must outlive this object.
     ///
-    /// Cost:    O(texels): a third more than a copy of the environment, with lights twice as much.
+    /// Cost:    O(texels): a third more than a copy of the environment, with lights twice as much,
+    ///          and a look at each texel of all levels but the first, with its neighbours.
     Reflections(const prt::RayScene& rays, float bias, std::uint32_t num_rays,
                 const cubemap::CubeMap& environment, std::span<const SharpLight> without);
 

@@ -10,6 +10,7 @@
 #include <glm/mat3x3.hpp>
 
 #include "cubemap/frame.h"
+#include "cubemap/split_mix64.h"
 #include "mesh/opacity.h"
 #include "prt/glossy/brdf.h"
 #include "relight/pictures/highlight_rays.h"
@@ -54,13 +55,6 @@ glm::vec2 facet_point(const glm::vec2& shift, std::uint32_t number, int surface)
                       turn * (surface % 2 != 0 ? First : Second));
 }
 
-/// Returns a number in [0, 1) that has nothing to do with where a point is.
-float chance(const glm::vec2& u) {
-    std::uint64_t bits = std::bit_cast<std::uint64_t>(u) * 0x9e3779b97f4a7c15u;
-    bits = (bits ^ bits >> 29) * 0xbf58476d1ce4e5b9u;
-    return static_cast<float>(bits >> 40) * 0x1p-24f;
-}
-
 /// A direction, the solid angle that it stands for where one ray shows the whole lobe, and whether
 /// it is on the side that the ray came from.
 struct Bent {
@@ -78,16 +72,21 @@ Bent spread(const glm::vec3& direction, const glm::vec3& normal, float alpha, gl
     constexpr int MostFacets = 16;
     const glm::mat3 frame = cubemap::frame_of(normal);
     const glm::vec3 to_origin = -direction * frame;
+    // Where the point lies says nothing of which facets give way, nor of which take their place.
+    cubemap::SplitMix64 random(std::bit_cast<std::uint64_t>(u));
+    const auto chance = [&] {
+        return static_cast<float>(cubemap::unit_interval(random.next()));
+    };
     for (int i = 0; i < MostFacets && alpha > SmoothAlpha; ++i) {
         const glm::vec3 half = visible_half(to_origin, alpha, u);
         Bent bent = by_facet(frame * half);
         const float height = glm::dot(bent.way, bent.is_back ? normal : -normal);
-        if (height > 0.0f && chance(u) < unmasked(height, alpha)) {
+        if (height > 0.0f && chance() < unmasked(height, alpha)) {
             bent.solid_angle /= mirrored_density(half, std::max(to_origin.z, 0.01f), alpha);
             return bent;
         }
-        u = glm::fract(u + glm::vec2(chance({u.x, static_cast<float>(i)}),
-                                     chance({static_cast<float>(i), u.y})));
+        u.x = chance();
+        u.y = chance();
     }
     Bent straight = by_facet(normal);
     straight.solid_angle = 0.0f;

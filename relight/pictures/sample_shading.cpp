@@ -85,12 +85,9 @@ glm::vec3 SampleShading::traced(const prt::MeshPoint& at, const std::optional<Mi
                                 std::span<const std::uint16_t> lights) {
     if (std::all_of(lights.begin(), lights.end(), [](std::uint16_t word) { return word == 0; }))
         return glm::vec3(0.0f);
-    const glm::vec3 normal = prt::seen_normal(mesh_, at, &view_).direction;
     const glm::vec3 albedo =
         light_.albedo.empty() ? glm::vec3(1.0f) : prt::value_at(mesh_, light_.albedo, at);
-    if (light_.surfaces.empty())
-        return albedo * white(normal, lights);
-    if (mirror) {
+    if (mirror && !light_.surfaces.empty()) {
         prt::Surface surface = mirror->surface;
         const float least = light_.reflections->least_roughness();
         if (prt::facts_of(surface.highlight).is_roughness)
@@ -98,6 +95,9 @@ glm::vec3 SampleShading::traced(const prt::MeshPoint& at, const std::optional<Mi
         surface.coat_roughness = std::max(surface.coat_roughness, least);
         return albedo * reflected(surface, mirror->normal, mirror->to_eye, lights);
     }
+    const glm::vec3 normal = prt::seen_normal(mesh_, at, &view_).direction;
+    if (light_.surfaces.empty())
+        return albedo * white(normal, lights);
     const prt::Surface surface = surface_at(at);
     if (surface.highlight == prt::Highlight::None || !light_.eye)
         return albedo * prt::reflect(surface, {.diffuse = white(normal, lights)}, 0.0f);

@@ -4,20 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace relumine::relight {
-
-glm::vec2 hammersley(std::uint32_t i, std::uint32_t n, const glm::vec2& shift) {
-    std::uint32_t bits = i;
-    float inverse = 0.0f;
-    for (float digit = 0.5f; bits != 0; bits >>= 1, digit *= 0.5f)
-        inverse += (bits & 1u) != 0 ? digit : 0.0f;
-    const auto columns = static_cast<float>(hammersley_columns(n));
-    const float x = (static_cast<float>(i) + 0.5f) / static_cast<float>(n) * columns;
-    return {(std::floor(x) + glm::fract(x + shift.x)) / columns, glm::fract(inverse + shift.y)};
-}
 
 glm::vec3 visible_half(const glm::vec3& to_eye, float alpha, const glm::vec2& u) {
     const glm::vec3 v = glm::normalize(glm::vec3(alpha * to_eye.x, alpha * to_eye.y, to_eye.z));

@@ -350,18 +350,15 @@ class Placer:
             return False
         for line in left_out:
             self._notes.add(f"its IES profile is read without {line}", prim.GetPath())
-        size = abs(float(np.linalg.det(matrix[:3, :3]))) ** (1.0 / 3.0)
+        of_plane = float(np.linalg.norm(np.cross(matrix[0, :3], matrix[1, :3])))
         if prim.IsA(UsdLux.RectLight):
-            across = np.cross(matrix[0, :3], matrix[1, :3])
-            area = _get(prim, "inputs:width", time) * _get(prim, "inputs:height", time)
-            area *= float(np.linalg.norm(across))
+            area = _get(prim, "inputs:width", time) * _get(prim, "inputs:height", time) * of_plane
             if prim.GetAttribute("inputs:texture:file").Get(time):
                 self._notes.add("a texture beside an IES profile is left out", prim.GetPath())
         elif prim.IsA(UsdLux.DiskLight):
-            across = np.cross(matrix[0, :3], matrix[1, :3])
-            area = math.pi * _get(prim, "inputs:radius", time) ** 2 * float(np.linalg.norm(across))
+            area = math.pi * _get(prim, "inputs:radius", time) ** 2 * of_plane
         else:
-            area = math.pi * (_get(prim, "inputs:radius", time) * size) ** 2
+            area = math.pi * (_get(prim, "inputs:radius", time) * _scale(matrix)) ** 2
         # What a normalized light has, it has at any size: a sphere a quarter of it to each side.
         intensity = color * (area if not normalize else 1.0 if is_flat else 0.25)
         name = self._named(prim)
@@ -410,9 +407,8 @@ class Placer:
         normalize: bool,
     ) -> None:
         """A sphere as seen from afar. `color` is its radiance, times its area where `normalize`."""
-        scale = abs(float(np.linalg.det(matrix[:3, :3]))) ** (1.0 / 3.0)
         meters = float(np.linalg.norm(self._world[0, :3]))
-        intensity = color / 4.0 if normalize else color * math.pi * (radius * scale) ** 2
+        intensity = color / 4.0 if normalize else color * math.pi * (radius * _scale(matrix)) ** 2
         name = self._named(prim)
         self.lights.lamps.append(name)
         if not intensity.any():
@@ -425,6 +421,11 @@ class Placer:
             self._notes.add("a cone makes the sphere a spot: its shadows are sharp", prim.GetPath())
         # Candela of glTF falls with metres, the stage's light with its own unit.
         self._materials.punctual(name, intensity * meters**2, cone, matrix @ self._world)
+
+
+def _scale(matrix: Array) -> float:
+    """How much larger a matrix makes a ball, of the same volume."""
+    return float(abs(np.linalg.det(matrix[:3, :3])) ** (1.0 / 3.0))
 
 
 def _profile(prim: Usd.Prim, time: Usd.TimeCode) -> Any:

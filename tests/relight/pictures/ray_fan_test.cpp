@@ -25,6 +25,17 @@ struct PlainRay {
     bool is_above;
 };
 
+/// Point i of n of Hammersley's, shifted around its column and around the square's height.
+glm::vec2 hammersley(std::uint32_t i, std::uint32_t n, const glm::vec2& shift) {
+    std::uint32_t bits = i;
+    float inverse = 0.0f;
+    for (float digit = 0.5f; bits != 0; bits >>= 1, digit *= 0.5f)
+        inverse += (bits & 1u) != 0 ? digit : 0.0f;
+    const auto columns = static_cast<float>(fan_columns(n));
+    const float x = (static_cast<float>(i) + 0.5f) / static_cast<float>(n) * columns;
+    return {(std::floor(x) + glm::fract(x + shift.x)) / columns, glm::fract(inverse + shift.y)};
+}
+
 /// Ray i, as the papers write it.
 PlainRay plain_ray(const RayFan& fan, std::uint32_t i) {
     const glm::mat3 frame = cubemap::frame_of(fan.normal);
@@ -105,7 +116,7 @@ TEST(RayFan, PartsAreTheWholeLobe) {
                          .num_rays = num_rays,
                          .shift = {0.3f, 0.85f}};
         const FanFrame frame(fan);
-        const std::uint32_t columns = 4 * hammersley_columns(num_rays);
+        const std::uint32_t columns = 4 * fan_columns(num_rays);
         const std::uint32_t rows = 16 * num_rays / columns;
         const glm::vec2 size(columns, rows);
         std::vector<int> seen(std::size_t{columns} * rows, 0);
