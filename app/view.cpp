@@ -37,7 +37,8 @@ struct Options {
     BounceOption bounces;
     std::string layers;
     std::string script;
-    std::string screenshot;
+    /// Empty: no picture is written.
+    std::string output;
     /// The window's size, the exposure, the tone curve and the floor of pictures count.
     relumine::OutputOptions picture = {.width = 1440, .height = 860};
     EyeOptions eye = {.budget_ms = 25.0, .seen_only = true};
@@ -243,16 +244,16 @@ std::optional<LitScene> whole_scene(const Options& options, viewer::ViewOptions 
 
 void run(const Options& options, Session& session) {
     check(options.picture);
-    viewer::ViewOptions view{.screenshot = options.screenshot, .stop = session.stop()};
+    viewer::ViewOptions view{.screenshot = options.output, .stop = session.stop()};
     view.width = static_cast<int>(options.picture.width);
     view.height = static_cast<int>(options.picture.height);
-    if (!options.screenshot.empty())
-        check_output(options.screenshot,
+    if (!options.output.empty())
+        check_output(options.output,
                      {options.scene.path, options.environment.path, options.script});
     if (!options.script.empty())
         view.script = viewer::load_script(options.script);
-    else if (!options.screenshot.empty())
-        view.script = viewer::parse_script("wait 2", "--screenshot");
+    else if (!options.output.empty())
+        view.script = viewer::parse_script("wait 2", "--output");
 
     options.scene.check();
     const std::string& path = options.environment.path;
@@ -294,7 +295,7 @@ void add_view(Command& program, Session& session) {
     command.add(row("--script", options->script,
                     "play a script instead of waiting for a person (docs/viewer.md)",
                     {.file = true}));
-    command.add(row("--screenshot", options->screenshot,
+    command.add(row("-o,--output", options->output,
                     "write the last frame of the script, or the first there is, as .png or .exr",
                     {.file = true}));
     session.add_common_options(command);

@@ -31,7 +31,7 @@ studio=envs/polyhaven/studio_small_03_1k.hdr
 if there "the turntable" "$dragon" "$park"; then
     [ -f "$folder/metal.prt" ] || "$relumine" precompute "$data/$dragon" --floor \
         --material ggx:roughness=0.25,albedo=0,f0=0.9 -o "$folder/metal.prt" -q
-    "$relumine" animate "$folder/metal.prt" "$data/$park" --turntable 16 --turns environment --size 320x240 \
+    "$relumine" animate "$folder/metal.prt" "$data/$park" --turntable 16,environment --size 320x240 \
         -o "$folder/turn.%02d.png" -q
     /usr/bin/python3 "$here/animated.py" "$pictures/dragon_turning.gif" --milliseconds 150 "$folder"/turn.??.png
 fi

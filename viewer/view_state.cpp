@@ -218,7 +218,7 @@ bool save_picture(ViewState& state, const PixelRectangle& viewport,
                                                  "'{}'",
                                                  path.string(), path.extension().string()));
         if (state.balls != nullptr)
-            throw std::runtime_error("pictures are saved of scenes of vertices; --screenshot keeps "
+            throw std::runtime_error("pictures are saved of scenes of vertices; `view -o` keeps "
                                      "what the window shows of points");
         OutputOptions options = state.picture;
         options.camera = picture_camera(state.camera);

@@ -270,7 +270,7 @@ private:
         if (still_)
             return *still_;
         PreparedFrame result = prepare_anew(frame);
-        if ((options_.turntable > 0 || options_.camera_path) &&
+        if ((options_.turntable.num_frames > 0 || options_.camera_path) &&
             sequence_.path(0) == sequence_.path(sequence_.size() - 1) &&
             !options_.turns_environment())
             still_ = result;

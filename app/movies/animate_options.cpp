@@ -1,9 +1,11 @@
 #include "app/movies/animate_options.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -17,6 +19,32 @@ namespace relumine::app {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// By Turning
+constexpr std::array<std::string_view, 3> TurningWords = {"camera", "object", "environment"};
+
+/// "48" or "48,object"
+struct TurntableText {
+    static constexpr const char* Type = "TEXT";
+    static Turntable read(const std::string& text) {
+        const std::size_t comma = std::min(text.find(','), text.size());
+        const std::optional<std::uint32_t> frames = parse_count(text.substr(0, comma));
+        if (!frames || *frames > 100000)
+            refuse_text("N or N,WHAT with 0 to 100000 frames", text);
+        if (comma == text.size())
+            return {*frames};
+        return {*frames,
+                static_cast<Turning>(option_text::word(TurningWords, text.substr(comma + 1)))};
+    }
+    static std::string show(const Turntable& table) {
+        return fmt::format("{},{}", table.num_frames,
+                           TurningWords[static_cast<std::size_t>(table.turns)]);
+    }
+};
+
+} // namespace
+
 void AnimateOptions::add_to(Command& command) {
     command_ = command;
     scene.add_to(command);
@@ -28,12 +56,11 @@ void AnimateOptions::add_to(Command& command) {
                     "which of them: FIRST-LAST, or FIRST-LASTxSTEP for every STEP-th (all)",
                     {.shapes_frames = false}));
     command.add_all(
-        {row("--turntable", turntable,
-             "one environment, and the camera turns once about the mesh in so many frames (0: no)",
-             {.max = 100000}),
-         row("--turns", turns,
-             "of --turntable: what turns; under an object the environment stays where it is",
-             {.choices = {"camera", "object", "environment"}}),
+        {row<TurntableText>(
+             "--turntable", turntable,
+             "N[,WHAT]: one environment, and the camera turns once about the mesh in N frames, or "
+             "the object, whose environment stays, or the environment",
+             {.example = "4,object", .shows_default = false}),
          row("--camera-path", camera_file,
              "the camera moves: a .json of key frames of eye, target and fov_degrees; one "
              "environment lights all frames up to the last key",
@@ -74,7 +101,7 @@ void AnimateOptions::load_camera() {
             throw UsageError("--camera-path",
                              fmt::format("expected either it or {}, got both", option));
     };
-    refuse_beside(turntable > 0, "--turntable");
+    refuse_beside(turntable.num_frames > 0, "--turntable");
     refuse_beside(picture.camera_place.has_value(), "--camera");
     refuse_beside(picture.eye.has_value(), "--eye");
     refuse_beside(picture.target.has_value(), "--target");
@@ -105,12 +132,13 @@ std::vector<cubemap::FrameFile> AnimateOptions::frame_files() const {
     }
     std::vector<cubemap::FrameFile> files = cubemap::find_frames(frames, chosen);
     // One environment is numbered from 0 on; a sequence keeps its numbers, which a path means.
-    if (camera_path ? files.size() != 1 : turntable == 0 || files.size() == turntable)
+    if (camera_path ? files.size() != 1
+                    : turntable.num_frames == 0 || files.size() == turntable.num_frames)
         return files;
     if (files.size() != 1)
         throw UsageError("--turntable", fmt::format("expected one environment or {}, got {}",
-                                                    turntable, files.size()));
-    files.resize(camera_path ? camera_path->num_frames() : turntable, files.front());
+                                                    turntable.num_frames, files.size()));
+    files.resize(camera_path ? camera_path->num_frames() : turntable.num_frames, files.front());
     for (std::size_t i = 0; i < files.size(); ++i)
         files[i].number = static_cast<std::int64_t>(i);
     return files;
@@ -118,9 +146,9 @@ std::vector<cubemap::FrameFile> AnimateOptions::frame_files() const {
 
 double AnimateOptions::turn_degrees(std::size_t frame) const {
     const double degrees = 360.0 * static_cast<double>(frame) /
-                           static_cast<double>(std::max<std::size_t>(turntable, 1));
+                           static_cast<double>(std::max<std::size_t>(turntable.num_frames, 1));
     // An object that turns is a camera and an environment that turn the other way.
-    return turns == "object" ? -degrees : degrees;
+    return turntable.turns == Turning::Object ? -degrees : degrees;
 }
 
 EnvironmentOptions AnimateOptions::environment_at(std::size_t frame) const {

@@ -15,6 +15,14 @@
 
 namespace relumine::app {
 
+enum class Turning { Camera, Object, Environment };
+
+struct Turntable {
+    /// Of one turn under one environment; 0: there is none.
+    std::uint32_t num_frames = 0;
+    Turning turns = Turning::Camera;
+};
+
 struct AnimateOptions {
     SceneOptions scene;
     /// The argument FRAMES: a pattern of file names.
@@ -37,12 +45,13 @@ struct AnimateOptions {
     std::string movie;
     double frames_per_second = 24.0;
     bool resume = false;
-    /// Frames of one turn under one environment; 0: FRAMES are the frames.
-    std::size_t turntable = 0;
-    /// What turns.
-    std::string turns = "camera";
-    [[nodiscard]] bool turns_camera() const { return turntable > 0 && turns != "environment"; }
-    [[nodiscard]] bool turns_environment() const { return turntable > 0 && turns != "camera"; }
+    Turntable turntable;
+    [[nodiscard]] bool turns_camera() const {
+        return turntable.num_frames > 0 && turntable.turns != Turning::Environment;
+    }
+    [[nodiscard]] bool turns_environment() const {
+        return turntable.num_frames > 0 && turntable.turns != Turning::Camera;
+    }
 
     /// --camera-path: a file of key frames. Empty: the camera stands still or turns.
     std::string camera_file;

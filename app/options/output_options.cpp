@@ -16,6 +16,25 @@
 
 namespace relumine::app {
 
+namespace {
+
+/// "CONFIG" or "CONFIG,VIEW"
+struct DisplayViewText {
+    static constexpr const char* Type = "TEXT";
+    static relight::DisplayView read(const std::string& text) {
+        const std::size_t comma = text.find(',');
+        const std::string view = comma == std::string::npos ? "" : text.substr(comma + 1);
+        if (comma == 0 || comma + 1 == text.size())
+            refuse_text("CONFIG or CONFIG,VIEW", text);
+        return {.config = text.substr(0, comma), .view = view};
+    }
+    static std::string show(const relight::DisplayView& display) {
+        return display.view.empty() ? display.config : display.config + "," + display.view;
+    }
+};
+
+} // namespace
+
 Option OutputOptions::add_to(Command& command) {
     const Option output =
         command.add(row("-o,--output", path,
@@ -23,11 +42,10 @@ Option OutputOptions::add_to(Command& command) {
                         ".npy (numbers)",
                         {.file = true, .required = true}));
     options_ = command.add_all(options_of(picture));
-    command.add_all({row("--ocio", picture.display.config,
-                         "an OpenColorIO config: its view shows .png, in place of --tone-map",
-                         {.file = true, .excludes = "--tone-map"}),
-                     row("--ocio-view", picture.display.view,
-                         "a view of its display (the display's own)", {.needs = "--ocio"})});
+    command.add(row<DisplayViewText>(
+        "--ocio", picture.display,
+        "CONFIG[,VIEW]: an OpenColorIO config, whose view shows .png in place of --tone-map",
+        {.file = true, .excludes = "--tone-map"}));
     return output;
 }
 

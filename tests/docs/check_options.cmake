@@ -50,7 +50,7 @@ foreach(command IN LISTS commands)
 endforeach()
 
 # Who learns the program learns these.
-set(MOST_NAMES 88)
+set(MOST_NAMES 85)
 list(REMOVE_DUPLICATES names)
 list(LENGTH names num_names)
 if(num_names GREATER MOST_NAMES)

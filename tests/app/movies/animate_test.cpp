@@ -55,9 +55,9 @@ TEST_F(Animate, ATurntableTurnsTheCameraTheObjectOrTheEnvironment) {
     };
     for (const std::string turns : {"camera", "object", "environment"}) {
         const nlohmann::json report =
-            succeed({"animate", "scene.prt", "lamp.hdr", "-o", "turn.%d.exr", "--turntable", "4",
-                     "--turns", turns, "--camera", "20,30,4", "--size", "40x30", "--background",
-                     "none", "--target", "0,0,0", "--json"})
+            succeed({"animate", "scene.prt", "lamp.hdr", "-o", "turn.%d.exr", "--turntable",
+                     "4," + turns, "--camera", "20,30,4", "--size", "40x30", "--background", "none",
+                     "--target", "0,0,0", "--json"})
                 .json();
         EXPECT_EQ(report["frames"], 4);
         for (int frame = 0; frame < 4; ++frame) {
@@ -81,8 +81,9 @@ TEST_F(Animate, ATurntableTurnsTheCameraTheObjectOrTheEnvironment) {
     lamps(2);
     misuse(with({"animate", "scene.prt", "lamp.%d.hdr", "-o", "bad.%d.exr", "--turntable", "4"}),
            "--turntable");
-    misuse(with({"animate", "scene.prt", "lamp.hdr", "-o", "bad.%d.exr", "--turns", "moon"}),
-           "--turns");
+    for (const std::string wrong : {"4,moon", "4,", ",object", "x", "100001"})
+        misuse(with({"animate", "scene.prt", "lamp.hdr", "-o", "bad.%d.exr", "--turntable", wrong}),
+               "--turntable");
 }
 
 /// The example of docs/animate.md: each frame is what relight draws from the camera of the path.

@@ -89,7 +89,7 @@ TEST_F(Receivers, AllCommandsTakePixels) {
         succeed("lights white.hdr -o list.json -n 16 --scene px.prt --json").json();
     EXPECT_LT(lights["relative_l2"], 0.5);
     succeed("relight px.prt --lights list.json -o by_list.png");
-    fail("view px.prt white.hdr --screenshot window.png", {});
+    fail("view px.prt white.hdr -o window.png", {});
 }
 
 TEST_F(Receivers, TexelsBecomeALightmap) {
@@ -145,7 +145,7 @@ TEST_F(Receivers, OutputsThatDoNotFit) {
                "--eye: expected no camera");
         misuse({"relight", scene, "white.hdr", "-o", "new.png", "--size", "8x8"},
                "--size: expected no camera");
-        fail({"view", scene, "white.hdr", "--screenshot", "new.png"}, {});
+        fail({"view", scene, "white.hdr", "-o", "new.png"}, {});
     }
     misuse("relight tx.prt white.hdr -o new.png --background none",
            "--background: expected no background for a scene whose receivers are texels");

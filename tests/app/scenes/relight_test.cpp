@@ -64,7 +64,9 @@ TEST_F(Relight, WhiteFurnace) {
 
 TEST_F(Relight, AConfigOfOpenColorIOIsReadBeforeAnyWork) {
     refuse({"--ocio", "missing.ocio"}, 1);
-    refuse({"--ocio-view", "Film"}, 2);
+    refuse({"--ocio", "missing.ocio,Film"}, 1);
+    refuse({"--ocio", ",Film"}, 2);
+    refuse({"--ocio", "missing.ocio,"}, 2);
     refuse({"--ocio", "missing.ocio", "--tone-map", "aces"}, 2);
 }
 
