@@ -51,7 +51,7 @@ public:
     std::size_t update(const ClusterSums& sums, std::span<const std::uint32_t> changed,
                        bool sharp_changed);
 
-    // As those of Relighter.
+    // The light of all receivers, which Relighter documents.
     [[nodiscard]] std::span<const glm::vec3> radiance() const { return radiance_; }
     [[nodiscard]] std::span<const glm::vec3> diffuse_radiance() const {
         return diffuse_.empty() ? radiance_ : diffuse_;

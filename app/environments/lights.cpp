@@ -28,7 +28,7 @@ namespace {
 
 /// The name of relight::transfer_lights() beside those of lights::AllMethods.
 constexpr const char* TransferMethod = "transfer";
-/// Of importance sampling
+/// Where the random numbers of importance sampling begin
 constexpr std::uint64_t Seed = 1;
 
 struct LightsArguments {

@@ -24,7 +24,7 @@ struct Bit {
 
 struct Mode {
     unsigned mark;
-    /// Of w, and of what x, y and z differ from it by
+    /// How many bits w has, and what x, y and z differ from it by
     int num_bits;
     std::array<int, 3> num_delta_bits;
     bool has_two_lines;

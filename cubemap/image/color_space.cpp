@@ -23,7 +23,7 @@ constexpr glm::dvec2 D65{0.3127, 0.3290}, AcesWhite{0.32168, 0.33767};
 constexpr Primaries Rec709{{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, D65};
 
 struct Named {
-    /// As a colorInteropID has it
+    /// The colour space's colorInteropID
     std::string_view id;
     std::string_view name;
     Primaries primaries;

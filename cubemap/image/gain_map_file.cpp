@@ -45,7 +45,7 @@ struct Jpeg {
 
 /// How the map's numbers become light. A map of one colour has the same for all three.
 struct GainMap {
-    /// Of both in powers of two
+    /// The gains of the smallest and the largest number of the map, in powers of two
     glm::dvec3 least{0.0}, most{0.0};
     glm::dvec3 gamma{1.0};
     /// Added to the picture before, and taken off the result

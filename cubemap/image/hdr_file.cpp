@@ -423,7 +423,7 @@ private:
     std::filesystem::path path_;
     std::string name_;
     std::size_t num_bytes_;
-    /// Of the file's rows, and where the last one ends
+    /// Where the file's rows begin, and where the last one ends
     std::vector<std::uint64_t> offsets_;
     /// After the header
     std::optional<HdrDecoder> decoder_;

@@ -14,7 +14,7 @@ namespace relumine::cubemap {
 struct TexelFormat {
     enum class Kind { Halves, Floats, PackedFloats, SharedExponents, Bc6Unsigned, Bc6Signed };
     Kind kind = Kind::Halves;
-    /// Of halves and floats: 1 (grey), 3, or 4 with alpha, which is not read
+    /// Halves and floats have 1 (grey), 3, or 4 with alpha, which is not read
     std::size_t num_channels = 3;
 
     [[nodiscard]] bool has_blocks() const {

@@ -578,7 +578,7 @@ private:
     std::uint32_t samples_ = 3, planes_ = 1;
     /// 0: strips
     std::uint32_t tile_width_ = 0;
-    /// Of a strip or tile
+    /// The rows of a strip or tile
     std::uint32_t rows_ = 1;
     std::uint32_t columns_ = 1, down_ = 1;
     std::vector<std::uint64_t> offsets_, sizes_;

@@ -95,7 +95,7 @@ private:
     [[nodiscard]] std::uint32_t add(const std::string& name);
 
     std::filesystem::path folder_;
-    /// Of the materials of the library that is read, by their indices.
+    /// What is not yet settled of the materials of the library that is read, by their indices.
     std::map<std::uint32_t, Unsettled> unsettled_;
     std::map<std::string, std::uint32_t, std::less<>> indices_;
     /// Texture of each image file, or of its alpha. Empty: the image is broken.

@@ -46,7 +46,7 @@ struct RayFate {
 /// All directions within an angle of an axis of length 1.
 struct DirectionCone {
     glm::vec3 axis{0.0f};
-    /// Of the angle
+    /// The cosine of the cone's angle
     float cosine = -1.0f;
 };
 

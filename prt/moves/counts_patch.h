@@ -16,7 +16,7 @@ struct CountsPatch {
         std::uint64_t word = 0;
         /// The clusters that the patch has, a bit each
         std::uint64_t clusters = 0;
-        /// As in VisibleCounts, of these clusters
+        /// Which of these clusters are seen whole and in part, as in VisibleCounts
         std::uint64_t visible = 0, mixed = 0;
         /// Where its counts begin in `counts`: so many times 16
         std::uint64_t first = 0;

@@ -51,7 +51,7 @@ private:
         /// What these met: emitters, ascending.
         std::vector<std::uint32_t> emitters;
         std::uint32_t num_hits = 0;
-        /// Of the first look
+        /// The sum over the hits of the first look
         double sum_inverse_distances = 0.0;
     };
 

@@ -29,7 +29,7 @@ struct SceneDifference {
 ///
 /// Memory:  some 80 bytes for each vertex of the group, and the counts and bounces that are others.
 struct SceneChange {
-    /// Of the scene's mesh
+    /// The group's index in the scene's mesh
     std::uint32_t group = 0;
     /// The group's vertices, and what they have: as TriangleMesh
     std::vector<std::uint32_t> vertices;
@@ -37,7 +37,7 @@ struct SceneChange {
     /// The group's triangles, where they have tangents
     std::vector<std::uint32_t> triangles;
     std::vector<std::array<glm::vec4, 3>> corner_tangents;
-    /// Of the blockers, where the mesh is none
+    /// The group's vertices in the blockers, where the mesh is none
     std::vector<std::uint32_t> blocker_vertices;
     std::vector<glm::vec3> blocker_positions;
     /// The receivers that differ, and their places
@@ -47,7 +47,7 @@ struct SceneChange {
     std::optional<BounceMatrix> bounces;
     /// SceneSettings::rim_step
     std::optional<float> rim_step;
-    /// The same in both directions
+    /// What a change and its undo both differ in
     SceneDifference difference;
 };
 

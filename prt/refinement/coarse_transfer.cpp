@@ -31,7 +31,7 @@ constexpr double WeightOfEvenLight = 20.0, WeightOfLight = 4.0;
 
 CoarseDirections::CoarseDirections(const cubemap::CubeMap* light) {
     constexpr std::uint32_t TileSide = 4, PatchSide = 8;
-    // Of the cube map, by patch, then direction.
+    // The cube map's texels by patch, then direction.
     std::vector<std::size_t> texels;
     const std::vector<double> solid_angles = cubemap::texel_solid_angles(Resolution);
     for (const cubemap::Face face : cubemap::AllFaces)

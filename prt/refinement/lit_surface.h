@@ -93,7 +93,7 @@ private:
     std::vector<bool> is_traced_;
     std::vector<float> vertex_lamps_;
     std::vector<glm::vec3> lifts_;
-    /// Of the first points that any of it reached; 0 until then.
+    /// The mean over the first points that any lamp reached; 0 until then.
     float mean_of_lamps_ = 0.0f;
 };
 

@@ -216,7 +216,7 @@ struct BeamScene::Trees {
     std::shared_ptr<const SeeThrough> see_through;
     RayOf of;
     bool lets_pass;
-    /// Of all trees, where groups move
+    /// The middle of all trees, where groups move
     std::optional<glm::vec3> centre;
     /// Trees of the triangles that stop all rays, and of those that stop some of them.
     GroupedTree opaque, some_pass;

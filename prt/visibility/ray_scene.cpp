@@ -331,7 +331,7 @@ struct RayScene::Impl {
     SceneHandle scene;
     embree::Flags packets = embree::Coherent;
     std::unique_ptr<const Blockers> settled;
-    /// Of Embree's triangles
+    /// Which of Embree's triangles lie in one plane
     std::optional<const CoplanarFaces> coplanar;
 
     /// What decides for rays between surfaces in one plane.

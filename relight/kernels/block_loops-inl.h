@@ -136,7 +136,7 @@ struct Pairs {
     std::uint64_t mixed = 0;
     /// Seen whole, across a horizon.
     std::uint64_t across = 0;
-    /// Of the first cluster in `mixed`; those of the others follow.
+    /// The counts of the first cluster in `mixed`; those of the others follow.
     const std::uint8_t* counts = nullptr;
 
     /// Returns the counts of a cluster in `mixed`.

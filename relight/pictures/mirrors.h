@@ -116,10 +116,10 @@ private:
     const Backdrop* backdrop_;
     const prt::TextureView& view_;
     glm::vec2 shift_{0.0f};
-    // Of this tile
+    // Where this tile begins, and its size
     std::uint32_t left_ = 0, top_ = 0, width_ = 0;
     std::vector<std::optional<Middle>> middles_;
-    // Of this pixel
+    // Where this pixel is
     std::uint32_t x_ = 0, y_ = 0;
     std::vector<Traced> traced_;
 };

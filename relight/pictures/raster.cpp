@@ -145,7 +145,7 @@ public:
     [[nodiscard]] std::int32_t height() const { return height_; }
 
 private:
-    /// As CoplanarFaces has it; neighbouring samples ask the same.
+    /// CoplanarFaces::covers(), whose last answer is kept: neighbouring samples ask the same.
     [[nodiscard]] bool covers(std::uint32_t triangle, std::uint32_t other) {
         if (triangle != asked_[0] || other != asked_[1]) {
             asked_ = {triangle, other};

@@ -155,7 +155,7 @@ private:
     float least_roughness_ = 0.0f;
     /// Without the lights
     Levels levels_;
-    /// Of levels 1 and on
+    /// The evenness of levels 1 and on
     std::vector<Evenness> evenness_;
     /// With the lights, from a resolution on that is enough for what is mirrored twice. Empty:
     /// there are no lights.

@@ -132,7 +132,7 @@ struct Refractions::Ray {
     glm::vec3 throughput{1.0f};
     /// The body that the ray is in; null outside of all.
     const mesh::Material* body = nullptr;
-    /// Of the rays of its pixel, and how those are shifted
+    /// The ray's number among those of its pixel, and how these are shifted
     std::uint32_t number = 0;
     glm::vec2 shift{0.0f};
     int num_surfaces = 0;

@@ -26,7 +26,7 @@ using mesh::Camera;
 struct PlacedCamera {
     glm::dvec3 eye{0.0};
     glm::dvec3 target{0.0};
-    /// As those of Camera
+    /// Camera's members
     float fov_degrees = 35.0f, roll_degrees = 0.0f;
 
     PlacedCamera() = default;
