@@ -3,236 +3,27 @@
 // (integers) and colours that are not RGB or grey are refused. Based on: Adobe, TIFF Revision 6.0,
 // 1992; TIFF Technical Note 3, 2005; the BigTIFF page of libtiff.
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <map>
 #include <optional>
 
 #include <fmt/format.h>
 #include <half.h>
-#include <libdeflate.h>
 
 #include "cubemap/image/color_space.h"
 #include "cubemap/image/file_bytes.h"
 #include "cubemap/image/icc_profile.h"
 #include "cubemap/image/image_file.h"
-#include "files/compression.h"
+#include "cubemap/image/tiff_directory.h"
+#include "cubemap/image/tiff_packing.h"
 
 namespace relumine::cubemap {
 
 namespace {
 
-enum Tag : std::uint16_t {
-    Width = 256,
-    Height = 257,
-    BitsPerSample = 258,
-    Compression = 259,
-    Photometric = 262,
-    StripOffsets = 273,
-    Orientation = 274,
-    SamplesPerPixel = 277,
-    RowsPerStrip = 278,
-    StripByteCounts = 279,
-    Planar = 284,
-    Predictor = 317,
-    WhitePoint = 318,
-    PrimaryColors = 319,
-    TileWidth = 322,
-    TileLength = 323,
-    TileOffsets = 324,
-    TileByteCounts = 325,
-    ExtraSamples = 338,
-    SampleFormat = 339,
-    IccProfile = 34675,
-};
-
-enum class Packing : std::uint16_t {
-    None = 1,
-    Lzw = 5,
-    Deflate = 8,
-    OldDeflate = 32946,
-    PackBits = 32773,
-    Zstd = 50000
-};
-
-/// The fields of the first picture. Others, smaller ones or pages, are not read.
-class Directory {
-public:
-    explicit Directory(const FileBytes& file) : file_(file) {
-        const Fields start(file, file.read(0, std::min<std::uint64_t>(file.size(), 16)));
-        is_big_endian_ = start.number(0, 1) == 'M';
-        const Fields head(file, start.bytes(), is_big_endian_);
-        is_big_tiff_ = head.u16(2) == 43;
-        const std::uint64_t at = is_big_tiff_ ? head.number(8, 8) : head.number(4, 4);
-        if (at == 0)
-            file.refuse("a TIFF picture", "a file that was not finished");
-        const std::size_t count_bytes = is_big_tiff_ ? 8 : 2;
-        const std::size_t entry_bytes = is_big_tiff_ ? 20 : 12;
-        const std::uint64_t count =
-            Fields(file, file.read(at, count_bytes), is_big_endian_).number(0, count_bytes);
-        constexpr std::uint64_t MostFields = 4096;
-        if (count > MostFields)
-            file.refuse(fmt::format("up to {} fields", MostFields), fmt::format("{}", count));
-        const std::size_t offset_bytes = is_big_tiff_ ? 8 : 4;
-        const Fields entries(file, file.read(at + count_bytes, count * entry_bytes),
-                             is_big_endian_);
-        for (std::uint64_t i = 0; i < count; ++i) {
-            const std::uint64_t entry = i * entry_bytes;
-            fields_.emplace(
-                entries.u16(entry),
-                Field{.type = entries.u16(entry + 2),
-                      .count = entries.number(entry + 4, offset_bytes),
-                      .value_at = at + count_bytes + entry + 4 + offset_bytes,
-                      .offset = entries.number(entry + 4 + offset_bytes, offset_bytes)});
-        }
-    }
-
-    [[nodiscard]] bool is_big_endian() const { return is_big_endian_; }
-    [[nodiscard]] bool has(Tag tag) const { return fields_.contains(tag); }
-
-    /// Returns the whole numbers of a field; none where it is absent.
-    [[nodiscard]] std::vector<std::uint64_t> numbers(Tag tag) const {
-        const Fields bytes(file_, bytes_of(tag), is_big_endian_);
-        const std::size_t size = has(tag) ? size_of(fields_.at(tag).type) : 1;
-        std::vector<std::uint64_t> result(bytes.bytes().size() / size);
-        for (std::size_t i = 0; i < result.size(); ++i)
-            result[i] = bytes.number(i * size, size);
-        return result;
-    }
-    [[nodiscard]] std::uint64_t number(Tag tag, std::uint64_t otherwise) const {
-        const std::vector<std::uint64_t> all = numbers(tag);
-        return all.empty() ? otherwise : all.front();
-    }
-    /// Returns the rational numbers of a field.
-    [[nodiscard]] std::vector<double> fractions(Tag tag) const {
-        constexpr std::uint16_t Rational = 5;
-        if (!has(tag) || fields_.at(tag).type != Rational)
-            return {};
-        const Fields bytes(file_, bytes_of(tag), is_big_endian_);
-        std::vector<double> result(bytes.bytes().size() / 8);
-        for (std::size_t i = 0; i < result.size(); ++i)
-            result[i] = bytes.u32(8 * i) / static_cast<double>(bytes.u32(8 * i + 4));
-        return result;
-    }
-
-    [[nodiscard]] std::vector<std::byte> bytes_of(Tag tag) const {
-        if (!has(tag))
-            return {};
-        const Field& field = fields_.at(tag);
-        const std::size_t size = size_of(field.type);
-        if (size == 0 || field.count > file_.size() / size)
-            file_.refuse("fields that lie in the file",
-                         fmt::format("tag {} of type {} and {} values", static_cast<unsigned>(tag),
-                                     field.type, field.count));
-        const std::uint64_t num_bytes = field.count * size;
-        return file_.read(num_bytes <= (is_big_tiff_ ? 8U : 4U) ? field.value_at : field.offset,
-                          num_bytes);
-    }
-
-private:
-    struct Field {
-        std::uint16_t type;
-        std::uint64_t count, value_at, offset;
-    };
-
-    /// Returns the bytes of one value; 0 for an unknown type.
-    static std::size_t size_of(std::uint16_t type) {
-        constexpr std::array<std::uint8_t, 19> Sizes = {0, 1, 1, 2, 4, 8, 1, 1, 2, 4,
-                                                        8, 4, 8, 4, 0, 0, 8, 8, 8};
-        return type < Sizes.size() ? Sizes[type] : 0;
-    }
-
-    const FileBytes& file_;
-    bool is_big_endian_ = false, is_big_tiff_ = false;
-    std::map<std::uint16_t, Field> fields_;
-};
-
-/// Unpacks TIFF's LZW: codes of 9 to 12 bits, the highest bit first, which grow one code early.
-/// Returns false for broken codes.
-bool unpack_lzw(std::span<const std::byte> from, std::span<std::byte> to) {
-    constexpr std::uint32_t Clear = 256, End = 257, Most = 4096;
-    struct Entry {
-        std::uint16_t before;
-        std::uint16_t length;
-        std::byte last, first;
-    };
-    std::vector<Entry> table(Most);
-    for (std::uint32_t i = 0; i < Clear; ++i)
-        table[i] = {0, 1, static_cast<std::byte>(i), static_cast<std::byte>(i)};
-    std::uint32_t next = End + 1, width = 9, bits = 0, num_bits = 0;
-    std::uint32_t previous = Clear;
-    std::size_t at = 0, done = 0;
-    while (done < to.size()) {
-        while (num_bits < width) {
-            if (at == from.size())
-                return false;
-            bits = bits << 8 | std::to_integer<std::uint32_t>(from[at++]);
-            num_bits += 8;
-        }
-        const std::uint32_t code = bits >> (num_bits - width) & ((1U << width) - 1);
-        num_bits -= width;
-        if (code == End)
-            return false;
-        if (code == Clear) {
-            next = End + 1;
-            width = 9;
-            previous = Clear;
-            continue;
-        }
-        const bool is_new = code == next && previous != Clear;
-        if ((code >= next && !is_new) || (previous == Clear && code > 255))
-            return false;
-        // A code that is not in the table yet is the string before with its first byte again.
-        if (previous != Clear && next < Most) {
-            table[next] = {static_cast<std::uint16_t>(previous),
-                           static_cast<std::uint16_t>(table[previous].length + 1),
-                           table[is_new ? previous : code].first, table[previous].first};
-            ++next;
-        }
-        const std::size_t length = table[code].length;
-        if (length > to.size() - done)
-            return false;
-        for (std::uint32_t i = 0, entry = code; i < length; ++i, entry = table[entry].before)
-            to[done + length - 1 - i] = table[entry].last;
-        done += length;
-        previous = code;
-        if (next + 1 >= (1U << width) && width < 12)
-            ++width;
-    }
-    return true;
-}
-
-bool unpack_bits(std::span<const std::byte> from, std::span<std::byte> to) {
-    std::size_t at = 0, done = 0;
-    while (done < to.size()) {
-        if (at == from.size())
-            return false;
-        const auto code = static_cast<std::int8_t>(from[at++]);
-        if (code == -128)
-            continue;
-        const std::size_t count = static_cast<std::size_t>(code < 0 ? 1 - code : 1 + code);
-        const std::size_t taken = code < 0 ? 1 : count;
-        if (count > to.size() - done || taken > from.size() - at)
-            return false;
-        for (std::size_t i = 0; i < count; ++i)
-            to[done++] = from[at + (code < 0 ? 0 : i)];
-        at += taken;
-    }
-    return true;
-}
-
-bool unpack_deflate(std::span<const std::byte> from, std::span<std::byte> to) {
-    libdeflate_decompressor* decompressor = libdeflate_alloc_decompressor();
-    if (decompressor == nullptr)
-        throw std::bad_alloc();
-    std::size_t size = 0;
-    const libdeflate_result result = libdeflate_zlib_decompress(
-        decompressor, from.data(), from.size(), to.data(), to.size(), &size);
-    libdeflate_free_decompressor(decompressor);
-    return result == LIBDEFLATE_SUCCESS && size == to.size();
-}
+using tiff::Directory;
+using tiff::Packing;
 
 class TiffRows : public ImageRows {
 public:
@@ -289,6 +80,8 @@ public:
     }
 
 private:
+    using enum tiff::Tag;
+
     /// Rows of a strip or a tile, in this machine's byte order.
     struct Segment {
         std::vector<std::byte> bytes;
@@ -439,12 +232,6 @@ private:
             colors_.emplace(*space);
     }
 
-    /// Returns how many times smaller the bytes can be than what is unpacked from them.
-    [[nodiscard]] std::uint64_t most_ratio() const {
-        return packing_ == Packing::None   ? 1
-               : packing_ == Packing::Zstd ? files::MaxCompressionRatio
-                                           : 4000;
-    }
     [[nodiscard]] std::uint32_t segment_width() const {
         return tile_width_ != 0 ? tile_width_ : head_.width;
     }
@@ -471,15 +258,10 @@ private:
         } else {
             constexpr std::uint64_t AlwaysAllowed = std::uint64_t{64} << 20;
             const std::vector<std::byte> packed = file_.read(offsets_[index], sizes_[index]);
-            if (num_bytes > std::max(AlwaysAllowed, packed.size() * most_ratio()))
+            if (num_bytes > std::max(AlwaysAllowed, packed.size() * most_ratio(packing_)))
                 broken(segment_row);
             result.bytes.resize(num_bytes);
-            const bool is_whole =
-                packing_ == Packing::Lzw        ? unpack_lzw(packed, result.bytes)
-                : packing_ == Packing::PackBits ? unpack_bits(packed, result.bytes)
-                : packing_ == Packing::Zstd     ? files::decompress(packed, result.bytes)
-                                                : unpack_deflate(packed, result.bytes);
-            if (!is_whole)
+            if (!unpack(packing_, packed, result.bytes))
                 broken(segment_row);
         }
         for (std::size_t at = 0; at < result.bytes.size(); at += row_bytes())
