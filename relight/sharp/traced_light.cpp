@@ -105,7 +105,7 @@ void TracedLight::follow(std::span<const SharpLight> lights, const prt::SceneDif
     std::vector<FreshPatch> patches;
     std::vector<const Reached*> taken;
     for (std::size_t i = 0; i < lights.size(); ++i)
-        if (std::ranges::find(taken, of_light_[i]) == taken.end()) {
+        if (std::find(taken.begin(), taken.end(), of_light_[i]) == taken.end()) {
             taken.push_back(of_light_[i]);
             add(patches, lights[i], reached_.at(key_of(lights[i])).get());
         }
