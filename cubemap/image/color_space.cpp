@@ -1,5 +1,6 @@
 #include "cubemap/image/color_space.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_access.hpp>
 #include <glm/matrix.hpp>
 
 #include "files/counted.h"
@@ -18,6 +20,9 @@
 namespace relumine::cubemap {
 
 namespace {
+
+/// The luminance of a display's white, in cd/m2
+constexpr float DisplayWhite = 203.0f;
 
 constexpr glm::dvec2 D65{0.3127, 0.3290}, AcesWhite{0.32168, 0.33767};
 constexpr Primaries Rec709{{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, D65};
@@ -82,6 +87,19 @@ float linear(float value, Transfer transfer) {
         return power(2.2f);
     case Transfer::Gamma18:
         return power(1.8f);
+    case Transfer::Pq: {
+        constexpr float M1 = 2610.0f / 16384.0f, M2 = 2523.0f / 32.0f;
+        constexpr float C1 = 107.0f / 128.0f, C2 = 2413.0f / 128.0f, C3 = 2392.0f / 128.0f;
+        const float root = std::pow(size, 1.0f / M2);
+        return std::copysign(std::pow(std::max(root - C1, 0.0f) / (C2 - C3 * root), 1.0f / M1) *
+                                 (10'000.0f / DisplayWhite),
+                             value);
+    }
+    case Transfer::Hlg: {
+        constexpr float A = 0.17883277f, B = 1.0f - 4.0f * A, C = 0.55991073f;
+        const float light = size <= 0.5f ? size * size / 3.0f : (std::exp((size - C) / A) + B) / 12;
+        return std::copysign(light, value);
+    }
     default:
         return value;
     }
@@ -100,13 +118,24 @@ glm::dmat3 rec709_from_xyz() {
     return glm::inverse(to_xyz(Rec709));
 }
 
-std::optional<ColorSpace> space_of(const Primaries& primaries) {
+std::optional<ColorSpace> space_of(const Primaries& primaries, Transfer transfer) {
+    const std::string_view curve = transfer == Transfer::Linear ? ""
+                                   : transfer == Transfer::Srgb ? " by sRGB's curve"
+                                   : transfer == Transfer::Pq   ? " by PQ"
+                                   : transfer == Transfer::Hlg  ? " by HLG"
+                                                                : " with a gamma";
     if (are_near(primaries, Rec709))
-        return std::nullopt;
+        return transfer == Transfer::Linear
+                   ? std::nullopt
+                   : std::optional(ColorSpace{.primaries = Rec709,
+                                              .transfer = transfer,
+                                              .name = fmt::format("Rec. 709{}", curve)});
     for (const Named& each : Spaces)
         if (are_near(primaries, each.primaries))
-            return ColorSpace{.primaries = each.primaries, .name = std::string(each.name)};
-    return ColorSpace{.primaries = primaries};
+            return ColorSpace{.primaries = each.primaries,
+                              .transfer = transfer,
+                              .name = fmt::format("{}{}", each.name, curve)};
+    return ColorSpace{.primaries = primaries, .transfer = transfer};
 }
 
 std::optional<ColorSpace> space_of_id(std::string_view id) {
@@ -138,6 +167,7 @@ ColorConversion::ColorConversion(const ColorSpace& from)
     : transfer_(from.transfer), from_(from.name.empty() ? "the header's primaries" : from.name) {
     try {
         matrix_ = to_rec709(from.primaries);
+        luminances_ = glm::row(to_xyz(from.primaries), 1);
     } catch (const std::invalid_argument&) { // said by the remark
     }
 }
@@ -152,6 +182,11 @@ std::size_t ColorConversion::convert(std::span<glm::vec3> pixels) const {
         if (transfer_ != Transfer::Linear)
             for (int channel = 0; channel < 3; ++channel)
                 pixel[channel] = linear(pixel[channel], transfer_);
+        if (transfer_ == Transfer::Hlg) {
+            // On a display of 1,000 cd/m2 [ITU-R BT.2100, table 5].
+            const float luminance = std::max(glm::dot(luminances_, pixel), 0.0f);
+            pixel *= 1000.0f / DisplayWhite * std::pow(luminance, 0.2f);
+        }
         const bool was_light = pixel.x >= 0.0f && pixel.y >= 0.0f && pixel.z >= 0.0f;
         pixel = *matrix_ * pixel;
         if (was_light && (pixel.x < 0.0f || pixel.y < 0.0f || pixel.z < 0.0f)) {

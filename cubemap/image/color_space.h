@@ -20,8 +20,9 @@ struct Primaries {
     glm::dvec2 red, green, blue, white;
 };
 
-/// How a file's numbers stand for light.
-enum class Transfer { Linear, Srgb, Gamma22, Gamma18 };
+/// How a file's numbers stand for light. Those of Pq [SMPTE ST 2084] and Hlg [ITU-R BT.2100] are
+/// what a display shows: its white of 203 cd/m2 [ITU-R BT.2408] is radiance 1.
+enum class Transfer { Linear, Srgb, Gamma22, Gamma18, Pq, Hlg };
 
 struct ColorSpace {
     Primaries primaries;
@@ -30,7 +31,7 @@ struct ColorSpace {
     std::string name = {};
 };
 
-/// Returns the light of a file's number.
+/// Returns the light of a file's number; for Hlg that of the scene, of which 1 is the most.
 [[nodiscard]] float linear(float value, Transfer transfer);
 /// Returns the matrix from linear colours of these primaries to those of Rec. 709. White stays
 /// white: Bradford's adaptation [Lindbloom, "Chromatic Adaptation"].
@@ -41,8 +42,9 @@ struct ColorSpace {
 [[nodiscard]] glm::dmat3 rec709_from_xyz();
 
 /// Returns the space of these primaries, with a name where one has them within 0.001. Empty for
-/// those of Rec. 709, which need no conversion.
-[[nodiscard]] std::optional<ColorSpace> space_of(const Primaries& primaries);
+/// those of linear Rec. 709, which need no conversion.
+[[nodiscard]] std::optional<ColorSpace> space_of(const Primaries& primaries,
+                                                 Transfer transfer = Transfer::Linear);
 /// Returns the space that a `colorInteropID` names ("lin_ap1_scene", "srgb_rec709_display").
 /// Empty for linear Rec. 709, and for names that say nothing of colours or are not known.
 [[nodiscard]] std::optional<ColorSpace> space_of_id(std::string_view id);
@@ -64,6 +66,8 @@ public:
 private:
     /// Empty: pixels stay as they are
     std::optional<glm::mat3> matrix_;
+    /// The luminance of each primary
+    glm::vec3 luminances_{0.0f};
     Transfer transfer_ = Transfer::Linear;
     std::string from_;
 };

@@ -93,6 +93,20 @@ constexpr ImageFormat Formats[] = {
      .decode = decode_by_rows<open_gain_map>,
      .size = size_by_rows<open_gain_map>,
      .rows = some_rows<open_gain_map>},
+#ifdef RELUMINE_HDR_PHOTOS
+    {.extensions = {".avif"},
+     .name = "AVIF",
+     .marks = is_avif,
+     .decode = decode_by_rows<open_avif>,
+     .size = size_by_rows<open_avif>,
+     .rows = some_rows<open_avif>},
+    {.extensions = {".jxl"},
+     .name = "JPEG XL",
+     .marks = is_jxl,
+     .decode = decode_by_rows<open_jxl>,
+     .size = size_by_rows<open_jxl>,
+     .rows = some_rows<open_jxl>},
+#endif
 };
 
 /// Says what a file is that is no environment.
@@ -107,6 +121,9 @@ std::string_view kind_of_other(const std::filesystem::path& path,
     if (head.starts_with("\x89PNG") || is_webp)
         return "a PNG or WebP picture, which holds no light above white: use the .hdr or "
                ".exr that it was made from";
+    if (is_avif(bytes) || is_jxl(bytes))
+        return "AVIF or JPEG XL, which this build does not read (packages/hdr-photos.txt, "
+               "-DRELUMINE_HDR_PHOTOS=ON)";
     return extension == ".prt" ? "a scene: the scene stands first, the environment behind it"
                                : "something else";
 }

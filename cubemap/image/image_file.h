@@ -79,18 +79,22 @@ protected:
 inline constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 29;
 
 /// Returns true if a file's first bytes mark it as of a format.
+[[nodiscard]] bool is_avif(std::span<const std::byte> bytes);
 [[nodiscard]] bool is_exr(std::span<const std::byte> bytes);
 [[nodiscard]] bool is_hdr(std::span<const std::byte> bytes);
 [[nodiscard]] bool is_dds(std::span<const std::byte> bytes);
 [[nodiscard]] bool is_jpeg(std::span<const std::byte> bytes);
+[[nodiscard]] bool is_jxl(std::span<const std::byte> bytes);
 [[nodiscard]] bool is_ktx(std::span<const std::byte> bytes);
 [[nodiscard]] bool is_pfm(std::span<const std::byte> bytes);
 [[nodiscard]] bool is_tiff(std::span<const std::byte> bytes);
 
 /// Reads what stands before the pixels.
 /// Throws:  std::runtime_error "name: expected X, got Y", as read() of what is returned does.
+[[nodiscard]] std::unique_ptr<ImageRows> open_avif(FileBytes file);
 [[nodiscard]] std::unique_ptr<ImageRows> open_dds(FileBytes file);
 [[nodiscard]] std::unique_ptr<ImageRows> open_gain_map(FileBytes file);
+[[nodiscard]] std::unique_ptr<ImageRows> open_jxl(FileBytes file);
 [[nodiscard]] std::unique_ptr<ImageRows> open_ktx(FileBytes file);
 [[nodiscard]] std::unique_ptr<ImageRows> open_pfm(FileBytes file);
 [[nodiscard]] std::unique_ptr<ImageRows> open_tiff(FileBytes file);

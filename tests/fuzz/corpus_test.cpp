@@ -16,6 +16,7 @@
 
 // As CMakeLists.txt lists them.
 #define RELUMINE_FUZZ_TARGETS(X)                                                                   \
+    X(avif)                                                                                        \
     X(command_line)                                                                                \
     X(dds)                                                                                         \
     X(exr)                                                                                         \
@@ -23,6 +24,7 @@
     X(gltf)                                                                                        \
     X(hdr)                                                                                         \
     X(ies)                                                                                         \
+    X(jxl)                                                                                         \
     X(ktx)                                                                                         \
     X(layers)                                                                                      \
     X(lights)                                                                                      \

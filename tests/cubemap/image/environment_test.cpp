@@ -229,10 +229,10 @@ TEST(Environment, FilesThatAreNoneAreRefused) {
     EXPECT_EQ(message_of([&] { (void)load_environment(folder / "none.exr"); }),
               (folder / "none.exr").string() + ": cannot read: No such file or directory");
     write(folder / "empty.exr", {});
-    EXPECT_EQ(message_of([&] { (void)load_environment(folder / "empty.exr"); }),
-              (folder / "empty.exr").string() +
-                  ": expected an OpenEXR, Radiance .hdr, TIFF, PFM, DDS, KTX or gain-map JPEG "
-                  "file, got an empty file");
+    EXPECT_THAT(message_of([&] { (void)load_environment(folder / "empty.exr"); }),
+                testing::AllOf(testing::StartsWith((folder / "empty.exr").string() +
+                                                   ": expected an OpenEXR, Radiance .hdr, TIFF"),
+                               testing::EndsWith(" file, got an empty file")));
     write(folder / "text.hdr", std::vector<std::byte>(100, std::byte{'x'}));
     EXPECT_NE(message_of([&] { (void)load_environment(folder / "text.hdr"); }), "");
 }

@@ -1,0 +1,6 @@
+#include "tests/fuzz/environment_target.h"
+
+RELUMINE_FUZZ_TARGET(jxl) {
+    relumine::fuzz::read_environment(relumine::fuzz::bytes(data, size));
+    return 0;
+}
