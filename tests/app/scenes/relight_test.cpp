@@ -345,7 +345,8 @@ TEST_F(Relight, InputsThatCannotBeReadAreNamed) {
 
 TEST_F(Relight, AMeshIsPrecomputedOnceAndKept) {
     const auto first_picture = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> arguments = {"relight", "mesh.obj", "white.hdr", "-o", "lit.png"};
+        std::vector<std::string> arguments = {"relight", "mesh.obj", "white.hdr", "-o",
+                                              "lit.png", "--size", "96x72"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return succeed(arguments).out.find("kept in cache") != std::string::npos;
     };
@@ -365,7 +366,7 @@ TEST_F(Relight, AMeshIsPrecomputedOnceAndKept) {
     EXPECT_EQ(read("lit.png"), picture);
     // It is the scene that the options of precompute make by themselves, with a floor.
     succeed("precompute mesh.obj --floor -o own.prt -q");
-    succeed("relight own.prt white.hdr -o own.png -q");
+    succeed("relight own.prt white.hdr -o own.png --size 96x72 -q");
     EXPECT_EQ(read("own.png"), picture);
     // Other commands take the same scene.
     for (const char* command :
