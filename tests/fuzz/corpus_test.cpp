@@ -15,8 +15,12 @@
 #include "tests/fuzz/fuzz.h"
 
 // As CMakeLists.txt lists them.
+#ifdef RELUMINE_HDR_PHOTOS
+#define RELUMINE_FUZZ_PHOTOS(X) X(avif) X(jxl)
+#else
+#define RELUMINE_FUZZ_PHOTOS(X)
+#endif
 #define RELUMINE_FUZZ_TARGETS(X)                                                                   \
-    X(avif)                                                                                        \
     X(command_line)                                                                                \
     X(dds)                                                                                         \
     X(exr)                                                                                         \
@@ -24,11 +28,11 @@
     X(gltf)                                                                                        \
     X(hdr)                                                                                         \
     X(ies)                                                                                         \
-    X(jxl)                                                                                         \
     X(ktx)                                                                                         \
     X(layers)                                                                                      \
     X(lights)                                                                                      \
-    X(mtl) X(obj) X(off) X(pfm) X(ply) X(prt) X(sections) X(stl) X(texture) X(tiff)
+    X(mtl)                                                                                         \
+    X(obj) X(off) X(pfm) X(ply) X(prt) X(sections) X(stl) X(texture) X(tiff) RELUMINE_FUZZ_PHOTOS(X)
 
 #define RELUMINE_DECLARE(name)                                                                     \
     extern "C" int relumine_fuzz_##name(const std::uint8_t* data, std::size_t size);

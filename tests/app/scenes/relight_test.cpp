@@ -346,7 +346,7 @@ TEST_F(Relight, InputsThatCannotBeReadAreNamed) {
 TEST_F(Relight, AMeshIsPrecomputedOnceAndKept) {
     const auto first_picture = [&](const std::vector<std::string>& more) {
         std::vector<std::string> arguments = {"relight", "mesh.obj", "white.hdr", "-o",
-                                              "lit.png", "--size", "96x72"};
+                                              "lit.png", "--size",   "96x72"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return succeed(arguments).out.find("kept in cache") != std::string::npos;
     };
