@@ -53,7 +53,8 @@ fi
 [ $# -gt 0 ] || set -- python3
 environment "$1" "$work/tools"
 "$work/tools/bin/pip" install -q -r packages/release.pip
-rm -rf dist "$work/made" "$work/source" "$work/deb"
+# Compiled anew: all files of a source distribution have one date, by which ninja would take old objects for new ones.
+rm -rf dist "$work/cmake" "$work/made" "$work/source" "$work/deb"
 mkdir -p dist "$work/made" "$work/source"
 "$work/tools/bin/python" -m build --sdist -o dist . >"$work/sdist.log"
 # From the source distribution, so that what is missing in it is seen. The libraries are compiled once, for all Pythons,
