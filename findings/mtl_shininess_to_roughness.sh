@@ -15,7 +15,7 @@ python3.11 -m venv venv
 venv/bin/pip install -q trimesh==5.2.0 bpy==5.0.1
 printf 'mtllib shiny.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n' >shiny.obj
 for exponent in 10 100 900; do
-    printf 'newmtl n%d\nKd 0.5 0.5 0.5\nKs 0.04 0.04 0.04\nNs %d\n' "$exponent" "$exponent" >>shiny.mtl
+    printf 'newmtl n%d\nKd 0.5 0.5 0.5\nKs 0.5 0.5 0.5\nNs %d\n' "$exponent" "$exponent" >>shiny.mtl
     printf 'o n%d\nusemtl n%d\nf 1 2 3\n' "$exponent" "$exponent" >>shiny.obj
 done
 cat >obj2gltf.mjs <<'JAVASCRIPT'
