@@ -45,7 +45,8 @@ def read(scale):
     mesh.compute_triangle_normals()
     computed = (np.asarray(mesh.triangle_normals) * points[faces].mean(1)).sum(1)
     other = trimesh.load("box.gltf").to_geometry().volume
-    return ["outwards" if (x > 0).all() else "inwards" if (x < 0).all() else "mixed" for x in (computed, given)] + [round(float(other), 3)]
+    sides = ["outwards" if (x > 0).all() else "inwards" if (x < 0).all() else "mixed" for x in (computed, given)]
+    return [*sides, round(float(other), 3)]
 
 
 found = {name: read(scale) for name, scale in (("plain", [1, 1, 1]), ("mirrored", [-1, 1, 1]))}

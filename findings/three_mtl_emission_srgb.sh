@@ -29,8 +29,10 @@ const creator = new MTLLoader().parse(readFileSync('lamp.mtl', 'utf8'), '');
 creator.preload();
 const { lamp, glimmer } = creator.materials;
 const { materials } = await obj2gltf('lamp.obj');
-console.log('found: three.js:', lamp.emissive.toArray(), lamp.emissiveIntensity, glimmer.emissive.toArray(), lamp.color.toArray());
-console.log('found: obj2gltf:', materials.map((material) => [material.emissiveFactor, material.pbrMetallicRoughness.baseColorFactor]));
+console.log('found: three.js:', lamp.emissive.toArray(), lamp.emissiveIntensity, glimmer.emissive.toArray(),
+    lamp.color.toArray());
+console.log('found: obj2gltf:', materials.map(({ emissiveFactor, pbrMetallicRoughness }) =>
+    [emissiveFactor, pbrMetallicRoughness.baseColorFactor]));
 const near = (values, expected) => values.every((value, i) => Math.abs(value / expected[i] - 1) < 0.01);
 if (!near(lamp.emissive.toArray(), [223.8, 42.97, 4.954]) || lamp.emissiveIntensity !== 1) process.exit(1);
 if (!near(glimmer.emissive.toArray(), [0.214, 0.214, 0.214])) process.exit(1);

@@ -3,8 +3,8 @@
 #
 # Expected: points and spots of KHR_lights_punctual fall off with the square of the distance, candela over metres squared.
 # Found:    a lamp without a range has VTK's own attenuation of 1, 0, 0: none. At 10 m it is 100 times too bright, at 0.1 m 100
-#           times too dark. With a range of r it is divided by 1 + 100 d^2 / r^2: for 5 m that is 4 times too dark from a
-#           metre on. So the range, which only cuts off far away, sets the brightness. Cone and colour are right.
+#           times too dark. With a range of r it is divided by 1 + 100 d^2 / r^2: for 5 m that is 4 to 5 times too dark from
+#           a metre on. So the range, which only cuts off far away, sets the brightness. Cone and colour are right.
 # Tried:    vtk 9.7.2 of PyPI, Python 3.11.
 set -euo pipefail
 work=$(mktemp -d)
