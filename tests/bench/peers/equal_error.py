@@ -177,7 +177,7 @@ def run(peers, quick):
                 told[pixels] = apart([picture[mask[event]]] * 2, judges), spent
                 cells.append(f"{told[pixels][0]:.3f}, {spent:.3g}")
             error, spent = next(iter(told.values()))
-            asked = max(error, FINE)
+            asked = max(abs(error), FINE)  # negative: less than can be told
             brightness = product(*judges)
             seconds = {}
             for each in names:
