@@ -7,7 +7,7 @@ import bpy
 import mathutils
 import numpy as np
 
-from scenes import axes_of
+from scenes import axes_of, dome_of
 
 NAME = "Cycles"
 #: Blender's world has +Z up: rows of what takes our directions to its.
@@ -110,7 +110,7 @@ def _world(light):
     nodes, links = world.node_tree.nodes, world.node_tree.links
     background = nodes["Background"]
     background.inputs["Color"].default_value = (0, 0, 0, 1)
-    dome = light["dome"]
+    dome = dome_of(light)
     if dome is None:
         return world
     height, width, _ = dome.shape

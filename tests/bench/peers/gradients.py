@@ -27,7 +27,7 @@ def run(peers, quick):
     print("\n### Gradients\n\n| of | samples a pixel | processor seconds | peak MB | off a converged one (L2) | loss of the gradient over that of the picture |\n" + "|---" * 6 + "|")
     rows = []
     own = found["Relumine"]
-    own.build({**scene, "pixels": True})
+    own.build({**scene, "pixels": True, "gradient": True, "background": "none"})
     rows.append(("Relumine", "-", own, own.gradient(weights, HEIGHT)))
     peer = found["Mitsuba"]
     peer.build(scene)

@@ -4,7 +4,7 @@ import time
 import numpy as np
 import pyluxcore
 
-from scenes import axes_of
+from scenes import axes_of, dome_of
 
 NAME = "LuxCore"
 pyluxcore.Init(lambda message: None)
@@ -49,9 +49,7 @@ def build(scene):
     state = State()
     state.scene = pyluxcore.Scene()
     state.bounces = scene["bounces"]
-    materials = [each["material"] for each in scene["shapes"]]
-    state.has_glass = any(each["kind"] == "glass" for each in materials)
-    state.is_matte = all(each["kind"] == "matte" and not any(each["sheen"]) for each in materials)
+    state.has_glass = any(each["material"]["kind"] == "glass" for each in scene["shapes"])
     for number, each in enumerate(scene["shapes"]):
         normals = None if each["normals"] is None else [tuple(row) for row in each["normals"].tolist()]
         state.scene.DefineMesh(
@@ -62,7 +60,7 @@ def build(scene):
         rows[f"scene.objects.shape{number}.shape"] = f"mesh{number}"
         rows[f"scene.objects.shape{number}.material"] = f"material{number}"
         state.scene.Parse(_properties(rows))
-    state.seed = 0
+    state.seed = state.domes = 0
     state.lights = []
     look(state, scene["camera"])
     relight(state, scene["light"])
@@ -74,9 +72,11 @@ def relight(state, light):
         state.scene.DeleteLight(name)
     rows = {}
     if light["dome"] is not None:
-        height, width, _ = light["dome"].shape
-        name = f"dome{id(light['dome'])}"
-        state.scene.DefineImageMap(name, np.ascontiguousarray(light["dome"][:, ::-1]).ravel(), 1.0, 3, width, height)
+        dome = dome_of(light)
+        height, width, _ = dome.shape
+        state.domes += 1
+        name = f"dome{state.domes}"
+        state.scene.DefineImageMap(name, np.ascontiguousarray(dome[:, ::-1]).ravel(), 1.0, 3, width, height)
         turn = np.eye(4)
         turn[:3, :3] = light["turn"] @ DOME
         rows |= {"scene.lights.dome.type": "infinite", "scene.lights.dome.file": name, "scene.lights.dome.gamma": 1.0,
@@ -99,14 +99,16 @@ def look(state, camera):
     state.size = camera["size"]
     state.scene.Parse(_properties({
         "scene.camera.type": "perspective", "scene.camera.lookat.orig": list(camera["eye"]), "scene.camera.lookat.target": list(camera["target"]),
+        # Pictures lie one row lower than the camera says.
+        "scene.camera.screenwindow": [-1.0, 1.0, -1.0 - 2 / state.size, 1.0 - 2 / state.size],
         "scene.camera.up": up, "scene.camera.fieldofview": camera["fov"], "scene.camera.lensradius": 0.0, "scene.camera.autofocus.enable": False,
     }))  # fmt: skip
 
 
 def picture(state, samples):
     state.seed += 1
-    # At the last vertex of a path lights alone are sampled, and highlights are noise: one vertex more.
-    depth = 64 if state.bounces is None or state.has_glass else state.bounces + (1 if state.is_matte else 2)
+    # Paths of one vertex sample lights alone, and highlights are noise; those of two show the same light.
+    depth = 64 if state.bounces is None or state.has_glass else state.bounces + 2
     depths = {f"path.pathdepth.{name}": depth for name in ("total", "diffuse", "glossy", "specular")}
     config = pyluxcore.RenderConfig(_properties({
         "renderengine.type": "PATHCPU", "sampler.type": "SOBOL", "film.width": state.size, "film.height": state.size,
@@ -121,6 +123,4 @@ def picture(state, samples):
     pixels = np.zeros(state.size * state.size * 3, np.float32)
     session.GetFilm().GetOutputFloat(pyluxcore.FilmOutputType.RGB, pixels, 0)
     session.Stop()
-    # The picture lies one row lower than the camera says. Its lowest row is missing, and that above stands in for it.
-    rows = pixels.reshape(state.size, state.size, 3)[::-1]
-    return np.concatenate([rows[1:], rows[-1:]])
+    return pixels.reshape(state.size, state.size, 3)[::-1].copy()

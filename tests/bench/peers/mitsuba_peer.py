@@ -3,7 +3,7 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-from scenes import axes_of
+from scenes import axes_of, dome_of
 
 NAME = "Mitsuba"
 
@@ -55,12 +55,21 @@ def _mesh(given, number):
     return mesh
 
 
+def _rows(light):
+    """The dome's rows, and between them their means: Mitsuba's first and last stand on the poles, ours half a row away."""
+    dome = dome_of(light)
+    between = np.concatenate([dome[:1], (dome[:-1] + dome[1:]) / 2, dome[-1:]])
+    result = np.empty((2 * len(dome) + 1, *dome.shape[1:]), np.float32)
+    result[0::2], result[1::2] = between, dome
+    return result
+
+
 def _emitters(light):
     result = {}
     if light["dome"] is not None:
         turn = np.eye(4)
         turn[:3, :3] = light["turn"]
-        result["dome"] = {"type": "envmap", "bitmap": mi.Bitmap(np.ascontiguousarray(light["dome"])), "to_world": mi.ScalarTransform4f(turn)}
+        result["dome"] = {"type": "envmap", "bitmap": mi.Bitmap(_rows(light)), "to_world": mi.ScalarTransform4f(turn)}
     for number, sun in enumerate(light["suns"]):
         result[f"sun{number}"] = {
             "type": "directional", "direction": [-each for each in sun["direction"]],
@@ -83,13 +92,35 @@ def build(scene):
         depth = -1
     state.integrator = mi.load_dict({"type": "path", "max_depth": depth, "rr_depth": 64})
     look(state, scene["camera"])
+    state.kinds = None
     relight(state, scene["light"])
     state.seed = 0
     return state
 
 
 def relight(state, light):
-    state.scene = mi.load_dict({"type": "scene", **state.shapes, **_emitters(light)})
+    """Changes the emitters of the scene that is there where it has the same ones: their kernels stay compiled."""
+    kinds = (light["dome"] is None or light["dome"].shape, len(light["suns"]), len(light["lamps"]))
+    if kinds != state.kinds:
+        state.scene = mi.load_dict({"type": "scene", **state.shapes, **_emitters(light)})
+        state.kinds = kinds
+        return
+    changed = mi.traverse(state.scene)
+    if light["dome"] is not None:
+        dome = _rows(light)
+        changed["dome.data"] = mi.TensorXf(np.concatenate([dome[:, -1:], dome, dome[:, :1]], axis=1))
+        turn = np.eye(4)
+        turn[:3, :3] = light["turn"]
+        changed["dome.to_world"] = mi.Transform4f(turn)
+    for number, sun in enumerate(light["suns"]):
+        away = [-each for each in sun["direction"]]
+        aside = [0, 1, 0] if abs(away[1]) < 0.9 * np.linalg.norm(away) else [1, 0, 0]
+        changed[f"sun{number}.to_world"] = mi.Transform4f().look_at(origin=[0, 0, 0], target=away, up=aside)
+        changed[f"sun{number}.irradiance.value"] = mi.Color3f(sun["irradiance"])
+    for number, lamp in enumerate(light["lamps"]):
+        changed[f"lamp{number}.position"] = mi.Point3f(lamp["position"])
+        changed[f"lamp{number}.intensity.value"] = mi.Color3f(lamp["intensity"])
+    changed.update()
 
 
 def look(state, camera):
@@ -123,4 +154,6 @@ def gradient(state, weights, samples):
     whole = found[:, 1:-1].copy()
     whole[:, -1] += found[:, 0]
     whole[:, 0] += found[:, -1]
-    return whole
+    between = whole[0::2] / 2
+    between[[0, -1]] *= 2
+    return whole[1::2] + between[:-1] + between[1:]

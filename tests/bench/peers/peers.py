@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Relumine beside Mitsuba, Cycles, LuxCore and Radiance: `./dev bench peers`.
 
-    peers.py [--quick] [--only truth,gradients,skies] [--peers Mitsuba,Cycles] [--folder DIR]
+    peers.py [--quick] [--only truth,time,gradients,skies] [--peers Mitsuba,Cycles] [--folder DIR]
 
 The peers are Python packages of the versions below, in virtual environments in --folder, which the
 first run makes (2 GB). Each runs in a process of its own. Prints tables.
@@ -85,11 +85,12 @@ class Peer:
 
 
 def main():
+    import equal_error
     import gradients
     import skies
     import truth
 
-    judges = {"truth": truth.run, "gradients": gradients.run, "skies": skies.run}
+    judges = {"truth": truth.run, "time": equal_error.run, "gradients": gradients.run, "skies": skies.run}
     parser = argparse.ArgumentParser(prog="./dev bench peers", description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer rows and samples: ten minutes")
     parser.add_argument("--only", default=",".join(judges), help="judges, with commas between them")

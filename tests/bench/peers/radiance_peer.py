@@ -6,7 +6,7 @@ import tempfile
 
 import numpy as np
 
-from scenes import rays_of
+from scenes import dome_of, rays_of
 
 NAME = "Radiance"
 HOME = os.path.join(sysconfig.get_paths()["purelib"], "pyradiance")
@@ -64,6 +64,7 @@ class State:
 
 def build(scene):
     state = State()
+    state.seed = 0
     state.folder = tempfile.TemporaryDirectory()
     text = ""
     for number, each in enumerate(scene["shapes"]):
@@ -91,9 +92,10 @@ def relight(state, light):
     state.ambient = state.bounces + (light["dome"] is not None)
     text = ""
     if light["dome"] is not None:
-        height, width, _ = light["dome"].shape
+        dome = dome_of(light)
+        height, width, _ = dome.shape
         # One column more at either side, since data are interpolated and do not go round.
-        padded = np.concatenate([light["dome"][:, -1:], light["dome"], light["dome"][:, :1]], axis=1)
+        padded = np.concatenate([dome[:, -1:], dome, dome[:, :1]], axis=1)
         for channel, name in enumerate("rgb"):
             with open(state.path(f"dome.{name}.dat"), "w") as file:
                 file.write(f"2\n{0.5 / height} {1 - 0.5 / height} {height}\n{-0.5 / width} {1 + 0.5 / width} {width + 2}\n")
@@ -129,13 +131,19 @@ def look(state, camera):
 def picture(state, samples):
     """A pixel has up to 4 x 4 rays, which share its samples of the sky."""
     per_axis = max(1, min(4, int(samples**0.5)))
-    origin, directions = rays_of(state.camera, per_axis)
+    state.seed += 1
+    random = np.random.default_rng(state.seed)
+    # A ray that meets the edge of two walls sees light through it.
+    origin, directions = rays_of(state.camera, per_axis, random)
     rays = np.concatenate([np.broadcast_to(origin, directions.shape), directions], axis=2).reshape(-1, 6)
     each = max(1, samples // per_axis**2)
+    # The programs' random numbers are the same in each run: another order of rays gives another picture.
+    order = random.permutation(len(rays))
     # No ambient cache (-aa 0); of what bounces, rays of little weight go on by chance (-lr < 0), or they would be too many.
     ends = ["-lr", 64, "-lw", 1e-7] if state.bounces == 0 or state.is_glass else ["-lr", -64, "-lw", 1 / each]
     words = ["-h", "-fff", "-ab", state.ambient, "-aa", 0, "-ad", each, "-as", 0, *ends, "-ss", each, "-st", 0, "-dj", 0, "-ds", 0.05, "-dt", 0, "-n", 2]
-    found = np.frombuffer(run("rtrace", *words, state.path("scene.oct"), data=rays.astype(np.float32).tobytes()), np.float32)
+    found = np.empty((len(rays), 3), np.float32)
+    found[order] = np.frombuffer(run("rtrace", *words, state.path("scene.oct"), data=rays[order].astype(np.float32).tobytes()), np.float32).reshape(-1, 3)
     size = state.camera["size"]
     return found.reshape(size, per_axis, size, per_axis, 3).mean((1, 3))
 

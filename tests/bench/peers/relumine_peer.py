@@ -11,6 +11,8 @@ import relumine
 from relumine import _core
 
 NAME = "Relumine"
+#: Suns over a dome are layers this wide.
+SUN_DEGREES = 0.1
 sys.path.append(os.path.join(os.path.dirname(__file__), "../../../examples/python"))
 warnings.simplefilter("ignore", relumine.RelumineWarning)
 
@@ -92,29 +94,62 @@ def build(scene):
     state = State()
     state.bounces = scene["bounces"]
     state.camera = scene["camera"]
+    state.lamps = scene["light"]["lamps"]
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "scene.gltf")
         write_gltf(path, scene["shapes"], scene["light"]["lamps"])
         mesh = relumine.Mesh.load(path)
         view = state.camera
-        pixels = {"receivers": f"pixels:{view['size']}x{view['size']}:16", "view": (view["eye"], view["target"], view["fov"]), "material": relumine.Lambert()} if scene.get("pixels") else {}
+        pixels = {"receivers": f"pixels:{view['size']}x{view['size']}", "view": (view["eye"], view["target"], view["fov"])} if scene.get("pixels") else {}
+        if scene.get("gradient"):
+            pixels["receivers"] += ":16"
+            pixels["material"] = relumine.Lambert()
         state.scene = relumine.precompute(mesh, bounces=state.bounces != 0, **pixels)
-    state.relighter = relumine.Relighter(state.scene, **({"highlight_rays": 0} if pixels else {}))
+    state.relighter = relumine.Relighter(state.scene, **({"highlight_rays": 0} if scene.get("gradient") else {}))
     state.pixels = bool(pixels)
+    state.faces = 64 if scene.get("gradient") else 0
+    state.background = scene.get("background", "sharp")
+    state.light = None
     relight(state, scene["light"])
     return state
 
 
 def relight(state, light):
-    if light["suns"]:
-        suns = light["suns"]
+    """Only what differs from the light before is changed: the dome, layers over it, factors of lamps."""
+    state.emission = [
+        f"lamp{number}=1," + ",".join(str(new / old) for new, old in zip(lamp["intensity"], built["intensity"]))
+        for number, (lamp, built) in enumerate(zip(light["lamps"], state.lamps), 1)
+    ]
+    before, state.light = state.light, light
+    suns = light["suns"]
+    if light["dome"] is None and suns:
         state.relighter.set_lights(relumine.LightList([sun["direction"] for sun in suns], [sun["irradiance"] for sun in suns]))
+        is_other = True
     else:
-        dome = np.zeros((16, 32, 3), np.float32) if light["dome"] is None else light["dome"]
-        environment = relumine.Environment(dome, face_resolution=64 if state.pixels else 0)
-        state.relighter.set_environment(environment.turned(turn=light["turn"]))
-    if state.bounces != 0:
+        is_other = before is None or not all(np.array_equal(before[name], light[name]) for name in ("dome", "turn"))
+        if is_other:
+            dome = np.zeros((16, 32, 3), np.float32) if light["dome"] is None else light["dome"]
+            environment = relumine.Environment(dome, face_resolution=state.faces)
+            state.relighter.set_environment(environment.turned(turn=light["turn"]))
+        layers = _layers(light)
+        if layers != (_layers(before) if before else []):
+            state.relighter.set_layers(layers)
+            is_other = True
+    if is_other and state.bounces != 0:
         state.relighter.bounce(state.bounces)
+
+
+def _layers(light):
+    """Regions and suns over a dome."""
+    if light["dome"] is None:
+        return []
+    solid_angle = 2 * np.pi * (1 - np.cos(np.radians(SUN_DEGREES / 2)))
+    regions = [relumine.Layer(f"region{number}", relumine.Disc(each["direction"], each["degrees"]), relumine.Gain(each["factor"])) for number, each in enumerate(light["regions"])]
+    suns = [
+        relumine.Layer(f"sun{number}", relumine.Disc(each["direction"], SUN_DEGREES / 2), relumine.Emit([value / solid_angle for value in each["irradiance"]]))
+        for number, each in enumerate(light["suns"])
+    ]  # fmt: skip
+    return regions + suns
 
 
 def look(state, camera):
@@ -123,20 +158,38 @@ def look(state, camera):
 
 def picture(state, samples):
     """`samples` are those of highlights; what is matte has no noise."""
-    if state.pixels:
-        return np.asarray(state.relighter.picture(albedo=1.0, background="none"))[..., :3]
+    return _drawn(state, samples)[..., :3]
+
+
+def masked(state, samples):
+    """The same, and where the scene alone is seen."""
+    drawn = _drawn(state, samples)
+    return drawn[..., :3], drawn[..., 3] == 1
+
+
+def _drawn(state, samples):
     view = state.camera
-    drawn = state.relighter.picture(
-        size=(view["size"], view["size"]), eye=view["eye"], target=view["target"], fov=view["fov"], albedo=1.0,
-        background="sharp", highlight_rays=samples,
-    )  # fmt: skip
-    return np.asarray(drawn)[..., :3]
+    seen = {} if state.pixels else {"size": (view["size"], view["size"]), "eye": view["eye"], "target": view["target"], "fov": view["fov"], "highlight_rays": samples}
+    return np.asarray(state.relighter.picture(albedo=1.0, background=state.background, **seen, **({"emission": state.emission} if state.emission else {})))
 
 
 def gradient(state, weights, height):
     """The derivative of sum(weights * picture) by the pixels of the dome, (height, 2 height, 3); of a scene of pixels."""
     cube = state.relighter.picture_adjoint(weights, albedo=1.0, background="none")
     return np.asarray(_core.lat_long_adjoint(cube, cube.shape[1], 2 * height, height))
+
+
+def lat_long(_, path, height):
+    """The pixels of an environment's file, as means of height x 2 height blocks."""
+    pixels = np.asarray(relumine.Environment.load(path).pixels)[..., :3]
+    block = len(pixels) // height
+    return pixels.reshape(height, block, 2 * height, block, 3).mean((1, 3))
+
+
+def mesh(_, path, floor):
+    """(vertices, triangles, normals) of a mesh's file."""
+    found = relumine.Mesh.load(path, floor=floor)
+    return tuple(np.asarray(each) for each in (found.vertices, found.triangles, found.normals))
 
 
 def year(state, skies, division, sensors):

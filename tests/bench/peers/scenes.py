@@ -8,7 +8,8 @@ material {"kind": "matte", "metal", "glossy" or "glass", "color": (r, g, b), "ro
           "coat": 0..1, "sheen": (r, g, b), "glow": (r, g, b)}; roughness is glTF's: alpha = its square
 camera   {"eye", "target", "fov": vertical degrees, "size": pixels of the square picture}
 light    {"dome": (H, 2 H, 3) lat-long as Relumine reads it, "turn": (3, 3) from the picture's
-          directions to the world's, "suns": [{"direction", "irradiance"}],
+          directions to the world's, "regions": [{"direction", "degrees", "factor"}], discs of the
+          world's directions where the dome is brighter, "suns": [{"direction", "irradiance"}],
           "lamps": [{"position", "intensity"}]}; suns and lamps have no size, intensity is power per sr
 bounces  how often light goes on after the surface that the eye sees; None: until nothing is left
 """
@@ -87,12 +88,13 @@ def axes_of(view):
     return right, np.cross(back, right), back
 
 
-def rays_of(view, per_axis=1):
-    """(origin, directions (S, S, 3)) with S = size * per_axis: those through the middles of subpixels."""
+def rays_of(view, per_axis=1, random=None):
+    """(origin, directions (S, S, 3)) with S = size * per_axis: those through the middles of subpixels, or anywhere in them."""
     right, up, back = axes_of(view)
     count = view["size"] * per_axis
-    places = ((np.arange(count) + 0.5) / count * 2 - 1) * math.tan(math.radians(view["fov"]) / 2)
-    directions = places[None, :, None] * right - places[:, None, None] * up - back
+    within = np.full((2, count, count), 0.5) if random is None else random.uniform(0, 1, (2, count, count))
+    rows, columns = ((np.indices((count, count)) + within) / count * 2 - 1) * math.tan(math.radians(view["fov"]) / 2)
+    directions = columns[..., None] * right - rows[..., None] * up - back
     return np.asarray(view["eye"], float), directions / np.linalg.norm(directions, axis=2, keepdims=True)
 
 
@@ -137,13 +139,26 @@ def turn_about(axis, degrees):
     return np.eye(3) + math.sin(angle) * k + (1 - math.cos(angle)) * (k @ k)
 
 
-def light(dome=None, turn=None, suns=(), lamps=()):
+def light(dome=None, turn=None, suns=(), lamps=(), regions=()):
     return {
         "dome": None if dome is None else np.asarray(dome, np.float32),
         "turn": np.eye(3) if turn is None else turn,
+        "regions": list(regions),
         "suns": list(suns),
         "lamps": list(lamps),
     }
+
+
+def dome_of(shine):
+    """The dome of a light with its regions in it."""
+    if not shine["regions"]:
+        return shine["dome"]
+    dome = shine["dome"].copy()
+    directions = dome_directions(len(dome)) @ np.asarray(shine["turn"]).T
+    for region in shine["regions"]:
+        axis = np.asarray(region["direction"], float) / np.linalg.norm(region["direction"])
+        dome[directions @ axis > math.cos(math.radians(region["degrees"]))] *= region["factor"]
+    return dome
 
 
 def scene(shapes, view, shine, bounces=0):

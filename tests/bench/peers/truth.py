@@ -99,8 +99,9 @@ def shiny(kind, **others):
 
 
 def box(bounces):
-    """A room with an open side, seen through it: the means of its nine fields."""
-    matte = scenes.material(color=(0.7, 0.7, 0.7))
+    """A room with an open side, seen through it: the means of its nine fields. Direct light is integrated over the opening."""
+    albedo = 0.7
+    matte = scenes.material(color=(albedo,) * 3)
     walls = [
         scenes.quad((-1, 0, -1), (0, 0, 2), (2, 0, 0), matte, 20), scenes.quad((-1, 2, -1), (2, 0, 0), (0, 0, 2), matte, 20),
         scenes.quad((-1, 0, -1), (2, 0, 0), (0, 2, 0), matte, 20), scenes.quad((-1, 0, -1), (0, 2, 0), (0, 0, 2), matte, 20),
@@ -109,9 +110,31 @@ def box(bounces):
     view = scenes.camera((0, 1, 3.5), (0, 1, 0), 40, 12)
 
     def measure(picture):
-        return picture.reshape(3, 4, 3, 4, 3).mean((1, 3, 4)).ravel()
+        return picture.reshape(3, len(picture) // 3, 3, len(picture) // 3, 3).mean((1, 3, 4)).ravel()
 
-    return scenes.scene(walls, view, scenes.light(scenes.lobes(scenes.dome_directions(64))), bounces), measure, None
+    wanted = measure(albedo / math.pi * through_opening(view)) if bounces == 0 else None
+    return scenes.scene(walls, view, scenes.light(scenes.lobes(scenes.dome_directions(256))), bounces), measure, wanted
+
+
+def through_opening(view, per_axis=12, steps=32):
+    """The irradiance of what a ray in each subpixel meets in box(), by squares of its open side."""
+    origin, rays = scenes.rays_of(view, per_axis, np.random.default_rng(1))
+    normals = np.array([[0, 1, 0], [0, -1, 0], [0, 0, 1], [1, 0, 0], [-1, 0, 0]], float)
+    places = np.array([0, -2, -1, -1, -1], float)  # normals @ point on each wall
+    towards = rays @ normals.T
+    along = np.where(towards < 0, (places - normals @ origin) / np.minimum(towards, -1e-12), np.inf)
+    wall = along.argmin(-1)
+    points = origin + along.min(-1)[..., None] * rays
+    middles = (np.arange(steps) + 0.5) / steps * 2
+    opening = np.stack([*np.meshgrid(middles - 1, middles, indexing="ij"), np.ones((steps, steps))], axis=-1)
+    light = np.empty(rays.shape)
+    for row in range(len(rays)):
+        ways = opening - points[row][:, None, None]
+        square = (ways**2).sum(-1)
+        ways /= np.sqrt(square)[..., None]
+        facing = np.maximum(np.einsum("pijk,pk->pij", ways, normals[wall[row]]), 0)
+        light[row] = (scenes.lobes(ways) * (facing * ways[..., 2] / square)[..., None]).sum((1, 2)) * (2 / steps) ** 2
+    return light
 
 
 #: Row: its scene, and samples a pixel.
@@ -137,9 +160,9 @@ ROWS = {
     "metal of roughness 0.3 under coloured lights": (lambda: shiny("metal", roughness=0.3), 512),
     "highlight of roughness 0.3 on black": (lambda: shiny("glossy", color=(0, 0, 0), roughness=0.3), 512),
     "glass ball under coloured lights": (lambda: shiny("glass"), 1024),
-    "open room, direct": (lambda: box(0), 1024),
-    "open room, one bounce": (lambda: box(1), 1024),
-    "open room, all bounces": (lambda: box(None), 1024),
+    "open room, direct": (lambda: box(0), 8192),
+    "open room, one bounce": (lambda: box(1), 8192),
+    "open room, all bounces": (lambda: box(None), 8192),
 }
 
 

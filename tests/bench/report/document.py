@@ -30,7 +30,8 @@ whole comparison, with plots and pictures, is one page that one command makes:
 ```
 
 This page is written from `docs/figures.json`, which such a run wrote. `tests/bench/baselines/` has
-the other methods, with tests of their own.
+the other methods, with tests of their own. Path tracers and Radiance, with what they do better, are
+in [peers.md](peers.md). The report leaves them out, since `./dev bench peers` installs 2 GB.
 """
 
 METHODS = """Errors are relative L2 of radiance at receivers drawn at random, against exact integration of maps of

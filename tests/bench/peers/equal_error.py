@@ -1,0 +1,195 @@
+"""Time to equal error: what each peer takes until its picture is as near to the truth as Relumine's.
+
+A path tracer's square error at n samples is half of that between two pictures with other random
+numbers. It is measured at two n, and taken to fall as a power of n. Time is a part that does not
+depend on n, and one that grows with n. Relumine's square error is the product of what its picture
+differs by from two of the judge: noise that these do not share falls out. All errors are relative
+L2 over the pixels that show the scene alone. Times are processor seconds.
+"""
+import os
+import subprocess
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+import scenes
+
+ROOT = Path(__file__).resolve().parents[3]
+DATA = Path(os.environ.get("RELUMINE_DATA", ""))
+#: Pixels of a side of the picture, with and without --quick.
+SIZE = {True: 128, False: 256}
+#: Rows of the maps.
+HEIGHT = 256
+#: No error below it is asked for.
+FINE = 0.01
+#: Samples a pixel that are measured: few and many; those of the judge of Relumine's error.
+COUNTS, JUDGE_COUNTS = (8, 32), (16, 256)
+
+
+def generated(name, folder):
+    program = os.environ.get("RELUMINE_PROGRAM") or ROOT / "build" / "release" / "app" / "relumine"
+    subprocess.run([str(program), "generate", name, "-o", folder, "--vertices", "20000", "-q"], check=True)
+    return Path(folder) / f"{name}.ply"
+
+
+def matte(own, path, floor, albedo):
+    """One shape of a mesh's file, without vertices that no triangle has: they have no normal."""
+    vertices, triangles, normals = own.mesh(str(path), floor)
+    used, triangles = np.unique(triangles, return_inverse=True)
+    return [scenes.shape(vertices[used], triangles.reshape(-1, 3), scenes.material(color=(albedo,) * 3), normals[used])]
+
+
+def bunny(own, _):
+    shapes = matte(own, DATA / "meshes/stanford/bun_zipper.ply", 193, 0.5)
+    return shapes, [((0.05, 0.22, 0.35), (-0.02, 0.09, 0), 40), ((-0.3, 0.2, 0.2), (-0.02, 0.09, 0), 40)], (), 0
+
+
+def colonnade(own, folder):
+    return matte(own, generated("colonnade", folder), None, 0.5), [((9, 6, 13), (0, 1.5, 0), 45), ((-12, 5, 9), (0, 1.5, 0), 45)], (), 0
+
+
+def room(own, folder):
+    """A room with one window, and a lamp below its ceiling: all bounces."""
+    lamps = [{"position": (0.5, 2.2, 0.5), "intensity": (1.0, 0.9, 0.8)}]
+    return matte(own, generated("room", folder), None, 0.6), [((1.7, 1.6, 2.2), (-0.5, 0.9, -0.8), 65), ((1.6, 2.2, -2.0), (-0.5, 0.7, 0.8), 65)], lamps, None
+
+
+SCENES = {"bunny": bunny, "colonnade": colonnade, "room": room}
+
+
+class Measured:
+    """What two numbers of samples say of a peer: pictures, seconds and errors."""
+
+    def __init__(self, peer, counts, mask, is_first):
+        seconds, squares = [], []
+        for count in counts:
+            pair, spent = [], []
+            for _ in range(2):
+                pair.append(np.asarray(peer.picture(count), float)[mask])
+                spent.append(peer.processor)
+            # Only a first picture compiles kernels and builds trees.
+            seconds.append(spent[0] if is_first and not seconds else min(spent))
+            squares.append(((pair[0] - pair[1]) ** 2).mean() / 2)
+        self.pictures, self.square, self.most = pair, squares[1], counts[1]
+        self.power = np.log(squares[0] / squares[1]) / np.log(counts[1] / counts[0])
+        self.slope = max(seconds[1] - seconds[0], 0) / (counts[1] - counts[0])
+        self.constant = max(seconds[0] - self.slope * counts[0], 0)
+
+    def seconds_to(self, square):
+        """Those of a picture of this square error, one sample a pixel at least; None where samples do not help."""
+        if self.power < 0.2:
+            return None
+        return self.constant + self.slope * max(1, self.most * (self.square / square) ** (1 / self.power))
+
+
+def product(first, second):
+    return float((first * second).mean())
+
+
+def apart(pictures, judges):
+    """The relative L2 between what two pairs of pictures are without noise; negative: less than can be told."""
+    square = product(pictures[0] - judges[0], pictures[1] - judges[1]) / product(*judges)
+    return float(np.sign(square) * np.sqrt(abs(square)))
+
+
+def lights(own):
+    """Maps: a sunset, a studio, and a sky without a sun."""
+    return [own.lat_long(str(DATA / "envs/latlong" / name), HEIGHT) for name in ("sunset_1k.hdr", "studio_1k.hdr", "venice_1k.hdr")]
+
+
+def events(domes, lamps):
+    """Rows: name, light before, light of the picture; None: the eye moves."""
+    first, second, sky = domes
+    suns = [[{"direction": direction, "irradiance": (6.0, 5.5, 5.0)}] for direction in ((0.5, 0.6, 0.6), (0.35, 0.6, 0.8))]
+    disc = {"direction": (0.5, 0.6, 0.6), "degrees": np.degrees(np.arccos(0.9)), "factor": 3.0}
+    plain = scenes.light(second, lamps=lamps)
+    rows = [
+        ("next map", scenes.light(first, lamps=lamps), plain),
+        ("edit of 5 % of the map", plain, scenes.light(second, lamps=lamps, regions=[disc])),
+        ("moved sun", scenes.light(sky, suns=suns[0], lamps=lamps), scenes.light(sky, suns=suns[1], lamps=lamps)),
+    ]
+    if lamps:
+        colored = [{**each, "intensity": (np.asarray(each["intensity"]) * (0.4, 0.8, 1.6)).tolist()} for each in lamps]
+        rows.append(("lamp in another colour", rows[-1][2], scenes.light(sky, suns=suns[1], lamps=colored)))
+    return [*rows, ("moved eye", None, None)]
+
+
+def played(peer, scene, rows, eye):
+    """Builds the scene, then does row after row: yields each with its seconds, before the picture."""
+    peer.build(scene)
+    yield "first light", peer.processor
+    now = scene["light"]
+    for name, before, after in rows:
+        if after is None:
+            peer.look(eye)
+        else:
+            if before is not now:
+                peer.relight(before)
+                peer.picture(1)
+            peer.relight(after)
+            now = after
+        yield name, peer.processor
+
+
+def run(peers, quick):
+    """Prints a table of what each event takes, and one of how far the peers' pictures are from the judge's."""
+    found = {peer.name: peer for peer in peers}
+    own = found.pop("Relumine", None)
+    if own is None or not found:
+        return
+    if not DATA.parts:
+        print("\nTime to equal error: expected RELUMINE_DATA, the folder of docs/data.md, got none", flush=True)
+        return
+    names = list(found)
+    print(
+        "\n### Time to equal error\n\n| scene | event | Relumine's pixels: error, seconds | its vertices: error, seconds | error asked for | "
+        + " | ".join(names) + " | fastest / Relumine |\n" + "|---" * (len(names) + 6) + "|", flush=True,
+    )  # fmt: skip
+    distances = []
+    judge = "Mitsuba" if "Mitsuba" in found else names[0]
+    for name, make in SCENES.items():
+        with tempfile.TemporaryDirectory() as folder:
+            shapes, cameras, lamps, bounces = make(own, folder)
+        cameras = [scenes.camera(*each, SIZE[quick]) for each in cameras]
+        domes = lights(own)
+        scene = scenes.scene(shapes, cameras[0], scenes.light(domes[0], lamps=lamps), bounces)
+        rows = events(domes, lamps)
+        ours = {}
+        for pixels in (True, False):
+            for event, spent in played(own, {**scene, "background": "none", "pixels": pixels}, rows[:-1] if pixels else rows, cameras[1]):
+                drawn = own.masked(16)
+                ours[event, pixels] = spent + own.processor, *drawn
+        theirs = {}
+        # What every kind of picture shows wholly.
+        mask = {event: np.logical_and.reduce([ours[event, pixels][2] for pixels in (True, False) if (event, pixels) in ours]) for event, _ in ours}
+        for each, peer in found.items():
+            for event, spent in played(peer, scene, rows, cameras[1]):
+                theirs[event, each] = spent, Measured(peer, JUDGE_COUNTS if each == judge else COUNTS, mask[event], event == "first light")
+        for event in mask:
+            judges = theirs[event, judge][1].pictures
+            cells, told, away = [], {}, []
+            for pixels in (True, False):
+                if (event, pixels) not in ours:
+                    cells.append("-")
+                    continue
+                spent, picture, _ = ours[event, pixels]
+                told[pixels] = apart([picture[mask[event]]] * 2, judges), spent
+                cells.append(f"{told[pixels][0]:.3f}, {spent:.3g}")
+            error, spent = next(iter(told.values()))
+            asked = max(abs(error), FINE)  # negative: less than can be told
+            brightness = product(*judges)
+            seconds = {}
+            for each in names:
+                before, rendered = theirs[event, each]
+                rest = rendered.seconds_to(asked**2 * brightness)
+                seconds[each] = None if rest is None else before + rest
+                away.append(f"{apart(rendered.pictures, judges):.3f}, {np.sqrt(rendered.square / brightness):.3f} at {rendered.most}, {rendered.power / 2:.2f}")
+            fastest = min((each for each in seconds.values() if each is not None), default=np.nan)
+            shown = " | ".join("-" if seconds[each] is None else f"{seconds[each]:.3g}" for each in names)
+            print(f"| {name} | {event} | {cells[0]} | {cells[1]} | {asked:.3f} | {shown} | {fastest / spent:.3g} |", flush=True)
+            distances.append(f"| {name} | {event} | " + " | ".join(away) + " |")
+    print(
+        "\nHow far each expected picture is from the judge's, the noise at so many samples, and the power of the samples by which it falls:\n\n"
+        "| scene | event | " + " | ".join(names) + " |\n" + "|---" * (len(names) + 2) + "|\n" + "\n".join(distances), flush=True,
+    )  # fmt: skip
