@@ -34,9 +34,17 @@ glm::dvec3 any_across(const glm::dvec3& normal) {
     return across(std::abs(normal.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0), normal);
 }
 
-/// The map whose uvs the tangents follow: the surface's, or its coat's.
-const std::optional<TextureSlot>& normal_map(const Material& material) {
-    return material.normal_texture ? material.normal_texture : material.coat_normal_texture;
+/// The map whose uvs the tangents follow: the surface's, its coat's, that of its anisotropy, or
+/// none: the first uvs. Empty: the material needs no tangents.
+std::optional<TextureSlot> map_of(const Material& material) {
+    if (material.normal_texture)
+        return material.normal_texture;
+    if (material.coat_normal_texture)
+        return material.coat_normal_texture;
+    if (material.anisotropy == 0.0f)
+        return std::nullopt;
+    constexpr std::uint32_t NoTexture = ~0u;
+    return material.anisotropy_texture.value_or(TextureSlot{.texture = NoTexture});
 }
 
 class Tangents {
@@ -44,6 +52,8 @@ public:
     Tangents(TriangleMesh& mesh, std::span<const glm::vec4> of_file)
         : mesh_(mesh), of_file_(of_file) {
         mesh_.corner_tangents.assign(mesh_.num_triangles(), {});
+        for (const Material& material : mesh_.materials)
+            maps_.push_back(map_of(material));
     }
 
     void set() {
@@ -68,7 +78,7 @@ public:
 
 private:
     [[nodiscard]] const std::optional<TextureSlot>& slot(std::uint32_t triangle) const {
-        return normal_map(mesh_.materials[mesh_.triangle_materials[triangle]]);
+        return maps_[mesh_.triangle_materials[triangle]];
     }
 
     /// The place in the normal map; v grows upwards, as in the picture.
@@ -76,7 +86,9 @@ private:
         const TextureSlot& own = *slot(triangle);
         const glm::vec2 uv =
             own.uv_from_mesh_uv * corner_uv(mesh_, triangle, k, own.uv_set) + own.uv_offset;
-        const bool is_from_top = mesh_.textures[own.texture].origin == VOrigin::Top;
+        // Only glTF has tangents without a map: there v counts from the top.
+        const bool is_from_top = own.texture >= mesh_.textures.size() ||
+                                 mesh_.textures[own.texture].origin == VOrigin::Top;
         return {uv.x, is_from_top ? -uv.y : uv.y};
     }
 
@@ -163,6 +175,8 @@ private:
 
     TriangleMesh& mesh_;
     std::span<const glm::vec4> of_file_;
+    /// By material.
+    std::vector<std::optional<TextureSlot>> maps_;
     std::vector<Corner> corners_;
     std::size_t num_unusable_ = 0;
 };
@@ -180,7 +194,7 @@ glm::vec2 corner_uv(const TriangleMesh& mesh, std::uint32_t triangle, std::size_
 void set_tangents(TriangleMesh& mesh, std::span<const glm::vec4> of_file) {
     if (!mesh.triangle_materials.empty() &&
         std::any_of(mesh.materials.begin(), mesh.materials.end(),
-                    [](const Material& material) { return normal_map(material).has_value(); }))
+                    [](const Material& material) { return map_of(material).has_value(); }))
         Tangents(mesh, of_file).set();
 }
 

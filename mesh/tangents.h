@@ -1,4 +1,4 @@
-// Tangents for normal maps.
+// Tangents for normal maps and stretched highlights.
 //
 // Based on: M. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008, whose convention
 // (MikkTSpace) programs that bake normal maps share.
@@ -12,9 +12,10 @@
 
 namespace relumine::mesh {
 
-/// Sets TriangleMesh::corner_tangents of the triangles with a normal map, if there are any: those
-/// of the file where it has them, otherwise the directions in which u grows. Corners of equal
-/// position, normal, uv and handedness share the mean of their triangles, weighted by angles.
+/// Sets TriangleMesh::corner_tangents of the triangles with a normal map or a stretched highlight,
+/// if there are any: those of the file where it has them, otherwise the directions in which u
+/// grows. Corners of equal position, normal, uv and handedness share the mean of their triangles,
+/// weighted by angles.
 ///
 /// `of_file` is [num_vertices], with the bitangent's sign in w, or empty. All four numbers are 0
 /// where the file has none. Tangents that are not finite, or of no length, are computed, with a

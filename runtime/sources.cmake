@@ -5,7 +5,7 @@ set(runtime_sources
     cubemap/cube_map.cpp cubemap/face.cpp cubemap/image/image_layout.cpp cubemap/image/projection.cpp cubemap/resample/resample_lat_long.cpp cubemap/rotation.cpp cubemap/turned_texels.cpp cubemap/turned_tile.cpp cubemap/turned_tile_kernels.cpp
     files/compression.cpp files/free_memory.cpp files/hash.cpp files/json.cpp files/large_vector.cpp files/output_file.cpp files/packed_parts.cpp files/posix_file.cpp files/printable.cpp
     mesh/edge_uses.cpp mesh/materials/brdf_table.cpp mesh/subject.cpp mesh/triangle_mesh.cpp
-    prt/bounces/bounce_matrix.cpp prt/bounces/point_rows.cpp prt/clusters/lattice.cpp prt/glossy/brdf.cpp prt/glossy/ggx_energy.cpp prt/glossy/lobe_kernel.cpp prt/glossy/sheen_lobe.cpp
+    prt/bounces/bounce_matrix.cpp prt/bounces/point_rows.cpp prt/clusters/lattice.cpp prt/glossy/brdf.cpp prt/glossy/ggx_energy.cpp prt/glossy/lobe_kernel.cpp prt/glossy/sheen_lobe.cpp prt/glossy/thin_film.cpp
     prt/receivers/camera.cpp prt/receivers/mesh_point.cpp prt/receivers/receiver_layout.cpp prt/receivers/receiver_order.cpp prt/receivers/receivers.cpp
     prt/scene/bounce_sections.cpp prt/scene/brdf_sections.cpp prt/scene/cluster_sections.cpp prt/scene/count_sections.cpp prt/scene/mesh_sections.cpp prt/scene/receiver_sections.cpp prt/scene/packed_mesh.cpp prt/scene/relighting_file.cpp
     prt/scene/packed_sections.cpp prt/scene/section_file.cpp prt/scene/section_format.cpp prt/scene/section_reader.cpp prt/scene/small_numbers.cpp prt/scene/settings_sections.cpp

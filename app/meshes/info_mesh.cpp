@@ -46,9 +46,9 @@ public:
     Row(const mesh::TriangleMesh& mesh, const mesh::Material& material)
         : mesh_(mesh), material_(material) {}
 
-    static constexpr std::array<const char*, 12> Headings = {
-        "material", "model",    "colour", "metallic", "roughness", "specular",
-        "exponent", "emission", "normal", "ior",      "coat",      "sheen"};
+    static constexpr std::array<const char*, 14> Headings = {
+        "material", "model",  "colour", "metallic", "roughness", "specular", "exponent",
+        "emission", "normal", "ior",    "coat",     "sheen",     "film",     "anisotropy"};
     /// The first three are always shown.
     static constexpr std::size_t NumAlways = 3;
 
@@ -82,6 +82,11 @@ public:
                 m.sheen != usual.sheen
                     ? fmt::format("{}, roughness {}", of(m.sheen, m.sheen_texture),
                                   of(m.sheen_roughness, m.sheen_roughness_texture))
+                    : "",
+                m.film != 0.0f ? film() : "",
+                m.anisotropy != 0.0f
+                    ? fmt::format("{}, turned by {}", of(m.anisotropy, m.anisotropy_texture),
+                                  m.anisotropy_rotation)
                     : ""};
     }
 
@@ -99,6 +104,15 @@ private:
     }
     [[nodiscard]] std::string of(const glm::vec3& color, const Slot& slot) const {
         return fmt::format("{} {} {}{}", color.r, color.g, color.b, texture(slot));
+    }
+    [[nodiscard]] std::string film() const {
+        const mesh::Material& m = material_;
+        const std::string thickness =
+            m.film_thickness_texture
+                ? fmt::format("{} to {} nm{}", m.film_thickness_at_0, m.film_thickness_at_1,
+                              texture(m.film_thickness_texture))
+                : fmt::format("{} nm", m.film_thickness_at_1);
+        return fmt::format("{}, {}, ior {}", of(m.film, m.film_texture), thickness, m.film_ior);
     }
     [[nodiscard]] std::string specular() const {
         const mesh::Material& m = material_;

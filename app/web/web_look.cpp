@@ -398,8 +398,9 @@ std::vector<std::string> left_out_of_highlights(const Scene& scene) {
            [](const mesh::Material& material) {
                return prt::has_highlight(material) && !shines(material);
            });
-    add_if("clear coats and sheen", [](const mesh::Material& material) {
-        return material.coat > 0.0f || material.sheen != glm::vec3(0.0f);
+    add_if("clear coats, sheen, thin films and anisotropy", [](const mesh::Material& material) {
+        return material.coat > 0.0f || material.sheen != glm::vec3(0.0f) || material.film > 0.0f ||
+               material.anisotropy > 0.0f;
     });
     add_if("textures of what glass mirrors", [](const mesh::Material& material) {
         return material.specular_strength_texture || material.specular_tint_texture;

@@ -205,6 +205,16 @@ files::Json material_of(const Material& material, std::set<std::string>& used) {
         extensions.set("KHR_materials_sheen",
                        {{"sheenColorFactor", material.sheen},
                         {"sheenRoughnessFactor", double{material.sheen_roughness}}});
+    if (material.film > 0.0f)
+        extensions.set("KHR_materials_iridescence",
+                       {{"iridescenceFactor", double{material.film}},
+                        {"iridescenceIor", double{material.film_ior}},
+                        {"iridescenceThicknessMinimum", double{material.film_thickness_at_0}},
+                        {"iridescenceThicknessMaximum", double{material.film_thickness_at_1}}});
+    if (material.anisotropy > 0.0f)
+        extensions.set("KHR_materials_anisotropy",
+                       {{"anisotropyStrength", double{material.anisotropy}},
+                        {"anisotropyRotation", double{material.anisotropy_rotation}}});
     if (material.ior != 1.5f)
         extensions.set("KHR_materials_ior", {{"ior", double{material.ior}}});
     if (material.specular_strength != 1.0f || material.specular_tint != glm::vec3(1.0f))

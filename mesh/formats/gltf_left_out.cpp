@@ -27,23 +27,20 @@ struct Extension {
     std::string_view loss;
 };
 
-constexpr std::array<Extension, 5> Extensions = {{
-    {"KHR_materials_anisotropy", "anisotropyStrength", 0.0, "highlights are round"},
+constexpr std::array<Extension, 3> Extensions = {{
     {"KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", 0.0,
      "no light shines through surfaces"},
     {"KHR_materials_dispersion", "dispersion", 0.0, "glass bends all colours alike"},
-    {"KHR_materials_iridescence", "iridescenceFactor", 0.0, "thin films are left out"},
     {"KHR_materials_volume_scatter", "multiscatterColor", 0.0,
      "bodies are clear inside, not milky"},
 }};
 
 /// Those that are read.
-constexpr std::array<std::string_view, 9> ReadExtensions = {
-    "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",          "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_sheen",        "KHR_materials_specular",
-    "KHR_materials_transmission", "KHR_materials_unlit",
-    "KHR_materials_volume"};
+constexpr std::array<std::string_view, 11> ReadExtensions = {
+    "KHR_materials_anisotropy", "KHR_materials_clearcoat",   "KHR_materials_emissive_strength",
+    "KHR_materials_ior",        "KHR_materials_iridescence", "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_sheen",      "KHR_materials_specular",    "KHR_materials_transmission",
+    "KHR_materials_unlit",      "KHR_materials_volume"};
 
 /// Everything that glTF 2.0 gives a material and a texture of it.
 constexpr std::array<std::string_view, 11> MaterialProperties = {
@@ -156,6 +153,8 @@ void LeftOut::material(const Json& description) {
     const Json& specular = child(extensions, "KHR_materials_specular");
     const Json& coat = child(extensions, "KHR_materials_clearcoat");
     const Json& sheen = child(extensions, "KHR_materials_sheen");
+    const Json& film = child(extensions, "KHR_materials_iridescence");
+    const Json& stretched = child(extensions, "KHR_materials_anisotropy");
     for (const auto& [parent, key] : {std::pair{&pbr, "baseColorTexture"},
                                       {&pbr, "metallicRoughnessTexture"},
                                       {&old, "diffuseTexture"},
@@ -168,7 +167,10 @@ void LeftOut::material(const Json& description) {
                                       {&coat, "clearcoatRoughnessTexture"},
                                       {&coat, "clearcoatNormalTexture"},
                                       {&sheen, "sheenColorTexture"},
-                                      {&sheen, "sheenRoughnessTexture"}})
+                                      {&sheen, "sheenRoughnessTexture"},
+                                      {&film, "iridescenceTexture"},
+                                      {&film, "iridescenceThicknessTexture"},
+                                      {&stretched, "anisotropyTexture"}})
         texture(child(*parent, key));
 }
 

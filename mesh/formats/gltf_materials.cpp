@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -42,6 +43,8 @@ private:
     void read_specular(const Json& extensions, Material& material);
     void read_coat(const Json& extension, Material& material);
     void read_sheen(const Json& extension, Material& material);
+    void read_film(const Json& extension, Material& material);
+    void read_anisotropy(const Json& extension, Material& material);
     double in_range(const char* key, double value, double low, double high);
     float fraction(const Json& object, const char* key, float fallback);
     std::vector<double> factors(const Json& object, const char* key, std::vector<double> fallback,
@@ -388,6 +391,36 @@ void MaterialReader::read_sheen(const Json& extension, Material& material) {
     material.sheen_roughness_texture = alpha_slot(extension, "sheenRoughnessTexture");
 }
 
+/// Reads KHR_materials_iridescence.
+void MaterialReader::read_film(const Json& extension, Material& material) {
+    material.film = fraction(extension, "iridescenceFactor", 0.0f);
+    if (material.film == 0.0f)
+        return;
+    constexpr double Any = std::numeric_limits<float>::max();
+    const auto limited = [&](const char* key, double fallback, double least, double most) {
+        return static_cast<float>(in_range(key, number(extension, key, fallback), least, most));
+    };
+    material.film_texture = slot(extension, "iridescenceTexture", false);
+    material.film_ior = limited("iridescenceIor", 1.3, 1.0, 1e6);
+    material.film_thickness_at_0 = limited("iridescenceThicknessMinimum", 100.0, 0.0, Any);
+    material.film_thickness_at_1 = limited("iridescenceThicknessMaximum", 400.0, 0.0, Any);
+    material.film_thickness_texture = slot(extension, "iridescenceThicknessTexture", false);
+}
+
+/// Reads KHR_materials_anisotropy.
+void MaterialReader::read_anisotropy(const Json& extension, Material& material) {
+    material.anisotropy = fraction(extension, "anisotropyStrength", 0.0f);
+    if (material.anisotropy == 0.0f)
+        return;
+    const double rotation = number(extension, "anisotropyRotation", 0.0);
+    if (!std::isfinite(rotation))
+        throw std::runtime_error(
+            fmt::format("expected a finite \"anisotropyRotation\", got {}", rotation));
+    material.anisotropy_rotation =
+        static_cast<float>(std::remainder(rotation, 2.0 * std::numbers::pi));
+    material.anisotropy_texture = slot(extension, "anisotropyTexture", false);
+}
+
 Material MaterialReader::material(const Json& description, std::size_t index) {
     const Json& pbr = child(description, "pbrMetallicRoughness");
     const Json& extensions = child(description, "extensions");
@@ -418,6 +451,8 @@ Material MaterialReader::material(const Json& description, std::size_t index) {
     read_specular(extensions, material);
     read_coat(child(extensions, "KHR_materials_clearcoat"), material);
     read_sheen(child(extensions, "KHR_materials_sheen"), material);
+    read_film(child(extensions, "KHR_materials_iridescence"), material);
+    read_anisotropy(child(extensions, "KHR_materials_anisotropy"), material);
     read_glass(extensions, material);
     return material;
 }

@@ -148,6 +148,24 @@ struct Material {
     float sheen_roughness = 0.0f;
     /// Its R multiplies sheen_roughness.
     std::optional<TextureSlot> sheen_roughness_texture = {};
+    /// In [0, 1]. MetallicRoughness: the part that a thin film covers, KHR_materials_iridescence.
+    float film = 0.0f;
+    /// Its R multiplies film.
+    std::optional<TextureSlot> film_texture = {};
+    /// The film's index of refraction, >= 1.
+    float film_ior = 1.3f;
+    /// How thick the film is in nanometres, >= 0, where the texture's G is 0 and where it is 1.
+    /// Without a texture it is as where G is 1.
+    float film_thickness_at_0 = 100.0f;
+    float film_thickness_at_1 = 400.0f;
+    std::optional<TextureSlot> film_thickness_texture = {};
+    /// In [0, 1]. MetallicRoughness: how far highlights are stretched, KHR_materials_anisotropy.
+    float anisotropy = 0.0f;
+    /// The direction along which they are, counter-clockwise from the tangent in radians.
+    float anisotropy_rotation = 0.0f;
+    /// Its R and G turn that direction: they are its cosine and sine, as 2 RG - 1. Its B multiplies
+    /// anisotropy.
+    std::optional<TextureSlot> anisotropy_texture = {};
     /// Measured: the table. `specular` multiplies it.
     std::shared_ptr<const BrdfTable> measured = {};
 

@@ -66,8 +66,9 @@ inline constexpr auto MaterialMembers = [] {
         OfGloss{of(SpecularGlossiness)}, OfPhong{of(Phong), false},
         NotOfMetal{of(Phong, SpecularGlossiness, Measured), false};
     constexpr MemberRule Glows{.with = "emission"}, Coated{.with = "coat"}, Cloth{.with = "sheen"},
-        Glass{.with = "transmission"}, Passed{.with = "alpha_mode"},
-        Normals{.with = "normal_texture"}, CoatNormals{.with = "coat_normal_texture"};
+        Filmed{.with = "film"}, Stretched{.with = "anisotropy"}, Glass{.with = "transmission"},
+        Passed{.with = "alpha_mode"}, Normals{.with = "normal_texture"},
+        CoatNormals{.with = "coat_normal_texture"};
     return std::array{
         Member{"model", &M::model, Never, Always, {}, 0.0f, 4.0f},
         Member{"base_color", &M::base_color, Always, Always, "base"},
@@ -105,6 +106,15 @@ inline constexpr auto MaterialMembers = [] {
         Member{"sheen_texture", &M::sheen_texture},
         Member{"sheen_roughness", &M::sheen_roughness, Cloth},
         Member{"sheen_roughness_texture", &M::sheen_roughness_texture},
+        Member{"film", &M::film},
+        Member{"film_texture", &M::film_texture},
+        Member{"film_ior", &M::film_ior, Filmed, Filmed, {}, 1.0f, 1e6f},
+        Member{"film_thickness_at_0", &M::film_thickness_at_0, Filmed, Filmed, {}, 0.0f, Any},
+        Member{"film_thickness_at_1", &M::film_thickness_at_1, Filmed, Filmed, {}, 0.0f, Any},
+        Member{"film_thickness_texture", &M::film_thickness_texture},
+        Member{"anisotropy", &M::anisotropy},
+        Member{"anisotropy_rotation", &M::anisotropy_rotation, Stretched, Stretched, {}, -Any, Any},
+        Member{"anisotropy_texture", &M::anisotropy_texture},
         Member{"alpha_mode", &M::alpha_mode, Never, {}, {}, 0.0f, 2.0f},
         Member{"alpha", &M::alpha, Never, Passed},
         Member{"alpha_cutoff", &M::alpha_cutoff, Never, Passed, {}, -Any, Any},

@@ -8,7 +8,9 @@
 #include <glm/geometric.hpp>
 
 #include "prt/glossy/ggx_energy.h"
+#include "prt/glossy/kept_energy.h"
 #include "prt/glossy/sheen_lobe.h"
+#include "prt/glossy/stretched_lobe.h"
 
 namespace relumine::prt {
 
@@ -20,11 +22,9 @@ float squared_sine(const glm::vec3& normal, const glm::vec3& half) {
     return std::min(glm::dot(across, across) / std::max(glm::dot(half, half), 1e-12f), 1.0f);
 }
 
-/// Schlick's (1 - v.h)^5; |v + w| is 2 v.h.
-float schlick(const glm::vec3& half) {
-    const float v_h = std::min(0.5f * std::sqrt(std::max(glm::dot(half, half), 1e-12f)), 1.0f);
-    const float squared = (1.0f - v_h) * (1.0f - v_h);
-    return squared * squared * (1.0f - v_h);
+/// The cosine between the eye and the half vector; |v + w| is 2 v.h.
+float v_h_of(const glm::vec3& half) {
+    return std::min(0.5f * std::sqrt(std::max(glm::dot(half, half), 1e-12f)), 1.0f);
 }
 
 /// What a clear coat mirrors, without its strength.
@@ -33,7 +33,7 @@ float coat_lobe(const Surface& surface, const glm::vec3& normal, const glm::vec3
     const float n_w = glm::dot(normal, w), n_v = glm::dot(normal, to_eye);
     if (n_w <= 0.0f || n_v <= 0.0f)
         return 0.0f;
-    const float c = schlick(to_eye + w);
+    const float c = schlick(v_h_of(to_eye + w));
     return (DielectricF0 + (1.0f - DielectricF0) * c) *
            GgxLobe::specular(surface.coat_roughness, {n_w, n_v, squared_sine(normal, to_eye + w)});
 }
@@ -69,11 +69,21 @@ Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal,
         else
             return Lobe::specular(surface.roughness_or_exponent, at);
     });
+    if (is_stretched(surface))
+        lobes.specular = StretchedLobe(surface, normal).value(to_eye, w);
     if (has_sheen(surface))
         lobes.sheen = SheenLobe::value(surface.sheen_roughness, at);
+    if (has_film(surface)) {
+        const glm::vec3 colors =
+            lobes.specular * FilmHighlight(surface, {surface, normal, to_eye}).at(v_h_of(half));
+        lobes.specular = colors.r;
+        lobes.specular_grazing = colors.g;
+        lobes.diffuse_grazing = colors.b;
+        return lobes;
+    }
     if (!facts_of(surface.highlight).has_fresnel)
         return lobes;
-    const float c = schlick(half);
+    const float c = schlick(v_h_of(half));
     if (facts_of(surface.highlight).has_diffuse_grazing)
         lobes.diffuse_grazing = c * lobes.diffuse;
     lobes.specular_grazing = c * lobes.specular;
@@ -82,34 +92,30 @@ Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal,
 
 namespace {
 
-/// A highlight of one F0 whose energy is kept: the factor on its lobe, and its albedo.
-struct KeptEnergy {
-    KeptEnergy(const GgxAlbedo& albedo, const glm::vec3& f0, float f90 = 1.0f)
-        : factor(1.0f + f0 * ((1.0f - albedo.all) / albedo.all)),
-          reflected(factor * (f0 * (albedo.all - albedo.grazing) + f90 * albedo.grazing)) {}
-    glm::vec3 factor, reflected;
-};
+/// Light through a lobe for each colour.
+glm::vec3 colors_of(const Lobes<glm::vec3>& lobes) {
+    return {lobes.specular.r, lobes.specular_grazing.g, lobes.diffuse_grazing.b};
+}
 
-/// The two surfaces that a partly metallic one is a mean of. Their F0 have its F0 as mean; the
-/// other one has its own, where that is possible.
-struct MetalAndRest {
-    explicit MetalAndRest(const Surface& surface)
-        : metal(surface.specular), rest(surface.specular), share(surface.metallic) {
-        if (!(share > 0.0f && share < 1.0f))
-            return;
-        metal = glm::clamp((surface.specular - (1.0f - share) * surface.dielectric_f0) / share,
-                           0.0f, 1.0f);
-        rest = glm::clamp((surface.specular - share * metal) / (1.0f - share), 0.0f, 1.0f);
-    }
-    glm::vec3 metal, rest;
-    float share;
-};
+/// The highlight of a surface with a film. What is under it has what the film's strongest colour
+/// leaves, or it would show the film's colours inverted.
+glm::vec3 reflect_filmed(const Surface& surface, const Lobes<glm::vec3>& lobes,
+                         const EyeCosines& n_v) {
+    const glm::vec3 reflected = FilmHighlight(surface, n_v).albedo().rest;
+    const float most = std::max({reflected.r, reflected.g, reflected.b});
+    const glm::vec3 taken = glm::mix(reflected, glm::vec3(most), surface.film);
+    return surface.albedo * glm::max(1.0f - taken, glm::vec3(0.0f)) * lobes.diffuse +
+           colors_of(lobes);
+}
 
 /// Turquin's factor on the highlight, and the diffuse part in what it leaves.
-glm::vec3 reflect_base(const Surface& surface, const Lobes<glm::vec3>& lobes, float n_v) {
-    if (n_v <= 0.0f) // no highlight, which takes nothing
+glm::vec3 reflect_base(const Surface& surface, const Lobes<glm::vec3>& lobes,
+                       const EyeCosines& n_v) {
+    if (n_v.base <= 0.0f) // no highlight, which takes nothing
         return surface.albedo * lobes.diffuse;
-    const GgxAlbedo albedo = ggx_albedo(surface.roughness_or_exponent, n_v);
+    if (has_film(surface))
+        return reflect_filmed(surface, lobes, n_v);
+    const GgxAlbedo albedo = ggx_albedo(surface, n_v);
     const MetalAndRest f0(surface);
     const float f90 = surface.dielectric_f90;
     const KeptEnergy metal(albedo, f0.metal), rest(albedo, f0.rest, f90);
@@ -125,7 +131,7 @@ glm::vec3 reflect_base(const Surface& surface, const Lobes<glm::vec3>& lobes, fl
 /// The layers over the base: sheen, then the clear coat.
 glm::vec3 reflect_whole(const Surface& surface, const Lobes<glm::vec3>& lobes,
                         const EyeCosines& n_v) {
-    glm::vec3 result = reflect_base(surface, lobes, n_v.base);
+    glm::vec3 result = reflect_base(surface, lobes, n_v);
     if (has_sheen(surface) && n_v.base > 0.0f) {
         const float albedo = sheen_albedo(surface.sheen_roughness, n_v.base);
         const glm::vec3& color = surface.sheen;
@@ -142,6 +148,11 @@ glm::vec3 reflect_whole(const Surface& surface, const Lobes<glm::vec3>& lobes,
 }
 
 } // namespace
+
+glm::vec3 albedo_of_colors(const Surface& surface, const EyeCosines& n_v) {
+    return surface.table ? surface.table->rest_albedo(n_v.base)
+                         : FilmHighlight(surface, n_v).albedo().all;
+}
 
 float coat_albedo(float roughness, float n_v) {
     const GgxAlbedo albedo = ggx_albedo(roughness, n_v);
@@ -160,9 +171,7 @@ glm::vec3 reflect(const Surface& surface, const Lobes<glm::vec3>& lobes, const E
     if (surface.highlight == Highlight::None)
         return surface.albedo * lobes.diffuse;
     if (surface.highlight == Highlight::Measured)
-        return surface.albedo * lobes.diffuse +
-               surface.specular *
-                   glm::vec3(lobes.specular.r, lobes.specular_grazing.g, lobes.diffuse_grazing.b);
+        return surface.albedo * lobes.diffuse + surface.specular * colors_of(lobes);
     if (!facts_of(surface.highlight).has_fresnel)
         return surface.albedo * lobes.diffuse + surface.specular * lobes.specular;
     // The grazing part of a lobe is no more than the lobe. Each is summed over cells of its own, so

@@ -22,6 +22,9 @@
 // A measured BRDF is albedo D plus three lobes, for red, green and blue, in the places of S, Sc and
 // Dc: prt/glossy/measured_lobe.h.
 //
+// A thin film gives each colour a Fresnel of its own (prt/glossy/thin_film.h). So three lobes, for
+// red, green and blue, are in the same places: what Fresnel leaves of S, with its factor m.
+//
 // Above, E and Ec are the integrals of S and Sc over all lights (prt/glossy/ggx_energy.h): R is
 // what the highlight reflects of a white sky.
 #pragma once
@@ -30,6 +33,7 @@
 
 #include "prt/glossy/lobe_list.h"
 #include "prt/glossy/lobes.h"
+#include "prt/glossy/thin_film.h"
 
 namespace relumine::prt {
 
@@ -44,6 +48,15 @@ namespace relumine::prt {
 /// ignores what the highlight takes.
 [[nodiscard]] Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal,
                                           const glm::vec3& to_eye, const glm::vec3& w);
+
+/// Whether the lobes S, Sc and Dc of a surface are those of red, green and blue: of a measured
+/// BRDF, or under a thin film.
+[[nodiscard]] inline bool has_lobes_of_colors(const Surface& surface) {
+    return surface.table != nullptr || has_film(surface);
+}
+
+/// Returns the integral of such lobes over all lights.
+[[nodiscard]] glm::vec3 albedo_of_colors(const Surface& surface, const EyeCosines& n_v);
 
 /// Puts the colours in. Returns outgoing radiance for sums of radiance times lobe, or BRDF times
 /// cosine for the lobes of a single light. `n_v` are the cosines between normals and eye; only

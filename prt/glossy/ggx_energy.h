@@ -4,6 +4,10 @@
 // Turquin, "Practical multiple scattering compensation for microfacet models", 2019 (its use).
 #pragma once
 
+#include <array>
+
+#include "prt/receivers/surface.h"
+
 namespace relumine::prt {
 
 /// Integrals of the lobes S and Sc (prt/glossy/brdf.h) over all lights: a furnace of radiance 1.
@@ -20,5 +24,19 @@ struct GgxAlbedo {
 /// Cost:    some nanoseconds; the first call makes the table, some 50 ms of processor time.
 /// Threads: any.
 [[nodiscard]] GgxAlbedo ggx_albedo(float roughness, float n_v);
+
+/// Returns the integrals of a surface's lobe, which may be stretched (StretchedLobe).
+///
+/// Error:   as above; below 0.01 of a stretched lobe, whose table takes some 400 ms.
+[[nodiscard]] GgxAlbedo ggx_albedo(const Surface& surface, const EyeCosines& n_v);
+
+/// Facets with about the same normal: the cosine between the eye and that normal, and their part of
+/// the integral of S.
+struct LobeFacet {
+    float v_h, share;
+};
+
+/// Returns facets that stand for the lobe S that is not stretched. Their shares sum to 1.
+[[nodiscard]] std::array<LobeFacet, 12> lobe_facets(float roughness, float n_v);
 
 } // namespace relumine::prt

@@ -208,8 +208,8 @@ FinishedBlock GlossyPrecompute::refine(std::size_t block) const {
             limits.reference_power =
                 std::popcount(to_refine.surfaces.lanes_with(GlossyLobe::DiffuseGrazing)) *
                 WholeDiffusePower;
-        // Each colour of a measured BRDF has its own power.
-        if (to_refine.has_measured() && i < NumColors) {
+        // Each colour of a measured BRDF, or of a film, has its own power.
+        if (to_refine.has_colors() && i < NumColors) {
             limits.reference_power = 0.0;
             limits.added_power = lambert_power(
                 block, to_refine.surfaces.lanes[static_cast<std::size_t>(Highlight::Measured)],

@@ -1,5 +1,6 @@
 #include "prt/glossy/lobe_kernel.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include <glm/geometric.hpp>
@@ -64,7 +65,7 @@ struct LobeTerms {
     LobeTerms(const BlockSurfaces& of, const LobeNormals& of_lobe, const glm::vec3& w,
               std::size_t first_lane)
         : surfaces(of), normals(of_lobe), lane(first_lane), n_w(hn::Zero(Tag())),
-          sin2(hn::Zero(Tag())), fresnel(hn::Zero(Tag())) {
+          sin2(hn::Zero(Tag())), v_h(hn::Zero(Tag())), fresnel(hn::Zero(Tag())) {
         const Tag d;
         const Vector3 n(normals.normal, lane);
         const Vector3 v(of.to_eye, lane);
@@ -73,9 +74,10 @@ struct LobeTerms {
         const Vector3 h(hn::Add(v.x, light.x), hn::Add(v.y, light.y), hn::Add(v.z, light.z));
         const auto h_h = hn::Max(dot(h, h), hn::Set(d, 1e-12f));
         sin2 = hn::Div(squared_cross(n, h), h_h);
-        // v.h = |v + w| / 2 for unit vectors.
+        const auto length = hn::Sqrt(h_h);
+        v_h = hn::Mul(hn::Set(d, 0.5f), length);
         const auto one_less =
-            hn::Max(hn::NegMulAdd(hn::Set(d, 0.5f), hn::Sqrt(h_h), hn::Set(d, 1.0f)), hn::Zero(d));
+            hn::Max(hn::NegMulAdd(hn::Set(d, 0.5f), length, hn::Set(d, 1.0f)), hn::Zero(d));
         const auto squared = hn::Mul(one_less, one_less);
         fresnel = hn::Mul(hn::Mul(squared, squared), one_less);
     }
@@ -94,8 +96,9 @@ struct LobeTerms {
     const BlockSurfaces& surfaces;
     LobeNormals normals;
     std::size_t lane;
-    /// n.w, sin^2 between n and the half vector, and Schlick's (1 - v.h)^5
-    Vector n_w, sin2, fresnel;
+    /// n.w, sin^2 between n and the half vector, v.h, which is |v + w| / 2, and Schlick's
+    /// (1 - v.h)^5
+    Vector n_w, sin2, v_h, fresnel;
 };
 
 // The lobes, 16 receivers at a time: functions `specular(LOBE, LobeTerms)`.
@@ -121,6 +124,25 @@ Vector all_specular(const LobeTerms& terms) {
     }
 }
 
+/// Returns the highlights S of all receivers.
+Vector highlights(const LobeTerms& terms, const glm::vec3& direction) {
+    const auto others = all_specular(terms);
+    const BlockSurfaces& surfaces = terms.surfaces;
+    if (surfaces.stretched_lanes == 0)
+        return others;
+    const Tag d;
+    alignas(64) std::array<float, BlockSize> n_w, values;
+    hn::Store(terms.n_w, d, n_w.data());
+    hn::Store(others, d, values.data());
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i)
+        if (const std::size_t lane = terms.lane + i;
+            (surfaces.stretched_lanes >> lane & 1u) != 0 && n_w[i] > 0.0f)
+            values[i] = surfaces.stretched[lane]->value(
+                {surfaces.to_eye[0][lane], surfaces.to_eye[1][lane], surfaces.to_eye[2][lane]},
+                direction);
+    return hn::Load(d, values.data());
+}
+
 /// Returns the part of a value that Fresnel makes white, or takes away.
 Vector grazing(const LobeTerms& terms, std::uint32_t lanes, Vector value) {
     return hn::Mul(terms.fresnel, hn::IfThenElseZero(terms.lanes(lanes), value));
@@ -130,8 +152,24 @@ Vector diffuse(const LobeTerms& terms) {
     return hn::Mul(terms.n_w, hn::Set(Tag(), std::numbers::inv_pi_v<float>));
 }
 
-/// Puts a colour of measured surfaces in the place of a lobe.
-Vector with_measured(const LobeTerms& terms, std::size_t color, Vector others) {
+/// Returns a colour of what thin films mirror, of lobes S; others are as they are.
+Vector filmed(const LobeTerms& terms, std::size_t color, Vector highlight, Vector others) {
+    const Tag d;
+    alignas(64) std::array<float, BlockSize> lobe, v_h, values;
+    hn::Store(highlight, d, lobe.data());
+    hn::Store(terms.v_h, d, v_h.data());
+    hn::Store(others, d, values.data());
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i)
+        if ((terms.surfaces.film_lanes >> (terms.lane + i) & 1u) != 0 && lobe[i] > 0.0f)
+            values[i] = lobe[i] * terms.surfaces.films[terms.lane + i]->at(
+                                      std::min(v_h[i], 1.0f))[static_cast<int>(color)];
+    return hn::Load(d, values.data());
+}
+
+/// Puts a colour of surfaces that have a lobe for each in the place of a lobe. `highlight` is S.
+Vector with_colors(const LobeTerms& terms, std::size_t color, Vector highlight, Vector others) {
+    if (terms.surfaces.film_lanes != 0)
+        others = filmed(terms, color, highlight, others);
     const std::uint32_t lanes = terms.surfaces.lanes[static_cast<std::size_t>(Highlight::Measured)];
     if (lanes == 0)
         return others;
@@ -162,12 +200,19 @@ void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe,
     const std::uint32_t lanes = surfaces.lanes_with(lobe);
     const auto evaluated = [&](const LobeTerms& terms, const glm::vec3& direction) {
         switch (lobe) {
-        case GlossyLobe::Specular:
-            return with_measured(terms, 0, all_specular(terms));
-        case GlossyLobe::SpecularGrazing:
-            return with_measured(terms, 1, grazing(terms, lanes, all_specular(terms)));
-        case GlossyLobe::DiffuseGrazing:
-            return with_measured(terms, 2, grazing(terms, lanes, diffuse(terms)));
+        case GlossyLobe::Specular: {
+            const auto highlight = highlights(terms, direction);
+            return with_colors(terms, 0, highlight, highlight);
+        }
+        case GlossyLobe::SpecularGrazing: {
+            const auto highlight = highlights(terms, direction);
+            return with_colors(terms, 1, highlight, grazing(terms, lanes, highlight));
+        }
+        case GlossyLobe::DiffuseGrazing: {
+            const auto highlight =
+                surfaces.film_lanes == 0 ? hn::Zero(Tag()) : highlights(terms, direction);
+            return with_colors(terms, 2, highlight, grazing(terms, lanes, diffuse(terms)));
+        }
         case GlossyLobe::Coat:
             return coat(surfaces, direction, terms.lane);
         case GlossyLobe::Sheen:
@@ -187,12 +232,12 @@ void evaluate_lobes(const BlockSurfaces& surfaces, const glm::vec3& direction,
     const std::uint32_t diffuse_lanes = surfaces.lanes_with(GlossyLobe::DiffuseGrazing);
     for (std::size_t lane = 0; lane < BlockSize; lane += hn::Lanes(Tag())) {
         const LobeTerms terms(surfaces, direction, lane);
-        const auto highlight = all_specular(terms);
-        hn::StoreU(with_measured(terms, 0, highlight), Tag(), values[0].data() + lane);
-        hn::StoreU(with_measured(terms, 1, grazing(terms, lanes, highlight)), Tag(),
+        const auto highlight = highlights(terms, direction);
+        hn::StoreU(with_colors(terms, 0, highlight, highlight), Tag(), values[0].data() + lane);
+        hn::StoreU(with_colors(terms, 1, highlight, grazing(terms, lanes, highlight)), Tag(),
                    values[1].data() + lane);
-        hn::StoreU(with_measured(terms, 2, grazing(terms, diffuse_lanes, diffuse(terms))), Tag(),
-                   values[2].data() + lane);
+        hn::StoreU(with_colors(terms, 2, highlight, grazing(terms, diffuse_lanes, diffuse(terms))),
+                   Tag(), values[2].data() + lane);
         hn::StoreU(surfaces.coat_lanes == 0 ? hn::Zero(Tag()) : coat(surfaces, direction, lane),
                    Tag(), values[3].data() + lane);
         hn::StoreU(surfaces.sheen_lanes == 0 ? hn::Zero(Tag()) : sheen(terms), Tag(),
@@ -227,6 +272,16 @@ void BlockSurfaces::set(std::size_t lane, const Surface& surface, const glm::vec
     });
     for (std::size_t i = 0; i < own.size(); ++i)
         parameters[i][lane] = own[i];
+    if (has_film(surface)) {
+        film_lanes |= 1u << lane;
+        films.resize(BlockSize);
+        films[lane].emplace(surface, EyeCosines(surface, normal_of_lane, eye_of_lane));
+    }
+    if (is_stretched(surface)) {
+        stretched_lanes |= 1u << lane;
+        stretched.resize(BlockSize);
+        stretched[lane].emplace(surface, normal_of_lane);
+    }
     if (!has_sheen(surface))
         return;
     sheen_lanes |= 1u << lane;
@@ -256,7 +311,7 @@ std::uint32_t BlockSurfaces::lanes_with(GlossyLobe lobe) const {
         return coat_lanes;
     if (lobe == GlossyLobe::Sheen)
         return sheen_lanes;
-    std::uint32_t bits = 0;
+    std::uint32_t bits = film_lanes;
     for (std::size_t i = 1; i < NumHighlights; ++i) {
         const LobeFacts& facts = facts_of(static_cast<Highlight>(i));
         if (lobe == GlossyLobe::Specular || facts.is_table ||

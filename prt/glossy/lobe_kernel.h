@@ -4,11 +4,15 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "prt/glossy/lobe_list.h"
+#include "prt/glossy/stretched_lobe.h"
+#include "prt/glossy/thin_film.h"
 #include "prt/transfer/glossy_transfer.h"
 
 namespace relumine::prt {
@@ -25,14 +29,19 @@ struct alignas(64) BlockSurfaces {
     std::array<std::uint32_t, NumHighlights> lanes{};
     /// Tables of measured receivers.
     std::array<const mesh::BrdfTable*, BlockSize> tables{};
-    /// Receivers with a clear coat, and with sheen.
-    std::uint32_t coat_lanes = 0, sheen_lanes = 0;
+    /// Receivers with a clear coat, with sheen, and with a thin film.
+    std::uint32_t coat_lanes = 0, sheen_lanes = 0, film_lanes = 0;
     /// Normals of the coat, their cosines to the eye, and parameters of the coat's lobe.
     alignas(64) std::array<Floats, 3> coat_normal{};
     Floats coat_dot_eye{};
     std::array<Floats, 2> coat_parameters{};
     /// Sheen's alpha, 1 + lambda of the eye, and the factor on the lobe.
     std::array<Floats, 3> sheen_parameters{};
+    /// Receivers whose highlight is stretched. [16] of it, or empty: there are none.
+    std::uint32_t stretched_lanes = 0;
+    std::vector<std::optional<StretchedLobe>> stretched{};
+    /// [16], or empty: no receiver has a film.
+    std::vector<std::optional<FilmHighlight>> films{};
 
     void set(std::size_t lane, const Surface& surface, const glm::vec3& normal_of_lane,
              const glm::vec3& eye_of_lane);

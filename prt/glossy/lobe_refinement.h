@@ -33,13 +33,14 @@ struct BlockToRefine {
     /// Returns where a lobe's highlights are. Sheen has no narrow highlight.
     [[nodiscard]] Mirrors mirrors(GlossyLobe lobe) const {
         return lobe == GlossyLobe::Coat ? of_coat
-               : lobe == GlossyLobe::Sheen ||
-                       (lobe == GlossyLobe::DiffuseGrazing && !has_measured())
+               : lobe == GlossyLobe::Sheen || (lobe == GlossyLobe::DiffuseGrazing && !has_colors())
                    ? Mirrors()
                    : of_base;
     }
-    [[nodiscard]] bool has_measured() const {
-        return surfaces.lanes[static_cast<std::size_t>(Highlight::Measured)] != 0;
+    /// Whether some receivers have a lobe for each colour.
+    [[nodiscard]] bool has_colors() const {
+        return surfaces.film_lanes != 0 ||
+               surfaces.lanes[static_cast<std::size_t>(Highlight::Measured)] != 0;
     }
     /// Index of the block in the transfer.
     std::size_t block = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "mesh/subject.h"
 #include "prt/glossy/lobe_list.h"
 #include "prt/glossy/sheen_lobe.h"
+#include "prt/glossy/thin_film.h"
 #include "prt/receivers/mesh_point.h"
 
 namespace relumine::prt {
@@ -67,6 +69,36 @@ void add_layers(const MaterialPoint& point, Surface& surface) {
         surface.sheen_roughness =
             point.textured(material.sheen_roughness, material.sheen_roughness_texture).r;
     }
+    if (material.film > 0.0f) {
+        surface.film = point.textured(material.film, material.film_texture).r;
+        surface.film_ior = material.film_ior;
+        const auto& thickness = material.film_thickness_texture;
+        surface.film_thickness =
+            glm::mix(material.film_thickness_at_0, material.film_thickness_at_1,
+                     thickness ? point.texel(*thickness).g : 1.0f);
+    }
+}
+
+/// Stretches a highlight along the tangent, as the material turns it.
+void add_anisotropy(const MaterialPoint& point, Surface& surface) {
+    const mesh::Material& material = point.material;
+    const glm::vec4 tangent = tangent_at(point.mesh, point.at);
+    if (material.anisotropy == 0.0f || glm::vec3(tangent) == glm::vec3(0.0f))
+        return;
+    surface.anisotropy = material.anisotropy;
+    glm::vec2 way(1.0f, 0.0f);
+    if (material.anisotropy_texture) {
+        const glm::vec3 texel = point.texel(*material.anisotropy_texture);
+        surface.anisotropy *= texel.b;
+        const glm::vec2 own(2.0f * texel.r - 1.0f, 2.0f * texel.g - 1.0f);
+        if (own != glm::vec2(0.0f))
+            way = glm::normalize(own);
+    }
+    const float c = std::cos(material.anisotropy_rotation),
+                s = std::sin(material.anisotropy_rotation);
+    const glm::vec3 along(tangent);
+    const glm::vec3 bitangent = tangent.w * glm::cross(shading_normal(point.mesh, point.at), along);
+    surface.tangent = (c * way.x - s * way.y) * along + (s * way.x + c * way.y) * bitangent;
 }
 
 /// A surface without its emission.
@@ -121,6 +153,7 @@ Surface reflecting(const MaterialPoint& point, GgxForm form) {
                    .dielectric_f0 = std::max({dielectric.r, dielectric.g, dielectric.b}),
                    .dielectric_f90 = strength};
     add_layers(point, result);
+    add_anisotropy(point, result);
     if (!has_highlight(material))
         result.highlight = Highlight::None;
     return result;
@@ -180,7 +213,7 @@ bool has_highlight(const mesh::Material& material) {
         return material.specular != glm::vec3(0.0f);
     if (material.model == mesh::MaterialModel::MetallicRoughness && material.metallic == 0.0f &&
         material.specular_strength == 0.0f && material.transmission == 0.0f)
-        return material.coat > 0.0f || material.sheen != glm::vec3(0.0f);
+        return material.coat > 0.0f || material.sheen != glm::vec3(0.0f) || material.film > 0.0f;
     return material.model != mesh::MaterialModel::Unlit;
 }
 
@@ -214,9 +247,12 @@ Surface without_highlight(Surface surface) {
     }
     surface.coat = 0.0f;
     surface.sheen = glm::vec3(0.0f);
+    const glm::vec3 f0 =
+        has_film(surface) ? FilmHighlight(surface, MeanCosine).at(MeanCosine) : surface.specular;
     if (facts_of(surface.highlight).has_fresnel)
-        surface.albedo =
-            glm::min(surface.albedo + glm::max(surface.specular - DielectricF0, 0.0f), 1.0f);
+        surface.albedo = glm::min(surface.albedo + glm::max(f0 - DielectricF0, 0.0f), 1.0f);
+    surface.film = surface.anisotropy = 0.0f;
+    surface.tangent = glm::vec3(0.0f);
     if (surface.highlight == Highlight::Measured)
         surface.albedo = glm::min(
             surface.albedo + surface.specular * surface.table->rest_albedo(MeanCosine), 1.0f);

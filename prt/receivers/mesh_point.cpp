@@ -98,6 +98,17 @@ glm::vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
         glm::cross(glm::dvec3(mesh.positions[b]) - origin, glm::dvec3(mesh.positions[c]) - origin));
 }
 
+glm::vec4 tangent_at(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
+    if (mesh.corner_tangents.empty())
+        return glm::vec4(0.0f);
+    const glm::dvec3 normal(shading_normal(mesh, point));
+    const std::array<glm::vec4, 3>& corners = mesh.corner_tangents[point.triangle];
+    const glm::vec2& w = point.barycentric;
+    const glm::vec4 between = (1.0f - w.x - w.y) * corners[0] + w.x * corners[1] + w.y * corners[2];
+    return {unit_or_zero(glm::dvec3(between) - glm::dot(glm::dvec3(between), normal) * normal),
+            between.w < 0.0f ? -1.0f : 1.0f};
+}
+
 glm::vec3 shading_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
     const glm::vec3 interpolated = value_at(mesh, mesh.normals, point);
     // A shorter vector is the rounding of normals that cancel, not a direction.
@@ -142,15 +153,11 @@ MappedNormal normal_of(const mesh::TriangleMesh& mesh, const MeshPoint& point, c
     const float found =
         view != nullptr ? std::min(scale * scale * (1.0f - glm::dot(mean, mean)), 1.0f) : 0.0f;
     const float spread = found > LeastSpread ? found : 0.0f;
-    const std::array<glm::vec4, 3>& corners = mesh.corner_tangents[point.triangle];
-    const glm::vec2& w = point.barycentric;
-    const glm::vec4 between = (1.0f - w.x - w.y) * corners[0] + w.x * corners[1] + w.y * corners[2];
-    const glm::vec3 along =
-        unit_or_zero(glm::dvec3(between) -
-                     glm::dot(glm::dvec3(between), glm::dvec3(normal)) * glm::dvec3(normal));
+    const glm::vec4 tangent = tangent_at(mesh, point);
+    const glm::vec3 along(tangent);
     if (tilt == glm::vec2(0.0f) || along == glm::vec3(0.0f))
         return {normal, spread};
-    const glm::vec3 bitangent = (between.w < 0.0f ? -1.0f : 1.0f) * glm::cross(normal, along);
+    const glm::vec3 bitangent = tangent.w * glm::cross(normal, along);
     const glm::vec3 mapped = unit_or_zero(glm::dvec3(tilt.x * along + tilt.y * bitangent) +
                                           double{mean.z} * glm::dvec3(normal));
     return {mapped == glm::vec3(0.0f) ? normal : mapped, spread};

@@ -7,6 +7,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include "mesh/triangle_mesh.h"
 
@@ -46,6 +47,10 @@ struct MeshPoint {
 /// Returns the interpolated vertex normal with unit length, or the face's normal where the vertex
 /// normals cancel.
 [[nodiscard]] glm::vec3 shading_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point);
+
+/// Returns the unit tangent of the triangle's corners at a point, across its shading_normal(), with
+/// the bitangent's sign in w. Of length 0 where the material needs none.
+[[nodiscard]] glm::vec4 tangent_at(const mesh::TriangleMesh& mesh, const MeshPoint& point);
 
 /// Returns the unit normal that the material's normal map gives a point: shading_normal() where it
 /// has none, or where it is flat.

@@ -1,10 +1,12 @@
 // How a receiver's surface reflects light.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include "mesh/materials/brdf_table.h"
@@ -55,11 +57,40 @@ struct Surface {
     /// GgxWhole: the colour of sheen, under the coat, 0..1, and its roughness.
     glm::vec3 sheen{0.0f};
     float sheen_roughness = 0.0f;
+    /// GgxWhole: the part that a thin film covers, 0..1, its index of refraction, >= 1, and how
+    /// thick it is, in nanometres.
+    float film = 0.0f;
+    float film_ior = 1.3f;
+    float film_thickness = 400.0f;
+    /// GgxWhole: how far the highlight is stretched along the tangent, 0..1. The tangent has unit
+    /// length and is about across the normal; zero: there is none.
+    float anisotropy = 0.0f;
+    glm::vec3 tangent{0.0f};
     /// Measured: never null.
     std::shared_ptr<const mesh::BrdfTable> table = {};
 
     bool operator==(const Surface&) const = default;
 };
+
+/// Whether a surface's highlight is stretched. GGX as published has none.
+[[nodiscard]] inline bool is_stretched(const Surface& surface) {
+    return surface.highlight == Highlight::GgxWhole && surface.anisotropy > 0.0f &&
+           surface.tangent != glm::vec3(0.0f);
+}
+
+/// Returns right-handed unit axes: the part of a tangent that is across a unit normal, the
+/// bitangent, and the normal.
+[[nodiscard]] inline glm::mat3 tangent_frame(const glm::vec3& tangent, const glm::vec3& normal) {
+    const glm::vec3 flat = tangent - glm::dot(normal, tangent) * normal;
+    constexpr float Shortest = 1e-4f;
+    if (const float length = glm::length(flat); length > Shortest) {
+        const glm::vec3 along = flat / length;
+        return {along, glm::cross(normal, along), normal};
+    }
+    return tangent_frame(std::abs(normal.x) < 0.9f ? glm::vec3(1.0f, 0.0f, 0.0f)
+                                                   : glm::vec3(0.0f, 1.0f, 0.0f),
+                         normal);
+}
 
 /// Cosines between the direction to the eye and the normals of a surface.
 struct EyeCosines {
@@ -67,8 +98,16 @@ struct EyeCosines {
     EyeCosines(const Surface& surface, const glm::vec3& normal, const glm::vec3& to_eye)
         : base(glm::dot(normal, to_eye)),
           coat(surface.coat_normal == glm::vec3(0.0f) ? base
-                                                      : glm::dot(surface.coat_normal, to_eye)) {}
+                                                      : glm::dot(surface.coat_normal, to_eye)) {
+        if (!is_stretched(surface))
+            return;
+        const glm::vec3 eye = to_eye * tangent_frame(surface.tangent, normal);
+        if (const float across2 = eye.x * eye.x + eye.y * eye.y; across2 > 0.0f)
+            along = eye.x * eye.x / across2;
+    }
     float base, coat;
+    /// The squared cosine between the tangent and the direction to the eye, seen along the normal.
+    float along = 0.0f;
 };
 
 } // namespace relumine::prt

@@ -128,6 +128,11 @@ void for_each_unusual(const Use& use) {
     use("r_coat_normal", &Surface::coat_normal);
     use("r_sheen", &Surface::sheen);
     use("r_sheen_rough", &Surface::sheen_roughness);
+    use("r_film", &Surface::film);
+    use("r_film_ior", &Surface::film_ior);
+    use("r_film_thick", &Surface::film_thickness);
+    use("r_stretch", &Surface::anisotropy);
+    use("r_tangent", &Surface::tangent);
 }
 
 /// Stores field by field: a Surface in memory has padding.
@@ -258,6 +263,20 @@ void check_surfaces(const SceneCheck& check, const std::vector<Surface>& surface
     check.all("sheen of 0 to 1", surfaces, is_color, [](const Surface& s) { return s.sheen; });
     check.all("sheen of roughness 0 to 1", surfaces, is_color,
               [](const Surface& s) { return glm::vec3(s.sheen_roughness); });
+    check.all("films of 0 to 1", surfaces, is_color,
+              [](const Surface& s) { return glm::vec3(s.film); });
+    check.all("anisotropy of 0 to 1", surfaces, is_color,
+              [](const Surface& s) { return glm::vec3(s.anisotropy); });
+    check.all("tangents of length 1 or 0", surfaces, is_unit_or_zero,
+              [](const Surface& s) { return s.tangent; });
+    check.all(
+        "films of an index of 1 to 1e6", surfaces,
+        [](float ior) { return ior >= 1.0f && ior <= 1e6f; },
+        [](const Surface& s) { return s.film_ior; });
+    check.all(
+        "films of a finite thickness, 0 or more", surfaces,
+        [](float thickness) { return thickness >= 0.0f && std::isfinite(thickness); },
+        [](const Surface& s) { return s.film_thickness; });
     check.all(
         "surfaces of emission 0 to 1e9", surfaces,
         [](const glm::vec3& color) { return is_within(color, 0.0f, 1e9f); },

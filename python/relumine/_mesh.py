@@ -260,7 +260,7 @@ class Mesh:
     @property
     def materials(self) -> List[Dict[str, Any]]:
         """Materials of the file, as `relumine info --json` tells them: model, colours, roughness,
-        names of textures, coat, sheen."""
+        names of textures, coat, sheen, film, anisotropy."""
         materials: List[Dict[str, Any]] = json.loads(self._core.materials)
         return materials
 

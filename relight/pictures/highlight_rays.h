@@ -18,11 +18,11 @@ namespace relumine::relight {
 inline constexpr float SeenShare = 0.5f;
 
 /// Rays of the whole lobe of a surface, and of its coat and its sheen, where a highlight has `num`.
-/// Wide lobes, over which the weights of rays differ, and sheen take twice as many.
+/// Wide lobes, over which the weights of rays differ, stretched ones and sheen take twice as many.
 struct LobeRays {
     LobeRays(const prt::Surface& surface, std::uint32_t num)
-        : all(lobe_alpha(surface) > WideAlpha ? 2 * num : num), coat((num + 1) / 2),
-          sheen(2 * num) {}
+        : all(lobe_alpha(surface) > WideAlpha || prt::is_stretched(surface) ? 2 * num : num),
+          coat((num + 1) / 2), sheen(2 * num) {}
     static LobeRays one_each() {
         LobeRays one;
         one.all = one.coat = one.sheen = 1;
@@ -55,7 +55,7 @@ private:
     constexpr float WideFrom = 0.1f;
     constexpr std::uint32_t Least = 4;
     float part = 1.0f;
-    if (prt::has_sheen(surface))
+    if (prt::has_sheen(surface) || prt::is_stretched(surface))
         part = 2.0f;
     else if (prt::facts_of(surface.highlight).is_roughness && !prt::has_coat(surface))
         part = std::min(surface.roughness_or_exponent / WideFrom, 1.0f);

@@ -37,6 +37,10 @@ bool are_alike(const Mirror& a, const Mirror& b) {
     return one.highlight == other.highlight && one.table == other.table &&
            prt::has_coat(one) == prt::has_coat(other) &&
            prt::has_sheen(one) == prt::has_sheen(other) &&
+           prt::has_film(one) == prt::has_film(other) &&
+           prt::is_stretched(one) == prt::is_stretched(other) &&
+           are_near(one.anisotropy, other.anisotropy) &&
+           are_near(one.tangent, other.tangent, lobe_alpha(one)) &&
            are_near(one.roughness_or_exponent, other.roughness_or_exponent) &&
            are_near(one.coat_roughness, other.coat_roughness) &&
            are_near(one.sheen_roughness, other.sheen_roughness) &&

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "cubemap/frame.h"
+#include "prt/receivers/surface.h"
 
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
@@ -118,8 +119,8 @@ FanPoints part_points(const RayFan& fan, std::uint32_t i, FanIndices of_grid) {
 }
 
 /// Returns directions in the frame of the normal, mirrored at half vectors of visible_half().
-FanDirections mirrored(const FanFrame& frame, float alpha, FanVector u_x, FanVector cosine,
-                       FanVector sine, FanVector& density) {
+FanDirections mirrored(const FanFrame& frame, FanVector u_x, FanVector cosine, FanVector sine,
+                       FanVector& density) {
     const FanVector one = constant(1.0f);
     const FanVector r = hn::Sqrt(u_x);
     const FanVector x = hn::Mul(r, cosine);
@@ -130,22 +131,28 @@ FanDirections mirrored(const FanFrame& frame, float alpha, FanVector u_x, FanVec
     const FanVector z = root(hn::NegMulAdd(y, y, hn::Sub(one, x2)));
     const FanDirections h = combined({x, y, z}, frame.t1, frame.t2, frame.stretched_eye);
     const FanDirections half =
-        normalised({hn::Mul(constant(alpha), h.x), hn::Mul(constant(alpha), h.y),
+        normalised({hn::Mul(constant(frame.alphas.x), h.x), hn::Mul(constant(frame.alphas.y), h.y),
                     hn::Max(h.z, constant(1e-6f))});
 
-    const float a2 = alpha * alpha;
-    const FanVector facing = hn::MulAdd(
-        half.x, half.x, hn::MulAdd(half.y, half.y, hn::Mul(constant(a2), hn::Mul(half.z, half.z))));
+    const float a2 = frame.alphas.x * frame.alphas.y;
+    // Both are 1 of a round lobe.
+    const FanVector along = constant(frame.alphas.y / frame.alphas.x),
+                    across = constant(frame.alphas.x / frame.alphas.y);
+    const FanVector facing = hn::MulAdd(hn::Mul(along, half.x), half.x,
+                                        hn::MulAdd(hn::Mul(across, half.y), half.y,
+                                                   hn::Mul(constant(a2), hn::Mul(half.z, half.z))));
     const float n_v = frame.to_eye.z;
-    const float mask = n_v + std::sqrt(n_v * n_v * (1.0f - a2) + a2);
+    const float mask = n_v + (frame.alphas.x == frame.alphas.y
+                                  ? std::sqrt(n_v * n_v * (1.0f - a2) + a2)
+                                  : glm::length(glm::vec3(frame.alphas, 1.0f) * frame.to_eye));
     density =
         hn::Div(constant(a2 * 0.5f / (std::numbers::pi_v<float> * mask)), hn::Mul(facing, facing));
 
     const FanDirections eye{constant(frame.to_eye.x), constant(frame.to_eye.y),
                             constant(frame.to_eye.z)};
-    const FanVector along = hn::Mul(constant(2.0f), dot(eye, half));
-    return {hn::MulSub(along, half.x, eye.x), hn::MulSub(along, half.y, eye.y),
-            hn::MulSub(along, half.z, eye.z)};
+    const FanVector twice = hn::Mul(constant(2.0f), dot(eye, half));
+    return {hn::MulSub(twice, half.x, eye.x), hn::MulSub(twice, half.y, eye.y),
+            hn::MulSub(twice, half.z, eye.z)};
 }
 
 /// Sends rays at points(lanes) of the square, which the fan shifts along its height.
@@ -162,7 +169,7 @@ void send(const RayFan& fan, const FanFrame& frame, FanRays& rays, const Points&
         FanVector density = constant(1.0f / Turn);
         FanDirections local{u_x, u_x, u_x};
         if (fan.alpha > 0.0f) {
-            local = mirrored(frame, fan.alpha, u_x, cosine, sine, density);
+            local = mirrored(frame, u_x, cosine, sine, density);
         } else {
             const FanVector across = root(hn::NegMulAdd(u_x, u_x, constant(1.0f)));
             local = {hn::Mul(across, cosine), hn::Mul(across, sine), u_x};
@@ -210,9 +217,11 @@ HWY_EXPORT(fan_part);
 } // namespace
 
 FanFrame::FanFrame(const RayFan& fan)
-    : axes(cubemap::frame_of(fan.normal)), to_eye(fan.to_eye * axes),
-      stretched_eye(
-          glm::normalize(glm::vec3(fan.alpha * to_eye.x, fan.alpha * to_eye.y, to_eye.z))) {
+    : axes(fan.alpha_along > 0.0f ? prt::tangent_frame(fan.tangent, fan.normal)
+                                  : cubemap::frame_of(fan.normal)),
+      alphas(fan.alpha_along > 0.0f ? fan.alpha_along : fan.alpha, fan.alpha),
+      to_eye(fan.to_eye * axes),
+      stretched_eye(glm::normalize(glm::vec3(alphas.x * to_eye.x, alphas.y * to_eye.y, to_eye.z))) {
     const glm::vec3 across(-stretched_eye.y, stretched_eye.x, 0.0f);
     if (const float length2 = glm::dot(across, across); length2 > 0.0f)
         t1 = across / std::sqrt(length2);

@@ -24,6 +24,9 @@ struct RayFan {
     std::uint32_t num_rays;
     /// Shifts rays around their columns and around the height of the square.
     glm::vec2 shift;
+    /// Of a stretched lobe: alpha along a tangent. 0: the lobe is round.
+    float alpha_along = 0.0f;
+    glm::vec3 tangent{0.0f};
 };
 
 /// Into how many columns the points of a fan, which are Hammersley's, part the unit square from the
@@ -36,6 +39,8 @@ struct RayFan {
 /// What all rays of a fan share. Coordinates are along two axes across the normal, and along it.
 struct FanFrame {
     glm::mat3 axes;
+    /// Alpha along the first axis and the second.
+    glm::vec2 alphas;
     glm::vec3 to_eye;
     /// The eye where the lobe is stretched until its facets are spread evenly, and two axes across.
     glm::vec3 stretched_eye, t1{1.0f, 0.0f, 0.0f}, t2;

@@ -15,6 +15,7 @@
 #include "prt/glossy/ggx_energy.h"
 #include "prt/glossy/ggx_lobe.h"
 #include "prt/glossy/sheen_lobe.h"
+#include "prt/glossy/stretched_lobe.h"
 #include "relight/kernels/cluster_lights.h"
 #include "relight/pictures/highlight_rays.h"
 #include "relight/pictures/ray_fan.h"
@@ -64,18 +65,19 @@ std::uint32_t every_of(const MetSurface& met, const prt::Surface& surface) {
     const auto most = [](const glm::vec3& color) {
         return std::max({color.r, color.g, color.b});
     };
-    const float part = std::max({most(surface.specular), surface.table ? 1.0f : 0.0f,
-                                 prt::has_coat(surface) ? OfLayers : 0.0f,
-                                 prt::has_sheen(surface) ? OfLayers : 0.0f});
+    const float part = std::max(
+        {most(surface.specular), prt::has_lobes_of_colors(surface) ? 1.0f : 0.0f,
+         prt::has_coat(surface) ? OfLayers : 0.0f, prt::has_sheen(surface) ? OfLayers : 0.0f});
     const float asked = std::max(Asked * std::min(part / AlwaysAsked, 1.0f), 1.0f);
     const auto rays = static_cast<float>(met.num_rays);
     return static_cast<std::uint32_t>(std::clamp(std::round(rays / asked), 1.0f, rays));
 }
 
-/// What a highlight sends, by colour; of a measured one each colour has its own lobe.
+/// What a highlight sends, by colour.
 glm::vec3 highlight_of(const prt::Surface& surface, const prt::Lobes<float>& lobes) {
-    return surface.table ? glm::vec3(lobes.specular, lobes.specular_grazing, lobes.diffuse_grazing)
-                         : glm::vec3(lobes.specular);
+    return prt::has_lobes_of_colors(surface)
+               ? glm::vec3(lobes.specular, lobes.specular_grazing, lobes.diffuse_grazing)
+               : glm::vec3(lobes.specular);
 }
 
 } // namespace
@@ -302,6 +304,10 @@ MirroredLight Reflections::sum(const prt::Surface& surface, const MirrorPoint& p
                .alpha = lobe_alpha(surface),
                .num_rays = rays.all,
                .shift = point.shift};
+    if (prt::is_stretched(surface)) {
+        fan.alpha_along = prt::alpha_along(surface.roughness_or_exponent, surface.anisotropy);
+        fan.tangent = surface.tangent;
+    }
     Weighted all, grazing, coat, sheen;
     send(origin, fan, surfaces, behind,
          [&](const glm::vec3& w, float dense, const glm::vec3& radiance) {
@@ -310,6 +316,7 @@ MirroredLight Reflections::sum(const prt::Surface& surface, const MirrorPoint& p
              grazing.add(glm::vec3(lobe.specular_grazing / dense), radiance);
          });
     fan.num_rays = rays.coat;
+    fan.alpha_along = 0.0f;
     if (prt::has_coat(surface) && n_v.coat > 0.0f) {
         fan.alpha = prt::ggx_alpha(surface.coat_roughness);
         if (surface.coat_normal != glm::vec3(0.0f))
@@ -339,16 +346,17 @@ prt::Lobes<glm::vec3> lobes_of(const prt::Surface& surface, const MirroredLight&
                                const prt::EyeCosines& n_v) {
     if (n_v.base <= 0.0f)
         return {};
-    if (surface.table) {
-        const glm::vec3 colors = surface.table->rest_albedo(n_v.base) * light.all;
-        return {.diffuse_grazing = colors, .specular = colors, .specular_grazing = colors};
+    prt::Lobes<glm::vec3> lobes;
+    if (prt::has_lobes_of_colors(surface)) {
+        const glm::vec3 colors = prt::albedo_of_colors(surface, n_v) * light.all;
+        lobes.specular = lobes.specular_grazing = lobes.diffuse_grazing = colors;
+    } else {
+        const bool is_known = prt::facts_of(surface.highlight).is_roughness;
+        const prt::GgxAlbedo albedo =
+            is_known ? prt::ggx_albedo(surface, n_v) : prt::GgxAlbedo{.all = light.whole};
+        lobes.specular = albedo.all * light.all;
+        lobes.specular_grazing = albedo.grazing * light.grazing;
     }
-    const bool is_known = prt::facts_of(surface.highlight).is_roughness;
-    const prt::GgxAlbedo albedo = is_known
-                                      ? prt::ggx_albedo(surface.roughness_or_exponent, n_v.base)
-                                      : prt::GgxAlbedo{.all = light.whole};
-    prt::Lobes<glm::vec3> lobes{.specular = albedo.all * light.all,
-                                .specular_grazing = albedo.grazing * light.grazing};
     if (prt::has_coat(surface) && n_v.coat > 0.0f)
         lobes.coat = prt::coat_albedo(surface.coat_roughness, n_v.coat) * light.coat;
     if (prt::has_sheen(surface))

@@ -50,8 +50,8 @@ struct MirroredLight {
 };
 
 /// Returns the light through all lobes but the diffuse ones. Exact for GGX, measured BRDFs, coats
-/// and sheen under a sky of one radiance: what their lobes send of it is known. A measured BRDF has
-/// its blue in the place of Dc.
+/// and sheen under a sky of one radiance: what their lobes send of it is known. A measured BRDF and
+/// a film have their blue in the place of Dc.
 [[nodiscard]] prt::Lobes<glm::vec3>
 lobes_of(const prt::Surface& surface, const MirroredLight& light, const prt::EyeCosines& n_v);
 
@@ -162,7 +162,8 @@ private:
     Levels whole_;
 };
 
-/// Returns the alpha of the GGX lobe that is about as wide as a surface's highlight.
+/// Returns the alpha of the GGX lobe that is about as wide as a surface's highlight, where it is
+/// narrowest.
 [[nodiscard]] float lobe_alpha(const prt::Surface& surface);
 
 /// Returns an environment whose cells give no more than what the lights leave.

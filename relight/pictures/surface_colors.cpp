@@ -98,7 +98,7 @@ void add_rest(std::span<const glm::vec3> radiance, std::span<const prt::Surface>
                 // What Fresnel makes white is a part of the highlight.
                 lobes[i].specular[channel] += rest[channel];
                 lobes[i].specular_grazing[channel] += rest[channel];
-                if (surfaces[i].table) // has a lobe for each colour
+                if (prt::has_lobes_of_colors(surfaces[i]))
                     lobes[i].diffuse_grazing[channel] += rest[channel];
             }
     }

@@ -1,6 +1,7 @@
 // Scenes: a mesh with its precomputed light transfer, in memory and as a .prt file.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -38,7 +39,11 @@ using relight::Camera;
 
 /// Whether pictures turn the normals between the vertices.
 [[nodiscard]] inline bool has_mapped_vertices(const Scene& scene) {
-    return prt::on_vertices(scene.layout) && !scene.mesh.corner_tangents.empty();
+    const std::vector<mesh::Material>& materials = scene.mesh.materials;
+    return prt::on_vertices(scene.layout) && !scene.mesh.corner_tangents.empty() &&
+           std::any_of(materials.begin(), materials.end(), [](const mesh::Material& material) {
+               return material.normal_texture || material.coat_normal_texture;
+           });
 }
 
 /// Returns the RMS tolerance of the scene's clusters, 1/sr, whichever form it was given in.

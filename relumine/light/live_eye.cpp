@@ -14,8 +14,8 @@ bool is_shiny(const prt::Surface& surface) {
     return prt::facts_of(surface.highlight).is_roughness;
 }
 
-/// The surfaces with the highlights that the scene's own have not; without coat and sheen, as in
-/// pictures.
+/// The surfaces with the highlights that the scene's own have not; without coat, sheen
+/// and film, and round.
 std::vector<prt::Surface> shiny_surfaces(const LitScene& lit) {
     const Scene& scene = lit.scene();
     if (!has_live_highlights(scene))
@@ -28,6 +28,7 @@ std::vector<prt::Surface> shiny_surfaces(const LitScene& lit) {
             surfaces[i] = scene.receivers.surfaces[i];
         surfaces[i].coat = 0.0f;
         surfaces[i].sheen = glm::vec3(0.0f);
+        surfaces[i].film = surfaces[i].anisotropy = 0.0f;
     }
     return surfaces;
 }

@@ -104,6 +104,11 @@ inline constexpr std::array<std::string_view, 98> SectionNames = {"settings",
                                                                   "packed_positions",
                                                                   "packed_normals",
                                                                   "packed_triangles",
-                                                                  "light_profiles"};
+                                                                  "light_profiles",
+                                                                  "r_film",
+                                                                  "r_film_ior",
+                                                                  "r_film_thick",
+                                                                  "r_stretch",
+                                                                  "r_tangent"};
 
 } // namespace relumine::fuzz

@@ -226,7 +226,13 @@ TEST_F(SaveTest, GlbKeepsLayersAndGlassAndPrimitivesShareVertices) {
                      .coat = 0.75f,
                      .coat_roughness = 0.125f,
                      .sheen = {0.5f, 0.25f, 1.0f},
-                     .sheen_roughness = 0.5f};
+                     .sheen_roughness = 0.5f,
+                     .film = 0.5f,
+                     .film_ior = 1.75f,
+                     .film_thickness_at_0 = 50.0f,
+                     .film_thickness_at_1 = 700.0f,
+                     .anisotropy = 0.25f,
+                     .anisotropy_rotation = 1.5f};
     mesh.materials = {glass, layered};
     for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
         mesh.triangle_materials.push_back(i < 4 ? 0 : 1);

@@ -727,7 +727,29 @@ def Material "Look" {
         0.125
     )
     assert material["coat"] == pytest.approx(1)
-    assert len([n for n in asset.notes if "subsurface" in n or "thin_film" in n]) == 2
+    assert material["film"] == 1 and material["film_thickness_at_1"] == pytest.approx(300)
+    assert material["film_ior"] == pytest.approx(1.5)
+    assert len([n for n in asset.notes if "subsurface" in n]) == 1
+    assert not any("thin_film" in n for n in asset.notes)
+
+
+def test_the_film_of_open_pbr_has_micrometres_and_a_weight():
+    look = """
+def Material "Look" {
+    token outputs:mtlx:surface.connect = </Look/S.outputs:out>
+    def Shader "S" {
+        uniform token info:id = "ND_open_pbr_surface_surfaceshader"
+        float inputs:thin_film_weight = WEIGHT
+        float inputs:thin_film_thickness = 0.25
+        token outputs:out
+    }
+}"""
+    (material,) = loaded(bound(look.replace("WEIGHT", "0.5"))).mesh.materials
+    assert material["film"] == pytest.approx(0.5)
+    assert material["film_thickness_at_1"] == pytest.approx(250)
+    assert material["film_ior"] == pytest.approx(1.4)
+    (material,) = loaded(bound(look.replace("WEIGHT", "0"))).mesh.materials
+    assert "film" not in material
 
 
 def test_a_file_of_materialx(tmp_path):

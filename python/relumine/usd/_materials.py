@@ -659,6 +659,7 @@ class Materials:
                     0.3 if isinstance(sheen_rough, Image) else self._fraction(sheen_rough)
                 ),
             }
+        self._film(n, extensions, names)
         passing = of("transmission")
         if isinstance(passing, Image) or passing > 0.0:
             glass: Dict[str, Any] = {}
@@ -675,7 +676,8 @@ class Materials:
         if glow > 0.0:
             self._emission(slots, material, of("emission_color"), float(glow))
         self._normal(slots, material, _map_of(of("normal")), n.path)
-        known = {name for name, _ in names.values() if name} | set(names["silent"][1])
+        pairs = [pair for pair in names.values() if isinstance(pair, tuple)]
+        known = {name for name, _ in pairs if name} | set(names["silent"][1])
         for name in sorted(n.given() - known):
             value = n.input(name, None)
             if value in (0, 0.0, False, None, (0.0, 0.0, 0.0)) or name.endswith(("_IOR", "_ior")):
@@ -683,6 +685,21 @@ class Materials:
             self._notes.add(f"{name} is left out", n.path)
         if not extensions:
             del material["extensions"]
+
+    def _film(self, n: Network, extensions: Dict[str, Any], names: Dict[str, Any]) -> None:
+        """A thin film of one thickness; glTF has it in nanometres."""
+        weight, thickness, ior = (
+            fallback if name is None else n.input(name, fallback)
+            for name, fallback in (names["film"], names["film_thickness"], names["film_ior"])
+        )
+        if any(isinstance(value, Image) for value in (weight, thickness, ior)):
+            self._notes.add("a textured thin film is left out", n.path)
+        elif weight > 0.0 and thickness > 0.0:
+            extensions["KHR_materials_iridescence"] = {
+                "iridescenceFactor": self._fraction(weight),
+                "iridescenceIor": max(float(ior), 1.0),
+                "iridescenceThicknessMaximum": float(thickness) * names["nanometres"],
+            }
 
     def _standard_surface(self, n: Network, slots: _Slots, material: Dict[str, Any]) -> None:
         one = (1.0, 1.0, 1.0)
@@ -695,8 +712,9 @@ class Materials:
             "sheen_color": ("sheen_color", one), "sheen_roughness": ("sheen_roughness", 0.3),
             "transmission": ("transmission", 0.0), "transmission_color": ("transmission_color", one),
             "emission": ("emission", 0.0), "emission_color": ("emission_color", one),
-            "normal": ("normal", None),
-            "silent": (None, ("tangent",)),
+            "normal": ("normal", None), "film": (None, 1.0),
+            "film_thickness": ("thin_film_thickness", 0.0), "film_ior": ("thin_film_IOR", 1.5),
+            "nanometres": 1.0, "silent": (None, ("tangent",)),
         })  # fmt: skip
 
     def _open_pbr(self, n: Network, slots: _Slots, material: Dict[str, Any]) -> None:
@@ -711,7 +729,9 @@ class Materials:
             "sheen_roughness": ("fuzz_roughness", 0.5), "transmission": ("transmission_weight", 0.0),
             "transmission_color": ("transmission_color", one),
             "emission": ("emission_luminance", 0.0), "emission_color": ("emission_color", one),
-            "normal": ("geometry_normal", None), "silent": (None, ("geometry_tangent",)),
+            "normal": ("geometry_normal", None), "film": ("thin_film_weight", 0.0),
+            "film_thickness": ("thin_film_thickness", 0.5), "film_ior": ("thin_film_ior", 1.4),
+            "nanometres": 1000.0, "silent": (None, ("geometry_tangent",)),
         })  # fmt: skip
 
     def _gltf_pbr(self, n: Network, slots: _Slots, material: Dict[str, Any]) -> None:
@@ -725,6 +745,8 @@ class Materials:
             "sheen_roughness": ("sheen_roughness", 0.0), "transmission": ("transmission", 0.0),
             "transmission_color": (None, one), "emission": ("emissive_strength", 1.0),
             "emission_color": ("emissive", (0.0, 0.0, 0.0)), "normal": ("normal", None),
+            "film": ("iridescence", 0.0), "film_thickness": ("iridescence_thickness", 100.0),
+            "film_ior": ("iridescence_ior", 1.3), "nanometres": 1.0,
             "silent": (None, ("alpha_mode", "alpha_cutoff", "occlusion", "tangent")),
         })  # fmt: skip
 

@@ -309,7 +309,18 @@ TEST_F(GltfTest, SpecularCoatAndSheen) {
                               {{"sheenColorFactor", {1, 0.5, 0}},
                                {"sheenColorTexture", texture},
                                {"sheenRoughnessFactor", 0.75},
-                               {"sheenRoughnessTexture", texture}}}};
+                               {"sheenRoughnessTexture", texture}}},
+                             {"KHR_materials_iridescence",
+                              {{"iridescenceFactor", 0.75},
+                               {"iridescenceTexture", texture},
+                               {"iridescenceIor", 1.5},
+                               {"iridescenceThicknessMinimum", 500},
+                               {"iridescenceThicknessMaximum", 200},
+                               {"iridescenceThicknessTexture", texture}}},
+                             {"KHR_materials_anisotropy",
+                              {{"anisotropyStrength", 0.5},
+                               {"anisotropyRotation", -0.25},
+                               {"anisotropyTexture", texture}}}};
     model.json["materials"] = {{{"extensions", extensions}}};
     const std::filesystem::path path = write("a.gltf", model.embedded());
     const TriangleMesh mesh = load(path);
@@ -323,8 +334,15 @@ TEST_F(GltfTest, SpecularCoatAndSheen) {
     EXPECT_EQ(material.coat_normal_scale, 2.0f);
     EXPECT_EQ(material.sheen, glm::vec3(1.0f, 0.5f, 0.0f));
     EXPECT_EQ(material.sheen_roughness, 0.75f);
+    EXPECT_EQ(material.film, 0.75f);
+    EXPECT_EQ(material.film_ior, 1.5f);
+    EXPECT_EQ(material.film_thickness_at_0, 500.0f);
+    EXPECT_EQ(material.film_thickness_at_1, 200.0f);
+    EXPECT_EQ(material.anisotropy, 0.5f);
+    EXPECT_EQ(material.anisotropy_rotation, -0.25f);
     for (const auto& slot :
-         {material.coat_texture, material.coat_roughness_texture, material.coat_normal_texture}) {
+         {material.coat_texture, material.coat_roughness_texture, material.coat_normal_texture,
+          material.film_texture, material.film_thickness_texture, material.anisotropy_texture}) {
         EXPECT_FALSE(slot->is_srgb);
         EXPECT_EQ(mesh.textures[slot->texture].texels[0], (Rgb8{255, 128, 0}));
     }
@@ -344,6 +362,43 @@ TEST_F(GltfTest, SpecularCoatAndSheen) {
             "expected 0 to 1 as \"sheenColorFactor\", got -1");
     refused("KHR_materials_specular", {{"specularColorFactor", {-1, 0, 0}}},
             "expected 0 to 1e+06 as \"specularColorFactor\", got -1");
+    refused("KHR_materials_iridescence", {{"iridescenceFactor", 1}, {"iridescenceIor", 0.5}},
+            "expected 1 to 1e+06 as \"iridescenceIor\", got 0.5: it counts as 1");
+    refused("KHR_materials_anisotropy", {{"anisotropyStrength", -1}},
+            "expected 0 to 1 as \"anisotropyStrength\", got -1: it counts as 0");
+}
+
+/// What a film and a stretched highlight are when the file says no more, and where a texture is
+/// missing.
+TEST_F(GltfTest, DefaultsOfFilmsAndAnisotropy) {
+    Model model = square();
+    model.json["images"] = {{{"uri", "nowhere.png"}}};
+    model.json["textures"] = {{{"source", 0}}};
+    const Json texture = {{"index", 0}};
+    model.json["materials"] = {{{"extensions",
+                                 {{"KHR_materials_iridescence",
+                                   {{"iridescenceFactor", 1},
+                                    {"iridescenceTexture", texture},
+                                    {"iridescenceThicknessTexture", texture}}},
+                                  {"KHR_materials_anisotropy",
+                                   {{"anisotropyStrength", 1}, {"anisotropyTexture", texture}}}}}},
+                               {{"extensions",
+                                 {{"KHR_materials_iridescence", {{"iridescenceIor", 2}}},
+                                  {"KHR_materials_anisotropy", {{"anisotropyRotation", 1}}}}}}};
+    model.json["meshes"][0]["primitives"][0]["material"] = 0;
+    const TriangleMesh mesh = gltf(model.embedded());
+    const Material& material = mesh.materials[0];
+    EXPECT_EQ(material.film, 1.0f);
+    EXPECT_EQ(material.film_ior, 1.3f);
+    EXPECT_EQ(material.film_thickness_at_0, 100.0f);
+    EXPECT_EQ(material.film_thickness_at_1, 400.0f);
+    EXPECT_FALSE(material.film_texture || material.film_thickness_texture ||
+                 material.anisotropy_texture);
+    EXPECT_EQ(material.anisotropy_rotation, 0.0f);
+    ASSERT_EQ(mesh.corner_tangents.size(), mesh.num_triangles()) << "of the uvs";
+    EXPECT_EQ(mesh.corner_tangents[0][0], glm::vec4(1.0f, 0.0f, 0.0f, 1.0f));
+    EXPECT_EQ(mesh.materials[1].film, 0.0f) << "a factor of 0 by default";
+    EXPECT_EQ(mesh.materials[1].anisotropy, 0.0f);
 }
 
 /// A mirrored frame keeps the bitangent where it is. What is no tangent is computed.
@@ -689,12 +744,12 @@ TEST_F(GltfTest, Instances) {
 TEST_F(GltfTest, SaysWhatIsLeftOut) {
     Model model = square();
     EXPECT_THAT(gltf(model.embedded()).warnings, ElementsAre());
-    model.json["extensionsUsed"] = {"KHR_materials_anisotropy", "VENDOR_wind",
+    model.json["extensionsUsed"] = {"KHR_materials_dispersion", "VENDOR_wind",
                                     "KHR_texture_basisu",       "KHR_texture_transform",
-                                    "KHR_materials_anisotropy", "EXT_lights_image_based"};
+                                    "KHR_materials_dispersion", "EXT_lights_image_based"};
     model.json["extensionsRequired"] = {"KHR_texture_basisu"};
-    const Json coats = {{"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}}},
-                        {"KHR_materials_iridescence", {{"iridescenceFactor", 0}}},
+    const Json coats = {{"KHR_materials_dispersion", {{"dispersion", 0.5}}},
+                        {"KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 0}}},
                         {"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}}},
                         {"KHR_materials_sheen", {{"sheenColorFactor", {0.5, 0, 0}}}},
                         {"KHR_materials_specular", {{"specularColorFactor", {0.5, 1, 1}}}},
@@ -722,7 +777,8 @@ TEST_F(GltfTest, SaysWhatIsLeftOut) {
             "the extension 'VENDOR_wind' is not read: what it describes is left out",
             "the extension 'EXT_lights_image_based' is not read: the file brings its own "
             "environment, which does not light the scene",
-            "1 material with KHR_materials_anisotropy, which is not read: highlights are round",
+            "1 material with KHR_materials_dispersion, which is not read: glass bends all colours "
+            "alike",
             "1 material with 'VENDOR_fur', which is not read: what it describes is left out",
             "1 material with 'EXT_materials_bump', which is not read: what it describes is left "
             "out",

@@ -16,6 +16,8 @@
 
 #include "prt/glossy/ggx_energy.h"
 #include "prt/glossy/sheen_lobe.h"
+#include "prt/glossy/stretched_lobe.h"
+#include "prt/glossy/surface_sampling.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine::prt {
@@ -562,6 +564,189 @@ TEST(Brdf, LayersKeepTheEnergy) {
                     EXPECT_LE(red.r, 1.01) << where;
                     EXPECT_LE(red.g, red.r + 1e-6) << where;
                 }
+}
+
+/// What a surface whose lobes are those of colours sends of a white sky.
+glm::dvec3 colors_of_white_sky(const Surface& surface, const glm::vec3& eye) {
+    const Lobes<double> sum =
+        integral_over_halves(surface, eye, double{ggx_alpha(surface.roughness_or_exponent)}, 150);
+    return reflect(surface,
+                   {.diffuse = glm::vec3(1.0f),
+                    .diffuse_grazing = glm::vec3(static_cast<float>(sum.diffuse_grazing)),
+                    .specular = glm::vec3(static_cast<float>(sum.specular)),
+                    .specular_grazing = glm::vec3(static_cast<float>(sum.specular_grazing))},
+                   {surface, Up, eye});
+}
+
+/// What the film takes, the surface below does not have, and the highlight's albedo is its
+/// integral.
+TEST(Brdf, FilmsKeepTheEnergy) {
+    for (const float roughness : {0.1f, 0.4f, 1.0f})
+        for (const double degrees : {0.0, 45.0, 70.0, 85.0})
+            for (const float metallic : {0.0f, 0.5f, 1.0f})
+                for (const float thickness : {100.0f, 300.0f, 550.0f}) {
+                    const Surface surface{.albedo = glm::vec3(1.0f - metallic),
+                                          .specular = glm::vec3(0.04f + 0.96f * metallic),
+                                          .highlight = Highlight::GgxWhole,
+                                          .roughness_or_exponent = roughness,
+                                          .metallic = metallic,
+                                          .film = 0.75f,
+                                          .film_ior = 1.6f,
+                                          .film_thickness = thickness};
+                    const std::string where =
+                        fmt::format("roughness {}, metallic {}, {} nm, {} degrees", roughness,
+                                    metallic, thickness, degrees);
+                    const glm::vec3 eye = eye_at(degrees);
+                    const glm::dvec3 white = colors_of_white_sky(surface, eye);
+                    Surface alone = surface;
+                    alone.albedo = glm::vec3(0.0f);
+                    const glm::dvec3 highlight = colors_of_white_sky(alone, eye);
+                    const glm::vec3 known = albedo_of_colors(surface, {surface, Up, eye});
+                    for (int color = 0; color < 3; ++color) {
+                        EXPECT_LE(white[color], 1.01) << where;
+                        EXPECT_GT(white[color], 0.6) << where;
+                        EXPECT_NEAR(highlight[color], double{known[color]}, 0.01) << where;
+                    }
+                }
+}
+
+TEST(Brdf, NoFilmIsTheSameBitByBit) {
+    const Surface plain{.albedo = {0.5f, 0.25f, 1.0f},
+                        .specular = {0.04f, 0.5f, 1.0f},
+                        .highlight = Highlight::GgxWhole,
+                        .roughness_or_exponent = 0.4f,
+                        .metallic = 0.5f};
+    Surface none = plain, empty = plain;
+    none.film_ior = 2.0f;
+    none.film_thickness = 300.0f;
+    empty.film = 1.0f;
+    empty.film_thickness = 0.0f;
+    std::mt19937 random(5);
+    for (int i = 0; i < 100; ++i) {
+        const glm::vec3 v = scenes::random_direction(random), w = scenes::random_direction(random);
+        const glm::vec3 expected = reflected(plain, Up, v, w);
+        EXPECT_EQ(reflected(none, Up, v, w), expected);
+        EXPECT_EQ(reflected(empty, Up, v, w), expected);
+    }
+    EXPECT_EQ(without_highlight(empty).albedo, without_highlight(plain).albedo);
+}
+
+/// A light at a facet's mirror direction has that facet's colour.
+TEST(Brdf, AFilmColoursByTheHalfVector) {
+    const Surface gold{.albedo = glm::vec3(0.0f),
+                       .specular = {1.0f, 0.75f, 0.25f},
+                       .highlight = Highlight::GgxWhole,
+                       .roughness_or_exponent = 0.5f,
+                       .metallic = 1.0f,
+                       .film = 1.0f,
+                       .film_ior = 1.5f,
+                       .film_thickness = 350.0f};
+    Surface mirror = gold;
+    mirror.film = 0.0f;
+    mirror.specular = glm::vec3(1.0f);
+    const ThinFilm film(1.5f, 350.0f, gold.specular);
+    const float whole = ggx_albedo(0.5f, 0.8f).all;
+    const glm::vec3 v(0.6f, 0.8f, 0.0f);
+    for (const double azimuth : {0.5, 2.0, 3.1}) {
+        const glm::vec3 w = direction(0.7, azimuth);
+        const glm::vec3 colors = reflected(gold, Up, v, w);
+        const float lobe = evaluate_lobes(mirror, Up, v, w).specular;
+        const glm::vec3 fresnel = film.mirrored(0.5f * glm::length(v + w));
+        const glm::vec3 kept = 1.0f + film.mirrored(1.0f) * ((1.0f - whole) / whole);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(colors[c], lobe * kept[c] * fresnel[c], 1e-5f * lobe) << azimuth;
+    }
+}
+
+Surface brushed(float roughness, float anisotropy, const glm::vec3& tangent = {1.0f, 0.0f, 0.0f}) {
+    return {.albedo = glm::vec3(0.0f),
+            .specular = glm::vec3(1.0f),
+            .highlight = Highlight::GgxWhole,
+            .roughness_or_exponent = roughness,
+            .metallic = 1.0f,
+            .anisotropy = anisotropy,
+            .tangent = tangent};
+}
+
+/// The distribution has an area of 1 on the surface. Light and eye change places. Where both alphas
+/// are equal, the lobe is round.
+TEST(Brdf, AStretchedLobeIsHeitzs) {
+    for (const float anisotropy : {0.3f, 0.7f, 1.0f}) {
+        const StretchedLobe lobe(brushed(0.5f, anisotropy), Up);
+        EXPECT_FLOAT_EQ(lobe.across, 0.25f);
+        EXPECT_FLOAT_EQ(lobe.along, 0.25f + 0.75f * anisotropy * anisotropy);
+        // Seen from a facet's own normal, the masking of both sides is 1 / n.h times the same.
+        double area = 0.0;
+        constexpr int Steps = 600;
+        for (int i = 0; i < Steps; ++i)
+            for (int j = 0; j < Steps; ++j) {
+                const double theta = 0.5 * std::numbers::pi * (i + 0.5) / Steps;
+                const glm::vec3 h = direction(theta, 2.0 * std::numbers::pi * (j + 0.5) / Steps);
+                const glm::vec3 local = h * lobe.axes;
+                const double masks =
+                    2.0 * double{glm::length(glm::vec3(lobe.along, lobe.across, 1.0f) * local)};
+                area += double{lobe.value(h, h)} * masks * 2.0 * std::cos(theta) * std::sin(theta) *
+                        std::numbers::pi * std::numbers::pi / Steps / Steps;
+            }
+        EXPECT_NEAR(area, 1.0, 1e-3) << anisotropy;
+        std::mt19937 random(6);
+        for (int i = 0; i < 200; ++i) {
+            glm::vec3 v = scenes::random_direction(random), w = scenes::random_direction(random);
+            v.y = std::abs(v.y) + 0.01f;
+            w.y = std::abs(w.y) + 0.01f;
+            v = glm::normalize(v);
+            w = glm::normalize(w);
+            const float there = lobe.value(v, w) / w.y;
+            EXPECT_NEAR(there, lobe.value(w, v) / v.y, 1e-4f * there);
+        }
+    }
+    std::mt19937 random(7);
+    Surface round = brushed(1.0f, 0.0f);
+    for (int i = 0; i < 200; ++i) {
+        glm::vec3 v = scenes::random_direction(random), w = scenes::random_direction(random);
+        v.y = std::abs(v.y);
+        w.y = std::abs(w.y);
+        const float expected = evaluate_lobes(round, Up, v, w).specular;
+        EXPECT_NEAR(evaluate_lobes(brushed(1.0f, 0.5f), Up, v, w).specular, expected,
+                    1e-4f * expected);
+    }
+}
+
+/// Against sums over directions that know nothing of the lobe.
+TEST(Brdf, AlbedoOfAStretchedLobeIsItsIntegral) {
+    for (const float roughness : {0.45f, 0.62f, 0.9f})
+        for (const float anisotropy : {0.25f, 0.6f, 1.0f})
+            for (const double degrees : {0.0, 40.0, 65.0, 80.0})
+                for (const glm::vec3 tangent :
+                     {glm::vec3(1.0f, 0.0f, 0.0f), {0.0f, 0.0f, 1.0f}, {0.6f, 0.3f, -0.8f}}) {
+                    const Surface surface = brushed(roughness, anisotropy, glm::normalize(tangent));
+                    const glm::vec3 eye = eye_at(degrees);
+                    const Lobes<double> sum = integral_over_lights(surface, eye, 300);
+                    const GgxAlbedo known = ggx_albedo(surface, {surface, Up, eye});
+                    const std::string where =
+                        fmt::format("roughness {} {}, {} degrees", roughness, anisotropy, degrees);
+                    EXPECT_NEAR(double{known.all}, sum.specular, 0.01) << where;
+                    EXPECT_NEAR(double{known.grazing}, sum.specular_grazing, 0.01) << where;
+                    // White metal stays white.
+                    const glm::vec3 white = reflect(
+                        surface,
+                        {.specular = glm::vec3(static_cast<float>(sum.specular)),
+                         .specular_grazing = glm::vec3(static_cast<float>(sum.specular_grazing))},
+                        {surface, Up, eye});
+                    EXPECT_NEAR(white.g, 1.0f, 0.015f) << where;
+                }
+}
+
+TEST(Brdf, NoAnisotropyIsTheSameBitByBit) {
+    std::mt19937 random(8);
+    const Surface plain = brushed(0.4f, 0.0f, glm::vec3(0.0f));
+    for (int i = 0; i < 100; ++i) {
+        const glm::vec3 v = scenes::random_direction(random), w = scenes::random_direction(random);
+        EXPECT_EQ(reflected(brushed(0.4f, 0.0f), Up, v, w), reflected(plain, Up, v, w));
+        EXPECT_EQ(reflected(brushed(0.4f, 0.9f, glm::vec3(0.0f)), Up, v, w),
+                  reflected(plain, Up, v, w))
+            << "without a tangent";
+    }
 }
 
 TEST(Brdf, SheenIsEstevezAndKullas) {

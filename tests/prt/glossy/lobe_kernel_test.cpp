@@ -30,7 +30,7 @@ struct RandomBlock {
 
     explicit RandomBlock(std::uint32_t seed) {
         static const auto rough = ggx_table(0.8f), smooth = ggx_table(0.3f);
-        std::mt19937 random(seed);
+        std::mt19937 random(seed), of_films(seed + 1000);
         std::uniform_real_distribution<float> unit(0.0f, 1.0f);
         for (std::size_t i = 0; i < BlockSize; ++i) {
             normals[i] = scenes::random_direction(random);
@@ -44,6 +44,15 @@ struct RandomBlock {
                            .coat_roughness = unit(random),
                            .sheen = glm::vec3(unit(random) < 0.5f ? 0.0f : 1.0f),
                            .sheen_roughness = unit(random)};
+            if (i % 3 == 0) {
+                surfaces[i].specular = {0.9f, 0.5f, 0.1f};
+                surfaces[i].metallic = 0.5f;
+                surfaces[i].film = unit(of_films);
+            }
+            if (i % 4 < 2) {
+                surfaces[i].anisotropy = unit(of_films);
+                surfaces[i].tangent = scenes::random_direction(of_films);
+            }
             if (highlight == Highlight::Measured)
                 surfaces[i].table = i % 3 == 0 ? rough : smooth;
             if (i % 2 == 0)
@@ -97,6 +106,12 @@ TEST(LobeKernel, ABlockKnowsWhichLobesItHas) {
     block.set(3, {.highlight = Highlight::Ggx, .roughness_or_exponent = 0.5f}, up, up);
     EXPECT_TRUE(block.has(GlossyLobe::SpecularGrazing));
     EXPECT_TRUE(block.has(GlossyLobe::DiffuseGrazing));
+    BlockSurfaces filmed;
+    filmed.set(0, {.highlight = Highlight::GgxWhole, .roughness_or_exponent = 0.5f}, up, up);
+    EXPECT_FALSE(filmed.has(GlossyLobe::DiffuseGrazing));
+    filmed.set(1, {.highlight = Highlight::GgxWhole, .roughness_or_exponent = 0.5f, .film = 0.5f},
+               up, up);
+    EXPECT_EQ(filmed.lanes_with(GlossyLobe::DiffuseGrazing), 2u) << "blue";
 }
 
 } // namespace

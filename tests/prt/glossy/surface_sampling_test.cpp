@@ -117,6 +117,54 @@ TEST(SurfaceSampling, LayersHaveTheirTextures) {
     EXPECT_LT(plain.albedo.g, red.albedo.g) << "sheen takes light";
 }
 
+/// The texture's red is how much of the film there is, its green how thick it is.
+TEST(SurfaceSampling, FilmsHaveTheirTextures) {
+    mesh::TriangleMesh mesh = scenes::textured_square();
+    const mesh::TextureSlot colors{.texture = 0, .wrap = {mesh::Wrap::Clamp, {}}};
+    mesh.materials[1] = {.model = mesh::MaterialModel::MetallicRoughness,
+                         .film = 0.5f,
+                         .film_ior = 1.75f,
+                         .film_thickness_at_0 = 600.0f};
+    const auto red = [&] {
+        return surface_at(mesh, 0, {0.375f, 0.0f});
+    };
+    EXPECT_EQ(red().film, 0.5f);
+    EXPECT_EQ(red().film_ior, 1.75f);
+    EXPECT_EQ(red().film_thickness, 400.0f) << "without a texture: as where green is 1";
+    mesh.materials[1].film_texture = mesh.materials[1].film_thickness_texture = colors;
+    EXPECT_EQ(red().film, 0.5f);
+    EXPECT_EQ(red().film_thickness, 600.0f);
+    const Surface green = surface_at(mesh, 0, {0.625f, 0.0f});
+    EXPECT_EQ(green.film, 0.0f);
+    EXPECT_EQ(green.film_thickness, 400.0f);
+    EXPECT_EQ(without_highlight(red()).film, 0.0f);
+}
+
+/// The tangent is along u. The rotation turns it towards the bitangent, and so does the texture.
+TEST(SurfaceSampling, TheTangentTurns) {
+    mesh::TriangleMesh mesh = scenes::mapped_square({255, 128, 255});
+    mesh::Material& material = mesh.materials[0];
+    const mesh::TextureSlot map = *material.normal_texture;
+    material = {.model = mesh::MaterialModel::MetallicRoughness, .anisotropy = 0.5f};
+    const auto surface = [&] {
+        return surface_at(mesh, 0, {0.25f, 0.25f});
+    };
+    const glm::vec3 along(mesh.corner_tangents[0][0]);
+    const glm::vec3 across = mesh.corner_tangents[0][0].w * glm::cross(mesh.normals[0], along);
+    EXPECT_EQ(surface().anisotropy, 0.5f);
+    EXPECT_NEAR(glm::dot(surface().tangent, along), 1.0f, 1e-6f);
+    material.anisotropy_rotation = 0.5f;
+    EXPECT_NEAR(glm::dot(surface().tangent, along), std::cos(0.5f), 1e-6f);
+    EXPECT_NEAR(glm::dot(surface().tangent, across), std::sin(0.5f), 1e-6f);
+    material.anisotropy_texture = map;
+    mesh.textures[map.texture] = mesh::Texture{.width = 1, .height = 1, .texels = {{128, 255, 51}}};
+    EXPECT_NEAR(surface().anisotropy, 0.1f, 1e-6f);
+    EXPECT_NEAR(glm::dot(surface().tangent, along), -std::sin(0.5f), 0.005f);
+    EXPECT_NEAR(glm::dot(surface().tangent, across), std::cos(0.5f), 0.005f);
+    mesh.corner_tangents.clear();
+    EXPECT_EQ(surface().anisotropy, 0.0f) << "there is no tangent";
+}
+
 TEST(SurfaceSampling, SpecularGlossiness) {
     Material material = {.model = MaterialModel::SpecularGlossiness,
                          .base_color = {1.0f, 0.5f, 0.25f},

@@ -79,7 +79,7 @@ TEST(MaterialSections, KeepNormalMaps) {
                            [&] { MaterialSections.check(SceneCheck(path), scene); });
 }
 
-TEST(MaterialSections, KeepCoatsAndSheen) {
+TEST(MaterialSections, KeepLayersAndAnisotropy) {
     mesh::TriangleMesh mesh = scenes::mapped_square({255, 128, 255});
     mesh::Material& material = mesh.materials[0];
     material.model = mesh::MaterialModel::MetallicRoughness;
@@ -88,11 +88,17 @@ TEST(MaterialSections, KeepCoatsAndSheen) {
     material.coat_normal_scale = -2.0f;
     material.sheen = {1.0f, 0.5f, 0.0f};
     material.sheen_roughness = 0.5f;
+    material.film = 0.5f;
+    material.film_ior = 1.75f;
+    material.film_thickness_at_0 = 900.0f;
+    material.anisotropy = 0.25f;
+    material.anisotropy_rotation = -0.5f;
     for (const auto slot :
          {&mesh::Material::coat_texture, &mesh::Material::coat_roughness_texture,
           &mesh::Material::coat_normal_texture, &mesh::Material::sheen_texture,
           &mesh::Material::sheen_roughness_texture, &mesh::Material::specular_strength_texture,
-          &mesh::Material::specular_tint_texture})
+          &mesh::Material::specular_tint_texture, &mesh::Material::film_texture,
+          &mesh::Material::film_thickness_texture, &mesh::Material::anisotropy_texture})
         material.*slot = material.normal_texture;
     mesh::Material same = read(written(mesh), mesh).materials.at(0);
     same.name = material.name;

@@ -320,15 +320,25 @@ TEST_F(ReceiverSectionsTest, MissingAndShortSections) {
     layered.coat_normal = {0.0f, 0.0f, 1.0f};
     layered.sheen = {1.0f, 0.5f, 0.0f};
     layered.sheen_roughness = 0.25f;
+    layered.film = 0.5f;
+    layered.film_ior = 1.75f;
+    layered.film_thickness = 250.0f;
+    layered.anisotropy = 0.75f;
+    layered.tangent = {0.0f, 1.0f, 0.0f};
     save_scene(file_, scene);
     EXPECT_EQ(load_scene(file_).receivers.surfaces, scene.receivers.surfaces);
     const Sections unusual = read_sections(file_);
     for (const char* name : {"r_metallic", "r_emission", "r_f0", "r_f90", "r_coat", "r_coat_rough",
-                             "r_coat_normal", "r_sheen", "r_sheen_rough"})
+                             "r_coat_normal", "r_sheen", "r_sheen_rough", "r_film", "r_film_ior",
+                             "r_film_thick", "r_stretch", "r_tangent"})
         refused(unusual, std::string("'") + name + "'",
                 [&](Sections& s) { s.at(name).pop_back(); });
     refused(unusual, "metallic 0 to 1",
             [](Sections& s) { s.at("r_metallic")[3] = std::byte{0x7f}; });
+    refused(unusual, "films of an index of 1 to 1e6",
+            [](Sections& s) { s.at("r_film_ior")[3] = std::byte{0xbf}; });
+    refused(unusual, "tangents of length 1 or 0",
+            [](Sections& s) { s.at("r_tangent")[3] = std::byte{0x40}; });
     refused(unusual, "emission 0 to 1e9",
             [](Sections& s) { s.at("r_emission")[3] = std::byte{0xbf}; });
     // As if they were the vertices.

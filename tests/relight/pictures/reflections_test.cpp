@@ -111,6 +111,55 @@ TEST(Reflections, OfCoatAndSheenAreTheirIntegral) {
         }
 }
 
+/// Each colour has its own highlight.
+TEST(Reflections, OfAFilmAreTheirIntegral) {
+    const cubemap::CubeMap sky = scenes::smooth_environment(R);
+    const Reflections reflections(nothing(), 0.0f, 4096, sky, {});
+    for (const float roughness : {0.3f, 0.8f})
+        for (const float n_v : {0.9f, 0.4f}) {
+            prt::Surface surface = metal(roughness);
+            surface.film = 1.0f;
+            surface.film_ior = 1.5f;
+            const MirrorPoint point = seen_at(n_v);
+            const auto lobes = mirrored(reflections, surface, point);
+            const auto expected = integrated(surface, point, sky);
+            const float scale = expected.specular.r;
+            EXPECT_NEAR(lobes.specular.r, expected.specular.r, 0.015f * scale)
+                << roughness << " " << n_v;
+            EXPECT_NEAR(lobes.specular_grazing.g, expected.specular_grazing.g, 0.015f * scale);
+            EXPECT_NEAR(lobes.diffuse_grazing.b, expected.diffuse_grazing.b, 0.015f * scale);
+        }
+}
+
+/// Rays of a stretched lobe against the sum over all texels, which knows nothing of how they are
+/// spread.
+TEST(Reflections, OfAStretchedLobeAreItsIntegral) {
+    cubemap::CubeMap sky = scenes::smooth_environment(R);
+    // A gradient along one axis across the normal: what differs between the two roughnesses.
+    for (const cubemap::Face face : cubemap::AllFaces)
+        for (std::uint32_t y = 0; y < R; ++y)
+            for (std::uint32_t x = 0; x < R; ++x) {
+                const float along = static_cast<float>(cubemap::texel_direction(face, x, y, R).x);
+                sky.at(face, x, y) *= 0.1f + 4.0f * along * along;
+            }
+    const Reflections reflections(nothing(), 0.0f, 4096, sky, {});
+    for (const float roughness : {0.35f, 0.6f})
+        for (const float anisotropy : {0.4f, 0.9f})
+            for (const float n_v : {1.0f, 0.6f, 0.3f})
+                for (const glm::vec3 tangent : {glm::vec3(1.0f, 0.0f, 0.0f),
+                                                {0.0f, 1.0f, 0.0f},
+                                                glm::normalize(glm::vec3(1.0f, 2.0f, 0.5f))}) {
+                    prt::Surface surface = metal(roughness);
+                    surface.anisotropy = anisotropy;
+                    surface.tangent = tangent;
+                    const MirrorPoint point = seen_at(n_v);
+                    const auto lobes = mirrored(reflections, surface, point);
+                    const auto expected = integrated(surface, point, sky);
+                    EXPECT_NEAR(lobes.specular.g, expected.specular.g, 0.015f * expected.specular.g)
+                        << roughness << " " << anisotropy << " " << n_v << " " << tangent.x;
+                }
+}
+
 TEST(Reflections, PhongHasNoEnergyToKeep) {
     const cubemap::CubeMap sky = scenes::smooth_environment(R);
     const Reflections reflections(nothing(), 0.0f, 4096, sky, {});
