@@ -51,6 +51,7 @@ void keep_bounces(Lighting& lighting, std::span<const glm::vec3> bounced) {
     lighting.radiance = bounced;
     lighting.soft.clear();
     lighting.lights.clear();
+    lighting.floor_lights.clear();
     lighting.open_floor.reset();
 }
 
