@@ -17,8 +17,8 @@ namespace {
 
 constexpr glm::vec3 Up(0.0f, 1.0f, 0.0f);
 
-/// Pixels on a side of a group, whose rays are traced together.
-constexpr std::uint32_t GroupSize = 8;
+/// Pixels on a side of a square, whose rays are traced together.
+constexpr std::uint32_t SquareSide = 8;
 
 /// Returns a direction in a cell, of (s, t) in [0, 1].
 glm::vec3 direction_in(const prt::Cell& cell, double s, double t) {
@@ -171,11 +171,11 @@ void FloorShadows::find_borders(const SampleRectangle& seen) {
     num_pairs_ = num_pairs_across() * ((pixels_.bottom + 1) / 2 - pixels_.top / 2);
     borders_.assign(beams.size() * num_pairs_, Seen::NoFloor);
     const std::uint32_t bottom = (pixels_.bottom + 1) / 2, right = (pixels_.right + 1) / 2;
-    for (std::uint32_t top = pixels_.top / 2; top < bottom; top += GroupSize)
-        for (std::uint32_t left = pixels_.left / 2; left < right; left += GroupSize) {
+    for (std::uint32_t top = pixels_.top / 2; top < bottom; top += SquareSide)
+        for (std::uint32_t left = pixels_.left / 2; left < right; left += SquareSide) {
             Group group;
-            for (std::uint32_t v = top; v < std::min(top + GroupSize, bottom); ++v)
-                for (std::uint32_t u = left; u < std::min(left + GroupSize, right); ++u) {
+            for (std::uint32_t v = top; v < std::min(top + SquareSide, bottom); ++v)
+                for (std::uint32_t u = left; u < std::min(left + SquareSide, right); ++u) {
                     const std::uint32_t x = std::max(2 * u, pixels_.left);
                     const std::uint32_t y = std::max(2 * v, pixels_.top);
                     if (const EyeSample& sample = seen.middle(x, y); is_floor(sample))
@@ -201,10 +201,10 @@ void FloorShadows::choose(const PixelRectangle& inner) {
     const std::size_t num_beams = lights_.beams().size();
     chosen_.assign(num_beams, {});
     // In squares, so that neighbours are traced together.
-    for (std::uint32_t top = inner.top; top < inner.bottom; top += GroupSize)
-        for (std::uint32_t left = inner.left; left < inner.right; left += GroupSize)
-            for (std::uint32_t y = top; y < std::min(top + GroupSize, inner.bottom); ++y)
-                for (std::uint32_t x = left; x < std::min(left + GroupSize, inner.right); ++x) {
+    for (std::uint32_t top = inner.top; top < inner.bottom; top += SquareSide)
+        for (std::uint32_t left = inner.left; left < inner.right; left += SquareSide)
+            for (std::uint32_t y = top; y < std::min(top + SquareSide, inner.bottom); ++y)
+                for (std::uint32_t x = left; x < std::min(left + SquareSide, inner.right); ++x) {
                     const std::size_t own = index(x, y);
                     if (num_samples_[own] == 0)
                         continue;
