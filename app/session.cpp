@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <csignal>
 #include <cstdio>
 #include <mutex>
@@ -15,7 +16,6 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "app/progress_lines.h"
 #include "files/output_file.h"
 #include "files/printable.h"
 #include "relumine/in/shared_work.h"
@@ -205,6 +205,11 @@ std::function<void(double)> Session::progress(const std::string& what) {
     return [this, what, terminal, state = State{}](double fraction) mutable {
         const std::scoped_lock lock(mutex_);
         const double time = now();
+        if (run_)
+            if (const std::optional<std::size_t> stage = run_->estimate.find(what)) {
+                run_->estimate.tell(*stage, fraction, time - run_->start);
+                return show_run();
+            }
         if (state.start < 0.0) {
             state.start = time;
             state.first_fraction = fraction;
@@ -233,6 +238,58 @@ std::function<void(double)> Session::progress(const std::string& what) {
     };
 }
 
+void Session::begin_run(const std::string& what, std::vector<RunEstimate::Stage> stages) {
+    end_run();
+    if (quiet || !is_first())
+        return;
+    {
+        const std::scoped_lock lock(mutex_);
+        run_ = Run{.what = what, .estimate = RunEstimate(std::move(stages)), .start = now()};
+    }
+    ticker_ = std::jthread([this](const std::stop_token& ended) {
+        std::mutex waits;
+        std::condition_variable_any change;
+        for (std::unique_lock lock(waits);
+             !change.wait_for(lock, ended, std::chrono::milliseconds(500), [] { return false; }) &&
+             !ended.stop_requested();) {
+            const std::scoped_lock shows(mutex_);
+            if (run_)
+                show_run();
+        }
+    });
+}
+
+void Session::end_run() {
+    ticker_ = {};
+    {
+        const std::scoped_lock lock(mutex_);
+        run_.reset();
+    }
+    end_progress();
+}
+
+/// Shows the run as it stands. The mutex is held.
+void Session::show_run() const {
+    const double elapsed = now() - run_->start;
+    if (elapsed < 1.0 || stop_source_.stop_requested())
+        return;
+    const double fraction = run_->estimate.fraction(elapsed);
+    const std::optional<double> left = run_->estimate.seconds_left(elapsed);
+    const std::string text =
+        fmt::format("{}: {:.0f} %{}{}", run_->what, 100.0 * fraction,
+                    run_->estimate.present().empty() ? "" : ", " + run_->estimate.present(),
+                    left ? fmt::format(", about {} left", duration(*left)) : "");
+    // Not fmt::print, which throws where stderr cannot be written.
+    if (::isatty(STDERR_FILENO) != 0) {
+        std::fputs(("\r" + text + "\033[K").c_str(), stderr);
+        std::fflush(stderr);
+        bar_open_ = true;
+        shared().is_bar_open = true;
+    } else if (run_->lines.is_due(fraction, elapsed)) {
+        std::fputs((text + "\n").c_str(), stderr);
+    }
+}
+
 prt::Work Session::work(const std::string& what) {
     return {.stop = stop(), .on_progress = progress(what)};
 }
@@ -248,6 +305,7 @@ void Session::end_progress() const {
 void Session::say(const std::string& line) const {
     if (json || quiet)
         return;
+    end_progress();
     fmt::print("{}\n", files::printable(line)); // names in files may be anything
     std::fflush(stdout); // whoever reads along, as with --watch, need not wait for more
 }
@@ -266,6 +324,10 @@ void Session::warn(const std::string& message) const {
 }
 
 void Session::complain(const std::string& message, const char* program) const {
+    {
+        const std::scoped_lock lock(mutex_);
+        run_.reset();
+    }
     end_progress();
     const std::scoped_lock lock(shared().mutex);
     if (shared().is_waiting_said && message.starts_with("cancelled"))

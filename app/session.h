@@ -4,12 +4,16 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "app/command_line/command_line.h"
+#include "app/progress_lines.h"
 #include "app/report.h"
+#include "app/run_estimate.h"
 
 namespace relumine::prt {
 class Team;
@@ -51,7 +55,12 @@ public:
 
     /// Shows a bar with the time left on a terminal, lines elsewhere (ProgressLines), nothing in
     /// the first second or with -q. To be called with fractions in [0, 1].
+    /// While a run is open, stages of the run show one percentage of all.
     [[nodiscard]] std::function<void(double)> progress(const std::string& what);
+    /// Opens a run of several stages, whose progress() is shown as one until end_run(). A terminal
+    /// shows it twice a second, whether a stage says something or not.
+    void begin_run(const std::string& what, std::vector<RunEstimate::Stage> stages);
+    void end_run();
     /// The handle of long work that shows its progress, without its processes.
     [[nodiscard]] prt::Work work(const std::string& what);
     /// Ends the bar's line. Harmless when there is none.
@@ -73,12 +82,23 @@ public:
     void report(Report result) const;
 
 private:
+    struct Run {
+        std::string what;
+        RunEstimate estimate;
+        double start = 0.0;
+        ProgressLines lines = {};
+    };
+    void show_run() const;
+
     std::stop_source stop_source_;
     /// Guards the others, since progress and warnings come from other threads, too.
     mutable std::mutex mutex_;
     mutable bool bar_open_ = false;
     mutable std::vector<std::string> warnings_;
     mutable Report more_fields_;
+    mutable std::optional<Run> run_;
+    /// Shows the run; ends before what it shows.
+    std::jthread ticker_;
 };
 
 /// What is said when the work is ended from outside, at first "cancelled; nothing was written".

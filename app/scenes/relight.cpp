@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "app/first_picture_stages.h"
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
 #include "app/options/eye_options.h"
@@ -51,6 +52,7 @@ void keep_bounces(Lighting& lighting, std::span<const glm::vec3> bounced) {
     lighting.radiance = bounced;
     lighting.soft.clear();
     lighting.lights.clear();
+    lighting.floor_lights.clear();
     lighting.open_floor.reset();
 }
 
@@ -182,7 +184,10 @@ std::function<void(const Mesh&)> first_sight(const RelightArguments& options, co
     if ((extension != ".png" && extension != ".exr") || options.bounces.are_alone() ||
         options.scene.colors != SurfaceColors())
         return {};
-    return [&options, &light, &session, watch = Stopwatch()](const Mesh& mesh) {
+    return [&options, &light, &session, watch = Stopwatch(),
+            progress = session.progress("first sight")](const Mesh& mesh) {
+        if (progress)
+            progress(0.0);
         Scene scene = quick_scene(mesh);
         options.output.check_fits(scene);
         const relumine::OutputOptions picture = quick_picture(options.output.for_scene(scene));
@@ -190,6 +195,8 @@ std::function<void(const Mesh&)> first_sight(const RelightArguments& options, co
         lit.dim(picture.emission);
         lit.light(light);
         save(lit, options.output.path, picture);
+        if (progress)
+            progress(1.0);
         session.say(fmt::format("{}: a first sight, small and without bounces, after {:.1f} s; the "
                                 "picture follows",
                                 options.output.path, watch.total()));
@@ -205,6 +212,8 @@ void light_scene(const RelightArguments& options, Session& session) {
     Given given;
     SceneOptions with_sight = options.scene;
     if (options.scene.is_first_picture()) {
+        const relumine::OutputOptions& picture = options.output.picture;
+        session.begin_run("relight", first_picture_stages(1.0 * picture.width * picture.height));
         given = given_light(options, session);
         with_sight.before = first_sight(options, given.light, session);
         watch.lap();
@@ -248,7 +257,7 @@ void light_scene(const RelightArguments& options, Session& session) {
     Painter painter(lit, output);
     painter.on_progress(session.progress("picture"));
     painter.save(options.output.path, lighting);
-    session.end_progress();
+    session.end_run();
     if (!options.harmonics.empty())
         save_harmonics(lit, options.harmonics);
     const double seconds_output = watch.lap();

@@ -29,6 +29,11 @@ PictureTile::PictureTile(const TileScene& scene)
               scene.light.blockers != nullptr ? *scene.light.blockers
                                               : static_cast<const prt::Blockers&>(scene.rays),
               scene.light.bias, scene.beams),
+      floor_shadows_(scene.mesh, scene.floor,
+                     scene.light.blockers != nullptr
+                         ? *scene.light.blockers
+                         : static_cast<const prt::Blockers&>(scene.rays),
+                     scene.light.bias, scene.floor_lights),
       own_lights_(scene.packets.num_packets()) {
     if (scene.light.textures != nullptr && scene.light.textures->maps() != nullptr)
         texture_view_ = {*scene.light.textures->maps(), scene.eye, scene.grid};
@@ -36,15 +41,19 @@ PictureTile::PictureTile(const TileScene& scene)
 
 void PictureTile::draw(std::uint32_t tile, Picture& picture) {
     // The tile and a ring of pixels around it, for the lights and for what mirrors.
-    static_assert(Mirrors::Reach <= PictureTiles::LargestRing);
+    static_assert(Mirrors::Reach <= PictureTiles::LargestRing &&
+                  FloorShadows::Reach <= Mirrors::Reach);
     const bool traces = scene_.packets.num_packets() != 0;
     const std::uint32_t ring = scene_.light.reflections != nullptr ? Mirrors::Reach
+                               : has_floor_lights()                ? FloorShadows::Reach
                                : traces                            ? 1
                                                                    : 0;
     const PixelRectangle inner = scene_.tiles.pixels(tile, 0);
     const SampleRectangle seen = scene_.samples.of(tile, ring);
     if (traces)
         lights_.trace(seen, inner);
+    if (has_floor_lights())
+        floor_shadows_.trace(seen, inner);
     if (scene_.light.reflections != nullptr)
         look_into_mirrors(seen);
     std::optional<BackdropPixels> behind;
@@ -139,7 +148,8 @@ PictureTile::Shown PictureTile::shown(std::uint32_t x, std::uint32_t y, std::siz
         if (opacity == 0.0f)
             continue;
         const prt::MeshPoint at = sample.point();
-        const bool is_caught = catches(sample);
+        const bool is_floor = this->is_floor(sample);
+        const bool is_caught = is_floor && light.open_floor;
         const std::optional<Mirror> mirror = mirrors_.at(at);
         glm::vec3 radiance = shading_.soft(at, mirror, mirrors_);
         if (traces) {
@@ -151,6 +161,13 @@ PictureTile::Shown PictureTile::shown(std::uint32_t x, std::uint32_t y, std::siz
             if (!is_none(lights))
                 radiance += is_caught ? shading_.white(prt::shading_normal(scene_.mesh, at), lights)
                                       : shading_.traced(at, mirror, lights);
+        }
+        if (is_floor && has_floor_lights()) {
+            const glm::vec3 shaded =
+                layer.is_first ? floor_shadows_.of(x, y) : floor_shadows_.at(at, i);
+            radiance += is_caught || light.albedo.empty()
+                            ? shaded
+                            : shaded * prt::value_at(scene_.mesh, light.albedo, at);
         }
         if (!is_caught)
             result.color += result.passed * (layer.veil.weight * opacity) *

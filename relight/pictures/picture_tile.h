@@ -13,6 +13,7 @@
 #include "relight/pictures/backdrop.h"
 #include "relight/pictures/backdrop_pixels.h"
 #include "relight/pictures/eye_samples.h"
+#include "relight/pictures/floor_shadows.h"
 #include "relight/pictures/mirrors.h"
 #include "relight/pictures/picture_view.h"
 #include "relight/pictures/pixel_lights.h"
@@ -37,6 +38,7 @@ struct TileScene {
     const MeshLight& light;
     const LightPackets& packets;
     const LightBeams& beams;
+    const FloorLights& floor_lights;
     /// Null: the mesh is drawn alone, with its alpha.
     const Backdrop* backdrop = nullptr;
 };
@@ -87,10 +89,10 @@ private:
     [[nodiscard]] std::span<const Layer> layers(std::uint32_t x, std::uint32_t y, std::size_t i,
                                                 const EyeSample& first);
     [[nodiscard]] float opacity(const EyeSample& sample) const;
-    /// Whether a sample lies on a floor that catches shadows.
-    [[nodiscard]] bool catches(const EyeSample& sample) const {
-        return scene_.light.open_floor && scene_.floor.has(scene_.mesh.triangles[sample.triangle]);
+    [[nodiscard]] bool is_floor(const EyeSample& sample) const {
+        return scene_.floor.has(scene_.mesh.triangles[sample.triangle]);
     }
+    [[nodiscard]] bool has_floor_lights() const { return !scene_.light.floor_lights.empty(); }
 
     const TileScene& scene_;
     ShadowRays rays_;
@@ -100,6 +102,7 @@ private:
     Refractions refractions_;
     SampleShading shading_;
     PixelLights lights_;
+    FloorShadows floor_shadows_;
     /// Scratch: [packets]
     std::vector<std::uint16_t> own_lights_;
     /// Scratch of layers()

@@ -8,6 +8,7 @@
 #include "files/parallel.h"
 #include "relight/harmonics/harmonics.h"
 #include "relight/pictures/eye_samples.h"
+#include "relight/pictures/floor_shadows.h"
 #include "relight/pictures/picture_tile.h"
 #include "relight/pictures/pixel_lights.h"
 #include "relight/pictures/seen_mesh.h"
@@ -61,11 +62,13 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
     if (backdrop == nullptr)
         picture.alpha.resize(picture.pixels.size());
     const LightBeams beams(light.lights);
+    const FloorLights floor_lights(light.floor_lights, grid_.samples_per_pixel());
     if (light.blockers != nullptr)
-        light.blockers->prepare(picture.pixels.size() * light.lights.size());
+        light.blockers->prepare(picture.pixels.size() *
+                                (light.lights.size() + light.floor_lights.size()));
     const PictureTiles tiles{options_.width, options_.height};
-    const TileScene scene{mesh_,     rays_, *seen_, eye_,    grid_, floor_,
-                          *samples_, tiles, light,  packets, beams, backdrop};
+    const TileScene scene{mesh_, rays_, *seen_,  eye_,  grid_,        floor_,  *samples_,
+                          tiles, light, packets, beams, floor_lights, backdrop};
     std::mutex mutex;
     std::uint32_t num_drawn = 0;
     files::parallel_for(std::uint32_t{0}, tiles.count(), [&](std::uint32_t tile) {

@@ -65,6 +65,9 @@ struct MeshLight {
     /// Traced at every point that is seen, with its own normal: their shadows are as sharp as the
     /// picture, on any mesh.
     std::span<const SharpLight> lights = {};
+    /// Cells of the sky whose light is traced on the floor alone (relight/bright_clusters.h):
+    /// `radiance` of its vertices is without it.
+    std::span<const SharpLight> floor_lights = {};
     /// What blocks the lights: the mesh. Null: the picture's rays are asked. LazyBeamScene is
     /// faster, with the same answers.
     const prt::Blockers* blockers = nullptr;

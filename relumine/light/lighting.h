@@ -35,6 +35,10 @@ struct Lighting {
     /// The first so many are parts of `environment`.
     std::size_t num_environment_lights = 0;
     std::vector<glm::vec3> soft = {};
+    /// Bright cells of the environment that pictures trace on an added floor, and [vertices of the
+    /// floor] what `radiance` and `soft` have of them, for albedo 1. Empty: there are none.
+    std::vector<relight::SharpLight> floor_lights = {};
+    std::vector<glm::vec3> of_floor_lights = {};
     /// [num_receivers] what `soft` is made of, or `radiance` where there are no lights, without
     /// bounces. Only of meshes with textures and highlights.
     std::vector<prt::Lobes<glm::vec3>> lobes = {};

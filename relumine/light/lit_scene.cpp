@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "files/seconds.h"
+#include "relight/bright_clusters.h"
 #include "relight/harmonics/harmonics.h"
 #include "relight/receiver_light.h"
 #include "relight/sharp/light_packets.h"
@@ -53,6 +54,7 @@ struct LitScene::Impl {
     void finish(UpdateReport& report);
     void bind_sent(ArrivingLight& arriving) const;
     void take_apart(Lighting& lighting) const;
+    void take_floor_apart(Lighting& lighting) const;
     void gather(Lighting& lighting) const;
     void show_environment(Lighting& lighting) const;
     [[nodiscard]] glm::vec3 open_gain(const glm::vec3& open_floor) const;
@@ -502,6 +504,22 @@ void LitScene::Impl::take_apart(Lighting& lighting) const {
             term->add_soft(lighting.soft);
 }
 
+/// Adds what pictures trace on an added floor.
+void LitScene::Impl::take_floor_apart(Lighting& lighting) const {
+    constexpr glm::vec3 Up(0.0f, 1.0f, 0.0f);
+    const std::optional<std::size_t> first = first_floor_vertex(*scene);
+    const std::vector<prt::Surface>& surfaces = scene->receivers.surfaces;
+    if (!first || !has_environment() || receivers.are_in_others() ||
+        relighter->shadow_rays().blockers == nullptr ||
+        !(surfaces.empty() || surfaces[*first] == prt::Surface()))
+        return;
+    relight::BrightClusters bright = relight::bright_clusters(*relighter, Up);
+    if (bright.lights.empty())
+        return;
+    lighting.floor_lights = std::move(bright.lights);
+    lighting.of_floor_lights = relight::radiance_from(bright.clusters, *relighter, *first);
+}
+
 /// Gives the first process what all have.
 void LitScene::Impl::gather(Lighting& lighting) const {
     lighting.gathered =
@@ -559,6 +577,8 @@ Lighting LitScene::lighting(bool is_drawn) const {
     result.open_floor = open_floor;
     if (is_drawn)
         own.take_apart(result);
+    if (is_drawn && prt::on_vertices(own.scene->layout))
+        own.take_floor_apart(result);
     if (own.receivers.are_in_others()) {
         own.gather(result);
         if (!own.receivers.is_first())

@@ -248,7 +248,9 @@ OptionTable options_of(OutputOptions& o) {
                             "behind the mesh: sharp or blur=DEG (the environment), none (alpha; "
                             "premultiplied in .exr), a number or R,G,B",
                             {.example = "blur=5", .receivers = NoTexels, .part = "background"}),
-        row("--sun", o.sun, "pictures of vertices: where shadows of the sun are traced"),
+        row("--sun", o.sun,
+            "pictures of vertices: where shadows of the sun are traced, and on an added floor "
+            "those of windows and soft boxes"),
         row("--highlight-rays", o.highlight_rays,
             "rays a pixel that find what glossy surfaces mirror, where the scene stores no "
             "highlights; 0: none, all is matte (of pixels: relight, edit and animate)",

@@ -79,7 +79,9 @@ struct Painter::Impl {
                                 const relight::Backdrop* behind) {
         const bool traces = options.sun == SunShadows::Pixels && !lighting.lights.empty();
         const std::span<const glm::vec3> radiance = traces ? lighting.soft : lighting.radiance;
-        const std::vector<glm::vec3> colors = shown_colors(radiance, lighting);
+        // What mirrors see.
+        std::vector<glm::vec3> all = shown_colors(radiance, lighting);
+        std::vector<glm::vec3> colors = all;
         relight::MeshLight light{
             .radiance = colors, .emission = emission, .emission_gains = emission_gains};
         if (scene.settings.view)
@@ -99,21 +101,28 @@ struct Painter::Impl {
         light.surfaces = scene.receivers.surfaces;
         light.albedo = shown_factors();
         light.bias = scene.settings.bias;
-        if (traces) {
-            light.lights = lighting.lights;
-            light.blockers = &beams;
+        if (options.sun == SunShadows::Pixels && !lighting.floor_lights.empty()) {
+            light.floor_lights = lighting.floor_lights;
+            for (std::size_t i = 0; i < lighting.of_floor_lights.size(); ++i) {
+                glm::vec3& color = colors[floor.first_vertex + i];
+                const glm::vec3 own = lighting.of_floor_lights[i];
+                color -= light.open_floor ? own : own * shown_factors()[floor.first_vertex + i];
+                color = glm::max(color, 0.0f);
+            }
         }
+        if (traces)
+            light.lights = lighting.lights;
+        light.blockers = &beams;
         std::optional<relight::Reflections> reflections;
-        std::vector<glm::vec3> mirrored;
         if (textures.has_mirrors() && options.highlight_rays != 0) {
             static const cubemap::CubeMap Black;
             reflections.emplace(rays, scene.settings.bias, options.highlight_rays,
                                 lighting.environment == nullptr ? Black : *lighting.environment,
                                 light.lights.first(traces ? lighting.num_environment_lights : 0));
             if (traces)
-                mirrored = shown_colors(lighting.radiance, lighting);
+                all = shown_colors(lighting.radiance, lighting);
             light.reflections = &*reflections;
-            light.mirrored = traces ? mirrored : colors;
+            light.mirrored = all;
             light.eye = eye();
         }
         return behind == nullptr ? from.cut_out(light) : from.draw(light, *behind);
