@@ -63,6 +63,19 @@ void make_room(std::vector<std::uint8_t>& counts, std::size_t num_pairs,
 
 } // namespace
 
+void CountsPatch::append(const CountsPatch& other) {
+    const std::uint64_t first = counts.size() / BlockSize;
+    for (Word word : other.words) {
+        word.first += first;
+        words.push_back(word);
+    }
+    counts.insert(counts.end(), other.counts.begin(), other.counts.end());
+}
+
+void CountsPatch::sort() {
+    std::ranges::sort(words, {}, &Word::word);
+}
+
 std::size_t CountsPatch::num_pairs() const {
     std::size_t sum = 0;
     for (const Word& word : words)

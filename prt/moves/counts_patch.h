@@ -25,6 +25,9 @@ struct CountsPatch {
     std::vector<Word> words;
     std::vector<std::uint8_t> counts;
 
+    /// Adds words that this patch does not have. They are ascending after sort().
+    void append(const CountsPatch& other);
+    void sort();
     [[nodiscard]] std::size_t num_pairs() const;
     [[nodiscard]] std::size_t num_bytes() const {
         return words.size() * sizeof(Word) + counts.size();

@@ -197,7 +197,8 @@ void exchange(Scene& scene, SceneChange& change) {
     exchange(scene.receivers.normals, change.receivers, change.receiver_normals);
     exchange(scene.transfer.normals, change.places, change.normals_by_place);
     exchange(scene.transfer.counts, change.counts);
-    scene.bounces.swap(change.bounces);
+    if (!change.keeps_bounces)
+        scene.bounces.swap(change.bounces);
     scene.settings.rim_step.swap(change.rim_step);
 }
 
@@ -211,6 +212,19 @@ std::vector<std::uint64_t> changed_blocks(const VisibleCounts& counts, const Sce
         mark(counts.block_of(word.word));
     for (const std::uint32_t place : change.places)
         mark(place / BlockSize);
+    return result;
+}
+
+SceneChange outline(const SceneChange& first, const SceneChange& second) {
+    SceneChange result;
+    result.group = second.group;
+    for (const SceneChange* change : {&first, &second}) {
+        for (const CountsPatch::Word& word : change->counts.words)
+            result.counts.words.push_back({.word = word.word, .clusters = word.clusters});
+        result.places.insert(result.places.end(), change->places.begin(), change->places.end());
+        std::vector<mesh::Bounds>& boxes = result.difference.boxes;
+        boxes.insert(boxes.end(), change->difference.boxes.begin(), change->difference.boxes.end());
+    }
     return result;
 }
 

@@ -77,19 +77,22 @@ struct Samples {
     InverseDirections inverses;
     /// Distances to neighbours on the cube [-1, 1]^3
     std::vector<float> spacings;
-    /// [clusters] indices of the nine points; those of a cell that is a texel are all its centre
+    /// [clusters] indices of the nine points; those of a cell that is_single() are all its centre
     std::vector<std::array<std::uint32_t, SamplesPerCell>> of_cluster;
     /// The clusters of each point: those of point i are [begin[i], begin[i + 1]).
     std::vector<std::uint32_t> begin, clusters;
 
-    Samples(const Quadtree& quadtree, std::uint32_t max_level) {
+    Samples(const Quadtree& quadtree, const RecountOptions& options) {
+        const std::uint32_t max_level = texel_level(options.face_resolution);
         std::unordered_map<LatticePoint, std::uint32_t> indices;
         for (const Cell& cell : quadtree.leaves()) {
-            const bool is_texel = cell.level == max_level;
+            const bool takes_centre =
+                cell.level == max_level ||
+                (!options.coarse.empty() && options.coarse[of_cluster.size()]);
             const std::array<LatticePoint, SamplesPerCell> own = lattice_points(cell);
             auto& of_cell = of_cluster.emplace_back();
             for (std::size_t l = 0; l < SamplesPerCell; ++l) {
-                const LatticePoint point = own[is_texel ? CentreSample : l];
+                const LatticePoint point = own[takes_centre ? CentreSample : l];
                 const auto [entry, is_new] =
                     indices.try_emplace(point, static_cast<std::uint32_t>(points.size()));
                 of_cell[l] = entry->second;
@@ -111,13 +114,16 @@ struct Samples {
             [&](std::uint32_t point, std::uint32_t cluster) { clusters[next[point]++] = cluster; });
     }
 
+    [[nodiscard]] bool is_single(std::uint32_t cluster) const {
+        return of_cluster[cluster][0] == of_cluster[cluster][1];
+    }
+
 private:
     template<typename Visit>
     void for_pairs(const Visit& visit) const {
         for (std::uint32_t cluster = 0; cluster < of_cluster.size(); ++cluster) {
-            const auto& own = of_cluster[cluster];
-            for (std::size_t l = 0; l < (own[0] == own[1] ? 1 : SamplesPerCell); ++l)
-                visit(own[l], cluster);
+            for (std::size_t l = 0; l < (is_single(cluster) ? 1 : SamplesPerCell); ++l)
+                visit(of_cluster[cluster][l], cluster);
         }
     }
 };
@@ -131,10 +137,9 @@ struct Found {
 class Recount {
 public:
     Recount(const Receivers& receivers, const Blockers& blockers, const Transfer& transfer,
-            const SceneDifference& difference, const PrecomputeOptions& options)
+            const SceneDifference& difference, const RecountOptions& options)
         : receivers_(receivers), blockers_(blockers), transfer_(transfer), difference_(difference),
-          bias_(options.bias), max_level_(texel_level(options.face_resolution)),
-          samples_(transfer.quadtree, max_level_) {}
+          bias_(options.bias), blocks_(options.blocks), samples_(transfer.quadtree, options) {}
 
     [[nodiscard]] std::size_t num_groups() const {
         return (transfer_.counts.num_blocks() + BlocksPerGroup - 1) / BlocksPerGroup;
@@ -223,10 +228,12 @@ private:
 
     /// Finds which blocks count which clusters anew, and which samples they need.
     void find_clusters(const Group& group, Scratch& scratch) const {
-        if (group.whole != 0)
+        const bool are_differing = blocks_ == Recounted::All || blocks_ == Recounted::Differing;
+        if (group.whole != 0 && are_differing)
             for (std::uint32_t cluster = 0; cluster < samples_.of_cluster.size(); ++cluster)
                 scratch.add(cluster, group.whole);
-        find_met(group, scratch);
+        if (blocks_ != Recounted::Differing)
+            find_met(group, scratch);
         std::sort(scratch.clusters.begin(), scratch.clusters.end());
         for (const std::uint32_t cluster : scratch.clusters)
             for (const std::uint32_t point : samples_.of_cluster[cluster]) {
@@ -266,7 +273,9 @@ private:
             if (!may_be_above(group.facing[block], samples_.directions[point]))
                 continue;
             for (std::uint32_t i = samples_.begin[point]; i < samples_.begin[point + 1]; ++i)
-                scratch.add(samples_.clusters[i], static_cast<std::uint8_t>(1u << block));
+                if (blocks_ != Recounted::Covered ||
+                    !is_hidden(group.first_block + block, samples_.clusters[i]))
+                    scratch.add(samples_.clusters[i], static_cast<std::uint8_t>(1u << block));
         }
     }
 
@@ -351,20 +360,19 @@ private:
             if (cluster / 64 != last / 64)
                 flush();
             last = cluster;
-            const bool is_texel = transfer_.quadtree.leaves()[cluster].level == max_level_;
             CellSamples samples;
             for (std::size_t l = 0; l < SamplesPerCell; ++l) {
                 const std::uint32_t point = samples_.of_cluster[cluster][l];
                 samples.directions[l] = samples_.directions[point];
                 samples.lit[l] = scratch.planes[scratch.index[point]].data();
             }
-            const LeafColumn column =
-                leaf_column(group.arrays, samples, is_texel ? CentreWeights : SampleWeights,
-                            group.origins.size());
+            const LeafColumn column = leaf_column(
+                group.arrays, samples, samples_.is_single(cluster) ? CentreWeights : SampleWeights,
+                group.origins.size());
             const std::uint8_t* next = column.counts.data();
             for (std::size_t block = 0; block < group.num_blocks; ++block) {
-                const bool is_mixed = (column.mixed[0] >> block & 1u) != 0;
-                const std::span<const std::uint8_t> own(next, is_mixed ? BlockSize : 0);
+                const bool are_counts = (column.mixed[0] >> block & 1u) != 0;
+                std::span<const std::uint8_t> own(next, are_counts ? BlockSize : 0);
                 next += own.size();
                 if ((scratch.of_cluster[cluster] >> block & 1u) == 0)
                     continue;
@@ -372,13 +380,19 @@ private:
                 const bool is_visible = (column.visible[0] >> block & 1u) != 0;
                 const std::size_t word =
                     transfer_.counts.word(group.first_block + block, cluster / 64);
+                std::array<std::uint8_t, BlockSize> products{};
+                if (blocks_ == Recounted::Covered) {
+                    if (is_visible)
+                        continue;
+                    own = covered(word, cluster % 64, own, products);
+                }
                 if (is_known(word, cluster % 64, is_visible, own))
                     continue;
                 const std::uint64_t bit = std::uint64_t{1} << cluster % 64;
                 words[block].word = word;
                 words[block].clusters |= bit;
                 words[block].visible |= is_visible ? bit : 0;
-                words[block].mixed |= is_mixed ? bit : 0;
+                words[block].mixed |= own.empty() ? 0 : bit;
                 counts[block].insert(counts[block].end(), own.begin(), own.end());
             }
         }
@@ -395,12 +409,35 @@ private:
                (!was_mixed || std::equal(own.begin(), own.end(), counts.mixed_counts(word, bit)));
     }
 
+    /// Whether no receiver of a block sees anything of a cluster.
+    [[nodiscard]] bool is_hidden(std::size_t block, std::uint32_t cluster) const {
+        const std::size_t word = transfer_.counts.word(block, cluster / 64);
+        return ((transfer_.counts.visible[word] | transfer_.counts.mixed[word]) >> cluster % 64 &
+                1u) == 0;
+    }
+
+    /// Multiplies the transfer's counts of a block that is not hidden with what `passes`. Returns
+    /// nothing where nothing is left.
+    [[nodiscard]] std::span<const std::uint8_t>
+    covered(std::size_t word, std::uint32_t bit, std::span<const std::uint8_t> passes,
+            std::array<std::uint8_t, BlockSize>& products) const {
+        const VisibleCounts& counts = transfer_.counts;
+        const bool is_mixed = (counts.mixed[word] >> bit & 1u) != 0;
+        bool is_any = false;
+        for (std::size_t i = 0; i < passes.size(); ++i) {
+            const unsigned before = is_mixed ? counts.mixed_counts(word, bit)[i] : 16u;
+            products[i] = static_cast<std::uint8_t>((before * passes[i] + 8u) / 16u);
+            is_any = is_any || products[i] != 0;
+        }
+        return std::span<const std::uint8_t>(products).first(is_any ? BlockSize : 0);
+    }
+
     const Receivers& receivers_;
     const Blockers& blockers_;
     const Transfer& transfer_;
     const SceneDifference& difference_;
     float bias_;
-    std::uint32_t max_level_;
+    Recounted blocks_;
     Samples samples_;
 };
 
@@ -428,7 +465,7 @@ std::vector<mesh::Bounds> boxes_around(const mesh::TriangleMesh& mesh) {
 
 CountsPatch recounted(const Receivers& receivers, const Blockers& blockers,
                       const Transfer& transfer, const SceneDifference& difference,
-                      const PrecomputeOptions& options, const Work& work,
+                      const RecountOptions& options, const Work& work,
                       RecountStatistics* statistics) {
     const auto start = std::chrono::steady_clock::now();
     const Recount recount(receivers, blockers, transfer, difference, options);
@@ -444,18 +481,12 @@ CountsPatch recounted(const Receivers& receivers, const Blockers& blockers,
     CountsPatch patch;
     RecountStatistics sums;
     for (Found& own : found) {
-        const std::uint64_t first = patch.counts.size() / BlockSize;
-        for (CountsPatch::Word& word : own.patch.words) {
-            word.first += first;
-            patch.words.push_back(word);
-        }
-        patch.counts.insert(patch.counts.end(), own.patch.counts.begin(), own.patch.counts.end());
+        patch.append(own.patch);
         sums.num_pairs += own.num_pairs;
         sums.num_rays += own.num_rays;
         own = {};
     }
-    std::sort(patch.words.begin(), patch.words.end(),
-              [](const auto& a, const auto& b) { return a.word < b.word; });
+    patch.sort();
     sums.num_changed = patch.num_pairs();
     sums.seconds = files::seconds_since(start);
     if (statistics != nullptr)

@@ -18,11 +18,11 @@ namespace relumine::prt {
 /// What differs between a scene and the one that its counts were made for.
 struct SceneDifference {
     /// They hold all triangles that block or send light in one of the two alone.
-    std::vector<mesh::Bounds> boxes;
+    std::vector<mesh::Bounds> boxes = {};
     /// Boxes around those of each of the two
-    std::array<mesh::Bounds, 2> around;
+    std::array<mesh::Bounds, 2> around = {};
     /// [num_receivers] true where a receiver has another position or another normal.
-    std::vector<bool> receivers;
+    std::vector<bool> receivers = {};
 };
 
 /// What a move changes in a scene, to be exchanged with what the scene has.
@@ -45,6 +45,8 @@ struct SceneChange {
     std::vector<glm::vec3> receiver_positions, receiver_normals, normals_by_place;
     CountsPatch counts;
     std::optional<BounceMatrix> bounces;
+    /// The scene keeps its bounces: those of before the change.
+    bool keeps_bounces = false;
     /// SceneSettings::rim_step
     std::optional<float> rim_step;
     /// What a change and its undo both differ in
@@ -55,5 +57,9 @@ struct SceneChange {
 /// each of its blocks.
 [[nodiscard]] std::vector<std::uint64_t> changed_blocks(const VisibleCounts& counts,
                                                         const SceneChange& change);
+
+/// Returns what two changes of a group differ in together, for those who follow: blocks, places and
+/// boxes, nothing to be exchanged.
+[[nodiscard]] SceneChange outline(const SceneChange& first, const SceneChange& second);
 
 } // namespace relumine::prt

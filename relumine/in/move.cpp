@@ -24,19 +24,6 @@ namespace relumine {
 
 namespace {
 
-std::uint32_t group_named(const Scene& scene, const std::string& name) {
-    const std::vector<std::string>& names = scene.mesh.groups;
-    if (!scene.settings.is_movable || scene.mesh.triangle_groups.empty())
-        throw std::invalid_argument("expected a scene that was precomputed with --movable, got one "
-                                    "without groups");
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end())
-        throw std::invalid_argument(
-            fmt::format("expected one of {} groups, got '{}'{}", names.size(), name,
-                        files::did_you_mean(name, std::span<const std::string>(names))));
-    return static_cast<std::uint32_t>(found - names.begin());
-}
-
 mesh::Bounds box_of(const mesh::TriangleMesh& mesh, std::uint32_t group) {
     std::vector<glm::vec3> corners;
     for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
@@ -160,6 +147,19 @@ private:
 };
 
 } // namespace
+
+std::uint32_t group_named(const Scene& scene, const std::string& name) {
+    const std::vector<std::string>& names = scene.mesh.groups;
+    if (!scene.settings.is_movable || scene.mesh.triangle_groups.empty())
+        throw std::invalid_argument("expected a scene that was precomputed with --movable, got one "
+                                    "without groups");
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+        throw std::invalid_argument(
+            fmt::format("expected one of {} groups, got '{}'{}", names.size(), name,
+                        files::did_you_mean(name, std::span<const std::string>(names))));
+    return static_cast<std::uint32_t>(found - names.begin());
+}
 
 GroupStep GroupStepText::read(const std::string& text) {
     const std::size_t equals = text.rfind('=');

@@ -41,6 +41,11 @@ struct GroupStepText {
 /// Throws:  std::invalid_argument as move() for a name.
 [[nodiscard]] GroupMove move_of(const Scene& scene, const GroupStep& step);
 
+/// Returns the number of a group of a scene that was precomputed with PrecomputeOptions::movable.
+///
+/// Throws:  std::invalid_argument for a scene without groups, and a name that none has.
+[[nodiscard]] std::uint32_t group_named(const Scene& scene, const std::string& name);
+
 struct MoveReport {
     /// Receivers that went along
     std::size_t num_moved = 0;

@@ -112,9 +112,13 @@ void SceneLamps::set_bounces(const relight::SurfaceBounces& surfaces,
         source.bounced.clear();
 }
 
-void SceneLamps::forget_light() {
+void SceneLamps::forget_rays() {
     for (Source& source : sources_)
         source.light.clear();
+}
+
+void SceneLamps::forget_light() {
+    forget_rays();
     bounces_.unset();
     forget_bounces();
 }

@@ -42,6 +42,8 @@ public:
     void set_bounces(const relight::SurfaceBounces& surfaces, const relight::SharedRows& rows);
     /// Ends the bounces until the next set_bounces().
     void forget_bounces();
+    /// The scene is another: the next find() traces all rays anew. Bounces stay those of before.
+    void forget_rays();
     /// The scene is another: the next find() finds all light anew, without bounces.
     void forget_light();
 

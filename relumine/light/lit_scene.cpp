@@ -14,10 +14,10 @@
 #include "relight/receiver_light.h"
 #include "relight/sharp/light_packets.h"
 #include "relight/sharp/shadow_rays.h"
-#include "relumine/in/move.h"
 #include "relumine/in/scene_rays.h"
 #include "relumine/light/layer_compositor.h"
 #include "relumine/light/listed_light.h"
+#include "relumine/light/scene_moves.h"
 #include "relumine/light/shared_receivers.h"
 #include "relumine/light/terms.h"
 
@@ -82,8 +82,8 @@ struct LitScene::Impl {
     ListedLight listed;
     /// What `listed`, or the clusters' light, was made of.
     std::vector<lights::DistantLight> listed_lights;
-    /// Moves that can be undone, and made again; the last ones are next.
-    std::vector<prt::SceneChange> moves, undone_moves;
+    /// Null where the scene is shared.
+    std::unique_ptr<SceneMoves> moves;
     SceneBounces bounces;
     SceneLamps lamps;
     SceneMirrors mirrors;
@@ -131,6 +131,7 @@ LitScene::LitScene(Scene scene, const LightOptions& options) {
     auto own = std::make_shared<Scene>(std::move(scene));
     impl_ = std::make_unique<Impl>(own, nullptr, options);
     impl_->own_scene = own.get();
+    impl_->moves = std::make_unique<SceneMoves>(*own, impl_->rays);
 }
 
 LitScene::LitScene(std::shared_ptr<const Scene> scene, const LightOptions& options)
@@ -360,17 +361,20 @@ void LitScene::Impl::require_own() const {
         throw std::logic_error("expected triangles that block light where groups move, got others");
 }
 
-/// Lights what a move has changed, by the same light.
-void LitScene::follow(const prt::SceneChange& change) {
+/// Lights what a move has changed, by the same light. Quickly: bounced light stays as it is, and
+/// goes along with what moves.
+void LitScene::follow(const prt::SceneChange& change, bool is_quick) {
     Impl& own = *impl_;
-    own.lamps.forget_light();
     if (own.relighter)
         own.relighter->follow(change);
+    if (is_quick)
+        own.lamps.forget_rays();
+    else
+        own.lamps.forget_light();
     if (!own.is_lit)
         return;
-    const bool are_bounced = own.bounces.is_set();
-    relight::SurfaceBounces surfaces = own.bounces.surfaces();
-    own.bounces.unset();
+    // Other light would end them.
+    SceneBounces bounces = std::exchange(own.bounces, SceneBounces());
     if (!own.listed.radiance.empty()) {
         Light light(own.listed_lights);
         if (own.has_environment()) {
@@ -386,44 +390,69 @@ void LitScene::follow(const prt::SceneChange& change) {
             }
         }
         this->light(std::move(light));
-    } else {
-        UpdateReport report;
-        own.finish(report);
     }
-    if (are_bounced) {
+    UpdateReport report;
+    const relight::SharedRows rows = own.receivers.rows();
+    if (!bounces.is_set()) {
+        own.finish(report);
+    } else if (is_quick) {
+        own.bounces = std::move(bounces);
+        own.lamps.set_bounces(own.bounces.surfaces(), rows);
+        own.finish(report);
+    } else {
+        relight::SurfaceBounces surfaces = bounces.surfaces();
         surfaces.matrix = &*own.scene->bounces;
-        own.bounces.set(*own.scene, std::move(surfaces), own.receivers.rows());
+        own.bounces.set(*own.scene, std::move(surfaces), rows);
         bounce();
     }
 }
 
 MoveReport LitScene::move(const GroupMove& to, const PrecomputeWork& work) {
-    constexpr std::size_t MostMoves = 32;
     Impl& own = *impl_;
     own.require_own();
+    if (own.moves->dragged())
+        undo_move();
     MoveReport report;
-    prt::SceneChange change = relumine::move(*own.own_scene, to, work, &report, &own.rays);
-    own.moves.push_back(std::move(change));
-    if (own.moves.size() > MostMoves)
-        own.moves.erase(own.moves.begin());
-    own.undone_moves.clear();
-    follow(own.moves.back());
+    follow(own.moves->move(to, work, report), false);
     return report;
+}
+
+MoveReport LitScene::drag(const GroupMove& to) {
+    Impl& own = *impl_;
+    own.require_own();
+    if (own.moves->dragged() && own.moves->dragged()->name != to.name)
+        undo_move();
+    MoveReport report;
+    follow(own.moves->drag(to, coarse_clusters(own.clusters()), report), true);
+    return report;
+}
+
+MoveReport LitScene::drop(const PrecomputeWork& work) {
+    Impl& own = *impl_;
+    own.require_own();
+    if (!own.moves->dragged())
+        throw std::logic_error("expected a group that is dragged");
+    const GroupMove to = *own.moves->dragged();
+    follow(own.moves->take_back(), true);
+    try {
+        return move(to, work);
+    } catch (...) {
+        follow({}, false);
+        throw;
+    }
 }
 
 bool LitScene::exchange_move(bool is_undo) {
     Impl& own = *impl_;
     own.require_own();
-    std::vector<prt::SceneChange>& from = is_undo ? own.moves : own.undone_moves;
-    std::vector<prt::SceneChange>& to = is_undo ? own.undone_moves : own.moves;
-    if (from.empty())
-        return false;
-    prt::exchange(*own.own_scene, from.back());
-    own.rays.follow(from.back().group);
-    to.push_back(std::move(from.back()));
-    from.pop_back();
-    follow(to.back());
-    return true;
+    const prt::SceneChange* change = nullptr;
+    if (own.moves->dragged())
+        change = &own.moves->take_back();
+    else
+        change = own.moves->exchange(is_undo);
+    if (change != nullptr)
+        follow(*change, false);
+    return change != nullptr;
 }
 
 bool LitScene::undo_move() {

@@ -1,8 +1,10 @@
 // What a move costs beside a precompute anew: a room of thirty things, one of which moves by its
 // size, twenty times. See docs/moves.md.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -125,6 +127,41 @@ double error_of(const LitScene& lit, std::size_t num_receivers) {
     return verify(lit, {.num_samples = num_receivers, .num_surface_points = 0}).error.relative_l2;
 }
 
+/// What drags cost, and how far what they show is from the light after a move there.
+struct DragFigures {
+    std::vector<double> seconds, processor, errors;
+};
+
+/// Drags a group to where a step takes it, in several steps, and takes it back. Returns the light
+/// at the end of it.
+std::vector<glm::vec3> dragged(LitScene& lit, const GroupStep& to, DragFigures& figures) {
+    constexpr int NumSteps = 4;
+    const Scene& scene = lit.scene();
+    std::vector<GroupMove> moves;
+    for (int i = 1; i <= NumSteps; ++i) {
+        const double part = static_cast<double>(i) / NumSteps;
+        moves.push_back(
+            move_of(scene, {.name = to.name, .by = part * to.by, .degrees = part * to.degrees}));
+    }
+    for (const GroupMove& move : moves)
+        figures.processor.push_back(bench::processor_seconds_of(
+            [&] { figures.seconds.push_back(bench::seconds_of([&] { lit.drag(move); })); }));
+    std::vector<glm::vec3> result(lit.radiance().begin(), lit.radiance().end());
+    lit.undo_move();
+    return result;
+}
+
+/// Relative L2 of radiance
+double difference(std::span<const glm::vec3> found, std::span<const glm::vec3> expected) {
+    double sum = 0.0, of_all = 0.0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const glm::dvec3 own(expected[i]), error = glm::dvec3(found[i]) - own;
+        sum += glm::dot(error, error);
+        of_all += glm::dot(own, own);
+    }
+    return std::sqrt(sum / of_all);
+}
+
 void run(const Settings& settings) {
     const PrecomputeOptions options{.tolerance = settings.tolerance,
                                     .no_refine = true,
@@ -141,6 +178,8 @@ void run(const Settings& settings) {
     const std::size_t num_clusters = scene.transfer.num_clusters();
     LitScene lit(std::move(scene));
     lit.light(environment);
+    if (settings.bounces)
+        lit.bounce({.albedo = bounce_albedo(lit.scene())});
     const double memory_before = bench::peak_megabytes();
 
     std::mt19937 random(3);
@@ -148,17 +187,20 @@ void run(const Settings& settings) {
         return static_cast<double>(random() % 2001) / 1000.0 - 1.0;
     };
     std::vector<double> seconds, processor, pairs, moved;
+    DragFigures drag;
     double memory = memory_before;
     for (std::size_t i = 0; i < settings.num_moves; ++i) {
         GroupStep step{.name = fmt::format("thing{}", random() % NumThings)};
         const double angle = std::numbers::pi * part();
         step.by = 0.9 * glm::dvec3(std::cos(angle), 0.0, std::sin(angle));
         step.degrees = i % 3 == 2 ? 180.0 * part() : 0.0;
+        const std::vector<glm::vec3> quick = dragged(lit, step, drag);
         MoveReport report;
         processor.push_back(bench::processor_seconds_of([&] {
             seconds.push_back(
                 bench::seconds_of([&] { report = lit.move(move_of(lit.scene(), step)); }));
         }));
+        drag.errors.push_back(difference(quick, lit.radiance()));
         pairs.push_back(static_cast<double>(report.counts.num_pairs) /
                         static_cast<double>(report.num_all));
         moved.push_back(static_cast<double>(report.num_moved) / static_cast<double>(num_receivers));
@@ -183,7 +225,13 @@ void run(const Settings& settings) {
                bench::median(seconds), bench::median(processor));
     fmt::print("| the same over a precompute | {:.3f} | {:.3f} |\n", bench::median(seconds) / fresh,
                bench::median(processor) / fresh_processor);
-    fmt::print("| undo | {:.3f} | |\n\n", undo);
+    fmt::print("| undo | {:.3f} | |\n", undo);
+    fmt::print("| a step of a drag; median of {} | {:.3f} | {:.3f} |\n\n", drag.seconds.size(),
+               bench::median(drag.seconds), bench::median(drag.processor));
+    fmt::print("A drag shows {:.1f} steps a second. Its light is {:.4f} from that of a move there, "
+               "relative L2 (median; {:.4f} at most).\n",
+               1.0 / bench::median(drag.seconds), bench::median(drag.errors),
+               *std::ranges::max_element(drag.errors));
     fmt::print("A move takes {:.1f} % of the receivers along, and {:.1f} % of the counts are made "
                "anew (medians).\n",
                100.0 * bench::median(moved), 100.0 * bench::median(pairs));

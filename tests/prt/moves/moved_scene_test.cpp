@@ -56,6 +56,10 @@ mesh::TriangleMesh things() {
     return mesh;
 }
 
+RecountOptions recount_options(const Scene& scene) {
+    return {.face_resolution = 32, .bias = scene.settings.bias};
+}
+
 PrecomputeOptions options_of(const Scene& scene) {
     return {.tolerance = 0.05f, .min_level = 2, .face_resolution = 32, .bias = scene.settings.bias};
 }
@@ -90,7 +94,7 @@ SceneChange move(Scene& scene, std::uint32_t group, const glm::dmat4& matrix, co
     exchange(scene, change);
     const Blockers& blockers = follow(group);
     CountsPatch counts = recounted(scene.receivers, blockers, scene.transfer, change.difference,
-                                   options_of(scene), {}, statistics);
+                                   recount_options(scene), {}, statistics);
     exchange(scene.transfer.counts, counts);
     change.counts = std::move(counts);
     return change;
@@ -365,7 +369,7 @@ TEST(MovedScene, RowsOfBouncesAreThoseOfAllRays) {
         CountsPatch counts;
         with_beams(scene, [&](const Blockers& blockers) {
             counts = recounted(scene.receivers, blockers, scene.transfer, change.difference,
-                               options_of(scene));
+                               recount_options(scene));
         });
         exchange(scene, change);
         const RayScene before(scene.mesh);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "data_gen/environments.h"
+#include "relumine/in/drag.h"
 #include "relumine/in/move.h"
 #include "relumine/relumine.h"
 #include "tests/prt/scenes.h"
@@ -21,7 +23,7 @@ namespace {
 using testing::HasSubstr;
 
 /// A floor, a ball, and a lamp above it.
-mesh::TriangleMesh things() {
+mesh::TriangleMesh things(bool has_lamp = true) {
     mesh::TriangleMesh mesh = scenes::floor_grid(21, 6.0f);
     const auto add = [&](const mesh::TriangleMesh& part) {
         const std::uint32_t group =
@@ -33,8 +35,11 @@ mesh::TriangleMesh things() {
     };
     mesh.triangle_groups.resize(mesh.num_triangles(), 0);
     add(scenes::icosphere(3, 0.6f, {0.8f, 0.7f, 0.3f}));
-    add(scenes::box({-1.2f, 1.5f, -0.3f}, {-0.9f, 1.7f, 0.3f}));
-    mesh.groups = {"ground", "ball", "lamp"};
+    mesh.groups = {"ground", "ball"};
+    if (has_lamp) {
+        add(scenes::box({-1.2f, 1.5f, -0.3f}, {-0.9f, 1.7f, 0.3f}));
+        mesh.groups.emplace_back("lamp");
+    }
     mesh.materials = {{.name = "grey", .base_color = glm::vec3(0.5f)},
                       {.name = "bulb", .emission = {4, 3, 2}}};
     for (const std::uint32_t group : mesh.triangle_groups)
@@ -165,6 +170,166 @@ TEST(Moves, LightThatWasUpdatedIsSummedAnew) {
     EXPECT_EQ(radiance_of(lit), radiance_of(anew));
 }
 
+template<typename Call>
+std::string refusal(const Call& call) {
+    try {
+        call();
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+    return "";
+}
+
+/// Relative L2
+double difference(const std::vector<glm::vec3>& found, const std::vector<glm::vec3>& expected) {
+    double sum = 0.0, of_all = 0.0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const glm::dvec3 a(found[i]), b(expected[i]);
+        sum += glm::dot(a - b, a - b);
+        of_all += glm::dot(b, b);
+    }
+    return std::sqrt(sum / of_all);
+}
+
+bool are_same(const prt::VisibleCounts& a, const prt::VisibleCounts& b) {
+    return a.visible == b.visible && a.mixed == b.mixed && a.mixed_before == b.mixed_before &&
+           a.counts == b.counts;
+}
+
+const std::vector<GroupStep> Way = {{.name = "ball", .by = {-0.4, 0.0, 0.1}},
+                                    {.name = "ball", .by = {-1.0, 0.3, 0.3}, .degrees = 40.0},
+                                    {.name = "ball", .by = {1.2, -0.2, -0.5}, .degrees = 90.0}};
+
+/// The radiance without bounces.
+std::vector<glm::vec3> direct_of(const LitScene& lit) {
+    std::vector<glm::vec3> result = radiance_of(lit);
+    const std::vector<glm::vec3> further = relumine::bounced(lit);
+    for (std::size_t i = 0; i < further.size(); ++i)
+        result[i] -= further[i];
+    return result;
+}
+
+/// What is shown on the way of a drag is close to what moves there show but for bounces, which
+/// stay, and a drop is a move.
+void expect_that_drags_are_moves(Lit how) {
+    constexpr double Most = 0.02;
+    LitScene lit(before());
+    light(lit, how);
+    const std::vector<glm::vec3> at_first = radiance_of(lit), direct_at_first = direct_of(lit),
+                                 bounced_at_first = relumine::bounced(lit);
+    EXPECT_EQ(bounced_at_first.empty(), !how.has_bounces);
+    for (const GroupStep& step : Way) {
+        const GroupMove to = move_of(before(), step);
+        EXPECT_GT(lit.drag(to).num_moved, 0u);
+        LitScene moved(before());
+        light(moved, how);
+        moved.move(to);
+        EXPECT_LT(difference(direct_of(lit), direct_of(moved)), Most);
+        EXPECT_GT(difference(direct_of(lit), direct_at_first), 2.0 * Most);
+        EXPECT_EQ(relumine::bounced(lit), bounced_at_first);
+    }
+    const GroupMove last = move_of(before(), Way.back());
+    const MoveReport report = lit.drop();
+    EXPECT_GT(report.counts.num_pairs, 0u);
+    LitScene moved(before());
+    light(moved, how);
+    moved.move(last);
+    EXPECT_EQ(radiance_of(lit), radiance_of(moved));
+    EXPECT_TRUE(are_same(lit.scene().transfer.counts, moved.scene().transfer.counts));
+    EXPECT_EQ(lit.scene().mesh.positions, moved.scene().mesh.positions);
+    Scene scene = before();
+    move(scene, last);
+    LitScene anew(std::move(scene));
+    light(anew, how);
+    EXPECT_EQ(radiance_of(lit), radiance_of(anew));
+    EXPECT_TRUE(lit.undo_move());
+    EXPECT_EQ(radiance_of(lit), at_first);
+    EXPECT_FALSE(lit.undo_move());
+}
+
+TEST(Moves, ADragIsAboutTheMoveAndADropIsTheMove) {
+    constexpr Lit Sky{.has_list = false, .has_layer = false, .has_bounces = false}, All;
+    expect_that_drags_are_moves(Sky);
+    expect_that_drags_are_moves(All);
+}
+
+TEST(Moves, ADragOverAnOpenFloorCountsAsAMove) {
+    PrecomputeOptions options = Options;
+    options.bounce_tolerance = 0.0f;
+    const Scene first = precompute(things(false), options);
+    Scene scene = first;
+    SceneRays rays(scene);
+    GroupDrag drag(scene, rays, move_of(first, Way.front()));
+    for (const GroupStep& step : Way) {
+        const GroupMove to = move_of(first, step);
+        MoveReport report;
+        static_cast<void>(drag.to(to.matrix, {}, report));
+        Scene moved = first;
+        move(moved, to);
+        EXPECT_TRUE(are_same(scene.transfer.counts, moved.transfer.counts));
+        EXPECT_EQ(scene.transfer.normals, moved.transfer.normals);
+    }
+    static_cast<void>(drag.back());
+    EXPECT_TRUE(are_same(scene.transfer.counts, first.transfer.counts));
+    EXPECT_EQ(scene.mesh.positions, first.mesh.positions);
+    EXPECT_EQ(scene.receivers.positions, first.receivers.positions);
+}
+
+TEST(Moves, ADragKnowsItsPlaceAlone) {
+    LitScene one(before()), other(before());
+    const Lit how{.has_bounces = false};
+    light(one, how);
+    light(other, how);
+    for (const GroupStep& step : Way)
+        one.drag(move_of(before(), step));
+    other.drag(move_of(before(), Way.back()));
+    EXPECT_TRUE(are_same(one.scene().transfer.counts, other.scene().transfer.counts));
+    EXPECT_EQ(radiance_of(one), radiance_of(other));
+}
+
+TEST(Moves, ADragIsTakenBack) {
+    LitScene lit(before());
+    light(lit);
+    const std::vector<glm::vec3> at_first = radiance_of(lit);
+    const auto drag = [&] {
+        lit.drag(move_of(before(), Way[1]));
+        EXPECT_NE(radiance_of(lit), at_first);
+    };
+    const auto expect_back = [&] {
+        EXPECT_EQ(radiance_of(lit), at_first);
+        EXPECT_TRUE(are_same(lit.scene().transfer.counts, before().transfer.counts));
+        EXPECT_EQ(lit.scene().mesh.positions, before().mesh.positions);
+    };
+    drag();
+    EXPECT_TRUE(lit.undo_move());
+    expect_back();
+    EXPECT_FALSE(lit.undo_move());
+    EXPECT_THROW(lit.drop(), std::logic_error);
+
+    // A matrix that is refused leaves the group where it was dragged to.
+    drag();
+    EXPECT_THAT(refusal([&] { lit.drag({.name = "ball", .matrix = glm::dmat4(0.0)}); }),
+                HasSubstr("last row"));
+    EXPECT_THAT(refusal([&] { lit.drag({.name = "bal"}); }), HasSubstr("did you mean ball?"));
+    std::stop_source stop;
+    stop.request_stop();
+    drag();
+    EXPECT_THROW(lit.drop({.stop = stop.get_token()}), prt::Cancelled);
+    expect_back();
+
+    // Another group's drag, and a move, begin where the group stood.
+    drag();
+    const GroupMove of_lamp =
+        move_of(before(), {.name = "lamp", .by = {0.5, 0.0, 0.5}, .degrees = 20.0});
+    lit.drag(of_lamp);
+    drag();
+    lit.move(of_lamp);
+    LitScene moved(before());
+    light(moved);
+    moved.move(of_lamp);
+    EXPECT_EQ(radiance_of(lit), radiance_of(moved));
+}
+
 TEST(Moves, TheLightIsAboutThatOfAPrecomputeAnew) {
     LitScene lit(before());
     light(lit);
@@ -174,23 +339,7 @@ TEST(Moves, TheLightIsAboutThatOfAPrecomputeAnew) {
     mesh::TriangleMesh mesh = lit.scene().mesh;
     LitScene anew(precompute(std::move(mesh), Options));
     light(anew);
-    double difference = 0.0, sum = 0.0;
-    for (std::size_t i = 0; i < lit.radiance().size(); ++i) {
-        const glm::dvec3 a(lit.radiance()[i]), b(anew.radiance()[i]);
-        difference += glm::dot(a - b, a - b);
-        sum += glm::dot(b, b);
-    }
-    EXPECT_LT(std::sqrt(difference / sum), 0.05);
-}
-
-template<typename Call>
-std::string refusal(const Call& call) {
-    try {
-        call();
-    } catch (const std::exception& error) {
-        return error.what();
-    }
-    return "";
+    EXPECT_LT(difference(radiance_of(lit), radiance_of(anew)), 0.05);
 }
 
 TEST(Moves, RefusesNamesAndScenesThatAreShared) {
