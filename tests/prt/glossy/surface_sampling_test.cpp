@@ -157,7 +157,8 @@ TEST(SurfaceSampling, TheTangentTurns) {
     EXPECT_NEAR(glm::dot(surface().tangent, along), std::cos(0.5f), 1e-6f);
     EXPECT_NEAR(glm::dot(surface().tangent, across), std::sin(0.5f), 1e-6f);
     material.anisotropy_texture = map;
-    mesh.textures[map.texture] = mesh::Texture{.width = 1, .height = 1, .texels = {{128, 255, 51}}};
+    mesh.textures[map.texture] =
+        mesh::Texture{.name = {}, .width = 1, .height = 1, .texels = {{128, 255, 51}}};
     EXPECT_NEAR(surface().anisotropy, 0.1f, 1e-6f);
     EXPECT_NEAR(glm::dot(surface().tangent, along), -std::sin(0.5f), 0.005f);
     EXPECT_NEAR(glm::dot(surface().tangent, across), std::cos(0.5f), 0.005f);
