@@ -283,6 +283,8 @@ private:
                                 "{:.1f} ms to write {}",
                                 1e3 * seconds_reaction, 1e3 * seconds_load, 1e3 * seconds_output,
                                 options_.output.path));
+            } catch (const prt::Cancelled&) {
+                return; // what was written before is whole
             } catch (const std::runtime_error& error) {
                 session_.complain(error.what());
             }

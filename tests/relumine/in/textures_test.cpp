@@ -4,6 +4,7 @@
 
 #include "data_gen/environments.h"
 #include "mesh/materials/material_members.h"
+#include "mesh/tangents.h"
 #include "relumine/in/precompute.h"
 #include "relumine/light/lit_scene.h"
 #include "relumine/out/output.h"
@@ -27,7 +28,9 @@ mesh::Material layered() {
             .coat = 0.75f,
             .coat_roughness = 0.4f,
             .sheen = glm::vec3(0.6f),
-            .sheen_roughness = 0.5f};
+            .sheen_roughness = 0.5f,
+            .film = 0.6f,
+            .anisotropy = 0.5f};
 }
 
 /// A mapped square of that material, and a texture without a file, of colours or of grey.
@@ -41,6 +44,7 @@ mesh::TriangleMesh square(bool is_grey) {
                        ? std::vector<std::array<std::uint8_t, 3>>{{150, 150, 150}, {30, 30, 30}}
                        : std::vector<std::array<std::uint8_t, 3>>{{200, 90, 240}, {20, 160, 60}}}};
     mesh.materials = {layered()};
+    mesh::set_tangents(mesh, {});
     return mesh;
 }
 
