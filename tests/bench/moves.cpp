@@ -215,6 +215,8 @@ void run(const Settings& settings) {
     Mesh there = lit.scene().mesh;
     LitScene anew(precompute(std::move(there), options));
     anew.light(environment);
+    if (settings.bounces)
+        anew.bounce({.albedo = bounce_albedo(anew.scene())});
     const double error_anew = error_of(anew, settings.num_verified);
 
     fmt::print("{} receivers, {} clusters, {} things{}\n\n", num_receivers, num_clusters, NumThings,
