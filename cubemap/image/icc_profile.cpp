@@ -127,12 +127,12 @@ std::optional<ColorSpace> space_of_icc(std::span<const std::byte> bytes,
     try {
         // Profiles have their colours as seen under D50. As Bradford has it, they are those of a
         // space whose white is D65, which may have a name.
-        constexpr glm::dvec2 D50{0.34570, 0.35854}, D65{0.3127, 0.3290};
+        constexpr glm::dvec2 D50{0.34570, 0.35854}, White{0.3127, 0.3290};
         const glm::dmat3 seen =
             glm::inverse(rec709_from_xyz()) * to_rec709({colors[0], colors[1], colors[2], D50});
         if (is_known) {
             const std::optional<ColorSpace> space =
-                space_of({xy_of(seen[0]), xy_of(seen[1]), xy_of(seen[2]), D65});
+                space_of({xy_of(seen[0]), xy_of(seen[1]), xy_of(seen[2]), White});
             if (!space && *transfer == Transfer::Linear)
                 return std::nullopt;
             ColorSpace result = space ? *space : *space_of_id("srgb_rec709_display");

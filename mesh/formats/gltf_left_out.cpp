@@ -123,7 +123,7 @@ void LeftOut::material_extensions(const Json& extensions) {
             continue;
         const auto* known =
             std::find_if(Extensions.begin(), Extensions.end(),
-                         [&name = name](const Extension& one) { return one.name == name; });
+                         [&own = name](const Extension& one) { return one.name == own; });
         if (known == Extensions.end())
             count("with " + excerpt(name) + ", which is not read", "what it describes is left out");
         else if (!is_neutral(*known, value))

@@ -80,7 +80,8 @@ void sort_into_groups(std::span<Place> places) {
     halve(places, middle, best_axis);
     const std::array halves = {places.first(middle), places.subspan(middle)};
     if (places.size() > MinTask) {
-        files::parallel_for(0, 2, [&](int half) { sort_into_groups(halves[half]); });
+        files::parallel_for(std::size_t{0}, halves.size(),
+                            [&](std::size_t half) { sort_into_groups(halves[half]); });
     } else {
         sort_into_groups(halves[0]);
         sort_into_groups(halves[1]);

@@ -39,14 +39,14 @@ MaskCells::MaskCells(const mesh::Material& material, const mesh::Texture& textur
         return kinds[texture.texels[std::size_t{row} * size_[0] + column][0]];
     };
     files::parallel_for(
-        std::uint32_t{0}, height, [&, width = width, height = height](std::uint32_t y) {
-            for (std::uint32_t x = 0; x < width; ++x) {
+        std::uint32_t{0}, height, [&, across = width, down = height](std::uint32_t y) {
+            for (std::uint32_t x = 0; x < across; ++x) {
                 Cell cell = of(x, y);
-                for (const std::uint32_t row : beside(y, height, slot_.wrap[1]))
-                    for (const std::uint32_t column : beside(x, width, slot_.wrap[0]))
+                for (const std::uint32_t row : beside(y, down, slot_.wrap[1]))
+                    for (const std::uint32_t column : beside(x, across, slot_.wrap[0]))
                         if (of(column, row) != cell)
                             cell = Cell::Mixed;
-                cells_[std::size_t{y} * width + x] = cell;
+                cells_[std::size_t{y} * across + x] = cell;
             }
         });
 }
