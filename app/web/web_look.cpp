@@ -112,7 +112,7 @@ std::vector<bool> twins_of(const mesh::TriangleMesh& mesh) {
 class LookMaker {
 public:
     explicit LookMaker(const Scene& scene)
-        : scene_(scene), mesh_(scene.mesh), first_floor_(first_floor_vertex(scene)),
+        : mesh_(scene.mesh), first_floor_(first_floor_vertex(scene)),
           has_highlights_(has_live_highlights(scene)), has_twin_(twins_of(scene.mesh)),
           albedo_(web_albedo(scene)) {}
 
@@ -329,7 +329,6 @@ private:
                 {"radius", 0.5f * std::min(bounds.size().x, bounds.size().z)}};
     }
 
-    const Scene& scene_;
     const mesh::TriangleMesh& mesh_;
     std::optional<std::size_t> first_floor_;
     bool has_highlights_;

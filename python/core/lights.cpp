@@ -10,7 +10,11 @@
 
 namespace relumine::python {
 
+namespace {
+
 using Path = std::filesystem::path;
+
+} // namespace
 
 LightArrays arrays_of(const std::vector<lights::DistantLight>& lights) {
     std::vector<glm::dvec3> directions, irradiances;
