@@ -11,7 +11,7 @@ namespace {
 TEST(ImportanceSampling, LightsHaveEqualLuminance) {
     const auto image = wild(64, 32);
     const LatLongGrid grid(image);
-    for (const std::size_t n : {1, 2, 5, 64, 300}) {
+    for (const std::size_t n : {1u, 2u, 5u, 64u, 300u}) {
         const auto lights = importance_sample(grid, n, 3);
         const double share = luminance(power(image)) / static_cast<double>(n);
         for (const DistantLight& light : lights)

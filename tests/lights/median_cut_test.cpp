@@ -90,7 +90,7 @@ TEST(MedianCut, CutsWhereTheNaiveOneDoes) {
     for (const auto& image : {wild(48, 24), wild(31, 17, 4), wild(20, 40, 5)}) {
         const LatLongGrid grid(image);
         const NaiveMedianCut naive(image);
-        for (const std::size_t n : {1, 2, 3, 4, 5, 8, 11, 16, 27, 32})
+        for (const std::size_t n : {1u, 2u, 3u, 4u, 5u, 8u, 11u, 16u, 27u, 32u})
             EXPECT_EQ(median_cut(grid, n), naive.regions(n))
                 << image.width << "x" << image.height << " " << n;
     }

@@ -40,7 +40,7 @@ void expect_same_power(const std::vector<DistantLight>& lights,
 TEST_P(EveryMethod, KeepsThePowerForAnyNumberOfLights) {
     for (const auto& image :
          {wild(64, 32), wild(37, 20, 7), wild(5, 90, 3), wild(1, 64), wild(64, 1)}) {
-        for (const std::size_t n : {1, 2, 3, 7, 16, 61, 64}) {
+        for (const std::size_t n : {1u, 2u, 3u, 7u, 16u, 61u, 64u}) {
             SCOPED_TRACE(testing::Message() << image.width << "x" << image.height << " " << n);
             const Placement placement = place(GetParam(), image, n);
             ASSERT_EQ(placement.lights.size(), n);

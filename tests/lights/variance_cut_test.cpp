@@ -83,7 +83,7 @@ TEST(VarianceCut, CutsWhereTheNaiveOneDoes) {
     for (const auto& image : {wild(24, 12), wild(17, 9, 4), wild(10, 20, 5)}) {
         const LatLongGrid grid(image);
         const NaiveVarianceCut naive(grid);
-        for (const std::size_t n : {1, 2, 3, 5, 8, 20, 32})
+        for (const std::size_t n : {1u, 2u, 3u, 5u, 8u, 20u, 32u})
             EXPECT_EQ(variance_cut(grid, n), naive.regions(n))
                 << image.width << "x" << image.height << " " << n;
     }
