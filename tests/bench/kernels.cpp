@@ -51,8 +51,8 @@ void BM_Bin(benchmark::State& state) {
     const relight::LightBinning binning(resolution);
     for (auto _ : state)
         benchmark::DoNotOptimize(binning.sums(map, fixture.transfer.quadtree.leaves()));
-    state.SetBytesProcessed(
-        static_cast<std::int64_t>(state.iterations() * map.texels.size() * sizeof(glm::vec3)));
+    state.SetBytesProcessed(state.iterations() *
+                            static_cast<std::int64_t>(map.texels.size() * sizeof(glm::vec3)));
 }
 BENCHMARK(BM_Bin)->Arg(256)->Arg(1024)->Unit(benchmark::kMillisecond)->UseRealTime();
 

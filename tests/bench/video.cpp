@@ -172,7 +172,7 @@ public:
         if (settings_.variants) {
             for (const lights::Strength strength :
                  {lights::Strength::Even, lights::Strength::Followed})
-                for (const std::size_t fade : {1, 4, 8})
+                for (const std::size_t fade : {1u, 4u, 8u})
                     add(fmt::format("clusters, {}, fade {}",
                                     strength == lights::Strength::Even ? "even" : "followed", fade),
                         lights::frame_lights(clusters, {.strength = strength, .fade = fade}),

@@ -40,7 +40,7 @@ TEST_F(MaxMemory, TheProcessorIsNotBlamedForALimitOfTheSystem) {
     if (SanitizerFactor != 1)
         GTEST_SKIP() << "sanitizers take terabytes of addresses";
     write("mesh.obj", octahedron_obj());
-    for (const std::uint64_t megabytes : {90, 120, 150, 200}) {
+    for (const std::uint64_t megabytes : {90u, 120u, 150u, 200u}) {
         const Result result = relumine("precompute mesh.obj -o scene.prt -q --refine off",
                                        {.max_address_bytes = megabytes * 1'000'000});
         EXPECT_NE(result.exit_code, -1) << result.described();
