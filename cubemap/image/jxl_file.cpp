@@ -93,43 +93,33 @@ private:
             broken();
     }
 
-    /// Returns the colours that numbers are decoded in; empty where only a profile tells them.
-    [[nodiscard]] std::optional<JxlColorEncoding> plain_colors() const {
-        JxlColorEncoding colors;
+    /// Asks the decoder about the colours that numbers are decoded in.
+    template<typename... Arguments>
+    [[nodiscard]] bool ask(auto function, Arguments... arguments) const {
 #if JPEGXL_NUMERIC_VERSION >= JPEGXL_COMPUTE_NUMERIC_VERSION(0, 9, 0)
-        const JxlDecoderStatus status = JxlDecoderGetColorAsEncodedProfile(
-            decoder_.get(), JXL_COLOR_PROFILE_TARGET_DATA, &colors);
+        return function(decoder_.get(), JXL_COLOR_PROFILE_TARGET_DATA, arguments...) ==
+               JXL_DEC_SUCCESS;
 #else
         const JxlPixelFormat unused = {3, JXL_TYPE_FLOAT, JXL_NATIVE_ENDIAN, 0};
-        const JxlDecoderStatus status = JxlDecoderGetColorAsEncodedProfile(
-            decoder_.get(), &unused, JXL_COLOR_PROFILE_TARGET_DATA, &colors);
+        return function(decoder_.get(), &unused, JXL_COLOR_PROFILE_TARGET_DATA, arguments...) ==
+               JXL_DEC_SUCCESS;
 #endif
-        return status == JXL_DEC_SUCCESS ? std::optional(colors) : std::nullopt;
+    }
+
+    /// Returns the colours; empty where only a profile tells them.
+    [[nodiscard]] std::optional<JxlColorEncoding> plain_colors() const {
+        JxlColorEncoding colors;
+        return ask(JxlDecoderGetColorAsEncodedProfile, &colors) ? std::optional(colors)
+                                                                : std::nullopt;
     }
 
     [[nodiscard]] std::vector<std::byte> profile() const {
         std::size_t size = 0;
-#if JPEGXL_NUMERIC_VERSION >= JPEGXL_COMPUTE_NUMERIC_VERSION(0, 9, 0)
-        const auto read = [&](std::uint8_t* to) {
-            return to == nullptr ? JxlDecoderGetICCProfileSize(decoder_.get(),
-                                                               JXL_COLOR_PROFILE_TARGET_DATA, &size)
-                                 : JxlDecoderGetColorAsICCProfile(
-                                       decoder_.get(), JXL_COLOR_PROFILE_TARGET_DATA, to, size);
-        };
-#else
-        const JxlPixelFormat unused = {3, JXL_TYPE_FLOAT, JXL_NATIVE_ENDIAN, 0};
-        const auto read = [&](std::uint8_t* to) {
-            return to == nullptr
-                       ? JxlDecoderGetICCProfileSize(decoder_.get(), &unused,
-                                                     JXL_COLOR_PROFILE_TARGET_DATA, &size)
-                       : JxlDecoderGetColorAsICCProfile(decoder_.get(), &unused,
-                                                        JXL_COLOR_PROFILE_TARGET_DATA, to, size);
-        };
-#endif
-        if (read(nullptr) != JXL_DEC_SUCCESS)
+        if (!ask(JxlDecoderGetICCProfileSize, &size))
             return {};
         std::vector<std::byte> result(size);
-        if (read(reinterpret_cast<std::uint8_t*>(result.data())) != JXL_DEC_SUCCESS)
+        if (!ask(JxlDecoderGetColorAsICCProfile, reinterpret_cast<std::uint8_t*>(result.data()),
+                 size))
             broken();
         return result;
     }

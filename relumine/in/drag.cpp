@@ -53,18 +53,17 @@ prt::RecountOptions options_of(const Scene& scene, prt::Recounted blocks,
 } // namespace
 
 GroupDrag::GroupDrag(Scene& scene, SceneRays& rays, const GroupMove& to)
-    : scene_(scene), rays_(rays), group_(group_named(scene, to.name)),
+    : GroupDrag(scene, rays, to, prt::moved(scene, group_named(scene, to.name), to.matrix)) {}
+
+GroupDrag::GroupDrag(Scene& scene, SceneRays& rays, const GroupMove& to, prt::SceneChange first)
+    : scene_(scene), rays_(rays), group_(first.group),
       group_of_blockers_(
           static_cast<std::uint32_t>(std::ranges::find(scene.blocking_mesh().groups, to.name) -
                                      scene.blocking_mesh().groups.begin())),
-      vertices_([&] {
-          const prt::SceneChange first = prt::moved(scene, group_, to.matrix);
-          return scene.blockers ? first.blocker_vertices : first.vertices;
-      }()),
+      vertices_(std::move(scene.blockers ? first.blocker_vertices : first.vertices)),
       mesh_(only(scene.blocking_mesh(), group_of_blockers_, vertices_)),
       own_rays_(mesh_, prt::RayScene::Packets::Narrow, prt::RayScene::Groups::Move),
-      own_beams_(mesh_, own_rays_) {
-    receivers_ = prt::moved(scene, group_, to.matrix).difference.receivers;
+      own_beams_(mesh_, own_rays_), receivers_(std::move(first.difference.receivers)) {
     count_without();
 }
 

@@ -37,6 +37,8 @@ public:
     prt::SceneChange back();
 
 private:
+    /// `first` is what the move changes.
+    GroupDrag(Scene& scene, SceneRays& rays, const GroupMove& to, prt::SceneChange first);
     void count_without();
     void exchange();
 

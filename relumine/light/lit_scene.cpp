@@ -445,11 +445,8 @@ MoveReport LitScene::drop(const PrecomputeWork& work) {
 bool LitScene::exchange_move(bool is_undo) {
     Impl& own = *impl_;
     own.require_own();
-    const prt::SceneChange* change = nullptr;
-    if (own.moves->dragged())
-        change = &own.moves->take_back();
-    else
-        change = own.moves->exchange(is_undo);
+    const prt::SceneChange* change =
+        own.moves->dragged() ? &own.moves->take_back() : own.moves->exchange(is_undo);
     if (change != nullptr)
         follow(*change, false);
     return change != nullptr;

@@ -14,8 +14,8 @@ bool is_shiny(const prt::Surface& surface) {
     return prt::facts_of(surface.highlight).is_roughness;
 }
 
-/// The surfaces with the highlights that the scene's own have not; without coat, sheen
-/// and film, and round.
+/// The surfaces with the highlights that the scene's own have not; without coat, sheen and film,
+/// and round.
 std::vector<prt::Surface> shiny_surfaces(const LitScene& lit) {
     const Scene& scene = lit.scene();
     if (!has_live_highlights(scene))

@@ -79,9 +79,11 @@ struct Painter::Impl {
                                 const relight::Backdrop* behind) {
         const bool traces = options.sun == SunShadows::Pixels && !lighting.lights.empty();
         const std::span<const glm::vec3> radiance = traces ? lighting.soft : lighting.radiance;
-        // What mirrors see.
-        std::vector<glm::vec3> all = shown_colors(radiance, lighting);
-        std::vector<glm::vec3> colors = all;
+        std::vector<glm::vec3> colors = shown_colors(radiance, lighting);
+        const bool has_mirrors = textures.has_mirrors() && options.highlight_rays != 0;
+        std::vector<glm::vec3> mirrored;
+        if (has_mirrors)
+            mirrored = traces ? shown_colors(lighting.radiance, lighting) : colors;
         relight::MeshLight light{
             .radiance = colors, .emission = emission, .emission_gains = emission_gains};
         if (scene.settings.view)
@@ -114,15 +116,13 @@ struct Painter::Impl {
             light.lights = lighting.lights;
         light.blockers = &beams;
         std::optional<relight::Reflections> reflections;
-        if (textures.has_mirrors() && options.highlight_rays != 0) {
+        if (has_mirrors) {
             static const cubemap::CubeMap Black;
             reflections.emplace(rays, scene.settings.bias, options.highlight_rays,
                                 lighting.environment == nullptr ? Black : *lighting.environment,
                                 light.lights.first(traces ? lighting.num_environment_lights : 0));
-            if (traces)
-                all = shown_colors(lighting.radiance, lighting);
             light.reflections = &*reflections;
-            light.mirrored = all;
+            light.mirrored = mirrored;
             light.eye = eye();
         }
         return behind == nullptr ? from.cut_out(light) : from.draw(light, *behind);
