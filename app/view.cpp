@@ -47,8 +47,8 @@ struct Options {
 #ifdef RELUMINE_VIEWER_MISSING
 
 void run(const Options& /*options*/, Session& /*session*/) {
-    throw std::runtime_error(
-        "view: this relumine was built without its window; missing were: " RELUMINE_VIEWER_MISSING);
+    throw std::runtime_error("view: expected a build with its window, as Debian's package of "
+                             "relumine is, got one without " RELUMINE_VIEWER_MISSING);
 }
 
 #else

@@ -3,6 +3,7 @@
 #
 # Component runtime:       the program, shared libraries.
 # Component engine:        librelumine_runtime (runtime/CMakeLists.txt).
+# Component engine_development: what a program that embeds it is compiled with.
 # Component python:        the Python package (python/CMakeLists.txt).
 # Component development:   headers, static libraries, the CMake package.
 # Component documentation: the documents.
@@ -63,12 +64,17 @@ if(NOT BUILD_SHARED_LIBS)
     list(REMOVE_DUPLICATES development_depends)
 endif()
 
+# find_package() works with the runtime's package alone.
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/relumine)
+set(config development)
+if(RELUMINE_BUILD_RUNTIME AND RELUMINE_RUNTIME_SHARED)
+    set(config engine_development)
+endif()
 configure_package_config_file(cmake/relumineConfig.cmake.in ${PROJECT_BINARY_DIR}/relumineConfig.cmake
     INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/relumineConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/relumineConfig.cmake ${PROJECT_BINARY_DIR}/relumineConfigVersion.cmake
-    ${CMAKE_CURRENT_LIST_DIR}/find_library.cmake DESTINATION ${package_dir} COMPONENT development)
+    ${CMAKE_CURRENT_LIST_DIR}/find_library.cmake DESTINATION ${package_dir} COMPONENT ${config})
 if(NOT RELUMINE_BUILD_LIBRARY)
     return()
 endif()

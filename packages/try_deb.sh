@@ -24,7 +24,11 @@ cd /try
 find /usr /etc /opt -xdev | sort >before.txt
 names=$(for deb in /debs/*.deb; do dpkg-deb -f "$deb" Package; done)
 apt-get update -qq
-apt-get install -y -qq --no-install-recommends /debs/*.deb >install.log 2>&1 || { tail -n 20 install.log >&2; exit 1; }
+try_install() { apt-get install -y -qq --no-install-recommends "$@" >install.log 2>&1 || { tail -n 20 install.log >&2; exit 1; }; }
+# An engine needs the runtime's two packages alone.
+try_install /debs/librelumine-runtime*.deb gcc libc6-dev pkg-config
+cc runtime.c $(pkg-config --cflags --libs relumine-runtime) -lm -o engine
+try_install /debs/*.deb
 relumine --version
 relumine generate knot -o . --vertices 4000 -q
 relumine generate soft_boxes -o . -q
@@ -32,8 +36,7 @@ relumine precompute knot.ply -o knot.prt -q
 relumine relight knot.prt soft_boxes_latlong.exr -o program.npy --bounces 0 -q
 python3 lines.py
 test -s /usr/share/doc/relumine/README.md
-apt-get install -y -qq --no-install-recommends g++ cmake make pkg-config >>install.log 2>&1
-cc runtime.c $(pkg-config --cflags --libs relumine-runtime) -lm -o engine
+try_install g++ cmake make
 ./engine knot.prt engine.ply
 cmake -S consumer -B built >cmake.log && cmake --build built >>cmake.log
 built/consumer octahedron.off

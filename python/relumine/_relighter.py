@@ -388,8 +388,15 @@ class Relighter:
         with naming_layers():
             return Update(*self._core.set_layers(text_of(layers)))
 
-    def set_layer(self, index: int, layer: Union[Layer, Mapping[str, Any]]) -> Update:
-        """Replaces one layer, as while it is dragged."""
+    def set_layer(
+        self, index: Union[int, str], layer: Union[Layer, Mapping[str, Any]]
+    ) -> Update:
+        """Replaces one layer, given by its place or its name, as while it is dragged."""
+        if isinstance(index, str):
+            names = [layer.name for layer in self.layers]
+            if index not in names:
+                raise ValueError(f"index: expected one of the layers {names}, got {index!r}")
+            index = names.index(index)
         if whole("index", index, -(2**31)) < 0:
             raise IndexError(f"index: expected the place of a layer, got {index}")
         with naming_layers():

@@ -30,6 +30,15 @@ namespace relumine {
 
 namespace {
 
+/// Whether a mesh lies on a ground that is wider than what stands on it.
+bool has_ground(const mesh::TriangleMesh& mesh) {
+    constexpr float WiderThanSubject = 1.5f;
+    const auto width = [](const mesh::Bounds& box) {
+        return std::max(box.max.x - box.min.x, box.max.z - box.min.z);
+    };
+    return width(mesh::extent(mesh).box) > WiderThanSubject * width(mesh::subject_bounds(mesh));
+}
+
 /// Moves the floor's vertices to the end, those of `num_old` first. Returns how many of the floor
 /// are new.
 std::uint32_t move_floor_last(mesh::TriangleMesh& mesh, std::size_t first_of_floor,
@@ -227,6 +236,9 @@ Mesh prepared(mesh::LoadedMesh loaded, const std::filesystem::path& path,
         mesh.geometry.warnings.push_back(std::move(line));
     if (mesh.camera)
         mesh::turn_up(*mesh.camera, up);
+    if (options.floor_vertices && has_ground(mesh.geometry))
+        mesh.geometry.warnings.emplace_back(
+            "stands on a ground of its own: --floor lays another at the same height");
     add_floor(mesh, options);
     return mesh;
 }
@@ -475,14 +487,8 @@ Mesh simplified(Mesh given, std::size_t num_vertices) {
 }
 
 void stand_on_floor(Mesh& mesh) {
-    constexpr float WiderThanSubject = 1.5f;
-    if (mesh.floor_vertices != 0 || relight::inside_room(mesh.geometry))
-        return;
-    const auto width = [](const mesh::Bounds& box) {
-        return std::max(box.max.x - box.min.x, box.max.z - box.min.z);
-    };
-    if (width(mesh::extent(mesh.geometry).box) <=
-        WiderThanSubject * width(relight::subject_bounds(mesh.geometry)))
+    if (mesh.floor_vertices == 0 && !relight::inside_room(mesh.geometry) &&
+        !has_ground(mesh.geometry))
         add_floor(mesh, {.floor_vertices = AutomaticFloor});
 }
 

@@ -144,7 +144,7 @@ using prt::RefineReport;
 void add_floor(Mesh& mesh, const MeshOptions& options);
 
 /// Adds an automatic floor to what stands on nothing: not to a room (relight::inside_room()), nor
-/// to a mesh that has a ground of its own (relight::subject_bounds()).
+/// to a mesh that has a ground of its own (mesh::subject_bounds()).
 void stand_on_floor(Mesh& mesh);
 
 /// What refined_by_itself() may add to a mesh, and to its floor.

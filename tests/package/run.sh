@@ -83,6 +83,7 @@ deb)
         relumine) [[ "$depends" != *-dev* && "$depends" == *libembree* ]] || fail "$package: wrong dependencies" ;;
         relumine-dev) [[ ", $depends," == *", libglm-dev,"* ]] || fail "$package: no libglm-dev" ;;
         relumine-doc) [ -z "$depends" ] && [ -s "$root/share/doc/relumine/docs/library.md" ] || fail "$package: wrong" ;;
+        librelumine-runtime-dev) [[ "$depends" == librelumine-runtime0* && -s "$root/include/relumine_runtime.h" ]] || fail "$package: wrong" ;;
         librelumine-runtime*) [[ "$depends" == *libzstd1* && "$depends" != *libembree* ]] || fail "$package: wrong dependencies" ;;
         *) fail "$package: unknown" ;;
         esac

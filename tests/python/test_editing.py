@@ -44,7 +44,7 @@ def test_a_drag_and_its_undo(relighter):
     relighter.mark()
     before = relighter.radiance.copy()
     for x in np.linspace(1, -1, 8):
-        relighter.set_layer(0, relumine.Layer("key", relumine.Disc((x, 1, 1), 20), KEY.effect))
+        relighter.set_layer("key", relumine.Layer("key", relumine.Disc((x, 1, 1), 20), KEY.effect))
     relighter.mark()
     after = relighter.radiance.copy()
     assert relighter.can_undo and not relighter.can_redo
@@ -92,6 +92,8 @@ def test_wrong_layers_are_named_and_change_nothing(relighter, layer, message):
         relighter.set_layers(KEY)
     with pytest.raises(IndexError):
         relighter.set_layer(3, KEY)
+    with pytest.raises(ValueError, match=r"index: expected one of the layers \[\], got 'rim'"):
+        relighter.set_layer("rim", KEY)
 
 
 def test_contribution_is_the_transpose(relighter):

@@ -189,6 +189,9 @@ test('what is wrong is said in one sentence', async () => {
         });
     await rejects(new Uint8Array([1, 2, 3]), 'WRONG_FILE', /memory: expected/);
     await rejects(bytes.subarray(0, bytes.length / 2), 'WRONG_FILE', /memory: expected/);
+    const wrong = path.join(scratch, 'wrong.prt');
+    fs.writeFileSync(wrong, 'no scene');
+    await rejects(wrong, 'WRONG_FILE', /wrong\.prt: expected/);
     await rejects(7, 'WRONG_ARGUMENT', /expected a URL/);
     const damaged = Uint8Array.from(bytes);
     damaged[bytes.length >> 1] ^= 16;
@@ -202,6 +205,10 @@ test('what is wrong is said in one sentence', async () => {
     throws(() => relighter.light({}), 'WRONG_ARGUMENT', /expected one of cubeMap, latLong and lights/);
     throws(() => relighter.light({cubeMap: new Float32Array(17)}), 'WRONG_ARGUMENT', /cubeMap: expected/);
     throws(() => relighter.light({cubeMap: new Float32Array(18).fill(NaN)}), 'WRONG_ARGUMENT', /finite radiance/);
+    throws(() => relighter.light({cubeMap: new Uint8Array(18).fill(1)}), 'WRONG_ARGUMENT', /cubeMap: expected floats, got a Uint8Array/);
+    throws(() => relighter.light({latLong: new Uint16Array(24), width: 4, height: 2}), 'WRONG_ARGUMENT', /latLong: expected floats, got a Uint16Array/);
+    throws(() => relighter.light({latLong: new Float32Array(24), width: 2, height: 4}), 'WRONG_ARGUMENT',
+           /width of twice the height, got 2 x 4/);
     relighter.light({cubeMap: new Float32Array(18).fill(1)});
     throws(() => relighter.update(6, 0, 0, 1, 1, [1, 1, 1]), 'WRONG_ARGUMENT', /face: expected 0 to 5/);
     throws(() => relighter.update(0, 0, 0, 2, 1, [1, 1, 1]), 'WRONG_ARGUMENT', /rgb: expected 6 numbers, got 3/);

@@ -11,9 +11,12 @@ function fail(message) {
     throw new RelumineError('WRONG_ARGUMENT', message);
 }
 
+/** Arrays of whole numbers hold bytes, or halves as three.js' loaders give them, and are no radiance. */
 function requireNumbers(values, count, name) {
     if (!Array.isArray(values) && (!ArrayBuffer.isView(values) || values instanceof DataView))
         fail(`${name}: expected an array of numbers, got ${values}`);
+    if (!Array.isArray(values) && !(values instanceof Float32Array) && !(values instanceof Float64Array))
+        fail(`${name}: expected floats, got a ${values.constructor.name}`);
     if (values.length !== count)
         fail(`${name}: expected ${count} numbers, got ${values.length}`);
 }
@@ -38,7 +41,14 @@ export class Relighter {
         const relighter = new Relighter();
         const bytes = await bytesOf(source);
         relighter.#loaded = await Runtime.make(wasm);
-        relighter.#open(bytes, harmonics);
+        try {
+            relighter.#open(bytes, harmonics);
+        } catch (error) {
+            // The runtime read memory, and knows no path.
+            if (error instanceof RelumineError && typeof (source?.href ?? source) === 'string')
+                error.message = error.message.replace(/^memory:/, () => `${source}:`);
+            throw error;
+        }
         return relighter;
     }
 
@@ -126,6 +136,8 @@ export class Relighter {
         requireSize(width, 'width');
         requireSize(height, 'height');
         requireSize(resolution, 'resolution');
+        if (width !== 2 * height)
+            fail(`latLong: expected a width of twice the height, got ${width} x ${height}`);
         requireNumbers(pixels, 3 * width * height, 'latLong');
         this.#runtime.withNumbers(Float32Array, pixels,
                                   (at) => this.#call('light_lat_long', width, height, resolution, at));

@@ -42,6 +42,21 @@ TEST_F(MeshFile, KnowsItsOriginAndItsFloor) {
     EXPECT_EQ(standing.floor_vertices, 5u);
 }
 
+TEST_F(MeshFile, SaysThatItHasAGroundWhereAFloorIsAskedFor) {
+    mesh::TriangleMesh ball = scenes::icosphere(1, 1.0f, glm::vec3(0));
+    mesh::save(file("ball.ply"), ball);
+    mesh::append_floor(ball, 5, 4.0f);
+    mesh::save(file("standing.ply"), ball);
+    const auto num_said = [&](const char* name, std::optional<std::uint32_t> n) {
+        const Mesh mesh = load_mesh(file(name), {.floor_vertices = n});
+        return std::count(mesh.geometry.warnings.begin(), mesh.geometry.warnings.end(),
+                          "stands on a ground of its own: --floor lays another at the same height");
+    };
+    EXPECT_EQ(num_said("standing.ply", 5), 1);
+    EXPECT_EQ(num_said("standing.ply", std::nullopt), 0);
+    EXPECT_EQ(num_said("ball.ply", 5), 0);
+}
+
 TEST_F(MeshFile, IsTurnedUpright) {
     const mesh::TriangleMesh squares = scenes::two_squares();
     mesh::save(file("squares.ply"), squares);
