@@ -26,6 +26,7 @@ void add_env(Command& program, Session& session);
 void add_coarsen(Command& program, Session& session);
 void add_move(Command& program, Session& session);
 void add_export(Command& program, Session& session);
+void add_export_web(Command& program, Session& session);
 void add_view(Command& program, Session& session);
 
 /// Keeps so many vertices of a mesh, its floor not counted, and says how many it became.

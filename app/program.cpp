@@ -29,6 +29,7 @@ void add_commands(CommandLine& line, Session& session) {
     add_coarsen(program, session);
     add_move(program, session);
     add_export(program, session);
+    add_export_web(program, session);
     add_view(program, session);
     add_help(line);
     add_completion(line);

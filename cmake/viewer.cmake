@@ -1,7 +1,8 @@
 # RELUMINE_BUILD_VIEWER: whether `relumine view` gets its window. On where everything it needs is found; RELUMINE_VIEWER_MISSING names
 # the rest.
-if(NOT RELUMINE_BUILD_APP)
+if(NOT RELUMINE_BUILD_APP OR NOT EXISTS ${PROJECT_SOURCE_DIR}/viewer)
     # The window is a command of the program.
+    set(RELUMINE_VIEWER_MISSING "the sources of the window")
     set(RELUMINE_BUILD_VIEWER OFF)
     return()
 endif()

@@ -8,7 +8,6 @@
 
 #include "app/commands.h"
 #include "app/options/output_options.h"
-#include "app/web/export_web.h"
 #include "files/counted.h"
 #include "relumine/in/scene.h"
 #include "relumine/in/shared_work.h"
@@ -61,7 +60,6 @@ void add_export(Command& program, Session& session) {
                     {.file = true, .required = true}));
     session.add_common_options(command);
     command.on_run([options, &session] { export_for_runtime(*options, session); });
-    add_export_web(group, session);
 }
 
 } // namespace relumine::app

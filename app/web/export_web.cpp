@@ -1,5 +1,4 @@
 // `relumine export web`: a scene as a page that anyone can open.
-#include "app/web/export_web.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +16,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "app/commands.h"
 #include "app/options/output_options.h"
 #include "app/web/page_parts.h"
 #include "app/web/web_environments.h"
@@ -366,8 +366,8 @@ void export_web(const ExportWebArguments& options, Session& session) {
 
 } // namespace
 
-void add_export_web(Command& group, Session& session) {
-    Command command = group.add_command(
+void add_export_web(Command& program, Session& session) {
+    Command command = program.command("export").add_command(
         "web", "a page that lights the scene in any browser: SCENE.prt [ENV...] -> folder");
     auto options = std::make_shared<ExportWebArguments>();
     command.add(row("SCENE", options->scene, "scene of `relumine precompute`, of vertices",
