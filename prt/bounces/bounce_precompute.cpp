@@ -172,12 +172,12 @@ private:
     /// How many times the directions of the first pass each receiver needs: the variance falls as
     /// the number of directions and of those who share them grows. Where surfaces meet, few share;
     /// their noise would stand as a line beside even walls, the more the less sky they see. Probe
-    /// lights know nothing of a sun that lights a small place through a window, so a tolerance that
-    /// is smaller than by default asks for more everywhere.
+    /// lights know nothing of a sun that lights a small place through a window, so the smaller the
+    /// tolerance, the more rays everywhere.
     void choose_factors(const PlaceLists& averaged, std::vector<std::uint32_t>& factors) {
         const double allowed = static_cast<double>(options_.tolerance * options_.tolerance);
         const double by_default = static_cast<double>(BounceOptions{}.tolerance);
-        const double least_shared = 8.0 * std::max(1.0, by_default * by_default / allowed);
+        const double least_shared = 8.0 * by_default * by_default / allowed;
         files::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t block) {
             const std::size_t begin = begin_of(block), end = begin_of(block + 1);
             double error = 0.0;
@@ -263,8 +263,8 @@ void require_options(const mesh::TriangleMesh& mesh, const Receivers& receivers,
 } // namespace
 
 float automatic_tolerance(std::size_t num_vertices, bool is_room) {
-    const float part = is_room ? 0.25f : 1.0f;
-    const float fine = is_room ? 25'000.0f : 100'000.0f;
+    const float part = is_room ? 0.25f : 2.0f;
+    const float fine = is_room ? 25'000.0f : 400'000.0f;
     return BounceOptions{}.tolerance * part *
            std::max(1.0f, std::sqrt(static_cast<float>(num_vertices) / fine));
 }
