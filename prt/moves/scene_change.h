@@ -12,6 +12,7 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/bounces/bounce_matrix.h"
 #include "prt/moves/counts_patch.h"
+#include "prt/scene/scene_file.h"
 
 namespace relumine::prt {
 
@@ -34,12 +35,18 @@ struct SceneChange {
     /// The group's vertices, and what they have: as TriangleMesh
     std::vector<std::uint32_t> vertices;
     std::vector<glm::vec3> positions, normals, lifts;
-    /// The group's triangles, where they have tangents
+    /// The group's triangles, where they have tangents or are another
     std::vector<std::uint32_t> triangles;
     std::vector<std::array<glm::vec4, 3>> corner_tangents;
+    std::vector<mesh::Triangle> corners;
     /// The group's vertices in the blockers, where the mesh is none
     std::vector<std::uint32_t> blocker_vertices;
     std::vector<glm::vec3> blocker_positions;
+    /// The group's triangles there, where they are another
+    std::vector<std::uint32_t> blocker_triangles;
+    std::vector<mesh::Triangle> blocker_corners;
+    /// Scene::absent, where a group goes away or comes back
+    std::optional<std::vector<AbsentGroup>> absent;
     /// The receivers that differ, and their places
     std::vector<std::uint32_t> receivers, places;
     std::vector<glm::vec3> receiver_positions, receiver_normals, normals_by_place;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <stdexcept>
 #include <utility>
 
 #include "files/seconds.h"
@@ -50,10 +51,16 @@ prt::RecountOptions options_of(const Scene& scene, prt::Recounted blocks,
             .blocks = blocks};
 }
 
+prt::SceneChange dragged(const Scene& scene, const GroupMove& to) {
+    if (to.going != Going::To)
+        throw std::invalid_argument("expected a place to drag a group to");
+    return prt::moved(scene, group_named(scene, to.name), to.matrix);
+}
+
 } // namespace
 
 GroupDrag::GroupDrag(Scene& scene, SceneRays& rays, const GroupMove& to)
-    : GroupDrag(scene, rays, to, prt::moved(scene, group_named(scene, to.name), to.matrix)) {}
+    : GroupDrag(scene, rays, to, dragged(scene, to)) {}
 
 GroupDrag::GroupDrag(Scene& scene, SceneRays& rays, const GroupMove& to, prt::SceneChange first)
     : scene_(scene), rays_(rays), group_(first.group),

@@ -1,6 +1,7 @@
 #include "relumine/in/move.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -23,6 +24,8 @@
 namespace relumine {
 
 namespace {
+
+constexpr std::array GoingWords = {std::pair("away", Going::Away), std::pair("back", Going::Back)};
 
 mesh::Bounds box_of(const mesh::TriangleMesh& mesh, std::uint32_t group) {
     std::vector<glm::vec3> corners;
@@ -64,12 +67,24 @@ std::vector<float> open_parts(const Scene& scene) {
     return result;
 }
 
+prt::SceneChange change_of(const Scene& scene, const GroupMove& to) {
+    const std::uint32_t group = group_named(scene, to.name);
+    switch (to.going) {
+    case Going::To:
+        return prt::moved(scene, group, to.matrix);
+    case Going::Away:
+        return prt::taken_away(scene, group);
+    case Going::Back:
+        return prt::brought_back(scene, group);
+    }
+    return {};
+}
+
 /// A move, step by step. The scene's bounces stay in the change as long as there are no others.
 class Move {
 public:
     Move(Scene& scene, const GroupMove& to, SceneRays& rays, const PrecomputeWork& work)
-        : scene_(scene), rays_(rays), work_(work),
-          change_(prt::moved(scene, group_named(scene, to.name), to.matrix)),
+        : scene_(scene), rays_(rays), work_(work), change_(change_of(scene, to)),
           has_bounces_(scene.bounces.has_value()) {}
 
     prt::SceneChange run(MoveReport& report) {
@@ -148,11 +163,21 @@ private:
 
 } // namespace
 
-std::uint32_t group_named(const Scene& scene, const std::string& name) {
-    const std::vector<std::string>& names = scene.mesh.groups;
+PrecomputeWork move_work(const prt::Work& work) {
+    return {.stop = work.stop, .on_progress = [work](Stage stage, double fraction) {
+                work.tell(0.5 * fraction + (stage == Stage::Bounces ? 0.5 : 0.0));
+            }};
+}
+
+void require_movable(const Scene& scene) {
     if (!scene.settings.is_movable || scene.mesh.triangle_groups.empty())
         throw std::invalid_argument("expected a scene that was precomputed with --movable, got one "
                                     "without groups");
+}
+
+std::uint32_t group_named(const Scene& scene, const std::string& name) {
+    require_movable(scene);
+    const std::vector<std::string>& names = scene.mesh.groups;
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end())
         throw std::invalid_argument(
@@ -163,30 +188,42 @@ std::uint32_t group_named(const Scene& scene, const std::string& name) {
 
 GroupStep GroupStepText::read(const std::string& text) {
     const std::size_t equals = text.rfind('=');
+    for (const auto& [word, going] : GoingWords)
+        if (equals != 0 && equals != std::string::npos && text.substr(equals + 1) == word)
+            return {.name = text.substr(0, equals), .going = going};
     const auto numbers = parse_numbers(equals == std::string::npos ? "" : text.substr(equals + 1));
     const auto is_finite = [](double number) {
         return std::isfinite(number);
     };
     if (equals == 0 || !numbers || (numbers->size() != 3 && numbers->size() != 4) ||
         !std::all_of(numbers->begin(), numbers->end(), is_finite))
-        refuse_text("NAME=X,Y,Z or NAME=X,Y,Z,DEGREES", text);
+        refuse_text("NAME=X,Y,Z, NAME=X,Y,Z,DEGREES, NAME=away or NAME=back", text);
     return {.name = text.substr(0, equals),
             .by = {(*numbers)[0], (*numbers)[1], (*numbers)[2]},
             .degrees = numbers->size() == 4 ? numbers->back() : 0.0};
 }
 
 std::string GroupStepText::show(const GroupStep& step) {
+    for (const auto& [word, going] : GoingWords)
+        if (step.going == going)
+            return fmt::format("{}={}", step.name, word);
     return fmt::format("{}={},{},{}{}", step.name, step.by.x, step.by.y, step.by.z,
                        step.degrees == 0.0 ? "" : fmt::format(",{}", step.degrees));
 }
 
+glm::dvec3 middle_of(const Scene& scene, const std::string& name) {
+    return glm::dvec3(box_of(scene.mesh, group_named(scene, name)).center()) + scene.mesh.offset;
+}
+
 GroupMove move_of(const Scene& scene, const GroupStep& step) {
-    const glm::dvec3 middle =
-        glm::dvec3(box_of(scene.mesh, group_named(scene, step.name)).center()) + scene.mesh.offset;
+    return move_of(step, middle_of(scene, step.name));
+}
+
+GroupMove move_of(const GroupStep& step, const glm::dvec3& middle) {
     glm::dmat4 matrix = glm::translate(glm::dmat4(1.0), middle + step.by);
     if (step.degrees != 0.0)
         matrix = glm::rotate(matrix, glm::radians(step.degrees), glm::dvec3(0.0, 1.0, 0.0));
-    return {.name = step.name, .matrix = glm::translate(matrix, -middle)};
+    return {.name = step.name, .matrix = glm::translate(matrix, -middle), .going = step.going};
 }
 
 prt::SceneChange move(Scene& scene, const GroupMove& to, const PrecomputeWork& work,
