@@ -233,7 +233,9 @@ void exchange(Scene& scene, SceneChange& change) {
     exchange(scene.receivers.normals, change.receivers, change.receiver_normals);
     exchange(scene.transfer.normals, change.places, change.normals_by_place);
     exchange(scene.transfer.counts, change.counts);
-    if (!change.keeps_bounces)
+    if (change.bounces_patch)
+        exchange(*scene.bounces, *change.bounces_patch);
+    else if (change.bounces)
         scene.bounces.swap(change.bounces);
     scene.settings.rim_step.swap(change.rim_step);
 }

@@ -12,6 +12,7 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/bounces/bounce_matrix.h"
 #include "prt/moves/counts_patch.h"
+#include "prt/moves/bounces_patch.h"
 #include "prt/scene/scene_file.h"
 
 namespace relumine::prt {
@@ -51,9 +52,9 @@ struct SceneChange {
     std::vector<std::uint32_t> receivers, places;
     std::vector<glm::vec3> receiver_positions, receiver_normals, normals_by_place;
     CountsPatch counts;
+    /// What the bounces change in, or all of them. Neither: the scene keeps those of before.
+    std::optional<BouncesPatch> bounces_patch;
     std::optional<BounceMatrix> bounces;
-    /// The scene keeps its bounces: those of before the change.
-    bool keeps_bounces = false;
     /// SceneSettings::rim_step
     std::optional<float> rim_step;
     /// What a change and its undo both differ in

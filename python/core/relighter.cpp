@@ -271,24 +271,24 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
 
 py::dict move(const LitPointer& own, const std::string& name, const py::object& to,
               const py::object& progress) {
-    return report_of(
+    return move_figures(
         moving(own, progress, [to = group_move(name, to)](LitScene& lit, const Reins& reins) {
             return lit.move(to, move_work(reins));
         }));
 }
 
 py::dict drag(const LitPointer& own, const std::string& name, const py::object& to) {
-    return report_of(
-        moving(own, py::none(), [to = group_move(name, to)](LitScene& lit, const Reins&) {
-            return lit.drag(to);
-        }));
+    return move_figures(
+        moving(own, py::none(),
+               [to = group_move(name, to)](LitScene& lit, const Reins&) { return lit.drag(to); }));
 }
 
 /// A copy of the scene as it stands.
 std::shared_ptr<Scene> present_scene(const LitPointer& own) {
     return slowly(own, py::none(), [](LitScene& lit, const Reins&) {
         if (lit.is_dragging())
-            throw std::logic_error("expected no group that is dragged: drop() or undo_move() first");
+            throw std::logic_error(
+                "expected no group that is dragged: drop() or undo_move() first");
         return std::make_shared<Scene>(lit.scene());
     });
 }
@@ -298,7 +298,7 @@ void bind_moves(py::class_<Lit, LitPointer>& type) {
         .def("drag", &drag)
         .def("drop",
              [](const LitPointer& own, const py::object& progress) {
-                 return report_of(moving(own, progress, [](LitScene& lit, const Reins& reins) {
+                 return move_figures(moving(own, progress, [](LitScene& lit, const Reins& reins) {
                      return lit.drop(move_work(reins));
                  }));
              })

@@ -19,9 +19,16 @@ namespace {
 using Path = std::filesystem::path;
 using MeshPointer = std::shared_ptr<Mesh>;
 
-/// The triangles of both meshes.
-mesh::TriangleMesh together(const mesh::TriangleMesh& mesh, const mesh::TriangleMesh& others) {
+/// The triangles of both meshes. Where the mesh has groups, the others are one of their own.
+mesh::TriangleMesh together(mesh::TriangleMesh& mesh, const mesh::TriangleMesh& others) {
     mesh::TriangleMesh result;
+    if (!mesh.groups.empty()) {
+        result.triangle_groups = mesh.triangle_groups;
+        result.triangle_groups.resize(mesh.num_triangles() + others.num_triangles(),
+                                      static_cast<std::uint32_t>(mesh.groups.size()));
+        mesh.groups.emplace_back("blockers");
+        result.groups = mesh.groups;
+    }
     result.positions = mesh.positions;
     result.positions.insert(result.positions.end(), others.positions.begin(),
                             others.positions.end());
@@ -274,7 +281,7 @@ py::tuple moved(const std::shared_ptr<Scene>& scene, const std::string& name,
             move(*found.first, to, move_work(reins), &found.second);
             return found;
         });
-    return py::make_tuple(result.first, report_of(result.second));
+    return py::make_tuple(result.first, move_figures(result.second));
 }
 
 std::shared_ptr<Scene> recoloured(const std::shared_ptr<Scene>& scene, const py::dict& given) {
@@ -340,7 +347,7 @@ GroupMove group_move(const std::string& name, const py::object& to) {
     return result;
 }
 
-py::dict report_of(const MoveReport& report) {
+py::dict move_figures(const MoveReport& report) {
     py::dict result;
     result["receivers"] = report.num_moved;
     result["pairs"] = report.counts.num_pairs;

@@ -28,7 +28,7 @@ struct EnvironmentHandle {
 
 /// `to`: a matrix, 16 doubles, row by row; or "away" or "back".
 [[nodiscard]] GroupMove group_move(const std::string& name, const pybind11::object& to);
-[[nodiscard]] pybind11::dict report_of(const MoveReport& report);
+[[nodiscard]] pybind11::dict move_figures(const MoveReport& report);
 
 void bind_scenes(pybind11::module_& module);
 void bind_environments(pybind11::module_& module);

@@ -77,7 +77,6 @@ GroupDrag::GroupDrag(Scene& scene, SceneRays& rays, const GroupMove& to, prt::Sc
 /// Counts the receivers of other groups while this one is shrunk to a point, which blocks nothing.
 void GroupDrag::count_without() {
     without_.group = group_;
-    without_.keeps_bounces = true;
     without_.difference = {.boxes = prt::boxes_around(mesh_), .receivers = receivers_};
     std::vector<glm::vec3>& positions = blocking_mesh(scene_).positions;
     for (const std::uint32_t vertex : vertices_)
@@ -109,7 +108,6 @@ prt::SceneChange GroupDrag::to(const glm::dmat4& matrix, std::vector<bool> coars
         exchange();
         throw;
     }
-    next.keeps_bounces = true;
     prt::exchange(scene_, next);
     rays_.follow(group_);
     for (std::size_t i = 0; i < vertices_.size(); ++i)

@@ -41,7 +41,8 @@ bool is_inside(const mesh::Bounds& box, const mesh::Bounds& of) {
 }
 
 /// Samples the scene's bounces anew, all of them.
-void find_bounces(Scene& scene, const prt::RayScene& rays, const PrecomputeWork& work) {
+prt::BounceMatrix found_bounces(Scene& scene, const prt::RayScene& rays,
+                                const PrecomputeWork& work) {
     PrecomputeReport found;
     prt::Plan plan{.scene = std::move(scene)};
     plan.bounces = {.tolerance = plan.scene.settings.bounce_tolerance};
@@ -49,7 +50,7 @@ void find_bounces(Scene& scene, const prt::RayScene& rays, const PrecomputeWork&
         std::vector<prt::BounceSamples> samples;
         samples.push_back(Stages(plan, work, found, {}).bounces(rays));
         scene = std::move(plan.scene);
-        scene.bounces = prt::join_bounces(scene.receivers, scene.transfer, std::move(samples));
+        return prt::join_bounces(scene.receivers, scene.transfer, std::move(samples));
     } catch (...) {
         if (scene.mesh.positions.empty())
             scene = std::move(plan.scene);
@@ -80,7 +81,7 @@ prt::SceneChange change_of(const Scene& scene, const GroupMove& to) {
     return {};
 }
 
-/// A move, step by step. The scene's bounces stay in the change as long as there are no others.
+/// A move, step by step. The scene has its bounces of before until there are others.
 class Move {
 public:
     Move(Scene& scene, const GroupMove& to, SceneRays& rays, const PrecomputeWork& work)
@@ -144,14 +145,13 @@ private:
 
     void bounce(std::optional<prt::ResampledBounces>& resampled) {
         if (!resampled) {
-            find_bounces(scene_, rays_.blockers(), work_);
+            prt::BounceMatrix found = found_bounces(scene_, rays_.blockers(), work_);
+            change_.bounces = std::exchange(scene_.bounces, std::move(found));
             return;
         }
         const std::vector<float> open = open_parts(scene_);
-        std::vector<prt::BounceSamples> samples;
-        samples.push_back(resampled->samples({scene_, open, rays_.of_mesh()}, *change_.bounces,
-                                             work_.of(Stage::Bounces).part(0.5, 0.5)));
-        scene_.bounces = prt::join_bounces(scene_.receivers, scene_.transfer, std::move(samples));
+        change_.bounces_patch = resampled->update(*scene_.bounces, {scene_, open, rays_.of_mesh()},
+                                                  work_.of(Stage::Bounces).part(0.5, 0.5));
     }
 
     Scene& scene_;

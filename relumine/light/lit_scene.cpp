@@ -402,6 +402,7 @@ void LitScene::follow(const prt::SceneChange& change, bool is_quick) {
         own.finish(report);
     } else {
         relight::SurfaceBounces surfaces = bounces.surfaces();
+        bounces.unset(); // frees its memory
         surfaces.matrix = &*own.scene->bounces;
         own.bounces.set(*own.scene, std::move(surfaces), rows);
         bounce();

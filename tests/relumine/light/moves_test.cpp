@@ -132,63 +132,6 @@ TEST(Moves, TheLightIsThatOfTheMovedScene) {
     expect_that_light_follows({});
 }
 
-TEST(Moves, TheLightIsThatWithoutWhatIsTakenAway) {
-    LitScene lit(before());
-    light(lit);
-    const std::vector<glm::vec3> at_first = radiance_of(lit);
-    const double of_lamps = glm::length(lit.lamps().direct()[0]);
-    EXPECT_GT(of_lamps, 0.0);
-    Scene scene = before();
-    std::vector<std::vector<glm::vec3>> seen = {at_first};
-    for (const GroupStep& step : {GroupStep{.name = "ball", .going = Going::Away},
-                                  GroupStep{.name = "lamp", .going = Going::Away},
-                                  GroupStep{.name = "ball", .going = Going::Back}}) {
-        EXPECT_EQ(lit.move(move_of(lit.scene(), step)).num_moved, 0u);
-        move(scene, move_of(scene, step));
-        LitScene anew(scene);
-        light(anew);
-        EXPECT_EQ(radiance_of(lit), radiance_of(anew));
-        EXPECT_NE(radiance_of(lit), seen.back());
-        seen.push_back(radiance_of(lit));
-    }
-    for (const glm::vec3& of_lamp : lit.lamps().direct())
-        EXPECT_EQ(of_lamp, glm::vec3(0.0f));
-    for (std::size_t i = seen.size(); --i > 0;) {
-        EXPECT_EQ(radiance_of(lit), seen[i]);
-        EXPECT_TRUE(lit.undo_move());
-    }
-    EXPECT_EQ(radiance_of(lit), at_first);
-
-    // The light of the receivers that are there is that of a mesh without the ball.
-    mesh::TriangleMesh rest = things();
-    std::vector<std::uint32_t> materials;
-    std::vector<mesh::Triangle> triangles;
-    for (std::size_t i = 0; i < rest.num_triangles(); ++i)
-        if (rest.triangle_groups[i] != 1) {
-            triangles.push_back(rest.triangles[i]);
-            materials.push_back(rest.triangle_materials[i]);
-        }
-    rest.triangles = triangles;
-    rest.triangle_materials = materials;
-    rest.triangle_groups.clear();
-    rest.groups.clear();
-    constexpr Lit Sky{.has_list = false, .has_layer = false, .has_bounces = false};
-    PrecomputeOptions options = Options;
-    options.movable = false;
-    options.tolerance = 0.01f;
-    LitScene without(precompute(rest, options));
-    light(without, Sky);
-    light(lit, Sky);
-    lit.move({.name = "ball", .going = Going::Away});
-    const auto on_ground = [](const LitScene& of) {
-        const std::vector<glm::vec3> all = radiance_of(of);
-        return std::vector(all.begin(), all.begin() + 21 * 21);
-    };
-    const double wrong = difference(on_ground(lit), on_ground(without));
-    lit.undo_move();
-    EXPECT_LT(2.0 * wrong, difference(on_ground(lit), on_ground(without)));
-}
-
 TEST(Moves, EachLightFollowsByItself) {
     constexpr Lit Sky{.has_list = false, .has_layer = false, .has_bounces = false};
     expect_that_light_follows(Sky);
@@ -385,6 +328,63 @@ TEST(Moves, ADragIsTakenBack) {
     light(moved);
     moved.move(of_lamp);
     EXPECT_EQ(radiance_of(lit), radiance_of(moved));
+}
+
+TEST(Moves, TheLightIsThatWithoutWhatIsTakenAway) {
+    LitScene lit(before());
+    light(lit);
+    const std::vector<glm::vec3> at_first = radiance_of(lit);
+    const double of_lamps = glm::length(lit.lamps().direct()[0]);
+    EXPECT_GT(of_lamps, 0.0);
+    Scene scene = before();
+    std::vector<std::vector<glm::vec3>> seen = {at_first};
+    for (const GroupStep& step : {GroupStep{.name = "ball", .going = Going::Away},
+                                  GroupStep{.name = "lamp", .going = Going::Away},
+                                  GroupStep{.name = "ball", .going = Going::Back}}) {
+        EXPECT_EQ(lit.move(move_of(lit.scene(), step)).num_moved, 0u);
+        move(scene, move_of(scene, step));
+        LitScene anew(scene);
+        light(anew);
+        EXPECT_EQ(radiance_of(lit), radiance_of(anew));
+        EXPECT_NE(radiance_of(lit), seen.back());
+        seen.push_back(radiance_of(lit));
+    }
+    for (const glm::vec3& of_lamp : lit.lamps().direct())
+        EXPECT_EQ(of_lamp, glm::vec3(0.0f));
+    for (std::size_t i = seen.size(); --i > 0;) {
+        EXPECT_EQ(radiance_of(lit), seen[i]);
+        EXPECT_TRUE(lit.undo_move());
+    }
+    EXPECT_EQ(radiance_of(lit), at_first);
+
+    // The light of the receivers that are there is that of a mesh without the ball.
+    mesh::TriangleMesh rest = things();
+    std::vector<std::uint32_t> materials, groups;
+    std::vector<mesh::Triangle> triangles;
+    for (std::size_t i = 0; i < rest.num_triangles(); ++i)
+        if (rest.triangle_groups[i] != 1) {
+            triangles.push_back(rest.triangles[i]);
+            materials.push_back(rest.triangle_materials[i]);
+            groups.push_back(rest.triangle_groups[i]);
+        }
+    rest.triangles = triangles;
+    rest.triangle_materials = materials;
+    rest.triangle_groups = groups;
+    constexpr Lit Sky{.has_list = false, .has_layer = false, .has_bounces = false};
+    PrecomputeOptions options = Options;
+    options.movable = false;
+    options.tolerance = 0.01f;
+    LitScene without(precompute(rest, options));
+    light(without, Sky);
+    light(lit, Sky);
+    lit.move({.name = "ball", .going = Going::Away});
+    const auto on_ground = [](const LitScene& of) {
+        const std::vector<glm::vec3> all = radiance_of(of);
+        return std::vector(all.begin(), all.begin() + 21 * 21);
+    };
+    const double wrong = difference(on_ground(lit), on_ground(without));
+    lit.undo_move();
+    EXPECT_LT(1.5 * wrong, difference(on_ground(lit), on_ground(without)));
 }
 
 TEST(Moves, TheLightIsAboutThatOfAPrecomputeAnew) {
