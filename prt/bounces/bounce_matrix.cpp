@@ -1,7 +1,6 @@
 #include "prt/bounces/bounce_matrix.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -98,10 +97,10 @@ std::size_t first_emitter(std::size_t lowest_place, const PlaceLists& averaged) 
 }
 
 float spectral_radius(const BounceMatrix& matrix) {
-    return spectral_radius(matrix, 0.0);
+    return spectral_radius(matrix, NumPowerIterations);
 }
 
-float spectral_radius(const BounceMatrix& matrix, double tolerance) {
+float spectral_radius(const BounceMatrix& matrix, int num_bounces) {
     const std::size_t n = matrix.num_rows();
     if (matrix.emitters.places.empty())
         return 0.0f;
@@ -116,9 +115,8 @@ float spectral_radius(const BounceMatrix& matrix, double tolerance) {
         return sum;
     };
     double norm = std::sqrt(static_cast<double>(n - first));
-    double radius = 0.0, last_step = 1.0;
-    std::array<double, 3> ratios = {1.0, 1.0, 1.0};
-    for (int iteration = 0; iteration < NumPowerIterations; ++iteration) {
+    double radius = 0.0;
+    for (int iteration = 0; iteration < num_bounces; ++iteration) {
         files::parallel_for(first, n, [&](std::size_t place) {
             gathered[place] = static_cast<float>(sum_of(matrix.emitters[place], x));
         });
@@ -130,16 +128,9 @@ float spectral_radius(const BounceMatrix& matrix, double tolerance) {
         for (const float value : product)
             squares += static_cast<double>(value) * static_cast<double>(value);
         const double next = std::sqrt(squares);
-        const double step = std::abs(next / norm - radius);
         radius = next / norm;
         if (next == 0.0)
             return 0.0f;
-        // Steps go on becoming smaller by the largest of the last ratios.
-        ratios[static_cast<std::size_t>(iteration) % ratios.size()] = step / last_step;
-        last_step = step;
-        const double ratio = *std::max_element(ratios.begin(), ratios.end());
-        if (ratio < 1.0 && step * ratio / (1.0 - ratio) < tolerance * radius)
-            break;
         for (std::size_t i = 0; i < n; ++i)
             x[i] = static_cast<float>(static_cast<double>(product[i]) / next);
         norm = 1.0;

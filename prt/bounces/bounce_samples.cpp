@@ -91,7 +91,7 @@ double closed_part(const glm::vec3& normal, float open_part) {
 
 PlaceLists shared_samples(const Receivers& receivers, const Transfer& transfer, std::size_t begin,
                           std::size_t end, std::span<const float> distances,
-                          std::span<const std::uint32_t> wanted) {
+                          std::span<const std::uint32_t> wanted, const PlaceLists* before) {
     std::vector<glm::vec3> positions;
     for (std::size_t place = begin; place < end; ++place)
         positions.push_back(receivers.positions[transfer.order[place]]);
@@ -112,7 +112,8 @@ PlaceLists shared_samples(const Receivers& receivers, const Transfer& transfer, 
                 of_range.push_back(place - static_cast<std::uint32_t>(first));
         PlaceLists part = similar_receivers(std::span(positions).subspan(first - begin, size),
                                             std::span(transfer.normals).subspan(first, size),
-                                            distances.subspan(first - begin, size), {}, of_range);
+                                            distances.subspan(first - begin, size), {}, of_range,
+                                            {before, first});
         for (std::uint32_t& place : part.places)
             place += static_cast<std::uint32_t>(first);
         for (std::size_t i = 0; i < part.size(); ++i)

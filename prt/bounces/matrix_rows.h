@@ -14,10 +14,7 @@ namespace relumine::prt {
 [[nodiscard]] float row_weight(const BounceMatrix& matrix, std::size_t place, double closure,
                                std::span<const std::uint32_t> num_hits);
 
-/// Returns what spectral_radius(matrix) does, but ends once further steps would change it by less
-/// than `tolerance`, relative.
-///
-/// Cost:    some 10 bounces for 1e-4.
-[[nodiscard]] float spectral_radius(const BounceMatrix& matrix, double tolerance);
+/// Returns what spectral_radius(matrix) has found after so many bounces. It grows slowly then.
+[[nodiscard]] float spectral_radius(const BounceMatrix& matrix, int num_bounces);
 
 } // namespace relumine::prt

@@ -165,6 +165,25 @@ private:
     std::vector<Cap> cells_;
 };
 
+/// How light grows within a few bounces: after a small change of the matrix its largest eigenvalue
+/// is another in proportion.
+class Growth {
+public:
+    explicit Growth(const BounceMatrix& matrix)
+        : radius_(matrix.spectral_radius), few_(spectral_radius(matrix, FewBounces)) {}
+
+    [[nodiscard]] float radius_of(const BounceMatrix& next) const {
+        constexpr float Small = 0.01f;
+        const float few = spectral_radius(next, FewBounces);
+        return std::abs(few - few_) < Small * few_ ? std::min(radius_ * (few / few_), 1.0f)
+                                                   : spectral_radius(next);
+    }
+
+private:
+    static constexpr int FewBounces = 3;
+    float radius_, few_;
+};
+
 } // namespace
 
 bool ResampledBounces::are_possible(const Scene& scene) {
@@ -272,8 +291,10 @@ BouncesPatch ResampledBounces::update(BounceMatrix& matrix, const BounceView& no
     rows_ = {};
     std::vector<std::uint32_t> all(transfer.num_receivers());
     std::iota(all.begin(), all.end(), 0u);
-    patch.averaged = difference(matrix.averaged, shared_samples(scene.receivers, transfer, 0,
-                                                                all.size(), patch.distances, all));
+    patch.averaged =
+        difference(matrix.averaged, shared_samples(scene.receivers, transfer, 0, all.size(),
+                                                   patch.distances, all, &matrix.averaged));
+    const Growth growth_before(matrix);
     patch.weights = matrix.weights;
     patch.spectral_radius = matrix.spectral_radius;
     exchange(matrix, patch);
@@ -281,8 +302,7 @@ BouncesPatch ResampledBounces::update(BounceMatrix& matrix, const BounceView& no
         matrix.weights[place] =
             row_weight(matrix, place, closed_part(transfer.normals[place], now.open_parts[place]),
                        matrix.rays.num_hits);
-    constexpr double Tolerance = 1e-4;
-    matrix.spectral_radius = spectral_radius(matrix, Tolerance);
+    matrix.spectral_radius = growth_before.radius_of(matrix);
     return patch;
 }
 

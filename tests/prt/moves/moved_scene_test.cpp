@@ -371,7 +371,7 @@ void expect_joined(const Scene& scene, const std::vector<float>& open) {
     const BounceMatrix joined = join_bounces(scene.receivers, scene.transfer, std::move(samples));
     EXPECT_EQ(own.averaged, joined.averaged);
     EXPECT_EQ(own.weights, joined.weights);
-    EXPECT_NEAR(own.spectral_radius, joined.spectral_radius, 1e-3f * joined.spectral_radius);
+    EXPECT_NEAR(own.spectral_radius, joined.spectral_radius, 0.01f * joined.spectral_radius);
 }
 
 TEST(MovedScene, RowsOfBouncesAreThoseOfAllRays) {
