@@ -26,9 +26,9 @@ struct BounceView {
 /// Samples bounces anew where a move asks for it, in two steps: what rays met before, and what they
 /// meet now. Each receiver looks into as many directions as before.
 ///
-/// A ray is traced anew where it may meet a box of the difference, or where the receiver saw all of
-/// its cluster and does so no more, or the other way round: no ray goes there. So the rows are
-/// those of all rays, place by place.
+/// A ray is traced anew where it may meet a box of the difference and did not end before that, or
+/// where the receiver saw all of its cluster and does so no more, or the other way round: no ray
+/// goes there. So the rows are those of all rays, place by place.
 class ResampledBounces {
 public:
     /// Whether the scene keeps what this needs.

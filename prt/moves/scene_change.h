@@ -11,8 +11,8 @@
 
 #include "mesh/triangle_mesh.h"
 #include "prt/bounces/bounce_matrix.h"
-#include "prt/moves/counts_patch.h"
 #include "prt/moves/bounces_patch.h"
+#include "prt/moves/counts_patch.h"
 #include "prt/scene/scene_file.h"
 
 namespace relumine::prt {

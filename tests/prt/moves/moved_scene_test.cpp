@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -246,6 +247,15 @@ TEST(MetBoxes, ManyDirectionsAnswerAsOneDoes) {
         for (std::size_t k = 0; k < directions.size(); ++k) {
             const bool is_met = (found[k / 64] >> k % 64 & 1u) != 0;
             EXPECT_EQ(is_met, k != 66 && met.meets(inverse(directions[k])));
+            const float nearest = met.nearest(inverse(directions[k]));
+            EXPECT_EQ(std::isfinite(nearest), met.meets(inverse(directions[k])));
+            // Just before it there is no box.
+            for (const mesh::Bounds& box : boxes)
+                if (std::isfinite(nearest) && nearest > 0.01f) {
+                    const glm::vec3 before = place + 0.99f * nearest * directions[k];
+                    EXPECT_FALSE(glm::min(before, box.min) == box.min &&
+                                 glm::max(before, box.max) == box.max);
+                }
             num_met += is_met ? 1 : 0;
         }
         EXPECT_EQ(found[1] & ~asked, 0u);
