@@ -53,11 +53,57 @@ void LightDesk::finish() {
     ++version_;
 }
 
+template<typename Move>
+void LightDesk::moving(Move move) {
+    stop_();
+    ++mesh_version_;
+    timed([&] {
+        move();
+        return UpdateReport{.num_receivers = lit_.radiance().size()};
+    });
+}
+
+void LightDesk::move(const GroupMove& to) {
+    moving([&] { lit_.move(to); });
+    moved_in_.push_back(state());
+    undone_in_.clear();
+}
+
+void LightDesk::drag(const GroupMove& to) {
+    moving([&] { lit_.drag(to); });
+}
+
+void LightDesk::drop() {
+    moving([&] { lit_.drop(); });
+    moved_in_.push_back(state());
+    undone_in_.clear();
+}
+
+/// Returns false where the light was changed since the last move.
+bool LightDesk::exchange_move(bool is_undo) {
+    if (lit_.is_dragging()) {
+        moving([&] { lit_.undo_move(); });
+        return true;
+    }
+    std::vector<LightState>& from = is_undo ? moved_in_ : undone_in_;
+    if (from.empty() || from.back() != state())
+        return false;
+    (is_undo ? undone_in_ : moved_in_).push_back(state());
+    from.pop_back();
+    bool is_done = false;
+    moving([&] { is_done = is_undo ? lit_.undo_move() : lit_.redo_move(); });
+    return is_done;
+}
+
 void LightDesk::undo() {
+    if (exchange_move(true))
+        return;
     timed([&] { return relumine::undo(lit_); });
 }
 
 void LightDesk::redo() {
+    if (exchange_move(false))
+        return;
     timed([&] { return relumine::redo(lit_); });
 }
 

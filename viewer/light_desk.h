@@ -4,11 +4,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "relumine/in/move.h"
 #include "relumine/light/edits.h"
 #include "relumine/light/layers.h"
 #include "relumine/light/lit_scene.h"
@@ -40,8 +43,20 @@ public:
     /// Changes the light. finish() makes all edits since the last step of undo one step.
     void edit(LightState next, Ending ending = Ending::Quick);
     void finish();
+    /// Undoes the last step: a change of the light or a move. A drag() is taken back.
     void undo();
     void redo();
+
+    /// Move groups of the scene, as LitScene does: move() and drop() are steps of undo.
+    ///
+    /// Throws:  as LitScene does.
+    void move(const GroupMove& to);
+    void drag(const GroupMove& to);
+    void drop();
+    /// Sets what is called before a group moves: nothing may trace the scene's rays meanwhile.
+    void on_move(std::function<void()> stop) { stop_ = std::move(stop); }
+    /// Counts changes of the mesh.
+    [[nodiscard]] std::uint64_t mesh_version() const { return mesh_version_; }
 
     /// Dims and colours the scene's own lamps. That is no step of undo.
     ///
@@ -67,6 +82,9 @@ public:
 private:
     template<typename Edit>
     void timed(Edit edit);
+    template<typename Move>
+    void moving(Move move);
+    bool exchange_move(bool is_undo);
     void note_all_texels();
 
     LitScene& lit_;
@@ -74,6 +92,11 @@ private:
     EditCost last_cost_;
     std::vector<cubemap::TexelRectangle> changed_texels_;
     std::uint64_t version_ = 1;
+    std::function<void()> stop_ = [] {
+    };
+    std::uint64_t mesh_version_ = 1;
+    /// The light when groups were moved, and when that was undone
+    std::vector<LightState> moved_in_, undone_in_;
 };
 
 [[nodiscard]] std::optional<std::size_t> find(const LightDesk& desk, const std::string& name);

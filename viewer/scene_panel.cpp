@@ -92,12 +92,14 @@ void tools(ViewState& state, const PixelRectangle& place, const PixelRectangle& 
     constexpr float ChoiceWidth = 130.0f;
     next_item(ChoiceWidth);
     ImGui::SetNextItemWidth(ChoiceWidth);
-    if (ImGui::Combo("##click", &click, "click: asks\0click: lights\0click: mirrors\0"))
+    if (ImGui::Combo("##click", &click,
+                     "click: asks\0click: lights\0click: mirrors\0drag: moves\0"))
         state.click = static_cast<Click>(click);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("A click on the model: shows what lights the point, moves the chosen "
                           "layer so that it lights it (Ctrl), or so that the point mirrors it "
-                          "(Ctrl-Shift)");
+                          "(Ctrl-Shift). A drag moves the thing below the pointer over a level "
+                          "plane (Alt), or before the eye (Alt-Shift); the wheel turns it");
     polish(state);
     dimmers(state);
     ImGui::End();
@@ -106,13 +108,16 @@ void tools(ViewState& state, const PixelRectangle& place, const PixelRectangle& 
 /// What a click does now: the keys go before the choice.
 Click click_of(const ViewState& state) {
     const ImGuiIO& io = ImGui::GetIO();
+    if (io.KeyAlt)
+        return Click::Move;
     return !io.KeyCtrl ? state.click : io.KeyShift ? Click::Mirror : Click::Face;
 }
 
 /// Lets the chosen layer follow the pointer over the mesh, from the press on. Returns false where
 /// the pointer does something else.
 bool aim_by_pointer(ViewState& state, const PixelRectangle& place) {
-    if (ImGui::IsItemClicked(ImGuiMouseButton_Left) && click_of(state) != Click::Ask) {
+    if (ImGui::IsItemClicked(ImGuiMouseButton_Left) && click_of(state) != Click::Ask &&
+        click_of(state) != Click::Move) {
         state.is_aiming = state.desk.selected().has_value();
         state.message = state.is_aiming ? "" : "choose a layer first: a click moves its light";
         state.message_is_error = !state.is_aiming;
@@ -130,9 +135,29 @@ bool aim_by_pointer(ViewState& state, const PixelRectangle& place) {
     return true;
 }
 
+/// Lets a thing of the scene follow the pointer, from the press on. Returns false where the pointer
+/// does something else.
+bool drag_by_pointer(ViewState& state, const PixelRectangle& place) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsItemClicked(ImGuiMouseButton_Left) && click_of(state) == Click::Move)
+        take_thing(state, place, pointer());
+    if (!state.thing.is_dragging())
+        return false;
+    constexpr double DegreesPerStep = 5.0;
+    const bool is_still = io.MouseDelta.x == 0.0f && io.MouseDelta.y == 0.0f;
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left))
+        drop_thing(state);
+    else if (!is_still || io.MouseWheel != 0.0f)
+        drag_thing(state, place, pointer(), io.KeyShift,
+                   DegreesPerStep * static_cast<double>(io.MouseWheel));
+    return true;
+}
+
 void point_and_drag_in_scene(ViewState& state, const PixelRectangle& place) {
     const ImGuiIO& io = ImGui::GetIO();
     constexpr float ClickReach = 4.0f; // pixels
+    if (drag_by_pointer(state, place))
+        return;
     if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f)
         state.camera.zoom(io.MouseWheel);
     if (aim_by_pointer(state, place))

@@ -150,17 +150,23 @@ SceneRenderer::SceneRenderer(const mesh::TriangleMesh& mesh, const relight::Fadi
                                                       BehindSource + BackgroundFragmentSource),
       picture_program_(PictureVertexSource, shown_source() + PictureFragmentSource),
       num_indices_(static_cast<GLsizei>(3 * mesh.num_triangles())) {
-    const mesh::Bounds box = mesh::bounds(mesh);
-    center_ = box.center();
-    diagonal_ = box.diagonal();
-
+    upload_mesh(mesh);
     glBindVertexArray(mesh_array_.id());
-    fill<glm::vec3>(GL_ARRAY_BUFFER, positions_, mesh.positions, GL_STATIC_DRAW);
+    glBindBuffer(GL_ARRAY_BUFFER, positions_.id());
     glEnableVertexAttribArray(0);
     glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(glm::vec3), nullptr);
     glBindBuffer(GL_ARRAY_BUFFER, radiance_.id());
     glEnableVertexAttribArray(1);
     glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(glm::vec3), nullptr);
+    glBindVertexArray(0);
+}
+
+void SceneRenderer::upload_mesh(const mesh::TriangleMesh& mesh) {
+    const mesh::Bounds box = mesh::bounds(mesh);
+    center_ = box.center();
+    diagonal_ = box.diagonal();
+    glBindVertexArray(mesh_array_.id());
+    fill<glm::vec3>(GL_ARRAY_BUFFER, positions_, mesh.positions, GL_STATIC_DRAW);
     fill<mesh::Triangle>(GL_ELEMENT_ARRAY_BUFFER, triangles_, mesh.triangles, GL_STATIC_DRAW);
     glBindVertexArray(0);
 }

@@ -17,6 +17,8 @@ namespace relumine::viewer {
 class SceneRenderer {
 public:
     SceneRenderer(const mesh::TriangleMesh& mesh, const relight::FadingFloor& floor);
+    /// Takes the mesh of the constructor where vertices or triangles have moved.
+    void upload_mesh(const mesh::TriangleMesh& mesh);
     /// `radiance` is [num_vertices].
     void upload_radiance(std::span<const glm::vec3> radiance);
     /// Draws into the current viewport, whose shape must be `viewport`. Clears its depth.

@@ -75,6 +75,11 @@ void drag_to_move(Step& s) {
     drag(s);
 }
 
+void drag_thing(Step& s) {
+    s.state.click = s.is_last() ? Click::Ask : Click::Move;
+    drag(s);
+}
+
 void paint(Step& s) {
     s.state.tool = s.is_last() ? Tool::Move : Tool::Paint;
     drag(s);
@@ -254,9 +259,10 @@ constexpr std::array Verbs = {
     Verb{"paint_env X0 Y0 X1 Y1", paint, DragFrames},
     Verb{"lasso_env X0 Y0 X1 Y1", draw_lasso, DragFrames},
     Verb{"drag_mesh X0 Y0 X1 Y1", drag_to_move, DragFrames},
-    Verb{"click_does 0|1|2",
+    Verb{"drag_thing X0 Y0 X1 Y1", drag_thing, DragFrames},
+    Verb{"click_does 0|1|2|3",
          [](Step& s) {
-             s.state.click = static_cast<Click>(std::clamp(s.number(0), 0.0, 2.0));
+             s.state.click = static_cast<Click>(std::clamp(s.number(0), 0.0, 3.0));
          }},
     Verb{"click X Y", click, 3},
     Verb{"click_mesh X Y", click, 3},

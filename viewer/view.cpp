@@ -67,13 +67,26 @@ Moment moment_of(const ViewState& state, const PixelRectangle& size) {
     return moment;
 }
 
+/// Whether the pointer has something in its hand.
+bool is_held(const ViewState& state) {
+    return state.hand.is_dragging() || state.hand.is_painting() || state.thing.is_dragging();
+}
+
 /// The OpenGL side of the state.
 class Pictures {
 public:
     explicit Pictures(const ViewState& state)
-        : scene_(state.mesh, state.shading.floor),
+        : desk_(state.desk), scene_(state.mesh, state.shading.floor),
           environment_(state.desk.lit().relighter().transfer().quadtree),
-          roughness_(state.roughness), refiner_(state.mesh, state.rays, state.shading) {}
+          mesh_version_(state.desk.mesh_version()), roughness_(state.roughness),
+          refiner_(state.mesh, state.rays, state.shading) {
+        desk_.on_move([this] { refiner_.stop(); });
+    }
+    ~Pictures() {
+        desk_.on_move([] {});
+    }
+    Pictures(const Pictures&) = delete;
+    Pictures& operator=(const Pictures&) = delete;
 
     /// Sends changes by edits to the graphics card.
     void update(ViewState& state, const PixelRectangle& viewport) {
@@ -83,6 +96,12 @@ public:
             roughness_ = state.roughness;
             state.desk.set_roughness(roughness_);
             state.live_eye->take_surfaces();
+        }
+        if (mesh_version_ != state.desk.mesh_version()) {
+            mesh_version_ = state.desk.mesh_version();
+            scene_.upload_mesh(state.mesh);
+            if (state.live_eye)
+                state.live_eye = std::make_unique<LiveEye>(lit);
         }
         const auto version = state.desk.version();
         const bool is_relit = version != version_;
@@ -121,7 +140,7 @@ public:
         }
         // The heat map stays as it was while a layer is dragged: it costs as much as a relighting.
         if (state.heat_is_stale && state.receiver && state.environment_look.heat &&
-            !state.hand.is_dragging() && !state.hand.is_painting()) {
+            !is_held(state)) {
             environment_.upload_heat(contribution_map(lit, {&*state.receiver, 1}));
             state.heat_is_stale = false;
         }
@@ -152,8 +171,7 @@ public:
         if (at_once) {
             scene_.upload_picture(refiner_.draw(moment_of(state, size)));
             is_refined_ = is_refining_ = true;
-        } else if (!is_refining_ && files::seconds_since(since_) > Pause &&
-                   !state.hand.is_dragging() && !state.hand.is_painting()) {
+        } else if (!is_refining_ && files::seconds_since(since_) > Pause && !is_held(state)) {
             refiner_.start(moment_of(state, size));
             is_refining_ = true;
         }
@@ -199,6 +217,7 @@ private:
         floor_.color = studio_color(lighting, state.picture);
     }
 
+    LightDesk& desk_;
     SceneRenderer scene_;
     FloorScene floor_;
     std::shared_ptr<const LightBase> floor_base_;
@@ -208,7 +227,7 @@ private:
     /// What the camera sees of it, where layers are hidden from it.
     CubeTexture behind_;
     bool hides_layers_ = false;
-    std::uint64_t version_ = 0;
+    std::uint64_t version_ = 0, mesh_version_ = 0;
     /// That of the scene's materials.
     float roughness_ = 0.0f;
     /// Those of the shading.
@@ -232,7 +251,9 @@ void handle(Shortcut shortcut, ViewState& state, const PanelLayout& layout) {
         state.heat_is_stale = true;
         break;
     case Shortcut::Delete:
-        if (state.desk.selected() && !state.hand.is_dragging() && !state.hand.is_painting())
+        if (state.thing.is_dragging())
+            state.thing.take_away();
+        else if (state.desk.selected() && !is_held(state))
             remove(state.desk, *state.desk.selected());
         break;
     case Shortcut::FrameAll:
@@ -331,7 +352,8 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
         ++report.num_frames;
     } while (!is_last && !window.should_close() && !options.stop.stop_requested());
     report.mean_frame_seconds = seconds / static_cast<double>(report.num_frames);
-    report.drag_seconds.assign(state.hand.seconds().begin(), state.hand.seconds().end());
+    for (const std::span<const double> seconds_of : {state.hand.seconds(), state.thing.seconds()})
+        report.drag_seconds.insert(report.drag_seconds.end(), seconds_of.begin(), seconds_of.end());
     return report;
 }
 

@@ -122,6 +122,33 @@ bool aim_light(ViewState& state, std::size_t layer, const PixelRectangle& viewpo
     return direction.has_value();
 }
 
+void take_thing(ViewState& state, const PixelRectangle& viewport, const glm::vec2& pixel) {
+    reported(state, [&]() -> std::string {
+        if (state.balls != nullptr)
+            throw std::runtime_error("things are dragged in scenes of vertices");
+        state.thing.begin(ray_through(state.camera, viewport, pixel));
+        return state.thing.is_dragging() ? state.thing.step()->name : "";
+    });
+}
+
+void drag_thing(ViewState& state, const PixelRectangle& viewport, const glm::vec2& pixel,
+                bool is_before_eye, double turn_degrees) {
+    reported(state, [&]() -> std::string {
+        const glm::vec3 normal =
+            is_before_eye ? frame(state.camera, viewport).forward : glm::vec3(0.0f, 1.0f, 0.0f);
+        state.thing.move_to(ray_through(state.camera, viewport, pixel), normal, turn_degrees);
+        const std::optional<GroupStep>& step = state.thing.step();
+        return step ? fmt::format("relumine move: {}={:.4g},{:.4g},{:.4g},{:.4g}", step->name,
+                                  step->by.x, step->by.y, step->by.z, step->degrees)
+                    : "";
+    });
+}
+
+void drop_thing(ViewState& state) {
+    state.thing.end();
+    state.heat_is_stale = true;
+}
+
 bool open(ViewState& state, const std::filesystem::path& path) {
     return reported(state, [&]() -> std::string {
         if (path.extension() == ".json")

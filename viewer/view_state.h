@@ -25,13 +25,14 @@
 #include "viewer/look.h"
 #include "viewer/orbit_camera.h"
 #include "viewer/refiner.h"
+#include "viewer/thing_hand.h"
 
 namespace relumine::viewer {
 
 enum class Tool { Move, Paint, Lasso };
 
 /// What a click on the mesh does.
-enum class Click { Ask, Face, Mirror };
+enum class Click { Ask, Face, Mirror, Move };
 
 struct ViewState {
     /// What is drawn: the scene's mesh, or balls and the mesh.
@@ -45,6 +46,7 @@ struct ViewState {
     std::function<Environment(const std::filesystem::path&)> load_environment;
 
     Gestures hand = Gestures(desk);
+    ThingHand thing = ThingHand(desk);
     OrbitCamera camera = {};
     LatLongView lat_long = {};
     SceneLook scene_look = {};
@@ -104,6 +106,13 @@ void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec
 /// step of undo yet. Returns false, and changes nothing, where the pixel shows no mesh.
 bool aim_light(ViewState& state, std::size_t layer, const PixelRectangle& viewport,
                const glm::vec2& pixel, Aim aim);
+
+/// Takes the thing of the scene that a pixel shows, or says in `message` why not.
+void take_thing(ViewState& state, const PixelRectangle& viewport, const glm::vec2& pixel);
+/// Lets the thing that is held follow the pointer: over a level plane, or before the eye.
+void drag_thing(ViewState& state, const PixelRectangle& viewport, const glm::vec2& pixel,
+                bool is_before_eye, double turn_degrees);
+void drop_thing(ViewState& state);
 
 // Files. These functions report success or failure in `message` and return false for a failure.
 // They do not throw for errors of files.

@@ -29,19 +29,17 @@ void move_groups(const MoveArguments& options, Session& session) {
     for (const GroupStep& step : options.steps) {
         MoveReport moved;
         const prt::Work own = session.work("moving " + step.name);
-        const PrecomputeWork work{
-            .stop = own.stop, .on_progress = [&](Stage stage, double fraction) {
-                own.tell(0.5 * fraction + (stage == Stage::Bounces ? 0.5 : 0.0));
-            }};
         try {
-            move(scene, move_of(scene, step), work, &moved);
+            move(scene, move_of(scene, step), move_work(own), &moved);
         } catch (const std::invalid_argument& error) {
             throw std::runtime_error(fmt::format("{}: {}", options.scene, error.what()));
         }
         session.end_progress();
         session.say(fmt::format(
-            "{}: {} receivers moved, {:.2g} % of the light counted anew, {:.2f} s{}", step.name,
-            moved.num_moved,
+            "{}: {}, {:.2g} % of the light counted anew, {:.2f} s{}", step.name,
+            step.going == Going::Away   ? "taken away"
+            : step.going == Going::Back ? "brought back"
+                                        : fmt::format("{} receivers moved", moved.num_moved),
             100.0 * static_cast<double>(moved.counts.num_pairs) /
                 static_cast<double>(moved.num_all),
             moved.seconds,
@@ -71,7 +69,8 @@ void add_move(Command& program, Session& session) {
     command.add(row<GroupStepText>(
         "STEP", options->steps,
         "NAME=X,Y,Z[,DEGREES]: a group of the mesh, how far it moves, and by how many degrees it "
-        "turns about the vertical through its middle; any number of them",
+        "turns about the vertical through its middle; NAME=away takes it away, NAME=back brings it "
+        "back; any number of them",
         {.required = true, .example = "chair=0.5,0,0,90"}));
     command.add(row("-o,--output", options->output, "the scene to write, .prt; SCENE itself, too",
                     {.file = true, .required = true}));

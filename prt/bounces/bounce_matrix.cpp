@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "files/parallel.h"
+#include "prt/bounces/matrix_rows.h"
 
 namespace relumine::prt {
 
@@ -96,6 +97,10 @@ std::size_t first_emitter(std::size_t lowest_place, const PlaceLists& averaged) 
 }
 
 float spectral_radius(const BounceMatrix& matrix) {
+    return spectral_radius(matrix, NumPowerIterations);
+}
+
+float spectral_radius(const BounceMatrix& matrix, int num_bounces) {
     const std::size_t n = matrix.num_rows();
     if (matrix.emitters.places.empty())
         return 0.0f;
@@ -111,7 +116,7 @@ float spectral_radius(const BounceMatrix& matrix) {
     };
     double norm = std::sqrt(static_cast<double>(n - first));
     double radius = 0.0;
-    for (int iteration = 0; iteration < NumPowerIterations; ++iteration) {
+    for (int iteration = 0; iteration < num_bounces; ++iteration) {
         files::parallel_for(first, n, [&](std::size_t place) {
             gathered[place] = static_cast<float>(sum_of(matrix.emitters[place], x));
         });

@@ -63,10 +63,16 @@ public:
         std::vector<Local> local;
         for (const DirectionCone& cone : cones) {
             const glm::dvec3 axis(cone.axis);
-            local.push_back({static_cast<float>(glm::dot(axis, tangent_)),
-                             static_cast<float>(glm::dot(axis, bitangent_)),
-                             static_cast<float>(glm::dot(axis, normal_)), cone.cosine - Slack});
+            const Local own{static_cast<float>(glm::dot(axis, tangent_)),
+                            static_cast<float>(glm::dot(axis, bitangent_)),
+                            static_cast<float>(glm::dot(axis, normal_)), cone.cosine - Slack};
+            const bool is_below =
+                own.least > 0.0f && own.z < -std::sqrt(1.0f - own.least * own.least);
+            if (!is_below)
+                local.push_back(own);
         }
+        if (local.empty())
+            return;
         std::uint32_t s = fixed(shift_s_), t = fixed(shift_t_);
         for (std::uint32_t i = 0; i < count; ++i, s += fixed(StepS), t += fixed(StepT)) {
             const float squared = 0x1p-32f * static_cast<float>(s);

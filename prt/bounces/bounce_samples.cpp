@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "prt/bounces/matrix_rows.h"
 #include "prt/bounces/similar_receivers.h"
 #include "prt/clusters/dealt_tiles.h"
 
@@ -90,7 +91,7 @@ double closed_part(const glm::vec3& normal, float open_part) {
 
 PlaceLists shared_samples(const Receivers& receivers, const Transfer& transfer, std::size_t begin,
                           std::size_t end, std::span<const float> distances,
-                          std::span<const std::uint32_t> wanted) {
+                          std::span<const std::uint32_t> wanted, const PlaceLists* before) {
     std::vector<glm::vec3> positions;
     for (std::size_t place = begin; place < end; ++place)
         positions.push_back(receivers.positions[transfer.order[place]]);
@@ -111,13 +112,24 @@ PlaceLists shared_samples(const Receivers& receivers, const Transfer& transfer, 
                 of_range.push_back(place - static_cast<std::uint32_t>(first));
         PlaceLists part = similar_receivers(std::span(positions).subspan(first - begin, size),
                                             std::span(transfer.normals).subspan(first, size),
-                                            distances.subspan(first - begin, size), {}, of_range);
+                                            distances.subspan(first - begin, size), {}, of_range,
+                                            {before, first});
         for (std::uint32_t& place : part.places)
             place += static_cast<std::uint32_t>(first);
         for (std::size_t i = 0; i < part.size(); ++i)
             lists.append(part[i]);
     }
     return lists;
+}
+
+float row_weight(const BounceMatrix& matrix, std::size_t place, double closure,
+                 std::span<const std::uint32_t> num_hits) {
+    double num_shared = 0.0, num_emitters = 0.0;
+    for (const std::uint32_t other : matrix.averaged[place]) {
+        num_shared += static_cast<double>(num_hits[other]);
+        num_emitters += static_cast<double>(matrix.emitters[other].size());
+    }
+    return num_emitters > 0.0 ? static_cast<float>(closure / num_shared) : 0.0f;
 }
 
 BounceMatrix join_bounces(const Receivers& receivers, const Transfer& transfer,
@@ -148,13 +160,7 @@ BounceMatrix join_bounces(const Receivers& receivers, const Transfer& transfer,
     const auto num_rows = static_cast<double>(n);
     for (std::size_t place = 0; place < n; ++place) {
         const double closure = closed_part(transfer.normals[place], open_parts[place]);
-        double num_shared = 0.0, num_emitters = 0.0;
-        for (const std::uint32_t other : result.averaged[place]) {
-            num_shared += static_cast<double>(num_hits[other]);
-            num_emitters += static_cast<double>(result.emitters[other].size());
-        }
-        result.weights.push_back(num_emitters > 0.0 ? static_cast<float>(closure / num_shared)
-                                                    : 0.0f);
+        result.weights.push_back(row_weight(result, place, closure, num_hits));
         found.mean_closure += closure / num_rows;
         found.num_hits += num_hits[place];
     }

@@ -71,10 +71,12 @@ struct BounceSamples {
 ///
 /// distances:  [end - begin]
 /// wanted:     places, ascending
+/// before:     lists of all receivers that are about the same, which make it quicker; or null
 [[nodiscard]] PlaceLists shared_samples(const Receivers& receivers, const Transfer& transfer,
                                         std::size_t begin, std::size_t end,
                                         std::span<const float> distances,
-                                        std::span<const std::uint32_t> wanted);
+                                        std::span<const std::uint32_t> wanted,
+                                        const PlaceLists* before = nullptr);
 
 /// Makes the matrix of the samples of all parts, in the order of their indices.
 ///

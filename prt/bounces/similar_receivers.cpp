@@ -87,8 +87,8 @@ private:
 
 PlaceLists similar_receivers(std::span<const glm::vec3> positions,
                              std::span<const glm::vec3> normals, std::span<const float> distances,
-                             const SimilarityLimits& limits,
-                             std::span<const std::uint32_t> wanted) {
+                             const SimilarityLimits& limits, std::span<const std::uint32_t> wanted,
+                             const SimilarBefore& before) {
     const PointTree tree(positions);
     std::vector<std::vector<std::uint32_t>> lists(wanted.size());
     files::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
@@ -97,13 +97,15 @@ PlaceLists similar_receivers(std::span<const glm::vec3> positions,
         std::vector<std::pair<float, std::uint32_t>> nearest;
         const float radius = limits.max_error * distances[place];
         float squared_radius = radius * radius;
-        const auto consider = [&](std::uint32_t other, float squared_distance) {
-            if (other == place)
-                return;
+        const auto is_similar = [&](std::size_t other, float squared_distance) {
             const float turn =
                 std::sqrt(std::max(0.0f, 1.0f - glm::dot(normals[place], normals[other])));
             const float distance = std::min(distances[place], distances[other]);
-            if (!(std::sqrt(squared_distance) <= (limits.max_error - turn) * distance))
+            return other != place &&
+                   std::sqrt(squared_distance) <= (limits.max_error - turn) * distance;
+        };
+        const auto consider = [&](std::uint32_t other, float squared_distance) {
+            if (!is_similar(other, squared_distance))
                 return;
             nearest.emplace_back(squared_distance, other);
             std::push_heap(nearest.begin(), nearest.end());
@@ -114,6 +116,25 @@ PlaceLists similar_receivers(std::span<const glm::vec3> positions,
             if (nearest.size() + 1 == limits.max_size)
                 squared_radius = std::min(squared_radius, nearest.front().first);
         };
+        // Where enough of before are similar still, none is farther than the farthest of them.
+        if (before.lists != nullptr) {
+            constexpr float Rounding = 1.0f + 1e-5f;
+            std::size_t count = 1;
+            float farthest = 0.0f;
+            for (const std::uint32_t known : (*before.lists)[before.first + place]) {
+                const std::size_t other = known - before.first; // modulo 2^64
+                if (other >= positions.size())
+                    continue;
+                const glm::vec3 offset = positions[other] - positions[place];
+                const float squared_distance = glm::dot(offset, offset);
+                if (!is_similar(other, squared_distance))
+                    continue;
+                farthest = std::max(farthest, squared_distance);
+                ++count;
+            }
+            if (count == limits.max_size)
+                squared_radius = std::min(squared_radius, Rounding * farthest);
+        }
         if (radius > 0.0f && limits.max_size > 1)
             tree.visit_near(positions[place], squared_radius, consider);
         std::vector<std::uint32_t>& list = lists[i];

@@ -20,6 +20,13 @@ struct SimilarityLimits {
     std::size_t max_size = 32;
 };
 
+/// Lists that are about those that are to be found, which make that quicker.
+struct SimilarBefore {
+    const PlaceLists* lists = nullptr;
+    /// Place in these lists of the first receiver
+    std::size_t first = 0;
+};
+
 /// Returns for each receiver those that are similar to it, itself among them. The relation is
 /// symmetric but for the limit of sizes. Surfaces that are near separate receivers: at contacts and
 /// in corners each has its own samples.
@@ -28,11 +35,10 @@ struct SimilarityLimits {
 ///          distances of surfaces over the hemisphere, infinite where there are none and 0 where
 ///          a receiver is to stay alone; `wanted` are the places whose lists are returned.
 /// Cost:    O(n log n). Parallel (TBB), the same lists on any number of threads.
-[[nodiscard]] PlaceLists similar_receivers(std::span<const glm::vec3> positions,
-                                           std::span<const glm::vec3> normals,
-                                           std::span<const float> distances,
-                                           const SimilarityLimits& limits,
-                                           std::span<const std::uint32_t> wanted);
+[[nodiscard]] PlaceLists
+similar_receivers(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
+                  std::span<const float> distances, const SimilarityLimits& limits,
+                  std::span<const std::uint32_t> wanted, const SimilarBefore& before = {});
 
 /// Returns the lists of all receivers.
 [[nodiscard]] PlaceLists similar_receivers(std::span<const glm::vec3> positions,

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -96,6 +97,17 @@ public:
                std::any_of(boxes_.begin(), boxes_.end(),
                            [&](const mesh::Bounds& box) { return meets(box, inverse_direction); });
     }
+    /// Returns where a ray first meets a box, in units of its direction's length; infinity where it
+    /// meets none. Given the inverse() of the direction.
+    [[nodiscard]] float nearest(const glm::vec3& inverse_direction) const {
+        float result = std::numeric_limits<float>::infinity();
+        if (boxes_.empty() || !meets(all_, inverse_direction))
+            return result;
+        for (const mesh::Bounds& box : boxes_)
+            if (const auto [enters, leaves] = crossing(box, inverse_direction); enters <= leaves)
+                result = std::min(result, enters);
+        return result;
+    }
     /// Returns those of the `asked` directions of a word that meet a box. Vectorised with run-time
     /// dispatch.
     [[nodiscard]] std::uint64_t meeting(const InverseDirections::Word& word,
@@ -107,11 +119,17 @@ private:
         const glm::vec3 margin(Margin * (reach(box) + reach(places)));
         return {box.min - places.max - margin, box.max - places.min + margin};
     }
-    static bool meets(const mesh::Bounds& box, const glm::vec3& inverse_direction) {
+    /// Where a ray enters a box and leaves it. It misses the box where the first is farther.
+    static std::pair<float, float> crossing(const mesh::Bounds& box,
+                                            const glm::vec3& inverse_direction) {
         const glm::vec3 a = box.min * inverse_direction, b = box.max * inverse_direction;
         const glm::vec3 enters = glm::min(a, b), leaves = glm::max(a, b);
-        return std::max({enters.x, enters.y, enters.z, 0.0f}) <=
-               std::min({leaves.x, leaves.y, leaves.z});
+        return {std::max({enters.x, enters.y, enters.z, 0.0f}),
+                std::min({leaves.x, leaves.y, leaves.z})};
+    }
+    static bool meets(const mesh::Bounds& box, const glm::vec3& inverse_direction) {
+        const auto [enters, leaves] = crossing(box, inverse_direction);
+        return enters <= leaves;
     }
 
     mesh::Bounds all_;

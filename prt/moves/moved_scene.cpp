@@ -14,6 +14,7 @@
 
 #include "prt/moves/met_boxes.h"
 #include "prt/moves/recount.h"
+#include "prt/scene/absent_groups.h"
 #include "prt/visibility/bias.h"
 #include "prt/visibility/ray_scene.h"
 
@@ -74,9 +75,9 @@ private:
 
 /// A group by itself: a mesh of its triangles, with their numbers and those of its vertices.
 struct GroupMesh {
-    mesh::TriangleMesh mesh;
+    mesh::TriangleMesh mesh = {};
     /// Ascending
-    std::vector<std::uint32_t> triangles, vertices;
+    std::vector<std::uint32_t> triangles = {}, vertices = {};
 };
 
 std::vector<glm::vec3> chosen(const std::vector<glm::vec3>& values,
@@ -87,32 +88,30 @@ std::vector<glm::vec3> chosen(const std::vector<glm::vec3>& values,
     return result;
 }
 
-/// `name`: of the group.
-GroupMesh group_of(const mesh::TriangleMesh& mesh, const std::string& name) {
+/// `name`: of the group. `all`: the mesh's triangles, or what they are with all groups there.
+GroupMesh group_of(const mesh::TriangleMesh& mesh, const std::string& name,
+                   const std::vector<mesh::Triangle>& all) {
     const auto group =
         static_cast<std::uint32_t>(std::ranges::find(mesh.groups, name) - mesh.groups.begin());
-    GroupMesh result;
+    GroupMesh result{.triangles = triangles_of(mesh, group)};
     constexpr std::uint32_t None = ~std::uint32_t{0};
     std::vector<std::uint32_t> index(mesh.num_vertices(), None);
-    for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i)
-        if (mesh.triangle_groups[i] == group) {
-            result.triangles.push_back(i);
-            for (const std::uint32_t vertex : mesh.triangles[i])
-                index[vertex] = 0;
-        }
+    for (const std::uint32_t i : result.triangles)
+        for (const std::uint32_t vertex : all[i])
+            index[vertex] = 0;
     for (std::uint32_t vertex = 0; vertex < index.size(); ++vertex)
         if (index[vertex] != None) {
             index[vertex] = static_cast<std::uint32_t>(result.vertices.size());
             result.vertices.push_back(vertex);
         }
     for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
-        for (const std::uint32_t vertex : mesh.triangles[i])
+        for (const std::uint32_t vertex : all[i])
             if (mesh.triangle_groups[i] != group && index[vertex] != None)
                 throw std::invalid_argument(fmt::format(
                     "expected a group with vertices of its own, got {}, which shares some with {}",
                     name, mesh.groups[mesh.triangle_groups[i]]));
     for (const std::uint32_t i : result.triangles) {
-        const auto [a, b, c] = mesh.triangles[i];
+        const auto [a, b, c] = all[i];
         result.mesh.triangles.push_back({index[a], index[b], index[c]});
     }
     result.mesh.positions = chosen(mesh.positions, result.vertices);
@@ -175,6 +174,38 @@ void move_receivers(const Scene& scene, const GroupMesh& before, const mesh::Tri
         }
 }
 
+/// Returns a group that may change.
+GroupMesh changing_group(const Scene& scene, std::uint32_t group,
+                         const std::vector<mesh::Triangle>& all) {
+    if (!scene.receivers.to_eye.empty())
+        throw std::invalid_argument(
+            on_vertices(scene.layout)
+                ? "expected highlights that follow the eye where things move, got those of a fixed "
+                  "view"
+                : "expected vertices or texels where things move, got pixels: they see other "
+                  "things "
+                  "then");
+    if (scene.mesh.triangle_groups.empty() ||
+        (scene.blockers && scene.blockers->triangle_groups.empty()))
+        throw std::invalid_argument(
+            "expected a scene that was precomputed with --movable, got one without groups");
+    GroupMesh result = group_of(scene.mesh, scene.mesh.groups[group], all);
+    const std::size_t num_floor =
+        std::size_t{scene.settings.floor_vertices} * scene.settings.floor_vertices +
+        scene.settings.floor_added;
+    if (!result.vertices.empty() && result.vertices.back() + num_floor >= scene.mesh.num_vertices())
+        throw std::invalid_argument("expected a group of the mesh, got its added floor");
+    return result;
+}
+
+/// Adds boxes around a group as it stands before a change, or after it.
+void add_boxes(SceneDifference& difference, const mesh::TriangleMesh& group, std::size_t side) {
+    for (const mesh::Bounds& box : boxes_around(group)) {
+        difference.boxes.push_back(box);
+        include(difference.around[side], box);
+    }
+}
+
 void require_places(const std::vector<glm::vec3>& positions, float bias) {
     for (const glm::vec3& position : positions)
         for (int axis = 0; axis < 3; ++axis)
@@ -191,13 +222,20 @@ void exchange(Scene& scene, SceneChange& change) {
     exchange(scene.mesh.normals, change.vertices, change.normals);
     exchange(scene.mesh.lifts, change.vertices, change.lifts);
     exchange(scene.mesh.corner_tangents, change.triangles, change.corner_tangents);
-    if (scene.blockers)
+    exchange(scene.mesh.triangles, change.triangles, change.corners);
+    if (scene.blockers) {
         exchange(scene.blockers->positions, change.blocker_vertices, change.blocker_positions);
+        exchange(scene.blockers->triangles, change.blocker_triangles, change.blocker_corners);
+    }
+    if (change.absent)
+        scene.absent.swap(*change.absent);
     exchange(scene.receivers.positions, change.receivers, change.receiver_positions);
     exchange(scene.receivers.normals, change.receivers, change.receiver_normals);
     exchange(scene.transfer.normals, change.places, change.normals_by_place);
     exchange(scene.transfer.counts, change.counts);
-    if (!change.keeps_bounces)
+    if (change.bounces_patch)
+        exchange(*scene.bounces, *change.bounces_patch);
+    else if (change.bounces)
         scene.bounces.swap(change.bounces);
     scene.settings.rim_step.swap(change.rim_step);
 }
@@ -230,25 +268,11 @@ SceneChange outline(const SceneChange& first, const SceneChange& second) {
 
 SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& matrix) {
     const Motion motion(matrix, scene.mesh.offset);
-    if (!scene.receivers.to_eye.empty())
-        throw std::invalid_argument(
-            on_vertices(scene.layout)
-                ? "expected highlights that follow the eye where things move, got those of a fixed "
-                  "view"
-                : "expected vertices or texels where things move, got pixels: they see other "
-                  "things "
-                  "then");
-    if (scene.mesh.triangle_groups.empty() ||
-        (scene.blockers && scene.blockers->triangle_groups.empty()))
-        throw std::invalid_argument(
-            "expected a scene that was precomputed with --movable, got one without groups");
+    GroupMesh before = changing_group(scene, group, scene.mesh.triangles);
     const std::string& name = scene.mesh.groups[group];
-    GroupMesh before = group_of(scene.mesh, name);
-    const std::size_t num_floor =
-        std::size_t{scene.settings.floor_vertices} * scene.settings.floor_vertices +
-        scene.settings.floor_added;
-    if (!before.vertices.empty() && before.vertices.back() + num_floor >= scene.mesh.num_vertices())
-        throw std::invalid_argument("expected a group of the mesh, got its added floor");
+    if (absent(scene, group) != nullptr)
+        throw std::invalid_argument(
+            fmt::format("expected a group that is there, got {}, which was taken away", name));
 
     mesh::TriangleMesh after = before.mesh;
     const auto place = [&](const glm::vec3& position) {
@@ -264,23 +288,17 @@ SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& mat
     change.rim_step =
         scene.settings.rim_step ? *scene.settings.rim_step : automatic_bias(scene.mesh);
     change.difference.around = {no_box(), no_box()};
-    const auto add_boxes = [&](const mesh::TriangleMesh& mesh, std::size_t side) {
-        for (const mesh::Bounds& box : boxes_around(mesh)) {
-            change.difference.boxes.push_back(box);
-            include(change.difference.around[side], box);
-        }
-    };
     if (scene.blockers) {
-        GroupMesh of_blockers = group_of(*scene.blockers, name);
-        add_boxes(of_blockers.mesh, 0);
+        GroupMesh of_blockers = group_of(*scene.blockers, name, scene.blockers->triangles);
+        add_boxes(change.difference, of_blockers.mesh, 0);
         move_all(of_blockers.mesh.positions, place);
         require_places(of_blockers.mesh.positions, scene.settings.bias);
-        add_boxes(of_blockers.mesh, 1);
+        add_boxes(change.difference, of_blockers.mesh, 1);
         change.blocker_vertices = std::move(of_blockers.vertices);
         change.blocker_positions = std::move(of_blockers.mesh.positions);
     }
-    add_boxes(before.mesh, 0);
-    add_boxes(after, 1);
+    add_boxes(change.difference, before.mesh, 0);
+    add_boxes(change.difference, after, 1);
     if (!scene.mesh.corner_tangents.empty())
         for (const std::uint32_t triangle : before.triangles) {
             change.triangles.push_back(triangle);
@@ -293,6 +311,75 @@ SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& mat
     change.positions = std::move(after.positions);
     change.normals = std::move(after.normals);
     change.lifts = std::move(after.lifts);
+    return change;
+}
+
+namespace {
+
+/// What triangles become.
+std::vector<mesh::Triangle> all_away(const mesh::TriangleMesh& mesh,
+                                     const std::vector<std::uint32_t>& triangles) {
+    std::vector<mesh::Triangle> result;
+    for (const std::uint32_t i : triangles)
+        result.push_back(away(mesh.triangles[i]));
+    return result;
+}
+
+/// A change that takes a group away, or brings it back. `all` triangles of the mesh, and of what
+/// blocks, as they are with all groups there.
+SceneChange without_or_with(const Scene& scene, std::uint32_t group,
+                            const std::vector<mesh::Triangle>& all,
+                            const std::vector<mesh::Triangle>& all_blockers) {
+    const AbsentGroup* own = absent(scene, group);
+    const std::size_t side = own != nullptr ? 1 : 0;
+    GroupMesh mesh = changing_group(scene, group, all);
+    SceneChange change;
+    change.group = group;
+    change.rim_step = scene.settings.rim_step;
+    change.absent = scene.absent;
+    change.difference.around = {no_box(), no_box()};
+    change.difference.receivers.resize(scene.receivers.size());
+    add_boxes(change.difference, mesh.mesh, side);
+    if (scene.blockers) {
+        const GroupMesh blockers =
+            group_of(*scene.blockers, scene.mesh.groups[group], all_blockers);
+        add_boxes(change.difference, blockers.mesh, side);
+        change.blocker_triangles = blockers.triangles;
+        change.blocker_corners =
+            own != nullptr ? own->blockers : all_away(*scene.blockers, blockers.triangles);
+    }
+    change.triangles = std::move(mesh.triangles);
+    change.corners = own != nullptr ? own->triangles : all_away(scene.mesh, change.triangles);
+    return change;
+}
+
+} // namespace
+
+SceneChange taken_away(const Scene& scene, std::uint32_t group) {
+    if (absent(scene, group) != nullptr)
+        throw std::invalid_argument(
+            fmt::format("expected a group that is there, got {}, which was taken away",
+                        scene.mesh.groups[group]));
+    SceneChange change =
+        without_or_with(scene, group, scene.mesh.triangles, scene.blocking_mesh().triangles);
+    AbsentGroup own{.group = group};
+    for (const std::uint32_t i : change.triangles)
+        own.triangles.push_back(scene.mesh.triangles[i]);
+    for (const std::uint32_t i : change.blocker_triangles)
+        own.blockers.push_back(scene.blockers->triangles[i]);
+    change.absent->push_back(std::move(own));
+    return change;
+}
+
+SceneChange brought_back(const Scene& scene, std::uint32_t group) {
+    if (absent(scene, group) == nullptr)
+        throw std::invalid_argument(
+            fmt::format("expected a group that was taken away, got {}, which is there",
+                        scene.mesh.groups[group]));
+    const std::vector<mesh::Triangle> all = whole_mesh(scene);
+    SceneChange change =
+        without_or_with(scene, group, all, scene.blockers ? whole_blockers(scene) : all);
+    std::erase_if(*change.absent, [&](const AbsentGroup& own) { return own.group == group; });
     return change;
 }
 

@@ -20,7 +20,15 @@ void exchange(Scene& scene, SceneChange& change);
 ///
 /// Throws:  std::invalid_argument for a matrix that is not finite, singular, mirrors or is no
 ///          affine map; a group whose vertices others share, or that is the added floor's;
-///          receivers that belong to an eye.
+///          receivers that belong to an eye; a group that was taken away.
 [[nodiscard]] SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& matrix);
+
+/// Returns the same of a scene whose group is taken away, or is brought back to where it stood.
+/// Its receivers stay, and see what they see without it.
+///
+/// Throws:  std::invalid_argument for a group that is away already, or that is there; as moved()
+///          for a group.
+[[nodiscard]] SceneChange taken_away(const Scene& scene, std::uint32_t group);
+[[nodiscard]] SceneChange brought_back(const Scene& scene, std::uint32_t group);
 
 } // namespace relumine::prt

@@ -4,7 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <iterator>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -15,6 +15,8 @@
 #include "files/parallel.h"
 #include "prt/bounces/bounce_precompute.h"
 #include "prt/bounces/bounce_sampler.h"
+#include "prt/bounces/bounce_samples.h"
+#include "prt/bounces/matrix_rows.h"
 #include "prt/moves/met_boxes.h"
 #include "prt/steps.h"
 
@@ -35,13 +37,62 @@ struct Asked {
     BounceSampler sampler;
 };
 
-/// Which clusters of a block have other counts: a bit each.
-std::vector<std::uint64_t> changed_clusters(const VisibleCounts& counts, const CountsPatch& patch) {
-    std::vector<std::uint64_t> result(counts.num_blocks() * counts.words_per_block());
-    for (const CountsPatch::Word& word : patch.words)
-        result[word.word] = word.clusters;
-    return result;
-}
+/// For which receivers of a block rays of bounces go into other clusters: where a receiver sees all
+/// of a cluster, none does.
+class OpenedClusters {
+public:
+    OpenedClusters(const VisibleCounts& counts, const CountsPatch& patch)
+        : counts_(counts), patch_(patch), index_(counts.num_blocks() * counts.words_per_block()) {
+        for (std::uint32_t i = 0; i < patch.words.size(); ++i)
+            index_[patch.words[i].word] = i + 1;
+    }
+
+    /// [clusters] of a block, a bit for each receiver
+    using OfBlock = std::vector<std::uint16_t>;
+    /// Calls visit(cluster) for those with a bit that is set.
+    template<typename Visit>
+    void find(std::size_t block, OfBlock& found, const Visit& visit) const {
+        found.assign(counts_.num_leaves, 0);
+        for (std::size_t w = 0; w < counts_.words_per_block(); ++w) {
+            const std::size_t word = counts_.word(block, w);
+            if (index_[word] == 0)
+                continue;
+            const CountsPatch::Word& own = patch_.words[index_[word] - 1];
+            const std::uint8_t* now = patch_.counts.data() + own.first * BlockSize;
+            for (std::uint64_t bits = own.clusters; bits != 0; bits &= bits - 1) {
+                const auto bit = static_cast<std::uint32_t>(std::countr_zero(bits));
+                const bool is_mixed = (own.mixed >> bit & 1u) != 0;
+                const std::uint16_t other =
+                    full(counts_.visible[word], counts_.mixed[word], bit,
+                         (counts_.mixed[word] >> bit & 1u) != 0 ? counts_.mixed_counts(word, bit)
+                                                                : nullptr) ^
+                    full(own.visible, own.mixed, bit, is_mixed ? now : nullptr);
+                now += is_mixed ? BlockSize : 0;
+                if (other == 0)
+                    continue;
+                found[64 * w + bit] = other;
+                visit(static_cast<std::uint32_t>(64 * w) + bit);
+            }
+        }
+    }
+
+private:
+    /// Which receivers see all of a cluster. `counts`: where these are mixed.
+    static std::uint16_t full(std::uint64_t visible, std::uint64_t mixed, std::uint32_t bit,
+                              const std::uint8_t* counts) {
+        if ((mixed >> bit & 1u) == 0)
+            return (visible >> bit & 1u) != 0 ? 0xffff : 0;
+        unsigned result = 0;
+        for (std::size_t i = 0; i < BlockSize; ++i)
+            result |= static_cast<unsigned>(counts[i] == FullCount) << i;
+        return static_cast<std::uint16_t>(result);
+    }
+
+    const VisibleCounts& counts_;
+    const CountsPatch& patch_;
+    /// [words] one more than the patch's, or 0
+    std::vector<std::uint32_t> index_;
+};
 
 /// A cone around a centre and all within an angle of it.
 DirectionCone cone(const glm::dvec3& centre, double angle) {
@@ -53,7 +104,7 @@ DirectionCone cone(const glm::dvec3& centre, double angle) {
 }
 
 /// Finds cones with all directions from a block's places that may meet a box of a difference or lie
-/// in a cluster whose counts changed.
+/// in one of some clusters.
 class ConesOfBlocks {
 public:
     ConesOfBlocks(const Quadtree& quadtree, const SceneDifference& difference)
@@ -115,12 +166,24 @@ private:
     std::vector<Cap> cells_;
 };
 
-std::vector<std::uint32_t> without(std::span<const std::uint32_t> row,
-                                   const std::vector<std::uint32_t>& some) {
-    std::vector<std::uint32_t> result;
-    std::ranges::set_difference(row, some, std::back_inserter(result));
-    return result;
-}
+/// How light grows within a few bounces: after a small change of the matrix its largest eigenvalue
+/// is another in proportion.
+class Growth {
+public:
+    explicit Growth(const BounceMatrix& matrix)
+        : radius_(matrix.spectral_radius), few_(spectral_radius(matrix, FewBounces)) {}
+
+    [[nodiscard]] float radius_of(const BounceMatrix& next) const {
+        constexpr float Small = 0.01f;
+        const float few = spectral_radius(next, FewBounces);
+        return std::abs(few - few_) < Small * few_ ? std::min(radius_ * (few / few_), 1.0f)
+                                                   : spectral_radius(next);
+    }
+
+private:
+    static constexpr int FewBounces = 3;
+    float radius_, few_;
+};
 
 } // namespace
 
@@ -136,7 +199,7 @@ ResampledBounces::ResampledBounces(const BounceView& before, const SceneDifferen
     const Receivers& receivers = before.scene.receivers;
     const BounceRays& rays = before.scene.bounces->rays;
     const Asked asked(before);
-    const std::vector<std::uint64_t> changed = changed_clusters(transfer.counts, counts);
+    const OpenedClusters opened(transfer.counts, counts);
     const ConesOfBlocks cones_of(transfer.quadtree, difference);
     Progress progress(work);
     const auto origin_of = [&](std::size_t place) {
@@ -147,18 +210,12 @@ ResampledBounces::ResampledBounces(const BounceView& before, const SceneDifferen
         progress.poll();
         const std::size_t begin = block * BlockSize;
         const std::size_t end = std::min(begin + BlockSize, rows_.size());
-        const auto word_of = [&](std::size_t w) {
-            return changed[transfer.counts.word(block, w)];
-        };
         mesh::Bounds places = no_box();
         for (std::size_t place = begin; place < end; ++place)
             include(places, origin_of(place));
-        const auto cones = cones_of.of(places, [&](const auto& visit) {
-            for (std::size_t w = 0; w < transfer.counts.words_per_block(); ++w)
-                for (std::uint64_t bits = word_of(w); bits != 0; bits &= bits - 1)
-                    visit(static_cast<std::uint32_t>(64 * w) +
-                          static_cast<std::uint32_t>(std::countr_zero(bits)));
-        });
+        thread_local OpenedClusters::OfBlock of_block;
+        const auto cones =
+            cones_of.of(places, [&](const auto& visit) { opened.find(block, of_block, visit); });
         for (std::size_t place = begin; place < end; ++place) {
             Row& row = rows_[place];
             const PartReceiver own{.place = place, .index = place};
@@ -169,38 +226,53 @@ ResampledBounces::ResampledBounces(const BounceView& before, const SceneDifferen
                 continue;
             const glm::vec3 origin = origin_of(place);
             const MetBoxes boxes(difference.boxes, {origin, origin});
-            row.directions =
-                asked.sampler.chosen(own, rays.num_directions[place], cones,
-                                     [&](const glm::dvec3& direction, std::uint32_t cluster) {
-                                         return (word_of(cluster / 64) >> cluster % 64 & 1u) != 0 ||
-                                                boxes.meets(inverse(glm::vec3(direction)));
-                                     });
-            asked.sampler.look(own, row.directions,
-                               [&](std::uint32_t direction, const RayFate& fate) {
-                                   ++row.num_hits;
-                                   if (fate.emitter != NoEmitter)
-                                       row.emitters.push_back(fate.emitter);
-                                   if (direction < asked.options.min_directions)
-                                       row.sum_inverse_distances += fate.inverse_distance;
-                               });
+            std::vector<float> reaches; // up to where nothing changed
+            const std::vector<std::uint32_t> chosen = asked.sampler.chosen(
+                own, rays.num_directions[place], cones,
+                [&](const glm::dvec3& direction, std::uint32_t cluster) {
+                    const bool is_opened = (of_block[cluster] >> (place - begin) & 1u) != 0;
+                    const float reach =
+                        is_opened ? 0.0f : boxes.nearest(inverse(glm::vec3(direction)));
+                    const bool is_wanted = reach < std::numeric_limits<float>::infinity();
+                    if (is_wanted)
+                        reaches.push_back(reach);
+                    return is_wanted;
+                });
+            std::size_t next = 0;
+            const auto take_up_to = [&](std::size_t end_of_chosen) {
+                for (; next < end_of_chosen; ++next)
+                    row.directions.push_back(chosen[next]);
+            };
+            std::size_t index = 0;
+            asked.sampler.look(own, chosen, [&](std::uint32_t direction, const RayFate& fate) {
+                while (chosen[index] != direction)
+                    ++index;
+                take_up_to(index); // those that met nothing
+                constexpr double Margin = 1.0 + 1e-4;
+                if (static_cast<double>(reaches[index]) * fate.inverse_distance > Margin) {
+                    ++next; // it ends before
+                    return;
+                }
+                take_up_to(index + 1);
+                ++row.num_hits;
+                if (fate.emitter != NoEmitter)
+                    row.emitters.push_back(fate.emitter);
+                if (direction < asked.options.min_directions)
+                    row.sum_inverse_distances += fate.inverse_distance;
+            });
+            take_up_to(chosen.size());
             std::ranges::sort(row.emitters);
         }
     });
 }
 
-BounceSamples ResampledBounces::samples(const BounceView& now, const BounceMatrix& before,
-                                        const Work& work) {
+BouncesPatch ResampledBounces::update(BounceMatrix& matrix, const BounceView& now,
+                                      const Work& work) {
     const Scene& scene = now.scene;
     const Transfer& transfer = scene.transfer;
     const Asked asked(now);
     const std::uint32_t first_look = asked.options.min_directions;
-    BounceSamples result;
-    result.open_parts.assign(now.open_parts.begin(), now.open_parts.end());
-    result.num_directions = before.rays.num_directions;
-    result.num_hits = before.rays.num_hits;
-    result.distances = before.rays.distances;
-    std::vector<std::vector<std::uint32_t>> rows(rows_.size());
-    std::vector<std::uint8_t> is_other(rows_.size());
+    BouncesPatch patch{.distances = matrix.rays.distances, .num_hits = matrix.rays.num_hits};
     Progress progress(work);
     files::parallel_for(std::size_t{0}, rows_.size(), [&](std::size_t place) {
         progress.poll();
@@ -209,46 +281,51 @@ BounceSamples ResampledBounces::samples(const BounceView& now, const BounceMatri
         const bool is_whole = row.is_whole || asked.sampler.closure_of(own) == 0.0;
         if (!is_whole && row.directions.empty())
             return;
-        is_other[place] = 1;
-        const float distance = before.rays.distances[place];
+        const float distance = matrix.rays.distances[place];
         std::uint32_t num_hits = 0;
         double sum = 0.0, sum_before = 0.0;
         if (is_whole) {
-            row.directions.resize(result.num_directions[place]);
+            row.directions.resize(matrix.rays.num_directions[place]);
             std::iota(row.directions.begin(), row.directions.end(), 0u);
+            const std::span<const std::uint32_t> all = matrix.emitters[place];
+            row.emitters.assign(all.begin(), all.end());
         } else {
-            rows[place] = without(before.emitters[place], row.emitters);
-            num_hits = before.rays.num_hits[place] - row.num_hits;
+            num_hits = matrix.rays.num_hits[place] - row.num_hits;
             sum_before = distance > 0.0f ? first_look / static_cast<double>(distance) : 0.0;
             sum = sum_before - row.sum_inverse_distances;
         }
         asked.sampler.look(own, row.directions, [&](std::uint32_t direction, const RayFate& fate) {
             ++num_hits;
             if (fate.emitter != NoEmitter)
-                rows[place].push_back(fate.emitter);
+                row.now.push_back(fate.emitter);
             if (direction < first_look)
                 sum += fate.inverse_distance;
         });
-        std::ranges::sort(rows[place]);
-        result.num_hits[place] = num_hits;
+        std::ranges::sort(row.now);
+        row.directions = {};
+        patch.num_hits[place] = num_hits;
         constexpr double Roundings = 1e-6; // of floats, where all was taken away
-        result.distances[place] =
+        patch.distances[place] =
             sum > Roundings * sum_before ? static_cast<float>(first_look / sum) : 0.0f;
-        row = {};
     });
-    std::size_t num_emitters = 0;
-    for (std::size_t place = 0; place < rows.size(); ++place)
-        num_emitters += is_other[place] != 0 ? rows[place].size() : before.emitters[place].size();
-    result.emitters.places.reserve(num_emitters);
-    result.emitters.begin.reserve(rows.size() + 1);
-    for (std::size_t place = 0; place < rows.size(); ++place)
-        result.emitters.append(is_other[place] != 0 ? std::span<const std::uint32_t>(rows[place])
-                                                    : before.emitters[place]);
-    std::vector<std::uint32_t> all(rows.size());
+    for (std::uint32_t place = 0; place < rows_.size(); ++place)
+        patch.emitters.append(place, rows_[place].emitters, rows_[place].now);
+    rows_ = {};
+    std::vector<std::uint32_t> all(transfer.num_receivers());
     std::iota(all.begin(), all.end(), 0u);
-    result.averaged =
-        shared_samples(scene.receivers, transfer, 0, rows.size(), result.distances, all);
-    return result;
+    patch.averaged =
+        difference(matrix.averaged, shared_samples(scene.receivers, transfer, 0, all.size(),
+                                                   patch.distances, all, &matrix.averaged));
+    const Growth growth_before(matrix);
+    patch.weights = matrix.weights;
+    patch.spectral_radius = matrix.spectral_radius;
+    exchange(matrix, patch);
+    for (std::size_t place = 0; place < all.size(); ++place)
+        matrix.weights[place] =
+            row_weight(matrix, place, closed_part(transfer.normals[place], now.open_parts[place]),
+                       matrix.rays.num_hits);
+    matrix.spectral_radius = growth_before.radius_of(matrix);
+    return patch;
 }
 
 } // namespace relumine::prt

@@ -5,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "prt/bounces/bounce_samples.h"
+#include "prt/bounces/bounce_matrix.h"
+#include "prt/moves/bounces_patch.h"
 #include "prt/moves/counts_patch.h"
 #include "prt/moves/recount.h"
 #include "prt/scene/scene_file.h"
@@ -25,8 +26,9 @@ struct BounceView {
 /// Samples bounces anew where a move asks for it, in two steps: what rays met before, and what they
 /// meet now. Each receiver looks into as many directions as before.
 ///
-/// A ray is traced anew where it may meet a box of the difference, or the receiver's count of its
-/// cluster is another. So the rows are those of all rays, place by place.
+/// A ray is traced anew where it may meet a box of the difference and did not end before that, or
+/// where the receiver saw all of its cluster and does so no more, or the other way round: no ray
+/// goes there. So the rows are those of all rays, place by place.
 class ResampledBounces {
 public:
     /// Whether the scene keeps what this needs.
@@ -36,10 +38,11 @@ public:
     ResampledBounces(const BounceView& before, const SceneDifference& difference,
                      const CountsPatch& counts, const Work& work);
 
-    /// Returns the samples after the move, for join_bounces(); once. `before` are the scene's
-    /// bounces before it.
-    [[nodiscard]] BounceSamples samples(const BounceView& now, const BounceMatrix& before,
-                                        const Work& work);
+    /// Makes the matrix, that of before the move, the one after it; once. Returns what undoes that.
+    ///
+    /// Throws:  Cancelled; nothing has changed then.
+    [[nodiscard]] BouncesPatch update(BounceMatrix& matrix, const BounceView& now,
+                                      const Work& work);
 
 private:
     /// What changes in the row of a receiver.
@@ -48,8 +51,8 @@ private:
         std::vector<std::uint32_t> directions;
         /// All are, and the row is made anew.
         bool is_whole = false;
-        /// What these met: emitters, ascending.
-        std::vector<std::uint32_t> emitters;
+        /// What these met, and meet now: emitters, ascending.
+        std::vector<std::uint32_t> emitters, now;
         std::uint32_t num_hits = 0;
         /// The sum over the hits of the first look
         double sum_inverse_distances = 0.0;

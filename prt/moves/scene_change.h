@@ -11,7 +11,9 @@
 
 #include "mesh/triangle_mesh.h"
 #include "prt/bounces/bounce_matrix.h"
+#include "prt/moves/bounces_patch.h"
 #include "prt/moves/counts_patch.h"
+#include "prt/scene/scene_file.h"
 
 namespace relumine::prt {
 
@@ -34,19 +36,25 @@ struct SceneChange {
     /// The group's vertices, and what they have: as TriangleMesh
     std::vector<std::uint32_t> vertices;
     std::vector<glm::vec3> positions, normals, lifts;
-    /// The group's triangles, where they have tangents
+    /// The group's triangles, where they have tangents or are another
     std::vector<std::uint32_t> triangles;
     std::vector<std::array<glm::vec4, 3>> corner_tangents;
+    std::vector<mesh::Triangle> corners;
     /// The group's vertices in the blockers, where the mesh is none
     std::vector<std::uint32_t> blocker_vertices;
     std::vector<glm::vec3> blocker_positions;
+    /// The group's triangles there, where they are another
+    std::vector<std::uint32_t> blocker_triangles;
+    std::vector<mesh::Triangle> blocker_corners;
+    /// Scene::absent, where a group goes away or comes back
+    std::optional<std::vector<AbsentGroup>> absent;
     /// The receivers that differ, and their places
     std::vector<std::uint32_t> receivers, places;
     std::vector<glm::vec3> receiver_positions, receiver_normals, normals_by_place;
     CountsPatch counts;
+    /// What the bounces change in, or all of them. Neither: the scene keeps those of before.
+    std::optional<BouncesPatch> bounces_patch;
     std::optional<BounceMatrix> bounces;
-    /// The scene keeps its bounces: those of before the change.
-    bool keeps_bounces = false;
     /// SceneSettings::rim_step
     std::optional<float> rim_step;
     /// What a change and its undo both differ in

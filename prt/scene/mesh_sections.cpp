@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "prt/scene/absent_groups.h"
 #include "prt/scene/json_members.h"
 #include "prt/scene/packed_mesh.h"
 #include "prt/scene/section_group.h"
@@ -18,18 +19,20 @@ void require_indices(const SectionReader& reader, const mesh::TriangleMesh& mesh
             reader.fail(section, "indices of vertices");
 }
 
-void group_members(JsonMembers& member, std::vector<std::string>& names, SceneSettings& settings) {
+void group_members(JsonMembers& member, std::vector<std::string>& names,
+                   std::vector<std::string>& absent, SceneSettings& settings) {
     member("names", names);
+    member.unusual("absent", absent, {});
     member.unusual("bounce_tolerance", settings.bounce_tolerance, 0.0f);
     member.unusual("rim_step", settings.rim_step, {});
 }
 
 /// Adds what moves need to know.
 void add_groups(NewSections& sections, const Scene& scene) {
-    std::vector<std::string> names = scene.mesh.groups;
+    std::vector<std::string> names = scene.mesh.groups, absent = absent_names(scene);
     SceneSettings settings = scene.settings;
     JsonMembers members;
-    group_members(members, names, settings);
+    group_members(members, names, absent, settings);
     sections["groups"] = bytes_of(members.json.text(2));
     sections["t_groups"] = SectionContent::view(scene.mesh.triangle_groups);
     if (!scene.blockers)
@@ -44,13 +47,21 @@ void read_groups(const SectionReader& reader, Scene& scene) {
     if (!reader.has("groups"))
         return;
     const files::Json json = reader.json("groups");
+    std::vector<std::string> absent_names;
     try {
         JsonMembers members(json);
-        group_members(members, scene.mesh.groups, scene.settings);
+        group_members(members, scene.mesh.groups, absent_names, scene.settings);
     } catch (const std::exception&) {
         reader.fail("groups", "JSON with the names of groups");
     }
     scene.settings.is_movable = true;
+    for (const std::string& name : absent_names) {
+        const auto found = std::find(scene.mesh.groups.begin(), scene.mesh.groups.end(), name);
+        const auto group = static_cast<std::uint32_t>(found - scene.mesh.groups.begin());
+        if (found == scene.mesh.groups.end() || absent(scene, group) != nullptr)
+            reader.fail("groups", "absent groups by their names, each once");
+        scene.absent.push_back({.group = group}); // load_scene() takes it away
+    }
     const auto read = [&](const std::string& section, mesh::TriangleMesh& mesh) {
         mesh.triangle_groups = reader.elements<std::uint32_t>(section, mesh.num_triangles());
         const std::size_t count = scene.mesh.groups.size();
@@ -66,8 +77,10 @@ void read_groups(const SectionReader& reader, Scene& scene) {
 }
 
 void add_mesh(NewSections& sections, const Scene& scene) {
+    const bool are_there = scene.absent.empty() || !scene.settings.is_movable;
     sections["positions"] = SectionContent::view(scene.mesh.positions);
-    sections["triangles"] = SectionContent::view(scene.mesh.triangles);
+    sections["triangles"] = are_there ? SectionContent::view(scene.mesh.triangles)
+                                                 : bytes_of(whole_mesh(scene));
     sections["normals"] = SectionContent::view(scene.mesh.normals);
     if (!scene.mesh.colors.empty())
         sections["colors"] = SectionContent::view(scene.mesh.colors);
@@ -79,7 +92,9 @@ void add_mesh(NewSections& sections, const Scene& scene) {
         sections["lifts"] = SectionContent::view(scene.mesh.lifts);
     if (scene.blockers) {
         sections["block_positions"] = SectionContent::view(scene.blockers->positions);
-        sections["block_triangles"] = SectionContent::view(scene.blockers->triangles);
+        sections["block_triangles"] = are_there
+                                          ? SectionContent::view(scene.blockers->triangles)
+                                          : bytes_of(whole_blockers(scene));
     }
     if (scene.settings.is_movable)
         add_groups(sections, scene);

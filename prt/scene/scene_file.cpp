@@ -7,6 +7,7 @@
 #include "files/hash.h"
 #include "files/output_file.h"
 #include "prt/glossy/glossy_precompute.h"
+#include "prt/scene/absent_groups.h"
 #include "prt/scene/section_group.h"
 
 namespace relumine::prt {
@@ -25,6 +26,8 @@ Scene read_scene(const SectionReader& reader, bool is_plan) {
         if (!(is_plan && (group->is_light || group == &BounceSections)))
             group->read(reader, scene);
     check_scene(scene, reader.path());
+    for (AbsentGroup& own : scene.absent)
+        take_away(scene, own);
     if (!is_plan)
         set_surfaces(scene.transfer, scene.receivers);
     return scene;

@@ -56,6 +56,16 @@ struct SceneSettings {
     std::vector<std::string> left_out = {};
 };
 
+/// A group that was taken away: its triangles, in the order of their numbers, as they are when it
+/// is back. Meanwhile all corners of a triangle are its first one, so that it blocks and shows
+/// nothing. Vertices and receivers stay.
+struct AbsentGroup {
+    std::uint32_t group = 0;
+    std::vector<mesh::Triangle> triangles = {};
+    /// Those of Scene::blockers
+    std::vector<mesh::Triangle> blockers = {};
+};
+
 /// Everything that relighting and drawing need.
 struct Scene {
     mesh::TriangleMesh mesh;
@@ -69,6 +79,8 @@ struct Scene {
     /// The triangles that block light, where they are not the mesh's own: the mesh before it was
     /// refined or simplified. Positions and triangles with their groups, nothing else.
     std::optional<mesh::TriangleMesh> blockers = {};
+    /// Groups that were taken away (prt/scene/absent_groups.h)
+    std::vector<AbsentGroup> absent = {};
     /// Light from surface to surface. It comes from vertices, so pixels and texels have the mesh's
     /// vertices behind them: Receivers::num_added.
     std::optional<BounceMatrix> bounces = {};

@@ -37,8 +37,11 @@ using Path = std::filesystem::path;
 /// change into memory that stays where it is as long as Python looks at it.
 class Lit {
 public:
+    /// A scene whose groups may move is copied: Python's never change.
     Lit(std::shared_ptr<const Scene> scene, const LightOptions& options)
-        : lit_(std::move(scene), options), radiance_(lit_.scene().receivers.size()) {}
+        : lit_(scene->settings.is_movable ? LitScene(Scene(*scene), options)
+                                          : LitScene(std::move(scene), options)),
+          radiance_(lit_.scene().receivers.size()) {}
 
     /// Returns `work(LitScene&)`; other threads wait. Called without Python's lock.
     template<typename Work>
@@ -58,17 +61,26 @@ public:
         const std::span<const glm::vec3> radiance = eye_->look(eye, options);
         return {radiance.begin(), radiance.end()};
     }
-    /// Returns `work(LitScene&)` that changes the light, and copies the radiance; other threads
-    /// wait. Called without Python's lock.
+    /// Returns `work(LitScene&)` that changes the light, and copies the radiance, also where it
+    /// throws; other threads wait. Called without Python's lock.
     template<typename Work>
     auto change(const Work& work) {
         const std::lock_guard lock(mutex_);
         is_eye_lit_ = false;
-        const auto result = work(lit_);
-        const std::span<const glm::vec3> radiance = lit_.radiance();
-        std::copy(radiance.begin(), radiance.end(), radiance_.begin());
-        is_lit_ = !radiance.empty();
-        return result;
+        struct Copies {
+            ~Copies() { own.copy_radiance(); }
+            Lit& own;
+        };
+        const Copies copies{*this};
+        return work(lit_);
+    }
+    /// Returns `work(LitScene&)` that moves groups.
+    template<typename Work>
+    auto move(const Work& work) {
+        return change([&](LitScene& lit) {
+            eye_.reset();
+            return work(lit);
+        });
     }
     /// A progress function that calls back would wait for itself.
     void refuse_reentry() const {
@@ -89,6 +101,12 @@ public:
     };
 
 private:
+    void copy_radiance() {
+        const std::span<const glm::vec3> radiance = lit_.radiance();
+        std::copy(radiance.begin(), radiance.end(), radiance_.begin());
+        is_lit_ = !radiance.empty();
+    }
+
     std::mutex mutex_;
     LitScene lit_;
     std::vector<glm::vec3> radiance_;
@@ -124,6 +142,16 @@ auto slowly(const LitPointer& own, const py::object& progress, Work work) {
     const Lit::Caller caller(*own);
     return in_background(progress, [own, work = std::move(work)](const Reins& reins) {
         return own->use([&](LitScene& lit) { return work(lit, reins); });
+    });
+}
+
+/// The same with `work(LitScene&, reins)` that moves groups.
+template<typename Work>
+auto moving(const LitPointer& own, const py::object& progress, Work work) {
+    own->refuse_reentry();
+    const Lit::Caller caller(*own);
+    return in_background(progress, [own, work = std::move(work)](const Reins& reins) {
+        return own->move([&](LitScene& lit) { return work(lit, reins); });
     });
 }
 
@@ -239,6 +267,48 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
                 return std::pair(lit.history().can_undo(lit.state()), lit.history().can_redo());
             });
         });
+}
+
+py::dict move(const LitPointer& own, const std::string& name, const py::object& to,
+              const py::object& progress) {
+    return move_figures(
+        moving(own, progress, [to = group_move(name, to)](LitScene& lit, const Reins& reins) {
+            return lit.move(to, move_work(reins));
+        }));
+}
+
+py::dict drag(const LitPointer& own, const std::string& name, const py::object& to) {
+    return move_figures(
+        moving(own, py::none(),
+               [to = group_move(name, to)](LitScene& lit, const Reins&) { return lit.drag(to); }));
+}
+
+/// A copy of the scene as it stands.
+std::shared_ptr<Scene> present_scene(const LitPointer& own) {
+    return slowly(own, py::none(), [](LitScene& lit, const Reins&) {
+        if (lit.is_dragging())
+            throw std::logic_error(
+                "expected no group that is dragged: drop() or undo_move() first");
+        return std::make_shared<Scene>(lit.scene());
+    });
+}
+
+void bind_moves(py::class_<Lit, LitPointer>& type) {
+    type.def("move", &move)
+        .def("drag", &drag)
+        .def("drop",
+             [](const LitPointer& own, const py::object& progress) {
+                 return move_figures(moving(own, progress, [](LitScene& lit, const Reins& reins) {
+                     return lit.drop(move_work(reins));
+                 }));
+             })
+        .def("exchange_move",
+             [](const LitPointer& own, bool is_undo) {
+                 return moving(own, py::none(), [is_undo](LitScene& lit, const Reins&) {
+                     return is_undo ? lit.undo_move() : lit.redo_move();
+                 });
+             })
+        .def("scene", &present_scene);
 }
 
 py::dict verify(const LitPointer& own, std::size_t samples, std::size_t surface, std::uint64_t seed,
@@ -602,6 +672,7 @@ void bind_relighters(py::module_& module) {
             return owned(std::move(map));
         });
     bind_editing(type);
+    bind_moves(type);
     bind_questions(type);
     bind_pictures(module, type);
     bind_fits(type);

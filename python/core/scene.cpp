@@ -9,7 +9,6 @@
 #include "options.h"
 #include "relumine/in/material_report.h"
 #include "relumine/in/mesh_files.h"
-#include "relumine/in/move.h"
 #include "relumine/out/first_sight.h"
 #include "run.h"
 
@@ -20,9 +19,16 @@ namespace {
 using Path = std::filesystem::path;
 using MeshPointer = std::shared_ptr<Mesh>;
 
-/// The triangles of both meshes.
-mesh::TriangleMesh together(const mesh::TriangleMesh& mesh, const mesh::TriangleMesh& others) {
+/// The triangles of both meshes. Where the mesh has groups, the others are one of their own.
+mesh::TriangleMesh together(mesh::TriangleMesh& mesh, const mesh::TriangleMesh& others) {
     mesh::TriangleMesh result;
+    if (!mesh.groups.empty()) {
+        result.triangle_groups = mesh.triangle_groups;
+        result.triangle_groups.resize(mesh.num_triangles() + others.num_triangles(),
+                                      static_cast<std::uint32_t>(mesh.groups.size()));
+        mesh.groups.emplace_back("blockers");
+        result.groups = mesh.groups;
+    }
     result.positions = mesh.positions;
     result.positions.insert(result.positions.end(), others.positions.begin(),
                             others.positions.end());
@@ -267,33 +273,15 @@ std::shared_ptr<Scene> load_prt(const Path& path) {
 
 /// Returns another scene, and figures.
 py::tuple moved(const std::shared_ptr<Scene>& scene, const std::string& name,
-                const py::buffer& row_by_row, const py::object& progress) {
-    GroupMove to{.name = name};
-    const std::vector<double> numbers = doubles(row_by_row);
-    for (int i = 0; i < 16; ++i)
-        to.matrix[i % 4][i / 4] = numbers.at(static_cast<std::size_t>(i));
+                const py::object& matrix, const py::object& progress) {
     using Result = std::pair<std::shared_ptr<Scene>, MoveReport>;
-    const Result result = in_background(progress, [scene, to](const Reins& reins) {
-        Result found{std::make_shared<Scene>(*scene), {}};
-        move(*found.first, to,
-             {.stop = reins.stop,
-              .on_progress =
-                  [&reins](Stage stage, double fraction) {
-                      reins.on_progress(0.5 * fraction + (stage == Stage::Bounces ? 0.5 : 0.0));
-                  }},
-             &found.second);
-        return found;
-    });
-    py::dict report;
-    report["receivers"] = result.second.num_moved;
-    report["pairs"] = result.second.counts.num_pairs;
-    report["pairs_changed"] = result.second.counts.num_changed;
-    report["pairs_all"] = result.second.num_all;
-    report["rays"] = result.second.counts.num_rays;
-    report["leaves_box"] = result.second.leaves_box;
-    report["seconds_bounces"] = result.second.seconds_bounces;
-    report["seconds"] = result.second.seconds;
-    return py::make_tuple(result.first, std::move(report));
+    const Result result =
+        in_background(progress, [scene, to = group_move(name, matrix)](const Reins& reins) {
+            Result found{std::make_shared<Scene>(*scene), {}};
+            move(*found.first, to, move_work(reins), &found.second);
+            return found;
+        });
+    return py::make_tuple(result.first, move_figures(result.second));
 }
 
 std::shared_ptr<Scene> recoloured(const std::shared_ptr<Scene>& scene, const py::dict& given) {
@@ -347,6 +335,30 @@ void bind_mesh_arrays(Class& type, Geometry geometry) {
 }
 
 } // namespace
+
+GroupMove group_move(const std::string& name, const py::object& to) {
+    if (py::isinstance<py::str>(to))
+        return {.name = name,
+                .going = to.cast<std::string>() == "away" ? Going::Away : Going::Back};
+    GroupMove result{.name = name};
+    const std::vector<double> numbers = doubles(to.cast<py::buffer>());
+    for (int i = 0; i < 16; ++i)
+        result.matrix[i % 4][i / 4] = numbers.at(static_cast<std::size_t>(i));
+    return result;
+}
+
+py::dict move_figures(const MoveReport& report) {
+    py::dict result;
+    result["receivers"] = report.num_moved;
+    result["pairs"] = report.counts.num_pairs;
+    result["pairs_changed"] = report.counts.num_changed;
+    result["pairs_all"] = report.num_all;
+    result["rays"] = report.counts.num_rays;
+    result["leaves_box"] = report.leaves_box;
+    result["seconds_bounces"] = report.seconds_bounces;
+    result["seconds"] = report.seconds;
+    return result;
+}
 
 void bind_scenes(py::module_& module) {
     py::class_<Mesh, std::shared_ptr<Mesh>> mesh_type(module, "Mesh");

@@ -3,9 +3,11 @@
 
 #include <memory>
 #include <mutex>
+#include <string>
 
 #include <pybind11/pybind11.h>
 
+#include "relumine/in/move.h"
 #include "relumine/relumine.h"
 
 namespace relumine::python {
@@ -23,6 +25,10 @@ struct EnvironmentHandle {
     std::shared_ptr<Resampled> resampled = std::make_shared<Resampled>();
     EnvironmentOptions options;
 };
+
+/// `to`: a matrix, 16 doubles, row by row; or "away" or "back".
+[[nodiscard]] GroupMove group_move(const std::string& name, const pybind11::object& to);
+[[nodiscard]] pybind11::dict move_figures(const MoveReport& report);
 
 void bind_scenes(pybind11::module_& module);
 void bind_environments(pybind11::module_& module);

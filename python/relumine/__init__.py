@@ -35,6 +35,7 @@ from ._relighter import (
     FittedEnvironment,
     FittedLights,
     Frame,
+    Move,
     Relighter,
     RelightTimes,
     Share,
@@ -46,7 +47,7 @@ from ._scene import Blinn, Ggx, Lambert, Scene, join, plan, precompute, precompu
 __version__: str = _core.__version__
 __all__ = [
     "FACES", "Blinn", "Bounces", "Brdf", "Emit", "Environment", "FileError", "FittedEnvironment", "FittedLights", "Frame", "Gain", "Ggx",
-    "Image", "Lambert", "Layer", "LightList", "Mesh", "Picture",
+    "Image", "Lambert", "Layer", "LightList", "Mesh", "Move", "Picture",
     "RelightTimes", "Relighter", "RelumineWarning", "Scene", "Share", "Update",
     "Verification", "irradiance", "join", "load_layers", "plan", "precompute", "precompute_part", "save_layers",
     "set_threads", *_SHAPES,

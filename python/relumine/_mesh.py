@@ -47,7 +47,8 @@ class Mesh:
     colors     (N, 3) linear RGB
     uvs        (N, 2), for lightmaps
     groups     (M,) names: the things that each triangle is of, for materials and Scene.move()
-    blockers   (vertices, triangles) of other things that block the light and are not lit
+    blockers   (vertices, triangles) of other things that block the light and are not lit; beside
+               groups they are the group "blockers"
     up         "x", "y" or "z": the axis of the arrays that points up
     floor      n: adds a floor of n x n vertices under the mesh, after its own vertices; "auto": a
                coarse one, which precompute() refines where shadows fall

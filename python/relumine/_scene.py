@@ -433,9 +433,29 @@ class Scene:
         >>> scene.move("mesh", shifted)
         <relumine.Scene: vertices, ... receivers, ... clusters>
         """
-        rows = doubles("matrix", matrix, 4, 4)
+        return self._moved(name, doubles("matrix", matrix, 4, 4), progress)
+
+    def remove(self, name: str, *, progress: Optional[Progress] = None) -> "Scene":
+        """A scene from which a group is taken away, for the cost of a move. restore() undoes it.
+
+        The group hides and shows nothing. Its receivers keep their numbers, and have the light that
+        they would have without it. A file keeps what is away.
+
+        >>> scene = relumine.precompute(mesh, tolerance=0.05, bounces=False, movable=True)
+        >>> scene.remove("mesh").restore("mesh")
+        <relumine.Scene: vertices, ... receivers, ... clusters>
+        """
+        return self._moved(name, "away", progress)
+
+    def restore(self, name: str, *, progress: Optional[Progress] = None) -> "Scene":
+        """A scene in which a group that was removed stands again where it stood."""
+        return self._moved(name, "back", progress)
+
+    def _moved(
+        self, name: str, to: Union[NDArray[Any], str], progress: Optional[Progress]
+    ) -> "Scene":
         with errors():
-            core, report = _core.moved(self._core, word("name", name), rows, progress)
+            core, report = _core.moved(self._core, word("name", name), to, progress)
         scene = Scene._of(core)
         scene.report = report
         return scene

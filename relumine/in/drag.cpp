@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <stdexcept>
 #include <utility>
 
 #include "files/seconds.h"
@@ -50,10 +51,16 @@ prt::RecountOptions options_of(const Scene& scene, prt::Recounted blocks,
             .blocks = blocks};
 }
 
+prt::SceneChange dragged(const Scene& scene, const GroupMove& to) {
+    if (to.going != Going::To)
+        throw std::invalid_argument("expected a place to drag a group to");
+    return prt::moved(scene, group_named(scene, to.name), to.matrix);
+}
+
 } // namespace
 
 GroupDrag::GroupDrag(Scene& scene, SceneRays& rays, const GroupMove& to)
-    : GroupDrag(scene, rays, to, prt::moved(scene, group_named(scene, to.name), to.matrix)) {}
+    : GroupDrag(scene, rays, to, dragged(scene, to)) {}
 
 GroupDrag::GroupDrag(Scene& scene, SceneRays& rays, const GroupMove& to, prt::SceneChange first)
     : scene_(scene), rays_(rays), group_(first.group),
@@ -70,7 +77,6 @@ GroupDrag::GroupDrag(Scene& scene, SceneRays& rays, const GroupMove& to, prt::Sc
 /// Counts the receivers of other groups while this one is shrunk to a point, which blocks nothing.
 void GroupDrag::count_without() {
     without_.group = group_;
-    without_.keeps_bounces = true;
     without_.difference = {.boxes = prt::boxes_around(mesh_), .receivers = receivers_};
     std::vector<glm::vec3>& positions = blocking_mesh(scene_).positions;
     for (const std::uint32_t vertex : vertices_)
@@ -102,7 +108,6 @@ prt::SceneChange GroupDrag::to(const glm::dmat4& matrix, std::vector<bool> coars
         exchange();
         throw;
     }
-    next.keeps_bounces = true;
     prt::exchange(scene_, next);
     rays_.follow(group_);
     for (std::size_t i = 0; i < vertices_.size(); ++i)

@@ -1,6 +1,7 @@
 #include "relumine/in/move.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -24,6 +25,8 @@ namespace relumine {
 
 namespace {
 
+constexpr std::array GoingWords = {std::pair("away", Going::Away), std::pair("back", Going::Back)};
+
 mesh::Bounds box_of(const mesh::TriangleMesh& mesh, std::uint32_t group) {
     std::vector<glm::vec3> corners;
     for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
@@ -38,7 +41,8 @@ bool is_inside(const mesh::Bounds& box, const mesh::Bounds& of) {
 }
 
 /// Samples the scene's bounces anew, all of them.
-void find_bounces(Scene& scene, const prt::RayScene& rays, const PrecomputeWork& work) {
+prt::BounceMatrix found_bounces(Scene& scene, const prt::RayScene& rays,
+                                const PrecomputeWork& work) {
     PrecomputeReport found;
     prt::Plan plan{.scene = std::move(scene)};
     plan.bounces = {.tolerance = plan.scene.settings.bounce_tolerance};
@@ -46,7 +50,7 @@ void find_bounces(Scene& scene, const prt::RayScene& rays, const PrecomputeWork&
         std::vector<prt::BounceSamples> samples;
         samples.push_back(Stages(plan, work, found, {}).bounces(rays));
         scene = std::move(plan.scene);
-        scene.bounces = prt::join_bounces(scene.receivers, scene.transfer, std::move(samples));
+        return prt::join_bounces(scene.receivers, scene.transfer, std::move(samples));
     } catch (...) {
         if (scene.mesh.positions.empty())
             scene = std::move(plan.scene);
@@ -64,12 +68,24 @@ std::vector<float> open_parts(const Scene& scene) {
     return result;
 }
 
-/// A move, step by step. The scene's bounces stay in the change as long as there are no others.
+prt::SceneChange change_of(const Scene& scene, const GroupMove& to) {
+    const std::uint32_t group = group_named(scene, to.name);
+    switch (to.going) {
+    case Going::To:
+        return prt::moved(scene, group, to.matrix);
+    case Going::Away:
+        return prt::taken_away(scene, group);
+    case Going::Back:
+        return prt::brought_back(scene, group);
+    }
+    return {};
+}
+
+/// A move, step by step. The scene has its bounces of before until there are others.
 class Move {
 public:
     Move(Scene& scene, const GroupMove& to, SceneRays& rays, const PrecomputeWork& work)
-        : scene_(scene), rays_(rays), work_(work),
-          change_(prt::moved(scene, group_named(scene, to.name), to.matrix)),
+        : scene_(scene), rays_(rays), work_(work), change_(change_of(scene, to)),
           has_bounces_(scene.bounces.has_value()) {}
 
     prt::SceneChange run(MoveReport& report) {
@@ -129,14 +145,13 @@ private:
 
     void bounce(std::optional<prt::ResampledBounces>& resampled) {
         if (!resampled) {
-            find_bounces(scene_, rays_.blockers(), work_);
+            prt::BounceMatrix found = found_bounces(scene_, rays_.blockers(), work_);
+            change_.bounces = std::exchange(scene_.bounces, std::move(found));
             return;
         }
         const std::vector<float> open = open_parts(scene_);
-        std::vector<prt::BounceSamples> samples;
-        samples.push_back(resampled->samples({scene_, open, rays_.of_mesh()}, *change_.bounces,
-                                             work_.of(Stage::Bounces).part(0.5, 0.5)));
-        scene_.bounces = prt::join_bounces(scene_.receivers, scene_.transfer, std::move(samples));
+        change_.bounces_patch = resampled->update(*scene_.bounces, {scene_, open, rays_.of_mesh()},
+                                                  work_.of(Stage::Bounces).part(0.5, 0.5));
     }
 
     Scene& scene_;
@@ -148,11 +163,21 @@ private:
 
 } // namespace
 
-std::uint32_t group_named(const Scene& scene, const std::string& name) {
-    const std::vector<std::string>& names = scene.mesh.groups;
+PrecomputeWork move_work(const prt::Work& work) {
+    return {.stop = work.stop, .on_progress = [work](Stage stage, double fraction) {
+                work.tell(0.5 * fraction + (stage == Stage::Bounces ? 0.5 : 0.0));
+            }};
+}
+
+void require_movable(const Scene& scene) {
     if (!scene.settings.is_movable || scene.mesh.triangle_groups.empty())
         throw std::invalid_argument("expected a scene that was precomputed with --movable, got one "
                                     "without groups");
+}
+
+std::uint32_t group_named(const Scene& scene, const std::string& name) {
+    require_movable(scene);
+    const std::vector<std::string>& names = scene.mesh.groups;
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end())
         throw std::invalid_argument(
@@ -163,30 +188,42 @@ std::uint32_t group_named(const Scene& scene, const std::string& name) {
 
 GroupStep GroupStepText::read(const std::string& text) {
     const std::size_t equals = text.rfind('=');
+    for (const auto& [word, going] : GoingWords)
+        if (equals != 0 && equals != std::string::npos && text.substr(equals + 1) == word)
+            return {.name = text.substr(0, equals), .going = going};
     const auto numbers = parse_numbers(equals == std::string::npos ? "" : text.substr(equals + 1));
     const auto is_finite = [](double number) {
         return std::isfinite(number);
     };
     if (equals == 0 || !numbers || (numbers->size() != 3 && numbers->size() != 4) ||
         !std::all_of(numbers->begin(), numbers->end(), is_finite))
-        refuse_text("NAME=X,Y,Z or NAME=X,Y,Z,DEGREES", text);
+        refuse_text("NAME=X,Y,Z, NAME=X,Y,Z,DEGREES, NAME=away or NAME=back", text);
     return {.name = text.substr(0, equals),
             .by = {(*numbers)[0], (*numbers)[1], (*numbers)[2]},
             .degrees = numbers->size() == 4 ? numbers->back() : 0.0};
 }
 
 std::string GroupStepText::show(const GroupStep& step) {
+    for (const auto& [word, going] : GoingWords)
+        if (step.going == going)
+            return fmt::format("{}={}", step.name, word);
     return fmt::format("{}={},{},{}{}", step.name, step.by.x, step.by.y, step.by.z,
                        step.degrees == 0.0 ? "" : fmt::format(",{}", step.degrees));
 }
 
+glm::dvec3 middle_of(const Scene& scene, const std::string& name) {
+    return glm::dvec3(box_of(scene.mesh, group_named(scene, name)).center()) + scene.mesh.offset;
+}
+
 GroupMove move_of(const Scene& scene, const GroupStep& step) {
-    const glm::dvec3 middle =
-        glm::dvec3(box_of(scene.mesh, group_named(scene, step.name)).center()) + scene.mesh.offset;
+    return move_of(step, middle_of(scene, step.name));
+}
+
+GroupMove move_of(const GroupStep& step, const glm::dvec3& middle) {
     glm::dmat4 matrix = glm::translate(glm::dmat4(1.0), middle + step.by);
     if (step.degrees != 0.0)
         matrix = glm::rotate(matrix, glm::radians(step.degrees), glm::dvec3(0.0, 1.0, 0.0));
-    return {.name = step.name, .matrix = glm::translate(matrix, -middle)};
+    return {.name = step.name, .matrix = glm::translate(matrix, -middle), .going = step.going};
 }
 
 prt::SceneChange move(Scene& scene, const GroupMove& to, const PrecomputeWork& work,

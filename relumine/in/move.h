@@ -15,19 +15,25 @@
 
 namespace relumine {
 
+/// Whether a group goes to another place, is taken away, or is brought back to where it stood.
+enum class Going { To, Away, Back };
+
 /// Moves a group of the scene's mesh.
 struct GroupMove {
     std::string name = {};
     /// From its present place to the next one, in the coordinates of the mesh's file with Y up
     glm::dmat4 matrix{1.0};
+    /// With Away and Back the matrix counts for nothing.
+    Going going = Going::To;
 };
 
 /// NAME=X,Y,Z[,DEGREES]: a step, and a turn about the vertical axis through the middle of the
-/// group's box.
+/// group's box. NAME=away and NAME=back: the group is taken away and brought back.
 struct GroupStep {
     std::string name = {};
     glm::dvec3 by{0.0};
     double degrees = 0.0;
+    Going going = Going::To;
     bool operator==(const GroupStep&) const = default;
 };
 struct GroupStepText {
@@ -36,14 +42,22 @@ struct GroupStepText {
     static std::string show(const GroupStep& step);
 };
 
-/// Returns the move that a step is.
+/// Returns the middle of a group's box, in the coordinates of the mesh's file.
+///
+/// Throws:  std::invalid_argument as move() for a name.
+[[nodiscard]] glm::dvec3 middle_of(const Scene& scene, const std::string& name);
+/// Returns the move that a step is, of the group as it stands or of one with its middle elsewhere.
 ///
 /// Throws:  std::invalid_argument as move() for a name.
 [[nodiscard]] GroupMove move_of(const Scene& scene, const GroupStep& step);
+[[nodiscard]] GroupMove move_of(const GroupStep& step, const glm::dvec3& middle);
 
-/// Returns the number of a group of a scene that was precomputed with PrecomputeOptions::movable.
+/// Throws:  std::invalid_argument for a scene that was precomputed without
+///          PrecomputeOptions::movable.
+void require_movable(const Scene& scene);
+/// Returns the number of a group.
 ///
-/// Throws:  std::invalid_argument for a scene without groups, and a name that none has.
+/// Throws:  as require_movable(); std::invalid_argument for a name that none has.
 [[nodiscard]] std::uint32_t group_named(const Scene& scene, const std::string& name);
 
 struct MoveReport {
@@ -57,18 +71,22 @@ struct MoveReport {
     double seconds_bounces = 0.0, seconds = 0.0;
 };
 
+/// Returns a handle for move() that tells the progress of all its stages as one.
+[[nodiscard]] PrecomputeWork move_work(const prt::Work& work);
+
 /// Moves a group of a scene that was precomputed with PrecomputeOptions::movable. The clusters
 /// stay. The counts become those that a precompute finds for these clusters, bit by bit: only rays
 /// are traced that the group can have met before or can meet now. So are the rays of bounces, where
 /// the scene knows how many each receiver has; otherwise all are sampled anew. What the precompute
 /// made of the scene beyond that stays: receivers where they look from, vertices that refinement
-/// added, lifts.
+/// added, lifts. Receivers of a group that is taken away stay, and see what they see without it.
 ///
 /// Returns what undoes the move: prt::exchange(scene, change). A second exchange makes it again.
 /// Report:  where given, filled.
 /// Rays:    those of the scene, which follow it. Without them they are made for the move.
 /// Throws:  std::invalid_argument for a scene without groups, a name that no group has, and as
-///          prt::moved(); Cancelled. Nothing has changed then.
+///          prt::moved(), prt::taken_away() and prt::brought_back(); Cancelled. Nothing has changed
+///          then.
 prt::SceneChange move(Scene& scene, const GroupMove& to, const PrecomputeWork& work = {},
                       MoveReport* report = nullptr, SceneRays* rays = nullptr);
 

@@ -355,6 +355,7 @@ void LitScene::set_roughness(float roughness) {
 }
 
 void LitScene::Impl::require_own() const {
+    require_movable(*scene);
     if (own_scene == nullptr || receivers.are_in_others())
         throw std::logic_error("expected a scene that is not shared, to move its groups");
     if (own_blockers)
@@ -401,6 +402,7 @@ void LitScene::follow(const prt::SceneChange& change, bool is_quick) {
         own.finish(report);
     } else {
         relight::SurfaceBounces surfaces = bounces.surfaces();
+        bounces.unset(); // frees its memory
         surfaces.matrix = &*own.scene->bounces;
         own.bounces.set(*own.scene, std::move(surfaces), rows);
         bounce();
@@ -410,7 +412,7 @@ void LitScene::follow(const prt::SceneChange& change, bool is_quick) {
 MoveReport LitScene::move(const GroupMove& to, const PrecomputeWork& work) {
     Impl& own = *impl_;
     own.require_own();
-    if (own.moves->dragged())
+    if (is_dragging())
         undo_move();
     MoveReport report;
     follow(own.moves->move(to, work, report), false);
@@ -420,7 +422,8 @@ MoveReport LitScene::move(const GroupMove& to, const PrecomputeWork& work) {
 MoveReport LitScene::drag(const GroupMove& to) {
     Impl& own = *impl_;
     own.require_own();
-    if (own.moves->dragged() && own.moves->dragged()->name != to.name)
+    static_cast<void>(group_named(*own.scene, to.name));
+    if (is_dragging() && own.moves->dragged()->name != to.name)
         undo_move();
     MoveReport report;
     follow(own.moves->drag(to, coarse_clusters(own.clusters()), report), true);
@@ -430,7 +433,7 @@ MoveReport LitScene::drag(const GroupMove& to) {
 MoveReport LitScene::drop(const PrecomputeWork& work) {
     Impl& own = *impl_;
     own.require_own();
-    if (!own.moves->dragged())
+    if (!is_dragging())
         throw std::logic_error("expected a group that is dragged");
     const GroupMove to = *own.moves->dragged();
     follow(own.moves->take_back(), true);
@@ -442,11 +445,15 @@ MoveReport LitScene::drop(const PrecomputeWork& work) {
     }
 }
 
+bool LitScene::is_dragging() const {
+    return impl_->moves && impl_->moves->dragged();
+}
+
 bool LitScene::exchange_move(bool is_undo) {
     Impl& own = *impl_;
     own.require_own();
     const prt::SceneChange* change =
-        own.moves->dragged() ? &own.moves->take_back() : own.moves->exchange(is_undo);
+        is_dragging() ? &own.moves->take_back() : own.moves->exchange(is_undo);
     if (change != nullptr)
         follow(*change, false);
     return change != nullptr;

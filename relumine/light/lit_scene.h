@@ -182,6 +182,8 @@ public:
     ///          cancelled takes the drag back.
     MoveReport drag(const GroupMove& to);
     MoveReport drop(const PrecomputeWork& work = {});
+    /// Whether a group is dragged
+    [[nodiscard]] bool is_dragging() const;
     /// Undoes the last move that is not undone, or makes it again. Nothing of it is traced anew but
     /// what lights of their own need. The last 32 moves are kept. Returns whether there was one.
     bool undo_move();

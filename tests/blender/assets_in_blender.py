@@ -157,6 +157,52 @@ def test_changes_are_seen():
     assert set(states().values()) == {"stale: what is around changed"}
 
 
+def test_light_follows_an_object_that_moves():
+    for bounces in (False, True):
+        scene = clear()
+        scene.relumine.bounces = bounces
+        floor, roof = plane("floor"), plane("roof", size=1.0, location=(0.2, 0, 0.4))
+        plane("wall", location=(0, 0, -3))  # around
+        assert precompute(floor, roof) == {"FINISHED"}
+        with open("floor.prt" if os.path.exists("floor.prt") else "roof.prt", "rb") as file:
+            before = file.read()
+        first = colors(floor)
+        roof.location.x = -0.5
+        roof.rotation_euler.z = 0.3
+        assert states() == {"roof": "stale: place changed", "floor": "stale: roof changed"}
+        assert bpy.ops.relumine.update() == {"FINISHED"} and states() == {}
+        moved = colors(floor)
+        assert abs(moved - first).max() > 0.1
+        # A sun's light follows, too.
+        bpy.ops.object.light_add(type="SUN", location=(0, 0, 5))
+        sun = bpy.context.object
+        update()
+        under_sun = colors(floor)
+        assert (under_sun > moved + 0.1).any()
+        roof.location.x = 0.2
+        roof.rotation_euler.z = 0.0
+        update()
+        assets.relight_quietly(scene)
+        assert states() == {} and abs(colors(floor) - under_sun).max() > 0.1
+        bpy.data.objects.remove(sun)
+        update()
+        assert abs(colors(floor) - first).max() < 1e-4, "back where it stood"
+        # The file stays as it was; another precompute says the same.
+        with open("floor.prt" if os.path.exists("floor.prt") else "roof.prt", "rb") as file:
+            assert file.read() == before
+        roof.location.x = -0.5
+        roof.rotation_euler.z = 0.3
+        update()
+        select(floor, roof)
+        assert bpy.ops.relumine.precompute(again=True) == {"FINISHED"}
+        assert abs(colors(floor) - moved).mean() < 0.02 and states() == {}
+        # What cannot follow says why.
+        roof.scale.x = -1.0
+        update()
+        bpy.ops.relumine.update()
+        assert "place changed (expected a matrix that turns and moves" in states()["roof"]
+
+
 def test_what_renders_blocks_light():
     clear()
     floor = plane("floor")

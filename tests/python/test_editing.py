@@ -1,5 +1,7 @@
 """Edits: regions, layers, undo, and questions about the light."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -162,27 +164,115 @@ def test_undo_says_what_it_does(scene):
     assert relighter.layers == []
 
 
-def test_a_group_moves(arrays, sky):
-    vertices, triangles = arrays
-    names = ["plate" if triangle[0] >= 2 * 48 * 48 else "ball" for triangle in triangles]
-    mesh = relumine.Mesh(vertices, triangles, groups=names)
+@pytest.fixture(scope="module")
+def names(arrays):
+    return np.array(["plate" if each[0] >= 2 * 48 * 48 else "ball" for each in arrays[1]])
+
+
+@pytest.fixture(scope="module")
+def movable(arrays, names):
+    mesh = relumine.Mesh(*arrays, groups=list(names))
     assert sorted(mesh.groups) == ["ball", "plate"]
-    scene = relumine.precompute(mesh, tolerance=0.05, refine=False, bounces=False, movable=True)
-    shifted = np.eye(4)
-    shifted[:3, 3] = 0.5, 0.25, 0.0
+    return relumine.precompute(
+        mesh, tolerance=0.05, refine=False, bounces=True, movable=True, min_depth=2
+    )
+
+
+def shift(x, y, z):
+    matrix = np.eye(4)
+    matrix[:3, 3] = x, y, z
+    return matrix
+
+
+def lit_by(sky, scene, bounces=True):
+    relighter = relumine.Relighter(scene)
+    relighter.set_environment(sky)
+    if bounces:
+        relighter.bounce()
+    return relighter
+
+
+def test_a_group_moves(arrays, names, movable, sky):
+    triangles, scene = arrays[1], movable
+    shifted = shift(0.5, 0.25, 0.0)
     moved = scene.move("ball", shifted)
     assert 0 < moved.report["pairs_changed"] <= moved.report["pairs"] < moved.report["pairs_all"]
-    ball = np.unique(triangles[np.array(names) == "ball"])
+    ball = np.unique(triangles[names == "ball"])
     assert np.allclose(moved.vertices[ball], scene.vertices[ball] + [0.5, 0.25, 0.0], atol=1e-6)
-    plate = np.unique(triangles[np.array(names) == "plate"])
+    plate = np.unique(triangles[names == "plate"])
     assert (moved.vertices[plate] == scene.vertices[plate]).all()
     lights = [relumine.Relighter(each) for each in (scene, moved)]
     for each in lights:
         each.set_environment(sky)
     assert (lights[0].radiance[plate] != lights[1].radiance[plate]).any()
-    back = np.eye(4)
-    back[:3, 3] = -0.5, -0.25, 0.0
-    assert (moved.move("ball", back).move("ball", shifted).vertices[plate] == scene.vertices[plate]).all()
+    back = moved.move("ball", shift(-0.5, -0.25, 0.0))
+    assert (back.move("ball", shifted).vertices[plate] == scene.vertices[plate]).all()
+
+
+def test_the_light_of_a_relighter_follows(movable, sky):
+    relighter = lit_by(sky, movable)
+    before, vertices = relighter.radiance.copy(), movable.vertices.copy()
+    shifted = shift(0.5, 0.25, 0.0)
+    assert 0 < relighter.move("ball", shifted).pairs_changed
+    moved = movable.move("ball", shifted)
+    expected = lit_by(sky, moved).radiance
+    assert (relighter.radiance == expected).all()
+    assert (relighter.scene.vertices == moved.vertices).all()
+    assert (movable.vertices == vertices).all()
+    copy = pickle.loads(pickle.dumps(relighter))
+    assert (copy.radiance == expected).all()
+    assert relighter.undo_move() and (relighter.radiance == before).all()
+    assert not relighter.undo_move()
+    assert relighter.redo_move() and (relighter.radiance == expected).all()
+    assert not relighter.redo_move()
+
+
+def test_a_drag_shows_the_group_and_a_drop_moves_it(movable, sky):
+    relighter = lit_by(sky, movable)
+    before = relighter.radiance.copy()
+    for x in (0.1, 0.3, 0.5):
+        report = relighter.drag("ball", shift(x, 0.25, 0.0))
+        assert report.receivers > 0
+        assert (relighter.radiance != before).any()
+    with pytest.raises(RuntimeError, match=r"drop\(\) or undo_move\(\)"):
+        relighter.scene
+    quick = relighter.radiance.copy()
+    moved = lit_by(sky, movable.move("ball", shift(0.5, 0.25, 0.0)))
+    relighter.drop()
+    assert (relighter.radiance == moved.radiance).all()
+    assert np.linalg.norm(quick - moved.radiance) < 0.1 * np.linalg.norm(quick)
+    with pytest.raises(RuntimeError, match="expected a group that is dragged"):
+        relighter.drop()
+    relighter.drag("ball", shift(1.0, 0.0, 0.0))
+    assert relighter.undo_move() and (relighter.radiance == moved.radiance).all()
+    assert relighter.undo_move() and (relighter.radiance == before).all()
+    with pytest.raises(ValueError, match="did you mean ball"):
+        relighter.drag("bal", shift(1.0, 0.0, 0.0))
+    with pytest.raises(ValueError, match="matrix: expected shape"):
+        relighter.drag("ball", np.eye(3))
+    with pytest.raises(ValueError, match="singular"):
+        relighter.drag("ball", np.diag([1.0, 0.0, 1.0, 1.0]))
+    assert (relighter.radiance == before).all()
+    with pytest.raises(RuntimeError, match="set_environment"):
+        relumine.Relighter(movable).drag("ball", np.eye(4))
+
+
+def test_a_group_is_removed_and_restored(movable, sky, folder):
+    before = lit_by(sky, movable).radiance.copy()
+    without = movable.remove("ball")
+    without.save(folder / "without.prt")
+    relighter = lit_by(sky, movable)
+    assert relighter.remove("ball").receivers == 0
+    expected = lit_by(sky, relumine.Scene.load(folder / "without.prt")).radiance
+    assert (expected != before).any() and (relighter.radiance == expected).all()
+    with pytest.raises(ValueError, match="got ball, which was taken away"):
+        relighter.drag("ball", np.eye(4))
+    relighter.restore("ball")
+    assert (relighter.radiance == before).all()
+    again = relumine.Scene.load(folder / "without.prt").restore("ball")
+    assert (lit_by(sky, again).radiance == before).all()
+    with pytest.raises(ValueError, match="expected a group that was taken away"):
+        again.restore("ball")
 
 
 def test_what_cannot_move_is_refused(arrays, scene):
@@ -197,3 +287,7 @@ def test_what_cannot_move_is_refused(arrays, scene):
         scene.move("ball", np.eye(3))
     with pytest.raises(ValueError, match="matrix: expected finite"):
         scene.move("ball", np.full((4, 4), np.nan))
+    with pytest.raises(ValueError, match="movable"):
+        relumine.Relighter(scene).move("ball", np.eye(4))
+    with pytest.raises(ValueError, match="movable"):
+        relumine.Relighter(scene).undo_move()

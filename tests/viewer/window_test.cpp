@@ -24,6 +24,7 @@
 #include "prt/scene/scene_file.h"
 #include "prt/visibility/ray_scene.h"
 #include "relumine/in/precompute.h"
+#include "tests/prt/scenes.h"
 #include "viewer/view_state.h"
 
 namespace relumine::viewer {
@@ -485,6 +486,41 @@ TEST_F(WindowTest, RoughnessChangesHighlightsThatFollowTheEye) {
     for (std::size_t i = 0; i < smooth.size(); ++i)
         largest = std::max(largest, std::abs(smooth[i].b - rough[i].b));
     EXPECT_GT(largest, 0.02f);
+}
+
+TEST_F(WindowTest, AThingIsDraggedAndUndoBringsItBack) {
+    constexpr glm::vec3 Ball(1.0f, 0.6f, 0.0f);
+    mesh::TriangleMesh mesh = scenes::floor_grid(21, 5.0f);
+    const std::size_t num_ground = mesh.num_triangles();
+    mesh = scenes::joined(mesh, scenes::icosphere(3, 0.6f, Ball));
+    mesh.groups = {"ground", "ball"};
+    mesh.materials = {{.name = "pale", .base_color = glm::vec3(0.8f)},
+                      {.name = "red", .base_color = {0.8f, 0.02f, 0.02f}}};
+    mesh.triangle_groups.assign(num_ground, 0);
+    mesh.triangle_groups.resize(mesh.num_triangles(), 1);
+    mesh.triangle_materials = mesh.triangle_groups;
+    const Scene scene =
+        precompute(std::move(mesh),
+                   {.tolerance = 0.05f, .face_resolution = 32, .no_refine = true, .movable = true});
+    prt::save_scene(folder_ / "things.prt", scene);
+    camera_ = camera_on_all(scene, viewport_);
+    const std::array<int, 2> from = pixel_of(Ball), to = {from[0] + 170, from[1]};
+    const std::string drag =
+        fmt::format("drag_thing {} {} {} {}\n", from[0], from[1], to[0], to[1]);
+    ASSERT_EQ(play("wait 1\nscreenshot before.exr\n" + drag +
+                       "wait 1\nscreenshot after.exr\n"
+                       "undo\nwait 1\nscreenshot undone.exr\n"
+                       "redo\nwait 1\nscreenshot redone.exr\n",
+                   Width, "things.prt"),
+              0)
+        << words("err.txt");
+    EXPECT_GT(nlohmann::json::parse(words("out.txt"))["drag_events"], 5);
+    const cubemap::Picture before = picture("before.exr"), after = picture("after.exr");
+    // The red ball is dark in green.
+    EXPECT_LT(brightness(before, from), 0.5f * brightness(before, to));
+    EXPECT_LT(brightness(after, to), 0.5f * brightness(after, from));
+    EXPECT_TRUE(equal(before, picture("undone.exr"), viewport_));
+    EXPECT_TRUE(equal(after, picture("redone.exr"), viewport_));
 }
 
 TEST_F(WindowTest, AMeshIsSeenWhileItIsPrecomputed) {

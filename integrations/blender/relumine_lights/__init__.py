@@ -108,6 +108,7 @@ def _later(call, seconds):
 
 
 def _look():
+    assets.relight_quietly(bpy.context.scene)  # what has moved
     assets.untie_copies(bpy.context.scene)
     assets.look_for_changes(bpy.context.scene)
     _redraw()

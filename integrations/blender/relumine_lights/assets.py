@@ -16,15 +16,15 @@ from .worlds import WorldLight, forget, stamp
 
 #: Keys of objects: the scene file, the vertices in it that are this object's, their digest there;
 #: the object's mesh and place at the precompute, what stood around; whose ties they are; how it
-#: was made, and what is to be known of that, in lines.
+#: was made, what is to be known of that, in lines, and its matrix then.
 PATH, FIRST, COUNT, IN_FILE = ("relumine_prt", "relumine_first", "relumine_count",
                                "relumine_in_file")  # fmt: skip
 SHAPE, PLACE, AROUND, OWNER = ("relumine_shape", "relumine_place", "relumine_around",
                                "relumine_owner")  # fmt: skip
 TOLERANCE, BOUNCES, TEXELS = "relumine_tolerance", "relumine_bounces", "relumine_texels"
-NOTES = "relumine_notes"
+NOTES, MATRIX = "relumine_notes", "relumine_matrix"
 TIES = (PATH, FIRST, COUNT, IN_FILE, SHAPE, PLACE, AROUND, OWNER, TOLERANCE, BOUNCES, TEXELS,
-        NOTES)  # fmt: skip
+        NOTES, MATRIX)  # fmt: skip
 
 #: Since Blender 4.5 a property of a path says that it may begin at the .blend.
 RELATIVE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
@@ -42,6 +42,10 @@ class LiveScene:
         self.keys = {}
         self.parts = {}
         self._digests = {}
+        # Where objects stand in memory that do not stand where the file has them, and the places
+        # that were refused: {first vertex: matrix}, {first vertex: (matrix, error)}.
+        self._places, self._refused = {}, {}
+        self._is_stale = False  # the radiance is not that of its parts
         self.radiance = np.zeros((self.scene.num_receivers, 3), dtype=np.float32)
 
     def holds(self, thing):
@@ -51,6 +55,48 @@ class LiveScene:
             own = self.scene.vertices[first : first + count]
             self._digests[first, count] = geometry.digest(own)
         return self._digests[first, count] == wanted
+
+    def follow(self, things):
+        """Moves what stands elsewhere than in memory, in memory alone. Returns whether it did."""
+        moved = False
+        for thing in things:
+            if thing[TEXELS] or MATRIX not in thing or str(thing[FIRST]) not in self.scene.groups:
+                continue
+            first, to = thing[FIRST], np.array(thing.matrix_world, dtype=np.float64)
+            at = self._places.get(first, np.array(thing[MATRIX]).reshape(4, 4))
+            if geometry.same_place(at, to):
+                continue
+            if first in self._refused and geometry.same_place(self._refused[first][0], to):
+                continue
+            try:
+                matrix = geometry.way(at, to)
+                self.world.move(str(first), matrix)
+                if self.suns is not None:
+                    self.suns.move(str(first), matrix)
+            except (ValueError, np.linalg.LinAlgError) as error:
+                self._refused[first] = to, str(error)
+                continue
+            self._refused.pop(first, None)
+            self._places[first], moved = to, True
+        if moved:
+            for name, relighter in (("world", self.world), ("suns", self.suns)):
+                if name in self.parts and np.ndim(self.parts[name]):
+                    self.parts[name] = relighter.radiance
+            self.keys.pop("lamps", None)
+            self._is_stale = True
+        return moved
+
+    def refusal(self, thing):
+        """Why it could not follow an object to where that is, or None."""
+        refused = self._refused.get(thing[FIRST])
+        if refused is None or not geometry.same_place(refused[0], thing.matrix_world):
+            return None
+        return refused[1]
+
+    def stands(self, thing):
+        """Whether the light is that of where an object stands."""
+        at = self._places.get(thing[FIRST])
+        return at is not None and geometry.same_place(at, thing.matrix_world)
 
     def light(self, world, lit_by, face_resolution, wait):
         """Returns whether the radiance changed. Lamps stay where a bake is under way."""
@@ -64,7 +110,8 @@ class LiveScene:
             ("lamps", [lamp.key() for lamp in near], lambda: self._under_near(near)),
             ("strength", world.strength, lambda: np.float32(world.strength)),
         )  # fmt: skip
-        if any([self._part(*part) for part in parts]):
+        if any([self._part(*part) for part in parts]) or self._is_stale:
+            self._is_stale = False
             np.multiply(self.parts.get("world", 0.0), self.parts["strength"], out=self.radiance)
             self.radiance += self.parts["suns"]
             self.radiance += self.parts["lamps"]
@@ -95,7 +142,7 @@ class LiveScene:
         if not suns:
             return np.float32(0.0)
         if self.suns is None:
-            self.suns = relumine.Relighter(self.scene)
+            self.suns = relumine.Relighter(self.world.scene)
         self.suns.set_lights(lamps.light_list(suns))
         return self._bounced(self.suns)
 
@@ -190,6 +237,7 @@ def relight(scene, depsgraph=None, *, force=False, wait=False):
                 changed[path] = False
                 if not os.path.exists(path):
                     raise FileNotFoundError(f"{path}: cannot read: no such file")
+                live_scene(path).follow(partners(scene, thing))
                 changed[path] = live_scene(path).light(
                     world, lit_by, scene.relumine.face_resolution, wait
                 )
@@ -285,6 +333,9 @@ def look_for_changes(scene, depsgraph=None):
         shape, place = geometry.key_of(
             thing.evaluated_get(depsgraph), thing.matrix_world, has_lightmap
         )
+        live = _live.get(path)
+        if live is not None and live.stands(thing):
+            place = thing[PLACE]  # the light followed
         changed = [word for word, old, new in (
             ("mesh, UV map or modifiers" if has_lightmap else "mesh or modifiers", thing[SHAPE],
              shape), ("place", thing[PLACE], place),
@@ -293,6 +344,8 @@ def look_for_changes(scene, depsgraph=None):
             states[thing.name] = "shares its mesh with another object"
         elif changed:
             states[thing.name] = f"stale: {', '.join(changed)} changed"
+            if live is not None and live.refusal(thing):
+                states[thing.name] += f" ({live.refusal(thing)})"
             stale.setdefault(path, thing.name)
     for thing in lit_objects(scene):  # what moved has left its shadow on the others
         if path_of(thing) in stale:
@@ -347,9 +400,12 @@ class Precompute:
         depsgraph = context.evaluated_depsgraph_get()
         rendered = geometry.rendered_names(context.view_layer)
         own, extra, self.places = geometry.Pieces(), {}, []
+        groups = []  # the number of its first vertex names each object's
         shapes = []
         for thing in things:
+            first = own.count
             self._add(thing, thing.evaluated_get(depsgraph), own, extra)
+            groups += [str(first)] * len(own.triangles[-1])
             if not texels:
                 shapes.append(geometry.Shape(thing, depsgraph))
         if shapes:
@@ -361,12 +417,13 @@ class Precompute:
         self.around = geometry.surroundings_key(depsgraph, self.names, rendered)
         if bounces and others.count and not texels:  # what is around sends light, too
             own.extend(others)
+            groups += ["around"] * sum(map(len, others.triangles))
         elif others.count:
             extra["blockers"] = others.arrays()
         if bounces:
             extra["colors"] = np.concatenate(own.colors)
         with heard(self.notes):
-            self.mesh = relumine.Mesh(*own.arrays(), **extra)
+            self.mesh = relumine.Mesh(*own.arrays(), groups=groups, **extra)
 
     def _refuse_other_assets(self):
         for thing in lit_objects(self.scene):
@@ -391,7 +448,8 @@ class Precompute:
                 colors = colors[old] if colors is not None else None
         vertices, triangles = geometry.placed(vertices, triangles, thing.matrix_world)
         keys = geometry.key_of(evaluated, thing.matrix_world, bool(self.texels))
-        self.places.append((thing.name, own.count, len(vertices), geometry.digest(vertices), keys))
+        self.places.append((thing.name, own.count, len(vertices), geometry.digest(vertices), keys,
+                            np.array(thing.matrix_world, dtype=np.float64).ravel().tolist()))  # fmt: skip
         own.add(vertices, triangles, colors)
 
     def work(self, progress=None):
@@ -401,17 +459,18 @@ class Precompute:
             relumine.precompute(
                 self.mesh, tolerance=self.tolerance, output=self.absolute, receivers=receivers,
                 bounces=bool(self.bounces), progress=progress,
+                movable=not self.texels,
                 refine=bool(self.bounces),  # Blender shows its own vertices; bounces gain from more
             )  # fmt: skip
 
     def tie(self):
-        for name, first, count, in_file, (shape, place) in self.places:
+        for name, first, count, in_file, (shape, place), matrix in self.places:
             thing = self.scene.objects.get(name)
             if thing is None:
                 continue
             values = (self.path, first, count, in_file, shape, place, self.around, name,
                       self.tolerance, bool(self.bounces), self.texels,
-                      "\n".join(sorted(self.notes)))  # fmt: skip
+                      "\n".join(sorted(self.notes)), matrix)  # fmt: skip
             for key, value in zip(TIES, values):
                 thing[key] = value
             for key in ("relumine_copy_of", *(() if self.texels else (LIGHTMAP,))):

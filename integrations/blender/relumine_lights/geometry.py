@@ -46,6 +46,18 @@ def placed(vertices, triangles, matrix):
     return world.astype(np.float32), triangles
 
 
+def same_place(one, other):
+    """Whether two matrices are the same, but for roundings."""
+    return np.allclose(np.array(one, dtype=np.float64), np.array(other, dtype=np.float64), atol=5e-6)
+
+
+def way(at, to):
+    """The matrix that leads from one place to another, in Relumine's axes."""
+    axes = np.eye(4)
+    axes[:3, :3] = AXES
+    return axes @ to @ np.linalg.inv(at) @ axes.T
+
+
 class Shape:
     """The longest side of the triangles whose vertices show an object's light; are faces flat?"""
 

@@ -53,6 +53,20 @@ TEST_F(Move, MovesAndComesBack) {
     EXPECT_EQ(light_of("moved.prt"), before);
 }
 
+TEST_F(Move, TakesAwayAndBringsBack) {
+    precompute({"--movable", "--bounces", "0.05"});
+    const std::vector<Rgb> before = light_of("scene.prt");
+    EXPECT_THAT(succeed("move scene.prt mesh=away -o away.prt").out,
+                testing::HasSubstr("mesh: taken away"));
+    succeed("info away.prt --check -q");
+    EXPECT_NE(light_of("away.prt"), before);
+    fail("move away.prt mesh=1,0,0 -o back.prt",
+         {"away.prt: expected a group that is there, got mesh, which was taken away"});
+    succeed("move away.prt mesh=back -o back.prt -q");
+    EXPECT_EQ(light_of("back.prt"), before);
+    fail("move back.prt mesh=back -o back.prt", {"back.prt: expected", "which is there"});
+}
+
 TEST_F(Move, WhoDoesNotAskGetsTheSameFile) {
     precompute({});
     const prt::Scene plain = prt::load_scene(folder() / "scene.prt");

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <string>
@@ -22,6 +24,7 @@
 #include "prt/moves/resampled_bounces.h"
 #include "prt/precompute.h"
 #include "prt/precompute_context.h"
+#include "prt/scene/absent_groups.h"
 #include "prt/scene/scene_file.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/bias.h"
@@ -85,14 +88,13 @@ Scene scene_of(mesh::TriangleMesh mesh) {
     return scene;
 }
 
-/// Moves a group and returns what undoes it. `follow(group)`, called once it stands there, returns
-/// what blocks the light.
+/// Makes a change of a group and returns what undoes it. `follow(group)`, called once it stands
+/// there, returns what blocks the light.
 template<typename Follow>
-SceneChange move(Scene& scene, std::uint32_t group, const glm::dmat4& matrix, const Follow& follow,
+SceneChange make(Scene& scene, SceneChange change, const Follow& follow,
                  RecountStatistics* statistics = nullptr) {
-    SceneChange change = moved(scene, group, matrix);
     exchange(scene, change);
-    const Blockers& blockers = follow(group);
+    const Blockers& blockers = follow(change.group);
     CountsPatch counts = recounted(scene.receivers, blockers, scene.transfer, change.difference,
                                    recount_options(scene), {}, statistics);
     exchange(scene.transfer.counts, counts);
@@ -107,7 +109,7 @@ SceneChange move(Scene& scene, std::uint32_t group, const glm::dmat4& matrix,
         rays.emplace(scene.blocking_mesh());
         return beams.emplace(scene.blocking_mesh(), *rays);
     };
-    return move(scene, group, matrix, follow, statistics);
+    return make(scene, moved(scene, group, matrix), follow, statistics);
 }
 
 /// The transfer that a precompute of the scene finds for its clusters.
@@ -163,8 +165,8 @@ void expect_fresh_counts(Scene scene, int num_moves) {
         const auto group = static_cast<std::uint32_t>(1 + random() % 4);
         const glm::dmat4 matrix = random_motion(scene, group, random);
         RecountStatistics statistics;
-        static_cast<void>(move(
-            scene, group, matrix,
+        static_cast<void>(make(
+            scene, moved(scene, group, matrix),
             [&](std::uint32_t moved) -> const Blockers& {
                 rays.follow(scene.mesh, moved);
                 beams.follow(scene.mesh, moved);
@@ -245,6 +247,15 @@ TEST(MetBoxes, ManyDirectionsAnswerAsOneDoes) {
         for (std::size_t k = 0; k < directions.size(); ++k) {
             const bool is_met = (found[k / 64] >> k % 64 & 1u) != 0;
             EXPECT_EQ(is_met, k != 66 && met.meets(inverse(directions[k])));
+            const float nearest = met.nearest(inverse(directions[k]));
+            EXPECT_EQ(std::isfinite(nearest), met.meets(inverse(directions[k])));
+            // Just before it there is no box.
+            for (const mesh::Bounds& box : boxes)
+                if (std::isfinite(nearest) && nearest > 0.01f) {
+                    const glm::vec3 before = place + 0.99f * nearest * directions[k];
+                    EXPECT_FALSE(glm::min(before, box.min) == box.min &&
+                                 glm::max(before, box.max) == box.max);
+                }
             num_met += is_met ? 1 : 0;
         }
         EXPECT_EQ(found[1] & ~asked, 0u);
@@ -354,6 +365,25 @@ Scene bouncing_scene(const std::vector<float>& open) {
     return scene;
 }
 
+/// The matrix is what the samples that it has make.
+void expect_joined(const Scene& scene, const std::vector<float>& open) {
+    const BounceMatrix& own = *scene.bounces;
+    std::vector<std::uint32_t> all(open.size());
+    std::iota(all.begin(), all.end(), 0u);
+    std::vector<BounceSamples> samples;
+    samples.push_back({.open_parts = open,
+                       .distances = own.rays.distances,
+                       .num_directions = own.rays.num_directions,
+                       .num_hits = own.rays.num_hits,
+                       .emitters = own.emitters,
+                       .averaged = shared_samples(scene.receivers, scene.transfer, 0, all.size(),
+                                                  own.rays.distances, all)});
+    const BounceMatrix joined = join_bounces(scene.receivers, scene.transfer, std::move(samples));
+    EXPECT_EQ(own.averaged, joined.averaged);
+    EXPECT_EQ(own.weights, joined.weights);
+    EXPECT_NEAR(own.spectral_radius, joined.spectral_radius, 0.01f * joined.spectral_radius);
+}
+
 TEST(MovedScene, RowsOfBouncesAreThoseOfAllRays) {
     const std::vector<float> open(things().num_vertices(), 0.5f);
     Scene scene = bouncing_scene(open);
@@ -361,10 +391,12 @@ TEST(MovedScene, RowsOfBouncesAreThoseOfAllRays) {
     const BounceMatrix first = *scene.bounces;
     std::mt19937 random(9);
     std::size_t num_changed = 0;
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < 8; ++i) {
         SCOPED_TRACE(testing::Message() << "move " << i);
         const auto group = static_cast<std::uint32_t>(2 + random() % 3);
-        SceneChange change = moved(scene, group, random_motion(scene, group, random));
+        SceneChange change = i == 3   ? taken_away(scene, Crate)
+                             : i == 4 ? brought_back(scene, Crate)
+                                      : moved(scene, group, random_motion(scene, group, random));
         exchange(scene, change);
         CountsPatch counts;
         with_beams(scene, [&](const Blockers& blockers) {
@@ -377,9 +409,14 @@ TEST(MovedScene, RowsOfBouncesAreThoseOfAllRays) {
         exchange(scene, change);
         exchange(scene.transfer.counts, counts);
         const RayScene now(scene.mesh);
-        std::vector<BounceSamples> samples;
-        samples.push_back(resampled.samples({scene, open, now}, *change.bounces, {}));
-        scene.bounces = join_bounces(scene.receivers, scene.transfer, std::move(samples));
+        const BounceMatrix matrix_before = *scene.bounces;
+        BouncesPatch patch = resampled.update(*scene.bounces, {scene, open, now}, {});
+        const BounceMatrix updated = *scene.bounces;
+        exchange(*scene.bounces, patch);
+        EXPECT_TRUE(*scene.bounces == matrix_before);
+        exchange(*scene.bounces, patch);
+        EXPECT_TRUE(*scene.bounces == updated);
+        expect_joined(scene, open);
 
         const BounceOptions options{.bias = scene.settings.bias};
         const BounceProbes probes{.open_parts = open, .values = {}, .index = {}};
@@ -405,7 +442,108 @@ TEST(MovedScene, RowsOfBouncesAreThoseOfAllRays) {
     EXPECT_GT(num_changed, 100u);
 }
 
+/// A scene whose groups are taken away and brought back, with what traces its rays.
+class Vanishing {
+public:
+    explicit Vanishing(Scene scene) : scene_(std::move(scene)) {}
+
+    [[nodiscard]] const Scene& scene() const { return scene_; }
+    [[nodiscard]] Transfer transfer() const { return scene_.transfer; }
+    SceneChange take_away(std::uint32_t group) { return make(taken_away(scene_, group)); }
+    SceneChange bring_back(std::uint32_t group) { return make(brought_back(scene_, group)); }
+    void undo(SceneChange change) {
+        exchange(scene_, change);
+        static_cast<void>(followed(change.group));
+    }
+    /// The transfer of the mesh that has not these triangles at all, for the same receivers.
+    [[nodiscard]] Transfer of_rest(const std::vector<std::uint32_t>& groups) const {
+        Scene rest = scene_;
+        rest.blockers.reset();
+        rest.mesh = things();
+        std::vector<mesh::Triangle> triangles;
+        for (std::size_t i = 0; i < rest.mesh.num_triangles(); ++i)
+            if (!std::ranges::count(groups, rest.mesh.triangle_groups[i]))
+                triangles.push_back(rest.mesh.triangles[i]);
+        rest.mesh.triangles = triangles;
+        rest.mesh.triangle_groups.clear();
+        return fresh(rest);
+    }
+
+private:
+    SceneChange make(SceneChange change) {
+        return prt::make(scene_, std::move(change),
+                         [&](std::uint32_t group) -> const Blockers& { return followed(group); });
+    }
+    const Blockers& followed(std::uint32_t group) {
+        rays_.follow(scene_.mesh, group);
+        beams_.follow(scene_.mesh, group);
+        return beams_;
+    }
+
+    Scene scene_;
+    RayScene rays_{scene_.mesh, RayScene::Packets::Narrow, RayScene::Groups::Move};
+    BeamScene beams_{scene_.mesh, rays_};
+};
+
+TEST(MovedScene, WhatIsTakenAwayHidesNothingAndComesBack) {
+    Vanishing own(scene_of(things()));
+    const Transfer before = own.transfer();
+    const std::vector<mesh::Triangle> triangles = own.scene().mesh.triangles;
+    own.take_away(Crate);
+    const Transfer without = own.transfer();
+    EXPECT_NE(without.counts.counts, before.counts.counts);
+    expect_same(without, fresh(own.scene()));
+    expect_same(without, own.of_rest({Crate}));
+    SceneChange of_ball = own.take_away(2);
+    expect_same(own.transfer(), own.of_rest({Crate, 2}));
+    EXPECT_THAT(absent_names(own.scene()), testing::ElementsAre("crate", "ball"));
+    own.undo(std::move(of_ball));
+    expect_same(own.transfer(), without);
+    EXPECT_THAT(absent_names(own.scene()), testing::ElementsAre("crate"));
+    own.bring_back(Crate);
+    expect_same(own.transfer(), before);
+    EXPECT_EQ(own.scene().mesh.triangles, triangles);
+    EXPECT_TRUE(own.scene().absent.empty());
+}
+
+TEST(MovedScene, BlockersOfARefinedMeshGoAwayWithIt) {
+    Scene scene = scene_of(things());
+    scene.blockers = things();
+    scene.blockers->normals.clear();
+    std::optional<RayScene> rays;
+    std::optional<BeamScene> beams;
+    const auto follow = [&](std::uint32_t) -> const Blockers& {
+        rays.emplace(*scene.blockers);
+        return beams.emplace(*scene.blockers, *rays);
+    };
+    const Transfer before = scene.transfer;
+    static_cast<void>(make(scene, taken_away(scene, Crate), follow));
+    EXPECT_NE(scene.transfer.counts.counts, before.counts.counts);
+    expect_same(scene.transfer, fresh(scene));
+    EXPECT_EQ(scene.blockers->triangles, scene.mesh.triangles);
+    static_cast<void>(make(scene, brought_back(scene, Crate), follow));
+    expect_same(scene.transfer, before);
+    EXPECT_EQ(scene.blockers->triangles, things().triangles);
+}
+
 using MovedSceneFile = tests::FolderTest;
+
+TEST_F(MovedSceneFile, KeepsWhatIsAway) {
+    const std::filesystem::path path = folder_ / "away.prt";
+    Scene scene = scene_of(things());
+    scene.blockers = things();
+    Vanishing first(scene);
+    first.take_away(Crate);
+    save_scene(path, first.scene());
+    Vanishing own(load_scene(path));
+    EXPECT_EQ(own.scene().mesh.triangles, first.scene().mesh.triangles);
+    EXPECT_EQ(own.scene().receivers.positions, scene.receivers.positions);
+    expect_same(own.transfer(), first.transfer());
+    own.bring_back(Crate);
+    expect_same(own.transfer(), scene.transfer);
+    EXPECT_EQ(own.scene().mesh.triangles, scene.mesh.triangles);
+    EXPECT_EQ(own.scene().blockers->triangles, scene.blockers->triangles);
+}
 
 TEST_F(MovedSceneFile, KeepsThePlace) {
     Scene scene = scene_of(things());
@@ -424,6 +562,27 @@ TEST_F(MovedSceneFile, KeepsThePlace) {
     scene.settings.rim_step = {};
     save_scene(path, scene);
     EXPECT_TRUE(load_scene(path).mesh.groups.empty());
+}
+
+TEST(MovedScene, RefusesToMoveWhatIsAway) {
+    Vanishing own(scene_of(things()));
+    const auto refusal = [&](auto change_of) -> std::string {
+        try {
+            static_cast<void>(change_of(own.scene(), Crate));
+        } catch (const std::invalid_argument& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(refusal(brought_back),
+              "expected a group that was taken away, got crate, which is there");
+    own.take_away(Crate);
+    const std::string is_away = "expected a group that is there, got crate, which was taken away";
+    EXPECT_EQ(refusal(taken_away), is_away);
+    EXPECT_EQ(refusal([](const Scene& scene, std::uint32_t group) {
+                  return moved(scene, group, glm::dmat4(1.0));
+              }),
+              is_away);
 }
 
 void expect_refusal(const Scene& scene, const glm::dmat4& matrix, const std::string& text,

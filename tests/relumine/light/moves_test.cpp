@@ -330,6 +330,63 @@ TEST(Moves, ADragIsTakenBack) {
     EXPECT_EQ(radiance_of(lit), radiance_of(moved));
 }
 
+TEST(Moves, TheLightIsThatWithoutWhatIsTakenAway) {
+    LitScene lit(before());
+    light(lit);
+    const std::vector<glm::vec3> at_first = radiance_of(lit);
+    const double of_lamps = glm::length(lit.lamps().direct()[0]);
+    EXPECT_GT(of_lamps, 0.0);
+    Scene scene = before();
+    std::vector<std::vector<glm::vec3>> seen = {at_first};
+    for (const GroupStep& step : {GroupStep{.name = "ball", .going = Going::Away},
+                                  GroupStep{.name = "lamp", .going = Going::Away},
+                                  GroupStep{.name = "ball", .going = Going::Back}}) {
+        EXPECT_EQ(lit.move(move_of(lit.scene(), step)).num_moved, 0u);
+        move(scene, move_of(scene, step));
+        LitScene anew(scene);
+        light(anew);
+        EXPECT_EQ(radiance_of(lit), radiance_of(anew));
+        EXPECT_NE(radiance_of(lit), seen.back());
+        seen.push_back(radiance_of(lit));
+    }
+    for (const glm::vec3& of_lamp : lit.lamps().direct())
+        EXPECT_EQ(of_lamp, glm::vec3(0.0f));
+    for (std::size_t i = seen.size(); --i > 0;) {
+        EXPECT_EQ(radiance_of(lit), seen[i]);
+        EXPECT_TRUE(lit.undo_move());
+    }
+    EXPECT_EQ(radiance_of(lit), at_first);
+
+    // The light of the receivers that are there is that of a mesh without the ball.
+    mesh::TriangleMesh rest = things();
+    std::vector<std::uint32_t> materials, groups;
+    std::vector<mesh::Triangle> triangles;
+    for (std::size_t i = 0; i < rest.num_triangles(); ++i)
+        if (rest.triangle_groups[i] != 1) {
+            triangles.push_back(rest.triangles[i]);
+            materials.push_back(rest.triangle_materials[i]);
+            groups.push_back(rest.triangle_groups[i]);
+        }
+    rest.triangles = triangles;
+    rest.triangle_materials = materials;
+    rest.triangle_groups = groups;
+    constexpr Lit Sky{.has_list = false, .has_layer = false, .has_bounces = false};
+    PrecomputeOptions options = Options;
+    options.movable = false;
+    options.tolerance = 0.01f;
+    LitScene without(precompute(rest, options));
+    light(without, Sky);
+    light(lit, Sky);
+    lit.move({.name = "ball", .going = Going::Away});
+    const auto on_ground = [](const LitScene& of) {
+        const std::vector<glm::vec3> all = radiance_of(of);
+        return std::vector(all.begin(), all.begin() + 21 * 21);
+    };
+    const double wrong = difference(on_ground(lit), on_ground(without));
+    lit.undo_move();
+    EXPECT_LT(1.5 * wrong, difference(on_ground(lit), on_ground(without)));
+}
+
 TEST(Moves, TheLightIsAboutThatOfAPrecomputeAnew) {
     LitScene lit(before());
     light(lit);
@@ -352,6 +409,10 @@ TEST(Moves, RefusesNamesAndScenesThatAreShared) {
     singular[1] = glm::dvec4(0.0);
     EXPECT_THAT(refusal([&] { lit.move({.name = "ball", .matrix = singular}); }),
                 HasSubstr("singular"));
+    EXPECT_THAT(refusal([&] { lit.move({.name = "ball", .going = Going::Back}); }),
+                HasSubstr("expected a group that was taken away, got ball, which is there"));
+    EXPECT_THAT(refusal([&] { lit.drag({.name = "ball", .going = Going::Away}); }),
+                HasSubstr("a place to drag a group to"));
     EXPECT_EQ(radiance_of(lit), at_first);
     LitScene shared(std::make_shared<const Scene>(before()));
     EXPECT_THAT(refusal([&] { shared.move({.name = "ball"}); }), HasSubstr("not shared"));
@@ -369,7 +430,10 @@ TEST(Moves, StepsHaveAText) {
     EXPECT_EQ(step, (GroupStep{.name = "a=b", .by = {1.0, 2.0, -3.5}, .degrees = 90.0}));
     EXPECT_EQ(GroupStepText::read(GroupStepText::show(step)), step);
     EXPECT_EQ(GroupStepText::show(GroupStepText::read("x=1,2,3")), "x=1,2,3");
-    for (const char* text : {"x", "=1,2,3", "x=1,2", "x=1,2,3,4,5", "x=1,2,nan", "x=a,b,c"})
+    EXPECT_EQ(GroupStepText::read("a=b=away"), (GroupStep{.name = "a=b", .going = Going::Away}));
+    EXPECT_EQ(GroupStepText::show(GroupStepText::read("x=back")), "x=back");
+    for (const char* text :
+         {"=away", "x=aways", "x", "=1,2,3", "x=1,2", "x=1,2,3,4,5", "x=1,2,nan", "x=a,b,c"})
         EXPECT_THROW(static_cast<void>(GroupStepText::read(text)), std::invalid_argument) << text;
 }
 
