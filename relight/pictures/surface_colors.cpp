@@ -17,7 +17,8 @@ SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt
     form_ = std::any_of(surfaces.begin(), surfaces.end(), is_whole) ? prt::GgxForm::Whole
                                                                     : prt::GgxForm::Published;
     const auto has_texture = [](const mesh::Material& material) {
-        return material.base_color_texture || material.emission_texture || material.normal_texture;
+        return material.base_color_texture || material.emission_texture ||
+               material.normal_texture || material.diffuse_transmission > 0.0f;
     };
     const auto mirrors = [&](const mesh::Material& material) {
         return !has_highlights && prt::has_highlight(material);
@@ -72,6 +73,16 @@ glm::vec3 SurfaceColors::radiance(std::span<const glm::vec3> vertex_radiance,
                                   const prt::MeshPoint& point, const glm::vec3& change,
                                   const prt::TextureView* view) const {
     return light(vertex_radiance, point, change) * surface(point, view).albedo;
+}
+
+std::optional<SurfaceColors::OtherSide>
+SurfaceColors::other_side(const prt::MeshPoint& point, const prt::TwinTriangles& twins,
+                          const prt::TextureView* view) const {
+    if (is_textured_.empty() || !prt::passes_light_on(*mesh_, point.triangle))
+        return std::nullopt;
+    const std::optional<prt::MeshPoint> behind = twins.other_side(point);
+    return behind ? std::optional(OtherSide{*behind, prt::passed_on_at(*mesh_, point, view)})
+                  : std::nullopt;
 }
 
 std::vector<glm::vec3> scaled(std::span<const glm::vec3> harmonics,

@@ -673,6 +673,17 @@ def test_channels_scale_bias_and_transforms_of_textures(tmp_path):
     assert colors_of(tmp_path, grey, scale=raw) == pytest.approx(128 / 255, **near)
 
 
+def test_uvs_that_are_not_there_are_those_of_st(tmp_path):
+    """Blender asks for UVMap where it writes st."""
+    Image.new("RGB", (2, 2), (255, 0, 0)).save(tmp_path / "red.png")
+    look = textured(tmp_path / "red.png").replace('varname = "st"', 'varname = "UVMap"')
+    asset = loaded(bound(look))
+    assert np.asarray(asset.mesh.uvs).tolist() == [[0, 1], [1, 1], [0, 0]]
+    assert any("primvars:UVMap is not there: st stands for it" in line for line in asset.notes)
+    asset = loaded(bound(look).replace("primvars:st", "primvars:other"))
+    assert any("primvars:UVMap is not there: its texture is one colour" in line for line in asset.notes)
+
+
 def test_metallic_and_roughness_of_two_pictures(tmp_path):
     Image.new("L", (2, 2), 51).save(tmp_path / "rough.png")
     Image.new("L", (4, 4), 204).save(tmp_path / "metal.png")

@@ -195,6 +195,11 @@ def polygons(
     primvars: Dict[str, Values] = {}
     for name, width in wanted:
         found = primvar(prim, name, width, time, counts, corners, len(points), notes)
+        if found is None and width == 2:
+            # Blender renames its uvs to st, but not where a texture's transform asks for them.
+            found = primvar(prim, "st", width, time, counts, corners, len(points), notes)
+            if found is not None:
+                notes.add(f"primvars:{name} is not there: st stands for it", prim.GetPath())
         if found is not None:
             primvars[name] = found
     left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
