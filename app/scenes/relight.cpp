@@ -49,7 +49,8 @@ struct RelightArguments {
 };
 
 void keep_bounces(Lighting& lighting, std::span<const glm::vec3> bounced) {
-    lighting.radiance = lighting.reflected = bounced;
+    lighting.radiance = bounced;
+    lighting.reflected = {};
     lighting.soft.clear();
     lighting.lights.clear();
     lighting.floor_lights.clear();

@@ -125,7 +125,11 @@ mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers
 mesh::TriangleMesh with_backs_of_sheets(const mesh::TriangleMesh& mesh) {
     std::vector<std::uint32_t> sheets = triangles_without_twin(mesh);
     std::erase_if(sheets, [&](std::uint32_t triangle) { return !passes_light_on(mesh, triangle); });
-    return with_backs(mesh, sheets);
+    mesh::TriangleMesh result = with_backs(mesh, sheets);
+    for (mesh::Material& material : result.materials)
+        if (material.diffuse_transmission > 0.0f)
+            material.is_double_sided = false;
+    return result;
 }
 
 } // namespace relumine::prt

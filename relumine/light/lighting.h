@@ -21,8 +21,12 @@ struct Lighting {
     /// [num_receivers], as LitScene::radiance().
     std::span<const glm::vec3> radiance;
     /// [num_receivers] the same without what surfaces pass on from behind them, which pictures of
-    /// vertices find at each pixel.
+    /// vertices find at each pixel. Empty: they pass none on.
     std::span<const glm::vec3> reflected = {};
+    /// What pictures of vertices are drawn of.
+    [[nodiscard]] std::span<const glm::vec3> drawn() const {
+        return reflected.empty() ? radiance : reflected;
+    }
     /// [num_receivers] what arrives of it without a bounce, as radiance for albedo 1, for light
     /// meters. Empty: unknown.
     std::span<const glm::vec3> arriving = {};

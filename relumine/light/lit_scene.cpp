@@ -576,10 +576,11 @@ void LitScene::Impl::take_floor_apart(Lighting& lighting) const {
 void LitScene::Impl::gather(Lighting& lighting) const {
     lighting.gathered =
         std::make_shared<const std::vector<glm::vec3>>(receivers.gathered(lighting.radiance));
-    if (!passed.empty())
+    if (!passed.empty()) {
         lighting.gathered_reflected =
             std::make_shared<const std::vector<glm::vec3>>(receivers.gathered(lighting.reflected));
-    lighting.reflected = passed.empty() ? *lighting.gathered : *lighting.gathered_reflected;
+        lighting.reflected = *lighting.gathered_reflected;
+    }
     lighting.radiance = *lighting.gathered;
     if (!lighting.lights.empty())
         lighting.soft = receivers.gathered(lighting.soft);
@@ -626,11 +627,13 @@ glm::vec3 LitScene::Impl::open_gain(const glm::vec3& open_floor) const {
 Lighting LitScene::lighting(bool is_drawn) const {
     const Impl& own = *impl_;
     own.require_lit();
-    Lighting result{.radiance = radiance(), .reflected = reflected()};
+    Lighting result{.radiance = radiance()};
     glm::dvec3 open_floor(0.0);
     for (const auto& term : own.terms)
         open_floor += term->open_floor();
     result.open_floor = open_floor;
+    if (!own.passed.empty())
+        result.reflected = reflected();
     if (is_drawn)
         own.take_apart(result);
     if (is_drawn && prt::on_vertices(own.scene->layout))

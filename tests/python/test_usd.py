@@ -763,6 +763,47 @@ def Material "Look" {
     assert "film" not in material
 
 
+@pytest.mark.parametrize(
+    "surface, base, factor, color",
+    [
+        # All of standard_surface's subsurface goes to the other side.
+        ("standard_surface", (0.4, 0.2, 0.1), 0.75, (1, 0.5, 0.25)),
+        # OpenPBR's stays and goes by halves, here by a quarter and three quarters.
+        ("open_pbr_surface", (0.4 * 0.25 / 0.4375 + 0.1875 / 0.4375, (0.05 + 0.1875 / 2) / 0.4375,
+                              (0.025 + 0.1875 / 4) / 0.4375), 0.5625, (1, 0.5, 0.25)),
+    ],
+)  # fmt: skip
+def test_thin_walls_pass_light_on(surface, base, factor, color):
+    names = {"standard_surface": ("base", "subsurface", "bool inputs:thin_walled = 1", ""),
+             "open_pbr_surface": ("base_weight", "subsurface_weight", "bool inputs:geometry_thin_walled = 1",
+                                  "float inputs:subsurface_scatter_anisotropy = 0.5")}[surface]  # fmt: skip
+    look = f"""
+def Material "Look" {{
+    token outputs:mtlx:surface.connect = </Look/S.outputs:out>
+    def Shader "S" {{
+        uniform token info:id = "ND_{surface}_surfaceshader"
+        float inputs:{names[0]} = 1
+        color3f inputs:base_color = (0.4, 0.2, 0.1)
+        float inputs:{names[1]} = 0.75
+        color3f inputs:subsurface_color = (1, 0.5, 0.25)
+        {names[2]}
+        {names[3]}
+        token outputs:out
+    }}
+}}"""
+    (material,) = document(bound(look))["materials"]
+    assert material["pbrMetallicRoughness"]["baseColorFactor"][:3] == pytest.approx(base)
+    assert material["extensions"]["KHR_materials_diffuse_transmission"] == {
+        "diffuseTransmissionFactor": pytest.approx(factor),
+        "diffuseTransmissionColorFactor": pytest.approx(color),
+    }
+    assert not any("subsurface" in line or "thin" in line for line in loaded(bound(look)).notes)
+    thick = bound(look.replace("thin_walled = 1", "thin_walled = 0"))
+    (material,) = document(thick)["materials"]
+    assert "KHR_materials_diffuse_transmission" not in material.get("extensions", {})
+    assert any("subsurface" in line for line in loaded(thick).notes)
+
+
 def test_a_file_of_materialx(tmp_path):
     """Nodes in a graph, with an interface, and a texture."""
     (tmp_path / "pictures/plain").mkdir(parents=True)

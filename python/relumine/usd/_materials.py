@@ -616,6 +616,7 @@ class Materials:
             alpha = _replaced(alpha, channels="r")
         elif isinstance(alpha, tuple):
             alpha = sum(alpha[:3]) / 3.0
+        color, of_thin_walls = self._thin_wall(n, slots, extensions, color, names)
         pbr: Dict[str, Any] = {}
         self._base(slots, pbr, color, alpha)
         metal = of("metal")
@@ -677,7 +678,7 @@ class Materials:
             self._emission(slots, material, of("emission_color"), float(glow))
         self._normal(slots, material, _map_of(of("normal")), n.path)
         pairs = [pair for pair in names.values() if isinstance(pair, tuple)]
-        known = {name for name, _ in pairs if name} | set(names["silent"][1])
+        known = {name for name, _ in pairs if name} | set(names["silent"][1]) | of_thin_walls
         for name in sorted(n.given() - known):
             value = n.input(name, None)
             if value in (0, 0.0, False, None, (0.0, 0.0, 0.0)) or name.endswith(("_IOR", "_ior")):
@@ -685,6 +686,48 @@ class Materials:
             self._notes.add(f"{name} is left out", n.path)
         if not extensions:
             del material["extensions"]
+
+    def _thin_wall(
+        self,
+        n: Network,
+        slots: _Slots,
+        extensions: Dict[str, Any],
+        base: Input,
+        names: Dict[str, Any],
+    ) -> Tuple[Input, Set[str]]:
+        """Subsurface of a leaf or of paper: light that goes to the other side. Returns the colour of
+        what is reflected, and the names of the inputs."""
+        thin, scatter, fallback = names.get("thin_wall", ("", "", 0.0))
+        part = n.input("subsurface_weight" if scatter else "subsurface", 0.0) if thin else 0.0
+        if not thin or not n.number(thin, 0.0) or isinstance(part, Image) or part <= 0.0:
+            return base, set()
+        part = self._fraction(part)
+        color = n.input("subsurface_color", fallback)
+        # standard_surface passes all of it on, OpenPBR a half, or more towards where it scatters.
+        ahead = n.number(scatter, 0.0) if scatter else 1.0
+        passed = part * min(max(0.5 * (1.0 + ahead), 0.0), 1.0)
+        leaf: Dict[str, Any] = {"diffuseTransmissionFactor": passed}
+        if isinstance(color, Image):
+            info, _ = slots.texture([color], is_srgb=True)
+            if info is not None:
+                leaf["diffuseTransmissionColorTexture"] = info
+        else:
+            leaf["diffuseTransmissionColorFactor"] = _clamped(_color(color))
+        extensions["KHR_materials_diffuse_transmission"] = leaf
+        used = {thin, scatter, "subsurface", "subsurface_weight", "subsurface_color"}
+        used |= {"subsurface_radius", "subsurface_radius_scale", "subsurface_scale"}
+        if passed == part or passed == 1.0:
+            return base, used
+        if part == 1.0:
+            return color, used
+        if isinstance(base, Image) or isinstance(color, Image):
+            self._notes.add("of a thin wall with textures the base colour alone is reflected", n.path)
+            return base, used
+        mixed = [
+            ((1.0 - part) * b + (part - passed) * c) / (1.0 - passed)
+            for b, c in zip(_color(base), _color(color))
+        ]
+        return tuple(mixed), used
 
     def _film(self, n: Network, extensions: Dict[str, Any], names: Dict[str, Any]) -> None:
         """A thin film of one thickness; glTF has it in nanometres."""
@@ -714,7 +757,8 @@ class Materials:
             "emission": ("emission", 0.0), "emission_color": ("emission_color", one),
             "normal": ("normal", None), "film": (None, 1.0),
             "film_thickness": ("thin_film_thickness", 0.0), "film_ior": ("thin_film_IOR", 1.5),
-            "nanometres": 1.0, "silent": (None, ("tangent",)),
+            "nanometres": 1.0, "thin_wall": ["thin_walled", "", one],
+            "silent": (None, ("tangent",)),
         })  # fmt: skip
 
     def _open_pbr(self, n: Network, slots: _Slots, material: Dict[str, Any]) -> None:
@@ -731,7 +775,9 @@ class Materials:
             "emission": ("emission_luminance", 0.0), "emission_color": ("emission_color", one),
             "normal": ("geometry_normal", None), "film": ("thin_film_weight", 0.0),
             "film_thickness": ("thin_film_thickness", 0.5), "film_ior": ("thin_film_ior", 1.4),
-            "nanometres": 1000.0, "silent": (None, ("geometry_tangent",)),
+            "nanometres": 1000.0,
+            "thin_wall": ["geometry_thin_walled", "subsurface_scatter_anisotropy", (0.8, 0.8, 0.8)],
+            "silent": (None, ("geometry_tangent",)),
         })  # fmt: skip
 
     def _gltf_pbr(self, n: Network, slots: _Slots, material: Dict[str, Any]) -> None:

@@ -135,6 +135,17 @@ TEST(PassedOn, AHollowBodyOfWhitePaperIsWhite) {
     EXPECT_NEAR(inside, 1.0, 0.02);
 }
 
+/// The sheet and its back are one surface to the eye.
+TEST(PassedOn, ABlendedSheetCoversOnce) {
+    mesh::Material thin = leaf();
+    thin.alpha_mode = mesh::AlphaMode::Blend;
+    thin.alpha = 0.5f;
+    LitScene lit(scene_of(sheet_of(thin)));
+    lit.light(two_skies(2.0f, 3.0f));
+    expect_near(seen(lit, true), 0.5f * (Base * (1.0f - Part) * 2.0f + Passed * Part * 3.0f),
+                0.02f);
+}
+
 class PassedOnFile : public tests::FolderTest {};
 
 TEST_F(PassedOnFile, KeepsIt) {
