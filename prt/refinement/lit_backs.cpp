@@ -82,6 +82,8 @@ mesh::TriangleMesh with_backs(const mesh::TriangleMesh& mesh,
                 back_of[corner] = static_cast<std::uint32_t>(result.num_vertices());
                 mesh::for_each_vertex_array(result, [&](auto& values) { repeat(values, corner); });
                 result.normals.back() = -result.normals.back();
+                if (!result.lifts.empty()) // to the front's side
+                    result.lifts.back() = glm::vec3(0.0f);
             }
             corner = back_of[corner];
         }

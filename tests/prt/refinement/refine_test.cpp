@@ -577,12 +577,15 @@ TEST(LitBacks, WhatPassesLightOnGetsThemByItself) {
     EXPECT_EQ(with_backs_of_sheets(leaf).num_triangles(), 2u) << "no material";
     leaf.materials = {{.name = "leaf", .diffuse_transmission = 0.5f}};
     leaf.triangle_materials = {0, 0};
+    leaf.lifts.assign(4, glm::vec3(0.0f, 0.1f, 0.0f));
     EXPECT_EQ(with_lit_backs(leaf, RayScene(leaf), automatic_bias(leaf)).num_triangles(), 2u)
         << "its backs come when its front is refined";
     const mesh::TriangleMesh both = with_backs_of_sheets(leaf);
     ASSERT_EQ(both.num_triangles(), 4u);
     EXPECT_EQ(both.num_vertices(), 8u);
     EXPECT_EQ(both.triangle_materials.back(), 0u);
+    EXPECT_EQ(both.lifts[3], leaf.lifts[3]);
+    EXPECT_EQ(both.lifts[7], glm::vec3(0.0f)) << "a lift leads to the front's side";
     EXPECT_EQ(with_backs_of_sheets(both).num_triangles(), 4u) << "both sides are there";
     const TwinTriangles twins(both);
     const std::optional<MeshPoint> other = twins.other_side({1, {0.25f, 0.5f}});
