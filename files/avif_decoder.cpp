@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #ifdef RELUMINE_HDR_PHOTOS
 #include <avif/avif.h>
@@ -66,9 +67,18 @@ void AvifPicture::decode(std::span<std::uint16_t> values, bool with_alpha) const
 
 void AvifPicture::decode(std::span<std::uint8_t> bytes, std::uint32_t num_bits,
                          bool with_alpha) const {
-    const std::size_t row = std::size_t{head_.width} * (with_alpha ? 4 : 3) * (num_bits / 8);
+    const std::size_t channel = num_bits / 8;
+    const std::size_t row = head_.width * (with_alpha ? 4 : 3) * channel;
     if (bytes.size() != row * head_.height)
         throw std::invalid_argument("expected room for the pixels of an AVIF picture");
+    if (head_.has_alpha && !with_alpha) { // libavif would blend them onto black
+        std::vector<std::uint8_t> whole(bytes.size() / 3 * 4);
+        decode(whole, num_bits, true);
+        for (std::size_t from = 0, to = 0; to < bytes.size();
+             from += 4 * channel, to += 3 * channel)
+            std::copy_n(&whole[from], 3 * channel, &bytes[to]);
+        return;
+    }
     if (!impl_->is_decoded)
         require(avifDecoderNextImage(impl_->decoder.get()));
     impl_->is_decoded = true;

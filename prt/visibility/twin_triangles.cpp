@@ -25,20 +25,16 @@ glm::vec3 normal_of(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
 Hit TwinTriangles::facing(const Hit& hit, const glm::vec3& direction) const {
     if (!(glm::dot(normal_of(mesh_, hit.triangle), direction) > 0.0f))
         return hit;
-    const std::optional<MeshPoint> other = other_side({hit.triangle, hit.barycentric});
-    if (!other)
-        return hit;
-    return {
-        .triangle = other->triangle, .barycentric = other->barycentric, .distance = hit.distance};
+    return other_side(hit).value_or(hit);
 }
 
-std::optional<MeshPoint> TwinTriangles::other_side(const MeshPoint& point) const {
-    const std::optional<std::uint32_t> twin = twin_of(point.triangle);
+std::optional<Hit> TwinTriangles::other_side(const Hit& hit) const {
+    const std::optional<std::uint32_t> twin = twin_of(hit.triangle);
     if (!twin)
         return std::nullopt;
-    const std::array<float, 3> weights = {1.0f - point.barycentric.x - point.barycentric.y,
-                                          point.barycentric.x, point.barycentric.y};
-    const mesh::Triangle& own = mesh_.triangles[point.triangle];
+    const std::array<float, 3> weights = {1.0f - hit.barycentric.x - hit.barycentric.y,
+                                          hit.barycentric.x, hit.barycentric.y};
+    const mesh::Triangle& own = mesh_.triangles[hit.triangle];
     const auto weight_of = [&](std::uint32_t corner) {
         std::size_t k = 0;
         while (k < 2 && mesh_.positions[own[k]] != mesh_.positions[corner])
@@ -46,7 +42,9 @@ std::optional<MeshPoint> TwinTriangles::other_side(const MeshPoint& point) const
         return weights[k];
     };
     const mesh::Triangle& other = mesh_.triangles[*twin];
-    return MeshPoint{.triangle = *twin, .barycentric = {weight_of(other[1]), weight_of(other[2])}};
+    return Hit{.triangle = *twin,
+               .barycentric = {weight_of(other[1]), weight_of(other[2])},
+               .distance = hit.distance};
 }
 
 std::uint64_t TwinTriangles::key_of(std::uint32_t triangle) const {

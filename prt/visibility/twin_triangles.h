@@ -10,7 +10,6 @@
 #include <glm/vec3.hpp>
 
 #include "mesh/triangle_mesh.h"
-#include "prt/receivers/mesh_point.h"
 #include "prt/visibility/ray_scene.h"
 
 namespace relumine::prt {
@@ -32,7 +31,7 @@ public:
     [[nodiscard]] Hit facing(const Hit& hit, const glm::vec3& direction) const;
 
     /// Returns the same point on the triangle's twin; none where it has no twin.
-    [[nodiscard]] std::optional<MeshPoint> other_side(const MeshPoint& point) const;
+    [[nodiscard]] std::optional<Hit> other_side(const Hit& hit) const;
 
 private:
     [[nodiscard]] std::optional<std::uint32_t> twin_of(std::uint32_t triangle) const;

@@ -13,6 +13,7 @@
 #include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/lit_position.h"
 #include "relight/pictures/highlight_rays.h"
+#include "relight/pictures/other_side.h"
 
 namespace relumine::relight {
 
@@ -257,7 +258,7 @@ glm::vec3 Mirrors::matte(const prt::MeshPoint& at, const MetSurface& met) const 
 }
 
 glm::vec3 Mirrors::passed_on(const prt::MeshPoint& at) const {
-    const auto other = light_.textures->other_side(at, twins_);
+    const auto other = other_side(mesh_, at, light_, twins_);
     return other ? other->part * light_.textures->light(light_.mirrored, other->at)
                  : glm::vec3(0.0f);
 }

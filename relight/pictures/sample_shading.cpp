@@ -44,11 +44,6 @@ glm::vec3 SampleShading::soft(const prt::MeshPoint& at, const std::optional<Mirr
     return prt::reflect(surface_at(at), between, eye_cosine(at));
 }
 
-std::optional<SurfaceColors::OtherSide> SampleShading::other_side(const prt::MeshPoint& at) const {
-    return light_.textures == nullptr ? std::nullopt
-                                      : light_.textures->other_side(at, twins_, &view_);
-}
-
 glm::vec3 SampleShading::soft(const OtherSide& other, const std::optional<Mirror>& mirror) const {
     return other.part * under_highlight(mirror) *
            light_.textures->light(light_.radiance, other.at, tilted(other.at));

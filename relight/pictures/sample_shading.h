@@ -12,6 +12,7 @@
 #include "prt/receivers/mesh_point.h"
 #include "prt/receivers/texture_view.h"
 #include "relight/pictures/mirrors.h"
+#include "relight/pictures/other_side.h"
 #include "relight/pictures/picture_view.h"
 #include "relight/sharp/light_packets.h"
 
@@ -36,9 +37,10 @@ public:
     [[nodiscard]] glm::vec3 soft(const prt::MeshPoint& at, const std::optional<Mirror>& mirror,
                                  Mirrors& mirrors) const;
 
-    using OtherSide = SurfaceColors::OtherSide;
     /// Returns the other side of a point whose surface passes light on.
-    [[nodiscard]] std::optional<OtherSide> other_side(const prt::MeshPoint& at) const;
+    [[nodiscard]] std::optional<OtherSide> other_side(const prt::MeshPoint& at) const {
+        return relight::other_side(mesh_, at, light_, twins_, &view_);
+    }
     /// Returns what a point passes on of the light of the vertices.
     [[nodiscard]] glm::vec3 soft(const OtherSide& other, const std::optional<Mirror>& mirror) const;
     /// Returns what it passes on of lights that the other side sees.

@@ -75,16 +75,6 @@ glm::vec3 SurfaceColors::radiance(std::span<const glm::vec3> vertex_radiance,
     return light(vertex_radiance, point, change) * surface(point, view).albedo;
 }
 
-std::optional<SurfaceColors::OtherSide>
-SurfaceColors::other_side(const prt::MeshPoint& point, const prt::TwinTriangles& twins,
-                          const prt::TextureView* view) const {
-    if (is_textured_.empty() || !prt::passes_light_on(*mesh_, point.triangle))
-        return std::nullopt;
-    const std::optional<prt::MeshPoint> behind = twins.other_side(point);
-    return behind ? std::optional(OtherSide{*behind, prt::passed_on_at(*mesh_, point, view)})
-                  : std::nullopt;
-}
-
 std::vector<glm::vec3> scaled(std::span<const glm::vec3> harmonics,
                               std::span<const glm::vec3> factors) {
     std::vector<glm::vec3> result(harmonics.begin(), harmonics.end());

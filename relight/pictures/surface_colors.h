@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,7 +13,6 @@
 #include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/receivers/surface.h"
-#include "prt/visibility/twin_triangles.h"
 
 namespace relumine::relight {
 
@@ -64,16 +62,6 @@ public:
                                      const prt::MeshPoint& point,
                                      const glm::vec3& change = glm::vec3(0.0f),
                                      const prt::TextureView* view = nullptr) const;
-
-    /// The other side of a point, and the part of its light that the surface passes on.
-    struct OtherSide {
-        prt::MeshPoint at;
-        glm::vec3 part;
-    };
-    /// Returns it where a surface passes light on, and the mesh has its other side.
-    [[nodiscard]] std::optional<OtherSide> other_side(const prt::MeshPoint& point,
-                                                      const prt::TwinTriangles& twins,
-                                                      const prt::TextureView* view = nullptr) const;
 
 private:
     const mesh::TriangleMesh* mesh_ = nullptr;

@@ -23,12 +23,6 @@ using relight::BounceReport;
 [[nodiscard]] relight::SurfaceBounces
 bounces_of(const Scene& scene, std::span<const glm::vec3> albedo, const BounceLimits& limits = {});
 
-/// Returns what surfaces pass on to their other side (KHR_materials_diffuse_transmission), of
-/// scenes of vertices without stored highlights; none elsewhere.
-///
-/// Cost:    O(n log n) where any material passes light on.
-[[nodiscard]] std::vector<relight::PassedOn> passed_on(const Scene& scene);
-
 /// Keeps how light bounces in a scene, and what surfaces add to its receivers' direct light.
 /// Surfaces are Lambert for it; what mirrors would show of other surfaces is left out.
 class SceneBounces {

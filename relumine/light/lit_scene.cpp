@@ -17,6 +17,7 @@
 #include "relumine/in/scene_rays.h"
 #include "relumine/light/layer_compositor.h"
 #include "relumine/light/listed_light.h"
+#include "relumine/light/passed_on.h"
 #include "relumine/light/scene_moves.h"
 #include "relumine/light/shared_receivers.h"
 #include "relumine/light/terms.h"

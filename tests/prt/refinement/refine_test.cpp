@@ -588,7 +588,7 @@ TEST(LitBacks, WhatPassesLightOnGetsThemByItself) {
     EXPECT_EQ(both.lifts[7], glm::vec3(0.0f)) << "a lift leads to the front's side";
     EXPECT_EQ(with_backs_of_sheets(both).num_triangles(), 4u) << "both sides are there";
     const TwinTriangles twins(both);
-    const std::optional<MeshPoint> other = twins.other_side({1, {0.25f, 0.5f}});
+    const std::optional<Hit> other = twins.other_side({1, {0.25f, 0.5f}});
     ASSERT_TRUE(other);
     EXPECT_EQ(other->triangle, 3u);
     EXPECT_EQ(other->barycentric, glm::vec2(0.5f, 0.25f)) << "its corners run the other way round";
