@@ -51,7 +51,7 @@ Moment moment_of(const ViewState& state, const PixelRectangle& size) {
     moment.lobes = std::move(lighting.lobes);
     moment.harmonics = std::move(lighting.harmonics);
     if (state.shading.textures.has_mirrors() && lighting.environment != nullptr) {
-        moment.mirrored.assign(lighting.radiance.begin(), lighting.radiance.end());
+        moment.mirrored.assign(lighting.drawn().begin(), lighting.drawn().end());
         moment.environment = std::make_shared<const cubemap::CubeMap>(*lighting.environment);
         moment.num_environment_lights = lighting.num_environment_lights;
     }
@@ -60,7 +60,7 @@ Moment moment_of(const ViewState& state, const PixelRectangle& size) {
     if (state.balls != nullptr)
         moment.radiance = state.balls->radiance(state.desk.lit());
     else if (moment.lights.empty())
-        moment.radiance.assign(lighting.radiance.begin(), lighting.radiance.end());
+        moment.radiance.assign(lighting.drawn().begin(), lighting.drawn().end());
     if (state.scene_look.background)
         moment.backdrop =
             on_floor(backdrop_of(state), scene, lighting, look, camera.eye(), state.picture);

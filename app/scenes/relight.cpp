@@ -50,6 +50,7 @@ struct RelightArguments {
 
 void keep_bounces(Lighting& lighting, std::span<const glm::vec3> bounced) {
     lighting.radiance = bounced;
+    lighting.reflected = {};
     lighting.soft.clear();
     lighting.lights.clear();
     lighting.floor_lights.clear();

@@ -161,25 +161,27 @@ std::string percent_decoded(std::string_view uri) {
 
 /// Says what is lost without an extension. Empty for others: their loss is unknown, and a file that
 /// requires one of them is refused.
-std::string_view lost_without(std::string_view extension) {
+std::string lost_without(std::string_view extension) {
     struct Loss {
-        std::string_view extension, loss;
+        std::string_view extension, loss, remedy = {};
     };
     constexpr std::string_view Images = "its images are left out; without another image, a surface "
                                         "has its factors alone";
-    constexpr std::array<Loss, 7> Losses = {{
+    constexpr auto Losses = std::to_array<Loss>({
         {"EXT_lights_image_based",
          "the file brings its own environment, which does not light the scene"},
-        {"EXT_texture_avif", Images},
-        {"KHR_texture_basisu", Images},
+#ifndef RELUMINE_HDR_PHOTOS
+        {"EXT_texture_avif", Images, ". A build with RELUMINE_HDR_PHOTOS reads them"},
+#endif
+        {"KHR_texture_basisu", Images, ". gltf-transform ktxdecompress makes PNG of them"},
         {"KHR_xmp", "its metadata are left out"},
         {"KHR_xmp_json_ld", "its metadata are left out"},
         {"MSFT_lod", "the finest level of detail is shown"},
         {"MSFT_texture_dds", Images},
-    }};
+    });
     const auto* found = std::find_if(Losses.begin(), Losses.end(),
                                      [&](const Loss& loss) { return loss.extension == extension; });
-    return found == Losses.end() ? std::string_view() : found->loss;
+    return found == Losses.end() ? std::string() : fmt::format("{}{}", found->loss, found->remedy);
 }
 
 } // namespace
@@ -323,11 +325,14 @@ void Document::split_glb(std::span<const std::byte> file) {
 }
 
 void Document::check_extensions() {
-    constexpr std::array<std::string_view, 12> Understood = {
-        "EXT_lights_ies",          "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",
-        "EXT_texture_webp",        "KHR_animation_pointer",   "KHR_draco_mesh_compression",
-        "KHR_lights_punctual",     "KHR_materials_variants",  "KHR_mesh_quantization",
-        "KHR_meshopt_compression", "KHR_node_visibility",     "KHR_texture_transform"};
+    constexpr auto Understood = std::to_array<std::string_view>({
+#ifdef RELUMINE_HDR_PHOTOS
+        "EXT_texture_avif",
+#endif
+        "EXT_lights_ies", "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp",
+        "KHR_animation_pointer", "KHR_draco_mesh_compression", "KHR_lights_punctual",
+        "KHR_materials_variants", "KHR_mesh_quantization", "KHR_meshopt_compression",
+        "KHR_node_visibility", "KHR_texture_transform"});
     const auto names = [this](const char* key) {
         std::set<std::string> result;
         for (const Json& name : items(root_, key)) {

@@ -27,20 +27,25 @@ struct Extension {
     std::string_view loss;
 };
 
-constexpr std::array<Extension, 3> Extensions = {{
-    {"KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", 0.0,
-     "no light shines through surfaces"},
+constexpr std::array<Extension, 2> Extensions = {{
     {"KHR_materials_dispersion", "dispersion", 0.0, "glass bends all colours alike"},
     {"KHR_materials_volume_scatter", "multiscatterColor", 0.0,
      "bodies are clear inside, not milky"},
 }};
 
 /// Those that are read.
-constexpr std::array<std::string_view, 11> ReadExtensions = {
-    "KHR_materials_anisotropy", "KHR_materials_clearcoat",   "KHR_materials_emissive_strength",
-    "KHR_materials_ior",        "KHR_materials_iridescence", "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_sheen",      "KHR_materials_specular",    "KHR_materials_transmission",
-    "KHR_materials_unlit",      "KHR_materials_volume"};
+constexpr std::array<std::string_view, 12> ReadExtensions = {"KHR_materials_anisotropy",
+                                                             "KHR_materials_clearcoat",
+                                                             "KHR_materials_diffuse_transmission",
+                                                             "KHR_materials_emissive_strength",
+                                                             "KHR_materials_ior",
+                                                             "KHR_materials_iridescence",
+                                                             "KHR_materials_pbrSpecularGlossiness",
+                                                             "KHR_materials_sheen",
+                                                             "KHR_materials_specular",
+                                                             "KHR_materials_transmission",
+                                                             "KHR_materials_unlit",
+                                                             "KHR_materials_volume"};
 
 /// Everything that glTF 2.0 gives a material and a texture of it.
 constexpr std::array<std::string_view, 11> MaterialProperties = {
@@ -155,6 +160,7 @@ void LeftOut::material(const Json& description) {
     const Json& sheen = child(extensions, "KHR_materials_sheen");
     const Json& film = child(extensions, "KHR_materials_iridescence");
     const Json& stretched = child(extensions, "KHR_materials_anisotropy");
+    const Json& diffuse = child(extensions, "KHR_materials_diffuse_transmission");
     for (const auto& [parent, key] : {std::pair{&pbr, "baseColorTexture"},
                                       {&pbr, "metallicRoughnessTexture"},
                                       {&old, "diffuseTexture"},
@@ -170,7 +176,9 @@ void LeftOut::material(const Json& description) {
                                       {&sheen, "sheenRoughnessTexture"},
                                       {&film, "iridescenceTexture"},
                                       {&film, "iridescenceThicknessTexture"},
-                                      {&stretched, "anisotropyTexture"}})
+                                      {&stretched, "anisotropyTexture"},
+                                      {&diffuse, "diffuseTransmissionTexture"},
+                                      {&diffuse, "diffuseTransmissionColorTexture"}})
         texture(child(*parent, key));
 }
 

@@ -45,6 +45,7 @@ private:
     void read_sheen(const Json& extension, Material& material);
     void read_film(const Json& extension, Material& material);
     void read_anisotropy(const Json& extension, Material& material);
+    void read_diffuse_transmission(const Json& extension, Material& material);
     double in_range(const char* key, double value, double low, double high);
     float fraction(const Json& object, const char* key, float fallback);
     std::vector<double> factors(const Json& object, const char* key, std::vector<double> fallback,
@@ -103,11 +104,13 @@ std::optional<std::uint32_t> MaterialReader::image(std::uint64_t index) {
     return place;
 }
 
-/// Returns the texture that a "texture" of the file shows. The image of EXT_texture_webp comes
-/// before its twin in another format.
+/// Returns the texture that a "texture" of the file shows. The images of extensions come before
+/// their twin in another format.
 std::optional<std::uint32_t> MaterialReader::source(const Json& texture) {
-    const Json& webp = child(child(texture, "extensions"), "EXT_texture_webp");
-    for (const Json* holder : {&webp, &texture})
+    const Json& extensions = child(texture, "extensions");
+    const Json& avif = child(extensions, "EXT_texture_avif");
+    const Json& webp = child(extensions, "EXT_texture_webp");
+    for (const Json* holder : {&avif, &webp, &texture})
         if (holder->find("source"))
             if (const auto place = image(whole(*holder, "source")))
                 return place;
@@ -421,6 +424,19 @@ void MaterialReader::read_anisotropy(const Json& extension, Material& material) 
     material.anisotropy_texture = slot(extension, "anisotropyTexture", false);
 }
 
+/// Reads KHR_materials_diffuse_transmission.
+void MaterialReader::read_diffuse_transmission(const Json& extension, Material& material) {
+    material.diffuse_transmission = fraction(extension, "diffuseTransmissionFactor", 0.0f);
+    if (material.diffuse_transmission == 0.0f)
+        return;
+    material.diffuse_transmission_texture = alpha_slot(extension, "diffuseTransmissionTexture");
+    const std::vector<double> color =
+        factors(extension, "diffuseTransmissionColorFactor", {1.0, 1.0, 1.0});
+    material.diffuse_transmission_color = glm::vec3(color[0], color[1], color[2]);
+    material.diffuse_transmission_color_texture =
+        slot(extension, "diffuseTransmissionColorTexture", true);
+}
+
 Material MaterialReader::material(const Json& description, std::size_t index) {
     const Json& pbr = child(description, "pbrMetallicRoughness");
     const Json& extensions = child(description, "extensions");
@@ -453,6 +469,7 @@ Material MaterialReader::material(const Json& description, std::size_t index) {
     read_sheen(child(extensions, "KHR_materials_sheen"), material);
     read_film(child(extensions, "KHR_materials_iridescence"), material);
     read_anisotropy(child(extensions, "KHR_materials_anisotropy"), material);
+    read_diffuse_transmission(child(extensions, "KHR_materials_diffuse_transmission"), material);
     read_glass(extensions, material);
     return material;
 }

@@ -39,6 +39,7 @@ void* limited_realloc(void* bytes, std::size_t size) {
 #define STBI_ONLY_TGA
 #include <stb_image.h>
 
+#include "files/avif_decoder.h"
 #include "files/jpeg_decoder.h"
 #include "mesh/materials/texture.h"
 #include "mesh/materials/webp_decoder.h"
@@ -48,7 +49,7 @@ namespace relumine::mesh {
 
 namespace {
 
-enum class Format { Png, Jpeg, WebP, Bmp, Tga };
+enum class Format { Png, Jpeg, WebP, Avif, Bmp, Tga };
 
 /// Returns the format by the file's first bytes. TGA files have no mark, so a file with no other
 /// mark counts as TGA.
@@ -62,6 +63,7 @@ Format format_of(std::span<const std::byte> file) {
     return begins_with("\x89PNG")        ? Format::Png
            : begins_with("\xff\xd8\xff") ? Format::Jpeg
            : is_webp                     ? Format::WebP
+           : files::is_avif(file)        ? Format::Avif
            : begins_with("BM")           ? Format::Bmp
                                          : Format::Tga;
 }
@@ -85,6 +87,7 @@ std::uint64_t least_bytes(Format format, std::span<const std::byte> file, std::u
     case Format::Jpeg:
         return num_pixels / 1024;
     case Format::WebP: // one colour takes no bytes at all
+    case Format::Avif:
         return 0;
     // stb_image reads only uncompressed files. Rows end at multiples of four bytes.
     case Format::Bmp: {
@@ -177,6 +180,29 @@ void decode_by_stb(std::span<const std::byte> file, int num_channels, ImageBudge
                                                     : reason))); // may quote the file
 }
 
+/// Numbers of 10 and 12 bits become 8. Light above white would be cut off, on a curve that no
+/// texture has.
+template<class Allocate>
+void decode_avif(std::span<const std::byte> file, int num_channels, const Allocate& allocate) {
+#ifdef RELUMINE_HDR_PHOTOS
+    const files::AvifPicture picture(file);
+    const files::AvifPicture::Head& head = picture.head();
+    constexpr unsigned Pq = 16, Hlg = 18;
+    if (head.transfer == Pq || head.transfer == Hlg)
+        throw std::runtime_error("expected an AVIF of colours, got one by PQ or HLG");
+    if (head.is_turned)
+        throw std::runtime_error("expected an AVIF as it lies, got one that its file turns");
+    std::uint8_t* const bytes = allocate(head.width, head.height);
+    picture.decode(std::span(bytes, std::size_t{head.width} * head.height *
+                                        static_cast<std::size_t>(num_channels)),
+                   num_channels == 4);
+#else
+    static_cast<void>(file), static_cast<void>(num_channels), static_cast<void>(allocate);
+    throw std::runtime_error("expected a PNG, JPEG, WebP, BMP or TGA image, got AVIF, which takes "
+                             "a build with RELUMINE_HDR_PHOTOS");
+#endif
+}
+
 /// Decodes to bytes of RGB (3 channels) or RGBA (4; not JPEG).
 DecodedImage decode(std::span<const std::byte> file, int num_channels, ImageBudget& budget) {
     if (file.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
@@ -201,6 +227,8 @@ DecodedImage decode(std::span<const std::byte> file, int num_channels, ImageBudg
         files::decode_jpeg(file, allocate);
     else if (format == Format::WebP)
         decode_webp(file, num_channels == 4, allocate);
+    else if (format == Format::Avif)
+        decode_avif(file, num_channels, allocate);
     else
         decode_by_stb(file, num_channels, budget, image);
     return image;

@@ -113,6 +113,15 @@ struct Material {
     /// What is left of light on a way of attenuation_distance through the body.
     glm::vec3 attenuation_color{1.0f};
     float attenuation_distance = std::numeric_limits<float>::infinity();
+    /// The part of the diffuse light that goes to the other side of the surface in place of being
+    /// reflected, in [0, 1]: KHR_materials_diffuse_transmission.
+    float diffuse_transmission = 0.0f;
+    /// Its R multiplies diffuse_transmission.
+    std::optional<TextureSlot> diffuse_transmission_texture = {};
+    /// In [0, 1]. What the surface leaves of that part.
+    glm::vec3 diffuse_transmission_color{1.0f};
+    /// Its RGB multiplies diffuse_transmission_color.
+    std::optional<TextureSlot> diffuse_transmission_color_texture = {};
     /// False: pictures do not show the backs. They block light all the same.
     bool is_double_sided = true;
     /// Normals in the frame of tangent, bitangent and normal, as 2 RGB - 1.

@@ -67,8 +67,8 @@ inline constexpr auto MaterialMembers = [] {
         NotOfMetal{of(Phong, SpecularGlossiness, Measured), false};
     constexpr MemberRule Glows{.with = "emission"}, Coated{.with = "coat"}, Cloth{.with = "sheen"},
         Filmed{.with = "film"}, Stretched{.with = "anisotropy"}, Glass{.with = "transmission"},
-        Passed{.with = "alpha_mode"}, Normals{.with = "normal_texture"},
-        CoatNormals{.with = "coat_normal_texture"};
+        LetsThrough{.with = "diffuse_transmission"}, Passed{.with = "alpha_mode"},
+        Normals{.with = "normal_texture"}, CoatNormals{.with = "coat_normal_texture"};
     return std::array{
         Member{"model", &M::model, Never, Always, {}, 0.0f, 4.0f},
         Member{"base_color", &M::base_color, Always, Always, "base"},
@@ -89,6 +89,14 @@ inline constexpr auto MaterialMembers = [] {
         Member{"transmission_texture", &M::transmission_texture, Never, Glass},
         Member{"thickness", &M::thickness, Never, Glass, {}, 0.0f, Any},
         Member{"attenuation", &M::attenuation_color, Never, Glass},
+        Member{"diffuse_transmission", &M::diffuse_transmission},
+        Member{"diffuse_transmission_texture", &M::diffuse_transmission_texture, {}, LetsThrough},
+        Member{"diffuse_transmission_color", &M::diffuse_transmission_color, LetsThrough,
+               LetsThrough},
+        Member{"diffuse_transmission_color_texture",
+               &M::diffuse_transmission_color_texture,
+               {},
+               LetsThrough},
         Member{"normal_texture", &M::normal_texture},
         Member{"normal_scale", &M::normal_scale, Normals, Normals, {}, -Any, Any},
         Member{"ior", &M::ior, {}, {}, {}, 0.0f, 1e6f},

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "files/avif_decoder.h"
 #include "files/free_memory.h"
 #include "files/pixel_values.h"
 #include "mesh/materials/image_decoder.h"
@@ -83,7 +84,9 @@ Texture decode_texture(std::span<const std::byte> file, VOrigin origin, ImageBud
         std::memcpy(texel.data(), image.bytes.get() + 3 * pixel, texel.size());
         return texel;
     });
-    texture.file.assign(file.begin(), file.end());
+    // Not every build reads AVIF: scene files get the texels.
+    if (!files::is_avif(file))
+        texture.file.assign(file.begin(), file.end());
     texture.origin = origin;
     return texture;
 }

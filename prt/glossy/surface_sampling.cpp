@@ -40,6 +40,25 @@ struct MaterialPoint {
                                      const std::optional<mesh::TextureSlot>& slot) const {
         return textured(glm::vec3(value), slot);
     }
+    /// Returns how much of the surface is bare metal.
+    [[nodiscard]] float metallic() const {
+        float result = material.metallic;
+        if (material.metallic_roughness_texture)
+            result *= texel(*material.metallic_roughness_texture).b;
+        return textured(result, material.metallic_texture).r;
+    }
+    /// Returns the part of the diffuse light that goes to the other side.
+    [[nodiscard]] float diffuse_transmission() const {
+        return material.diffuse_transmission == 0.0f
+                   ? 0.0f
+                   : textured(material.diffuse_transmission, material.diffuse_transmission_texture)
+                         .r;
+    }
+    /// Returns what of the light that meets the surface is neither metal's nor glass's.
+    [[nodiscard]] float diffuse_part() const {
+        return (1.0f - metallic()) *
+               (1.0f - textured(material.transmission, material.transmission_texture).r);
+    }
     /// Returns the base colour, not limited where vertices are brighter than 1.
     [[nodiscard]] glm::vec3 base() const {
         const glm::vec3 base = textured(material.base_color, material.base_color_texture);
@@ -122,14 +141,10 @@ Surface reflecting(const MaterialPoint& point, GgxForm form) {
         return surface;
     }
     const Highlight highlight = form == GgxForm::Whole ? Highlight::GgxWhole : Highlight::Ggx;
-    float metallic = material.metallic, roughness = material.roughness;
-    if (const auto& slot = material.metallic_roughness_texture) {
-        const glm::vec3 texel = point.texel(*slot);
-        roughness *= texel.g;
-        metallic *= texel.b;
-    }
+    float roughness = material.roughness;
+    if (const auto& slot = material.metallic_roughness_texture)
+        roughness *= point.texel(*slot).g;
     roughness = point.textured(roughness, material.roughness_texture).r;
-    metallic = point.textured(metallic, material.metallic_texture).r;
     if (material.model == mesh::MaterialModel::SpecularGlossiness) {
         const glm::vec3 specular = point.textured(material.specular, material.specular_texture);
         const float left = 1.0f - std::max({specular.r, specular.g, specular.b});
@@ -138,20 +153,24 @@ Surface reflecting(const MaterialPoint& point, GgxForm form) {
                 .highlight = highlight,
                 .roughness_or_exponent = roughness};
     }
-    const float transmission =
-        point.textured(glm::vec3(material.transmission), material.transmission_texture).r;
+    const float metallic = point.metallic();
     const float strength =
         point.textured(material.specular_strength, material.specular_strength_texture).r;
     const glm::vec3 dielectric =
         dielectric_f0(material.ior, strength,
                       point.textured(material.specular_tint, material.specular_tint_texture));
-    Surface result{.albedo = base * (1.0f - metallic) * (1.0f - transmission),
+    Surface result{.albedo = base * point.diffuse_part() * (1.0f - point.diffuse_transmission()),
                    .specular = glm::mix(dielectric, base, metallic),
                    .highlight = highlight,
                    .roughness_or_exponent = roughness,
                    .metallic = form == GgxForm::Whole ? metallic : 0.0f,
                    .dielectric_f0 = std::max({dielectric.r, dielectric.g, dielectric.b}),
                    .dielectric_f90 = strength};
+    if (material.diffuse_transmission > 0.0f) {
+        // The light of a vertex is its radiance over its albedo, and its other side asks for it.
+        constexpr float LeastAlbedo = 1e-4f;
+        result.albedo = glm::max(result.albedo, LeastAlbedo);
+    }
     add_layers(point, result);
     add_anisotropy(point, result);
     if (!has_highlight(material))
@@ -190,6 +209,22 @@ glm::vec3 emission_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
     const MaterialPoint point{
         .mesh = mesh, .material = material, .at = {triangle, barycentric}, .view = nullptr};
     return point.textured(material.emission, material.emission_texture);
+}
+
+glm::vec3 passed_on_at(const mesh::TriangleMesh& mesh, const MeshPoint& at,
+                       const TextureView* view) {
+    if (!passes_light_on(mesh, at.triangle))
+        return glm::vec3(0.0f);
+    const mesh::Material& material = mesh.materials[mesh.triangle_materials[at.triangle]];
+    const MaterialPoint point{.mesh = mesh, .material = material, .at = at, .view = view};
+    return point.diffuse_part() * point.diffuse_transmission() *
+           point.textured(material.diffuse_transmission_color,
+                          material.diffuse_transmission_color_texture);
+}
+
+bool passes_light_on(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
+    return !mesh.triangle_materials.empty() &&
+           mesh.materials[mesh.triangle_materials[triangle]].diffuse_transmission > 0.0f;
 }
 
 Surface measured_surface(std::shared_ptr<const mesh::BrdfTable> table) {

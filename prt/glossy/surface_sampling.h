@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 
 #include "mesh/triangle_mesh.h"
+#include "prt/receivers/mesh_point.h"
 #include "prt/receivers/surface.h"
 #include "prt/receivers/texture_view.h"
 
@@ -40,6 +41,12 @@ enum class GgxForm { Whole, Published };
 /// no light.
 [[nodiscard]] glm::vec3 emission_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
                                     const glm::vec2& barycentric);
+
+/// Returns the part of the light of a surface's other side that it passes on diffusely.
+[[nodiscard]] glm::vec3 passed_on_at(const mesh::TriangleMesh& mesh, const MeshPoint& at,
+                                     const TextureView* view = nullptr);
+/// Whether a triangle's material passes any on.
+[[nodiscard]] bool passes_light_on(const mesh::TriangleMesh& mesh, std::uint32_t triangle);
 
 /// Returns the surface of a measured BRDF.
 [[nodiscard]] Surface measured_surface(std::shared_ptr<const mesh::BrdfTable> table);

@@ -55,21 +55,17 @@ Backs backs_of(const mesh::TriangleMesh& mesh, const std::vector<std::uint32_t>&
     return backs;
 }
 
-/// Pictures do not show the backs of single-sided faces, nor light on some.
+/// Pictures do not show the backs of single-sided faces, nor light on some. What passes light on
+/// gets its back later.
 bool needs_no_back(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
-    return !shows_light(mesh, triangle) ||
+    return !shows_light(mesh, triangle) || passes_light_on(mesh, triangle) ||
            (!mesh.triangle_materials.empty() &&
             !mesh.materials[mesh.triangle_materials[triangle]].is_double_sided);
 }
 
-} // namespace
-
-mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers& blockers,
-                                  float bias, const Work& work) {
-    std::vector<std::uint32_t> single = triangles_without_twin(mesh);
-    std::erase_if(single, [&](std::uint32_t triangle) { return needs_no_back(mesh, triangle); });
-    const auto [receivers, ends] = backs_of(mesh, single);
-    const auto bits = CoarseDirections().trace(receivers, blockers, bias, Progress(work));
+/// Appends the backs of some triangles.
+mesh::TriangleMesh with_backs(const mesh::TriangleMesh& mesh,
+                              const std::vector<std::uint32_t>& triangles) {
     mesh::TriangleMesh result = mesh;
     const auto repeat = [](auto& values, std::uint32_t index) {
         if (!values.empty()) {
@@ -79,19 +75,15 @@ mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers
     };
     constexpr std::uint32_t None = ~std::uint32_t{0};
     std::vector<std::uint32_t> back_of(mesh.num_vertices(), None);
-    for (std::size_t i = 0; i < single.size(); ++i) {
-        const auto at = [&](std::size_t place) {
-            return bits.begin() + static_cast<std::ptrdiff_t>(place);
-        };
-        if (std::all_of(at(i == 0 ? 0 : ends[i - 1]), at(ends[i]), CoarseDirections::is_hidden))
-            continue;
-        const std::uint32_t triangle = single[i];
+    for (const std::uint32_t triangle : triangles) {
         mesh::Triangle corners = mesh.triangles[triangle];
         for (std::uint32_t& corner : corners) {
             if (back_of[corner] == None) {
                 back_of[corner] = static_cast<std::uint32_t>(result.num_vertices());
                 mesh::for_each_vertex_array(result, [&](auto& values) { repeat(values, corner); });
                 result.normals.back() = -result.normals.back();
+                if (!result.lifts.empty()) // to the front's side
+                    result.lifts.back() = glm::vec3(0.0f);
             }
             corner = back_of[corner];
         }
@@ -110,6 +102,35 @@ mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers
         repeat(result.triangle_materials, triangle);
         repeat(result.triangle_groups, triangle);
     }
+    return result;
+}
+
+} // namespace
+
+mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers& blockers,
+                                  float bias, const Work& work) {
+    std::vector<std::uint32_t> single = triangles_without_twin(mesh);
+    std::erase_if(single, [&](std::uint32_t triangle) { return needs_no_back(mesh, triangle); });
+    const auto [receivers, ends] = backs_of(mesh, single);
+    const auto bits = CoarseDirections().trace(receivers, blockers, bias, Progress(work));
+    std::vector<std::uint32_t> lit;
+    for (std::size_t i = 0; i < single.size(); ++i) {
+        const auto at = [&](std::size_t place) {
+            return bits.begin() + static_cast<std::ptrdiff_t>(place);
+        };
+        if (!std::all_of(at(i == 0 ? 0 : ends[i - 1]), at(ends[i]), CoarseDirections::is_hidden))
+            lit.push_back(single[i]);
+    }
+    return with_backs(mesh, lit);
+}
+
+mesh::TriangleMesh with_backs_of_sheets(const mesh::TriangleMesh& mesh) {
+    std::vector<std::uint32_t> sheets = triangles_without_twin(mesh);
+    std::erase_if(sheets, [&](std::uint32_t triangle) { return !passes_light_on(mesh, triangle); });
+    mesh::TriangleMesh result = with_backs(mesh, sheets);
+    for (mesh::Material& material : result.materials)
+        if (material.diffuse_transmission > 0.0f)
+            material.is_double_sided = false;
     return result;
 }
 

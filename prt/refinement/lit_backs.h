@@ -21,4 +21,12 @@ namespace relumine::prt {
                                                 const Blockers& blockers, float bias,
                                                 const Work& work = {});
 
+/// Appends the backs of triangles that pass light on from one side to the other
+/// (passes_light_on()) and that the mesh has for one side only, as with_lit_backs() does: the light
+/// of either side is then that of receivers. Materials that do so have one side afterwards, so that
+/// an eye meets one of the two.
+///
+/// Cost:    O(n log n).
+[[nodiscard]] mesh::TriangleMesh with_backs_of_sheets(const mesh::TriangleMesh& mesh);
+
 } // namespace relumine::prt

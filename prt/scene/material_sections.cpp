@@ -148,7 +148,8 @@ bool shows_textures(const Scene& scene) {
     return on_vertices(scene.layout) && !scene.receivers.surfaces.empty() &&
            std::any_of(mesh.materials.begin(), mesh.materials.end(), [&](const Material& material) {
                return material.base_color_texture || material.emission_texture ||
-                      material.normal_texture || mirrors(scene, material);
+                      material.normal_texture || material.diffuse_transmission > 0.0f ||
+                      mirrors(scene, material);
            });
 }
 

@@ -25,9 +25,13 @@ glm::vec3 normal_of(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
 Hit TwinTriangles::facing(const Hit& hit, const glm::vec3& direction) const {
     if (!(glm::dot(normal_of(mesh_, hit.triangle), direction) > 0.0f))
         return hit;
+    return other_side(hit).value_or(hit);
+}
+
+std::optional<Hit> TwinTriangles::other_side(const Hit& hit) const {
     const std::optional<std::uint32_t> twin = twin_of(hit.triangle);
     if (!twin)
-        return hit;
+        return std::nullopt;
     const std::array<float, 3> weights = {1.0f - hit.barycentric.x - hit.barycentric.y,
                                           hit.barycentric.x, hit.barycentric.y};
     const mesh::Triangle& own = mesh_.triangles[hit.triangle];
@@ -38,9 +42,9 @@ Hit TwinTriangles::facing(const Hit& hit, const glm::vec3& direction) const {
         return weights[k];
     };
     const mesh::Triangle& other = mesh_.triangles[*twin];
-    return {.triangle = *twin,
-            .barycentric = {weight_of(other[1]), weight_of(other[2])},
-            .distance = hit.distance};
+    return Hit{.triangle = *twin,
+               .barycentric = {weight_of(other[1]), weight_of(other[2])},
+               .distance = hit.distance};
 }
 
 std::uint64_t TwinTriangles::key_of(std::uint32_t triangle) const {

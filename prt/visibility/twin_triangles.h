@@ -30,6 +30,9 @@ public:
     /// Cost:    O(log triangles) for a hit on a back; the first one sorts all triangles.
     [[nodiscard]] Hit facing(const Hit& hit, const glm::vec3& direction) const;
 
+    /// Returns the same point on the triangle's twin; none where it has no twin.
+    [[nodiscard]] std::optional<Hit> other_side(const Hit& hit) const;
+
 private:
     [[nodiscard]] std::optional<std::uint32_t> twin_of(std::uint32_t triangle) const;
     [[nodiscard]] std::uint64_t key_of(std::uint32_t triangle) const;

@@ -96,6 +96,9 @@ std::vector<glm::vec3> bounce_adjoint(const SurfaceBounces& bounces, const prt::
         }
         PointBasis(matrix.points).scatter(own, order, by_sent);
     }
+    std::vector<std::uint32_t> places(bounces.passed_on.empty() ? 0 : n);
+    for (std::uint32_t place = 0; place < places.size(); ++place)
+        places[transfer.order[place]] = place;
     TransposedProduct product(matrix);
     const std::uint32_t last = bounces.limits.num_bounces.value_or(MaxTransposedBounces);
     double size_before = size_of(counts);
@@ -104,9 +107,14 @@ std::vector<glm::vec3> bounce_adjoint(const SurfaceBounces& bounces, const prt::
         for (std::size_t place = 0; place < n; ++place) {
             if (bounce == 0)
                 counts[place] += by_sent[place];
-            counts[place] *= albedo[place];
-            sum[place] += counts[place];
         }
+        const Values sent = places.empty() ? Values() : counts;
+        for (std::size_t place = 0; place < n; ++place)
+            counts[place] *= albedo[place];
+        for (const PassedOn& own : bounces.passed_on)
+            counts[places[own.other]] += glm::dvec3(own.part) * sent[places[own.receiver]];
+        for (std::size_t place = 0; place < n; ++place)
+            sum[place] += counts[place];
         // The rest is a geometric series, or less. The first terms may fall faster than the others.
         constexpr double LeastRatio = 0.5, PartOfTolerance = 0.1;
         const double size = size_of(counts);

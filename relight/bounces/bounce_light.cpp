@@ -66,7 +66,7 @@ public:
           basis_of_points_(matrix.points), albedo_(size_), direct_(size_), sent_(size_),
           indirect_(size_), next_(size_), published_(size_, glm::vec3(0.0f)) {}
 
-    void set_albedo(std::span<const glm::vec3> albedo) {
+    void set_albedo(std::span<const glm::vec3> albedo, std::span<const PassedOn> passed_on) {
         if (albedo.size() != size_)
             throw std::invalid_argument(
                 fmt::format("expected the albedo of {} receivers, got {}", size_, albedo.size()));
@@ -88,10 +88,26 @@ public:
                             "got {}",
                             safe, largest));
         largest = std::min(largest, safe);
-        contraction_ = static_cast<double>(largest) * static_cast<double>(matrix_.spectral_radius);
-        sends_ = largest > 0.0f && product_.has_emitters();
         for (std::size_t place = 0; place < size_; ++place)
             albedo_[place] = padded(glm::min(albedo[transfer_.order[place]], glm::vec3(safe)));
+        passed_on_.clear();
+        const std::vector<std::uint32_t> places =
+            passed_on.empty() ? std::vector<std::uint32_t>() : places_of_receivers();
+        for (const PassedOn& own : passed_on) {
+            PaddedRgb& reflected = albedo_[places[own.receiver]];
+            Passed passed{places[own.receiver], places[own.other], padded(own.part)};
+            for (std::size_t c = 0; c < 3; ++c) {
+                const float sum = reflected.rgb[c] + passed.part.rgb[c];
+                if (sum > safe) {
+                    reflected.rgb[c] *= safe / sum;
+                    passed.part.rgb[c] *= safe / sum;
+                }
+                largest = std::max(largest, std::min(sum, safe));
+            }
+            passed_on_.push_back(passed);
+        }
+        contraction_ = static_cast<double>(largest) * static_cast<double>(matrix_.spectral_radius);
+        sends_ = largest > 0.0f && product_.has_emitters();
         coarse_.reset();
     }
 
@@ -161,6 +177,11 @@ private:
         std::vector<PaddedRgb> change;
         std::vector<PaddedRgb> result;
     };
+    /// PassedOn by places.
+    struct Passed {
+        std::uint32_t place, other;
+        PaddedRgb part;
+    };
     /// Sums for each colour.
     using ColorSums = std::array<double, 3>;
 
@@ -189,6 +210,18 @@ private:
                              sent_[i].rgb[c] =
                                  albedo_[i].rgb[c] * (direct_[i].rgb[c] + indirect_[i].rgb[c]);
                  });
+        for (const Passed& own : passed_on_)
+            for (std::size_t c = 0; c < 4; ++c)
+                sent_[own.place].rgb[c] +=
+                    own.part.rgb[c] * (direct_[own.other].rgb[c] + indirect_[own.other].rgb[c]);
+    }
+
+    /// Returns the place of each receiver.
+    [[nodiscard]] std::vector<std::uint32_t> places_of_receivers() const {
+        std::vector<std::uint32_t> result(size_);
+        for (std::uint32_t place = 0; place < size_; ++place)
+            result[transfer_.order[place]] = place;
+        return result;
     }
 
     /// next_ = A sent_ for some rows.
@@ -359,6 +392,7 @@ private:
     /// bounces asks for none.
     std::optional<CoarseBounces> coarse_;
     std::vector<PaddedRgb> of_groups_;
+    std::vector<Passed> passed_on_;
     /// All by place.
     std::vector<PaddedRgb> albedo_;
     std::vector<PaddedRgb> direct_;
@@ -390,8 +424,9 @@ BounceLight::~BounceLight() = default;
 BounceLight::BounceLight(BounceLight&&) noexcept = default;
 BounceLight& BounceLight::operator=(BounceLight&&) noexcept = default;
 
-void BounceLight::set_albedo(std::span<const glm::vec3> albedo) {
-    impl_->set_albedo(albedo);
+void BounceLight::set_albedo(std::span<const glm::vec3> albedo,
+                             std::span<const PassedOn> passed_on) {
+    impl_->set_albedo(albedo, passed_on);
 }
 BounceReport BounceLight::solve(std::span<const glm::vec3> direct, const BounceLimits& limits) {
     return impl_->solve(direct, limits);

@@ -37,12 +37,22 @@ struct SharedRows {
     std::span<const std::uint32_t> num_emitters = {};
 };
 
+/// A surface that passes light on diffusely: what a receiver sends of the light of another one, on
+/// its other side.
+struct PassedOn {
+    std::uint32_t receiver = 0, other = 0;
+    /// Times the radiance that the other one has for albedo 1
+    glm::vec3 part{0.0f};
+    bool operator==(const PassedOn&) const = default;
+};
+
 /// What the light of a scene needs to bounce.
 struct SurfaceBounces {
     /// Must outlive its users. Null: light does not bounce.
     const prt::BounceMatrix* matrix = nullptr;
     /// [num_receivers] diffuse reflectance, in the receivers' order.
     std::vector<glm::vec3> albedo = {};
+    std::vector<PassedOn> passed_on = {};
     BounceLimits limits = {};
 };
 
@@ -58,7 +68,8 @@ struct BounceReport {
 /// Keeps the light that a scene's receivers get from each other.
 ///
 /// X is the diffuse radiance that a receiver sends on, B its direct light for albedo 1, A the
-/// bounces of the scene, rho the albedo. indirect() is A X: what other surfaces add to B.
+/// bounces of the scene, rho the albedo, and what surfaces pass on from behind them.
+/// indirect() is A X: what other surfaces add to B.
 ///
 /// Threads: parallel inside (TBB); every result is the same bit by bit for any number of threads.
 ///          One thread at a time may call functions that are not const.
@@ -77,7 +88,8 @@ public:
     BounceLight(BounceLight&&) noexcept;
     BounceLight& operator=(BounceLight&&) noexcept;
 
-    /// Sets the diffuse reflectance, [num_receivers] in the receivers' order.
+    /// Sets the diffuse reflectance, [num_receivers] in the receivers' order, and what is passed
+    /// on. Both are dimmed where they come to more than is safe.
     ///
     /// Cost:    O(receivers). The next solve() without a number of bounces, or step(), makes the
     ///          groups of receivers for it: some ten products with the matrix.
@@ -85,7 +97,7 @@ public:
     ///          finite, or above 1 and so large that light would grow for ever. The message names
     ///          the largest albedo that is safe. Nothing has changed then. In a closed white room
     ///          light would stay for ever; 0.1 % of it is lost there at each bounce.
-    void set_albedo(std::span<const glm::vec3> albedo);
+    void set_albedo(std::span<const glm::vec3> albedo, std::span<const PassedOn> passed_on = {});
 
     /// Finds the bounces from nothing, so that equal light gives equal bits whatever came before.
     /// Without a number of bounces, each product with the matrix is followed by the bounces between

@@ -13,6 +13,7 @@
 #include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/lit_position.h"
 #include "relight/pictures/highlight_rays.h"
+#include "relight/pictures/other_side.h"
 
 namespace relumine::relight {
 
@@ -240,7 +241,7 @@ glm::vec3 Mirrors::seen(const MetSurface& met) const {
     return seen_in_mirror(
                *light_.reflections, met, {mesh_, at, surface, colors.light(light_.mirrored, at)},
                [this](const MetSurface& behind) { return matte(point_of(behind), behind); }) +
-           light_.emission_gain(at.triangle) * surface.emission;
+           passed_on(at) + light_.emission_gain(at.triangle) * surface.emission;
 }
 
 glm::vec3 Mirrors::matte(const prt::MeshPoint& at, const MetSurface& met) const {
@@ -252,8 +253,14 @@ glm::vec3 Mirrors::matte(const prt::MeshPoint& at, const MetSurface& met) const 
                (light_.emission.empty() ? glm::vec3(0.0f)
                                         : prt::value_at(mesh_, light_.emission, at));
     const prt::Surface surface = colors.surface(at);
-    return colors.light(light_.mirrored, at) * surface.albedo +
+    return colors.light(light_.mirrored, at) * surface.albedo + passed_on(at) +
            light_.emission_gain(at.triangle) * surface.emission;
+}
+
+glm::vec3 Mirrors::passed_on(const prt::MeshPoint& at) const {
+    const auto other = other_side(mesh_, at, light_, twins_);
+    return other ? other->part * light_.textures->light(light_.mirrored, other->at)
+                 : glm::vec3(0.0f);
 }
 
 glm::vec3 Mirrors::floor(const prt::MeshPoint& at, const MetSurface& met) const {

@@ -84,6 +84,8 @@ public:
     [[nodiscard]] const glm::vec2& shift() const { return shift_; }
 
 private:
+    /// What a surface passes on from behind it.
+    [[nodiscard]] glm::vec3 passed_on(const prt::MeshPoint& at) const;
     /// seen() of what mirrors nothing.
     [[nodiscard]] glm::vec3 matte(const prt::MeshPoint& at, const MetSurface& met) const;
     [[nodiscard]] glm::vec3 floor(const prt::MeshPoint& at, const MetSurface& met) const;

@@ -24,7 +24,7 @@ PictureTile::PictureTile(const TileScene& scene)
       mirrors_(scene.mesh, scene.rays, scene.samples.twins(), scene.light, scene.floor,
                scene.backdrop, texture_view_),
       refractions_(scene.mesh, scene.rays, scene.light, mirrors_),
-      shading_(scene.mesh, scene.light, scene.packets, texture_view_),
+      shading_(scene.mesh, scene.light, scene.packets, scene.samples.twins(), texture_view_),
       lights_(scene.mesh, scene.rays,
               scene.light.blockers != nullptr ? *scene.light.blockers
                                               : static_cast<const prt::Blockers&>(scene.rays),
@@ -161,6 +161,13 @@ PictureTile::Shown PictureTile::shown(std::uint32_t x, std::uint32_t y, std::siz
             if (!is_none(lights))
                 radiance += is_caught ? shading_.white(prt::shading_normal(scene_.mesh, at), lights)
                                       : shading_.traced(at, mirror, lights);
+        }
+        if (const auto other = shading_.other_side(at)) {
+            radiance += shading_.soft(*other, mirror);
+            if (traces) {
+                trace_own(other->at);
+                radiance += shading_.traced(*other, mirror, own_lights_);
+            }
         }
         if (is_floor && has_floor_lights()) {
             const glm::vec3 shaded =

@@ -12,6 +12,19 @@
 
 namespace relumine::relight {
 
+namespace {
+
+/// Returns the part of the diffuse light that the highlight of a surface leaves.
+glm::vec3 under_highlight(const std::optional<Mirror>& mirror) {
+    if (!mirror)
+        return glm::vec3(1.0f);
+    prt::Surface white = mirror->surface;
+    white.albedo = glm::vec3(1.0f);
+    return prt::diffuse_albedo(white, {mirror->surface, mirror->normal, mirror->to_eye});
+}
+
+} // namespace
+
 glm::vec3 SampleShading::soft(const prt::MeshPoint& at, const std::optional<Mirror>& mirror,
                               Mirrors& mirrors) const {
     if (mirror)
@@ -29,6 +42,19 @@ glm::vec3 SampleShading::soft(const prt::MeshPoint& at, const std::optional<Mirr
     prt::add_scaled(between, light_.lobes[triangle[2]], w.y);
     between.diffuse = glm::max(between.diffuse + change, 0.0f);
     return prt::reflect(surface_at(at), between, eye_cosine(at));
+}
+
+glm::vec3 SampleShading::soft(const OtherSide& other, const std::optional<Mirror>& mirror) const {
+    return other.part * under_highlight(mirror) *
+           light_.textures->light(light_.radiance, other.at, tilted(other.at));
+}
+
+glm::vec3 SampleShading::traced(const OtherSide& other, const std::optional<Mirror>& mirror,
+                                std::span<const std::uint16_t> lights) {
+    const glm::vec3 factor =
+        light_.albedo.empty() ? glm::vec3(1.0f) : prt::value_at(mesh_, light_.albedo, other.at);
+    return factor * other.part * under_highlight(mirror) *
+           white(prt::seen_normal(mesh_, other.at, &view_).direction, lights);
 }
 
 /// Returns what a normal map adds to the diffuse radiance of albedo 1: the light of its normal

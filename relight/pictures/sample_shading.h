@@ -12,6 +12,7 @@
 #include "prt/receivers/mesh_point.h"
 #include "prt/receivers/texture_view.h"
 #include "relight/pictures/mirrors.h"
+#include "relight/pictures/other_side.h"
 #include "relight/pictures/picture_view.h"
 #include "relight/sharp/light_packets.h"
 
@@ -23,8 +24,9 @@ class SampleShading {
 public:
     /// All must outlive this object.
     SampleShading(const mesh::TriangleMesh& mesh, const MeshLight& light,
-                  const LightPackets& packets, const prt::TextureView& view)
-        : mesh_(mesh), light_(light), packets_(packets), view_(view) {}
+                  const LightPackets& packets, const prt::TwinTriangles& twins,
+                  const prt::TextureView& view)
+        : mesh_(mesh), light_(light), packets_(packets), twins_(twins), view_(view) {}
 
     [[nodiscard]] bool has_texture(std::uint32_t triangle) const {
         return light_.textures != nullptr && light_.textures->has(triangle);
@@ -34,6 +36,16 @@ public:
     /// point is a mirror.
     [[nodiscard]] glm::vec3 soft(const prt::MeshPoint& at, const std::optional<Mirror>& mirror,
                                  Mirrors& mirrors) const;
+
+    /// Returns the other side of a point whose surface passes light on.
+    [[nodiscard]] std::optional<OtherSide> other_side(const prt::MeshPoint& at) const {
+        return relight::other_side(mesh_, at, light_, twins_, &view_);
+    }
+    /// Returns what a point passes on of the light of the vertices.
+    [[nodiscard]] glm::vec3 soft(const OtherSide& other, const std::optional<Mirror>& mirror) const;
+    /// Returns what it passes on of lights that the other side sees.
+    [[nodiscard]] glm::vec3 traced(const OtherSide& other, const std::optional<Mirror>& mirror,
+                                   std::span<const std::uint16_t> lights);
 
     /// Returns what a point gives of its own.
     [[nodiscard]] glm::vec3 emitted(const prt::MeshPoint& at,
@@ -57,6 +69,7 @@ private:
     const mesh::TriangleMesh& mesh_;
     const MeshLight& light_;
     const LightPackets& packets_;
+    const prt::TwinTriangles& twins_;
     /// Used where triangles have textures.
     const prt::TextureView& view_;
     /// The lights that were summed last, and their sum.

@@ -17,7 +17,8 @@ SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt
     form_ = std::any_of(surfaces.begin(), surfaces.end(), is_whole) ? prt::GgxForm::Whole
                                                                     : prt::GgxForm::Published;
     const auto has_texture = [](const mesh::Material& material) {
-        return material.base_color_texture || material.emission_texture || material.normal_texture;
+        return material.base_color_texture || material.emission_texture ||
+               material.normal_texture || material.diffuse_transmission > 0.0f;
     };
     const auto mirrors = [&](const mesh::Material& material) {
         return !has_highlights && prt::has_highlight(material);

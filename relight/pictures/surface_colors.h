@@ -27,7 +27,8 @@ public:
     SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt::Surface> surfaces,
                   bool has_highlights = false);
 
-    /// Whether a triangle has a texture of its albedo, its emission or its normals.
+    /// Whether a triangle has a texture of its albedo, its emission or its normals, or passes light
+    /// on.
     [[nodiscard]] bool has(std::uint32_t triangle) const {
         return !is_textured_.empty() && is_textured_[triangle];
     }

@@ -292,7 +292,7 @@ Verification verify(const LitScene& lit, const VerifyOptions& options, const prt
         exact_radiance(lit, receivers, result.receivers, next(num_receivers));
     if (is_traced)
         result.noise = add_traced(lit, result.receivers, options, next(num_receivers), exact);
-    result.error = relight::compare(result.receivers, exact, lit.radiance());
+    result.error = relight::compare(result.receivers, exact, lit.reflected());
     if (!has_surface)
         return result;
     result.surface =

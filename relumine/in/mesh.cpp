@@ -467,6 +467,21 @@ Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& wo
     return mesh;
 }
 
+Mesh with_backs_of_sheets(Mesh mesh) {
+    const std::size_t n = mesh.floor_vertices;
+    const std::size_t first_of_floor =
+        mesh.geometry.num_vertices() - (n == 0 ? 0 : n * n + mesh.floor_added);
+    mesh::TriangleMesh with_backs =
+        prt::with_backs_of_sheets(part_of(mesh.geometry, 0, first_of_floor));
+    if (with_backs.num_vertices() == first_of_floor)
+        return mesh;
+    append(with_backs, part_of(mesh.geometry, first_of_floor, mesh.geometry.num_vertices()));
+    if (!mesh.blockers)
+        mesh.blockers = mesh::blockers_of(mesh.geometry);
+    mesh.geometry = std::move(with_backs);
+    return mesh;
+}
+
 Mesh simplified(Mesh given, std::size_t num_vertices) {
     Mesh mesh = sound(std::move(given));
     mesh.is_open = false;

@@ -160,6 +160,10 @@ inline constexpr std::size_t BudgetOfMesh = 45000, BudgetOfFloor = 7000;
 [[nodiscard]] Mesh refined_by_itself(Mesh mesh, std::optional<float> bias = {},
                                      const prt::Work& work = {}, RefineReport* report = nullptr);
 
+/// Returns the mesh with the backs of what passes light on from one side to the other
+/// (prt::with_backs_of_sheets()), before the floor. precompute() does so last.
+[[nodiscard]] Mesh with_backs_of_sheets(Mesh mesh);
+
 /// Returns the mesh with so many vertices, its floor not counted: mesh::simplified(). The original
 /// triangles remain what blocks light.
 ///

@@ -164,7 +164,7 @@ private:
             mesh.geometry.materials = std::move(of_file);
         if (found.num_added != 0)
             report_.refined = found;
-        return mesh;
+        return options_.surface ? std::move(mesh) : with_backs_of_sheets(std::move(mesh));
     }
 
     void check_options() const {
@@ -345,6 +345,11 @@ private:
             scene_.lamps.lights = mesh.lights;
         if (mesh.materials.empty() && !options_.surface && options_.floor_surface == prt::Surface())
             return;
+        if (!prt::on_vertices(scene_.layout) &&
+            std::any_of(mesh.materials.begin(), mesh.materials.end(),
+                        [](const mesh::Material& own) { return own.diffuse_transmission > 0.0f; }))
+            note(work_, "the light that surfaces pass on from behind them "
+                        "(KHR_materials_diffuse_transmission) is that of vertices: it is left out");
         const std::size_t n = scene_.settings.floor_vertices;
         const std::size_t first_of_floor =
             mesh.num_vertices() - n * n - scene_.settings.floor_added;

@@ -51,7 +51,10 @@ void keep_materials(mesh::TriangleMesh& mesh, prt::Receivers& receivers,
         !has_eye &&
         std::any_of(receivers.surfaces.begin(), receivers.surfaces.end(),
                     [](const prt::Surface& own) { return own.highlight != prt::Highlight::None; });
-    if (!has_textures && !mirrors && !are_points)
+    const bool passes_on =
+        std::any_of(mesh.materials.begin(), mesh.materials.end(),
+                    [](const mesh::Material& own) { return own.diffuse_transmission > 0.0f; });
+    if (!has_textures && !mirrors && !are_points && !passes_on)
         return;
     if (are_replaced)
         replace_materials(mesh, surface_of, has_eye);

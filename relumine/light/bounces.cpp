@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "prt/glossy/brdf.h"
+#include "relumine/light/passed_on.h"
 
 namespace relumine {
 
@@ -18,6 +19,9 @@ relight::SurfaceBounces bounces_of(const Scene& scene, std::span<const glm::vec3
     if (surfaces.size() == bounces.albedo.size())
         for (std::size_t i = 0; i < surfaces.size(); ++i)
             bounces.albedo[i] *= surfaces[i].albedo;
+    bounces.passed_on = passed_on(scene);
+    for (relight::PassedOn& own : bounces.passed_on)
+        own.part *= albedo[own.receiver];
     return bounces;
 }
 
@@ -26,10 +30,10 @@ void SceneBounces::set(const Scene& scene, relight::SurfaceBounces surfaces,
     const bool has_albedo = light_ && surfaces.albedo == surfaces_.albedo;
     if (!light_) {
         relight::BounceLight made(*surfaces.matrix, scene.transfer, rows);
-        made.set_albedo(surfaces.albedo);
+        made.set_albedo(surfaces.albedo, surfaces.passed_on);
         light_ = std::move(made);
     } else if (!has_albedo) {
-        light_->set_albedo(surfaces.albedo);
+        light_->set_albedo(surfaces.albedo, surfaces.passed_on);
     }
     if (!has_albedo || surfaces.limits != surfaces_.limits)
         found_of_.clear();

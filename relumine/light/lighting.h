@@ -20,6 +20,13 @@ namespace relumine {
 struct Lighting {
     /// [num_receivers], as LitScene::radiance().
     std::span<const glm::vec3> radiance;
+    /// [num_receivers] the same without what surfaces pass on from behind them, which pictures of
+    /// vertices find at each pixel. Empty: they pass none on.
+    std::span<const glm::vec3> reflected = {};
+    /// What pictures of vertices are drawn of.
+    [[nodiscard]] std::span<const glm::vec3> drawn() const {
+        return reflected.empty() ? radiance : reflected;
+    }
     /// [num_receivers] what arrives of it without a bounce, as radiance for albedo 1, for light
     /// meters. Empty: unknown.
     std::span<const glm::vec3> arriving = {};
@@ -54,8 +61,8 @@ struct Lighting {
     /// The environment's state, whose layers make `open_gain`. Must outlive this object; null:
     /// none.
     const LightState* state = nullptr;
-    /// What `radiance` points to, where it was gathered from several processes.
-    std::shared_ptr<const std::vector<glm::vec3>> gathered = {};
+    /// What `radiance` and `reflected` point to, where they were gathered from several processes.
+    std::shared_ptr<const std::vector<glm::vec3>> gathered = {}, gathered_reflected = {};
 
     /// What is behind the mesh. Not where there is nothing.
     [[nodiscard]] const cubemap::CubeMap& behind() const { return seen ? *seen : *environment; }

@@ -17,6 +17,7 @@
 #include "relumine/in/scene_rays.h"
 #include "relumine/light/layer_compositor.h"
 #include "relumine/light/listed_light.h"
+#include "relumine/light/passed_on.h"
 #include "relumine/light/scene_moves.h"
 #include "relumine/light/shared_receivers.h"
 #include "relumine/light/terms.h"
@@ -52,6 +53,7 @@ struct LitScene::Impl {
     void forget_bounces();
     void require_own() const;
     void finish(UpdateReport& report);
+    void pass_on();
     void bind_sent(ArrivingLight& arriving) const;
     void take_apart(Lighting& lighting) const;
     void take_floor_apart(Lighting& lighting) const;
@@ -91,6 +93,9 @@ struct LitScene::Impl {
     std::vector<std::unique_ptr<const LightTerm>> terms;
     /// [receivers of this process] the sum; empty where the clusters' term is all.
     std::vector<glm::vec3> total;
+    /// What surfaces pass on, as a part of the other receiver's radiance, and the sum with it.
+    std::vector<relight::PassedOn> passed;
+    std::vector<glm::vec3> with_passed;
 };
 
 LitScene::Impl::Impl(std::shared_ptr<const Scene> whole, std::unique_ptr<prt::ScenePart> part,
@@ -119,6 +124,9 @@ LitScene::Impl::Impl(std::shared_ptr<const Scene> whole, std::unique_ptr<prt::Sc
     } else if (options.clusters_only) {
         static_cast<void>(clusters());
     }
+    passed = passed_on(*scene);
+    for (relight::PassedOn& own : passed)
+        own.part /= scene->receivers.surfaces[own.other].albedo;
     terms.push_back(std::make_unique<BounceTerm>(bounces, receivers));
     terms.push_back(std::make_unique<LampTerm>(lamps, receivers));
     terms.push_back(std::make_unique<ListTerm>(listed));
@@ -227,8 +235,9 @@ void LitScene::Impl::finish(UpdateReport& report) {
     lamps.find();
     report.seconds_lamps = files::seconds_since(start);
     total.clear();
-    if (relighter && std::none_of(terms.begin() + 1, terms.end(),
-                                  [](const auto& term) { return term->is_lit(); }))
+    if (relighter && passed.empty() &&
+        std::none_of(terms.begin() + 1, terms.end(),
+                     [](const auto& term) { return term->is_lit(); }))
         return;
     total.assign(receivers.positions().size(), glm::vec3(0.0f));
     Clock::time_point start_term;
@@ -240,6 +249,20 @@ void LitScene::Impl::finish(UpdateReport& report) {
     // The last term is that of the highlights.
     if (mirrors.is_needed())
         report.seconds_highlights = files::seconds_since(start_term);
+    pass_on();
+}
+
+/// Adds what surfaces pass on from behind them.
+void LitScene::Impl::pass_on() {
+    if (passed.empty())
+        return;
+    std::vector<glm::vec3> whole = receivers.of_all(total);
+    const std::vector<glm::vec3> before = whole;
+    for (const relight::PassedOn& own : passed)
+        whole[own.receiver] += own.part * before[own.other];
+    with_passed.clear();
+    for (const std::uint32_t receiver : receivers.indices(total.size()))
+        with_passed.push_back(whole[receiver]);
 }
 
 UpdateReport LitScene::light(Light light) {
@@ -470,6 +493,10 @@ bool LitScene::redo_move() {
 // What it gives
 
 std::span<const glm::vec3> LitScene::radiance() const {
+    return impl_->with_passed.empty() ? reflected() : impl_->with_passed;
+}
+
+std::span<const glm::vec3> LitScene::reflected() const {
     const Impl& own = *impl_;
     if (!own.is_lit || !own.total.empty() || !own.relighter)
         return own.total;
@@ -557,6 +584,11 @@ void LitScene::Impl::take_floor_apart(Lighting& lighting) const {
 void LitScene::Impl::gather(Lighting& lighting) const {
     lighting.gathered =
         std::make_shared<const std::vector<glm::vec3>>(receivers.gathered(lighting.radiance));
+    if (!passed.empty()) {
+        lighting.gathered_reflected =
+            std::make_shared<const std::vector<glm::vec3>>(receivers.gathered(lighting.reflected));
+        lighting.reflected = *lighting.gathered_reflected;
+    }
     lighting.radiance = *lighting.gathered;
     if (!lighting.lights.empty())
         lighting.soft = receivers.gathered(lighting.soft);
@@ -608,6 +640,8 @@ Lighting LitScene::lighting(bool is_drawn) const {
     for (const auto& term : own.terms)
         open_floor += term->open_floor();
     result.open_floor = open_floor;
+    if (!own.passed.empty())
+        result.reflected = reflected();
     if (is_drawn)
         own.take_apart(result);
     if (is_drawn && prt::on_vertices(own.scene->layout))

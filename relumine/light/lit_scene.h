@@ -192,6 +192,8 @@ public:
     /// Outgoing radiance of this process's receivers, in their order and the unit of the
     /// environment's; without materials for albedo 1. Empty before the first light().
     [[nodiscard]] std::span<const glm::vec3> radiance() const;
+    /// The same without what surfaces pass on from behind them.
+    [[nodiscard]] std::span<const glm::vec3> reflected() const;
 
     /// Returns the light that arrives at the receivers as spherical harmonics (docs/harmonics.md),
     /// [num_receivers][order^2] in the receivers' order, for any normal. At a surface's own normal

@@ -78,12 +78,12 @@ struct Painter::Impl {
     [[nodiscard]] Picture drawn(const relight::PictureView& from, const Lighting& lighting,
                                 const relight::Backdrop* behind) {
         const bool traces = options.sun == SunShadows::Pixels && !lighting.lights.empty();
-        const std::span<const glm::vec3> radiance = traces ? lighting.soft : lighting.radiance;
+        const std::span<const glm::vec3> radiance = traces ? lighting.soft : lighting.drawn();
         std::vector<glm::vec3> colors = shown_colors(radiance, lighting);
         const bool has_mirrors = textures.has_mirrors() && options.highlight_rays != 0;
         std::vector<glm::vec3> mirrored;
         if (has_mirrors)
-            mirrored = traces ? shown_colors(lighting.radiance, lighting) : colors;
+            mirrored = traces ? shown_colors(lighting.drawn(), lighting) : colors;
         relight::MeshLight light{
             .radiance = colors, .emission = emission, .emission_gains = emission_gains};
         if (scene.settings.view)

@@ -673,6 +673,17 @@ def test_channels_scale_bias_and_transforms_of_textures(tmp_path):
     assert colors_of(tmp_path, grey, scale=raw) == pytest.approx(128 / 255, **near)
 
 
+def test_uvs_that_are_not_there_are_those_of_st(tmp_path):
+    """Blender asks for UVMap where it writes st."""
+    Image.new("RGB", (2, 2), (255, 0, 0)).save(tmp_path / "red.png")
+    look = textured(tmp_path / "red.png").replace('varname = "st"', 'varname = "UVMap"')
+    asset = loaded(bound(look))
+    assert np.asarray(asset.mesh.uvs).tolist() == [[0, 1], [1, 1], [0, 0]]
+    assert any("primvars:UVMap is not there: st stands for it" in line for line in asset.notes)
+    asset = loaded(bound(look).replace("primvars:st", "primvars:other"))
+    assert any("primvars:UVMap is not there: its texture is one colour" in line for line in asset.notes)
+
+
 def test_metallic_and_roughness_of_two_pictures(tmp_path):
     Image.new("L", (2, 2), 51).save(tmp_path / "rough.png")
     Image.new("L", (4, 4), 204).save(tmp_path / "metal.png")
@@ -750,6 +761,47 @@ def Material "Look" {
     assert material["film_ior"] == pytest.approx(1.4)
     (material,) = loaded(bound(look.replace("WEIGHT", "0"))).mesh.materials
     assert "film" not in material
+
+
+@pytest.mark.parametrize(
+    "surface, base, factor, color",
+    [
+        # All of standard_surface's subsurface goes to the other side.
+        ("standard_surface", (0.4, 0.2, 0.1), 0.75, (1, 0.5, 0.25)),
+        # OpenPBR's stays and goes by halves, here by a quarter and three quarters.
+        ("open_pbr_surface", (0.4 * 0.25 / 0.4375 + 0.1875 / 0.4375, (0.05 + 0.1875 / 2) / 0.4375,
+                              (0.025 + 0.1875 / 4) / 0.4375), 0.5625, (1, 0.5, 0.25)),
+    ],
+)  # fmt: skip
+def test_thin_walls_pass_light_on(surface, base, factor, color):
+    names = {"standard_surface": ("base", "subsurface", "bool inputs:thin_walled = 1", ""),
+             "open_pbr_surface": ("base_weight", "subsurface_weight", "bool inputs:geometry_thin_walled = 1",
+                                  "float inputs:subsurface_scatter_anisotropy = 0.5")}[surface]  # fmt: skip
+    look = f"""
+def Material "Look" {{
+    token outputs:mtlx:surface.connect = </Look/S.outputs:out>
+    def Shader "S" {{
+        uniform token info:id = "ND_{surface}_surfaceshader"
+        float inputs:{names[0]} = 1
+        color3f inputs:base_color = (0.4, 0.2, 0.1)
+        float inputs:{names[1]} = 0.75
+        color3f inputs:subsurface_color = (1, 0.5, 0.25)
+        {names[2]}
+        {names[3]}
+        token outputs:out
+    }}
+}}"""
+    (material,) = document(bound(look))["materials"]
+    assert material["pbrMetallicRoughness"]["baseColorFactor"][:3] == pytest.approx(base)
+    assert material["extensions"]["KHR_materials_diffuse_transmission"] == {
+        "diffuseTransmissionFactor": pytest.approx(factor),
+        "diffuseTransmissionColorFactor": pytest.approx(color),
+    }
+    assert not any("subsurface" in line or "thin" in line for line in loaded(bound(look)).notes)
+    thick = bound(look.replace("thin_walled = 1", "thin_walled = 0"))
+    (material,) = document(thick)["materials"]
+    assert "KHR_materials_diffuse_transmission" not in material.get("extensions", {})
+    assert any("subsurface" in line for line in loaded(thick).notes)
 
 
 def test_a_file_of_materialx(tmp_path):

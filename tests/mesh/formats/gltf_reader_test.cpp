@@ -320,7 +320,12 @@ TEST_F(GltfTest, SpecularCoatAndSheen) {
                              {"KHR_materials_anisotropy",
                               {{"anisotropyStrength", 0.5},
                                {"anisotropyRotation", -0.25},
-                               {"anisotropyTexture", texture}}}};
+                               {"anisotropyTexture", texture}}},
+                             {"KHR_materials_diffuse_transmission",
+                              {{"diffuseTransmissionFactor", 0.75},
+                               {"diffuseTransmissionTexture", texture},
+                               {"diffuseTransmissionColorFactor", {1, 0.5, 0.25}},
+                               {"diffuseTransmissionColorTexture", texture}}}};
     model.json["materials"] = {{{"extensions", extensions}}};
     const std::filesystem::path path = write("a.gltf", model.embedded());
     const TriangleMesh mesh = load(path);
@@ -340,13 +345,17 @@ TEST_F(GltfTest, SpecularCoatAndSheen) {
     EXPECT_EQ(material.film_thickness_at_1, 200.0f);
     EXPECT_EQ(material.anisotropy, 0.5f);
     EXPECT_EQ(material.anisotropy_rotation, -0.25f);
+    EXPECT_EQ(material.diffuse_transmission, 0.75f);
+    EXPECT_EQ(material.diffuse_transmission_color, glm::vec3(1.0f, 0.5f, 0.25f));
+    EXPECT_TRUE(material.diffuse_transmission_color_texture->is_srgb);
     for (const auto& slot :
          {material.coat_texture, material.coat_roughness_texture, material.coat_normal_texture,
           material.film_texture, material.film_thickness_texture, material.anisotropy_texture}) {
         EXPECT_FALSE(slot->is_srgb);
         EXPECT_EQ(mesh.textures[slot->texture].texels[0], (Rgb8{255, 128, 0}));
     }
-    for (const auto& slot : {material.specular_strength_texture, material.sheen_roughness_texture})
+    for (const auto& slot : {material.specular_strength_texture, material.sheen_roughness_texture,
+                             material.diffuse_transmission_texture})
         EXPECT_EQ(mesh.textures[slot->texture].texels,
                   (std::vector<Rgb8>{{255, 255, 255}, {51, 51, 51}}))
             << "alpha";
@@ -366,6 +375,8 @@ TEST_F(GltfTest, SpecularCoatAndSheen) {
             "expected 1 to 1e+06 as \"iridescenceIor\", got 0.5: it counts as 1");
     refused("KHR_materials_anisotropy", {{"anisotropyStrength", -1}},
             "expected 0 to 1 as \"anisotropyStrength\", got -1: it counts as 0");
+    refused("KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 2}},
+            "expected 0 to 1 as \"diffuseTransmissionFactor\", got 2: it counts as 1");
 }
 
 /// What a film and a stretched highlight are when the file says no more, and where a texture is
@@ -772,8 +783,9 @@ TEST_F(GltfTest, SaysWhatIsLeftOut) {
     EXPECT_THAT(
         gltf(model.embedded()).warnings,
         testing::UnorderedElementsAre(
-            "the extension 'KHR_texture_basisu' is not read: its images are left out; "
-            "without another image, a surface has its factors alone",
+            "the extension 'KHR_texture_basisu' is not read: its images are left out; without "
+            "another image, a surface has its factors alone. gltf-transform ktxdecompress makes "
+            "PNG of them",
             "the extension 'VENDOR_wind' is not read: what it describes is left out",
             "the extension 'EXT_lights_image_based' is not read: the file brings its own "
             "environment, which does not light the scene",

@@ -1,7 +1,11 @@
 #include "mesh/materials/texture.h"
 
+#include <array>
 #include <cmath>
+#include <filesystem>
+#include <span>
 
+#include "files/output_file.h"
 #include "tests/mesh/mesh_files.h"
 #include "tests/mesh/texture_files.h"
 
@@ -23,6 +27,38 @@ TEST(Texture, RowsStartWhereVDoes) {
     EXPECT_EQ(top.texels, (std::vector<Rgb8>{Red, Green, Blue, Gray}));
     EXPECT_EQ(decoded(four_colors(), VOrigin::Bottom).texels,
               (std::vector<Rgb8>{Blue, Gray, Red, Green}));
+}
+
+/// Red, green, blue and grey, of alpha 255, 128, 255 and 51, as Pillow writes them.
+TEST(Texture, OfAvif) {
+    const std::filesystem::path samples = RELUMINE_SAMPLES;
+    const std::vector<std::byte> file = files::read(samples / "texture/pillow.avif");
+    ImageBudget budget;
+#ifdef RELUMINE_HDR_PHOTOS
+    const Texture colors = decode_texture(file, VOrigin::Top, budget);
+    const Texture alpha = decode_alpha_texture(file, VOrigin::Top, budget);
+    ASSERT_EQ(colors.texels.size(), 16u * 16u);
+    constexpr std::array<Rgb8, 4> Colors = {Red, Green, Blue, Rgb8{188, 188, 188}};
+    constexpr std::array<int, 4> Alphas = {255, 128, 255, 51};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const std::size_t at = (4 + 8 * (i / 2)) * 16 + 4 + 8 * (i % 2);
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            EXPECT_NEAR(colors.texels[at][channel], Colors[i][channel], 2) << i;
+        EXPECT_NEAR(alpha.texels[at][0], Alphas[i], 2) << i;
+    }
+    EXPECT_TRUE(colors.file.empty()) << "scene files are for builds without AVIF, too";
+    const std::vector<std::byte> bright = files::read(samples / "avif/avifenc_pq.avif");
+    expect_refusal([&] { return decode_texture(bright, VOrigin::Top, budget); },
+                   "expected an AVIF of colours, got one by PQ or HLG");
+    expect_refusal(
+        [&] {
+            return decode_texture(std::span(file).first(file.size() / 2), VOrigin::Top, budget);
+        },
+        "expected a whole AVIF picture, got");
+#else
+    expect_refusal([&] { return decode_texture(file, VOrigin::Top, budget); },
+                   "got AVIF, which takes a build with RELUMINE_HDR_PHOTOS");
+#endif
 }
 
 TEST(Texture, BilinearBetweenTexelCentres) {

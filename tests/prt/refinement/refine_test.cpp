@@ -18,6 +18,7 @@
 #include "prt/refinement/lit_backs.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
+#include "prt/visibility/twin_triangles.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine::prt {
@@ -569,6 +570,28 @@ TEST(LitBacks, ALeafIsLitFromBothSides) {
     const mesh::TriangleMesh both = with_lit_backs(leaf, RayScene(leaf), automatic_bias(leaf));
     EXPECT_EQ(both.num_triangles(), 2u);
     EXPECT_EQ(both.num_vertices(), leaf.num_vertices() + 3);
+}
+
+TEST(LitBacks, WhatPassesLightOnGetsThemByItself) {
+    mesh::TriangleMesh leaf = scenes::floor_grid(2, 1.0f);
+    EXPECT_EQ(with_backs_of_sheets(leaf).num_triangles(), 2u) << "no material";
+    leaf.materials = {{.name = "leaf", .diffuse_transmission = 0.5f}};
+    leaf.triangle_materials = {0, 0};
+    leaf.lifts.assign(4, glm::vec3(0.0f, 0.1f, 0.0f));
+    EXPECT_EQ(with_lit_backs(leaf, RayScene(leaf), automatic_bias(leaf)).num_triangles(), 2u)
+        << "its backs come when its front is refined";
+    const mesh::TriangleMesh both = with_backs_of_sheets(leaf);
+    ASSERT_EQ(both.num_triangles(), 4u);
+    EXPECT_EQ(both.num_vertices(), 8u);
+    EXPECT_EQ(both.triangle_materials.back(), 0u);
+    EXPECT_EQ(both.lifts[3], leaf.lifts[3]);
+    EXPECT_EQ(both.lifts[7], glm::vec3(0.0f)) << "a lift leads to the front's side";
+    EXPECT_EQ(with_backs_of_sheets(both).num_triangles(), 4u) << "both sides are there";
+    const TwinTriangles twins(both);
+    const std::optional<Hit> other = twins.other_side({1, {0.25f, 0.5f}});
+    ASSERT_TRUE(other);
+    EXPECT_EQ(other->triangle, 3u);
+    EXPECT_EQ(other->barycentric, glm::vec2(0.5f, 0.25f)) << "its corners run the other way round";
 }
 
 TEST(Refine, OptionsOutOfRangeAreRefused) {

@@ -95,6 +95,36 @@ TEST(Adjoint, IsTheTransposeWithBounces) {
     }
 }
 
+TEST(Adjoint, IsTheTransposeWithLightThatIsPassedOn) {
+    const BouncingScene scene(scenes::sphere_and_box_on_floor(), 0.05f, 0.05f);
+    const std::vector<glm::vec3> albedo(scene.receivers.size(), glm::vec3(0.4f, 0.2f, 0.3f));
+    // Any two receivers may be sides of one surface here.
+    std::vector<PassedOn> passed_on;
+    const auto n = static_cast<std::uint32_t>(scene.receivers.size());
+    for (std::uint32_t i = 0; i + 1 < n; i += 2) {
+        passed_on.push_back({i, i + 1, glm::vec3(0.3f, 0.1f, 0.5f)});
+        passed_on.push_back({i + 1, i, glm::vec3(0.2f, 0.4f, 0.0f)});
+    }
+    Relighter relighter(scene.transfer);
+    BounceLight light(scene.matrix, scene.transfer);
+    light.set_albedo(albedo, passed_on);
+    for (const BounceLimits& limits :
+         {BounceLimits{.num_bounces = 1}, BounceLimits{.num_bounces = 3},
+          BounceLimits{.num_bounces = {}, .tolerance = 1e-7}}) {
+        const SurfaceBounces bounces{
+            .matrix = &scene.matrix, .albedo = albedo, .passed_on = passed_on, .limits = limits};
+        for (std::uint32_t seed = 0; seed < 5; ++seed) {
+            relighter.set_environment(random_environment(16, seed));
+            light.solve(relighter.radiance(), limits);
+            std::vector<glm::vec3> radiance(relighter.radiance().begin(),
+                                            relighter.radiance().end());
+            for (std::size_t i = 0; i < radiance.size(); ++i)
+                radiance[i] += light.indirect()[i];
+            expect_transposed(relighter, radiance, &bounces, seed);
+        }
+    }
+}
+
 /// Texels times a step are added to an environment and taken from it; half of the difference of
 /// radiance is what the derivative says.
 void expect_derivative(Relighter& relighter, const cubemap::CubeMap& environment,

@@ -25,6 +25,7 @@ mesh::Material layered() {
             .alpha_mode = mesh::AlphaMode::Blend,
             .alpha = 0.8f,
             .transmission = 0.3f,
+            .diffuse_transmission = 0.4f,
             .coat = 0.75f,
             .coat_roughness = 0.4f,
             .sheen = glm::vec3(0.6f),
