@@ -10,6 +10,7 @@
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/ggx_lobe.h"
 #include "prt/glossy/sheen_lobe.h"
+#include "prt/glossy/stretched_lobe.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/lit_position.h"
 #include "relight/pictures/highlight_rays.h"
@@ -25,11 +26,34 @@ bool are_near(float a, float b) {
     return std::abs(a - b) <= LargestStep * std::max(a, LargestStep);
 }
 
-/// Whether normals differ by a fraction of what the lobe blurs.
-bool are_near(const glm::vec3& a, const glm::vec3& b, float alpha) {
+/// Returns by how much normals may differ: a fraction of what the lobe blurs.
+float turn_of(float alpha) {
     constexpr float LeastTurn = 0.02f, LargestTurn = 0.1f, ShareOfLobe = 0.25f;
-    const float turn = std::clamp(ShareOfLobe * alpha, LeastTurn, LargestTurn);
+    return std::clamp(ShareOfLobe * alpha, LeastTurn, LargestTurn);
+}
+
+bool are_near(const glm::vec3& a, const glm::vec3& b, float alpha) {
+    const float turn = turn_of(alpha);
     return glm::dot(a - b, a - b) < turn * turn;
+}
+
+/// Alpha of a stretched lobe along its tangent; of others, alpha.
+float longest_alpha(const prt::Surface& surface) {
+    return prt::is_stretched(surface)
+               ? prt::alpha_along(surface.roughness_or_exponent, surface.anisotropy)
+               : lobe_alpha(surface);
+}
+
+/// Whether normals are near. A stretched lobe blurs more along its tangent.
+bool face_alike(const Mirror& a, const Mirror& b) {
+    const float alpha = lobe_alpha(a.surface);
+    if (!prt::is_stretched(a.surface))
+        return are_near(a.normal, b.normal, alpha);
+    const glm::vec3 difference = a.normal - b.normal;
+    const float along = glm::dot(difference, a.surface.tangent);
+    const float rest = glm::dot(difference, difference) - along * along;
+    const float turn = turn_of(alpha), turn_along = turn_of(longest_alpha(a.surface));
+    return along * along / (turn_along * turn_along) + rest / (turn * turn) < 1.0f;
 }
 
 /// Whether two points of a pixel mirror nearly the same.
@@ -44,8 +68,7 @@ bool are_alike(const Mirror& a, const Mirror& b) {
            are_near(one.tangent, other.tangent, lobe_alpha(one)) &&
            are_near(one.roughness_or_exponent, other.roughness_or_exponent) &&
            are_near(one.coat_roughness, other.coat_roughness) &&
-           are_near(one.sheen_roughness, other.sheen_roughness) &&
-           are_near(a.normal, b.normal, lobe_alpha(one)) &&
+           are_near(one.sheen_roughness, other.sheen_roughness) && face_alike(a, b) &&
            are_near(one.coat_normal, other.coat_normal, prt::ggx_alpha(one.coat_roughness));
 }
 
@@ -87,7 +110,8 @@ std::optional<Mirror> mirror_of(const mesh::TriangleMesh& mesh, const prt::MeshP
         mirror.surface.coat_normal = facing(coat.direction, to_eye);
         of_coat = coat.spread;
     }
-    prt::widen(mirror.surface, normal.spread, of_coat);
+    const float of_mesh = view != nullptr ? view->normal_spread(mesh, point) : 0.0f;
+    prt::widen(mirror.surface, normal.spread + of_mesh, of_coat + of_mesh);
     return mirror;
 }
 
@@ -103,7 +127,8 @@ glm::vec3 seen_in_mirror(const Reflections& reflections, const MetSurface& met,
     const glm::vec3 whole = reflections.in_mirror(
         met, mirror->surface, prt::value_at(lit.mesh, lit.mesh.positions, lit.at), mirror->normal,
         lit.light, matte);
-    return glm::max(as_matte + static_cast<float>(count) * (whole - as_matte), 0.0f);
+    // What one ray says for several may be below 0: their mean is not.
+    return as_matte + static_cast<float>(count) * (whole - as_matte);
 }
 
 void Mirrors::begin_tile(std::uint32_t left, std::uint32_t top, std::uint32_t width,
@@ -130,13 +155,13 @@ void Mirrors::begin_pixel(std::uint32_t x, std::uint32_t y) {
     shift_ = shift_of(x, y);
 }
 
-std::optional<MirroredLight> Mirrors::shared(const Mirror& mirror,
-                                             const glm::vec3& position) const {
-    const std::uint32_t reach = reach_of(lobe_alpha(mirror.surface));
+Mirrors::Shared Mirrors::shared(const Mirror& mirror, const glm::vec3& position) const {
+    // A stretched lobe blurs as much as a round one of the same area.
+    const std::uint32_t reach =
+        reach_of(std::sqrt(lobe_alpha(mirror.surface) * longest_alpha(mirror.surface)));
     const std::uint32_t of_coat = reach_of(prt::ggx_alpha(mirror.surface.coat_roughness));
     const auto height = static_cast<std::uint32_t>(middles_.size() / width_);
-    MirroredLight sum;
-    float count = 0.0f, num_coats = 0.0f;
+    Shared sum;
     for (std::uint32_t y = y_ - std::min(y_, reach); y < std::min(y_ + reach + 1, height); ++y)
         for (std::uint32_t x = x_ - std::min(x_, reach); x < std::min(x_ + reach + 1, width_);
              ++x) {
@@ -148,27 +173,30 @@ std::optional<MirroredLight> Mirrors::shared(const Mirror& mirror,
             const glm::vec3 way = middle->position - position;
             if (std::abs(glm::dot(way, mirror.normal)) > LargestSlope * glm::length(way))
                 continue;
-            const MirroredLight& light = middle->traced.light;
-            count += 1.0f;
-            sum.all += light.all;
-            sum.grazing += light.grazing;
-            sum.whole += light.whole;
-            sum.sheen += light.sheen;
-            if (std::max(x, x_) - std::min(x, x_) <= of_coat &&
-                std::max(y, y_) - std::min(y, y_) <= of_coat) {
-                num_coats += 1.0f;
-                sum.coat += light.coat;
-            }
+            sum.add(middle->traced.light, std::max(x, x_) - std::min(x, x_) <= of_coat &&
+                                              std::max(y, y_) - std::min(y, y_) <= of_coat);
         }
-    // Few have less noise than rays of one's own, but not their place.
-    constexpr float Least = 4.0f;
-    if (count < Least || (prt::has_coat(mirror.surface) && num_coats == 0.0f))
-        return std::nullopt;
-    return MirroredLight{.all = sum.all / count,
-                         .grazing = sum.grazing / count,
-                         .whole = sum.whole / count,
-                         .coat = sum.coat / std::max(num_coats, 1.0f),
-                         .sheen = sum.sheen / count};
+    return sum;
+}
+
+void Mirrors::Shared::add(const MirroredLight& light, bool has_coat) {
+    count += 1.0f;
+    sum.all += light.all;
+    sum.grazing += light.grazing;
+    sum.whole += light.whole;
+    sum.sheen += light.sheen;
+    if (has_coat) {
+        num_coats += 1.0f;
+        sum.coat += light.coat;
+    }
+}
+
+MirroredLight Mirrors::Shared::mean() const {
+    return {.all = sum.all / count,
+            .grazing = sum.grazing / count,
+            .whole = sum.whole / count,
+            .coat = sum.coat / std::max(num_coats, 1.0f),
+            .sheen = sum.sheen / count};
 }
 
 std::optional<Mirror> Mirrors::at(const prt::MeshPoint& point) const {
@@ -197,19 +225,22 @@ MirroredLight Mirrors::light(const Mirror& mirror, const prt::MeshPoint& point) 
     });
     if (found != traced_.end())
         return found->light;
-    if (const auto light = shared(mirror, prt::value_at(mesh_, mesh_.positions, point))) {
-        traced_.push_back({mirror, *light});
-        return *light;
-    }
+    Shared near = shared(mirror, prt::value_at(mesh_, mesh_.positions, point));
+    // Few have more noise than rays of one's own beside theirs.
+    constexpr float Enough = 4.0f;
     const std::optional<Middle>& middle = middles_[std::size_t{y_} * width_ + x_];
-    if (traced_.empty() && middle && are_alike(middle->traced.mirror, mirror)) {
-        traced_.push_back(middle->traced);
-        return traced_.back().light;
+    const bool is_enough =
+        near.count >= Enough && (!prt::has_coat(mirror.surface) || near.num_coats > 0.0f);
+    if (!is_enough && traced_.empty() && middle && are_alike(middle->traced.mirror, mirror)) {
+        if (near.num_coats == 0.0f)
+            near.add(middle->traced.light, true);
+    } else if (!is_enough) {
+        // A pixel of several normals sums their rays.
+        near.add(
+            trace(mirror, point, rays_of_pixel(light_.reflections->num_rays(), traced_.empty())),
+            true);
     }
-    // A pixel of several normals sums their rays.
-    traced_.push_back(
-        {mirror,
-         trace(mirror, point, rays_of_pixel(light_.reflections->num_rays(), traced_.empty()))});
+    traced_.push_back({mirror, near.mean()});
     return traced_.back().light;
 }
 

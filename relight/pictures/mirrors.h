@@ -105,10 +105,16 @@ private:
     /// Returns what rays of a mirror find.
     [[nodiscard]] MirroredLight trace(const Mirror& mirror, const prt::MeshPoint& point,
                                       std::uint32_t num_rays) const;
+    /// The light that several points found.
+    struct Shared {
+        MirroredLight sum;
+        float count = 0.0f, num_coats = 0.0f;
+        void add(const MirroredLight& light, bool has_coat);
+        [[nodiscard]] MirroredLight mean() const;
+    };
     /// Returns the light that the middles of this pixel and of those around found on the same
-    /// surface; none where they see others.
-    [[nodiscard]] std::optional<MirroredLight> shared(const Mirror& mirror,
-                                                      const glm::vec3& position) const;
+    /// surface.
+    [[nodiscard]] Shared shared(const Mirror& mirror, const glm::vec3& position) const;
 
     const mesh::TriangleMesh& mesh_;
     const prt::RayScene& rays_;

@@ -23,7 +23,7 @@ PictureTile::PictureTile(const TileScene& scene)
     : scene_(scene), rays_{.blockers = &scene.rays, .bias = scene.light.bias},
       mirrors_(scene.mesh, scene.rays, scene.samples.twins(), scene.light, scene.floor,
                scene.backdrop, texture_view_),
-      refractions_(scene.mesh, scene.rays, scene.light, mirrors_),
+      refractions_(scene.mesh, scene.rays, scene.light, mirrors_, texture_view_),
       shading_(scene.mesh, scene.light, scene.packets, scene.samples.twins(), texture_view_),
       lights_(scene.mesh, scene.rays,
               scene.light.blockers != nullptr ? *scene.light.blockers
@@ -35,8 +35,9 @@ PictureTile::PictureTile(const TileScene& scene)
                          : static_cast<const prt::Blockers&>(scene.rays),
                      scene.light.bias, scene.floor_lights),
       own_lights_(scene.packets.num_packets()) {
-    if (scene.light.textures != nullptr && scene.light.textures->maps() != nullptr)
-        texture_view_ = {*scene.light.textures->maps(), scene.eye, scene.grid};
+    texture_view_ = {scene.eye, scene.grid};
+    if (scene.light.textures != nullptr)
+        texture_view_.maps = scene.light.textures->maps();
 }
 
 void PictureTile::draw(std::uint32_t tile, Picture& picture) {

@@ -36,7 +36,7 @@ struct Weighted {
         glm::vec3 result(0.0f);
         for (int color = 0; color < 3; ++color)
             if (weight[color] > 0.0f)
-                result[color] = sum[color] / weight[color];
+                result[color] = std::max(sum[color] / weight[color], 0.0f);
         return result;
     }
 };
@@ -71,6 +71,17 @@ std::uint32_t every_of(const MetSurface& met, const prt::Surface& surface) {
     const float asked = std::max(Asked * std::min(part / AlwaysAsked, 1.0f), 1.0f);
     const auto rays = static_cast<float>(met.num_rays);
     return static_cast<std::uint32_t>(std::clamp(std::round(rays / asked), 1.0f, rays));
+}
+
+/// Returns how much more than its share of the lobe a look sees of a lobe that is `alphas` wide
+/// along two axes. Looks lie farther apart along a stretched lobe than across it, and a wider look
+/// blurs it little across.
+float look_stretch(const glm::vec2& alphas, std::uint32_t num_rays) {
+    constexpr float MostAcross = 0.6f; // of the lobe's width
+    const float step =
+        std::sqrt(std::numbers::pi_v<float> / static_cast<float>(prt::PacketSize * num_rays));
+    const float ratio = std::max(alphas.x, alphas.y) / std::min(alphas.x, alphas.y);
+    return std::clamp(ratio, 1.0f, std::max(MostAcross / step, 1.0f));
 }
 
 /// What a highlight sends, by colour.
@@ -191,6 +202,30 @@ glm::vec3 Reflections::sky(const glm::vec3& direction, float solid_angle) const 
     return mean(levels_, direction, solid_angle);
 }
 
+glm::vec3 Reflections::sky(const glm::vec3& direction, glm::vec3 side, glm::vec3 other_side,
+                           float solid_angle) const {
+    constexpr float MostLooks = 8.0f, Longest = 0.5f;
+    if (glm::dot(side, side) < glm::dot(other_side, other_side))
+        std::swap(side, other_side);
+    const float whole = glm::length(side);
+    if (!(whole > 0.0f))
+        return sky(direction, solid_angle);
+    const float length = std::min(whole, Longest);
+    const glm::vec3 along = side / whole;
+    const float width =
+        std::max(std::min(glm::length(other_side - glm::dot(other_side, along) * along), length),
+                 length / MostLooks);
+    const float wide = std::max(length * width, solid_angle);
+    if (levels_.empty() || !has_detail(direction, std::max(length * length, solid_angle)))
+        return sky(direction, wide);
+    const float count = std::ceil(length / std::max(width, std::sqrt(solid_angle)));
+    glm::vec3 sum(0.0f);
+    for (float i = 0.5f; i < count; i += 1.0f)
+        sum += sky(glm::normalize(direction + (i / count - 0.5f) * length * along),
+                   std::max(length * width / count, solid_angle));
+    return sum / std::max(count, 1.0f);
+}
+
 std::size_t Reflections::level_of(const Levels& levels, float solid_angle) {
     const auto r = static_cast<float>(levels[0].resolution);
     // Bilinear values between means spread as far as squares of three times the area.
@@ -224,6 +259,7 @@ void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surface
     const bool has_parts = fan.num_rays > 1 && std::has_single_bit(fan.num_rays) &&
                            behind.least_solid_angle == 0.0f && !levels_.empty();
     const std::uint32_t outermost = fan.num_rays - fan.num_rays / fan_columns(fan.num_rays);
+    const float of_look = of_lobe * look_stretch(frame.alphas, fan.num_rays);
     for (std::uint32_t first = 0; first < fan.num_rays; first += prt::PacketSize) {
         const FanRays rays = fan_rays(fan, frame, first);
         if (rays.above == 0)
@@ -242,7 +278,7 @@ void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surface
                     const auto look = static_cast<std::size_t>(std::countr_zero(left));
                     const glm::vec3 way = looks.directions.direction(look);
                     const float of_all = prt::PacketSize * looks.densities[look];
-                    add(way, of_all, mean(behind.levels, way, of_lobe / of_all));
+                    add(way, of_all, mean(behind.levels, way, of_look / of_all));
                 }
             } else if ((met >> lane & 1u) == 0)
                 add(w, dense, mean(behind.levels, w, seen));

@@ -110,6 +110,13 @@ public:
     /// is without.
     [[nodiscard]] glm::vec3 sky(const glm::vec3& direction, float solid_angle) const;
 
+    /// Returns the mean over a parallelogram around a direction, which may be long and thin, and
+    /// over `solid_angle` at least. Its sides are parts of a radian.
+    ///
+    /// Cost:    a look where the environment is even, else up to eight.
+    [[nodiscard]] glm::vec3 sky(const glm::vec3& direction, glm::vec3 side, glm::vec3 other_side,
+                                float solid_angle) const;
+
     [[nodiscard]] std::uint32_t num_rays() const { return num_rays_; }
 
     /// Returns the least roughness of highlights of lights that are points: they stand for cells of

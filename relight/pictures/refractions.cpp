@@ -1,6 +1,7 @@
 #include "relight/pictures/refractions.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -61,7 +62,53 @@ struct Bent {
     glm::vec3 way;
     float solid_angle = 0.0f;
     bool is_back = false;
+    /// The normal of the facet that bent it.
+    glm::vec3 half{0.0f};
 };
+
+/// How far a ray's origin and direction move from one sample of a picture to the next
+/// [Igehy 1999].
+struct RayStep {
+    glm::vec3 position{0.0f}, direction{0.0f};
+
+    /// Along a ray of unit direction, to the plane of a triangle.
+    void transfer(const glm::vec3& along, float distance, const glm::vec3& face) {
+        position += distance * direction;
+        const float slope = glm::dot(along, face);
+        if (std::abs(slope) > 1e-4f)
+            position -= glm::dot(position, face) / slope * along;
+    }
+    /// At a facet of unit normal on the side where the ray comes from, which turns by `turn`.
+    void refract(const glm::vec3& from, const Bent& bent, float ratio, const glm::vec3& turn) {
+        const float before = glm::dot(from, bent.half), behind = glm::dot(bent.way, bent.half);
+        const float change = glm::dot(direction, bent.half) + glm::dot(from, turn);
+        if (bent.is_back) {
+            direction -= 2.0f * (before * turn + change * bent.half);
+            return;
+        }
+        const float of_normal = ratio * before - behind;
+        const float slope = behind != 0.0f ? ratio - ratio * ratio * before / behind : 0.0f;
+        direction = ratio * direction - (of_normal * turn + slope * change * bent.half);
+    }
+};
+
+/// Returns how much the unit normal of a mesh changes where a point of a triangle moves.
+glm::vec3 normal_change(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
+                        const glm::vec3& normal, const glm::vec3& move) {
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    const glm::vec3 of_u = mesh.normals[b] - mesh.normals[a];
+    const glm::vec3 of_v = mesh.normals[c] - mesh.normals[a];
+    const glm::vec3 u = mesh.positions[b] - mesh.positions[a];
+    const glm::vec3 v = mesh.positions[c] - mesh.positions[a];
+    const glm::vec3 across = glm::cross(u, v);
+    const float square = glm::dot(across, across);
+    if (!(square > 0.0f))
+        return glm::vec3(0.0f);
+    const glm::vec3 change = (glm::dot(glm::cross(move, v), across) * of_u +
+                              glm::dot(glm::cross(u, move), across) * of_v) /
+                             square;
+    return change - glm::dot(change, normal) * normal;
+}
 
 /// Returns where light goes on at a surface that it meets on the normal's side: as by_facet(half)
 /// says. A facet that sends it to the wrong side or against another facet is passed over: that
@@ -109,11 +156,11 @@ Bent into_body(const glm::vec3& direction, const glm::vec3& normal, float alpha,
     return spread(direction, normal, alpha, u, [&](const glm::vec3& half) {
         const glm::vec3 bent = glm::refract(direction, half, ratio);
         if (bent == glm::vec3(0.0f))
-            return Bent{glm::reflect(direction, half), 1.0f, true};
+            return Bent{glm::reflect(direction, half), 1.0f, true, half};
         // Of facets over that of mirrored directions [Walter et al. 2007, Eq. 14 and 17].
         const float before = -glm::dot(direction, half), behind = -glm::dot(bent, half);
         const float turn = ratio * before - behind;
-        return Bent{bent, turn * turn / (4.0f * before * behind)};
+        return Bent{bent, turn * turn / (4.0f * before * behind), false, half};
     });
 }
 
@@ -136,11 +183,22 @@ struct Refractions::Ray {
     std::uint32_t number = 0;
     glm::vec2 shift{0.0f};
     int num_surfaces = 0;
-    /// Solid angle that the ray stands for, and its part of a lobe.
+    /// Solid angle that the ray stands for beside its steps, and its part of a lobe.
     float spread = 0.0f, share = 0.0f;
+    /// To the samples beside it and below.
+    std::array<RayStep, 2> steps = {};
 
     /// What chooses the facet of the surface that it meets
     [[nodiscard]] glm::vec2 point() const { return facet_point(shift, number, num_surfaces); }
+    /// Follows the steps through a surface of a body that the ray met. `normal` is on its side.
+    void step(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const glm::vec3& normal,
+              const Bent& bent, float ratio) {
+        const float side =
+            glm::dot(normal, mesh.normals[mesh.triangles[triangle][0]]) < 0.0f ? -1.0f : 1.0f;
+        for (RayStep& each : steps)
+            each.refract(direction, bent, ratio,
+                         side * normal_change(mesh, triangle, normal, each.position));
+    }
     /// `face` is the normal of the triangle that the ray leaves, of either side.
     void go_on(const glm::vec3& position, const glm::vec3& way, const glm::vec3& face, float bias) {
         direction = glm::normalize(way);
@@ -178,8 +236,12 @@ glm::vec3 Refractions::light(const Mirror& mirror, const prt::MeshPoint& at, std
             is_body(material)
                 ? into_body(-mirror.to_eye, mirror.normal, alpha, 1.0f / index_of(material), u)
                 : through_sheet(-mirror.to_eye, mirror.normal, alpha, u);
-        if (is_body(material))
+        ray.direction = -mirror.to_eye;
+        begin_steps(ray, position, face);
+        if (is_body(material)) {
             ray.body = &material;
+            ray.step(mesh_, at.triangle, mirror.normal, bent, 1.0f / index_of(material));
+        }
         ray.spread = ray.share * bent.solid_angle;
         ray.go_on(position, bent.way, face, light_.bias);
         sum += followed(ray);
@@ -187,14 +249,32 @@ glm::vec3 Refractions::light(const Mirror& mirror, const prt::MeshPoint& at, std
     return sum / static_cast<float>(count);
 }
 
+/// Lets the steps of a ray from the eye arrive at the first surface.
+void Refractions::begin_steps(Ray& ray, const glm::vec3& position, const glm::vec3& face) const {
+    if (view_.right == glm::vec3(0.0f))
+        return;
+    const glm::vec3 to_point = position - view_.eye;
+    const float depth = glm::dot(to_point, view_.forward), distance = glm::length(to_point);
+    for (std::size_t i = 0; i < ray.steps.size(); ++i) {
+        const glm::vec3 aside = depth * (i == 0 ? view_.right : view_.down);
+        ray.steps[i].direction =
+            (aside - glm::dot(aside, ray.direction) * ray.direction) / distance;
+        ray.steps[i].position = glm::vec3(0.0f);
+        ray.steps[i].transfer(ray.direction, distance, face);
+    }
+}
+
+/// Returns what a ray that leaves sees: the mean over what lies between it and the next ones.
+glm::vec3 Refractions::sky(const Ray& ray) const {
+    return ray.throughput * light_.reflections->sky(ray.direction, ray.steps[0].direction,
+                                                    ray.steps[1].direction, ray.spread);
+}
+
 glm::vec3 Refractions::followed(Ray ray) const {
     while (true) {
         const auto hit =
             rays_.closest_hit(ray.origin, ray.direction,
                               ray.body != nullptr ? prt::RayOf::EyeInGlass : prt::RayOf::Eye);
-        const auto sky = [&] {
-            return ray.throughput * light_.reflections->sky(ray.direction, ray.spread);
-        };
         const auto seen = [&] {
             return ray.throughput * mirrors_.seen({.hit = *hit,
                                                    .direction = ray.direction,
@@ -202,7 +282,9 @@ glm::vec3 Refractions::followed(Ray ray) const {
                                                    .fan_shift = ray.point()});
         };
         if (!hit)
-            return sky();
+            return sky(ray);
+        for (RayStep& step : ray.steps)
+            step.transfer(ray.direction, hit->distance, prt::face_normal(mesh_, hit->triangle));
         if (ray.body != nullptr)
             ray.throughput *= glm::pow(ray.body->attenuation_color,
                                        glm::vec3(hit->distance / ray.body->attenuation_distance));
@@ -210,7 +292,7 @@ glm::vec3 Refractions::followed(Ray ray) const {
         if (!rays_.is_thin(hit->triangle))
             return seen();
         if (is_last)
-            return sky();
+            return sky(ray);
         if (!meet(ray, *hit))
             return seen();
     }
@@ -255,6 +337,7 @@ bool Refractions::meet(Ray& ray, const prt::Hit& hit) const {
     const float index = index_of(material);
     const float ratio = leaves ? index : 1.0f / index;
     const Bent bent = into_body(ray.direction, normal, roughness, ratio, own);
+    ray.step(mesh_, at.triangle, normal, bent, ratio);
     ray.go_on(position, bent.way, face, light_.bias);
     if (!bent.is_back) {
         ray.spread *= ratio * ratio;

@@ -11,6 +11,7 @@
 
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/mesh_point.h"
+#include "prt/receivers/texture_view.h"
 #include "prt/visibility/ray_scene.h"
 #include "relight/pictures/mirrors.h"
 #include "relight/pictures/picture_view.h"
@@ -21,13 +22,16 @@ namespace relumine::relight {
 /// their index and take light on the way, and through rough sheets, which spread them. At each
 /// surface a ray goes one way: on, or back where all of it is mirrored. What the inner side of a
 /// surface mirrors beyond that leaves elsewhere, and is taken to go on, so glass loses no light. A
-/// facet of rough glass that would send a ray against another facet gives way to others.
+/// facet of rough glass that would send a ray against another facet gives way to others. The sky
+/// behind is the mean over all that a sample sees of it, which bent glass spreads or narrows: a
+/// window that falls between samples would else be a speck.
 class Refractions {
 public:
     /// All must outlive this object. Used where `light` has reflections.
+    /// `view` says how far apart samples are.
     Refractions(const mesh::TriangleMesh& mesh, const prt::RayScene& rays, const MeshLight& light,
-                const Mirrors& mirrors)
-        : mesh_(mesh), rays_(rays), light_(light), mirrors_(mirrors) {}
+                const Mirrors& mirrors, const prt::TextureView& view)
+        : mesh_(mesh), rays_(rays), light_(light), mirrors_(mirrors), view_(view) {}
 
     /// Whether what is behind a point is not simply seen straight on. Others are
     /// prt::RayScene::layers().
@@ -43,13 +47,16 @@ public:
 
 private:
     struct Ray;
+    void begin_steps(Ray& ray, const glm::vec3& position, const glm::vec3& face) const;
     [[nodiscard]] glm::vec3 followed(Ray ray) const;
     [[nodiscard]] bool meet(Ray& ray, const prt::Hit& hit) const;
+    [[nodiscard]] glm::vec3 sky(const Ray& ray) const;
 
     const mesh::TriangleMesh& mesh_;
     const prt::RayScene& rays_;
     const MeshLight& light_;
     const Mirrors& mirrors_;
+    const prt::TextureView& view_;
 };
 
 } // namespace relumine::relight

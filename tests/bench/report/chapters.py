@@ -147,6 +147,13 @@ def coarse(text):
         return f"First pictures of {len(rows)} coarse meshes lie {off[len(off) // 2][0]} of 255 from receivers in every pixel (median over the meshes, the worse of the lights); the farthest, {off[-1][1]}, {off[-1][0]}."
 
 
+def pictures(text):
+    found = re.search(r"([\d.]+) specks in a million pixels", text)
+    rows = data_rows(text)
+    if found and len(rows) > 1:
+        return f"Pictures of {len(rows) - 1} assets have {found.group(1)} specks in a million pixels, and lie {rows[-1][4]} of 255 from converged ones (median)."
+
+
 def refinement(text):
     rows = [row for row in data_rows(text) if "refined" in row[0]]
     if rows:
@@ -175,6 +182,7 @@ CHAPTERS = [
     Chapter("precompute", "Precompute", ["--threads"], ["--threads"], precompute),
     Chapter("growth", "Growth and memory", ["--folder", "{work}", "--vertices", "700000"], ["--folder", "{work}", "--vertices", "100000", "--triangles", "200000", "--only", "vertices"], growth),
     Chapter("coarse", "First pictures of coarse meshes", ["--direct", "--width", "160", "--height", "120"], None, coarse),
+    Chapter("pictures", "Specks and grain", [], None, pictures),
     Chapter("refinement", "Refinement", [], None, refinement),
     Chapter("bounces", "Bounces", [], None, bounces),
     Chapter("glossy", "Highlights from a fixed eye", [], None, glossy),

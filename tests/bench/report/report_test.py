@@ -135,6 +135,18 @@ nine coefficients, processor time: relight 55.1 ms, adjoint 155.8 ms, ratio 2.83
         self.assertIn("lie 0.94 of 255", sentence)
         self.assertIn("castle, 11.88.", sentence)
 
+    def test_pictures_have_specks_and_a_distance(self):
+        printed = """| asset | map | pixels | specks | distance | grain | processor s |
+|---|---|---|---|---|---|---|
+| glass | church | 29239 | 6 | 0.40 | 0.46 | 4.3 |
+| duck | dawn | 24032 | 0 | 0.21 | 0.23 | 0.6 |
+| all | | 53271 | 6 | 0.40 | 0.46 | 4.9 |
+
+112.6 specks in a million pixels; distance and grain are medians, of 255
+"""
+        self.assertIn("of 2 assets have 112.6 specks", chapters.pictures(printed))
+        self.assertIn("lie 0.40 of 255", chapters.pictures(printed))
+
     def test_nothing_is_found_in_nothing(self):
         for chapter in chapters.CHAPTERS:
             self.assertIsNone(chapter.finding("no figures here\n"), chapter.name)

@@ -57,6 +57,28 @@ TEST(TextureView, FootprintsOfATiltedPlane) {
             glm::vec2(0.0f));
 }
 
+/// Normals that turn evenly vary by a twelfth of the square of all their turn.
+TEST(TextureView, NormalsOfABentSurfaceDifferWithinAPixel) {
+    mesh::TriangleMesh square = scenes::textured_square();
+    const Camera camera{.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = Fov};
+    const MeshPoint at{.triangle = 0, .barycentric = {0.4f, 0.3f}};
+    const auto spread = [&](std::uint32_t size, std::uint32_t samples) {
+        return TextureView(camera.eye, PictureRays(camera, size, size, samples))
+            .normal_spread(square, at);
+    };
+    EXPECT_EQ(spread(10, 3), 0.0f) << "it is flat";
+    constexpr float Bend = 0.1f; // of the normal, over a length of 1
+    for (std::size_t i = 0; i < square.num_vertices(); ++i)
+        square.normals[i] = glm::vec3(Bend * square.positions[i].x, 0.0f, 1.0f);
+    const auto turn = [](std::uint32_t along) { // of places in the picture
+        return Bend * 2.0f / static_cast<float>(along);
+    };
+    const float of_pixel = turn(100) * turn(100) / 12.0f;
+    EXPECT_NEAR(spread(100, 3), of_pixel, 1e-3f * of_pixel) << "samples share the pixel's rays";
+    const float of_sample = turn(6) * turn(6) / 12.0f;
+    EXPECT_NEAR(spread(2, 3), of_sample, 1e-3f * of_sample) << "each sample has its own";
+}
+
 TEST(SeenNormal, IsTheMeanOfTheMapAndHowMuchItDiffers) {
     const mesh::TriangleMesh square = scenes::striped_square();
     const mesh::MipMaps maps(square.textures);
