@@ -67,6 +67,10 @@ std::vector<std::string> left_out_of(const Scene& scene) {
                                material.transmission > 0.0f;
                     }))
         left.push_back("alpha and glass: surfaces are opaque, though light passes them");
+    if (std::any_of(
+            scene.mesh.materials.begin(), scene.mesh.materials.end(),
+            [](const mesh::Material& material) { return material.diffuse_transmission > 0.0f; }))
+        left.push_back("light that comes through leaves, paper and cloth");
     if (const float roll = leveled(camera_of(scene)).roll_degrees; roll != 0.0f)
         left.push_back(fmt::format("the camera's turn by {:.3g} degrees about its view", roll));
     return left;

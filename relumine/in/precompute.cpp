@@ -231,6 +231,14 @@ private:
             scene_.settings.glossy_tolerance = options_.glossy_tolerance;
             warn_of_smooth_surfaces();
         }
+        const std::vector<mesh::Material>& materials = scene_.mesh.materials;
+        if ((!prt::on_vertices(scene_.layout) || scene_.settings.glossy_tolerance) &&
+            prt::kind_of(scene_.layout).have_surface &&
+            std::any_of(materials.begin(), materials.end(),
+                        [](const mesh::Material& own) { return own.diffuse_transmission > 0.0f; }))
+            warn(work_, Warning::PassedOnLight,
+                 "light that comes through surfaces (KHR_materials_diffuse_transmission) is left "
+                 "out: vertices without a view have it");
         if (const float tolerance = bounce_tolerance(rays); tolerance > 0.0f) {
             scene_.settings.two_sided_bounces = options_.two_sided_bounces;
             scene_.settings.bounce_tolerance = tolerance;
@@ -345,11 +353,6 @@ private:
             scene_.lamps.lights = mesh.lights;
         if (mesh.materials.empty() && !options_.surface && options_.floor_surface == prt::Surface())
             return;
-        if (!prt::on_vertices(scene_.layout) &&
-            std::any_of(mesh.materials.begin(), mesh.materials.end(),
-                        [](const mesh::Material& own) { return own.diffuse_transmission > 0.0f; }))
-            note(work_, "the light that surfaces pass on from behind them "
-                        "(KHR_materials_diffuse_transmission) is that of vertices: it is left out");
         const std::size_t n = scene_.settings.floor_vertices;
         const std::size_t first_of_floor =
             mesh.num_vertices() - n * n - scene_.settings.floor_added;

@@ -97,6 +97,8 @@ enum class Warning {
     HighlightsWithoutView,
     /// Surfaces are smoother than the finest cells can hold
     TooSmooth,
+    /// What surfaces pass on from behind them is left out, as it is that of vertices
+    PassedOnLight,
     /// A checkpoint cannot be written; the work goes on
     Checkpoint,
 };

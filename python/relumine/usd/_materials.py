@@ -695,8 +695,10 @@ class Materials:
         base: Input,
         names: Dict[str, Any],
     ) -> Tuple[Input, Set[str]]:
-        """Subsurface of a leaf or of paper: light that goes to the other side. Returns the colour of
-        what is reflected, and the names of the inputs."""
+        """Subsurface of a leaf or of paper: light that goes to the other side.
+
+        Returns the colour of what is reflected, and the names of the inputs.
+        """
         thin, scatter, fallback = names.get("thin_wall", ("", "", 0.0))
         part = n.input("subsurface_weight" if scatter else "subsurface", 0.0) if thin else 0.0
         if not thin or not n.number(thin, 0.0) or isinstance(part, Image) or part <= 0.0:
@@ -721,7 +723,9 @@ class Materials:
         if part == 1.0:
             return color, used
         if isinstance(base, Image) or isinstance(color, Image):
-            self._notes.add("of a thin wall with textures the base colour alone is reflected", n.path)
+            self._notes.add(
+                "of a thin wall with textures the base colour alone is reflected", n.path
+            )
             return base, used
         mixed = [
             ((1.0 - part) * b + (part - passed) * c) / (1.0 - passed)

@@ -156,6 +156,22 @@ TEST_F(PassedOnFile, KeepsIt) {
     expect_near(seen(lit, true), Passed * Part * 3.0f, 0.01f);
 }
 
+TEST(PassedOn, PixelsSayThatTheyLackIt) {
+    std::vector<Warning> warnings;
+    PrecomputeWork work;
+    work.on_warning = [&](Warning kind, const std::string&) {
+        warnings.push_back(kind);
+    };
+    static_cast<void>(precompute(sheet_of(leaf()),
+                                 {.receivers = Pixels{.width = 8, .height = 8},
+                                  .view = View{.camera = Camera{.eye = {0, 4, 0.1f}}}},
+                                 work));
+    EXPECT_EQ(warnings, (std::vector{Warning::PassedOnLight}));
+    warnings.clear();
+    static_cast<void>(precompute(sheet_of(leaf()), {.bounce_tolerance = 0.0f}, work));
+    EXPECT_TRUE(warnings.empty());
+}
+
 TEST(PassedOn, MaterialsOfOptionsHaveNone) {
     PrecomputeOptions options{.surface = everywhere({.albedo = glm::vec3(0.5f)}),
                               .bounce_tolerance = 0.0f};
