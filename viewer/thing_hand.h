@@ -2,7 +2,6 @@
 // them, or takes them away. Works without a window.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>

@@ -79,8 +79,8 @@ void read_groups(const SectionReader& reader, Scene& scene) {
 void add_mesh(NewSections& sections, const Scene& scene) {
     const bool are_there = scene.absent.empty() || !scene.settings.is_movable;
     sections["positions"] = SectionContent::view(scene.mesh.positions);
-    sections["triangles"] = are_there ? SectionContent::view(scene.mesh.triangles)
-                                                 : bytes_of(whole_mesh(scene));
+    sections["triangles"] =
+        are_there ? SectionContent::view(scene.mesh.triangles) : bytes_of(whole_mesh(scene));
     sections["normals"] = SectionContent::view(scene.mesh.normals);
     if (!scene.mesh.colors.empty())
         sections["colors"] = SectionContent::view(scene.mesh.colors);
@@ -92,9 +92,8 @@ void add_mesh(NewSections& sections, const Scene& scene) {
         sections["lifts"] = SectionContent::view(scene.mesh.lifts);
     if (scene.blockers) {
         sections["block_positions"] = SectionContent::view(scene.blockers->positions);
-        sections["block_triangles"] = are_there
-                                          ? SectionContent::view(scene.blockers->triangles)
-                                          : bytes_of(whole_blockers(scene));
+        sections["block_triangles"] = are_there ? SectionContent::view(scene.blockers->triangles)
+                                                : bytes_of(whole_blockers(scene));
     }
     if (scene.settings.is_movable)
         add_groups(sections, scene);

@@ -441,6 +441,7 @@ class Scene:
         The group hides and shows nothing. Its receivers keep their numbers, and have the light that
         they would have without it. A file keeps what is away.
 
+        >>> mesh = relumine.Mesh.load("boulder.ply", floor=20)
         >>> scene = relumine.precompute(mesh, tolerance=0.05, bounces=False, movable=True)
         >>> scene.remove("mesh").restore("mesh")
         <relumine.Scene: vertices, ... receivers, ... clusters>
