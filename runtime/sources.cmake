@@ -7,7 +7,7 @@ set(runtime_sources
     mesh/edge_uses.cpp mesh/materials/brdf_table.cpp mesh/subject.cpp mesh/triangle_mesh.cpp
     prt/bounces/bounce_matrix.cpp prt/bounces/point_rows.cpp prt/clusters/lattice.cpp prt/glossy/brdf.cpp prt/glossy/ggx_energy.cpp prt/glossy/lobe_kernel.cpp prt/glossy/sheen_lobe.cpp prt/glossy/thin_film.cpp
     prt/receivers/camera.cpp prt/receivers/mesh_point.cpp prt/receivers/receiver_layout.cpp prt/receivers/receiver_order.cpp prt/receivers/receivers.cpp
-    prt/scene/bounce_sections.cpp prt/scene/brdf_sections.cpp prt/scene/cluster_sections.cpp prt/scene/count_sections.cpp prt/scene/mesh_sections.cpp prt/scene/receiver_sections.cpp prt/scene/packed_mesh.cpp prt/scene/relighting_file.cpp
+    prt/scene/absent_groups.cpp prt/scene/bounce_sections.cpp prt/scene/brdf_sections.cpp prt/scene/cluster_sections.cpp prt/scene/count_sections.cpp prt/scene/mesh_sections.cpp prt/scene/receiver_sections.cpp prt/scene/packed_mesh.cpp prt/scene/relighting_file.cpp
     prt/scene/packed_sections.cpp prt/scene/section_file.cpp prt/scene/section_format.cpp prt/scene/section_reader.cpp prt/scene/small_numbers.cpp prt/scene/settings_sections.cpp
     prt/transfer/glossy_transfer.cpp prt/transfer/quadtree.cpp prt/transfer/transfer.cpp prt/transfer/visible_counts.cpp
     prt/visibility/bias.cpp prt/visibility/blockers.cpp
