@@ -109,8 +109,12 @@ std::optional<Mirror> mirror_of(const mesh::TriangleMesh& mesh, const prt::MeshP
         mirror.surface.coat_normal = facing(coat.direction, to_eye);
         of_coat = coat.spread;
     }
-    const float of_mesh = view != nullptr ? view->normal_spread(mesh, point) : 0.0f;
-    prt::widen(mirror.surface, normal.spread + of_mesh, of_coat + of_mesh);
+    prt::widen(mirror.surface, normal.spread, of_coat);
+    mirror.facet_alpha = lobe_alpha(mirror.surface);
+    if (view != nullptr) {
+        const float of_mesh = view->normal_spread(mesh, point);
+        prt::widen(mirror.surface, of_mesh, of_mesh);
+    }
     return mirror;
 }
 
