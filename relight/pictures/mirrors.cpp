@@ -229,11 +229,14 @@ MirroredLight Mirrors::light(const Mirror& mirror, const prt::MeshPoint& point) 
     if (found != traced_.end())
         return found->light;
     Shared near = shared(mirror, prt::value_at(mesh_, mesh_.positions, point));
-    // Few have more noise than rays of one's own beside theirs.
+    // Few have less noise than rays of one's own, but not their place: only stretched lobes, whose
+    // noise is largest, take them beside these.
     constexpr float Enough = 4.0f;
     const std::optional<Middle>& middle = middles_[std::size_t{y_} * width_ + x_];
     const bool is_enough =
         near.count >= Enough && (!prt::has_coat(mirror.surface) || near.num_coats > 0.0f);
+    if (!is_enough && !prt::is_stretched(mirror.surface))
+        near = {};
     if (!is_enough && traced_.empty() && middle && are_alike(middle->traced.mirror, mirror)) {
         if (near.num_coats == 0.0f)
             near.add(middle->traced.light, true);
