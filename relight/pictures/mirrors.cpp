@@ -110,8 +110,12 @@ std::optional<Mirror> mirror_of(const mesh::TriangleMesh& mesh, const prt::MeshP
         mirror.surface.coat_normal = facing(coat.direction, to_eye);
         of_coat = coat.spread;
     }
-    const float of_mesh = view != nullptr ? view->normal_spread(mesh, point) : 0.0f;
-    prt::widen(mirror.surface, normal.spread + of_mesh, of_coat + of_mesh);
+    prt::widen(mirror.surface, normal.spread, of_coat);
+    mirror.facet_alpha = lobe_alpha(mirror.surface);
+    if (view != nullptr) {
+        const float of_mesh = view->normal_spread(mesh, point);
+        prt::widen(mirror.surface, of_mesh, of_mesh);
+    }
     return mirror;
 }
 
@@ -226,11 +230,14 @@ MirroredLight Mirrors::light(const Mirror& mirror, const prt::MeshPoint& point) 
     if (found != traced_.end())
         return found->light;
     Shared near = shared(mirror, prt::value_at(mesh_, mesh_.positions, point));
-    // Few have more noise than rays of one's own beside theirs.
+    // Few have less noise than rays of one's own, but not their place: only stretched lobes, whose
+    // noise is largest, take them beside these.
     constexpr float Enough = 4.0f;
     const std::optional<Middle>& middle = middles_[std::size_t{y_} * width_ + x_];
     const bool is_enough =
         near.count >= Enough && (!prt::has_coat(mirror.surface) || near.num_coats > 0.0f);
+    if (!is_enough && !prt::is_stretched(mirror.surface))
+        near = {};
     if (!is_enough && traced_.empty() && middle && are_alike(middle->traced.mirror, mirror)) {
         if (near.num_coats == 0.0f)
             near.add(middle->traced.light, true);

@@ -17,6 +17,9 @@ namespace relumine::relight {
 struct Mirror {
     prt::Surface surface;
     glm::vec3 normal, to_eye;
+    /// Alpha of its facets. The surface is rougher where the mesh bends within a sample, which
+    /// light that goes through follows by itself.
+    float facet_alpha = 0.0f;
 };
 
 /// Returns the mirror at a point, whose surface is given, for an eye or a ray that comes from the

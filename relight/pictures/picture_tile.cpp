@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include <glm/common.hpp>
+
+#include "cubemap/luminance.h"
 #include "prt/receivers/lit_position.h"
 
 namespace relumine::relight {
@@ -91,19 +94,55 @@ PictureTile::Pixel PictureTile::drawn(std::uint32_t x, std::uint32_t y,
     find_parts(samples, scene_.packets.num_packets() == 0 || lights_.is_even(x, y));
     glm::vec3 sum(0.0f);
     float alpha = 0.0f;
+    double num_seen = 0.0, brightest = 0.0;
     for (Part& part : parts_) {
         const EyeSample mean{part.sum.triangle, part.sum.second / part.count,
                              part.sum.third / part.count};
-        const Shown seen = shown(x, y, part.first, mean);
+        const Shown seen =
+            shown(x, y,
+                  {mean, scene_.grid.direction(x, y, static_cast<std::uint32_t>(part.first)),
+                   part.first});
         sum += part.count * seen.color;
         alpha += part.count * seen.covered;
+        num_seen += part.count;
+        brightest = std::max(brightest, cubemap::luminance(seen.color));
         if (seen.passed != glm::vec3(1.0f))
             for (std::size_t i = part.first; i < samples.size(); ++i)
                 if (part_of_[i] == static_cast<std::size_t>(&part - parts_.data()))
                     passed_[i] = seen.passed;
     }
     const auto count = static_cast<float>(samples.size());
-    return {.color = sum / count, .alpha = alpha / count};
+    Pixel pixel{.color = sum / count, .alpha = alpha / count};
+    // A light that few samples find is a speck, or a gap in a bright line.
+    constexpr double OverMean = 6.0;
+    if (brightest * num_seen > OverMean * cubemap::luminance(sum)) {
+        const auto [more, num_more] = further(x, y);
+        pixel.color = glm::mix(pixel.color, more, num_more / (num_more + count));
+    }
+    return pixel;
+}
+
+std::pair<glm::vec3, float> PictureTile::further(std::uint32_t x, std::uint32_t y) {
+    const std::uint32_t per_axis = 2 * scene_.grid.samples_per_axis();
+    const auto step = 1.0f / static_cast<float>(per_axis);
+    glm::vec3 sum(0.0f);
+    for (std::uint32_t i = 0; i < per_axis * per_axis; ++i) {
+        const glm::vec2 place =
+            glm::vec2(x, y) + step * (glm::vec2(i % per_axis, i / per_axis) + 0.5f);
+        const glm::vec3 direction = scene_.grid.direction(place);
+        const auto met = scene_.seen.rays().closest_hit(scene_.eye, direction, prt::RayOf::Eye);
+        if (!met)
+            continue;
+        const prt::Hit hit = scene_.samples.twins().facing(*met, direction);
+        sum += shown(x, y,
+                     {.sample = {hit.triangle, hit.barycentric.x, hit.barycentric.y},
+                      .direction = direction,
+                      .number = i % scene_.grid.samples_per_pixel(),
+                      .is_known = false})
+                   .color;
+    }
+    const auto count = static_cast<float>(per_axis * per_axis);
+    return {sum / count, count};
 }
 
 bool PictureTile::is_linear(std::uint32_t triangle) const {
@@ -138,12 +177,11 @@ void PictureTile::find_parts(std::span<const EyeSample> samples, bool is_even) {
     }
 }
 
-PictureTile::Shown PictureTile::shown(std::uint32_t x, std::uint32_t y, std::size_t i,
-                                      const EyeSample& first) {
+PictureTile::Shown PictureTile::shown(std::uint32_t x, std::uint32_t y, const SeenAt& seen) {
     const MeshLight& light = scene_.light;
     const bool traces = scene_.packets.num_packets() != 0;
     Shown result;
-    for (const Layer& layer : layers(x, y, i, first)) {
+    for (const Layer& layer : layers(seen)) {
         const EyeSample& sample = layer.sample;
         const float opacity = this->opacity(sample);
         if (opacity == 0.0f)
@@ -155,8 +193,8 @@ PictureTile::Shown PictureTile::shown(std::uint32_t x, std::uint32_t y, std::siz
         glm::vec3 radiance = shading_.soft(at, mirror, mirrors_);
         if (traces) {
             std::span<const std::uint16_t> lights = own_lights_;
-            if (layer.is_first)
-                lights = lights_.of(x, y, i);
+            if (layer.is_first && seen.is_known)
+                lights = lights_.of(x, y, seen.number);
             else
                 trace_own(at);
             if (!is_none(lights))
@@ -171,8 +209,9 @@ PictureTile::Shown PictureTile::shown(std::uint32_t x, std::uint32_t y, std::siz
             }
         }
         if (is_floor && has_floor_lights()) {
-            const glm::vec3 shaded =
-                layer.is_first ? floor_shadows_.of(x, y) : floor_shadows_.at(at, i);
+            const glm::vec3 shaded = layer.is_first && seen.is_known
+                                         ? floor_shadows_.of(x, y)
+                                         : floor_shadows_.at(at, seen.number);
             radiance += is_caught || light.albedo.empty()
                             ? shaded
                             : shaded * prt::value_at(scene_.mesh, light.albedo, at);
@@ -181,9 +220,9 @@ PictureTile::Shown PictureTile::shown(std::uint32_t x, std::uint32_t y, std::siz
             result.color += result.passed * (layer.veil.weight * opacity) *
                             (radiance + shading_.emitted(at, mirror));
         if (mirror && refractions_.bends(*mirror, at)) {
-            result.color +=
-                result.passed * layer.veil.weight *
-                refractions_.light(*mirror, at, static_cast<std::uint32_t>(i), mirrors_.shift());
+            result.color += result.passed * layer.veil.weight *
+                            refractions_.light(*mirror, at, static_cast<std::uint32_t>(seen.number),
+                                               mirrors_.shift());
             result.passed *= 1.0f - layer.veil.weight;
             result.covered += (1.0f - result.covered) * layer.veil.weight;
             if (layer.veil.weight == 1.0f)
@@ -206,13 +245,11 @@ void PictureTile::trace_own(const prt::MeshPoint& at) {
                            normal, rays_, own_lights_);
 }
 
-std::span<const PictureTile::Layer> PictureTile::layers(std::uint32_t x, std::uint32_t y,
-                                                        std::size_t i, const EyeSample& first) {
-    layers_.assign(1, {first});
-    if (!scene_.rays.is_thin(first.triangle))
+std::span<const PictureTile::Layer> PictureTile::layers(const SeenAt& seen) {
+    layers_.assign(1, {seen.sample});
+    if (!scene_.rays.is_thin(seen.sample.triangle))
         return layers_;
-    scene_.seen.rays().layers(scene_.eye,
-                              scene_.grid.direction(x, y, static_cast<std::uint32_t>(i)), found_);
+    scene_.seen.rays().layers(scene_.eye, seen.direction, found_);
     layers_.clear();
     for (const prt::RayScene::Layer& layer : found_)
         layers_.push_back({{layer.hit.triangle, layer.hit.barycentric.x, layer.hit.barycentric.y},

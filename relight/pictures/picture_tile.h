@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -63,6 +64,14 @@ private:
         mesh::Veil veil = {};
         bool is_first = true;
     };
+    /// A sample that is shaded.
+    struct SeenAt {
+        EyeSample sample;
+        glm::vec3 direction{0.0f};
+        std::size_t number = 0;
+        /// Whether its lights are known with those of its pixel.
+        bool is_known = true;
+    };
     /// Samples of a pixel that are shaded as one: the sum of their places in a triangle.
     struct Part {
         EyeSample sum;
@@ -82,12 +91,12 @@ private:
     /// Whether samples in a triangle may be shaded as one: what they show is linear.
     [[nodiscard]] bool is_linear(std::uint32_t triangle) const;
     void find_parts(std::span<const EyeSample> samples, bool is_even);
-    [[nodiscard]] Shown shown(std::uint32_t x, std::uint32_t y, std::size_t i,
-                              const EyeSample& sample);
+    [[nodiscard]] Shown shown(std::uint32_t x, std::uint32_t y, const SeenAt& at);
+    /// Returns the mean of what further samples of a pixel show, premultiplied, and their number.
+    [[nodiscard]] std::pair<glm::vec3, float> further(std::uint32_t x, std::uint32_t y);
     /// Finds the lights that reach a point: own_lights_.
     void trace_own(const prt::MeshPoint& at);
-    [[nodiscard]] std::span<const Layer> layers(std::uint32_t x, std::uint32_t y, std::size_t i,
-                                                const EyeSample& first);
+    [[nodiscard]] std::span<const Layer> layers(const SeenAt& at);
     [[nodiscard]] float opacity(const EyeSample& sample) const;
     [[nodiscard]] bool is_floor(const EyeSample& sample) const {
         return scene_.floor.has(scene_.mesh.triangles[sample.triangle]);

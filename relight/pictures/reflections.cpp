@@ -68,7 +68,10 @@ std::uint32_t every_of(const MetSurface& met, const prt::Surface& surface) {
     const float part = std::max(
         {most(surface.specular), prt::has_lobes_of_colors(surface) ? 1.0f : 0.0f,
          prt::has_coat(surface) ? OfLayers : 0.0f, prt::has_sheen(surface) ? OfLayers : 0.0f});
-    const float asked = std::max(Asked * std::min(part / AlwaysAsked, 1.0f), 1.0f);
+    // One ray that asks for several says much too much or too little where all is mirrored.
+    if (part >= AlwaysAsked)
+        return 1;
+    const float asked = std::max(Asked * part / AlwaysAsked, 1.0f);
     const auto rays = static_cast<float>(met.num_rays);
     return static_cast<std::uint32_t>(std::clamp(std::round(rays / asked), 1.0f, rays));
 }

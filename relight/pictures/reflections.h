@@ -67,8 +67,8 @@ struct MetSurface {
 };
 
 /// Returns for how many rays of its fan this one asks what the surface mirrors that it met: those
-/// in between take it for matte. 0: it does not ask. A metal is asked by 32 rays of a fan, or all;
-/// what mirrors little by fewer.
+/// in between take it for matte. 0: it does not ask. A metal is asked by all rays, what mirrors
+/// little by fewer than 32.
 [[nodiscard]] std::uint32_t asked_for(const MetSurface& met, const prt::Surface& surface);
 
 class Reflections {

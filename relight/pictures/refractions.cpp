@@ -185,14 +185,17 @@ struct Refractions::Ray {
     int num_surfaces = 0;
     /// Solid angle that the ray stands for beside its steps, and its part of a lobe.
     float spread = 0.0f, share = 0.0f;
-    /// To the samples beside it and below.
+    /// To the samples beside it and below. Those of rough glass part little beside its facets.
     std::array<RayStep, 2> steps = {};
+    bool has_steps = false;
 
     /// What chooses the facet of the surface that it meets
     [[nodiscard]] glm::vec2 point() const { return facet_point(shift, number, num_surfaces); }
     /// Follows the steps through a surface of a body that the ray met. `normal` is on its side.
     void step(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const glm::vec3& normal,
               const Bent& bent, float ratio) {
+        if (!has_steps)
+            return;
         const float side =
             glm::dot(normal, mesh.normals[mesh.triangles[triangle][0]]) < 0.0f ? -1.0f : 1.0f;
         for (RayStep& each : steps)
@@ -210,14 +213,14 @@ bool Refractions::bends(const Mirror& mirror, const prt::MeshPoint& at) const {
     if (mesh_.triangle_materials.empty())
         return false;
     const mesh::Material& material = mesh_.materials[mesh_.triangle_materials[at.triangle]];
-    return material.transmission > 0.0f && ((is_body(material) && index_of(material) > 1.0f) ||
-                                            lobe_alpha(mirror.surface) > SmoothAlpha);
+    return material.transmission > 0.0f &&
+           ((is_body(material) && index_of(material) > 1.0f) || mirror.facet_alpha > SmoothAlpha);
 }
 
 glm::vec3 Refractions::light(const Mirror& mirror, const prt::MeshPoint& at, std::uint32_t sample,
                              const glm::vec2& shift) const {
     const mesh::Material& material = mesh_.materials[mesh_.triangle_materials[at.triangle]];
-    const float alpha = lobe_alpha(mirror.surface);
+    const float alpha = mirror.facet_alpha;
     const std::uint32_t count =
         alpha > SmoothAlpha ? rays_through_glass(light_.reflections->num_rays()) : 1;
     const glm::vec3 through =
@@ -237,7 +240,8 @@ glm::vec3 Refractions::light(const Mirror& mirror, const prt::MeshPoint& at, std
                 ? into_body(-mirror.to_eye, mirror.normal, alpha, 1.0f / index_of(material), u)
                 : through_sheet(-mirror.to_eye, mirror.normal, alpha, u);
         ray.direction = -mirror.to_eye;
-        begin_steps(ray, position, face);
+        if (alpha <= SmoothAlpha)
+            begin_steps(ray, position, face);
         if (is_body(material)) {
             ray.body = &material;
             ray.step(mesh_, at.triangle, mirror.normal, bent, 1.0f / index_of(material));
@@ -253,6 +257,7 @@ glm::vec3 Refractions::light(const Mirror& mirror, const prt::MeshPoint& at, std
 void Refractions::begin_steps(Ray& ray, const glm::vec3& position, const glm::vec3& face) const {
     if (view_.right == glm::vec3(0.0f))
         return;
+    ray.has_steps = true;
     const glm::vec3 to_point = position - view_.eye;
     const float depth = glm::dot(to_point, view_.forward), distance = glm::length(to_point);
     for (std::size_t i = 0; i < ray.steps.size(); ++i) {
@@ -283,8 +288,9 @@ glm::vec3 Refractions::followed(Ray ray) const {
         };
         if (!hit)
             return sky(ray);
-        for (RayStep& step : ray.steps)
-            step.transfer(ray.direction, hit->distance, prt::face_normal(mesh_, hit->triangle));
+        for (std::size_t i = 0; i < ray.steps.size() && ray.has_steps; ++i)
+            ray.steps[i].transfer(ray.direction, hit->distance,
+                                  prt::face_normal(mesh_, hit->triangle));
         if (ray.body != nullptr)
             ray.throughput *= glm::pow(ray.body->attenuation_color,
                                        glm::vec3(hit->distance / ray.body->attenuation_distance));

@@ -194,8 +194,10 @@ Scene scene_of(const Row& row, const Settings& settings, bool is_tiny) {
         return load_scene(kept);
     Mesh mesh =
         row.mesh.empty() ? made(row.name, is_tiny ? 6 : 48) : load_mesh(settings.data / row.mesh);
-    stand_on_floor(mesh);
-    return precompute(std::move(mesh), {.tolerance = settings.tolerance, .output = kept});
+    if (!is_tiny)
+        stand_on_floor(mesh);
+    return precompute(std::move(mesh),
+                      {.tolerance = settings.tolerance, .no_refine = is_tiny, .output = kept});
 }
 
 /// Saves the picture, the converged one, and their difference with its specks in red.

@@ -17,8 +17,8 @@ TEST(MirrorOf, IsRougherWhereNormalsDifferWithinASample) {
     const mesh::TriangleMesh square = scenes::striped_square();
     const mesh::MipMaps maps(square.textures);
     const prt::Camera camera{.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = 28.0f};
-    const prt::Surface metal{.highlight = prt::Highlight::GgxWhole,
-                             .specular = glm::vec3(1.0f),
+    const prt::Surface metal{.specular = glm::vec3(1.0f),
+                             .highlight = prt::Highlight::GgxWhole,
                              .roughness_or_exponent = 0.2f,
                              .coat = 1.0f,
                              .coat_roughness = 0.1f};
@@ -36,6 +36,32 @@ TEST(MirrorOf, IsRougherWhereNormalsDifferWithinASample) {
     EXPECT_NEAR(wide.surface.roughness_or_exponent, expected.roughness_or_exponent, 1e-3f);
     EXPECT_GT(expected.roughness_or_exponent, 0.5f) << "it would show no widening";
     EXPECT_EQ(wide.surface.coat_roughness, metal.coat_roughness);
+}
+
+/// So does a surface that bends within a sample, with its coat.
+TEST(MirrorOf, IsRougherWhereTheMeshBendsWithinASample) {
+    mesh::TriangleMesh square = scenes::striped_square();
+    square.materials[0].normal_texture.reset();
+    for (std::size_t i = 0; i < square.num_vertices(); ++i)
+        square.normals[i] = glm::normalize(glm::vec3(0.5f * square.positions[i].x, 0.0f, 1.0f));
+    const prt::Camera camera{.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = 28.0f};
+    const prt::Surface metal{.specular = glm::vec3(1.0f),
+                             .highlight = prt::Highlight::GgxWhole,
+                             .roughness_or_exponent = 0.05f,
+                             .coat = 1.0f,
+                             .coat_roughness = 0.1f};
+    const prt::MeshPoint at{.triangle = 0, .barycentric = {0.2f, 0.7f}};
+    const prt::TextureView view(camera.eye, prt::PictureRays(camera, 10, 10, 1));
+    const float spread = view.normal_spread(square, at);
+    ASSERT_GT(spread, 1e-4f);
+    prt::Surface expected = metal;
+    prt::widen(expected, spread, spread);
+    const Mirror bent = mirror_of(square, at, metal, {0, 0, 1}, &view).value();
+    EXPECT_EQ(bent.surface.roughness_or_exponent, expected.roughness_or_exponent);
+    EXPECT_EQ(bent.surface.coat_roughness, expected.coat_roughness);
+    EXPECT_GT(expected.roughness_or_exponent, 1.2f * metal.roughness_or_exponent);
+    const Mirror point = mirror_of(square, at, metal, {0, 0, 1}).value();
+    EXPECT_EQ(point.surface.roughness_or_exponent, metal.roughness_or_exponent);
 }
 
 } // namespace
