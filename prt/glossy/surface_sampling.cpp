@@ -13,6 +13,7 @@
 #include "prt/glossy/sheen_lobe.h"
 #include "prt/glossy/thin_film.h"
 #include "prt/receivers/mesh_point.h"
+#include "prt/receivers/texture_view.h"
 
 namespace relumine::prt {
 

@@ -11,9 +11,10 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/receivers/surface.h"
-#include "prt/receivers/texture_view.h"
 
 namespace relumine::prt {
+
+struct TextureView;
 
 /// How GGX of materials is evaluated: Highlight::GgxWhole, or Highlight::Ggx, glTF's formula as it
 /// is published.

@@ -13,6 +13,7 @@
 #include "prt/glossy/stretched_lobe.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/lit_position.h"
+#include "prt/receivers/texture_view.h"
 #include "relight/pictures/highlight_rays.h"
 #include "relight/pictures/other_side.h"
 

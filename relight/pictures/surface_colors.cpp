@@ -5,6 +5,7 @@
 
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/surface_sampling.h"
+#include "prt/receivers/texture_view.h"
 
 namespace relumine::relight {
 

@@ -14,6 +14,10 @@
 #include "prt/receivers/mesh_point.h"
 #include "prt/receivers/surface.h"
 
+namespace relumine::mesh {
+class MipMaps;
+}
+
 namespace relumine::relight {
 
 /// Takes the light from the vertices and the colours from the textures, so that a picture shows

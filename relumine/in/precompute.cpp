@@ -19,6 +19,7 @@
 #include "prt/parts/team_checkpoint.h"
 #include "prt/receivers/point_receivers.h"
 #include "prt/receivers/receiver_order.h"
+#include "prt/receivers/texture_view.h"
 #include "prt/scene/checkpoint_file.h"
 #include "prt/scene/fingerprint.h"
 #include "prt/visibility/ray_scene.h"

@@ -15,7 +15,7 @@ namespace relumine::relight {
 namespace {
 
 const BouncingScene& thinned_scene() {
-    static const BouncingScene made(scenes::sphere_and_box_on_floor(), 0.05f, 0.01f);
+    static const BouncingScene made(scenes::sphere_and_box_on_floor(), 0.02f, 0.01f);
     return made;
 }
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "prt/glossy/surface_sampling.h"
+#include "prt/receivers/texture_view.h"
 #include "tests/prt/textured_square.h"
 
 namespace relumine::relight {
