@@ -132,8 +132,8 @@ def played(peer, scene, rows, eye):
         yield name, peer.processor
 
 
-def run(peers, quick):
-    """Prints a table of what each event takes, and one of how far the peers' pictures are from the judge's."""
+def run(peers, quick, wanted):
+    """Of the wanted SCENES. Prints a table of what each event takes, and one of how far the peers' pictures are from the judge's."""
     found = {peer.name: peer for peer in peers}
     own = found.pop("Relumine", None)
     if own is None or not found:
@@ -148,7 +148,8 @@ def run(peers, quick):
     )  # fmt: skip
     distances = []
     judge = "Mitsuba" if "Mitsuba" in found else names[0]
-    for name, make in SCENES.items():
+    for name in wanted:
+        make = SCENES[name]
         with tempfile.TemporaryDirectory() as folder:
             shapes, cameras, lamps, bounces = make(own, folder)
         cameras = [scenes.camera(*each, SIZE[quick]) for each in cameras]
