@@ -21,7 +21,7 @@ ROOT = HERE.parents[2]
 PEERS = {
     "Relumine": ("relumine_peer", []),
     "Mitsuba": ("mitsuba_peer", ["mitsuba==3.9.1", "numpy==1.26.4"]),
-    "Cycles": ("cycles_peer", {"python3.13": ["bpy==5.2.3"], "python3.11": ["bpy==5.0.1"]}),
+    "Cycles": ("cycles_peer", {"python3.13": ["bpy==5.2.3", "OpenEXR==3.5.3"], "python3.11": ["bpy==5.0.1", "OpenEXR==3.5.3"]}),
     "LuxCore": ("luxcore_peer", ["pyluxcore==2.11.2", "numpy==1.26.4"]),
     "Radiance": ("radiance_peer", ["pyradiance==1.3.1", "numpy==1.26.4"]),
 }
