@@ -181,7 +181,7 @@ def picture(state, samples):
 
 def groups(state, samples):
     """Renders a picture of each lamp and one of all other lights, for mixed()."""
-    names = ["rest", *(thing.lightgroup for thing in state.lights if thing.lightgroup)]
+    names = ["rest", *(thing.lightgroup for thing in state.lights if thing.lightgroup not in ("", "rest"))]
     made = bpy.context.view_layer
     for thing in [*state.lights, bpy.context.scene.world]:
         thing.lightgroup = thing.lightgroup or "rest"

@@ -88,6 +88,8 @@ def helmet(own, _):
 
 
 SCENES = {"bunny": bunny, "colonnade": colonnade, "room": room, "helmet": helmet}
+#: Who says what a picture should be, where it is not Mitsuba: its metals lose light.
+JUDGES = {"helmet": ("Cycles", "Mitsuba")}
 #: Peers that keep a picture for each lamp and one for the rest: groups().
 GROUPED = ("Cycles", "LuxCore")
 
@@ -116,6 +118,12 @@ class Measured:
         if self.power < 0.2:
             return None
         return self.constant + self.slope * max(1, self.most * (self.square / square) ** (1 / self.power))
+
+
+    def told(self, judges):
+        """How far its expected picture is from the judge's, its noise, and the power by which that falls."""
+        noise = np.sqrt(self.square / product(*judges))
+        return f"{apart(self.pictures, judges):.3f}, {noise:.3f} at {self.most}, {self.power / 2:.2f}"
 
 
 def product(first, second):
@@ -206,9 +214,9 @@ def run(peers, quick, wanted):
         + " | ".join(names) + " | fastest / Relumine |\n" + "|---" * (len(names) + 6) + "|", flush=True,
     )  # fmt: skip
     distances = []
-    judge = "Mitsuba" if "Mitsuba" in found else names[0]
     for name in wanted:
         make = SCENES[name]
+        judge = next((each for each in JUDGES.get(name, ("Mitsuba",)) if each in found), names[0])
         with tempfile.TemporaryDirectory() as folder:
             shapes, cameras, lamps, bounces = make(own, folder)
         cameras = [scenes.camera(*each, SIZE[quick]) for each in cameras]
@@ -247,7 +255,7 @@ def run(peers, quick, wanted):
                 before, rendered = theirs[event, each]
                 rest = rendered.seconds_to(asked**2 * brightness)
                 seconds[each] = None if rest is None else before + rest
-                away.append(f"{apart(rendered.pictures, judges):.3f}, {np.sqrt(rendered.square / brightness):.3f} at {rendered.most}, {rendered.power / 2:.2f}")
+                away.append(rendered.told(judges))
             fastest = min((each for each in seconds.values() if each is not None), default=np.nan)
             shown = " | ".join("-" if seconds[each] is None else f"{seconds[each]:.3g}" for each in names)
             print(f"| {name} | {event} | {cells[0]} | {cells[1]} | {asked:.3f} | {shown} | {fastest / spent:.3g} |", flush=True)
@@ -256,6 +264,7 @@ def run(peers, quick, wanted):
                 mixed = {each: (found[0], found[1].seconds_to(asked**2 * brightness)) for each, found in grouped.items()}
                 shown = " | ".join(f"{mixed[each][0]:.3g} after {mixed[each][1]:.3g}" if each in mixed else "-" for each in names)
                 fastest = min(mix for mix, _ in mixed.values())
+                distances.append(f"| {name} | the same, by light groups | " + " | ".join(grouped[each][1].told(judges) if each in grouped else "-" for each in names) + " |")
                 print(f"| {name} | the same, by light groups | {cells[0]} | {cells[1]} | {asked:.3f} | {shown} | {fastest / spent:.3g} |", flush=True)
     print(
         "\nHow far each expected picture is from the judge's, the noise at so many samples, and the power of the samples by which it falls:\n\n"
