@@ -261,11 +261,15 @@ def run(peers, quick, wanted):
             print(f"| {name} | {event} | {cells[0]} | {cells[1]} | {asked:.3f} | {shown} | {fastest / spent:.3g} |", flush=True)
             distances.append(f"| {name} | {event} | " + " | ".join(away) + " |")
             if event == LAMP and grouped:
-                mixed = {each: (found[0], found[1].seconds_to(asked**2 * brightness)) for each, found in grouped.items()}
-                shown = " | ".join(f"{mixed[each][0]:.3g} after {mixed[each][1]:.3g}" if each in mixed else "-" for each in names)
-                fastest = min(mix for mix, _ in mixed.values())
-                distances.append(f"| {name} | the same, by light groups | " + " | ".join(grouped[each][1].told(judges) if each in grouped else "-" for each in names) + " |")
-                print(f"| {name} | the same, by light groups | {cells[0]} | {cells[1]} | {asked:.3f} | {shown} | {fastest / spent:.3g} |", flush=True)
+                cells += [f"{asked:.3f}"]
+                for each in names:
+                    mix, rendered = grouped.get(each, (None, None))
+                    before = rendered and rendered.seconds_to(asked**2 * brightness)
+                    cells.append(f"{mix:.3g} after {before:.3g}" if before else "-")
+                fastest = min(mix for mix, _ in grouped.values())
+                print(f"| {name} | the same, by light groups | " + " | ".join(cells) + f" | {fastest / spent:.3g} |", flush=True)
+                away = [grouped[each][1].told(judges) if each in grouped else "-" for each in names]
+                distances.append(f"| {name} | the same, by light groups | " + " | ".join(away) + " |")
     print(
         "\nHow far each expected picture is from the judge's, the noise at so many samples, and the power of the samples by which it falls:\n\n"
         "| scene | event | " + " | ".join(names) + " |\n" + "|---" * (len(names) + 2) + "|\n" + "\n".join(distances), flush=True,
