@@ -6,6 +6,7 @@ import tempfile
 import bpy
 import mathutils
 import numpy as np
+import OpenEXR
 
 from scenes import axes_of, dome_of
 
@@ -90,7 +91,9 @@ def build(scene):
     if any(each["material"]["kind"] == "glass" for each in scene["shapes"]):
         bounces = 1024
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = bounces
-    made.render.image_settings.file_format = "OPEN_EXR"
+    # A file with all passes; Blender 5 asks for the medium first.
+    made.render.image_settings.media_type = "MULTI_LAYER_IMAGE"
+    made.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
     made.render.image_settings.color_depth = "32"
     made.render.use_persistent_data = True
     state.seed = 0
@@ -157,6 +160,7 @@ def relight(state, light):
     for lamp in light["lamps"]:
         # A lamp of 1 W has an intensity of 1 / (4 pi) W/sr.
         thing = _add_light(state, "POINT", [4 * np.pi * each for each in lamp["intensity"]], shadow_soft_size=0.0)
+        thing.lightgroup = f"lamp{len(state.lights)}"
         thing.location = (WORLD @ np.asarray(lamp["position"], float)).tolist()
 
 
@@ -172,6 +176,30 @@ def look(state, camera):
 
 
 def picture(state, samples):
+    return _rendered(state, samples, ["Combined"])[0]
+
+
+def groups(state, samples):
+    """Renders a picture of each lamp and one of all other lights, for mixed()."""
+    names = ["rest", *(thing.lightgroup for thing in state.lights if thing.lightgroup not in ("", "rest"))]
+    made = bpy.context.view_layer
+    for thing in [*state.lights, bpy.context.scene.world]:
+        thing.lightgroup = thing.lightgroup or "rest"
+    for name in names:
+        made.lightgroups.add(name=name)
+    state.groups = _rendered(state, samples, [f"Combined_{name}" for name in names])
+    while made.lightgroups:
+        made.active_lightgroup_index = 0
+        bpy.ops.scene.view_layer_remove_lightgroup()
+
+
+def mixed(state, factors):
+    """The picture with the groups times factors: that of the other lights, then those of the lamps."""
+    return sum(picture * np.asarray(factor, np.float32) for picture, factor in zip(state.groups, factors))
+
+
+def _rendered(state, samples, passes):
+    """The wanted passes of a picture."""
     made = bpy.context.scene
     state.seed += 1
     made.cycles.seed = state.seed
@@ -179,9 +207,7 @@ def picture(state, samples):
     with _temporary_exr() as path:
         made.render.filepath = path
         bpy.ops.render.render(write_still=True)
-        image = bpy.data.images.load(path)
-        size = made.render.resolution_x
-        pixels = np.empty(size * size * 4, np.float32)
-        image.pixels.foreach_get(pixels)
-        bpy.data.images.remove(image)
-    return pixels.reshape(size, size, 4)[::-1, :, :3].copy()
+        layer = bpy.context.view_layer.name
+        with OpenEXR.File(path, separate_channels=True) as file:
+            channels = {name: np.asarray(channel.pixels, np.float32) for part in file.parts for name, channel in part.channels.items()}
+        return [np.stack([channels[f"{layer}.{name}.{each}"] for each in "RGB"], -1) for name in passes]

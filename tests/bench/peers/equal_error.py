@@ -6,7 +6,10 @@ depend on n, and one that grows with n. Relumine's square error is the product o
 differs by from two of the judge: noise that these do not share falls out. All errors are relative
 L2 over the pixels that show the scene alone. Times are processor seconds.
 """
+import io
+import json
 import os
+import struct
 import subprocess
 import tempfile
 from pathlib import Path
@@ -55,18 +58,52 @@ def room(own, folder):
     return matte(own, generated("room", folder), None, 0.6), [((1.7, 1.6, 2.2), (-0.5, 0.9, -0.8), 65), ((1.6, 2.2, -2.0), (-0.5, 0.7, 0.8), 65)], lamps, None
 
 
-SCENES = {"bunny": bunny, "colonnade": colonnade, "room": room}
+def helmet(own, _):
+    """An asset of materials, as all peers take them alike: metals of one roughness and matte surfaces, each of two colours."""
+    from PIL import Image
+
+    path = DATA / "khronos/models/DamagedHelmet/glTF-Binary/DamagedHelmet.glb"
+    file = path.read_bytes()
+    length = struct.unpack("<I", file[12:16])[0]
+    document, binary = json.loads(file[20 : 20 + length]), file[28 + length :]
+    vertices, triangles, normals = own.mesh(str(path), None)
+    column, row = np.floor(own.uvs(str(path))[triangles].mean(1).T * 256).astype(int) % 256
+
+    def texture(number):
+        view = document["bufferViews"][document["images"][number]["bufferView"]]
+        picture = Image.open(io.BytesIO(binary[view["byteOffset"] :][: view["byteLength"]])).convert("RGB")
+        return np.asarray(picture.resize((256, 256), Image.BOX), float)[row, column] / 255
+
+    # An approximate sRGB curve; the means of colours are what matters.
+    colors, is_metal = texture(0) ** 2.2, texture(1)[:, 2] > 0.5
+    bright = colors.mean(1)
+    shapes = []
+    for kind, of_kind in (("metal", is_metal), ("matte", ~is_metal)):
+        middle = np.median(bright[of_kind])
+        for chosen in (of_kind & (bright <= middle), of_kind & (bright > middle)):
+            used, corners = np.unique(triangles[chosen], return_inverse=True)
+            surface = scenes.material(kind, colors[chosen].mean(0).tolist(), roughness=0.3)
+            shapes.append(scenes.shape(vertices[used], corners.reshape(-1, 3), surface, normals[used]))
+    return shapes, [((0, 0, 3), (0, 0, 0), 45), ((1.8, 0.6, 2.3), (0, 0, 0), 45)], (), 0
+
+
+SCENES = {"bunny": bunny, "colonnade": colonnade, "room": room, "helmet": helmet}
+#: Who says what a picture should be, where it is not Mitsuba: its metals lose light.
+JUDGES = {"helmet": ("Cycles", "Mitsuba")}
+#: Peers that keep a picture for each lamp and one for the rest: groups().
+GROUPED = ("Cycles", "LuxCore")
 
 
 class Measured:
     """What two numbers of samples say of a peer: pictures, seconds and errors."""
 
-    def __init__(self, peer, counts, mask, is_first):
+    def __init__(self, peer, counts, mask, is_first, picture=None):
+        """`picture` takes a number of samples; the peer's own where none is given."""
         seconds, squares = [], []
         for count in counts:
             pair, spent = [], []
             for _ in range(2):
-                pair.append(np.asarray(peer.picture(count), float)[mask])
+                pair.append(np.asarray((picture or peer.picture)(count), float)[mask])
                 spent.append(peer.processor)
             # Only a first picture compiles kernels and builds trees.
             seconds.append(spent[0] if is_first and not seconds else min(spent))
@@ -83,6 +120,12 @@ class Measured:
         return self.constant + self.slope * max(1, self.most * (self.square / square) ** (1 / self.power))
 
 
+    def told(self, judges):
+        """How far its expected picture is from the judge's, its noise, and the power by which that falls."""
+        noise = np.sqrt(self.square / product(*judges))
+        return f"{apart(self.pictures, judges):.3f}, {noise:.3f} at {self.most}, {self.power / 2:.2f}"
+
+
 def product(first, second):
     return float((first * second).mean())
 
@@ -91,6 +134,10 @@ def apart(pictures, judges):
     """The relative L2 between what two pairs of pictures are without noise; negative: less than can be told."""
     square = product(pictures[0] - judges[0], pictures[1] - judges[1]) / product(*judges)
     return float(np.sign(square) * np.sqrt(abs(square)))
+
+
+#: The event that light groups need no rays for.
+LAMP = "lamp in another colour"
 
 
 def lights(own):
@@ -111,7 +158,7 @@ def events(domes, lamps):
     ]
     if lamps:
         colored = [{**each, "intensity": (np.asarray(each["intensity"]) * (0.4, 0.8, 1.6)).tolist()} for each in lamps]
-        rows.append(("lamp in another colour", rows[-1][2], scenes.light(sky, suns=suns[1], lamps=colored)))
+        rows.append((LAMP, rows[-1][2], scenes.light(sky, suns=suns[1], lamps=colored)))
     return [*rows, ("moved eye", None, None)]
 
 
@@ -132,8 +179,28 @@ def played(peer, scene, rows, eye):
         yield name, peer.processor
 
 
-def run(peers, quick):
-    """Prints a table of what each event takes, and one of how far the peers' pictures are from the judge's."""
+def by_groups(peer, row, mask):
+    """(seconds of a mix, what its pictures are and the rendering before it takes) of LAMP's row."""
+    _, before, after = row
+    factors = [np.ones(3), *(np.divide(new["intensity"], old["intensity"]) for new, old in zip(after["lamps"], before["lamps"]))]
+    mixes = []
+
+    def picture(count):
+        peer.groups(count)
+        rendered = peer.processor
+        mixed = peer.mixed(factors)
+        mixes.append(peer.processor)
+        peer.processor = rendered
+        return mixed
+
+    peer.relight(before)
+    measured = Measured(peer, COUNTS, mask, False, picture)
+    peer.relight(after)
+    return min(mixes), measured
+
+
+def run(peers, quick, wanted):
+    """Of the wanted SCENES. Prints a table of what each event takes, and one of how far the peers' pictures are from the judge's."""
     found = {peer.name: peer for peer in peers}
     own = found.pop("Relumine", None)
     if own is None or not found:
@@ -147,24 +214,28 @@ def run(peers, quick):
         + " | ".join(names) + " | fastest / Relumine |\n" + "|---" * (len(names) + 6) + "|", flush=True,
     )  # fmt: skip
     distances = []
-    judge = "Mitsuba" if "Mitsuba" in found else names[0]
-    for name, make in SCENES.items():
+    for name in wanted:
+        make = SCENES[name]
+        judge = next((each for each in JUDGES.get(name, ("Mitsuba",)) if each in found), names[0])
         with tempfile.TemporaryDirectory() as folder:
             shapes, cameras, lamps, bounces = make(own, folder)
         cameras = [scenes.camera(*each, SIZE[quick]) for each in cameras]
         domes = lights(own)
         scene = scenes.scene(shapes, cameras[0], scenes.light(domes[0], lamps=lamps), bounces)
+        scene["roulette"] = True  # paths end by chance, as in each peer's defaults
         rows = events(domes, lamps)
         ours = {}
         for pixels in (True, False):
             for event, spent in played(own, {**scene, "background": "none", "pixels": pixels}, rows[:-1] if pixels else rows, cameras[1]):
                 drawn = own.masked(16)
                 ours[event, pixels] = spent + own.processor, *drawn
-        theirs = {}
+        theirs, grouped = {}, {}
         # What every kind of picture shows wholly.
         mask = {event: np.logical_and.reduce([ours[event, pixels][2] for pixels in (True, False) if (event, pixels) in ours]) for event, _ in ours}
         for each, peer in found.items():
             for event, spent in played(peer, scene, rows, cameras[1]):
+                if event == LAMP and each in GROUPED:
+                    grouped[each] = by_groups(peer, rows[-2], mask[event])
                 theirs[event, each] = spent, Measured(peer, JUDGE_COUNTS if each == judge else COUNTS, mask[event], event == "first light")
         for event in mask:
             judges = theirs[event, judge][1].pictures
@@ -184,11 +255,21 @@ def run(peers, quick):
                 before, rendered = theirs[event, each]
                 rest = rendered.seconds_to(asked**2 * brightness)
                 seconds[each] = None if rest is None else before + rest
-                away.append(f"{apart(rendered.pictures, judges):.3f}, {np.sqrt(rendered.square / brightness):.3f} at {rendered.most}, {rendered.power / 2:.2f}")
+                away.append(rendered.told(judges))
             fastest = min((each for each in seconds.values() if each is not None), default=np.nan)
             shown = " | ".join("-" if seconds[each] is None else f"{seconds[each]:.3g}" for each in names)
             print(f"| {name} | {event} | {cells[0]} | {cells[1]} | {asked:.3f} | {shown} | {fastest / spent:.3g} |", flush=True)
             distances.append(f"| {name} | {event} | " + " | ".join(away) + " |")
+            if event == LAMP and grouped:
+                cells += [f"{asked:.3f}"]
+                for each in names:
+                    mix, rendered = grouped.get(each, (None, None))
+                    before = rendered and rendered.seconds_to(asked**2 * brightness)
+                    cells.append(f"{mix:.3g} after {before:.3g}" if before else "-")
+                fastest = min(mix for mix, _ in grouped.values())
+                print(f"| {name} | the same, by light groups | " + " | ".join(cells) + f" | {fastest / spent:.3g} |", flush=True)
+                away = [grouped[each][1].told(judges) if each in grouped else "-" for each in names]
+                distances.append(f"| {name} | the same, by light groups | " + " | ".join(away) + " |")
     print(
         "\nHow far each expected picture is from the judge's, the noise at so many samples, and the power of the samples by which it falls:\n\n"
         "| scene | event | " + " | ".join(names) + " |\n" + "|---" * (len(names) + 2) + "|\n" + "\n".join(distances), flush=True,

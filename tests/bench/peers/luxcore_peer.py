@@ -49,6 +49,7 @@ def build(scene):
     state = State()
     state.scene = pyluxcore.Scene()
     state.bounces = scene["bounces"]
+    state.has_roulette = bool(scene.get("roulette"))
     state.has_glass = any(each["material"]["kind"] == "glass" for each in scene["shapes"])
     for number, each in enumerate(scene["shapes"]):
         normals = None if each["normals"] is None else [tuple(row) for row in each["normals"].tolist()]
@@ -86,7 +87,7 @@ def relight(state, light):
         rows |= {row + "type": "sharpdistant", row + "direction": [-float(each) for each in sun["direction"]], row + "color": list(sun["irradiance"])}
     for number, lamp in enumerate(light["lamps"]):
         row = f"scene.lights.lamp{number}."
-        rows |= {row + "type": "point", row + "position": list(map(float, lamp["position"])), row + "color": [4 * np.pi * each for each in lamp["intensity"]]}
+        rows |= {row + "type": "point", row + "position": list(map(float, lamp["position"])), row + "color": [4 * np.pi * each for each in lamp["intensity"]], row + "id": number + 1}
     state.lights = sorted({name.split(".")[2] for name in rows})
     if not rows:  # a scene without any light is refused
         rows = {"scene.lights.none.type": "constantinfinite", "scene.lights.none.color": [0.0] * 3}
@@ -106,21 +107,45 @@ def look(state, camera):
 
 
 def picture(state, samples):
+    return _rendered(state, samples, {}, [(pyluxcore.FilmOutputType.RGB, 0)])[0]
+
+
+def groups(state, samples):
+    """Renders a picture of each lamp and one of all other lights, for mixed()."""
+    count = 1 + sum(name.startswith("lamp") for name in state.lights)
+    outputs = {}
+    for number in range(count):
+        row = f"film.outputs.{number + 1}."
+        outputs |= {row + "type": "RADIANCE_GROUP", row + "id": number, row + "filename": f"unused{number}.exr"}
+    state.groups = _rendered(state, samples, outputs, [(pyluxcore.FilmOutputType.RADIANCE_GROUP, number) for number in range(count)])
+
+
+def mixed(state, factors):
+    """The picture with the groups times factors: that of the other lights, then those of the lamps."""
+    return sum(picture * np.asarray(factor, np.float32) for picture, factor in zip(state.groups, factors))
+
+
+def _rendered(state, samples, outputs, wanted):
+    """The wanted (output, number) of a film."""
     state.seed += 1
     # Paths of one vertex sample lights alone, and highlights are noise; those of two show the same light.
     depth = 64 if state.bounces is None or state.has_glass else state.bounces + 2
     depths = {f"path.pathdepth.{name}": depth for name in ("total", "diffuse", "glossy", "specular")}
     config = pyluxcore.RenderConfig(_properties({
         "renderengine.type": "PATHCPU", "sampler.type": "SOBOL", "film.width": state.size, "film.height": state.size,
-        "film.filter.type": "NONE", "batch.haltspp": samples, "renderengine.seed": state.seed, **depths, "path.russianroulette.depth": 64,
+        "film.filter.type": "NONE", "batch.haltspp": samples, "renderengine.seed": state.seed, **depths, "path.russianroulette.depth": 3 if state.has_roulette else 64,
         "film.imagepipelines.0.0.type": "NOP", "film.outputs.0.type": "RGB", "film.outputs.0.filename": "unused.exr",
+        **outputs,
     }), state.scene)  # fmt: skip
     session = pyluxcore.RenderSession(config)
     session.Start()
     while not session.HasDone():
         time.sleep(0.01)
         session.UpdateStats()
-    pixels = np.zeros(state.size * state.size * 3, np.float32)
-    session.GetFilm().GetOutputFloat(pyluxcore.FilmOutputType.RGB, pixels, 0)
+    pictures = []
+    for output, number in wanted:
+        pixels = np.zeros(state.size * state.size * 3, np.float32)
+        session.GetFilm().GetOutputFloat(output, pixels, number)
+        pictures.append(pixels.reshape(state.size, state.size, 3)[::-1].copy())
     session.Stop()
-    return pixels.reshape(state.size, state.size, 3)[::-1].copy()
+    return pictures

@@ -90,7 +90,7 @@ def build(scene):
     depth = -1 if scene["bounces"] is None else scene["bounces"] + 2
     if any(each["material"]["kind"] == "glass" for each in scene["shapes"]):
         depth = -1
-    state.integrator = mi.load_dict({"type": "path", "max_depth": depth, "rr_depth": 64})
+    state.integrator = mi.load_dict({"type": "path", "max_depth": depth, "rr_depth": 5 if scene.get("roulette") else 64})
     look(state, scene["camera"])
     state.kinds = None
     relight(state, scene["light"])

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Relumine beside Mitsuba, Cycles, LuxCore and Radiance: `./dev bench peers`.
 
-    peers.py [--quick] [--only truth,time,gradients,skies] [--peers Mitsuba,Cycles] [--folder DIR]
+    peers.py [--quick] [--only truth,time,gradients,skies] [--peers Mitsuba,Cycles] [--scenes bunny,room] [--folder DIR]
 
 The peers are Python packages of the versions below, in virtual environments in --folder, which the
 first run makes (2 GB). Each runs in a process of its own. Prints tables.
@@ -10,8 +10,9 @@ import argparse
 import os
 import pickle
 import subprocess
-import sys
 import shutil
+import sys
+import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -20,7 +21,7 @@ ROOT = HERE.parents[2]
 PEERS = {
     "Relumine": ("relumine_peer", []),
     "Mitsuba": ("mitsuba_peer", ["mitsuba==3.9.1", "numpy==1.26.4"]),
-    "Cycles": ("cycles_peer", {"python3.13": ["bpy==5.2.3"], "python3.11": ["bpy==5.0.1"]}),
+    "Cycles": ("cycles_peer", {"python3.13": ["bpy==5.2.3", "OpenEXR==3.5.3"], "python3.11": ["bpy==5.0.1", "OpenEXR==3.5.3"]}),
     "LuxCore": ("luxcore_peer", ["pyluxcore==2.11.2", "numpy==1.26.4"]),
     "Radiance": ("radiance_peer", ["pyradiance==1.3.1", "numpy==1.26.4"]),
 }
@@ -66,12 +67,15 @@ class Peer:
         )  # fmt: skip
         #: What the last call took.
         self.processor = self.seconds = self.peak = 0.0
+        #: Processor seconds of all calls.
+        self.spent = 0.0
 
     def __getattr__(self, function):
         def call(*arguments):
             pickle.dump((function, arguments), self._process.stdin, protocol=4)
             self._process.stdin.flush()
             result, self.processor, self.seconds, self.peak = pickle.load(self._process.stdout)
+            self.spent += self.processor
             if isinstance(result, Exception):
                 raise result
             return result
@@ -90,14 +94,15 @@ def main():
     import skies
     import truth
 
-    judges = {"truth": truth.run, "time": equal_error.run, "gradients": gradients.run, "skies": skies.run}
+    judges = {"truth": truth.run, "time": lambda *both: equal_error.run(*both, given.scenes.split(",")), "gradients": gradients.run, "skies": skies.run}
     parser = argparse.ArgumentParser(prog="./dev bench peers", description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer rows and samples: ten minutes")
     parser.add_argument("--only", default=",".join(judges), help="judges, with commas between them")
     parser.add_argument("--peers", default=",".join(PEERS), help="those to run, with commas between them")
+    parser.add_argument("--scenes", default=",".join(equal_error.SCENES), help="those of time, with commas between them")
     parser.add_argument("--folder", type=Path, default=ROOT / "build" / "peers", help="where environments and logs go (build/peers)")
     given = parser.parse_args()
-    for wanted, known in ((given.only, judges), (given.peers, PEERS)):
+    for wanted, known in ((given.only, judges), (given.peers, PEERS), (given.scenes, equal_error.SCENES)):
         for name in wanted.split(","):
             if name not in known:
                 raise SystemExit(f"peers: expected {', '.join(known)}, got {name}")
@@ -106,7 +111,9 @@ def main():
     peers = [Peer(name, folder) for name in given.peers.split(",")]
     print(", ".join(f"{peer.name} {peer.version()}" for peer in peers), flush=True)
     for name in given.only.split(","):
+        start, used = time.perf_counter(), sum(peer.spent for peer in peers)
         judges[name](peers, given.quick)
+        print(f"\n{name}: {time.perf_counter() - start:.0f} s, {sum(peer.spent for peer in peers) - used:.0f} processor seconds", flush=True)
     for peer in peers:
         peer.close()
 

@@ -192,6 +192,11 @@ def mesh(_, path, floor):
     return tuple(np.asarray(each) for each in (found.vertices, found.triangles, found.normals))
 
 
+def uvs(_, path):
+    """(N, 2) of a mesh's file, as its format has them."""
+    return np.asarray(relumine.Mesh.load(path).uvs)
+
+
 def year(state, skies, division, sensors):
     """(hours, sensors) irradiance in W/m2, one relight an hour."""
     import daylight

@@ -18,6 +18,11 @@ import math
 import numpy as np
 
 
+def array(data, kind, shape):
+    """An array of what it consists of: how worker.py sends them."""
+    return np.frombuffer(data, kind).reshape(shape)
+
+
 def material(kind="matte", color=(0.5, 0.5, 0.5), **others):
     """A material; what is not said is as glTF has it."""
     plain = {"roughness": 0.5, "ior": 1.5, "coat": 0.0, "sheen": (0.0, 0.0, 0.0), "sheen_roughness": 0.5, "glow": (0.0, 0.0, 0.0)}

@@ -5,6 +5,7 @@
 A call is a pickled (name, arguments); the answer (result or error, processor seconds of this process
 and its children, wall seconds, peak bytes). What libraries print goes to stderr.
 """
+import copyreg
 import importlib
 import os
 import pickle
@@ -12,6 +13,10 @@ import resource
 import sys
 import time
 import traceback
+
+import numpy as np
+
+import scenes
 
 
 def processor():
@@ -22,6 +27,8 @@ def processor():
 
 
 def main():
+    # Peers have their own versions of numpy, which do not read each other's pickles.
+    copyreg.pickle(np.ndarray, lambda array: (scenes.array, (array.tobytes(), array.dtype.str, array.shape)))
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     peer = importlib.import_module(sys.argv[1])
