@@ -131,7 +131,8 @@ Window::Window(int width, int height, const std::string& title, bool scripted)
         glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
 #endif
     if (glfwInit() == GLFW_FALSE)
-        throw std::runtime_error("cannot open a window: " + last_error());
+        throw std::runtime_error("cannot open a window (`relight` draws without one): " +
+                                 last_error());
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);

@@ -238,7 +238,7 @@ Mesh prepared(mesh::LoadedMesh loaded, const std::filesystem::path& path,
         mesh::turn_up(*mesh.camera, up);
     if (options.floor_vertices && has_ground(mesh.geometry))
         mesh.geometry.warnings.emplace_back(
-            "stands on a ground of its own: --floor lays another at the same height");
+            "stands on a ground of its own: the added floor lies at the same height, leave it out");
     add_floor(mesh, options);
     return mesh;
 }

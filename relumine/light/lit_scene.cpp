@@ -342,7 +342,9 @@ BounceReport LitScene::bounce(const Bouncing& how) {
     Impl& own = *impl_;
     std::optional<relight::SurfaceBounces> surfaces;
     if (!own.scene->bounces)
-        throw std::invalid_argument("expected a scene with bounces, got one without");
+        throw std::invalid_argument(
+            "expected a scene with bounces, got one without: no surface sees another, or none "
+            "were asked for");
     if (!how.albedo.empty())
         surfaces = bounces_of(*own.scene, how.albedo, how.limits);
     own.require_lit();

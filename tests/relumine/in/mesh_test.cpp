@@ -49,8 +49,9 @@ TEST_F(MeshFile, SaysThatItHasAGroundWhereAFloorIsAskedFor) {
     mesh::save(file("standing.ply"), ball);
     const auto num_said = [&](const char* name, std::optional<std::uint32_t> n) {
         const Mesh mesh = load_mesh(file(name), {.floor_vertices = n});
-        return std::count(mesh.geometry.warnings.begin(), mesh.geometry.warnings.end(),
-                          "stands on a ground of its own: --floor lays another at the same height");
+        return std::count(
+            mesh.geometry.warnings.begin(), mesh.geometry.warnings.end(),
+            "stands on a ground of its own: the added floor lies at the same height, leave it out");
     };
     EXPECT_EQ(num_said("standing.ply", 5), 1);
     EXPECT_EQ(num_said("standing.ply", std::nullopt), 0);
