@@ -28,6 +28,7 @@ public:
         bool is_turned = false;
         /// A code point of ITU-T H.273
         unsigned transfer = 0;
+        static constexpr unsigned Pq = 16, Hlg = 18;
         /// x and y of red, green, blue and white
         std::array<float, 8> primaries{};
     };

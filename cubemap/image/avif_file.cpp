@@ -26,25 +26,20 @@ public:
     explicit AvifRows(FileBytes file)
         : file_(std::move(file)), bytes_(file_.read(0, file_.size())) {
         constexpr std::uint32_t MostEdge = 65536;
-        try {
-            picture_.emplace(bytes_);
-        } catch (const std::runtime_error& error) {
-            throw std::runtime_error(file_.name() + ": " + error.what());
-        }
+        named([&] { picture_.emplace(bytes_); });
         const files::AvifPicture::Head& image = picture_->head();
         if (image.width > MostEdge || image.height > MostEdge)
             file_.refuse(fmt::format("edges of up to {} pixels", MostEdge),
                          fmt::format("{}x{}", image.width, image.height));
         constexpr std::uint64_t MostPixelsPerByte = 20'000; // one colour takes hardly any
         file_.check_size(image.width, image.height, MostPixelsPerByte);
-        constexpr unsigned Pq = 16, Hlg = 18;
-        if (image.transfer != Pq && image.transfer != Hlg)
+        if (image.transfer != image.Pq && image.transfer != image.Hlg)
             file_.refuse("an AVIF by PQ or HLG",
                          fmt::format("the transfer {} of H.273, which holds no light above white",
                                      image.transfer));
         const std::array<float, 8>& xy = image.primaries;
         colors_.emplace(*space_of({{xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}},
-                                  image.transfer == Pq ? Transfer::Pq : Transfer::Hlg));
+                                  image.transfer == image.Pq ? Transfer::Pq : Transfer::Hlg));
         head_.width = image.width;
         head_.height = image.height;
         head_.remarks.push_back(
@@ -77,15 +72,20 @@ public:
     }
 
 private:
+    /// Names the file where the decoder refuses it.
+    template<typename Work>
+    void named(const Work& work) const {
+        try {
+            work();
+        } catch (const std::runtime_error& error) {
+            throw std::runtime_error(file_.name() + ": " + error.what());
+        }
+    }
     /// 16 bits for each channel
     void decode() const {
         const files::AvifPicture::Head& image = picture_->head();
         numbers_.resize(std::size_t{image.width} * image.height * (image.has_alpha ? 4 : 3));
-        try {
-            picture_->decode(std::span(numbers_), image.has_alpha);
-        } catch (const std::runtime_error& error) {
-            throw std::runtime_error(file_.name() + ": " + error.what());
-        }
+        named([&] { picture_->decode(std::span(numbers_), image.has_alpha); });
     }
 
     FileBytes file_;

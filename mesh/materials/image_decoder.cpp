@@ -187,8 +187,7 @@ void decode_avif(std::span<const std::byte> file, int num_channels, const Alloca
 #ifdef RELUMINE_HDR_PHOTOS
     const files::AvifPicture picture(file);
     const files::AvifPicture::Head& head = picture.head();
-    constexpr unsigned Pq = 16, Hlg = 18;
-    if (head.transfer == Pq || head.transfer == Hlg)
+    if (head.transfer == head.Pq || head.transfer == head.Hlg)
         throw std::runtime_error("expected an AVIF of colours, got one by PQ or HLG");
     if (head.is_turned)
         throw std::runtime_error("expected an AVIF as it lies, got one that its file turns");

@@ -228,6 +228,11 @@ bool passes_light_on(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
            mesh.materials[mesh.triangle_materials[triangle]].diffuse_transmission > 0.0f;
 }
 
+bool passes_light_on(const mesh::TriangleMesh& mesh) {
+    return std::any_of(mesh.materials.begin(), mesh.materials.end(),
+                       [](const mesh::Material& own) { return own.diffuse_transmission > 0.0f; });
+}
+
 Surface measured_surface(std::shared_ptr<const mesh::BrdfTable> table) {
     Surface surface{.albedo = glm::min(table->lambert(), 1.0f),
                     .specular = glm::vec3(1.0f),

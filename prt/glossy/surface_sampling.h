@@ -48,6 +48,8 @@ enum class GgxForm { Whole, Published };
                                      const TextureView* view = nullptr);
 /// Whether a triangle's material passes any on.
 [[nodiscard]] bool passes_light_on(const mesh::TriangleMesh& mesh, std::uint32_t triangle);
+/// Whether any material of the mesh does.
+[[nodiscard]] bool passes_light_on(const mesh::TriangleMesh& mesh);
 
 /// Returns the surface of a measured BRDF.
 [[nodiscard]] Surface measured_surface(std::shared_ptr<const mesh::BrdfTable> table);

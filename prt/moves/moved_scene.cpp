@@ -198,6 +198,13 @@ GroupMesh changing_group(const Scene& scene, std::uint32_t group,
     return result;
 }
 
+void require_there(const Scene& scene, std::uint32_t group) {
+    if (absent(scene, group) != nullptr)
+        throw std::invalid_argument(
+            fmt::format("expected a group that is there, got {}, which was taken away",
+                        scene.mesh.groups[group]));
+}
+
 /// Adds boxes around a group as it stands before a change, or after it.
 void add_boxes(SceneDifference& difference, const mesh::TriangleMesh& group, std::size_t side) {
     for (const mesh::Bounds& box : boxes_around(group)) {
@@ -270,9 +277,7 @@ SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& mat
     const Motion motion(matrix, scene.mesh.offset);
     GroupMesh before = changing_group(scene, group, scene.mesh.triangles);
     const std::string& name = scene.mesh.groups[group];
-    if (absent(scene, group) != nullptr)
-        throw std::invalid_argument(
-            fmt::format("expected a group that is there, got {}, which was taken away", name));
+    require_there(scene, group);
 
     mesh::TriangleMesh after = before.mesh;
     const auto place = [&](const glm::vec3& position) {
@@ -356,10 +361,7 @@ SceneChange without_or_with(const Scene& scene, std::uint32_t group,
 } // namespace
 
 SceneChange taken_away(const Scene& scene, std::uint32_t group) {
-    if (absent(scene, group) != nullptr)
-        throw std::invalid_argument(
-            fmt::format("expected a group that is there, got {}, which was taken away",
-                        scene.mesh.groups[group]));
+    require_there(scene, group);
     SceneChange change =
         without_or_with(scene, group, scene.mesh.triangles, scene.blocking_mesh().triangles);
     AbsentGroup own{.group = group};

@@ -96,9 +96,8 @@ std::vector<glm::vec3> bounce_adjoint(const SurfaceBounces& bounces, const prt::
         }
         PointBasis(matrix.points).scatter(own, order, by_sent);
     }
-    std::vector<std::uint32_t> places(bounces.passed_on.empty() ? 0 : n);
-    for (std::uint32_t place = 0; place < places.size(); ++place)
-        places[transfer.order[place]] = place;
+    const std::vector<std::uint32_t> places =
+        bounces.passed_on.empty() ? std::vector<std::uint32_t>() : places_of(transfer.order);
     TransposedProduct product(matrix);
     const std::uint32_t last = bounces.limits.num_bounces.value_or(MaxTransposedBounces);
     double size_before = size_of(counts);

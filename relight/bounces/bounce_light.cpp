@@ -92,7 +92,7 @@ public:
             albedo_[place] = padded(glm::min(albedo[transfer_.order[place]], glm::vec3(safe)));
         passed_on_.clear();
         const std::vector<std::uint32_t> places =
-            passed_on.empty() ? std::vector<std::uint32_t>() : places_of_receivers();
+            passed_on.empty() ? std::vector<std::uint32_t>() : places_of(transfer_.order);
         for (const PassedOn& own : passed_on) {
             PaddedRgb& reflected = albedo_[places[own.receiver]];
             Passed passed{places[own.receiver], places[own.other], padded(own.part)};
@@ -214,14 +214,6 @@ private:
             for (std::size_t c = 0; c < 4; ++c)
                 sent_[own.place].rgb[c] +=
                     own.part.rgb[c] * (direct_[own.other].rgb[c] + indirect_[own.other].rgb[c]);
-    }
-
-    /// Returns the place of each receiver.
-    [[nodiscard]] std::vector<std::uint32_t> places_of_receivers() const {
-        std::vector<std::uint32_t> result(size_);
-        for (std::uint32_t place = 0; place < size_; ++place)
-            result[transfer_.order[place]] = place;
-        return result;
     }
 
     /// next_ = A sent_ for some rows.

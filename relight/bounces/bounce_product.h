@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -32,6 +33,14 @@ void for_rows(std::size_t first, std::size_t last, const Function& function) {
     constexpr float Margin = 0.999f;
     return matrix.spectral_radius > 0.0f ? Margin / matrix.spectral_radius
                                          : std::numeric_limits<float>::max();
+}
+
+/// Returns the place of each receiver, given Transfer::order.
+[[nodiscard]] inline std::vector<std::uint32_t> places_of(std::span<const std::uint32_t> order) {
+    std::vector<std::uint32_t> result(order.size());
+    for (std::uint32_t place = 0; place < order.size(); ++place)
+        result[order[place]] = place;
+    return result;
 }
 
 /// Multiplies with a matrix of bounces. Where processes share the rows, all multiply together, and

@@ -288,9 +288,9 @@ glm::vec3 Refractions::followed(Ray ray) const {
         };
         if (!hit)
             return sky(ray);
-        for (std::size_t i = 0; i < ray.steps.size() && ray.has_steps; ++i)
-            ray.steps[i].transfer(ray.direction, hit->distance,
-                                  prt::face_normal(mesh_, hit->triangle));
+        if (ray.has_steps)
+            for (RayStep& step : ray.steps)
+                step.transfer(ray.direction, hit->distance, prt::face_normal(mesh_, hit->triangle));
         if (ray.body != nullptr)
             ray.throughput *= glm::pow(ray.body->attenuation_color,
                                        glm::vec3(hit->distance / ray.body->attenuation_distance));

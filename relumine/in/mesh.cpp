@@ -39,6 +39,12 @@ bool has_ground(const mesh::TriangleMesh& mesh) {
     return width(mesh::extent(mesh).box) > WiderThanSubject * width(mesh::subject_bounds(mesh));
 }
 
+/// Returns how many vertices come before an added floor.
+std::size_t num_without_floor(const Mesh& mesh) {
+    const std::size_t n = mesh.floor_vertices;
+    return mesh.geometry.num_vertices() - (n == 0 ? 0 : n * n + mesh.floor_added);
+}
+
 /// Moves the floor's vertices to the end, those of `num_old` first. Returns how many of the floor
 /// are new.
 std::uint32_t move_floor_last(mesh::TriangleMesh& mesh, std::size_t first_of_floor,
@@ -338,7 +344,7 @@ Mesh refined(Mesh given, RefineOptions options, const prt::Work& work, RefineRep
     const mesh::TriangleMesh& before = mesh.blockers ? *mesh.blockers : mesh.geometry;
     const std::size_t num_old = mesh.geometry.num_vertices();
     const std::size_t n = mesh.floor_vertices;
-    const std::size_t first_of_floor = num_old - (n == 0 ? 0 : n * n + mesh.floor_added);
+    const std::size_t first_of_floor = num_without_floor(mesh);
     const float lowest_before = lowest(std::span(mesh.geometry.positions).first(first_of_floor));
     mesh::TriangleMesh after;
     try {
@@ -415,9 +421,7 @@ Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& wo
                        RefineReport* report) {
     if (!mesh.is_open && !mesh.is_floor_open)
         return mesh;
-    const std::size_t n = mesh.floor_vertices;
-    const std::size_t first_of_floor =
-        mesh.geometry.num_vertices() - (n == 0 ? 0 : n * n + mesh.floor_added);
+    const std::size_t first_of_floor = num_without_floor(mesh);
     const mesh::TriangleMesh own = part_of(mesh.geometry, 0, first_of_floor);
     const float size = mesh::scale(own);
     const bool is_coarse =
@@ -460,7 +464,8 @@ Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& wo
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(prefix_of(mesh) + error.what());
     }
-    mesh.floor_added = static_cast<std::uint32_t>(floor.num_vertices() - n * n);
+    mesh.floor_added = static_cast<std::uint32_t>(
+        floor.num_vertices() - std::size_t{mesh.floor_vertices} * mesh.floor_vertices);
     mesh.is_open = mesh.is_floor_open = false;
     if (has_blockers || mesh.geometry.num_vertices() != before.num_vertices())
         mesh.blockers = std::move(before);
@@ -468,9 +473,7 @@ Mesh refined_by_itself(Mesh mesh, std::optional<float> bias, const prt::Work& wo
 }
 
 Mesh with_backs_of_sheets(Mesh mesh) {
-    const std::size_t n = mesh.floor_vertices;
-    const std::size_t first_of_floor =
-        mesh.geometry.num_vertices() - (n == 0 ? 0 : n * n + mesh.floor_added);
+    const std::size_t first_of_floor = num_without_floor(mesh);
     mesh::TriangleMesh with_backs =
         prt::with_backs_of_sheets(part_of(mesh.geometry, 0, first_of_floor));
     if (with_backs.num_vertices() == first_of_floor)
@@ -487,9 +490,7 @@ Mesh simplified(Mesh given, std::size_t num_vertices) {
     mesh.is_open = false;
     if (!mesh.blockers)
         mesh.blockers = mesh::blockers_of(mesh.geometry);
-    const std::size_t n = mesh.floor_vertices;
-    const std::size_t first_of_floor =
-        mesh.geometry.num_vertices() - (n == 0 ? 0 : n * n + mesh.floor_added);
+    const std::size_t first_of_floor = num_without_floor(mesh);
     const mesh::TriangleMesh floor =
         part_of(mesh.geometry, first_of_floor, mesh.geometry.num_vertices());
     try {

@@ -15,6 +15,7 @@
 #include "files/joined.h"
 #include "prt/glossy/lobe_list.h"
 #include "prt/glossy/sheen_lobe.h"
+#include "prt/glossy/surface_sampling.h"
 #include "prt/parts/part_file.h"
 #include "prt/parts/team_checkpoint.h"
 #include "prt/receivers/point_receivers.h"
@@ -232,11 +233,8 @@ private:
             scene_.settings.glossy_tolerance = options_.glossy_tolerance;
             warn_of_smooth_surfaces();
         }
-        const std::vector<mesh::Material>& materials = scene_.mesh.materials;
         if ((!prt::on_vertices(scene_.layout) || scene_.settings.glossy_tolerance) &&
-            prt::kind_of(scene_.layout).have_surface &&
-            std::any_of(materials.begin(), materials.end(),
-                        [](const mesh::Material& own) { return own.diffuse_transmission > 0.0f; }))
+            prt::kind_of(scene_.layout).have_surface && prt::passes_light_on(scene_.mesh))
             warn(work_, Warning::PassedOnLight,
                  "light that comes through surfaces (KHR_materials_diffuse_transmission) is left "
                  "out: vertices without a view have it");

@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 
 #include "mesh/opacity.h"
+#include "prt/glossy/surface_sampling.h"
 
 namespace relumine {
 
@@ -51,10 +52,7 @@ void keep_materials(mesh::TriangleMesh& mesh, prt::Receivers& receivers,
         !has_eye &&
         std::any_of(receivers.surfaces.begin(), receivers.surfaces.end(),
                     [](const prt::Surface& own) { return own.highlight != prt::Highlight::None; });
-    const bool passes_on =
-        std::any_of(mesh.materials.begin(), mesh.materials.end(),
-                    [](const mesh::Material& own) { return own.diffuse_transmission > 0.0f; });
-    if (!has_textures && !mirrors && !are_points && !passes_on)
+    if (!has_textures && !mirrors && !are_points && !prt::passes_light_on(mesh))
         return;
     if (are_replaced)
         replace_materials(mesh, surface_of, has_eye);

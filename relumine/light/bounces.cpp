@@ -9,12 +9,16 @@
 
 namespace relumine {
 
-relight::SurfaceBounces bounces_of(const Scene& scene, std::span<const glm::vec3> albedo,
-                                   const BounceLimits& limits) {
+void require_bounces(const Scene& scene) {
     if (!scene.bounces)
         throw std::invalid_argument(
             "expected a scene with bounces, got one without: no surface sees another, or none "
             "were asked for");
+}
+
+relight::SurfaceBounces bounces_of(const Scene& scene, std::span<const glm::vec3> albedo,
+                                   const BounceLimits& limits) {
+    require_bounces(scene);
     relight::SurfaceBounces bounces{
         .matrix = &*scene.bounces, .albedo = {albedo.begin(), albedo.end()}, .limits = limits};
     const std::vector<prt::Surface>& surfaces = scene.receivers.surfaces;

@@ -16,10 +16,13 @@ namespace relumine {
 using relight::BounceLimits;
 using relight::BounceReport;
 
+/// Throws:  std::invalid_argument for a scene without bounces.
+void require_bounces(const Scene& scene);
+
 /// Returns what the light of a scene needs to bounce. `albedo` is [num_receivers] what pictures
 /// multiply the radiance with, as bounce_albedo(). The scene must outlive the result.
 ///
-/// Throws:  std::invalid_argument for a scene without bounces.
+/// Throws:  as require_bounces().
 [[nodiscard]] relight::SurfaceBounces
 bounces_of(const Scene& scene, std::span<const glm::vec3> albedo, const BounceLimits& limits = {});
 

@@ -341,10 +341,7 @@ UpdateReport LitScene::update_region(const cubemap::TexelRectangle& rectangle,
 BounceReport LitScene::bounce(const Bouncing& how) {
     Impl& own = *impl_;
     std::optional<relight::SurfaceBounces> surfaces;
-    if (!own.scene->bounces)
-        throw std::invalid_argument(
-            "expected a scene with bounces, got one without: no surface sees another, or none "
-            "were asked for");
+    require_bounces(*own.scene);
     if (!how.albedo.empty())
         surfaces = bounces_of(*own.scene, how.albedo, how.limits);
     own.require_lit();

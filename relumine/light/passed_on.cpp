@@ -1,6 +1,5 @@
 #include "relumine/light/passed_on.h"
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -13,9 +12,7 @@ std::vector<relight::PassedOn> passed_on(const Scene& scene) {
     std::vector<relight::PassedOn> result;
     const mesh::TriangleMesh& mesh = scene.mesh;
     if (!prt::on_vertices(scene.layout) || scene.settings.glossy_tolerance ||
-        scene.receivers.surfaces.size() != mesh.num_vertices() ||
-        std::none_of(mesh.materials.begin(), mesh.materials.end(),
-                     [](const mesh::Material& own) { return own.diffuse_transmission > 0.0f; }))
+        scene.receivers.surfaces.size() != mesh.num_vertices() || !prt::passes_light_on(mesh))
         return result;
     const prt::TwinTriangles twins(mesh);
     std::vector<bool> is_known(mesh.num_vertices());
