@@ -51,8 +51,8 @@ RelumineResult run(const Work& work) noexcept {
         return RELUMINE_OK;
     } catch (const WrongFile& error) {
         return failed(RELUMINE_WRONG_FILE, error.message);
-    } catch (const RuntimeScene::NotLit&) {
-        return failed(RELUMINE_NOT_LIT, "expected a scene with light, got one without");
+    } catch (const RuntimeScene::NotLit& error) {
+        return failed(RELUMINE_NOT_LIT, error.message);
     } catch (const RuntimeScene::NotThere& missing) {
         return failed(RELUMINE_NOT_THERE, fmt::format("expected {}", missing.what));
     } catch (const std::bad_alloc&) {

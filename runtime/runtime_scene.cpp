@@ -135,8 +135,9 @@ cubemap::CubeMap RuntimeScene::contribution(std::uint32_t receiver) const {
 }
 
 void RuntimeScene::require_environment() const {
+    require_light();
     if (relighter_.environment().resolution == 0)
-        throw NotLit();
+        throw NotLit{"expected light of an environment, got a list of lights, which has no texels"};
 }
 
 void RuntimeScene::require_light() const {

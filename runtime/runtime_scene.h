@@ -24,7 +24,9 @@ namespace relumine::runtime {
 /// Throws:  std::invalid_argument for wrong arguments, NotLit, NotThere.
 class RuntimeScene {
 public:
-    struct NotLit {};
+    struct NotLit {
+        const char* message = "expected a scene with light, got one without";
+    };
     struct NotThere {
         const char* what;
     };

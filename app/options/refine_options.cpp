@@ -99,7 +99,8 @@ Mesh RefineOptionGroup::refined(Mesh mesh, std::optional<float> bias, Session& s
             "refined: {} vertices became {} in {} rounds, {:.1f} s{}", num_before, num_after,
             found.num_rounds, found.seconds,
             found.is_at_limit
-                ? fmt::format("; at the limit, with errors up to {:.4f}", found.largest_error)
+                ? fmt::format("; at the limit, with transfer off by up to {:.4f} per steradian",
+                              found.largest_error)
                 : ""));
     report_refinement(found, num_after, session);
     return result;

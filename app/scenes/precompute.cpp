@@ -215,7 +215,9 @@ void say_refinement(const PrecomputeReport& facts, Session& session) {
         "floor{}",
         facts.num_vertices - found.num_added, facts.num_vertices, found.seconds, BudgetOfMesh,
         BudgetOfFloor,
-        found.is_at_limit ? fmt::format("; errors up to {:.3f} are left, --refine has no limit",
+        found.is_at_limit ? fmt::format("; transfer between vertices is off by up to {:.3f} per "
+                                        "steradian (0.046 is the foot of a wall), --refine has no "
+                                        "limit",
                                         found.largest_error)
                           : ""));
     report_refinement(found, facts.num_vertices, session);

@@ -153,6 +153,8 @@ TEST(Runtime, PicturesListsAndTurnsAreTheLibrarys) {
     ASSERT_EQ(relumine_light_list(opened.scene, &light, 1), RELUMINE_OK) << relumine_last_error();
     expect_equal(opened.radiance(), relighter.radiance());
     EXPECT_EQ(relumine_turn(opened.scene, 1.0), RELUMINE_NOT_LIT) << "a list does not turn";
+    EXPECT_STREQ(relumine_last_error(),
+                 "expected light of an environment, got a list of lights, which has no texels");
 }
 
 TEST(Runtime, AnUpdateIsANewLightOfTheSameMap) {
