@@ -190,7 +190,9 @@ PictureTile::Shown PictureTile::shown(std::uint32_t x, std::uint32_t y, const Se
         const bool is_floor = this->is_floor(sample);
         const bool is_caught = is_floor && light.open_floor;
         const std::optional<Mirror> mirror = mirrors_.at(at);
-        glm::vec3 radiance = shading_.soft(at, mirror, mirrors_);
+        const glm::vec3 gathered =
+            scene_.gathered != nullptr ? scene_.gathered->change(x, y, at) : glm::vec3(0.0f);
+        glm::vec3 radiance = shading_.soft(at, mirror, mirrors_, gathered);
         if (traces) {
             std::span<const std::uint16_t> lights = own_lights_;
             if (layer.is_first && seen.is_known)

@@ -15,6 +15,7 @@
 #include "relight/pictures/backdrop_pixels.h"
 #include "relight/pictures/eye_samples.h"
 #include "relight/pictures/floor_shadows.h"
+#include "relight/pictures/gathered_light.h"
 #include "relight/pictures/mirrors.h"
 #include "relight/pictures/picture_view.h"
 #include "relight/pictures/pixel_lights.h"
@@ -42,6 +43,8 @@ struct TileScene {
     const FloorLights& floor_lights;
     /// Null: the mesh is drawn alone, with its alpha.
     const Backdrop* backdrop = nullptr;
+    /// Null: bounced light is that of the vertices.
+    const GatheredLight* gathered = nullptr;
 };
 
 /// Draws squares of pixels, one after the other. For one thread.

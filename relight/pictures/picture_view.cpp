@@ -9,6 +9,7 @@
 #include "relight/harmonics/harmonics.h"
 #include "relight/pictures/eye_samples.h"
 #include "relight/pictures/floor_shadows.h"
+#include "relight/pictures/gathered_light.h"
 #include "relight/pictures/picture_tile.h"
 #include "relight/pictures/pixel_lights.h"
 #include "relight/pictures/seen_mesh.h"
@@ -53,6 +54,7 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
     if (light.radiance.size() != mesh_.num_vertices() || !fits(light.albedo.size()) ||
         !fits(light.surfaces.size()) || !fits(light.lobes.size()) || !fits(light.emission.size()) ||
         (light.reflections != nullptr && light.mirrored.size() != mesh_.num_vertices()) ||
+        !fits(light.sent.size()) || light.replaced.size() != light.sent.size() ||
         light.harmonics.size() % mesh_.num_vertices() != 0 ||
         light.harmonics.size() / mesh_.num_vertices() > MaxHarmonics)
         throw std::invalid_argument("expected one radiance, albedo and surface per vertex");
@@ -67,8 +69,14 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
         light.blockers->prepare(picture.pixels.size() *
                                 (light.lights.size() + light.floor_lights.size()));
     const PictureTiles tiles{options_.width, options_.height};
-    const TileScene scene{mesh_, rays_, *seen_,  eye_,  grid_,        floor_,  *samples_,
-                          tiles, light, packets, beams, floor_lights, backdrop};
+    std::optional<GatheredLight> gathered;
+    if (!light.sent.empty())
+        gathered.emplace(GatheredLight::Scene{mesh_, rays_, *seen_, samples_->twins(), floor_, eye_,
+                                              grid_, options_.width, options_.height},
+                         light, options_.work);
+    const TileScene scene{
+        mesh_, rays_, *seen_,  eye_,  grid_,        floor_,   *samples_,
+        tiles, light, packets, beams, floor_lights, backdrop, gathered ? &*gathered : nullptr};
     std::mutex mutex;
     std::uint32_t num_drawn = 0;
     files::parallel_for(std::uint32_t{0}, tiles.count(), [&](std::uint32_t tile) {

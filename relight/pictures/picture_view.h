@@ -99,6 +99,14 @@ struct MeshLight {
     std::span<const glm::vec3> mirrored = {};
     /// The eye that highlights are for. Empty: there are none.
     std::optional<glm::vec3> eye = {};
+    /// [num_vertices] radiance that surfaces send to each other: pictures gather it, and `sky`, at
+    /// the points that are seen (relight/pictures/gathered_light.h), in place of the part of
+    /// `radiance` that is `replaced`, [num_vertices] for albedo 1. Empty: nothing is gathered.
+    std::span<const glm::vec3> sent = {}, replaced = {};
+    /// Whether backs send as much as their fronts; otherwise they are black.
+    bool sends_from_backs = false;
+    /// The environment without `lights`. Null: surfaces alone are gathered.
+    const Reflections* sky = nullptr;
     /// Lift of the rays' origins, as in prt::PrecomputeOptions.
     float bias = 0.0f;
     /// The radiance, for albedo 1, of a floor that nothing shades. With it the floor is not seen:

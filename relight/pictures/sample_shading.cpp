@@ -26,12 +26,22 @@ glm::vec3 under_highlight(const std::optional<Mirror>& mirror) {
 } // namespace
 
 glm::vec3 SampleShading::soft(const prt::MeshPoint& at, const std::optional<Mirror>& mirror,
-                              Mirrors& mirrors) const {
+                              Mirrors& mirrors, const glm::vec3& given) const {
+    const glm::vec3 own = given == glm::vec3(0.0f) || light_.albedo.empty()
+                              ? given
+                              : given * prt::value_at(mesh_, light_.albedo, at);
     if (mirror)
-        return mirrors.soft(*mirror, at, light_.textures->light(light_.radiance, at, tilted(at)));
-    if (!has_texture(at.triangle))
-        return prt::value_at(mesh_, light_.radiance, at);
-    const glm::vec3 change = tilted(at);
+        return mirrors.soft(*mirror, at,
+                            light_.textures->light(light_.radiance, at, tilted(at) + own));
+    if (!has_texture(at.triangle)) {
+        const glm::vec3 radiance = prt::value_at(mesh_, light_.radiance, at);
+        if (own == glm::vec3(0.0f))
+            return radiance;
+        return glm::max(
+            radiance + own * (light_.surfaces.empty() ? glm::vec3(1.0f) : surface_at(at).albedo),
+            0.0f);
+    }
+    const glm::vec3 change = tilted(at) + own;
     if (light_.lobes.empty())
         return light_.textures->radiance(light_.radiance, at, change, &view_);
     const mesh::Triangle& triangle = mesh_.triangles[at.triangle];

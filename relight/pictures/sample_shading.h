@@ -32,10 +32,10 @@ public:
         return light_.textures != nullptr && light_.textures->has(triangle);
     }
 
-    /// Returns what a point sends on of the light of the vertices. `mirrors` is asked where the
-    /// point is a mirror.
+    /// Returns what a point sends on of the light of the vertices and a change to it, which may be
+    /// less than 0: radiance for albedo 1. `mirrors` is asked where the point is a mirror.
     [[nodiscard]] glm::vec3 soft(const prt::MeshPoint& at, const std::optional<Mirror>& mirror,
-                                 Mirrors& mirrors) const;
+                                 Mirrors& mirrors, const glm::vec3& change) const;
 
     /// Returns the other side of a point whose surface passes light on.
     [[nodiscard]] std::optional<OtherSide> other_side(const prt::MeshPoint& at) const {

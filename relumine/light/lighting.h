@@ -13,6 +13,7 @@
 #include "relight/pictures/backdrop.h"
 #include "relight/sharp/sharp_lights.h"
 #include "relumine/light/light.h"
+#include "relumine/light/sent_light.h"
 
 namespace relumine {
 
@@ -53,6 +54,8 @@ struct Lighting {
     /// lights, as spherical harmonics and without bounces. Only of vertices of meshes with normal
     /// maps.
     std::vector<glm::vec3> harmonics = {};
+    /// What pictures gather by rays in place of what `radiance` has of it. Empty: nothing.
+    SentLight gathered_light = {};
     /// The radiance, for albedo 1, of a level floor that nothing shades. Empty: unknown, and floors
     /// catch no shadows.
     std::optional<glm::vec3> open_floor = {};

@@ -57,9 +57,20 @@ struct LitScene::Impl {
     void bind_sent(ArrivingLight& arriving) const;
     void take_apart(Lighting& lighting) const;
     void take_floor_apart(Lighting& lighting) const;
+    void add_sent(Lighting& lighting, std::vector<glm::vec3> gathered) const;
     void gather(Lighting& lighting) const;
     void show_environment(Lighting& lighting) const;
     [[nodiscard]] glm::vec3 open_gain(const glm::vec3& open_floor) const;
+    /// Whether all bounces of the present light are there, without a limit of their number.
+    [[nodiscard]] bool has_all_bounces() const {
+        return !bounces.bounced().empty() && bounces.is_settled() &&
+               !bounces.surfaces().limits.num_bounces && !receivers.are_in_others();
+    }
+    [[nodiscard]] bool is_room() const {
+        if (!gathers)
+            gathers = is_gathered(*scene);
+        return *gathers;
+    }
     [[nodiscard]] bool has_environment() const {
         return relighter && relighter->environment().resolution != 0;
     }
@@ -74,6 +85,8 @@ struct LitScene::Impl {
     std::shared_ptr<const prt::Blockers> own_blockers;
     relight::ShadowRays shadow_rays;
     bool is_lit = false;
+    /// is_gathered(), when it is known.
+    mutable std::optional<bool> gathers;
 
     EditedEnvironment environment;
     /// The light of a level floor in the open under a base alone.
@@ -579,6 +592,14 @@ void LitScene::Impl::take_floor_apart(Lighting& lighting) const {
     lighting.of_floor_lights = relight::radiance_from(bright.clusters, *relighter, *first);
 }
 
+/// Adds what pictures gather by rays: bounces, and the environment's light but for lights that are
+/// traced.
+void LitScene::Impl::add_sent(Lighting& lighting, std::vector<glm::vec3> gathered) const {
+    if (has_environment())
+        terms.front()->add_soft(gathered);
+    lighting.gathered_light = sent_light(*scene, bounces, lighting.radiance, gathered);
+}
+
 /// Gives the first process what all have.
 void LitScene::Impl::gather(Lighting& lighting) const {
     lighting.gathered =
@@ -645,6 +666,8 @@ Lighting LitScene::lighting(bool is_drawn) const {
         own.take_apart(result);
     if (is_drawn && prt::on_vertices(own.scene->layout))
         own.take_floor_apart(result);
+    if (is_drawn && own.has_all_bounces() && own.is_room())
+        own.add_sent(result, bounced(*this));
     if (own.receivers.are_in_others()) {
         own.gather(result);
         if (!own.receivers.is_first())

@@ -115,12 +115,20 @@ struct Painter::Impl {
         if (traces)
             light.lights = lighting.lights;
         light.blockers = &beams;
+        if (traces || lighting.lights.empty()) {
+            light.sent = lighting.gathered_light.sent;
+            light.replaced = lighting.gathered_light.replaced;
+            light.sends_from_backs = scene.settings.two_sided_bounces;
+        }
         std::optional<relight::Reflections> reflections;
-        if (has_mirrors) {
+        if (has_mirrors || !light.sent.empty()) {
             static const cubemap::CubeMap Black;
             reflections.emplace(rays, scene.settings.bias, options.highlight_rays,
                                 lighting.environment == nullptr ? Black : *lighting.environment,
                                 light.lights.first(traces ? lighting.num_environment_lights : 0));
+            light.sky = &*reflections;
+        }
+        if (has_mirrors) {
             light.reflections = &*reflections;
             light.mirrored = mirrored;
             light.eye = eye();

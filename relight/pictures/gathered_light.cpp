@@ -1,0 +1,290 @@
+#include "relight/pictures/gathered_light.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+#include "cubemap/face.h"
+#include "cubemap/frame.h"
+#include "cubemap/luminance.h"
+#include "cubemap/split_mix64.h"
+#include "files/parallel.h"
+#include "prt/receivers/lit_position.h"
+
+namespace relumine::relight {
+
+namespace {
+
+/// Pixels between records, and records along the side of a square.
+constexpr std::uint32_t Step = 4, SquareSize = 8;
+/// Rays of a record: cosine-distributed, and guided.
+constexpr std::uint32_t NumCosine = 96, NumGuided = 96;
+static_assert(NumCosine % prt::PacketSize == 0 && NumGuided % prt::PacketSize == 0);
+/// In pixels. The least leaves some four records around each point.
+constexpr float LeastReach = 1.6f * Step, MostReach = 3.0f * Step;
+/// Ward's error up to which a record holds: the way over the harmonic mean distance of surfaces.
+constexpr float MostError = 0.2f;
+
+/// A place in the unit square, or along it, i steps on: Roberts' R2 sequence.
+glm::dvec2 place(const glm::dvec2& shift, std::uint32_t i) {
+    return glm::fract(shift +
+                      static_cast<double>(i) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
+}
+
+/// The cells of the cube that guide rays.
+constexpr std::uint32_t Cells = 16, NumCells = 6 * Cells * Cells;
+
+std::uint32_t cell_of(const glm::vec3& direction) {
+    const cubemap::FacePoint point = cubemap::face_point(glm::dvec3(direction));
+    const auto index = [](double along) {
+        return std::min(static_cast<std::uint32_t>(along * Cells), Cells - 1);
+    };
+    return (static_cast<std::uint32_t>(point.face) * Cells + index(point.t)) * Cells +
+           index(point.s);
+}
+
+glm::vec3 direction_in(std::uint32_t cell, const glm::dvec2& place) {
+    const auto face = static_cast<cubemap::Face>(cell / (Cells * Cells));
+    return glm::vec3(glm::normalize(cubemap::cube_point(face, (cell % Cells + place.x) / Cells,
+                                                        (cell / Cells % Cells + place.y) / Cells)));
+}
+
+/// Solid angle of the cube's surface around a direction, over that of the whole [-1, 1] square.
+float stretch(const glm::vec3& direction) {
+    const glm::vec3 size = glm::abs(direction);
+    const float outwards = std::max({size.x, size.y, size.z});
+    return outwards * outwards * outwards;
+}
+
+/// Solid angle of a cell at the middle of a face
+constexpr float CellSize = 4.0f / (Cells * Cells);
+
+} // namespace
+
+/// The records of a square of the grid, whose rays guide each other. For one thread.
+class GatheredLight::Square {
+public:
+    explicit Square(const GatheredLight& own) : scene_(own.scene_), light_(own.light_) {}
+
+    void start(std::uint32_t column, std::uint32_t row, Record& record) {
+        const mesh::TriangleMesh& mesh = scene_.mesh;
+        const glm::vec3 to_point =
+            scene_.grid.direction((glm::vec2(column, row) + 0.5f) * float{Step});
+        const auto met = scene_.seen.rays().closest_hit(scene_.eye, to_point, prt::RayOf::Eye);
+        if (!met)
+            return;
+        const prt::Hit seen = scene_.twins.facing(*met, to_point);
+        const prt::MeshPoint at{seen.triangle, seen.barycentric};
+        const glm::vec3 normal = prt::shading_normal(mesh, at);
+        if (scene_.floor.has(mesh.triangles[at.triangle]) || glm::dot(normal, to_point) >= 0.0f)
+            return;
+        record = {
+            .position = prt::value_at(mesh, mesh.positions, at), .normal = normal, .exists = true};
+        Point& point = points_.emplace_back(Point{
+            .record = &record,
+            .origin = prt::ray_origin(prt::lit_position(mesh, scene_.rays, at, normal, light_.bias),
+                                      normal, light_.bias)});
+        // It touches another surface, and looks from inside of its own solid: no light gets
+        // between.
+        point.is_inside = glm::dot(point.origin - record.position, normal) < 0.0f;
+        cubemap::SplitMix64 random(std::uint64_t{row} << 32u | column);
+        for (glm::dvec2* shift : {&point.cosine_shift, &point.guided_shift})
+            *shift = {cubemap::unit_interval(random.next()), cubemap::unit_interval(random.next())};
+        look_around(point);
+    }
+
+    void finish() {
+        for (std::uint32_t cell = 0; cell < NumCells; ++cell)
+            if (num_looks_[cell] != 0)
+                found_[cell] /= static_cast<float>(num_looks_[cell]);
+        for (Point& point : points_)
+            gather(point);
+    }
+
+private:
+    struct Ray {
+        glm::vec3 direction{0.0f}, radiance{0.0f};
+    };
+    struct Point {
+        Record* record;
+        glm::vec3 origin;
+        glm::dvec2 cosine_shift{0.0}, guided_shift{0.0};
+        bool is_inside = false;
+        std::array<Ray, NumCosine> cosine{};
+    };
+
+    /// Calls visit(ray) for rays in directions(i), in order; returns the sum of inverse distances.
+    template<typename Directions>
+    float trace(const Point& point, std::span<Ray> rays, const Directions& directions) const {
+        float inverse_distances = 0.0f;
+        for (std::uint32_t first = 0; first < rays.size(); first += prt::PacketSize) {
+            prt::DirectionPacket packet;
+            packet.num_directions = prt::PacketSize;
+            for (std::uint32_t lane = 0; lane < prt::PacketSize; ++lane)
+                packet.set(lane, rays[first + lane].direction = directions(first + lane));
+            std::array<prt::Hit, prt::PacketSize> hits;
+            const std::uint32_t met = scene_.rays.closest_hits(point.origin, packet, 0xffff, hits);
+            for (std::uint32_t lane = 0; lane < prt::PacketSize; ++lane) {
+                Ray& ray = rays[first + lane];
+                ray.radiance = glm::vec3(0.0f);
+                if ((met >> lane & 1u) == 0) {
+                    if (light_.sky != nullptr)
+                        ray.radiance = light_.sky->sky(ray.direction, SolidAngle);
+                    continue;
+                }
+                inverse_distances += 1.0f / std::max(hits[lane].distance, light_.bias);
+                const prt::Hit hit = scene_.twins.facing(hits[lane], ray.direction);
+                const prt::MeshPoint there{hit.triangle, hit.barycentric};
+                if (light_.sends_from_backs || prt::meets_front(scene_.mesh, there, ray.direction))
+                    ray.radiance = prt::value_at(scene_.mesh, light_.sent, there);
+            }
+        }
+        return inverse_distances;
+    }
+
+    void look_around(Point& point) {
+        const glm::dmat3 frame = cubemap::frame_of(glm::dvec3(point.record->normal));
+        const float inverse_distances = trace(point, point.cosine, [&](std::uint32_t i) {
+            const glm::dvec2 at = place(point.cosine_shift, i);
+            const double radius = std::sqrt(at.x), angle = 2.0 * std::numbers::pi * at.y;
+            return glm::vec3(frame * glm::dvec3(radius * std::cos(angle), radius * std::sin(angle),
+                                                std::sqrt(1.0 - at.x)));
+        });
+        for (const Ray& ray : point.cosine) {
+            const std::uint32_t cell = cell_of(ray.direction);
+            ++num_looks_[cell];
+            found_[cell] += static_cast<float>(cubemap::luminance(ray.radiance));
+        }
+        // What a pixel spans there
+        const float pixel = glm::distance(point.record->position, scene_.eye) *
+                            glm::length(scene_.grid.right()) *
+                            static_cast<float>(scene_.grid.samples_per_axis());
+        const float distance = NumCosine / std::max(inverse_distances, 1e-20f);
+        point.record->reach = std::clamp(MostError * distance / pixel, LeastReach, MostReach);
+    }
+
+    /// Sums the rays of a point, and those that are guided.
+    void gather(Point& point) {
+        if (point.is_inside)
+            return;
+        float whole = 0.0f;
+        for (std::uint32_t cell = 0; cell < NumCells; ++cell) {
+            if (found_[cell] > 0.0f) {
+                const glm::vec3 middle = direction_in(cell, glm::dvec2(0.5));
+                whole += found_[cell] * stretch(middle) *
+                         std::max(glm::dot(middle, point.record->normal), 0.0f);
+            }
+            sums_[cell] = whole;
+        }
+        const auto chance = [&](std::uint32_t cell) {
+            return (sums_[cell] - (cell == 0 ? 0.0f : sums_[cell - 1])) / whole;
+        };
+        const auto add = [&](const Ray& ray) {
+            const float cosine = glm::dot(ray.direction, point.record->normal);
+            if (cosine <= 0.0f)
+                return;
+            const float of_cosine = cosine / std::numbers::pi_v<float>;
+            const float of_guided =
+                whole > 0.0f ? chance(cell_of(ray.direction)) / (CellSize * stretch(ray.direction))
+                             : 0.0f;
+            point.record->light +=
+                of_cosine / (NumCosine * of_cosine + NumGuided * of_guided) * ray.radiance;
+        };
+        for (const Ray& ray : point.cosine)
+            add(ray);
+        if (!(whole > 0.0f))
+            return;
+        std::array<Ray, NumGuided> guided;
+        std::uint32_t cell = 0;
+        trace(point, guided, [&](std::uint32_t i) {
+            const auto along = static_cast<float>((i + point.guided_shift.x) / NumGuided) * whole;
+            while (cell + 1 < NumCells && sums_[cell] <= along)
+                ++cell;
+            return direction_in(cell, place(point.guided_shift, i));
+        });
+        for (const Ray& ray : guided)
+            add(ray);
+    }
+
+    /// What a ray sees of the sky, in sr: about its share of a cell.
+    static constexpr float SolidAngle = 0.002f;
+
+    const Scene& scene_;
+    const MeshLight& light_;
+    std::vector<Point> points_;
+    /// Mean luminance that looks into each cell found, and their number
+    std::array<float, NumCells> found_{}, sums_{};
+    std::array<std::uint32_t, NumCells> num_looks_{};
+};
+
+GatheredLight::GatheredLight(const Scene& scene, const MeshLight& light, const prt::Work& work)
+    : scene_(scene), light_(light), columns_((scene.width + Step - 1) / Step),
+      rows_((scene.height + Step - 1) / Step), records_(std::size_t{columns_} * rows_) {
+    const auto squares = [](std::uint32_t count) {
+        return (count + SquareSize - 1) / SquareSize;
+    };
+    const std::uint32_t across = squares(columns_);
+    files::parallel_for(std::uint32_t{0}, across * squares(rows_), [&](std::uint32_t i) {
+        if (work.stop.stop_requested())
+            return;
+        Square square(*this);
+        const std::uint32_t left = i % across * SquareSize, top = i / across * SquareSize;
+        for (std::uint32_t row = top; row < std::min(top + SquareSize, rows_); ++row)
+            for (std::uint32_t column = left; column < std::min(left + SquareSize, columns_);
+                 ++column)
+                square.start(column, row, records_[std::size_t{row} * columns_ + column]);
+        square.finish();
+    });
+}
+
+glm::vec3 GatheredLight::change(std::uint32_t x, std::uint32_t y, const prt::MeshPoint& at) const {
+    const mesh::TriangleMesh& mesh = scene_.mesh;
+    if (scene_.floor.has(mesh.triangles[at.triangle]))
+        return glm::vec3(0.0f);
+    const glm::vec3 normal = prt::shading_normal(mesh, at);
+    const glm::vec3 position = prt::value_at(mesh, mesh.positions, at);
+    static constexpr auto Most = static_cast<std::uint32_t>(MostReach);
+    const auto first = [](std::uint32_t pixel) {
+        return (pixel - std::min(pixel, Most)) / Step;
+    };
+    const auto end = [](std::uint32_t pixel, std::uint32_t count) {
+        return std::min((pixel + Most) / Step + 1, count);
+    };
+    glm::vec3 sum(0.0f);
+    float weights = 0.0f;
+    for (std::uint32_t row = first(y); row < end(y, rows_); ++row)
+        for (std::uint32_t column = first(x); column < end(x, columns_); ++column) {
+            const Record& record = records_[std::size_t{row} * columns_ + column];
+            if (!record.exists)
+                continue;
+            const glm::vec2 away =
+                (glm::vec2(column, row) + 0.5f) * float{Step} - (glm::vec2(x, y) + 0.5f);
+            const float near = 1.0f - glm::dot(away, away) / (record.reach * record.reach);
+            if (near <= 0.0f)
+                continue;
+            constexpr float LeastCosine = 0.9f, LargestSlope = 0.25f;
+            const float cosine = glm::dot(record.normal, normal);
+            const glm::vec3 way = record.position - position;
+            const float off =
+                std::abs(glm::dot(way, record.normal)) / (LargestSlope * glm::length(way) + 1e-20f);
+            if (cosine <= LeastCosine || off >= 1.0f)
+                continue;
+            const float weight = near * near * (cosine - LeastCosine) * (1.0f - off);
+            weights += weight;
+            sum += weight * record.light;
+        }
+    constexpr float Enough = 0.02f;
+    if (weights <= 0.0f)
+        return glm::vec3(0.0f);
+    return std::min(weights / Enough, 1.0f) *
+           (sum / weights - prt::value_at(mesh, light_.replaced, at));
+}
+
+} // namespace relumine::relight
