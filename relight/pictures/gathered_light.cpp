@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
 #include <numbers>
 #include <span>
 
@@ -22,13 +26,15 @@ namespace relumine::relight {
 
 namespace {
 
-/// Pixels between records, and records along the side of a square.
-constexpr std::uint32_t Step = 4, SquareSize = 8;
-/// Rays of a record: cosine-distributed, and guided.
-constexpr std::uint32_t NumCosine = 96, NumGuided = 96;
-static_assert(NumCosine % prt::PacketSize == 0 && NumGuided % prt::PacketSize == 0);
-/// In pixels. The least leaves some four records around each point.
-constexpr float LeastReach = 1.6f * Step, MostReach = 3.0f * Step;
+/// Records along the side of a square.
+constexpr std::uint32_t SquareSize = 16;
+/// Rays of a record: those that look where light is, and those whose light counts. What is found
+/// must not choose its own weight, or it is too dark.
+constexpr std::uint32_t NumLooks = 32, NumCosine = 64, NumGuided = 96;
+static_assert(NumLooks % prt::PacketSize == 0 && NumCosine % prt::PacketSize == 0 &&
+              NumGuided % prt::PacketSize == 0);
+/// In steps between records. The least leaves some four of them around each point.
+constexpr float LeastReach = 1.6f, MostReach = 8.0f;
 /// Ward's error up to which a record holds: the way over the harmonic mean distance of surfaces.
 constexpr float MostError = 0.2f;
 
@@ -66,17 +72,23 @@ float stretch(const glm::vec3& direction) {
 /// Solid angle of a cell at the middle of a face
 constexpr float CellSize = 4.0f / (Cells * Cells);
 
+/// Returns the pixels between records of a picture: 4 from 1024 x 768 on, fewer in small ones.
+std::uint32_t step_of(std::uint32_t width, std::uint32_t height) {
+    constexpr double Records = 222.0;
+    const double records = std::sqrt(static_cast<double>(width) * height) / Records;
+    return std::clamp(static_cast<std::uint32_t>(std::ceil(records)), 1u, 4u);
+}
+
 } // namespace
 
 /// The records of a square of the grid, whose rays guide each other. For one thread.
 class GatheredLight::Square {
 public:
-    explicit Square(const GatheredLight& own) : scene_(own.scene_), light_(own.light_) {}
+    explicit Square(const GatheredLight& own) : own_(own), scene_(own.scene_), light_(own.light_) {}
 
     void start(std::uint32_t column, std::uint32_t row, Record& record) {
         const mesh::TriangleMesh& mesh = scene_.mesh;
-        const glm::vec3 to_point =
-            scene_.grid.direction((glm::vec2(column, row) + 0.5f) * float{Step});
+        const glm::vec3 to_point = scene_.grid.direction(own_.middle(column, row));
         const auto met = scene_.seen.rays().closest_hit(scene_.eye, to_point, prt::RayOf::Eye);
         if (!met)
             return;
@@ -95,7 +107,7 @@ public:
         // between.
         point.is_inside = glm::dot(point.origin - record.position, normal) < 0.0f;
         cubemap::SplitMix64 random(std::uint64_t{row} << 32u | column);
-        for (glm::dvec2* shift : {&point.cosine_shift, &point.guided_shift})
+        for (glm::dvec2* shift : {&point.shift, &point.guided_shift})
             *shift = {cubemap::unit_interval(random.next()), cubemap::unit_interval(random.next())};
         look_around(point);
     }
@@ -115,15 +127,15 @@ private:
     struct Point {
         Record* record;
         glm::vec3 origin;
-        glm::dvec2 cosine_shift{0.0}, guided_shift{0.0};
+        glm::dvec2 shift{0.0}, guided_shift{0.0};
         bool is_inside = false;
-        std::array<Ray, NumCosine> cosine{};
     };
 
-    /// Calls visit(ray) for rays in directions(i), in order; returns the sum of inverse distances.
+    /// Traces rays in directions(i), in order; returns the harmonic mean of the distances of
+    /// surfaces.
     template<typename Directions>
     float trace(const Point& point, std::span<Ray> rays, const Directions& directions) const {
-        float inverse_distances = 0.0f;
+        float inverse_distances = 0.0f, num_surfaces = 0.0f;
         for (std::uint32_t first = 0; first < rays.size(); first += prt::PacketSize) {
             prt::DirectionPacket packet;
             packet.num_directions = prt::PacketSize;
@@ -139,6 +151,7 @@ private:
                         ray.radiance = light_.sky->sky(ray.direction, SolidAngle);
                     continue;
                 }
+                num_surfaces += 1.0f;
                 inverse_distances += 1.0f / std::max(hits[lane].distance, light_.bias);
                 const prt::Hit hit = scene_.twins.facing(hits[lane], ray.direction);
                 const prt::MeshPoint there{hit.triangle, hit.barycentric};
@@ -146,32 +159,34 @@ private:
                     ray.radiance = prt::value_at(scene_.mesh, light_.sent, there);
             }
         }
-        return inverse_distances;
+        return num_surfaces > 0.0f ? num_surfaces / inverse_distances
+                                   : std::numeric_limits<float>::infinity();
     }
 
-    void look_around(Point& point) {
+    /// Traces the cosine-distributed rays of a point from a number on.
+    float trace_cosine(const Point& point, std::span<Ray> rays, std::uint32_t first) const {
         const glm::dmat3 frame = cubemap::frame_of(glm::dvec3(point.record->normal));
-        const float inverse_distances = trace(point, point.cosine, [&](std::uint32_t i) {
-            const glm::dvec2 at = place(point.cosine_shift, i);
+        return trace(point, rays, [&](std::uint32_t i) {
+            const glm::dvec2 at = place(point.shift, first + i);
             const double radius = std::sqrt(at.x), angle = 2.0 * std::numbers::pi * at.y;
             return glm::vec3(frame * glm::dvec3(radius * std::cos(angle), radius * std::sin(angle),
                                                 std::sqrt(1.0 - at.x)));
         });
-        for (const Ray& ray : point.cosine) {
+    }
+
+    void look_around(const Point& point) {
+        std::array<Ray, NumLooks> rays;
+        trace_cosine(point, rays, 0);
+        for (const Ray& ray : rays) {
             const std::uint32_t cell = cell_of(ray.direction);
             ++num_looks_[cell];
             found_[cell] += static_cast<float>(cubemap::luminance(ray.radiance));
         }
-        // What a pixel spans there
-        const float pixel = glm::distance(point.record->position, scene_.eye) *
-                            glm::length(scene_.grid.right()) *
-                            static_cast<float>(scene_.grid.samples_per_axis());
-        const float distance = NumCosine / std::max(inverse_distances, 1e-20f);
-        point.record->reach = std::clamp(MostError * distance / pixel, LeastReach, MostReach);
     }
 
-    /// Sums the rays of a point, and those that are guided.
+    /// Finds the light of a point.
     void gather(Point& point) {
+        point.record->reach = LeastReach;
         if (point.is_inside)
             return;
         float whole = 0.0f;
@@ -197,8 +212,15 @@ private:
             point.record->light +=
                 of_cosine / (NumCosine * of_cosine + NumGuided * of_guided) * ray.radiance;
         };
-        for (const Ray& ray : point.cosine)
+        std::array<Ray, NumCosine> cosine;
+        const float distance = trace_cosine(point, cosine, NumLooks);
+        for (const Ray& ray : cosine)
             add(ray);
+        // What a step spans there
+        const float step = glm::distance(point.record->position, scene_.eye) *
+                           glm::length(scene_.grid.right()) *
+                           static_cast<float>(scene_.grid.samples_per_axis() * own_.step_);
+        point.record->reach = std::clamp(MostError * distance / step, LeastReach, MostReach);
         if (!(whole > 0.0f))
             return;
         std::array<Ray, NumGuided> guided;
@@ -216,6 +238,7 @@ private:
     /// What a ray sees of the sky, in sr: about its share of a cell.
     static constexpr float SolidAngle = 0.002f;
 
+    const GatheredLight& own_;
     const Scene& scene_;
     const MeshLight& light_;
     std::vector<Point> points_;
@@ -225,8 +248,9 @@ private:
 };
 
 GatheredLight::GatheredLight(const Scene& scene, const MeshLight& light, const prt::Work& work)
-    : scene_(scene), light_(light), columns_((scene.width + Step - 1) / Step),
-      rows_((scene.height + Step - 1) / Step), records_(std::size_t{columns_} * rows_) {
+    : scene_(scene), light_(light), step_(step_of(scene.width, scene.height)),
+      columns_((scene.width + step_ - 1) / step_), rows_((scene.height + step_ - 1) / step_),
+      records_(std::size_t{columns_} * rows_) {
     const auto squares = [](std::uint32_t count) {
         return (count + SquareSize - 1) / SquareSize;
     };
@@ -242,49 +266,68 @@ GatheredLight::GatheredLight(const Scene& scene, const MeshLight& light, const p
                 square.start(column, row, records_[std::size_t{row} * columns_ + column]);
         square.finish();
     });
+    smooth();
+}
+
+void GatheredLight::smooth() {
+    std::vector<glm::vec3> smoothed(records_.size());
+    files::parallel_for(std::uint32_t{0}, rows_, [&](std::uint32_t row) {
+        for (std::uint32_t column = 0; column < columns_; ++column) {
+            const std::size_t i = std::size_t{row} * columns_ + column;
+            const Record& own = records_[i];
+            if (own.exists)
+                smoothed[i] =
+                    around(middle(column, row), own.position, own.normal, own.reach).light;
+        }
+    });
+    for (std::size_t i = 0; i < records_.size(); ++i)
+        records_[i].light = smoothed[i];
+}
+
+GatheredLight::Mean GatheredLight::around(const glm::vec2& pixel, const glm::vec3& position,
+                                          const glm::vec3& normal, float reach) const {
+    const auto step = static_cast<float>(step_);
+    const float in_pixels = reach * step;
+    const auto first = [&](float along) {
+        return static_cast<std::uint32_t>(std::max(along - in_pixels, 0.0f) / step);
+    };
+    const auto end = [&](float along, std::uint32_t count) {
+        return std::min(static_cast<std::uint32_t>((along + in_pixels) / step) + 1, count);
+    };
+    constexpr float LeastCosine = 0.9f, LargestSlope = 0.25f;
+    Mean mean;
+    for (std::uint32_t row = first(pixel.y); row < end(pixel.y, rows_); ++row)
+        for (std::uint32_t column = first(pixel.x); column < end(pixel.x, columns_); ++column) {
+            const Record& record = records_[std::size_t{row} * columns_ + column];
+            if (!record.exists)
+                continue;
+            const glm::vec2 away = middle(column, row) - pixel;
+            const float near = 1.0f - glm::dot(away, away) / (in_pixels * in_pixels);
+            const float alike = glm::dot(record.normal, normal) - LeastCosine;
+            const glm::vec3 way = record.position - position;
+            const float flat = 1.0f - std::abs(glm::dot(way, record.normal)) /
+                                          (LargestSlope * glm::length(way) + 1e-20f);
+            if (near <= 0.0f || alike <= 0.0f || flat <= 0.0f)
+                continue;
+            const float weight = near * near * alike * flat;
+            mean.weight += weight;
+            mean.light += weight * record.light;
+        }
+    if (mean.weight > 0.0f)
+        mean.light /= mean.weight;
+    return mean;
 }
 
 glm::vec3 GatheredLight::change(std::uint32_t x, std::uint32_t y, const prt::MeshPoint& at) const {
     const mesh::TriangleMesh& mesh = scene_.mesh;
     if (scene_.floor.has(mesh.triangles[at.triangle]))
         return glm::vec3(0.0f);
-    const glm::vec3 normal = prt::shading_normal(mesh, at);
-    const glm::vec3 position = prt::value_at(mesh, mesh.positions, at);
-    static constexpr auto Most = static_cast<std::uint32_t>(MostReach);
-    const auto first = [](std::uint32_t pixel) {
-        return (pixel - std::min(pixel, Most)) / Step;
-    };
-    const auto end = [](std::uint32_t pixel, std::uint32_t count) {
-        return std::min((pixel + Most) / Step + 1, count);
-    };
-    glm::vec3 sum(0.0f);
-    float weights = 0.0f;
-    for (std::uint32_t row = first(y); row < end(y, rows_); ++row)
-        for (std::uint32_t column = first(x); column < end(x, columns_); ++column) {
-            const Record& record = records_[std::size_t{row} * columns_ + column];
-            if (!record.exists)
-                continue;
-            const glm::vec2 away =
-                (glm::vec2(column, row) + 0.5f) * float{Step} - (glm::vec2(x, y) + 0.5f);
-            const float near = 1.0f - glm::dot(away, away) / (record.reach * record.reach);
-            if (near <= 0.0f)
-                continue;
-            constexpr float LeastCosine = 0.9f, LargestSlope = 0.25f;
-            const float cosine = glm::dot(record.normal, normal);
-            const glm::vec3 way = record.position - position;
-            const float off =
-                std::abs(glm::dot(way, record.normal)) / (LargestSlope * glm::length(way) + 1e-20f);
-            if (cosine <= LeastCosine || off >= 1.0f)
-                continue;
-            const float weight = near * near * (cosine - LeastCosine) * (1.0f - off);
-            weights += weight;
-            sum += weight * record.light;
-        }
+    const Mean mean = around(glm::vec2(x, y) + 0.5f, prt::value_at(mesh, mesh.positions, at),
+                             prt::shading_normal(mesh, at), LeastReach);
+    // Where hardly any record holds
     constexpr float Enough = 0.02f;
-    if (weights <= 0.0f)
-        return glm::vec3(0.0f);
-    return std::min(weights / Enough, 1.0f) *
-           (sum / weights - prt::value_at(mesh, light_.replaced, at));
+    return std::min(mean.weight / Enough, 1.0f) *
+           (mean.light - prt::value_at(mesh, light_.replaced, at));
 }
 
 } // namespace relumine::relight
