@@ -162,10 +162,10 @@ cubemap::CubeMap cube_map_of(std::uint32_t width, std::uint32_t height, std::uin
                              const float* rgb) {
     constexpr std::uint32_t LargestEdge = 32768;
     require(rgb, "rgb");
-    if (width < 2 || height < 1 || width > LargestEdge || height > LargestEdge)
-        throw std::invalid_argument(
-            fmt::format("expected a lat-long of 2 x 1 to {0} x {0} pixels, got {1} x {2}",
-                        LargestEdge, width, height));
+    if (height < 1 || width > LargestEdge || width != 2 * height)
+        throw std::invalid_argument(fmt::format(
+            "expected a lat-long of twice its height, 2 x 1 to {} x {} pixels, got {} x {}",
+            LargestEdge, LargestEdge / 2, width, height));
     cubemap::EnvironmentImage image;
     image.width = width;
     image.height = height;

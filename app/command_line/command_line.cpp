@@ -179,13 +179,14 @@ std::string complaint(const CLI::App& command, const CLI::ParseError& error) {
     const auto option = std::find_if(rest.begin(), dashes, [](const std::string& word) {
         return word.size() > 1 && word.front() == '-';
     });
-    if (option != dashes) {
+    const std::vector<std::string> commands = names_of_commands(command);
+    // After a wrong command, no option is right.
+    if (option != dashes && (commands.empty() || option == rest.begin())) {
         const std::string name = option->substr(0, option->find('='));
         return fmt::format("{}: no option of `{}`{}", name, full_name(command),
                            files::did_you_mean(name, names_of_options(command)));
     }
     std::erase(rest, "--");
-    const std::vector<std::string> commands = names_of_commands(command);
     if (!commands.empty() && !rest.empty())
         return fmt::format("expected a command, got '{}'{}", rest.front(),
                            files::did_you_mean(rest.front(), commands));

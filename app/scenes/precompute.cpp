@@ -216,8 +216,8 @@ void say_refinement(const PrecomputeReport& facts, Session& session) {
         facts.num_vertices - found.num_added, facts.num_vertices, found.seconds, BudgetOfMesh,
         BudgetOfFloor,
         found.is_at_limit ? fmt::format("; transfer between vertices is off by up to {:.3f} per "
-                                        "steradian (0.046 is the foot of a wall), --refine has no "
-                                        "limit",
+                                        "steradian (0.046 is the foot of a wall); a mesh that "
+                                        "`--refine ERROR` refines has no limit",
                                         found.largest_error)
                           : ""));
     report_refinement(found, facts.num_vertices, session);

@@ -112,10 +112,15 @@ public:
         look_around(point);
     }
 
-    void finish() {
+    /// `guide` is that of the square: empty, or of another light.
+    void finish(std::vector<float>& guide) {
         for (std::uint32_t cell = 0; cell < NumCells; ++cell)
             if (num_looks_[cell] != 0)
                 found_[cell] /= static_cast<float>(num_looks_[cell]);
+        if (guide.empty())
+            guide.assign(found_.begin(), found_.end());
+        else
+            std::copy(guide.begin(), guide.end(), found_.begin());
         for (Point& point : points_)
             gather(point);
     }
@@ -255,6 +260,9 @@ GatheredLight::GatheredLight(const Scene& scene, const MeshLight& light, const p
         return (count + SquareSize - 1) / SquareSize;
     };
     const std::uint32_t across = squares(columns_);
+    GatherGuide own;
+    GatherGuide& guide = light.guide != nullptr ? *light.guide : own;
+    guide.squares.resize(std::size_t{across} * squares(rows_));
     files::parallel_for(std::uint32_t{0}, across * squares(rows_), [&](std::uint32_t i) {
         if (work.stop.stop_requested())
             return;
@@ -264,7 +272,7 @@ GatheredLight::GatheredLight(const Scene& scene, const MeshLight& light, const p
             for (std::uint32_t column = left; column < std::min(left + SquareSize, columns_);
                  ++column)
                 square.start(column, row, records_[std::size_t{row} * columns_ + column]);
-        square.finish();
+        square.finish(guide.squares[i]);
     });
     smooth();
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -58,6 +59,13 @@ struct FadingFloor {
     [[nodiscard]] float opacity(const glm::vec3& position) const;
 };
 
+/// Where rays look that gather soft light (relight/pictures/gathered_light.h): mean luminance by
+/// square of the picture and cell of directions. Empty at first; the first light fills it, and
+/// further lights of the same view use it, so that what they gather is linear in the light.
+struct GatherGuide {
+    std::vector<std::vector<float>> squares = {};
+};
+
 /// The light of a mesh that is drawn.
 struct MeshLight {
     /// [num_vertices] outgoing radiance, but for what `lights` give.
@@ -107,6 +115,8 @@ struct MeshLight {
     bool sends_from_backs = false;
     /// The environment without `lights`. Null: surfaces alone are gathered.
     const Reflections* sky = nullptr;
+    /// Null: each light has a guide of its own.
+    GatherGuide* guide = nullptr;
     /// Lift of the rays' origins, as in prt::PrecomputeOptions.
     float bias = 0.0f;
     /// The radiance, for albedo 1, of a floor that nothing shades. With it the floor is not seen:

@@ -14,6 +14,7 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "files/joined.h"
 #include "files/nearest_name.h"
 #include "files/seconds.h"
 #include "prt/moves/resampled_bounces.h"
@@ -179,10 +180,14 @@ std::uint32_t group_named(const Scene& scene, const std::string& name) {
     require_movable(scene);
     const std::vector<std::string>& names = scene.mesh.groups;
     const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end())
+    if (found == names.end()) {
+        constexpr std::size_t MostListed = 12;
+        std::string hint = files::did_you_mean(name, std::span<const std::string>(names));
+        if (hint.empty() && names.size() <= MostListed)
+            hint = ": " + files::joined_by_or(names);
         throw std::invalid_argument(
-            fmt::format("expected one of {} groups, got '{}'{}", names.size(), name,
-                        files::did_you_mean(name, std::span<const std::string>(names))));
+            fmt::format("expected one of {} groups, got '{}'{}", names.size(), name, hint));
+    }
     return static_cast<std::uint32_t>(found - names.begin());
 }
 

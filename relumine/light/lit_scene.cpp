@@ -214,7 +214,8 @@ relight::Relighter& LitScene::Impl::clusters() const {
 
 void LitScene::Impl::require_lit() const {
     if (!is_lit)
-        throw std::logic_error("expected a scene that is lit");
+        throw std::logic_error("expected a scene that is lit, got one without light: light() comes "
+                               "first, in Python set_environment()");
 }
 
 /// Throws where the first process has other light.

@@ -21,6 +21,10 @@ public:
 
     relight::LayeredPicture run() {
         const std::vector<cubemap::LightLayer> all = cubemap::without_solo(state_.layers);
+        if (Lighting light = lit_.lighting(); !light.gathered_light.sent.empty()) {
+            painter_.keep_guide(true);
+            static_cast<void>(painter_.draw(light));
+        }
         // Those that solo puts below make the environment black.
         const std::size_t first = all.size() - state_.layers.size();
         const auto below = [&](std::size_t count) {
@@ -39,6 +43,7 @@ public:
         painter_.dim(gains_);
         lit_.edit(state_);
         bounce();
+        painter_.keep_guide(false);
         return std::move(mix_);
     }
 

@@ -72,6 +72,10 @@ public:
     /// with what they give.
     void dim(std::vector<EmissionGain> gains);
 
+    /// Lets rays that gather the light of rooms look where the next picture's light is, also in all
+    /// pictures after it: those of its parts add up to it. Or ends that.
+    void keep_guide(bool is_kept);
+
     /// Keeps to an exposure that was chosen before.
     void set_exposure_ev(double ev);
 

@@ -103,6 +103,7 @@ double Painter::choose_exposure_ev(const Lighting& lighting) {
 
 void Painter::look_from(const Camera& camera) {
     impl_->chosen_camera = camera;
+    keep_guide(false);
     impl_->view.reset();
     impl_->small.reset();
     impl_->drew_one = false;
@@ -111,6 +112,12 @@ void Painter::look_from(const Camera& camera) {
 void Painter::dim(std::vector<EmissionGain> gains) {
     impl_->options.emission = std::move(gains);
     impl_->take_emission();
+}
+
+void Painter::keep_guide(bool is_kept) {
+    impl_->guide.reset();
+    if (is_kept)
+        impl_->guide.emplace();
 }
 
 void Painter::set_exposure_ev(double ev) {

@@ -119,6 +119,7 @@ struct Painter::Impl {
             light.sent = lighting.gathered_light.sent;
             light.replaced = lighting.gathered_light.replaced;
             light.sends_from_backs = scene.settings.two_sided_bounces;
+            light.guide = guide ? &*guide : nullptr;
         }
         std::optional<relight::Reflections> reflections;
         if (has_mirrors || !light.sent.empty()) {
@@ -317,6 +318,8 @@ struct Painter::Impl {
     std::vector<glm::vec3> shown;
     std::function<void(double)> on_progress;
     /// Made when a second picture is drawn
+    /// Of pictures that are to be added up.
+    std::optional<relight::GatherGuide> guide;
     std::optional<relight::PictureView> view;
     bool drew_one = false;
     /// The light meter's.

@@ -445,9 +445,15 @@ def test_coarse_meshes_are_named():
     cube = bpy.context.object
     cube.name = "cube"
     said = reports(lambda: precompute(cube))
-    note = ("cube: coarse: subdivide it, or use Lightmap; faces are flat, but light is smooth over "
-            "their vertices")  # fmt: skip
-    assert f"Warning: {note}" in said and assets.notes_of(cube) == [note], said
+    notes = ["cube: coarse: subdivide it, or use Lightmap",
+             "cube: faces are flat, but light is smooth over their vertices: shade smooth, split "
+             "the sharp edges, or use Lightmap"]  # fmt: skip
+    assert all(f"Warning: {note}" in said for note in notes), said
+    assert sorted(assets.notes_of(cube)) == notes
+    bpy.ops.object.modifier_add(type="EDGE_SPLIT")
+    bpy.ops.object.modifier_apply(modifier=cube.modifiers[0].name)
+    precompute(cube)
+    assert assets.notes_of(cube) == notes[:1], "each face has its own vertices"
     bpy.ops.object.shade_smooth()
     precompute(cube)
     assert assets.notes_of(cube) == ["cube: coarse: subdivide it, or use Lightmap"]

@@ -260,6 +260,8 @@ TEST(Runtime, WrongCallsChangeNothing) {
               RELUMINE_WRONG_ARGUMENT);
     EXPECT_THAT(relumine_last_error(), HasSubstr("expected"));
     EXPECT_EQ(relumine_light_cube_map(opened.scene, 0, &bad.texels[0].x), RELUMINE_WRONG_ARGUMENT);
+    EXPECT_EQ(relumine_light_lat_long(opened.scene, 4, 4, 1, &bad.texels[0].x),
+              RELUMINE_WRONG_ARGUMENT);
     EXPECT_EQ(relumine_light_lat_long(opened.scene, 0, 4, 1, &bad.texels[0].x),
               RELUMINE_WRONG_ARGUMENT);
     EXPECT_EQ(relumine_update(opened.scene, 6, 0, 0, 1, 1, &map.texels[0].x),

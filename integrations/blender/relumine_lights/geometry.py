@@ -13,6 +13,9 @@ SURFACES = {"MESH", "CURVE", "SURFACE", "META", "FONT", "CURVES"}
 #: precompute` would add vertices.
 COARSE = 1.0 / 40.0
 
+#: The cosine up to which the normals of a face's corner and of its vertex are about the same.
+LIKE = 0.9
+
 
 def arrays_of(mesh):
     """Local vertices (N, 3) float32 and triangles (M, 3) of a mesh."""
@@ -59,7 +62,8 @@ def way(at, to):
 
 
 class Shape:
-    """The longest side of the triangles whose vertices show an object's light; are faces flat?"""
+    """The longest side of the triangles whose vertices show an object's light; do flat faces or
+    sharp edges share vertices, which have one light?"""
 
     def __init__(self, thing, depsgraph):
         self.name = thing.name
@@ -67,25 +71,30 @@ class Shape:
             # Where a modifier makes vertices, the object's own have the light.
             shown = mesh if len(mesh.vertices) == len(thing.data.vertices) else thing.data
             vertices, triangles = placed(*arrays_of(shown), thing.matrix_world)
-            smooth = np.empty(len(mesh.polygons), dtype=bool)
-            mesh.polygons.foreach_get("use_smooth", smooth)
+            self.is_flat = has_sharp_vertices(shown)
         corners = vertices[triangles]
         sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
-        self.longest, self.is_flat = float(sides.max(initial=0.0)), not smooth.all()
+        self.longest = float(sides.max(initial=0.0))
 
 
 def coarse_notes(shapes, vertices):
     """What is to be known of shapes whose vertices are few for the size of them all."""
     size = float(np.linalg.norm(vertices.max(axis=0) - vertices.min(axis=0)))
-    coarse = [shape for shape in shapes if shape.longest > COARSE * size]
-    if not coarse:
-        return set()
-    names = ", ".join(sorted(shape.name for shape in coarse)[:3])
-    names += f" and {len(coarse) - 3} more" if len(coarse) > 3 else ""
-    flat = any(shape.is_flat for shape in coarse)
-    return {f"{names}: coarse: subdivide {'it' if len(coarse) == 1 else 'them'}, or use Lightmap"
-            + ("; faces are flat, but light is smooth over their vertices" if flat else "")
-    }  # fmt: skip
+    notes = set()
+    coarse = sorted(shape.name for shape in shapes if shape.longest > COARSE * size)
+    if coarse:
+        which = "it" if len(coarse) == 1 else "them"
+        notes.add(f"{some_of(coarse)}: coarse: subdivide {which}, or use Lightmap")
+    flat = sorted(shape.name for shape in shapes if shape.is_flat)
+    if flat:
+        notes.add(f"{some_of(flat)}: faces are flat, but light is smooth over their vertices: "
+                  "shade smooth, split the sharp edges, or use Lightmap")  # fmt: skip
+    return notes
+
+
+def some_of(names):
+    """Three names, and how many more there are."""
+    return ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
 
 
 def with_uvs(mesh, vertices, triangles):
@@ -102,6 +111,18 @@ def with_uvs(mesh, vertices, triangles):
     _, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     old = triangles.reshape(-1)[first]
     return vertices[old], inverse.reshape(-1, 3), uv[first], normals[first], old
+
+
+def has_sharp_vertices(mesh):
+    """Whether a face has another normal at a vertex than the mesh has there."""
+    corners = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
+    mesh.loop_triangles.foreach_get("loops", corners)
+    of_corner = np.empty(len(mesh.loops), dtype=np.int32)
+    mesh.loops.foreach_get("vertex_index", of_corner)
+    normals = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    mesh.vertices.foreach_get("normal", normals)
+    of_vertices = normals.reshape(-1, 3)[of_corner[corners]]
+    return bool((np.sum(corner_normals(mesh)[corners] * of_vertices, axis=1) < LIKE).any())
 
 
 def corner_normals(mesh):

@@ -58,6 +58,7 @@ class RELUMINE_OT_precompute(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
+        cls.poll_message_set("expected Object Mode and an active object: select a mesh")
         return context.mode == "OBJECT" and context.object is not None
 
     def _begin(self, context):
@@ -199,6 +200,7 @@ class RELUMINE_OT_update(Button):
             self.doubts.append("precompute first: no object has a transfer")
             return None
         self.doubts += missing_images(context.scene)
+        self.doubts += [f"{name}: {state}" for name, state in sorted(assets.states.items())]
         return f"{counted(count, 'object')} lit"
 
 

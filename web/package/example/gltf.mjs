@@ -6,6 +6,8 @@ import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { Relighter } from 'relumine';
 import { LitObject } from 'relumine/three';
 
+// GLTFLoader looks for it where a file has textures; node has none, and does not decode them.
+globalThis.self ??= globalThis;
 const here = new URL('.', import.meta.url);
 const [glb = new URL('scene.glb', here), file = new URL('scene.relight', here)] = process.argv.slice(2);
 const bytes = await readFile(glb);
