@@ -13,9 +13,17 @@
 #include "relight/pictures/backdrop.h"
 #include "relight/sharp/sharp_lights.h"
 #include "relumine/light/light.h"
-#include "relumine/light/sent_light.h"
 
 namespace relumine {
+
+/// Light that a picture may gather anew at the points that it shows
+/// (relight/pictures/gathered_light.h). In a room most light has bounced.
+struct SentLight {
+    /// [num_receivers] radiance that surfaces send.
+    std::vector<glm::vec3> sent = {};
+    /// [num_receivers] what receivers have of the soft light of surfaces and sky, for albedo 1.
+    std::vector<glm::vec3> replaced = {};
+};
 
 /// What a picture is drawn of.
 struct Lighting {

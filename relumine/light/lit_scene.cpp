@@ -19,6 +19,7 @@
 #include "relumine/light/listed_light.h"
 #include "relumine/light/passed_on.h"
 #include "relumine/light/scene_moves.h"
+#include "relumine/light/sent_light.h"
 #include "relumine/light/shared_receivers.h"
 #include "relumine/light/terms.h"
 
