@@ -14,8 +14,8 @@ namespace {
 class Mixer {
 public:
     Mixer(LitScene& lit, Painter& painter)
-        : lit_(lit), painter_(painter), state_(lit.state()), gains_(lit.lamps().gains()),
-          lamps_(lit.scene().lamps.names()) {}
+        : lit_(lit), painter_(painter), state_(lit.environment().state()),
+          gains_(lit.lamps().gains()), lamps_(lit.scene().lamps.names()) {}
     Mixer(const Mixer&) = delete;
     Mixer& operator=(const Mixer&) = delete;
 
@@ -37,7 +37,7 @@ public:
         }
         lit_.dim(gains_);
         painter_.dim(gains_);
-        lit_.edit(state_);
+        lit_.environment().edit(state_);
         bounce();
         return std::move(mix_);
     }

@@ -13,7 +13,7 @@
 
 #include "data_gen/environments.h"
 #include "relumine/in/drag.h"
-#include "relumine/in/move.h"
+#include "relumine/light/scene_moves.h"
 #include "relumine/relumine.h"
 #include "tests/prt/scenes.h"
 
@@ -103,10 +103,10 @@ void expect_that_light_follows(const Lit& how) {
     for (const GroupStep& step :
          {Step, GroupStep{.name = "lamp", .by = {1.0, -0.2, 0.5}, .degrees = 70.0},
           GroupStep{.name = "ball", .by = {0.1, -0.3, 0.0}}}) {
-        MoveReport report = lit.move(move_of(lit.scene(), step));
+        MoveReport report = lit.moves().move(move_of(lit.scene(), step));
         EXPECT_GT(report.num_moved, 0u);
         EXPECT_LT(report.counts.num_pairs, report.num_all);
-        EXPECT_EQ(lit.state().layers.size(), how.has_layer ? 1u : 0u);
+        EXPECT_EQ(lit.environment().state().layers.size(), how.has_layer ? 1u : 0u);
         move(scene, move_of(scene, step));
         LitScene anew(scene, options);
         light(anew, how);
@@ -120,11 +120,11 @@ void expect_that_light_follows(const Lit& how) {
     }
     for (std::size_t i = seen.size(); --i > 0;) {
         EXPECT_EQ(radiance_of(lit), seen[i]);
-        EXPECT_TRUE(lit.undo_move());
+        EXPECT_TRUE(lit.moves().undo());
     }
-    EXPECT_FALSE(lit.undo_move());
+    EXPECT_FALSE(lit.moves().undo());
     EXPECT_EQ(radiance_of(lit), seen[0]);
-    EXPECT_TRUE(lit.redo_move());
+    EXPECT_TRUE(lit.moves().redo());
     EXPECT_EQ(radiance_of(lit), seen[1]);
 }
 
@@ -161,7 +161,7 @@ TEST(Moves, LightThatWasUpdatedIsSummedAnew) {
     };
     LitScene lit(before());
     lit_after_edits(lit);
-    lit.move(move_of(lit.scene(), Step));
+    lit.moves().move(move_of(lit.scene(), Step));
     Scene scene = before();
     move(scene, move_of(scene, Step));
     LitScene anew(std::move(scene));
@@ -220,20 +220,20 @@ void expect_that_drags_are_moves(Lit how) {
     EXPECT_EQ(bounced_at_first.empty(), !how.has_bounces);
     for (const GroupStep& step : Way) {
         const GroupMove to = move_of(before(), step);
-        EXPECT_GT(lit.drag(to).num_moved, 0u);
+        EXPECT_GT(lit.moves().drag(to).num_moved, 0u);
         LitScene moved(before());
         light(moved, how);
-        moved.move(to);
+        moved.moves().move(to);
         EXPECT_LT(difference(direct_of(lit), direct_of(moved)), Most);
         EXPECT_GT(difference(direct_of(lit), direct_at_first), 2.0 * Most);
         EXPECT_EQ(relumine::bounced(lit), bounced_at_first);
     }
     const GroupMove last = move_of(before(), Way.back());
-    const MoveReport report = lit.drop();
+    const MoveReport report = lit.moves().drop();
     EXPECT_GT(report.counts.num_pairs, 0u);
     LitScene moved(before());
     light(moved, how);
-    moved.move(last);
+    moved.moves().move(last);
     EXPECT_EQ(radiance_of(lit), radiance_of(moved));
     EXPECT_TRUE(are_same(lit.scene().transfer.counts, moved.scene().transfer.counts));
     EXPECT_EQ(lit.scene().mesh.positions, moved.scene().mesh.positions);
@@ -242,9 +242,9 @@ void expect_that_drags_are_moves(Lit how) {
     LitScene anew(std::move(scene));
     light(anew, how);
     EXPECT_EQ(radiance_of(lit), radiance_of(anew));
-    EXPECT_TRUE(lit.undo_move());
+    EXPECT_TRUE(lit.moves().undo());
     EXPECT_EQ(radiance_of(lit), at_first);
-    EXPECT_FALSE(lit.undo_move());
+    EXPECT_FALSE(lit.moves().undo());
 }
 
 TEST(Moves, ADragIsAboutTheMoveAndADropIsTheMove) {
@@ -281,8 +281,8 @@ TEST(Moves, ADragKnowsItsPlaceAlone) {
     light(one, how);
     light(other, how);
     for (const GroupStep& step : Way)
-        one.drag(move_of(before(), step));
-    other.drag(move_of(before(), Way.back()));
+        one.moves().drag(move_of(before(), step));
+    other.moves().drag(move_of(before(), Way.back()));
     EXPECT_TRUE(are_same(one.scene().transfer.counts, other.scene().transfer.counts));
     EXPECT_EQ(radiance_of(one), radiance_of(other));
 }
@@ -292,7 +292,7 @@ TEST(Moves, ADragIsTakenBack) {
     light(lit);
     const std::vector<glm::vec3> at_first = radiance_of(lit);
     const auto drag = [&] {
-        lit.drag(move_of(before(), Way[1]));
+        lit.moves().drag(move_of(before(), Way[1]));
         EXPECT_NE(radiance_of(lit), at_first);
     };
     const auto expect_back = [&] {
@@ -301,32 +301,33 @@ TEST(Moves, ADragIsTakenBack) {
         EXPECT_EQ(lit.scene().mesh.positions, before().mesh.positions);
     };
     drag();
-    EXPECT_TRUE(lit.undo_move());
+    EXPECT_TRUE(lit.moves().undo());
     expect_back();
-    EXPECT_FALSE(lit.undo_move());
-    EXPECT_THROW(lit.drop(), std::logic_error);
+    EXPECT_FALSE(lit.moves().undo());
+    EXPECT_THROW(lit.moves().drop(), std::logic_error);
 
     // A matrix that is refused leaves the group where it was dragged to.
     drag();
-    EXPECT_THAT(refusal([&] { lit.drag({.name = "ball", .matrix = glm::dmat4(0.0)}); }),
+    EXPECT_THAT(refusal([&] { lit.moves().drag({.name = "ball", .matrix = glm::dmat4(0.0)}); }),
                 HasSubstr("last row"));
-    EXPECT_THAT(refusal([&] { lit.drag({.name = "bal"}); }), HasSubstr("did you mean ball?"));
+    EXPECT_THAT(refusal([&] { lit.moves().drag({.name = "bal"}); }),
+                HasSubstr("did you mean ball?"));
     std::stop_source stop;
     stop.request_stop();
     drag();
-    EXPECT_THROW(lit.drop({.stop = stop.get_token()}), prt::Cancelled);
+    EXPECT_THROW(lit.moves().drop({.stop = stop.get_token()}), prt::Cancelled);
     expect_back();
 
     // Another group's drag, and a move, begin where the group stood.
     drag();
     const GroupMove of_lamp =
         move_of(before(), {.name = "lamp", .by = {0.5, 0.0, 0.5}, .degrees = 20.0});
-    lit.drag(of_lamp);
+    lit.moves().drag(of_lamp);
     drag();
-    lit.move(of_lamp);
+    lit.moves().move(of_lamp);
     LitScene moved(before());
     light(moved);
-    moved.move(of_lamp);
+    moved.moves().move(of_lamp);
     EXPECT_EQ(radiance_of(lit), radiance_of(moved));
 }
 
@@ -341,7 +342,7 @@ TEST(Moves, TheLightIsThatWithoutWhatIsTakenAway) {
     for (const GroupStep& step : {GroupStep{.name = "ball", .going = Going::Away},
                                   GroupStep{.name = "lamp", .going = Going::Away},
                                   GroupStep{.name = "ball", .going = Going::Back}}) {
-        EXPECT_EQ(lit.move(move_of(lit.scene(), step)).num_moved, 0u);
+        EXPECT_EQ(lit.moves().move(move_of(lit.scene(), step)).num_moved, 0u);
         move(scene, move_of(scene, step));
         LitScene anew(scene);
         light(anew);
@@ -353,7 +354,7 @@ TEST(Moves, TheLightIsThatWithoutWhatIsTakenAway) {
         EXPECT_EQ(of_lamp, glm::vec3(0.0f));
     for (std::size_t i = seen.size(); --i > 0;) {
         EXPECT_EQ(radiance_of(lit), seen[i]);
-        EXPECT_TRUE(lit.undo_move());
+        EXPECT_TRUE(lit.moves().undo());
     }
     EXPECT_EQ(radiance_of(lit), at_first);
 
@@ -377,13 +378,13 @@ TEST(Moves, TheLightIsThatWithoutWhatIsTakenAway) {
     LitScene without(precompute(rest, options));
     light(without, Sky);
     light(lit, Sky);
-    lit.move({.name = "ball", .going = Going::Away});
+    lit.moves().move({.name = "ball", .going = Going::Away});
     const auto on_ground = [](const LitScene& of) {
         const std::vector<glm::vec3> all = radiance_of(of);
         return std::vector(all.begin(), all.begin() + 21 * 21);
     };
     const double wrong = difference(on_ground(lit), on_ground(without));
-    lit.undo_move();
+    lit.moves().undo();
     EXPECT_LT(1.5 * wrong, difference(on_ground(lit), on_ground(without)));
 }
 
@@ -392,7 +393,7 @@ TEST(Moves, TheLightIsAboutThatOfAPrecomputeAnew) {
     light(lit);
     for (const GroupStep& step :
          {Step, GroupStep{.name = "lamp", .by = {1.0, -0.2, 0.5}, .degrees = 70.0}})
-        lit.move(move_of(lit.scene(), step));
+        lit.moves().move(move_of(lit.scene(), step));
     mesh::TriangleMesh mesh = lit.scene().mesh;
     LitScene anew(precompute(std::move(mesh), Options));
     light(anew);
@@ -403,19 +404,19 @@ TEST(Moves, RefusesNamesAndScenesThatAreShared) {
     LitScene lit(before());
     light(lit);
     const std::vector<glm::vec3> at_first = radiance_of(lit);
-    EXPECT_THAT(refusal([&] { lit.move({.name = "bal"}); }),
+    EXPECT_THAT(refusal([&] { lit.moves().move({.name = "bal"}); }),
                 HasSubstr("expected one of 3 groups, got 'bal'; did you mean ball?"));
     glm::dmat4 singular(1.0);
     singular[1] = glm::dvec4(0.0);
-    EXPECT_THAT(refusal([&] { lit.move({.name = "ball", .matrix = singular}); }),
+    EXPECT_THAT(refusal([&] { lit.moves().move({.name = "ball", .matrix = singular}); }),
                 HasSubstr("singular"));
-    EXPECT_THAT(refusal([&] { lit.move({.name = "ball", .going = Going::Back}); }),
+    EXPECT_THAT(refusal([&] { lit.moves().move({.name = "ball", .going = Going::Back}); }),
                 HasSubstr("expected a group that was taken away, got ball, which is there"));
-    EXPECT_THAT(refusal([&] { lit.drag({.name = "ball", .going = Going::Away}); }),
+    EXPECT_THAT(refusal([&] { lit.moves().drag({.name = "ball", .going = Going::Away}); }),
                 HasSubstr("a place to drag a group to"));
     EXPECT_EQ(radiance_of(lit), at_first);
     LitScene shared(std::make_shared<const Scene>(before()));
-    EXPECT_THAT(refusal([&] { shared.move({.name = "ball"}); }), HasSubstr("not shared"));
+    EXPECT_THAT(refusal([&] { shared.moves().move({.name = "ball"}); }), HasSubstr("not shared"));
     Scene without = before();
     without.mesh.triangle_groups.clear();
     EXPECT_THAT(refusal([&] { move(without, {.name = "ball"}); }), HasSubstr("--movable"));
