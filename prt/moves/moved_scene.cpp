@@ -134,6 +134,11 @@ void exchange(std::vector<Value>& all, const std::vector<std::uint32_t>& at,
         std::swap(all[at[i]], some[i]);
 }
 
+/// The step of vertex_receivers() before things moved
+float rim_step_of(const Scene& scene) {
+    return scene.settings.rim_step ? *scene.settings.rim_step : automatic_bias(scene.mesh);
+}
+
 /// Gives the change the receivers that differ, at their new places. `after` is the group there.
 void move_receivers(const Scene& scene, const GroupMesh& before, const mesh::TriangleMesh& after,
                     const Motion& motion, SceneChange& change) {
@@ -163,15 +168,7 @@ void move_receivers(const Scene& scene, const GroupMesh& before, const mesh::Tri
                 add(static_cast<std::uint32_t>(i), motion.place(receivers.positions[i]),
                     motion.normal(receivers.normals[i]));
     }
-    const std::vector<std::uint32_t>& order = scene.transfer.order;
-    for (std::uint32_t place = 0; place < order.size(); ++place)
-        if (change.difference.receivers[order[place]]) {
-            const auto found = std::ranges::lower_bound(change.receivers, order[place]);
-            change.places.push_back(place);
-            change.normals_by_place.push_back(
-                change
-                    .receiver_normals[static_cast<std::size_t>(found - change.receivers.begin())]);
-        }
+    set_places(scene, change);
 }
 
 /// Returns a group that may change.
@@ -224,10 +221,30 @@ void require_places(const std::vector<glm::vec3>& positions, float bias) {
 
 } // namespace
 
+void set_places(const Scene& scene, SceneChange& change) {
+    change.places.clear();
+    change.normals_by_place.clear();
+    const std::vector<std::uint32_t>& order = scene.transfer.order;
+    for (std::uint32_t place = 0; place < order.size(); ++place)
+        if (change.difference.receivers[order[place]]) {
+            const auto found = std::ranges::lower_bound(change.receivers, order[place]);
+            change.places.push_back(place);
+            change.normals_by_place.push_back(
+                change
+                    .receiver_normals[static_cast<std::size_t>(found - change.receivers.begin())]);
+        }
+}
+
 void exchange(Scene& scene, SceneChange& change) {
     exchange(scene.mesh.positions, change.vertices, change.positions);
     exchange(scene.mesh.normals, change.vertices, change.normals);
-    exchange(scene.mesh.lifts, change.vertices, change.lifts);
+    if (!change.lifts.empty())
+        scene.mesh.lifts.resize(scene.mesh.num_vertices(), glm::vec3(0.0f));
+    exchange(scene.mesh.lifts, change.lifted, change.lifts);
+    exchange(scene.free_lifts, change.lifted, change.free_lifts);
+    if (std::ranges::all_of(scene.mesh.lifts,
+                            [](const glm::vec3& lift) { return lift == glm::vec3(0.0f); }))
+        scene.mesh.lifts.clear();
     exchange(scene.mesh.corner_tangents, change.triangles, change.corner_tangents);
     exchange(scene.mesh.triangles, change.triangles, change.corners);
     if (scene.blockers) {
@@ -290,8 +307,7 @@ SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& mat
 
     SceneChange change;
     change.group = group;
-    change.rim_step =
-        scene.settings.rim_step ? *scene.settings.rim_step : automatic_bias(scene.mesh);
+    change.rim_step = rim_step_of(scene);
     change.difference.around = {no_box(), no_box()};
     if (scene.blockers) {
         GroupMesh of_blockers = group_of(*scene.blockers, name, scene.blockers->triangles);
@@ -312,10 +328,14 @@ SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& mat
                 tangent = motion.tangent(tangent);
         }
     move_receivers(scene, before, after, motion, change);
+    change.lifts = std::move(after.lifts);
+    change.free_lifts = chosen(scene.free_lifts, before.vertices);
+    move_all(change.free_lifts, [&](const glm::vec3& way) { return motion.way(way); });
+    if (!change.lifts.empty() || !change.free_lifts.empty())
+        change.lifted = before.vertices;
     change.vertices = std::move(before.vertices);
     change.positions = std::move(after.positions);
     change.normals = std::move(after.normals);
-    change.lifts = std::move(after.lifts);
     return change;
 }
 
@@ -340,7 +360,7 @@ SceneChange without_or_with(const Scene& scene, std::uint32_t group,
     GroupMesh mesh = changing_group(scene, group, all);
     SceneChange change;
     change.group = group;
-    change.rim_step = scene.settings.rim_step;
+    change.rim_step = rim_step_of(scene);
     change.absent = scene.absent;
     change.difference.around = {no_box(), no_box()};
     change.difference.receivers.resize(scene.receivers.size());

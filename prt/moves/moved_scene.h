@@ -13,6 +13,9 @@ namespace relumine::prt {
 /// Exchanges what a change has with what the scene has. A second call undoes the first.
 void exchange(Scene& scene, SceneChange& change);
 
+/// Gives a change the places of its receivers, and what they have.
+void set_places(const Scene& scene, SceneChange& change);
+
 /// Returns the geometry of the scene after a move, without counts and bounces. `matrix` takes the
 /// group from its present place to the next one, in the coordinates of the mesh's file (Y up).
 ///

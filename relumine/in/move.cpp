@@ -16,6 +16,7 @@
 
 #include "files/nearest_name.h"
 #include "files/seconds.h"
+#include "prt/moves/new_obstacles.h"
 #include "prt/moves/resampled_bounces.h"
 #include "relight/relighter.h"
 #include "relumine/in/stages.h"
@@ -92,7 +93,9 @@ public:
         const auto start = std::chrono::steady_clock::now();
         const mesh::Bounds box = mesh::bounds(scene_.mesh);
         exchange();
+        report.num_moved = change_.receivers.size();
         try {
+            prt::leave_new_obstacles(scene_, rays_.blockers(), change_);
             prt::CountsPatch counts = prt::recounted(
                 scene_.receivers, rays_.beams(), scene_.transfer, change_.difference,
                 {.face_resolution = scene_.settings.face_resolution, .bias = scene_.settings.bias},
@@ -108,7 +111,6 @@ public:
             exchange();
             throw;
         }
-        report.num_moved = change_.receivers.size();
         report.num_all =
             std::uint64_t{scene_.transfer.counts.num_blocks()} * scene_.transfer.counts.num_leaves;
         report.leaves_box = !is_inside(mesh::bounds(scene_.mesh), box);

@@ -12,9 +12,15 @@
 #include <gtest/gtest.h>
 
 #include "data_gen/environments.h"
+#include "prt/precompute.h"
+#include "prt/precompute_context.h"
+#include "prt/visibility/beam_scene.h"
+#include "prt/visibility/ray_scene.h"
 #include "relumine/in/drag.h"
 #include "relumine/light/scene_moves.h"
 #include "relumine/relumine.h"
+#include "tests/own_folder.h"
+#include "tests/prt/same_transfer.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine {
@@ -398,6 +404,137 @@ TEST(Moves, TheLightIsAboutThatOfAPrecomputeAnew) {
     LitScene anew(precompute(std::move(mesh), Options));
     light(anew);
     EXPECT_LT(difference(radiance_of(lit), radiance_of(anew)), 0.05);
+}
+
+/// A floor, a crate that stands on it, and a ball with lifts that lead into the floor.
+mesh::TriangleMesh touching_things() {
+    mesh::TriangleMesh mesh = scenes::floor_grid(21, 6.0f);
+    const std::size_t num_floor = mesh.num_triangles();
+    const auto crate = scenes::box({-0.53f, 0.0f, -0.47f}, {0.49f, 1.0f, 0.51f});
+    mesh = scenes::joined(mesh, crate);
+    const std::size_t num_vertices = mesh.num_vertices();
+    mesh = scenes::joined(mesh, scenes::icosphere(3, 0.5f, {-2.0f, 0.505f, 0.0f}));
+    mesh.triangle_groups.resize(num_floor, 0);
+    mesh.triangle_groups.resize(num_floor + crate.num_triangles(), 1);
+    mesh.triangle_groups.resize(mesh.num_triangles(), 2);
+    mesh.groups = {"ground", "crate", "ball"};
+    mesh.lifts.resize(num_vertices, glm::vec3(0.0f));
+    for (std::size_t i = num_vertices; i < mesh.num_vertices(); ++i)
+        mesh.lifts.push_back(0.02f * mesh.normals[i]);
+    return mesh;
+}
+
+/// Expects places that are the same but for roundings. The bias is a hundred times as large.
+void expect_near(const std::vector<glm::vec3>& places, const std::vector<glm::vec3>& expected) {
+    ASSERT_EQ(places.size(), expected.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+        EXPECT_LT(glm::distance(places[i], expected[i]), 1e-5f) << i;
+}
+
+/// Moves a group and expects receivers where a precompute has them, and counts of such a one with
+/// the same clusters.
+void expect_places_of_a_precompute(Scene& scene, const PrecomputeOptions& options,
+                                   const GroupStep& step) {
+    move(scene, move_of(scene, step));
+    mesh::TriangleMesh mesh = touching_things();
+    mesh.uvs = scene.mesh.uvs;
+    mesh.positions = scene.mesh.positions;
+    PrecomputeOptions fixed = options;
+    fixed.bias = scene.settings.bias;
+    const Scene anew = precompute(std::move(mesh), fixed);
+    expect_near(scene.receivers.positions, anew.receivers.positions);
+    expect_near(scene.mesh.lifts, anew.mesh.lifts);
+    const prt::RayScene rays(scene.blocking_mesh());
+    const prt::BeamScene beams(scene.blocking_mesh(), rays);
+    const prt::PrecomputeOptions same{.tolerance = *options.tolerance,
+                                      .min_level = options.min_level,
+                                      .face_resolution = options.face_resolution,
+                                      .bias = scene.settings.bias};
+    prt::expect_same(scene.transfer,
+                     prt::precompute(scene.receivers, beams, same, {},
+                                     {.given = &scene.transfer, .has_clusters = true}));
+}
+
+PrecomputeOptions without_bounces() {
+    PrecomputeOptions options = Options;
+    options.bounce_tolerance = 0.0f;
+    return options;
+}
+
+/// Receivers that look from inside of the floor
+std::ptrdiff_t num_inside(const Scene& scene) {
+    return std::ranges::count_if(scene.receivers.positions,
+                                 [](const glm::vec3& place) { return place.y < 0.0f; });
+}
+
+TEST(Moves, WhatWasTouchedLooksFromItsOwnPlaceAgain) {
+    const PrecomputeOptions options = without_bounces();
+    Scene scene = precompute(touching_things(), options);
+    const std::vector<glm::vec3> places = scene.receivers.positions, lifts = scene.mesh.lifts;
+    EXPECT_EQ(num_inside(scene), 9) << "below the crate";
+    EXPECT_FALSE(scene.free_lifts.empty()) << "some of the ball's lead into the floor";
+    for (const GroupStep& step : {GroupStep{.name = "crate", .by = {1.53, 0.0, 0.22}},
+                                  GroupStep{.name = "ball", .by = {0.0, 0.5, 0.0}},
+                                  GroupStep{.name = "crate", .by = {-1.53, 0.0, -0.22}},
+                                  GroupStep{.name = "ball", .by = {0.0, -0.5, 0.0}}})
+        expect_places_of_a_precompute(scene, options, step);
+    expect_near(scene.receivers.positions, places);
+    expect_near(scene.mesh.lifts, lifts);
+    move(scene, {.name = "crate", .going = Going::Away});
+    EXPECT_EQ(num_inside(scene), 0);
+    move(scene, {.name = "crate", .going = Going::Back});
+    expect_near(scene.receivers.positions, places);
+}
+
+TEST(Moves, TexelsThatWereTouchedLookFromTheirOwnPlaceAgain) {
+    PrecomputeOptions options = without_bounces();
+    options.receivers = Texels{.width = 20, .height = 20};
+    mesh::TriangleMesh mesh = touching_things();
+    mesh.uvs.resize(mesh.num_vertices(), glm::vec2(0.0f));
+    for (std::size_t i = 0; i < 21 * 21; ++i)
+        mesh.uvs[i] = glm::vec2(mesh.positions[i].x, mesh.positions[i].z) / 6.0f + 0.5f;
+    Scene scene = precompute(mesh, options);
+    ASSERT_EQ(scene.receivers.size(), 400u);
+    EXPECT_GT(num_inside(scene), 8);
+    expect_places_of_a_precompute(scene, options, {.name = "crate", .by = {1.53, 0.0, 0.22}});
+    move(scene, {.name = "crate", .going = Going::Away});
+    EXPECT_EQ(num_inside(scene), 0);
+}
+
+TEST(Moves, WhatIsTouchedFollowsADrag) {
+    LitScene lit(precompute(touching_things(), without_bounces()));
+    lit.light(data_gen::sun_and_sky(64));
+    const Scene scene = lit.scene();
+    const std::vector<glm::vec3> light = radiance_of(lit);
+    constexpr std::size_t BelowTheCrate = 10 * 21 + 10;
+    EXPECT_EQ(light[BelowTheCrate], glm::vec3(0.0f));
+    for (const double x : {1.53, 2.53}) {
+        const MoveReport report =
+            lit.moves().drag(move_of(scene, {.name = "crate", .by = {x, 0.0, 0.22}}));
+        EXPECT_GT(lit.radiance()[BelowTheCrate].g, 0.1f);
+        EXPECT_EQ(report.num_moved, 8u) << "the crate's vertices, not those of the floor";
+        EXPECT_GT(num_inside(lit.scene()), 0);
+    }
+    EXPECT_TRUE(lit.moves().undo());
+    EXPECT_EQ(lit.scene().receivers.positions, scene.receivers.positions);
+    EXPECT_EQ(lit.scene().mesh.lifts, scene.mesh.lifts);
+    EXPECT_EQ(radiance_of(lit), light);
+}
+
+class MovesFile : public tests::FolderTest {};
+
+TEST_F(MovesFile, KeepsWhereVerticesWouldLookFrom) {
+    Scene scene = precompute(touching_things(), without_bounces());
+    prt::save_scene(folder_ / "scene.prt", scene);
+    Scene loaded = prt::load_scene(folder_ / "scene.prt");
+    EXPECT_EQ(loaded.free_lifts, scene.free_lifts);
+    const GroupStep up{.name = "ball", .by = {0.0, 0.5, 0.0}};
+    move(loaded, move_of(loaded, up));
+    move(scene, move_of(scene, up));
+    EXPECT_EQ(loaded.receivers.positions, scene.receivers.positions);
+    prt::save_scene(folder_ / "scene.prt", loaded);
+    EXPECT_EQ(prt::load_scene(folder_ / "scene.prt").receivers.positions,
+              scene.receivers.positions);
 }
 
 TEST(Moves, RefusesNamesAndScenesThatAreShared) {
