@@ -7,8 +7,10 @@ from typing import Any, NamedTuple, Optional, Union
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import doubles, word
+from ._arrays import doubles, expect, word
+from ._core import Mesh as CoreMesh
 from ._files import errors
+from ._mesh import Mesh
 from ._scene import Progress
 
 
@@ -56,6 +58,11 @@ class Moving:
         Raises ValueError as Scene.move(), RuntimeError where a blockers_function blocks the light.
         """
         return self._move(name, doubles("matrix", matrix, 4, 4), progress)
+
+    def pose(self, name: str, mesh: Mesh, *, progress: Optional[Progress] = None) -> Move:
+        """Lets a group take another pose, as Scene.pose()."""
+        expect("mesh", mesh, Mesh)
+        return self._move(name, mesh._core, progress)
 
     def remove(self, name: str, *, progress: Optional[Progress] = None) -> Move:
         """Takes a group away, as Scene.remove()."""
@@ -114,7 +121,7 @@ class Moving:
             return self._core.exchange_move(False)
 
     def _move(
-        self, name: str, to: Union[NDArray[Any], str], progress: Optional[Progress]
+        self, name: str, to: Union[NDArray[Any], str, CoreMesh], progress: Optional[Progress]
     ) -> Move:
         with errors():
             result = Move(**self._core.move(word("name", name), to, progress))

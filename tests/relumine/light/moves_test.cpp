@@ -521,6 +521,28 @@ TEST(Moves, WhatIsTouchedFollowsADrag) {
     EXPECT_EQ(radiance_of(lit), light);
 }
 
+TEST(Moves, TheLightFollowsAPose) {
+    LitScene lit(before());
+    light(lit);
+    const std::vector<glm::vec3> at_first = radiance_of(lit);
+    mesh::TriangleMesh mesh = things();
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+        for (const std::uint32_t vertex : mesh.triangles[i])
+            if (mesh.triangle_groups[i] == 1) // flat, and on its way to the ground
+                mesh.positions[vertex].y = 0.4f * before().mesh.positions[vertex].y;
+    const GroupMove flat = pose_of("ball", mesh);
+    lit.moves().move(flat);
+    Scene scene = before();
+    move(scene, flat);
+    LitScene anew(scene);
+    light(anew);
+    EXPECT_EQ(radiance_of(lit), radiance_of(anew));
+    EXPECT_NE(radiance_of(lit), at_first);
+    EXPECT_TRUE(lit.moves().undo());
+    EXPECT_EQ(radiance_of(lit), at_first);
+    EXPECT_THAT(refusal([&] { lit.moves().drag(flat); }), HasSubstr("a place to drag a group to"));
+}
+
 class MovesFile : public tests::FolderTest {};
 
 TEST_F(MovesFile, KeepsWhereVerticesWouldLookFrom) {
