@@ -141,7 +141,7 @@ void show(LitScene& lit, const Options& options, viewer::ViewOptions view, bool 
     if (!shows_points)
         require_vertices(lit.scene(), options.scene.path);
     lit.dim(options.picture.emission);
-    lit.edit(beginning.light);
+    lit.environment().edit(beginning.light);
     if (!is_quick)
         options.bounces.bounce(lit, {}, options.scene.path);
     viewer::LightDesk desk(lit);
@@ -187,7 +187,7 @@ void show(LitScene& lit, const Options& options, viewer::ViewOptions view, bool 
     const viewer::ViewReport result = viewer::view(state, view);
     if (is_quick)
         session.add_to_report("frames_of_first_sight", result.num_frames);
-    beginning = {.light = lit.state(),
+    beginning = {.light = lit.environment().state(),
                  .camera = state.camera,
                  .scene_look = state.scene_look,
                  .environment_look = state.environment_look};

@@ -42,7 +42,7 @@ int main(int argc, char** argv) try {
     // Which directions light the vertex nearest to a point? Their integral is its radiance.
     const std::uint32_t receiver = nearest_receiver(lit.scene(), {0.0f, 2.0f, 0.0f});
     const cubemap::CubeMap who = contribution_map(lit, {&receiver, 1});
-    cubemap::save_layers(argv[3], {.layers = lit.state().layers});
+    cubemap::save_layers(argv[3], {.layers = lit.environment().state().layers});
     std::printf("20 events, %.2f ms each; vertex %u: %.4f, by direction %.4f\n", 50.0 * seconds,
                 receiver, static_cast<double>(seen[receiver].g), cubemap::total_power(who).y);
     return seen == dragged ? 0 : 1;

@@ -57,7 +57,7 @@ int main() try {
     // A bright rectangle in the middle of the face that looks to -Z.
     const cubemap::TexelRectangle window{cubemap::Face::NegativeZ, 24, 24, 40, 40};
     const std::vector<glm::vec3> light(std::size_t{16} * 16, glm::vec3(10.0f, 9.0f, 8.0f));
-    const UpdateReport edit = lit.update_region(window, light);
+    const UpdateReport edit = lit.environment().update_region(window, light);
     lit.bounce();
     const glm::vec3 after = lit.radiance()[8];
     std::printf("%zu vertices, %zu clusters changed; green %.3f before the window, %.3f after\n",

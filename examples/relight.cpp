@@ -15,7 +15,8 @@ int main(int argc, char** argv) try {
 
     // A part of the environment changes; only what it touches is computed.
     const std::vector<glm::vec3> bright(64, glm::vec3(5.0f));
-    const UpdateReport edit = lit.update_region({cubemap::Face::PositiveX, 20, 10, 28, 18}, bright);
+    const UpdateReport edit =
+        lit.environment().update_region({cubemap::Face::PositiveX, 20, 10, 28, 18}, bright);
     save(lit, argv[3], {.exposure_ev = 0.5, .width = 320, .height = 240});
 
     // How far from the truth is it? Exact integration for some vertices.

@@ -41,7 +41,7 @@ std::vector<cubemap::TexelRectangle> LightDesk::take_changed_texels() {
 }
 
 void LightDesk::edit(LightState next, Ending ending) {
-    timed([&] { return lit_.edit(std::move(next), ending); });
+    timed([&] { return lit_.environment().edit(std::move(next), ending); });
 }
 
 void LightDesk::finish() {
@@ -64,25 +64,25 @@ void LightDesk::moving(Move move) {
 }
 
 void LightDesk::move(const GroupMove& to) {
-    moving([&] { lit_.move(to); });
+    moving([&] { lit_.moves().move(to); });
     moved_in_.push_back(state());
     undone_in_.clear();
 }
 
 void LightDesk::drag(const GroupMove& to) {
-    moving([&] { lit_.drag(to); });
+    moving([&] { lit_.moves().drag(to); });
 }
 
 void LightDesk::drop() {
-    moving([&] { lit_.drop(); });
+    moving([&] { lit_.moves().drop(); });
     moved_in_.push_back(state());
     undone_in_.clear();
 }
 
 /// Returns false where the light was changed since the last move.
 bool LightDesk::exchange_move(bool is_undo) {
-    if (lit_.is_dragging()) {
-        moving([&] { lit_.undo_move(); });
+    if (lit_.moves().is_dragging()) {
+        moving([&] { lit_.moves().undo(); });
         return true;
     }
     std::vector<LightState>& from = is_undo ? moved_in_ : undone_in_;
@@ -91,7 +91,7 @@ bool LightDesk::exchange_move(bool is_undo) {
     (is_undo ? undone_in_ : moved_in_).push_back(state());
     from.pop_back();
     bool is_done = false;
-    moving([&] { is_done = is_undo ? lit_.undo_move() : lit_.redo_move(); });
+    moving([&] { is_done = is_undo ? lit_.moves().undo() : lit_.moves().redo(); });
     return is_done;
 }
 

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "relumine/in/move.h"
 #include "relumine/light/edits.h"
 #include "relumine/light/layers.h"
 #include "relumine/light/lit_scene.h"
+#include "relumine/light/scene_moves.h"
 
 namespace relumine::viewer {
 
@@ -33,9 +33,9 @@ public:
     explicit LightDesk(LitScene& lit);
 
     [[nodiscard]] const LitScene& lit() const { return lit_; }
-    [[nodiscard]] const LightState& state() const { return lit_.state(); }
+    [[nodiscard]] const LightState& state() const { return lit_.environment().state(); }
     [[nodiscard]] std::span<const cubemap::LightLayer> layers() const { return state().layers; }
-    [[nodiscard]] const LightHistory& history() const { return lit_.history(); }
+    [[nodiscard]] const LightHistory& history() const { return lit_.environment().history(); }
 
     [[nodiscard]] std::optional<std::size_t> selected() const { return selected_; }
     void select(std::optional<std::size_t> index) { selected_ = index; }
@@ -47,12 +47,13 @@ public:
     void undo();
     void redo();
 
-    /// Move groups of the scene, as LitScene does: move() and drop() are steps of undo.
+    /// Move groups of the scene, as SceneMoves does: move() and drop() are steps of undo.
     ///
     /// Throws:  as LitScene does.
     void move(const GroupMove& to);
     void drag(const GroupMove& to);
     void drop();
+    [[nodiscard]] bool is_dragging() const { return lit_.moves().is_dragging(); }
     /// Sets what is called before a group moves: nothing may trace the scene's rays meanwhile.
     void on_move(std::function<void()> stop) { stop_ = std::move(stop); }
     /// Counts changes of the mesh.

@@ -40,7 +40,7 @@ bool ThingHand::begin(const Ray& ray) {
 void ThingHand::move_to(const Ray& ray, const glm::vec3& normal, double turn_degrees) {
     if (!step_)
         return;
-    if (is_shown_ && !desk_.lit().is_dragging()) { // undo took it back
+    if (is_shown_ && !desk_.is_dragging()) { // undo took it back
         let_go();
         return;
     }
@@ -66,12 +66,12 @@ void ThingHand::move_to(const Ray& ray, const glm::vec3& normal, double turn_deg
 
 void ThingHand::let_go() {
     step_.reset();
-    if (desk_.lit().is_dragging())
+    if (desk_.is_dragging())
         desk_.undo();
 }
 
 void ThingHand::end() {
-    if (!std::exchange(step_, std::nullopt) || !desk_.lit().is_dragging())
+    if (!std::exchange(step_, std::nullopt) || !desk_.is_dragging())
         return;
     desk_.drop();
 }

@@ -48,7 +48,7 @@ public:
     /// Lets the point that was taken follow the pointer, within the plane through it with this
     /// normal, and turns the thing about the vertical through its middle. Shows it there quickly.
     ///
-    /// Throws:  as LitScene::drag(); the drag is then taken back.
+    /// Throws:  as SceneMoves::drag(); the drag is then taken back.
     void move_to(const Ray& ray, const glm::vec3& normal, double turn_degrees = 0.0);
     /// Puts the thing down where it is.
     void end();

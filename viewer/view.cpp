@@ -111,7 +111,7 @@ public:
                 take_emission(state.shading, lit.scene(), gains);
             find_floor(state);
             texture_.upload(environment_of(lit), state.desk.take_changed_texels());
-            const auto seen = seen_environment(lit.state());
+            const auto seen = seen_environment(lit.environment().state());
             hides_layers_ = seen != nullptr;
             if (seen)
                 behind_.upload(*seen, cubemap::all_texels(seen->resolution));
@@ -206,8 +206,8 @@ private:
     void find_floor(const ViewState& state) {
         const LitScene& lit = state.desk.lit();
         const Lighting lighting = lit.lighting(false);
-        if (!floor_base_ || floor_base_ != lit.state().base) {
-            floor_base_ = lit.state().base;
+        if (!floor_base_ || floor_base_ != lit.environment().state().base) {
+            floor_base_ = lit.environment().state().base;
             floor_.look = floor_look(lit.scene(), lighting, state.picture);
         }
         if (floor_.look == FloorLook::Grey)

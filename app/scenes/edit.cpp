@@ -247,7 +247,8 @@ private:
 
     /// The scene as a region of the environment lights it, with that region behind it.
     void save_lit_by() {
-        const Share part = lit_by(lit_, lit_by_region(options_.lit_by, lit_.state().layers));
+        const Share part =
+            lit_by(lit_, lit_by_region(options_.lit_by, lit_.environment().state().layers));
         painter_->save(options_.output.path, part.lighting());
         lit_by_share_ = part.share;
         session_.say(

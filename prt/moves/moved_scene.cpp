@@ -12,6 +12,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "mesh/normals.h"
 #include "prt/moves/met_boxes.h"
 #include "prt/moves/recount.h"
 #include "prt/scene/absent_groups.h"
@@ -134,9 +135,15 @@ void exchange(std::vector<Value>& all, const std::vector<std::uint32_t>& at,
         std::swap(all[at[i]], some[i]);
 }
 
+/// The step of vertex_receivers() before things moved
+float rim_step_of(const Scene& scene) {
+    return scene.settings.rim_step ? *scene.settings.rim_step : automatic_bias(scene.mesh);
+}
+
 /// Gives the change the receivers that differ, at their new places. `after` is the group there.
+/// `motion` takes receivers that are no vertices there.
 void move_receivers(const Scene& scene, const GroupMesh& before, const mesh::TriangleMesh& after,
-                    const Motion& motion, SceneChange& change) {
+                    const Motion* motion, SceneChange& change) {
     const Receivers& receivers = scene.receivers;
     const auto add = [&](std::uint32_t i, const glm::vec3& position, const glm::vec3& normal) {
         if (position == receivers.positions[i] && normal == receivers.normals[i])
@@ -160,18 +167,10 @@ void move_receivers(const Scene& scene, const GroupMesh& before, const mesh::Tri
             is_of_group[triangle] = true;
         for (std::size_t i = receivers.num_points(); i < receivers.size(); ++i)
             if (is_of_group[receivers.points[i].triangle])
-                add(static_cast<std::uint32_t>(i), motion.place(receivers.positions[i]),
-                    motion.normal(receivers.normals[i]));
+                add(static_cast<std::uint32_t>(i), motion->place(receivers.positions[i]),
+                    motion->normal(receivers.normals[i]));
     }
-    const std::vector<std::uint32_t>& order = scene.transfer.order;
-    for (std::uint32_t place = 0; place < order.size(); ++place)
-        if (change.difference.receivers[order[place]]) {
-            const auto found = std::ranges::lower_bound(change.receivers, order[place]);
-            change.places.push_back(place);
-            change.normals_by_place.push_back(
-                change
-                    .receiver_normals[static_cast<std::size_t>(found - change.receivers.begin())]);
-        }
+    set_places(scene, change);
 }
 
 /// Returns a group that may change.
@@ -224,10 +223,30 @@ void require_places(const std::vector<glm::vec3>& positions, float bias) {
 
 } // namespace
 
+void set_places(const Scene& scene, SceneChange& change) {
+    change.places.clear();
+    change.normals_by_place.clear();
+    const std::vector<std::uint32_t>& order = scene.transfer.order;
+    for (std::uint32_t place = 0; place < order.size(); ++place)
+        if (change.difference.receivers[order[place]]) {
+            const auto found = std::ranges::lower_bound(change.receivers, order[place]);
+            change.places.push_back(place);
+            change.normals_by_place.push_back(
+                change
+                    .receiver_normals[static_cast<std::size_t>(found - change.receivers.begin())]);
+        }
+}
+
 void exchange(Scene& scene, SceneChange& change) {
     exchange(scene.mesh.positions, change.vertices, change.positions);
     exchange(scene.mesh.normals, change.vertices, change.normals);
-    exchange(scene.mesh.lifts, change.vertices, change.lifts);
+    if (!change.lifts.empty())
+        scene.mesh.lifts.resize(scene.mesh.num_vertices(), glm::vec3(0.0f));
+    exchange(scene.mesh.lifts, change.lifted, change.lifts);
+    exchange(scene.free_lifts, change.lifted, change.free_lifts);
+    if (std::ranges::all_of(scene.mesh.lifts,
+                            [](const glm::vec3& lift) { return lift == glm::vec3(0.0f); }))
+        scene.mesh.lifts.clear();
     exchange(scene.mesh.corner_tangents, change.triangles, change.corner_tangents);
     exchange(scene.mesh.triangles, change.triangles, change.corners);
     if (scene.blockers) {
@@ -273,50 +292,138 @@ SceneChange outline(const SceneChange& first, const SceneChange& second) {
     return result;
 }
 
-SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& matrix) {
-    const Motion motion(matrix, scene.mesh.offset);
-    GroupMesh before = changing_group(scene, group, scene.mesh.triangles);
-    const std::string& name = scene.mesh.groups[group];
+namespace {
+
+/// A group's mesh and what blocks light of it, before and after.
+struct Taken {
+    GroupMesh before = {}, blockers_before = {};
+    mesh::TriangleMesh after = {};
+    std::vector<glm::vec3> blockers_after = {};
+};
+
+/// Returns a group that is there.
+Taken taken(const Scene& scene, std::uint32_t group) {
+    Taken result{.before = changing_group(scene, group, scene.mesh.triangles)};
     require_there(scene, group);
+    result.after = result.before.mesh;
+    if (scene.blockers)
+        result.blockers_before =
+            group_of(*scene.blockers, scene.mesh.groups[group], scene.blockers->triangles);
+    result.blockers_after = result.blockers_before.mesh.positions;
+    return result;
+}
 
-    mesh::TriangleMesh after = before.mesh;
-    const auto place = [&](const glm::vec3& position) {
-        return motion.place(position);
-    };
-    move_all(after.positions, place);
-    move_all(after.normals, [&](const glm::vec3& normal) { return motion.normal(normal); });
-    move_all(after.lifts, [&](const glm::vec3& way) { return motion.way(way); });
+/// Returns the change that takes a group there. `turn` turns a tangent of a vertex of the group.
+template<typename Turn>
+SceneChange change_of(const Scene& scene, std::uint32_t group, Taken taken, const Motion* motion,
+                      const Turn& turn) {
+    auto& [before, blockers, after, blockers_after] = taken;
     require_places(after.positions, scene.settings.bias);
-
     SceneChange change;
     change.group = group;
-    change.rim_step =
-        scene.settings.rim_step ? *scene.settings.rim_step : automatic_bias(scene.mesh);
+    change.rim_step = rim_step_of(scene);
     change.difference.around = {no_box(), no_box()};
     if (scene.blockers) {
-        GroupMesh of_blockers = group_of(*scene.blockers, name, scene.blockers->triangles);
-        add_boxes(change.difference, of_blockers.mesh, 0);
-        move_all(of_blockers.mesh.positions, place);
-        require_places(of_blockers.mesh.positions, scene.settings.bias);
-        add_boxes(change.difference, of_blockers.mesh, 1);
-        change.blocker_vertices = std::move(of_blockers.vertices);
-        change.blocker_positions = std::move(of_blockers.mesh.positions);
+        require_places(blockers_after, scene.settings.bias);
+        add_boxes(change.difference, blockers.mesh, 0);
+        change.blocker_vertices = std::move(blockers.vertices);
+        blockers.mesh.positions = blockers_after;
+        add_boxes(change.difference, blockers.mesh, 1);
+        change.blocker_positions = std::move(blockers_after);
     }
     add_boxes(change.difference, before.mesh, 0);
     add_boxes(change.difference, after, 1);
-    if (!scene.mesh.corner_tangents.empty())
-        for (const std::uint32_t triangle : before.triangles) {
-            change.triangles.push_back(triangle);
-            change.corner_tangents.push_back(scene.mesh.corner_tangents[triangle]);
-            for (glm::vec4& tangent : change.corner_tangents.back())
-                tangent = motion.tangent(tangent);
-        }
+    for (std::size_t i = 0; i < before.triangles.size() && !scene.mesh.corner_tangents.empty();
+         ++i) {
+        change.triangles.push_back(before.triangles[i]);
+        change.corner_tangents.push_back(scene.mesh.corner_tangents[before.triangles[i]]);
+        for (std::size_t k = 0; k < 3; ++k)
+            change.corner_tangents.back()[k] =
+                turn(change.corner_tangents.back()[k], before.mesh.triangles[i][k]);
+    }
     move_receivers(scene, before, after, motion, change);
+    change.lifts = std::move(after.lifts);
+    change.free_lifts = chosen(scene.free_lifts, before.vertices);
+    for (std::uint32_t i = 0; i < change.free_lifts.size(); ++i)
+        change.free_lifts[i] = turn(change.free_lifts[i], i);
+    if (!change.lifts.empty() || !change.free_lifts.empty())
+        change.lifted = before.vertices;
     change.vertices = std::move(before.vertices);
     change.positions = std::move(after.positions);
     change.normals = std::move(after.normals);
-    change.lifts = std::move(after.lifts);
     return change;
+}
+
+/// How a group turns at each of its vertices where it takes another pose: as its smooth normals do.
+class Turns {
+public:
+    Turns(const mesh::TriangleMesh& before, const mesh::TriangleMesh& after)
+        : from_(mesh::smooth_normals(before)), to_(mesh::smooth_normals(after)) {}
+
+    [[nodiscard]] glm::vec3 operator()(const glm::vec3& vector, std::size_t vertex) const {
+        const glm::dvec3 from(from_[vertex]), to(to_[vertex]), way(vector);
+        const double cosine = glm::dot(from, to);
+        if (from == glm::dvec3(0.0) || to == glm::dvec3(0.0) || from == to)
+            return vector;
+        if (!(cosine > -1.0 + 1e-9))
+            return -vector;
+        const glm::dvec3 axis = glm::cross(from, to);
+        return way * cosine + glm::cross(axis, way) + axis * (glm::dot(axis, way) / (1.0 + cosine));
+    }
+    [[nodiscard]] glm::vec4 operator()(const glm::vec4& tangent, std::size_t vertex) const {
+        return {(*this)(glm::vec3(tangent), vertex), tangent.w};
+    }
+
+private:
+    std::vector<glm::vec3> from_, to_;
+};
+
+} // namespace
+
+SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& matrix) {
+    const Motion motion(matrix, scene.mesh.offset);
+    Taken own = taken(scene, group);
+    const auto place = [&](const glm::vec3& position) {
+        return motion.place(position);
+    };
+    move_all(own.after.positions, place);
+    move_all(own.blockers_after, place);
+    move_all(own.after.normals, [&](const glm::vec3& normal) { return motion.normal(normal); });
+    move_all(own.after.lifts, [&](const glm::vec3& way) { return motion.way(way); });
+    struct {
+        const Motion& motion;
+        glm::vec3 operator()(const glm::vec3& way, std::uint32_t) const { return motion.way(way); }
+        glm::vec4 operator()(const glm::vec4& tangent, std::uint32_t) const {
+            return motion.tangent(tangent);
+        }
+    } const turn{motion};
+    return change_of(scene, group, std::move(own), &motion, turn);
+}
+
+SceneChange posed(const Scene& scene, std::uint32_t group, std::span<const glm::dvec3> vertices) {
+    if (!on_vertices(scene.layout))
+        throw std::invalid_argument(
+            "expected vertices as receivers where a group takes another pose, got others");
+    Taken own = taken(scene, group);
+    const std::string& name = scene.mesh.groups[group];
+    if (scene.blockers && own.blockers_after != own.before.mesh.positions)
+        throw std::invalid_argument(fmt::format(
+            "expected a group that is lit as the mesh has it where it takes another pose, got {}, "
+            "which was refined: --no-refine leaves it as it is",
+            name));
+    if (vertices.size() != own.before.vertices.size())
+        throw std::invalid_argument(fmt::format("expected the {} vertices of {}, got {}",
+                                                own.before.vertices.size(), name, vertices.size()));
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        own.after.positions[i] = vertices[i] - scene.mesh.offset;
+    if (scene.blockers)
+        own.blockers_after = own.after.positions;
+    const Turns turns(own.before.mesh, own.after);
+    for (std::size_t i = 0; i < own.after.normals.size(); ++i)
+        own.after.normals[i] = turns(own.after.normals[i], i);
+    for (std::size_t i = 0; i < own.after.lifts.size(); ++i)
+        own.after.lifts[i] = turns(own.after.lifts[i], i);
+    return change_of(scene, group, std::move(own), nullptr, turns);
 }
 
 namespace {
@@ -340,7 +447,7 @@ SceneChange without_or_with(const Scene& scene, std::uint32_t group,
     GroupMesh mesh = changing_group(scene, group, all);
     SceneChange change;
     change.group = group;
-    change.rim_step = scene.settings.rim_step;
+    change.rim_step = rim_step_of(scene);
     change.absent = scene.absent;
     change.difference.around = {no_box(), no_box()};
     change.difference.receivers.resize(scene.receivers.size());

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 
 #include "prt/moves/scene_change.h"
 #include "prt/scene/scene_file.h"
@@ -12,6 +14,9 @@ namespace relumine::prt {
 
 /// Exchanges what a change has with what the scene has. A second call undoes the first.
 void exchange(Scene& scene, SceneChange& change);
+
+/// Gives a change the places of its receivers, and what they have.
+void set_places(const Scene& scene, SceneChange& change);
 
 /// Returns the geometry of the scene after a move, without counts and bounces. `matrix` takes the
 /// group from its present place to the next one, in the coordinates of the mesh's file (Y up).
@@ -22,6 +27,15 @@ void exchange(Scene& scene, SceneChange& change);
 ///          affine map; a group whose vertices others share, or that is the added floor's;
 ///          receivers that belong to an eye; a group that was taken away.
 [[nodiscard]] SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& matrix);
+
+/// Returns the same of a group that takes another pose: its vertices go each its own way, and its
+/// normals turn as its smooth normals do. `vertices` are the group's, by ascending number, in the
+/// coordinates of the mesh's file.
+///
+/// Throws:  as moved(); std::invalid_argument for receivers that are no vertices, another number of
+///          vertices, and a group that was refined.
+[[nodiscard]] SceneChange posed(const Scene& scene, std::uint32_t group,
+                                std::span<const glm::dvec3> vertices);
 
 /// Returns the same of a scene whose group is taken away, or is brought back to where it stood.
 /// Its receivers stay, and see what they see without it.

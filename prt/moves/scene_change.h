@@ -35,7 +35,10 @@ struct SceneChange {
     std::uint32_t group = 0;
     /// The group's vertices, and what they have: as TriangleMesh
     std::vector<std::uint32_t> vertices;
-    std::vector<glm::vec3> positions, normals, lifts;
+    std::vector<glm::vec3> positions, normals;
+    /// The vertices whose lifts differ, and those, as TriangleMesh and Scene::free_lifts
+    std::vector<std::uint32_t> lifted;
+    std::vector<glm::vec3> lifts, free_lifts;
     /// The group's triangles, where they have tangents or are another
     std::vector<std::uint32_t> triangles;
     std::vector<std::array<glm::vec4, 3>> corner_tangents;

@@ -161,10 +161,12 @@ void leave_obstacles(const mesh::TriangleMesh& mesh, const RayScene& rays, float
     });
 }
 
-void leave_obstacles(const RayScene& rays, float bias, mesh::TriangleMesh& mesh) {
+void leave_obstacles(const RayScene& rays, float bias, mesh::TriangleMesh& mesh,
+                     std::optional<float> rim_step) {
     std::vector<glm::vec3> lifts = std::exchange(mesh.lifts, {});
     lifts.resize(mesh.num_vertices(), glm::vec3(0.0f));
-    const std::vector<glm::vec3> own = vertex_receivers(mesh).positions;
+    const std::vector<glm::vec3> own =
+        (rim_step ? vertex_receivers(mesh, *rim_step) : vertex_receivers(mesh)).positions;
     files::parallel_for(std::size_t{0}, lifts.size(), [&](std::size_t i) {
         const glm::vec3 lifted = own[i] + lifts[i];
         // A vertex that another solid hides looks from elsewhere.
@@ -178,6 +180,11 @@ void leave_obstacles(const RayScene& rays, float bias, mesh::TriangleMesh& mesh)
     if (std::any_of(lifts.begin(), lifts.end(),
                     [](const glm::vec3& lift) { return lift != glm::vec3(0.0f); }))
         mesh.lifts = std::move(lifts);
+}
+
+glm::vec3 free_lift(const glm::vec3& lift, const glm::vec3& normal) {
+    // What stands in the way sends a vertex back into its own solid.
+    return !leads_along(lift, normal) && glm::dot(lift, normal) < 0.0f ? glm::vec3(0.0f) : lift;
 }
 
 } // namespace relumine::prt

@@ -1,6 +1,8 @@
 // Where the rays start that ask what lights a point of a mesh.
 #pragma once
 
+#include <optional>
+
 #include <glm/vec3.hpp>
 
 #include "mesh/triangle_mesh.h"
@@ -28,7 +30,13 @@ void leave_obstacles(const mesh::TriangleMesh& mesh, const RayScene& rays, float
                      Receivers& receivers);
 
 /// Gives such vertices lifts that would look from beyond another surface. Vertices that another
-/// solid hides, and look from outside of it, stay as they are.
-void leave_obstacles(const RayScene& rays, float bias, mesh::TriangleMesh& mesh);
+/// solid hides, and look from outside of it, stay as they are. `rim_step` is that of
+/// vertex_receivers(); none: the mesh's own.
+void leave_obstacles(const RayScene& rays, float bias, mesh::TriangleMesh& mesh,
+                     std::optional<float> rim_step = {});
+
+/// Returns the lift that a vertex would have were nothing in its way, as far as that one tells: of
+/// a lift that leave_obstacles() gave, none.
+[[nodiscard]] glm::vec3 free_lift(const glm::vec3& lift, const glm::vec3& normal);
 
 } // namespace relumine::prt

@@ -90,6 +90,8 @@ void add_mesh(NewSections& sections, const Scene& scene) {
         sections["second_uvs"] = SectionContent::view(scene.mesh.second_uvs);
     if (!scene.mesh.lifts.empty())
         sections["lifts"] = SectionContent::view(scene.mesh.lifts);
+    if (!scene.free_lifts.empty() && scene.settings.is_movable)
+        sections["free_lifts"] = SectionContent::view(scene.free_lifts);
     if (scene.blockers) {
         sections["block_positions"] = SectionContent::view(scene.blockers->positions);
         sections["block_triangles"] = are_there ? SectionContent::view(scene.blockers->triangles)
@@ -113,6 +115,7 @@ void read_mesh(const SectionReader& reader, Scene& scene) {
     mesh.uvs = reader.elements<glm::vec2>("uvs", mesh.num_vertices(), true);
     mesh.second_uvs = reader.elements<glm::vec2>("second_uvs", mesh.num_vertices(), true);
     mesh.lifts = reader.elements<glm::vec3>("lifts", mesh.num_vertices(), true);
+    scene.free_lifts = reader.elements<glm::vec3>("free_lifts", mesh.num_vertices(), true);
     require_indices(reader, mesh, "triangles");
     if (reader.has("block_triangles")) {
         mesh::TriangleMesh& blockers = scene.blockers.emplace();
@@ -134,6 +137,7 @@ void check_mesh(const SceneCheck& check, const Scene& scene) {
                     check.fail(expected_place(scene), SceneCheck::text_of(mesh.positions[vertex]));
     };
     check_places(scene.mesh);
+    check.all("finite lifts", scene.free_lifts, is_finite);
     if (scene.blockers)
         check_places(*scene.blockers);
     check.all("normals of length 1 or 0", scene.mesh.normals, is_unit_or_zero);

@@ -36,6 +36,7 @@ RelightingScene leaned(RelightingScene given) {
     scene.mesh.uvs.clear();
     scene.mesh.second_uvs.clear();
     scene.blockers.reset();
+    scene.free_lifts.clear();
     scene.receivers.to_eye.clear();
     scene.receivers.surfaces.clear();
     scene.receivers.veils.clear();

@@ -79,6 +79,9 @@ struct Scene {
     /// The triangles that block light, where they are not the mesh's own: the mesh before it was
     /// refined or simplified. Positions and triangles with their groups, nothing else.
     std::optional<mesh::TriangleMesh> blockers = {};
+    /// [num_vertices] the lifts of a mesh whose groups can move, were nothing in the vertices' way;
+    /// empty: free_lift() of those that they have
+    std::vector<glm::vec3> free_lifts = {};
     /// Groups that were taken away (prt/scene/absent_groups.h)
     std::vector<AbsentGroup> absent = {};
     /// Light from surface to surface. It comes from vertices, so pixels and texels have the mesh's

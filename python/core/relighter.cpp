@@ -23,6 +23,7 @@
 #include "relumine/light/light_lists.h"
 #include "relumine/light/light_parts.h"
 #include "relumine/light/live_eye.h"
+#include "relumine/light/scene_moves.h"
 #include "relumine/out/pictures.h"
 #include "run.h"
 #include "scene.h"
@@ -194,8 +195,8 @@ py::tuple update_region(Lit& own, unsigned face, std::uint32_t x, std::uint32_t 
     const std::vector<glm::vec3> values = vec3s(radiance);
     const cubemap::TexelRectangle rectangle{static_cast<cubemap::Face>(face), x, y, x + width,
                                             y + height};
-    return update_of(
-        change(own, [&](LitScene& lit) { return lit.update_region(rectangle, values); }));
+    return update_of(change(
+        own, [&](LitScene& lit) { return lit.environment().update_region(rectangle, values); }));
 }
 
 py::tuple set_layers(Lit& own, const std::string& json) {
@@ -233,8 +234,9 @@ py::list layer_shapes() {
 }
 
 std::string layers_text(Lit& own) {
-    return quickly(
-        own, [](LitScene& lit) { return cubemap::json_text({.layers = lit.state().layers}); });
+    return quickly(own, [](LitScene& lit) {
+        return cubemap::json_text({.layers = lit.environment().state().layers});
+    });
 }
 
 void mark(Lit& own) {
@@ -264,7 +266,8 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
         .def("redo", [](Lit& own) { return update_of(change(own, &relumine::redo)); })
         .def("history", [](Lit& own) {
             return quickly(own, [](LitScene& lit) {
-                return std::pair(lit.history().can_undo(lit.state()), lit.history().can_redo());
+                return std::pair(lit.environment().history().can_undo(lit.environment().state()),
+                                 lit.environment().history().can_redo());
             });
         });
 }
@@ -273,20 +276,21 @@ py::dict move(const LitPointer& own, const std::string& name, const py::object& 
               const py::object& progress) {
     return move_figures(
         moving(own, progress, [to = group_move(name, to)](LitScene& lit, const Reins& reins) {
-            return lit.move(to, move_work(reins));
+            return lit.moves().move(to, move_work(reins));
         }));
 }
 
 py::dict drag(const LitPointer& own, const std::string& name, const py::object& to) {
     return move_figures(
-        moving(own, py::none(),
-               [to = group_move(name, to)](LitScene& lit, const Reins&) { return lit.drag(to); }));
+        moving(own, py::none(), [to = group_move(name, to)](LitScene& lit, const Reins&) {
+            return lit.moves().drag(to);
+        }));
 }
 
 /// A copy of the scene as it stands.
 std::shared_ptr<Scene> present_scene(const LitPointer& own) {
     return slowly(own, py::none(), [](LitScene& lit, const Reins&) {
-        if (lit.is_dragging())
+        if (lit.moves().is_dragging())
             throw std::logic_error(
                 "expected no group that is dragged: drop() or undo_move() first");
         return std::make_shared<Scene>(lit.scene());
@@ -299,13 +303,13 @@ void bind_moves(py::class_<Lit, LitPointer>& type) {
         .def("drop",
              [](const LitPointer& own, const py::object& progress) {
                  return move_figures(moving(own, progress, [](LitScene& lit, const Reins& reins) {
-                     return lit.drop(move_work(reins));
+                     return lit.moves().drop(move_work(reins));
                  }));
              })
         .def("exchange_move",
              [](const LitPointer& own, bool is_undo) {
                  return moving(own, py::none(), [is_undo](LitScene& lit, const Reins&) {
-                     return is_undo ? lit.undo_move() : lit.redo_move();
+                     return is_undo ? lit.moves().undo() : lit.moves().redo();
                  });
              })
         .def("scene", &present_scene);
@@ -660,7 +664,7 @@ void bind_relighters(py::module_& module) {
         .def("base",
              [](Lit& own) {
                  auto [map, degrees] = quickly(own, [](LitScene& lit) {
-                     const LightState& state = lit.state();
+                     const LightState& state = lit.environment().state();
                      const bool is_edited = state.base && state.base->map();
                      return std::pair(is_edited ? *state.base->map() : environment_of(lit),
                                       state.rotation_degrees);

@@ -340,6 +340,8 @@ GroupMove group_move(const std::string& name, const py::object& to) {
     if (py::isinstance<py::str>(to))
         return {.name = name,
                 .going = to.cast<std::string>() == "away" ? Going::Away : Going::Back};
+    if (py::isinstance<Mesh>(to))
+        return pose_of(name, to.cast<const Mesh&>().geometry);
     GroupMove result{.name = name};
     const std::vector<double> numbers = doubles(to.cast<py::buffer>());
     for (int i = 0; i < 16; ++i)

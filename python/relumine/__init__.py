@@ -28,6 +28,7 @@ from ._layers import SHAPES as _SHAPES
 from ._layers import Emit, Gain, Image, Layer, load_layers, save_layers
 from ._lights import LightList
 from ._mesh import Mesh, RelumineWarning
+from ._moves import Move
 from ._picture import Picture
 from ._relighter import (
     FACES,
@@ -35,7 +36,6 @@ from ._relighter import (
     FittedEnvironment,
     FittedLights,
     Frame,
-    Move,
     Relighter,
     RelightTimes,
     Share,

@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Floats, Indices, doubles, expect, floats, indices, real, view, whole, word
+from ._arrays import Floats, Indices, doubles, expect, floats, indices, real, view, whole
 from ._blockers import BlockersFunction, asked
 from ._environment import Environment, _options
 from ._files import Path, errors
 from ._layers import Layer, Region, naming_layers, parsed, region_text, text_of
 from ._lights import LightList
 from ._mesh import warn
+from ._moves import Moving
 from ._picture import Picture, with_picture_options
 from ._scene import Color, Progress, Scene
 
@@ -45,22 +46,6 @@ class Update(NamedTuple):
     seconds_trace: float
     #: All clusters were summed, because that was less work.
     resummed: bool
-
-
-class Move(NamedTuple):
-    """What a move of a group changed, and what it took."""
-
-    #: That went along.
-    receivers: int
-    #: Of blocks of 16 receivers and clusters: counted anew, with other counts, all that there are.
-    pairs: int
-    pairs_changed: int
-    pairs_all: int
-    rays: int
-    #: Something is now outside of the box that held the scene.
-    leaves_box: bool
-    seconds_bounces: float
-    seconds: float
 
 
 class Bounces(NamedTuple):
@@ -133,7 +118,7 @@ def _environment(value: Environment) -> _core.Environment:
     return value._core
 
 
-class Relighter:
+class Relighter(Moving):
     """A scene under light, which may change.
 
     clusters_only  lights the sun through its cluster too, without shadow rays: faster, softer
@@ -173,8 +158,6 @@ class Relighter:
                 surface_roughness=surface_roughness,
             )
         self._scene = scene
-        # Whether the scene that is lit may be another one by now: groups have moved.
-        self._has_moved = False
         self._clusters_only = clusters_only
         self._highlight_rays = highlight_rays
         # What lights it, where it is more than a map: an environment, or a list.
@@ -456,88 +439,6 @@ class Relighter:
     def can_redo(self) -> bool:
         """Whether there is a mark after the present one."""
         return self._core.history()[1]
-
-    # Groups that move
-
-    def move(
-        self, name: str, matrix: ArrayLike, *, progress: Optional[Progress] = None
-    ) -> Move:
-        """Moves a group of the scene, as Scene.move(), and lights the scene again by its light.
-
-        name    a group of a scene that was precomputed with movable=True
-        matrix  (4, 4): from its present place to the next one, for columns (x, y, z, 1), in the
-                coordinates of the mesh's file with Y up
-
-        `radiance` is that of another Relighter of the moved scene, bit by bit, bounces included.
-        The Scene that was given stays as it is: `relighter.scene` is the moved one.
-
-        Raises ValueError as Scene.move(), RuntimeError where a blockers_function blocks the light.
-        """
-        return self._move(name, doubles("matrix", matrix, 4, 4), progress)
-
-    def remove(self, name: str, *, progress: Optional[Progress] = None) -> Move:
-        """Takes a group away, as Scene.remove()."""
-        return self._move(name, "away", progress)
-
-    def restore(self, name: str, *, progress: Optional[Progress] = None) -> Move:
-        """Brings a group back that was taken away, to where it stood."""
-        return self._move(name, "back", progress)
-
-    def drag(self, name: str, matrix: ArrayLike) -> Move:
-        """Shows a group on its way, some ten times a second: `radiance` for the eye, until drop().
-
-        matrix  (4, 4): as move(), from where the group stood when the drag began
-
-        The first call takes as long as a move. Clusters with little light are sampled in their
-        middle alone, and bounced light stays as it was. A drag of another group, move() and
-        undo_move() take the drag back first.
-
-        >>> mesh = relumine.Mesh.load("boulder.ply", floor=20)
-        >>> scene = relumine.precompute(mesh, tolerance=0.05, bounces=False, movable=True)
-        >>> lit = relumine.Relighter(scene)
-        >>> _ = lit.set_environment(environment)
-        >>> shifted = np.eye(4)
-        >>> for x in (0.1, 0.2, 0.3):
-        ...     shifted[0, 3] = x
-        ...     _ = lit.drag("mesh", shifted)
-        >>> lit.drop().receivers > 0
-        True
-        """
-        rows = doubles("matrix", matrix, 4, 4)
-        self._require_light()
-        with errors():
-            result = Move(**self._core.drag(word("name", name), rows))
-        self._has_moved = True
-        return result
-
-    def drop(self, *, progress: Optional[Progress] = None) -> Move:
-        """Moves the group that is dragged to where it is, as move(). One step of undo_move().
-
-        Raises RuntimeError where nothing is dragged.
-        """
-        self._has_moved = True
-        with errors():
-            return Move(**self._core.drop(progress))
-
-    def undo_move(self) -> bool:
-        """Takes a drag back, or undoes the last move. Whether there was one; the last 32 are kept."""
-        self._has_moved = True
-        with errors():
-            return self._core.exchange_move(True)
-
-    def redo_move(self) -> bool:
-        """Makes the last move again that was undone. Whether there was one."""
-        self._has_moved = True
-        with errors():
-            return self._core.exchange_move(False)
-
-    def _move(
-        self, name: str, to: Union[NDArray[Any], str], progress: Optional[Progress]
-    ) -> Move:
-        with errors():
-            result = Move(**self._core.move(word("name", name), to, progress))
-        self._has_moved = True
-        return result
 
     # Questions
 

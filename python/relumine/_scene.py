@@ -13,6 +13,7 @@ from . import _core
 from ._arrays import Floats, Indices, doubles, expect, floats, view, whole, word
 from ._blockers import BlockersFunction, asked
 from ._brdf import Brdf
+from ._core import Mesh as CoreMesh
 from ._core import Scene as CoreScene
 from ._files import Path, errors
 from ._mesh import Mesh, warn
@@ -435,6 +436,25 @@ class Scene:
         """
         return self._moved(name, doubles("matrix", matrix, 4, 4), progress)
 
+    def pose(self, name: str, mesh: Mesh, *, progress: Optional[Progress] = None) -> "Scene":
+        """A scene in which a group takes another pose, for the cost of a move.
+
+        name    a group of the mesh
+        mesh    a mesh whose group of this name has that pose: of the same file, as
+                Mesh.load(path, pose="0@0.5") reads it
+
+        Raises ValueError as move(), for a group with another number of vertices, receivers that are
+        no vertices, and a group that was refined: precompute(..., refine=False) leaves it as it is.
+
+        >>> mesh = relumine.Mesh.load("boulder.ply", floor=20)
+        >>> scene = relumine.precompute(
+        ...     mesh, tolerance=0.05, bounces=False, movable=True, refine=False)
+        >>> scene.pose("mesh", mesh)
+        <relumine.Scene: vertices, ... receivers, ... clusters>
+        """
+        expect("mesh", mesh, Mesh)
+        return self._moved(name, mesh._core, progress)
+
     def remove(self, name: str, *, progress: Optional[Progress] = None) -> "Scene":
         """A scene from which a group is taken away, for the cost of a move. restore() undoes it.
 
@@ -453,7 +473,7 @@ class Scene:
         return self._moved(name, "back", progress)
 
     def _moved(
-        self, name: str, to: Union[NDArray[Any], str], progress: Optional[Progress]
+        self, name: str, to: Union[NDArray[Any], str, CoreMesh], progress: Optional[Progress]
     ) -> "Scene":
         with errors():
             core, report = _core.moved(self._core, word("name", name), to, progress)

@@ -69,7 +69,7 @@ std::vector<Value> in_slices(prt::Team& team, std::span<const std::uint32_t> ind
 
 /// What the environment was made from, while nothing has changed it; null otherwise.
 const cubemap::EnvironmentFile* file_of(const LitScene& lit) {
-    const LightBase* base = lit.state().base.get();
+    const LightBase* base = lit.environment().state().base.get();
     return base != nullptr && !base->map() && base->file().image ? &base->file() : nullptr;
 }
 
@@ -292,7 +292,7 @@ Verification verify(const LitScene& lit, const VerifyOptions& options, const prt
         exact_radiance(lit, receivers, result.receivers, next(num_receivers));
     if (is_traced)
         result.noise = add_traced(lit, result.receivers, options, next(num_receivers), exact);
-    result.error = relight::compare(result.receivers, exact, lit.reflected());
+    result.error = relight::compare(result.receivers, exact, lit.lighting(false).drawn());
     if (!has_surface)
         return result;
     result.surface =
@@ -365,7 +365,7 @@ cubemap::CubeMap picture_adjoint(const LitScene& lit, std::span<const glm::vec3>
 
 cubemap::CubeMap harmonics_adjoint(const LitScene& lit, std::span<const glm::vec3> weights) {
     require_environment(lit);
-    if (lit.harmonic_order() == 0)
+    if (lit.relighter().receiver_light().harmonic_order() == 0)
         throw std::logic_error("expected a scene lit with harmonics, got one without");
     return relight::harmonics_adjoint(lit.relighter(), weights, surfaces_of(lit));
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "files/seconds.h"
+#include "prt/moves/new_obstacles.h"
 
 namespace relumine {
 
@@ -108,8 +109,10 @@ prt::SceneChange GroupDrag::to(const glm::dmat4& matrix, std::vector<bool> coars
         exchange();
         throw;
     }
+    report.num_moved = next.receivers.size();
     prt::exchange(scene_, next);
     rays_.follow(group_);
+    prt::leave_new_obstacles(scene_, rays_.blockers(), next);
     for (std::size_t i = 0; i < vertices_.size(); ++i)
         mesh_.positions[i] = blocking_mesh(scene_).positions[vertices_[i]];
     if (!mesh_.triangles.empty()) {
@@ -131,7 +134,6 @@ prt::SceneChange GroupDrag::to(const glm::dmat4& matrix, std::vector<bool> coars
     prt::exchange(scene_.transfer.counts, next.counts);
     const prt::SceneChange outline = prt::outline(change_ ? *change_ : without_, next);
     change_ = std::move(next);
-    report.num_moved = change_->receivers.size();
     report.num_all =
         std::uint64_t{scene_.transfer.counts.num_blocks()} * scene_.transfer.counts.num_leaves;
     report.counts.num_pairs += of_group.num_pairs;

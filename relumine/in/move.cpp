@@ -17,6 +17,7 @@
 #include "files/joined.h"
 #include "files/nearest_name.h"
 #include "files/seconds.h"
+#include "prt/moves/new_obstacles.h"
 #include "prt/moves/resampled_bounces.h"
 #include "relight/relighter.h"
 #include "relumine/in/stages.h"
@@ -27,6 +28,21 @@ namespace relumine {
 namespace {
 
 constexpr std::array GoingWords = {std::pair("away", Going::Away), std::pair("back", Going::Back)};
+
+/// Returns the number of a group.
+std::uint32_t number_of(const mesh::TriangleMesh& mesh, const std::string& name) {
+    const std::vector<std::string>& names = mesh.groups;
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+        constexpr std::size_t MostListed = 12;
+        std::string hint = files::did_you_mean(name, std::span<const std::string>(names));
+        if (hint.empty() && names.size() <= MostListed)
+            hint = ": " + files::joined_by_or(names);
+        throw std::invalid_argument(
+            fmt::format("expected one of {} groups, got '{}'{}", names.size(), name, hint));
+    }
+    return static_cast<std::uint32_t>(found - names.begin());
+}
 
 mesh::Bounds box_of(const mesh::TriangleMesh& mesh, std::uint32_t group) {
     std::vector<glm::vec3> corners;
@@ -74,6 +90,8 @@ prt::SceneChange change_of(const Scene& scene, const GroupMove& to) {
     switch (to.going) {
     case Going::To:
         return prt::moved(scene, group, to.matrix);
+    case Going::Pose:
+        return prt::posed(scene, group, to.vertices);
     case Going::Away:
         return prt::taken_away(scene, group);
     case Going::Back:
@@ -93,7 +111,9 @@ public:
         const auto start = std::chrono::steady_clock::now();
         const mesh::Bounds box = mesh::bounds(scene_.mesh);
         exchange();
+        report.num_moved = change_.receivers.size();
         try {
+            prt::leave_new_obstacles(scene_, rays_.blockers(), change_);
             prt::CountsPatch counts = prt::recounted(
                 scene_.receivers, rays_.beams(), scene_.transfer, change_.difference,
                 {.face_resolution = scene_.settings.face_resolution, .bias = scene_.settings.bias},
@@ -109,7 +129,6 @@ public:
             exchange();
             throw;
         }
-        report.num_moved = change_.receivers.size();
         report.num_all =
             std::uint64_t{scene_.transfer.counts.num_blocks()} * scene_.transfer.counts.num_leaves;
         report.leaves_box = !is_inside(mesh::bounds(scene_.mesh), box);
@@ -178,17 +197,7 @@ void require_movable(const Scene& scene) {
 
 std::uint32_t group_named(const Scene& scene, const std::string& name) {
     require_movable(scene);
-    const std::vector<std::string>& names = scene.mesh.groups;
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) {
-        constexpr std::size_t MostListed = 12;
-        std::string hint = files::did_you_mean(name, std::span<const std::string>(names));
-        if (hint.empty() && names.size() <= MostListed)
-            hint = ": " + files::joined_by_or(names);
-        throw std::invalid_argument(
-            fmt::format("expected one of {} groups, got '{}'{}", names.size(), name, hint));
-    }
-    return static_cast<std::uint32_t>(found - names.begin());
+    return number_of(scene.mesh, name);
 }
 
 GroupStep GroupStepText::read(const std::string& text) {
@@ -229,6 +238,19 @@ GroupMove move_of(const GroupStep& step, const glm::dvec3& middle) {
     if (step.degrees != 0.0)
         matrix = glm::rotate(matrix, glm::radians(step.degrees), glm::dvec3(0.0, 1.0, 0.0));
     return {.name = step.name, .matrix = glm::translate(matrix, -middle), .going = step.going};
+}
+
+GroupMove pose_of(const std::string& name, const mesh::TriangleMesh& mesh) {
+    const std::uint32_t group = number_of(mesh, name);
+    std::vector<bool> is_own(mesh.num_vertices());
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+        for (const std::uint32_t vertex : mesh.triangles[i])
+            is_own[vertex] = is_own[vertex] || mesh.triangle_groups[i] == group;
+    GroupMove result{.name = name, .going = Going::Pose};
+    for (std::size_t i = 0; i < is_own.size(); ++i)
+        if (is_own[i])
+            result.vertices.push_back(glm::dvec3(mesh.positions[i]) + mesh.offset);
+    return result;
 }
 
 prt::SceneChange move(Scene& scene, const GroupMove& to, const PrecomputeWork& work,

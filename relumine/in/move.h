@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -15,17 +16,27 @@
 
 namespace relumine {
 
-/// Whether a group goes to another place, is taken away, or is brought back to where it stood.
-enum class Going { To, Away, Back };
+/// Whether a group goes to another place, takes another pose, is taken away, or is brought back to
+/// where it stood.
+enum class Going { To, Pose, Away, Back };
 
 /// Moves a group of the scene's mesh.
 struct GroupMove {
     std::string name = {};
     /// From its present place to the next one, in the coordinates of the mesh's file with Y up
     glm::dmat4 matrix{1.0};
-    /// With Away and Back the matrix counts for nothing.
+    /// The matrix counts with To alone.
     Going going = Going::To;
+    /// With Pose: the group's vertices, by ascending number, in the coordinates of the mesh's file
+    /// with Y up
+    std::vector<glm::dvec3> vertices = {};
 };
+
+/// Returns the move of a group to the pose that it has in another mesh: that of the same file, as
+/// MeshOptions::pose reads it.
+///
+/// Throws:  std::invalid_argument for a name that no group of the mesh has.
+[[nodiscard]] GroupMove pose_of(const std::string& name, const mesh::TriangleMesh& mesh);
 
 /// NAME=X,Y,Z[,DEGREES]: a step, and a turn about the vertical axis through the middle of the
 /// group's box. NAME=away and NAME=back: the group is taken away and brought back.

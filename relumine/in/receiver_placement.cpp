@@ -51,7 +51,7 @@ public:
         const bool are_vertices = std::holds_alternative<Vertices>(options_.receivers);
         const bool adds_vertices = !are_vertices && options_.bounce_tolerance.value_or(0.0f) > 0.0f;
         if ((are_vertices || adds_vertices) && options_.blockers == nullptr)
-            prt::leave_obstacles(rays_, scene_.settings.bias, scene_.mesh);
+            leave_obstacles_by_vertices();
         try {
             if (const auto* pixels = std::get_if<Pixels>(&options_.receivers)) {
                 place_pixels(*pixels);
@@ -97,6 +97,18 @@ private:
             ray_scene(mesh::with_raised_floor(scene_.mesh, first, gap), prefix_));
     }
 
+    void leave_obstacles_by_vertices() {
+        std::vector<glm::vec3> free = scene_.mesh.lifts;
+        prt::leave_obstacles(rays_, scene_.settings.bias, scene_.mesh);
+        const std::vector<glm::vec3>& lifts = scene_.mesh.lifts;
+        // Where things move, what is in the way may go.
+        for (std::size_t i = 0; i < free.size() && scene_.settings.is_movable; ++i)
+            if (prt::free_lift(lifts.empty() ? glm::vec3(0.0f) : lifts[i],
+                               scene_.mesh.normals[i]) != free[i]) {
+                scene_.free_lifts = std::move(free);
+                return;
+            }
+    }
     void leave_obstacles() {
         prt::leave_obstacles(scene_.mesh, rays_, scene_.settings.bias, scene_.receivers);
     }

@@ -1,6 +1,7 @@
 #include "relumine/light/edited_environment.h"
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -37,16 +38,22 @@ void require_valid(const LightState& state) {
         cubemap::validate(layer);
 }
 
-UpdateReport EditedEnvironment::light(Light light, relight::Relighter& relighter) {
+relight::Relighter& require_clusters(relight::Relighter* relighter) {
+    if (relighter == nullptr)
+        throw std::invalid_argument("expected a precomputed scene, got a mesh without clusters");
+    return *relighter;
+}
+
+UpdateReport EditedEnvironment::light(Light light) {
     if (is_edited()) {
         LightState next = state_;
         next.base = std::make_shared<const LightBase>(shared_map_of(light), std::move(light.file),
                                                       std::move(light.path));
-        const UpdateReport report = relight_all(next, relighter);
+        const UpdateReport report = relight_all(next);
         state_ = std::move(next);
         return report;
     }
-    const UpdateReport report = set_environment(light, relighter);
+    const UpdateReport report = set_environment(light, *relighter_);
     state_ = {.base = std::make_shared<const LightBase>(nullptr, std::move(light.file),
                                                         std::move(light.path))};
     return report;
@@ -57,23 +64,55 @@ void EditedEnvironment::clear() {
     history_.restart({});
 }
 
-bool EditedEnvironment::begin(relight::Relighter& relighter) {
-    if (is_edited() || relighter.environment().resolution == 0)
-        return false;
+UpdateReport EditedEnvironment::edit(LightState next, Ending ending) {
+    require_valid(next);
+    static_cast<void>(require_clusters(relighter_));
+    begin();
+    EnvironmentChange change = this->change(std::move(next), ending);
+    follower_.follow(change, ending);
+    return change.report;
+}
+
+UpdateReport EditedEnvironment::update_region(const cubemap::TexelRectangle& rectangle,
+                                              std::span<const glm::vec3> radiance) {
+    if (is_edited())
+        return edit(with_region(rectangle, radiance));
+    EnvironmentChange change{
+        .report = relight::update_region(require_clusters(relighter_), rectangle, radiance),
+        .is_other = true};
+    state_ = {}; // no longer that of its file
+    follower_.follow(change, Ending::Quick);
+    return change.report;
+}
+
+glm::dvec3 EditedEnvironment::open_floor_of_base() const {
+    constexpr glm::vec3 Up(0.0f, 1.0f, 0.0f);
+    if (!is_edited() || state_.layers.empty())
+        return relighter_->open_radiance(Up);
+    if (std::exchange(open_of_, state_.base) != state_.base)
+        open_of_base_ = cubemap::irradiance(*state_.base->map(), Up) / std::numbers::pi;
+    return open_of_base_;
+}
+
+/// Makes the present environment the base of edits to come, and the first mark, unless that was
+/// done or there is none.
+void EditedEnvironment::begin() {
+    if (is_edited() || !is_lit())
+        return;
     const LightState first{.base = std::make_shared<const LightBase>(
-                               std::make_shared<const cubemap::CubeMap>(relighter.environment()),
+                               std::make_shared<const cubemap::CubeMap>(relighter_->environment()),
                                state_.base ? state_.base->file() : cubemap::EnvironmentFile(),
                                state_.base ? state_.base->path() : std::filesystem::path())};
     compositor_ = LayerCompositor(first);
     state_ = first;
     history_.restart(first);
-    relighter.resum();
-    return true;
+    relighter_->resum();
+    follower_.follow_first_edit();
 }
 
-EditedEnvironment::Change EditedEnvironment::change(LightState next, Ending ending,
-                                                    relight::Relighter& relighter) {
-    const bool is_dark = relighter.environment().resolution == 0;
+/// Goes to another state, after begin(). A state whose base has no map keeps the present one.
+EnvironmentChange EditedEnvironment::change(LightState next, Ending ending) {
+    const bool is_dark = relighter_->environment().resolution == 0;
     if (!next.base || !next.base->map())
         next.base = state_.base;
     if (is_dark && (!next.base || !next.base->map()))
@@ -85,20 +124,20 @@ EditedEnvironment::Change EditedEnvironment::change(LightState next, Ending endi
                           (next.base != state_.base &&
                            (next.rotation_degrees != 0.0 ||
                             next.base->map()->resolution != state_.base->map()->resolution));
-    Change change;
+    EnvironmentChange change;
     if (is_whole)
-        change = {.report =
-                      is_moving ? relight_coarse(next, relighter) : relight_all(next, relighter),
+        change = {.report = is_moving ? relight_coarse(next) : relight_all(next),
                   .is_whole = true,
                   .is_other = true};
     else if (ending != Ending::Exact || next != state_)
-        change = update(next, relighter);
+        change = update(next);
     if (is_dark)
         history_.restart({.base = next.base});
     state_ = std::move(next);
     return change;
 }
 
+/// Returns the state with a rectangle of the base's texels replaced. Only where is_edited().
 LightState EditedEnvironment::with_region(const cubemap::TexelRectangle& rectangle,
                                           std::span<const glm::vec3> radiance) const {
     relight::require_texels(rectangle, radiance, *state_.base->map());
@@ -109,26 +148,25 @@ LightState EditedEnvironment::with_region(const cubemap::TexelRectangle& rectang
     return next;
 }
 
-UpdateReport EditedEnvironment::relight_all(const LightState& next, relight::Relighter& relighter) {
+UpdateReport EditedEnvironment::relight_all(const LightState& next) {
     if (!next.base->map() || next.base->map()->resolution == 0)
         throw std::invalid_argument("expected a base with texels");
-    return relight_all(LayerCompositor(next, std::exchange(turning_memory_, {})), relighter);
+    return relight_all(LayerCompositor(next, std::exchange(turning_memory_, {})));
 }
 
-UpdateReport EditedEnvironment::relight_all(LayerCompositor compositor,
-                                            relight::Relighter& relighter) {
+UpdateReport EditedEnvironment::relight_all(LayerCompositor compositor) {
     UpdateReport report;
     if (SharedMap base = compositor.base_alone()) {
-        report = relighter.set_environment(std::move(base));
+        report = relighter_->set_environment(std::move(base));
     } else {
         // The map that the layers were composited in is composited anew.
         const bool has_memory = is_edited() && compositor_.is_set();
         try {
-            report = relighter.set_environment(
-                compositor.whole(has_memory ? relighter.lend_environment() : cubemap::CubeMap()));
+            report = relighter_->set_environment(
+                compositor.whole(has_memory ? relighter_->lend_environment() : cubemap::CubeMap()));
         } catch (...) {
             if (has_memory)
-                relighter.return_environment(compositor_.whole());
+                relighter_->return_environment(compositor_.whole());
             throw;
         }
     }
@@ -140,8 +178,7 @@ UpdateReport EditedEnvironment::relight_all(LayerCompositor compositor,
 }
 
 /// Relights by a map that is quick to turn.
-UpdateReport EditedEnvironment::relight_coarse(const LightState& next,
-                                               relight::Relighter& relighter) {
+UpdateReport EditedEnvironment::relight_coarse(const LightState& next) {
     if (coarse_.of != next.base || !coarse_.turns) {
         const SharedMap& map = next.base->map();
         coarse_.of = next.base;
@@ -152,21 +189,18 @@ UpdateReport EditedEnvironment::relight_coarse(const LightState& next,
     }
     const UpdateReport report = relight_all(
         LayerCompositor(next, std::make_shared<const cubemap::CubeMap>(coarse_.turns->turned(
-                                  cubemap::turn_about_y(next.rotation_degrees)))),
-        relighter);
+                                  cubemap::turn_about_y(next.rotation_degrees)))));
     coarse_.is_shown = true;
     return report;
 }
 
-EditedEnvironment::Change EditedEnvironment::update(const LightState& next,
-                                                    relight::Relighter& relighter) {
+EnvironmentChange EditedEnvironment::update(const LightState& next) {
     compositor_.find_changes(next);
-    Change change;
+    EnvironmentChange change;
     if (!compositor_.changed().empty()) {
-        change.report =
-            relighter.update_regions(compositor_.changed(), [this](cubemap::CubeMap& environment) {
-                compositor_.composite(environment);
-            });
+        change.report = relighter_->update_regions(
+            compositor_.changed(),
+            [this](cubemap::CubeMap& environment) { compositor_.composite(environment); });
         change.is_other = true;
     }
     compositor_.accept();

@@ -1,6 +1,6 @@
 // Edits of the light of a scene: layers, the turn of the map, undo.
 //
-// They throw as LitScene::edit(), and cost what it costs.
+// They throw as EditedEnvironment::edit(), and cost what it costs.
 #pragma once
 
 #include <cstddef>

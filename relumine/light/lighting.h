@@ -63,7 +63,7 @@ struct Lighting {
     /// maps.
     std::vector<glm::vec3> harmonics = {};
     /// What pictures gather by rays in place of what `radiance` has of it. Empty: nothing.
-    SentLight gathered_light = {};
+    SentLight sent_light = {};
     /// The radiance, for albedo 1, of a level floor that nothing shades. Empty: unknown, and floors
     /// catch no shadows.
     std::optional<glm::vec3> open_floor = {};

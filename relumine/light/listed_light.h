@@ -14,6 +14,8 @@ namespace relumine {
 
 /// Empty: there is none.
 struct ListedLight {
+    /// The lights that it, or the clusters' light, was made of
+    std::vector<lights::DistantLight> made_of = {};
     /// [receivers of this process] radiance, that of surfaces without highlights, and that without
     /// the lights that are traced one by one
     std::vector<glm::vec3> radiance = {}, diffuse = {}, soft = {};

@@ -16,8 +16,8 @@
 #include "relight/sharp/shadow_rays.h"
 #include "relumine/in/scene_rays.h"
 #include "relumine/light/layer_compositor.h"
+#include "relumine/light/light_sum.h"
 #include "relumine/light/listed_light.h"
-#include "relumine/light/passed_on.h"
 #include "relumine/light/scene_moves.h"
 #include "relumine/light/sent_light.h"
 #include "relumine/light/shared_receivers.h"
@@ -39,22 +39,55 @@ const cubemap::CubeMap* map_of(const Light& light) {
     return std::get_if<cubemap::CubeMap>(&light.environment);
 }
 
+relight::ShadowRays shadow_rays(const Scene& scene, const SharedReceivers& receivers,
+                                const SceneRays& rays, const LightOptions& options) {
+    if (options.clusters_only)
+        return {};
+    return {.blockers = options.blockers ? options.blockers.get() : &rays.for_moving_lights(),
+            .positions = receivers.positions(),
+            .bias = scene.settings.bias,
+            .tolerance = rms_tolerance(scene)};
+}
+
+/// Returns what sums the clusters' light, or null.
+std::unique_ptr<relight::Relighter> relighter_of(const Scene& scene,
+                                                 const SharedReceivers& receivers,
+                                                 const SceneRays& rays,
+                                                 const LightOptions& options) {
+    if (options.harmonics != 0)
+        relight::require_order(options.harmonics);
+    if (!has_clusters(scene)) {
+        if (options.clusters_only)
+            static_cast<void>(require_clusters(nullptr));
+        return nullptr;
+    }
+    if (scene.receivers.size() != scene.transfer.num_receivers())
+        throw std::invalid_argument(fmt::format("expected the transfer of {} receivers, got {}",
+                                                scene.receivers.size(),
+                                                scene.transfer.num_receivers()));
+    return std::make_unique<relight::Relighter>(
+        receivers.transfer(), shadow_rays(scene, receivers, rays, options),
+        options.harmonics == 0 && has_mapped_vertices(scene) ? relight::MaxHarmonicOrder
+                                                             : options.harmonics);
+}
+
 } // namespace
 
 /// Stays in its place, so that its parts can refer to each other.
-struct LitScene::Impl {
-    Impl(std::shared_ptr<const Scene> whole, std::unique_ptr<prt::ScenePart> part,
+struct LitScene::Impl final : LightFollower {
+    Impl(std::shared_ptr<const Scene> whole, Scene* own, std::unique_ptr<prt::ScenePart> part,
          const LightOptions& options);
 
-    /// Throws where there are no clusters.
-    [[nodiscard]] relight::Relighter& clusters() const;
     void require_lit() const;
     void require_same(const Light& light) const;
+    UpdateReport light(Light light);
+    BounceReport bounce(const Bouncing& how);
     BounceReport find_bounces(bool is_step);
     void forget_bounces();
-    void require_own() const;
+    void follow_first_edit() override;
+    void follow(EnvironmentChange& change, Ending ending) override;
+    void follow(const prt::SceneChange& change, bool is_quick) override;
     void finish(UpdateReport& report);
-    void pass_on();
     void bind_sent(ArrivingLight& arriving) const;
     void take_apart(Lighting& lighting) const;
     void take_floor_apart(Lighting& lighting) const;
@@ -72,96 +105,55 @@ struct LitScene::Impl {
             gathers = is_gathered(*scene);
         return *gathers;
     }
-    [[nodiscard]] bool has_environment() const {
-        return relighter && relighter->environment().resolution != 0;
-    }
 
     std::shared_ptr<const Scene> scene;
     /// The same, where nobody else has it.
-    Scene* own_scene = nullptr;
+    Scene* own_scene;
+    LightOptions options;
     SceneRays rays;
     SharedReceivers receivers;
-    std::uint32_t harmonics;
-    /// LightOptions::blockers
-    std::shared_ptr<const prt::Blockers> own_blockers;
-    relight::ShadowRays shadow_rays;
-    bool is_lit = false;
     /// is_gathered(), when it is known.
     mutable std::optional<bool> gathers;
-
-    EditedEnvironment environment;
-    /// The light of a level floor in the open under a base alone.
-    mutable std::shared_ptr<const LightBase> open_of;
-    mutable glm::dvec3 open_of_base{0.0};
     /// The environment's light, or a list's alone. Null without clusters.
     std::unique_ptr<relight::Relighter> relighter;
+    EditedEnvironment environment;
     ListedLight listed;
-    /// What `listed`, or the clusters' light, was made of.
-    std::vector<lights::DistantLight> listed_lights;
-    /// Null where the scene is shared.
-    std::unique_ptr<SceneMoves> moves;
     SceneBounces bounces;
     SceneLamps lamps;
     SceneMirrors mirrors;
-    /// In the order in which they are added. Where there are clusters, theirs is the first.
-    std::vector<std::unique_ptr<const LightTerm>> terms;
-    /// [receivers of this process] the sum; empty where the clusters' term is all.
-    std::vector<glm::vec3> total;
-    /// What surfaces pass on, as a part of the other receiver's radiance, and the sum with it.
-    std::vector<relight::PassedOn> passed;
-    std::vector<glm::vec3> with_passed;
+    LightSum sum;
+    SceneMoves moves;
 };
 
-LitScene::Impl::Impl(std::shared_ptr<const Scene> whole, std::unique_ptr<prt::ScenePart> part,
-                     const LightOptions& options)
+LitScene::Impl::Impl(std::shared_ptr<const Scene> whole, Scene* own,
+                     std::unique_ptr<prt::ScenePart> part, const LightOptions& of)
     : scene(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(whole)),
-      rays(*scene), receivers(*scene, std::move(part), options.team, options.path),
-      harmonics(options.harmonics), own_blockers(options.blockers), lamps(*scene, rays),
-      mirrors(*scene, rays, options.highlight_rays) {
-    if (harmonics != 0)
-        relight::require_order(harmonics);
-    const bool has_clusters = relumine::has_clusters(*scene);
-    if (has_clusters && scene->receivers.size() != scene->transfer.num_receivers())
-        throw std::invalid_argument(fmt::format("expected the transfer of {} receivers, got {}",
-                                                scene->receivers.size(),
-                                                scene->transfer.num_receivers()));
-    if (!options.clusters_only)
-        shadow_rays = {.blockers = own_blockers ? own_blockers.get() : &rays.for_moving_lights(),
-                       .positions = receivers.positions(),
-                       .bias = scene->settings.bias,
-                       .tolerance = rms_tolerance(*scene)};
-    if (has_clusters) {
-        relighter = std::make_unique<relight::Relighter>(
-            receivers.transfer(), shadow_rays,
-            harmonics == 0 && has_mapped_vertices(*scene) ? relight::MaxHarmonicOrder : harmonics);
-        terms.push_back(std::make_unique<ClusterTerm>(*relighter));
-    } else if (options.clusters_only) {
-        static_cast<void>(clusters());
-    }
-    passed = passed_on(*scene);
-    for (relight::PassedOn& own : passed)
-        own.part /= scene->receivers.surfaces[own.other].albedo;
-    terms.push_back(std::make_unique<BounceTerm>(bounces, receivers));
-    terms.push_back(std::make_unique<LampTerm>(lamps, receivers));
-    terms.push_back(std::make_unique<ListTerm>(listed));
-    if (has_clusters)
-        terms.push_back(
-            std::make_unique<MirrorTerm>(mirrors, *relighter, bounces, lamps, receivers));
+      own_scene(own), options(of), rays(*scene),
+      receivers(*scene, std::move(part), options.team, options.path),
+      relighter(relighter_of(*scene, receivers, rays, options)),
+      environment(relighter.get(), *this), lamps(*scene, rays),
+      mirrors(*scene, rays, options.highlight_rays), sum(*scene, receivers, relighter.get()),
+      moves(*scene, receivers.are_in_others() ? nullptr : own, rays, relighter.get(), *this) {
+    if (relighter)
+        sum.add(std::make_unique<ClusterTerm>(*relighter));
+    sum.add(std::make_unique<BounceTerm>(bounces, receivers));
+    sum.add(std::make_unique<LampTerm>(lamps, receivers));
+    sum.add(std::make_unique<ListTerm>(listed));
+    if (relighter)
+        sum.add(std::make_unique<MirrorTerm>(mirrors, *relighter, bounces, lamps, receivers));
 }
 
 LitScene::LitScene(Scene scene, const LightOptions& options) {
     auto own = std::make_shared<Scene>(std::move(scene));
-    impl_ = std::make_unique<Impl>(own, nullptr, options);
-    impl_->own_scene = own.get();
-    impl_->moves = std::make_unique<SceneMoves>(*own, impl_->rays);
+    impl_ = std::make_unique<Impl>(own, own.get(), nullptr, options);
 }
 
 LitScene::LitScene(std::shared_ptr<const Scene> scene, const LightOptions& options)
-    : impl_(std::make_unique<Impl>(std::move(scene), nullptr, options)) {}
+    : impl_(std::make_unique<Impl>(std::move(scene), nullptr, nullptr, options)) {}
 
 LitScene::LitScene(prt::ScenePart part, const LightOptions& options)
-    : impl_(std::make_unique<Impl>(nullptr, std::make_unique<prt::ScenePart>(std::move(part)),
-                                   options)) {}
+    : impl_(std::make_unique<Impl>(nullptr, nullptr,
+                                   std::make_unique<prt::ScenePart>(std::move(part)), options)) {}
 
 LitScene::LitScene(LitScene&&) noexcept = default;
 LitScene& LitScene::operator=(LitScene&&) noexcept = default;
@@ -178,15 +170,15 @@ const SceneRays& LitScene::rays() const {
 }
 
 const relight::Relighter& LitScene::relighter() const {
-    return impl_->clusters();
+    return require_clusters(impl_->relighter.get());
 }
 
-const LightState& LitScene::state() const {
-    return impl_->environment.state();
+EditedEnvironment& LitScene::environment() {
+    return impl_->environment;
 }
 
-LightHistory& LitScene::history() {
-    return impl_->environment.history();
+const EditedEnvironment& LitScene::environment() const {
+    return impl_->environment;
 }
 
 const SceneBounces& LitScene::bounces() const {
@@ -201,20 +193,14 @@ const SceneMirrors& LitScene::mirrors() const {
     return impl_->mirrors;
 }
 
-std::uint32_t LitScene::harmonic_order() const {
-    return impl_->harmonics;
+SceneMoves& LitScene::moves() {
+    return impl_->moves;
 }
 
 // Light
 
-relight::Relighter& LitScene::Impl::clusters() const {
-    if (!relighter)
-        throw std::invalid_argument("expected a precomputed scene, got a mesh without clusters");
-    return *relighter;
-}
-
 void LitScene::Impl::require_lit() const {
-    if (!is_lit)
+    if (!sum.is_lit())
         throw std::logic_error("expected a scene that is lit, got one without light: light() comes "
                                "first, in Python set_environment()");
 }
@@ -233,13 +219,13 @@ void LitScene::Impl::forget_bounces() {
 
 BounceReport LitScene::Impl::find_bounces(bool is_step) {
     std::span<const glm::vec3> direct = relighter->diffuse_radiance();
-    std::vector<glm::vec3> sum;
+    std::vector<glm::vec3> all;
     if (!listed.diffuse.empty() || receivers.are_in_others()) {
-        sum.assign(direct.begin(), direct.end());
+        all.assign(direct.begin(), direct.end());
         for (std::size_t i = 0; i < listed.diffuse.size(); ++i)
-            sum[i] += listed.diffuse[i];
-        sum = receivers.of_all(sum);
-        direct = sum;
+            all[i] += listed.diffuse[i];
+        all = receivers.of_all(all);
+        direct = all;
     }
     return is_step ? bounces.step(direct) : bounces.find(direct);
 }
@@ -249,131 +235,93 @@ void LitScene::Impl::finish(UpdateReport& report) {
     const auto start = Clock::now();
     lamps.find();
     report.seconds_lamps = files::seconds_since(start);
-    total.clear();
-    if (relighter && passed.empty() &&
-        std::none_of(terms.begin() + 1, terms.end(),
-                     [](const auto& term) { return term->is_lit(); }))
-        return;
-    total.assign(receivers.positions().size(), glm::vec3(0.0f));
-    Clock::time_point start_term;
-    for (const auto& term : terms) {
-        start_term = Clock::now();
-        if (term->is_lit())
-            term->add_radiance(total);
-    }
     // The last term is that of the highlights.
+    const double seconds = sum.find();
     if (mirrors.is_needed())
-        report.seconds_highlights = files::seconds_since(start_term);
-    pass_on();
+        report.seconds_highlights = seconds;
 }
 
-/// Adds what surfaces pass on from behind them.
-void LitScene::Impl::pass_on() {
-    if (passed.empty())
-        return;
-    std::vector<glm::vec3> whole = receivers.of_all(total);
-    const std::vector<glm::vec3> before = whole;
-    for (const relight::PassedOn& own : passed)
-        whole[own.receiver] += own.part * before[own.other];
-    with_passed.clear();
-    for (const std::uint32_t receiver : receivers.indices(total.size()))
-        with_passed.push_back(whole[receiver]);
-}
-
-UpdateReport LitScene::light(Light light) {
+UpdateReport LitScene::Impl::light(Light light) {
     const auto start = Clock::now();
-    Impl& own = *impl_;
     const bool has_environment = !std::holds_alternative<std::monostate>(light.environment);
     if (has_environment)
-        static_cast<void>(relighter());
-    own.require_same(light);
+        static_cast<void>(require_clusters(relighter.get()));
+    require_same(light);
     UpdateReport report;
-    ListedLight listed;
-    if (!own.relighter) {
-        listed = listed_light(light.lights, own.scene->receivers.normals, own.shadow_rays);
+    ListedLight next;
+    if (!relighter) {
+        next = listed_light(light.lights, scene->receivers.normals,
+                            shadow_rays(*scene, receivers, rays, options));
     } else if (!has_environment) {
-        report = own.relighter->set_lights(light.lights);
+        report = relighter->set_lights(light.lights);
     } else if (!light.lights.empty()) {
         if (!std::holds_alternative<BinnedEnvironment>(light.environment))
             relight::require_radiance(map_of(light)->texels);
-        listed = listed_light(light.lights, *own.relighter, own.harmonics != 0);
+        next = listed_light(light.lights, *relighter, options.harmonics != 0);
     }
-    own.listed_lights = light.lights;
+    next.made_of = light.lights;
     if (has_environment)
-        report = own.environment.light(std::move(light), *own.relighter);
+        report = environment.light(std::move(light));
     else
-        own.environment.clear();
-    own.listed = std::move(listed);
-    own.forget_bounces();
-    own.is_lit = true;
-    own.finish(report);
+        environment.clear();
+    listed = std::move(next);
+    forget_bounces();
+    finish(report);
     report.seconds = files::seconds_since(start);
     return report;
 }
 
-UpdateReport LitScene::edit(LightState next, Ending ending) {
-    require_valid(next);
-    static_cast<void>(relighter());
-    Impl& own = *impl_;
-    if (own.environment.begin(*own.relighter)) {
-        if (own.bounces.bounced().empty()) {
-            own.bounces.unset();
-            own.lamps.forget_bounces();
-        } else {
-            own.find_bounces(false);
-        }
+UpdateReport LitScene::light(Light light) {
+    return impl_->light(std::move(light));
+}
+
+void LitScene::Impl::follow_first_edit() {
+    if (bounces.bounced().empty()) {
+        bounces.unset();
+        lamps.forget_bounces();
+    } else {
+        find_bounces(false);
     }
-    EditedEnvironment::Change change =
-        own.environment.change(std::move(next), ending, *own.relighter);
+}
+
+void LitScene::Impl::follow(EnvironmentChange& change, Ending ending) {
     if (change.is_whole)
-        own.forget_bounces();
+        forget_bounces();
     else if (change.is_other)
-        own.bounces.unsettle();
-    own.is_lit = true;
+        bounces.unsettle();
     if (ending == Ending::Exact) {
         if (!change.is_whole)
-            own.relighter->resum();
-        if (own.bounces.is_set())
-            own.find_bounces(false);
+            relighter->resum();
+        if (bounces.is_set())
+            find_bounces(false);
     }
-    own.finish(change.report);
-    return change.report;
+    finish(change.report);
 }
 
-UpdateReport LitScene::update_region(const cubemap::TexelRectangle& rectangle,
-                                     std::span<const glm::vec3> radiance) {
-    Impl& own = *impl_;
-    if (own.environment.is_edited())
-        return edit(own.environment.with_region(rectangle, radiance));
-    static_cast<void>(relighter());
-    UpdateReport report = relight::update_region(*own.relighter, rectangle, radiance);
-    own.environment.forget_file();
-    own.bounces.unsettle();
-    own.finish(report);
-    return report;
-}
-
-BounceReport LitScene::bounce(const Bouncing& how) {
-    Impl& own = *impl_;
+BounceReport LitScene::Impl::bounce(const Bouncing& how) {
     std::optional<relight::SurfaceBounces> surfaces;
-    require_bounces(*own.scene);
+    require_bounces(*scene);
     if (!how.albedo.empty())
-        surfaces = bounces_of(*own.scene, how.albedo, how.limits);
-    own.require_lit();
-    if (!surfaces && !own.bounces.is_set())
+        surfaces = bounces_of(*scene, how.albedo, how.limits);
+    require_lit();
+    if (!surfaces && !bounces.is_set())
         throw std::logic_error("expected an albedo, as bounce_albedo() returns it");
-    const relight::SharedRows rows = own.receivers.rows();
+    const relight::SharedRows rows = receivers.rows();
     if (surfaces)
-        own.bounces.set(*own.scene, std::move(*surfaces), rows);
-    own.lamps.set_bounces(own.bounces.surfaces(), rows);
-    BounceReport report = own.find_bounces(how.is_step);
+        bounces.set(*scene, std::move(*surfaces), rows);
+    lamps.set_bounces(bounces.surfaces(), rows);
+    BounceReport report = find_bounces(how.is_step);
     UpdateReport update;
-    own.finish(update);
-    const BounceReport& of_lamps = own.lamps.report();
+    finish(update);
+    const BounceReport& of_lamps = lamps.report();
     report.num_bounces = std::max(report.num_bounces, of_lamps.num_bounces);
     report.error = std::max(report.error, of_lamps.error);
     report.seconds += of_lamps.seconds;
     return report;
+}
+
+BounceReport LitScene::bounce(const Bouncing& how) {
+    return impl_->bounce(how);
 }
 
 void LitScene::dim(std::vector<EmissionGain> gains) {
@@ -381,7 +329,7 @@ void LitScene::dim(std::vector<EmissionGain> gains) {
         return;
     impl_->lamps.set(std::move(gains));
     UpdateReport report;
-    if (impl_->is_lit)
+    if (impl_->sum.is_lit())
         impl_->finish(report);
 }
 
@@ -391,130 +339,54 @@ void LitScene::set_roughness(float roughness) {
     relumine::set_roughness(*impl_->own_scene, roughness);
 }
 
-void LitScene::Impl::require_own() const {
-    require_movable(*scene);
-    if (own_scene == nullptr || receivers.are_in_others())
-        throw std::logic_error("expected a scene that is not shared, to move its groups");
-    if (own_blockers)
-        throw std::logic_error("expected triangles that block light where groups move, got others");
-}
-
-/// Lights what a move has changed, by the same light. Quickly: bounced light stays as it is, and
-/// goes along with what moves.
-void LitScene::follow(const prt::SceneChange& change, bool is_quick) {
-    Impl& own = *impl_;
-    if (own.relighter)
-        own.relighter->follow(change);
+void LitScene::Impl::follow(const prt::SceneChange& change, bool is_quick) {
+    if (relighter)
+        relighter->follow(change);
     if (is_quick)
-        own.lamps.forget_rays();
+        lamps.forget_rays();
     else
-        own.lamps.forget_light();
-    if (!own.is_lit)
+        lamps.forget_light();
+    if (!sum.is_lit())
         return;
     // Other light would end them.
-    SceneBounces bounces = std::exchange(own.bounces, SceneBounces());
-    if (!own.listed.radiance.empty()) {
-        Light light(own.listed_lights);
-        if (own.has_environment()) {
+    SceneBounces kept = std::exchange(bounces, SceneBounces());
+    if (!listed.radiance.empty()) {
+        Light again(listed.made_of);
+        if (environment.is_lit()) {
             // A list beside an environment has the Relighter for a while.
-            const std::shared_ptr<const LightBase> base = own.environment.state().base;
-            light.environment =
-                own.environment.is_edited()
+            const std::shared_ptr<const LightBase> base = environment.state().base;
+            again.environment =
+                environment.is_edited()
                     ? base->map()
-                    : std::make_shared<const cubemap::CubeMap>(own.relighter->environment());
+                    : std::make_shared<const cubemap::CubeMap>(relighter->environment());
             if (base) {
-                light.file = base->file();
-                light.path = base->path();
+                again.file = base->file();
+                again.path = base->path();
             }
         }
-        this->light(std::move(light));
+        light(std::move(again));
     }
     UpdateReport report;
-    const relight::SharedRows rows = own.receivers.rows();
-    if (!bounces.is_set()) {
-        own.finish(report);
+    const relight::SharedRows rows = receivers.rows();
+    if (!kept.is_set()) {
+        finish(report);
     } else if (is_quick) {
-        own.bounces = std::move(bounces);
-        own.lamps.set_bounces(own.bounces.surfaces(), rows);
-        own.finish(report);
+        bounces = std::move(kept);
+        lamps.set_bounces(bounces.surfaces(), rows);
+        finish(report);
     } else {
-        relight::SurfaceBounces surfaces = bounces.surfaces();
-        bounces.unset(); // frees its memory
-        surfaces.matrix = &*own.scene->bounces;
-        own.bounces.set(*own.scene, std::move(surfaces), rows);
-        bounce();
+        relight::SurfaceBounces surfaces = kept.surfaces();
+        kept.unset(); // frees its memory
+        surfaces.matrix = &*scene->bounces;
+        bounces.set(*scene, std::move(surfaces), rows);
+        bounce({});
     }
-}
-
-MoveReport LitScene::move(const GroupMove& to, const PrecomputeWork& work) {
-    Impl& own = *impl_;
-    own.require_own();
-    if (is_dragging())
-        undo_move();
-    MoveReport report;
-    follow(own.moves->move(to, work, report), false);
-    return report;
-}
-
-MoveReport LitScene::drag(const GroupMove& to) {
-    Impl& own = *impl_;
-    own.require_own();
-    static_cast<void>(group_named(*own.scene, to.name));
-    if (is_dragging() && own.moves->dragged()->name != to.name)
-        undo_move();
-    MoveReport report;
-    follow(own.moves->drag(to, coarse_clusters(own.clusters()), report), true);
-    return report;
-}
-
-MoveReport LitScene::drop(const PrecomputeWork& work) {
-    Impl& own = *impl_;
-    own.require_own();
-    if (!is_dragging())
-        throw std::logic_error("expected a group that is dragged");
-    const GroupMove to = *own.moves->dragged();
-    follow(own.moves->take_back(), true);
-    try {
-        return move(to, work);
-    } catch (...) {
-        follow({}, false);
-        throw;
-    }
-}
-
-bool LitScene::is_dragging() const {
-    return impl_->moves && impl_->moves->dragged();
-}
-
-bool LitScene::exchange_move(bool is_undo) {
-    Impl& own = *impl_;
-    own.require_own();
-    const prt::SceneChange* change =
-        is_dragging() ? &own.moves->take_back() : own.moves->exchange(is_undo);
-    if (change != nullptr)
-        follow(*change, false);
-    return change != nullptr;
-}
-
-bool LitScene::undo_move() {
-    return exchange_move(true);
-}
-
-bool LitScene::redo_move() {
-    return exchange_move(false);
 }
 
 // What it gives
 
 std::span<const glm::vec3> LitScene::radiance() const {
-    return impl_->with_passed.empty() ? reflected() : impl_->with_passed;
-}
-
-std::span<const glm::vec3> LitScene::reflected() const {
-    const Impl& own = *impl_;
-    if (!own.is_lit || !own.total.empty() || !own.relighter)
-        return own.total;
-    return own.relighter->radiance();
+    return impl_->sum.radiance();
 }
 
 /// Lets the harmonics of surfaces have the irradiance that they send, too.
@@ -539,13 +411,13 @@ void LitScene::Impl::bind_sent(ArrivingLight& arriving) const {
 
 std::vector<glm::vec3> LitScene::harmonics() const {
     const Impl& own = *impl_;
-    if (!own.is_lit || own.harmonics == 0)
+    if (!own.sum.is_lit() || own.options.harmonics == 0)
         throw std::logic_error("expected a scene that is lit, with LightOptions::harmonics");
-    const std::size_t width = relight::num_harmonics(own.harmonics);
-    ArrivingLight arriving{.order = own.harmonics,
+    const std::size_t width = relight::num_harmonics(own.options.harmonics);
+    ArrivingLight arriving{.order = own.options.harmonics,
                            .harmonics = std::vector<glm::vec3>(
                                relighter().transfer().num_receivers() * width, glm::vec3(0.0f))};
-    for (const auto& term : own.terms)
+    for (const auto& term : own.sum.terms())
         if (term->is_lit())
             term->add_harmonics(arriving);
     if (!arriving.sent.empty())
@@ -558,13 +430,13 @@ std::vector<glm::vec3> LitScene::harmonics() const {
 void LitScene::Impl::take_apart(Lighting& lighting) const {
     std::vector<relight::SharpLight>& lights = lighting.lights;
     std::size_t num_own = 0;
-    for (const auto& term : terms) {
+    for (const auto& term : sum.terms()) {
         const std::vector<relight::SharpLight> further = term->lights();
         lights.insert(lights.end(), further.begin(), further.end());
-        if (relighter && term == terms.front())
+        if (relighter && term == sum.terms().front())
             num_own = lights.size();
     }
-    if (has_environment())
+    if (environment.is_lit())
         lighting.num_environment_lights = num_own;
     if (relighter && scene->transfer.glossy && !scene->mesh.textures.empty())
         lighting.lobes = relighter->receiver_light().lobes(num_own == 0);
@@ -573,7 +445,7 @@ void LitScene::Impl::take_apart(Lighting& lighting) const {
     if (lights.empty())
         return;
     lighting.soft.assign(lighting.radiance.size(), glm::vec3(0.0f));
-    for (const auto& term : terms)
+    for (const auto& term : sum.terms())
         if (term->is_lit())
             term->add_soft(lighting.soft);
 }
@@ -583,7 +455,7 @@ void LitScene::Impl::take_floor_apart(Lighting& lighting) const {
     constexpr glm::vec3 Up(0.0f, 1.0f, 0.0f);
     const std::optional<std::size_t> first = first_floor_vertex(*scene);
     const std::vector<prt::Surface>& surfaces = scene->receivers.surfaces;
-    if (!first || !has_environment() || receivers.are_in_others() ||
+    if (!first || !environment.is_lit() || receivers.are_in_others() ||
         relighter->shadow_rays().blockers == nullptr ||
         !(surfaces.empty() || surfaces[*first] == prt::Surface()))
         return;
@@ -597,16 +469,16 @@ void LitScene::Impl::take_floor_apart(Lighting& lighting) const {
 /// Adds what pictures gather by rays: bounces, and the environment's light but for lights that are
 /// traced.
 void LitScene::Impl::add_sent(Lighting& lighting, std::vector<glm::vec3> gathered) const {
-    if (has_environment())
-        terms.front()->add_soft(gathered);
-    lighting.gathered_light = sent_light(*scene, bounces, lighting.radiance, gathered);
+    if (environment.is_lit())
+        sum.terms().front()->add_soft(gathered);
+    lighting.sent_light = sent_light(*scene, bounces, lighting.radiance, gathered);
 }
 
 /// Gives the first process what all have.
 void LitScene::Impl::gather(Lighting& lighting) const {
     lighting.gathered =
         std::make_shared<const std::vector<glm::vec3>>(receivers.gathered(lighting.radiance));
-    if (!passed.empty()) {
+    if (sum.passes_on()) {
         lighting.gathered_reflected =
             std::make_shared<const std::vector<glm::vec3>>(receivers.gathered(lighting.reflected));
         lighting.reflected = *lighting.gathered_reflected;
@@ -635,18 +507,10 @@ void LitScene::Impl::show_environment(Lighting& lighting) const {
 
 /// What layers and lists make of the light of a floor in the open.
 glm::vec3 LitScene::Impl::open_gain(const glm::vec3& open_floor) const {
-    constexpr glm::vec3 Up(0.0f, 1.0f, 0.0f);
     const LightState& state = environment.state();
     if (state.layers.empty() && listed.radiance.empty())
         return glm::vec3(1.0f);
-    glm::dvec3 base(0.0);
-    if (!environment.is_edited() || state.layers.empty()) {
-        base = relighter->open_radiance(Up);
-    } else {
-        if (std::exchange(open_of, state.base) != state.base)
-            open_of_base = cubemap::irradiance(*state.base->map(), Up) / std::numbers::pi;
-        base = open_of_base;
-    }
+    const glm::dvec3 base = environment.open_floor_of_base();
     glm::vec3 gain(1.0f);
     for (int channel = 0; channel < 3; ++channel)
         if (base[channel] > 0.0)
@@ -659,11 +523,11 @@ Lighting LitScene::lighting(bool is_drawn) const {
     own.require_lit();
     Lighting result{.radiance = radiance()};
     glm::dvec3 open_floor(0.0);
-    for (const auto& term : own.terms)
+    for (const auto& term : own.sum.terms())
         open_floor += term->open_floor();
     result.open_floor = open_floor;
-    if (!own.passed.empty())
-        result.reflected = reflected();
+    if (own.sum.passes_on())
+        result.reflected = own.sum.reflected();
     if (is_drawn)
         own.take_apart(result);
     if (is_drawn && prt::on_vertices(own.scene->layout))
@@ -677,7 +541,7 @@ Lighting LitScene::lighting(bool is_drawn) const {
     } else if (own.relighter) {
         result.arriving = own.relighter->diffuse_radiance();
     }
-    if (!own.has_environment())
+    if (!own.environment.is_lit())
         return result;
     result.environment = &own.relighter->environment();
     if (is_drawn) {
@@ -689,7 +553,7 @@ Lighting LitScene::lighting(bool is_drawn) const {
 }
 
 bool has_environment(const LitScene& lit) {
-    return has_clusters(lit.scene()) && lit.relighter().environment().resolution != 0;
+    return lit.environment().is_lit();
 }
 
 const cubemap::CubeMap& environment_of(const LitScene& lit) {

@@ -29,8 +29,7 @@
 
 namespace relumine {
 
-struct GroupMove;
-struct MoveReport;
+class SceneMoves;
 
 struct LightOptions {
     /// Lights the sun through its cluster too, without shadow rays of its own: faster, softer
@@ -100,13 +99,14 @@ public:
     ///
     /// Throws:  std::invalid_argument for a scene without clusters.
     [[nodiscard]] const relight::Relighter& relighter() const;
-    /// The environment with its layers and its turn.
-    [[nodiscard]] const LightState& state() const;
-    /// Marks of states; see mark().
-    [[nodiscard]] LightHistory& history();
+    /// The environment with its layers and its turn: what edits them.
+    [[nodiscard]] EditedEnvironment& environment();
+    [[nodiscard]] const EditedEnvironment& environment() const;
     [[nodiscard]] const SceneBounces& bounces() const;
     [[nodiscard]] const SceneLamps& lamps() const;
     [[nodiscard]] const SceneMirrors& mirrors() const;
+    /// What moves groups of the scene's mesh (include relumine/light/scene_moves.h).
+    [[nodiscard]] SceneMoves& moves();
 
     /// Lights the scene [JN, Eq. 8]. Layers and the turn of set_rotation() stay: a new environment
     /// is turned as well. A list without one takes the layers away, with the history. Bounces go
@@ -118,26 +118,6 @@ public:
     ///          has other light.
     /// Cost:    milliseconds, see docs/measurements.md.
     UpdateReport light(Light light);
-
-    /// Changes the environment's base, layers or turn, and updates what depends on it [JN, Section
-    /// 5.2]. With another turn or resolution everything is relit. Bounces stay those of the light
-    /// before, until the next call of bounce(). The functions of light/edits.h are made of it. A
-    /// base without a map is the present one.
-    ///
-    /// Throws:  std::invalid_argument for a layer that is not valid, a turn that is not finite,
-    ///          radiance that is too large, or no environment; nothing has changed then.
-    /// Cost:    proportional to what the changed layers cover. The first call relights everything
-    ///          once more.
-    UpdateReport edit(LightState next, Ending ending = Ending::Quick);
-
-    /// Replaces a rectangle of the environment's texels, row by row [(x1 - x0) * (y1 - y0)], and
-    /// updates what depends on it. Under layers, the environment is the base, and finding what
-    /// changed costs a comparison of the whole map.
-    ///
-    /// Throws:  std::invalid_argument for a rectangle outside of the face, a wrong size, radiance
-    ///          that is not finite or negative, or no environment; nothing has changed then.
-    UpdateReport update_region(const cubemap::TexelRectangle& rectangle,
-                               std::span<const glm::vec3> radiance);
 
     /// Adds the light that surfaces send to each other to radiance() and lighting(), all of its
     /// bounces or so many. Radiance stays that of the receivers' own surfaces, or for albedo 1.
@@ -163,37 +143,9 @@ public:
     /// Throws:  as relumine::set_roughness(); std::logic_error where the scene is shared.
     void set_roughness(float roughness);
 
-    /// Moves a group of the scene's mesh (include relumine/in/move.h), and lights the scene again
-    /// by the light that it has: environment, layers, lists, lamps and bounces. The radiance is
-    /// bit by bit that of another LitScene of the moved scene in this light.
-    ///
-    /// Throws:  as relumine::move(); std::logic_error where the scene is shared, by other users or
-    ///          processes, or others than its triangles block light.
-    /// Cost:    what the move changes. Lamps, bounces, and lists beside an environment are found
-    ///          anew (docs/moves.md).
-    MoveReport move(const GroupMove& to, const PrecomputeWork& work = {});
-    /// Drags a group: `to` leads from where it stood when the drag began. Quicker than move(), and
-    /// for the eye: clusters with little light are sampled in their middle alone, and bounced light
-    /// stays as it was. The scene has such counts until drop(), which moves the group there as
-    /// move() does. undo_move(), another move() and a drag of another group take the drag back
-    /// first.
-    ///
-    /// Throws:  as move(); drop() std::logic_error where nothing is dragged. A drop() that is
-    ///          cancelled takes the drag back.
-    MoveReport drag(const GroupMove& to);
-    MoveReport drop(const PrecomputeWork& work = {});
-    /// Whether a group is dragged
-    [[nodiscard]] bool is_dragging() const;
-    /// Undoes the last move that is not undone, or makes it again. Nothing of it is traced anew but
-    /// what lights of their own need. The last 32 moves are kept. Returns whether there was one.
-    bool undo_move();
-    bool redo_move();
-
     /// Outgoing radiance of this process's receivers, in their order and the unit of the
     /// environment's; without materials for albedo 1. Empty before the first light().
     [[nodiscard]] std::span<const glm::vec3> radiance() const;
-    /// The same without what surfaces pass on from behind them.
-    [[nodiscard]] std::span<const glm::vec3> reflected() const;
 
     /// Returns the light that arrives at the receivers as spherical harmonics (docs/harmonics.md),
     /// [num_receivers][order^2] in the receivers' order, for any normal. At a surface's own normal
@@ -203,8 +155,6 @@ public:
     ///
     /// Throws:  std::logic_error before the first light() and without LightOptions::harmonics.
     [[nodiscard]] std::vector<glm::vec3> harmonics() const;
-    /// LightOptions::harmonics
-    [[nodiscard]] std::uint32_t harmonic_order() const;
 
     /// Returns what a picture is drawn of, or its radiance alone. It points into this object, and
     /// is good until the light changes. Of processes that share the light, all call it; the first
@@ -214,9 +164,6 @@ public:
     [[nodiscard]] Lighting lighting(bool is_drawn = true) const;
 
 private:
-    void follow(const prt::SceneChange& change, bool is_quick);
-    bool exchange_move(bool is_undo);
-
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

@@ -2,10 +2,15 @@
 
 #include <cstddef>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 namespace relumine {
 
+namespace {
+
+/// Returns the clusters that a quick state samples in their middle alone: those with no more light
+/// than a cluster has in the mean.
 std::vector<bool> coarse_clusters(const relight::Relighter& relighter) {
     const std::size_t count = relighter.transfer().num_clusters();
     std::vector<double> powers(count);
@@ -19,42 +24,83 @@ std::vector<bool> coarse_clusters(const relight::Relighter& relighter) {
     return result;
 }
 
-const prt::SceneChange& SceneMoves::move(const GroupMove& to, const PrecomputeWork& work,
-                                         MoveReport& report) {
+} // namespace
+
+void SceneMoves::require_movable() const {
+    relumine::require_movable(scene_);
+    if (own_ == nullptr)
+        throw std::logic_error("expected a scene that is not shared, to move its groups");
+    const prt::Blockers* blockers =
+        relighter_ != nullptr ? relighter_->shadow_rays().blockers : nullptr;
+    if (blockers != nullptr && blockers != &rays_.for_moving_lights())
+        throw std::logic_error("expected triangles that block light where groups move, got others");
+}
+
+MoveReport SceneMoves::move(const GroupMove& to, const PrecomputeWork& work) {
     constexpr std::size_t MostMoves = 32;
-    moves_.push_back(relumine::move(scene_, to, work, &report, &rays_));
+    require_movable();
+    if (drag_)
+        take_back(false);
+    MoveReport report;
+    moves_.push_back(relumine::move(*own_, to, work, &report, &rays_));
     if (moves_.size() > MostMoves)
         moves_.erase(moves_.begin());
     undone_.clear();
-    return moves_.back();
+    follower_.follow(moves_.back(), false);
+    return report;
 }
 
-const prt::SceneChange* SceneMoves::exchange(bool is_undo) {
-    std::vector<prt::SceneChange>& from = is_undo ? moves_ : undone_;
-    std::vector<prt::SceneChange>& to = is_undo ? undone_ : moves_;
+MoveReport SceneMoves::drag(const GroupMove& to) {
+    require_movable();
+    static_cast<void>(group_named(scene_, to.name));
+    if (dragged_ && dragged_->name != to.name)
+        take_back(false);
+    std::vector<bool> coarse = coarse_clusters(require_clusters(relighter_));
+    if (!drag_)
+        drag_.emplace(*own_, rays_, to);
+    MoveReport report;
+    const prt::SceneChange change = drag_->to(to.matrix, std::move(coarse), report);
+    dragged_ = to;
+    follower_.follow(change, true);
+    return report;
+}
+
+MoveReport SceneMoves::drop(const PrecomputeWork& work) {
+    require_movable();
+    if (!dragged_)
+        throw std::logic_error("expected a group that is dragged");
+    const GroupMove to = *dragged_;
+    take_back(true);
+    try {
+        return move(to, work);
+    } catch (...) {
+        follower_.follow(prt::SceneChange(), false);
+        throw;
+    }
+}
+
+/// Ends the drag: the group stands where it stood before.
+void SceneMoves::take_back(bool is_quick) {
+    const prt::SceneChange change = drag_->back();
+    drag_.reset();
+    dragged_.reset();
+    follower_.follow(change, is_quick);
+}
+
+bool SceneMoves::exchange(std::vector<prt::SceneChange>& from, std::vector<prt::SceneChange>& to) {
+    require_movable();
+    if (drag_) {
+        take_back(false);
+        return true;
+    }
     if (from.empty())
-        return nullptr;
-    prt::exchange(scene_, from.back());
+        return false;
+    prt::exchange(*own_, from.back());
     rays_.follow(from.back().group);
     to.push_back(std::move(from.back()));
     from.pop_back();
-    return &to.back();
-}
-
-const prt::SceneChange& SceneMoves::drag(const GroupMove& to, std::vector<bool> coarse,
-                                         MoveReport& report) {
-    if (!drag_)
-        drag_.emplace(scene_, rays_, to);
-    of_drag_ = drag_->to(to.matrix, std::move(coarse), report);
-    dragged_ = to;
-    return of_drag_;
-}
-
-const prt::SceneChange& SceneMoves::take_back() {
-    of_drag_ = drag_->back();
-    drag_.reset();
-    dragged_.reset();
-    return of_drag_;
+    follower_.follow(to.back(), false);
+    return true;
 }
 
 } // namespace relumine

@@ -14,14 +14,14 @@ namespace {
 class Mixer {
 public:
     Mixer(LitScene& lit, Painter& painter)
-        : lit_(lit), painter_(painter), state_(lit.state()), gains_(lit.lamps().gains()),
-          lamps_(lit.scene().lamps.names()) {}
+        : lit_(lit), painter_(painter), state_(lit.environment().state()),
+          gains_(lit.lamps().gains()), lamps_(lit.scene().lamps.names()) {}
     Mixer(const Mixer&) = delete;
     Mixer& operator=(const Mixer&) = delete;
 
     relight::LayeredPicture run() {
         const std::vector<cubemap::LightLayer> all = cubemap::without_solo(state_.layers);
-        if (Lighting light = lit_.lighting(); !light.gathered_light.sent.empty()) {
+        if (Lighting light = lit_.lighting(); !light.sent_light.sent.empty()) {
             painter_.keep_guide(true);
             static_cast<void>(painter_.draw(light));
         }
@@ -41,7 +41,7 @@ public:
         }
         lit_.dim(gains_);
         painter_.dim(gains_);
-        lit_.edit(state_);
+        lit_.environment().edit(state_);
         bounce();
         painter_.keep_guide(false);
         return std::move(mix_);

@@ -116,8 +116,8 @@ struct Painter::Impl {
             light.lights = lighting.lights;
         light.blockers = &beams;
         if (traces || lighting.lights.empty()) {
-            light.sent = lighting.gathered_light.sent;
-            light.replaced = lighting.gathered_light.replaced;
+            light.sent = lighting.sent_light.sent;
+            light.replaced = lighting.sent_light.replaced;
             light.sends_from_backs = scene.settings.two_sided_bounces;
             light.guide = guide ? &*guide : nullptr;
         }

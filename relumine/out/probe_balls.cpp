@@ -121,7 +121,7 @@ relight::FadingFloor ProbeBalls::floor(const Scene& scene) const {
 
 std::vector<glm::vec3> ProbeBalls::radiance(const LitScene& lit) const {
     const std::vector<glm::vec3> light = lit.harmonics();
-    const std::size_t width = relight::num_harmonics(lit.harmonic_order());
+    const std::size_t width = light.size() / lit.scene().receivers.size();
     std::vector<glm::vec3> result(mesh_.num_vertices(), glm::vec3(0.0f));
     glm::vec3 mean(0.0f);
     for (std::size_t ball = 0; ball < points_.size(); ++ball) {

@@ -187,7 +187,7 @@ void measure_grid(const Settings& settings, const bench::Inputs& inputs,
         relight.push_back(1e3 * times.seconds);
         sums.push_back(1e3 * times.seconds_relight);
     }
-    lit.edit(lit.state());
+    lit.environment().edit(lit.environment().state());
     for (int pass = 0; pass < settings.passes; ++pass) {
         const UpdateReport times =
             set_layers(lit, {bench::disc({1.0, 1.0 + 0.01 * pass, 0.3}, 0.05, 2.0 + 0.1 * pass)});

@@ -14,7 +14,7 @@
 #include "data_gen/environments.h"
 #include "prt/precompute_context.h"
 #include "prt/visibility/beam_scene.h"
-#include "relumine/in/move.h"
+#include "relumine/light/scene_moves.h"
 #include "relumine/relumine.h"
 #include "tests/bench/process_usage.h"
 #include "tests/bench/program.h"
@@ -144,10 +144,11 @@ std::vector<glm::vec3> dragged(LitScene& lit, const GroupStep& to, DragFigures& 
             move_of(scene, {.name = to.name, .by = part * to.by, .degrees = part * to.degrees}));
     }
     for (const GroupMove& move : moves)
-        figures.processor.push_back(bench::processor_seconds_of(
-            [&] { figures.seconds.push_back(bench::seconds_of([&] { lit.drag(move); })); }));
+        figures.processor.push_back(bench::processor_seconds_of([&] {
+            figures.seconds.push_back(bench::seconds_of([&] { lit.moves().drag(move); }));
+        }));
     std::vector<glm::vec3> result(lit.radiance().begin(), lit.radiance().end());
-    lit.undo_move();
+    lit.moves().undo();
     return result;
 }
 
@@ -198,7 +199,7 @@ void run(const Settings& settings) {
         MoveReport report;
         processor.push_back(bench::processor_seconds_of([&] {
             seconds.push_back(
-                bench::seconds_of([&] { report = lit.move(move_of(lit.scene(), step)); }));
+                bench::seconds_of([&] { report = lit.moves().move(move_of(lit.scene(), step)); }));
         }));
         drag.errors.push_back(difference(quick, lit.radiance()));
         pairs.push_back(static_cast<double>(report.counts.num_pairs) /
@@ -207,8 +208,8 @@ void run(const Settings& settings) {
         if (i == 0)
             memory = bench::peak_megabytes();
     }
-    const double undo = bench::seconds_of([&] { lit.undo_move(); });
-    lit.redo_move();
+    const double undo = bench::seconds_of([&] { lit.moves().undo(); });
+    lit.moves().redo();
     const bool are_equal = are_fresh(lit.scene());
     const double error = error_of(lit, settings.num_verified);
 

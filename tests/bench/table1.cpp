@@ -82,7 +82,7 @@ double seconds_per_edit(LitScene& lit, const glm::dvec3& axis, double radius) {
                 radiance.push_back(inside ? glm::vec3(0.2f * static_cast<float>(step + 1))
                                           : environment_of(lit).at(box.face, x, y));
             }
-        seconds.push_back(lit.update_region(box, radiance).seconds);
+        seconds.push_back(lit.environment().update_region(box, radiance).seconds);
     }
     return bench::median(seconds);
 }

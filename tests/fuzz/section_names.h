@@ -109,6 +109,7 @@ inline constexpr std::array<std::string_view, 103> SectionNames = {"settings",
                                                                    "r_film_ior",
                                                                    "r_film_thick",
                                                                    "r_stretch",
-                                                                   "r_tangent"};
+                                                                   "r_tangent",
+                                                                   "free_lifts"};
 
 } // namespace relumine::fuzz

@@ -257,6 +257,32 @@ def test_a_drag_shows_the_group_and_a_drop_moves_it(movable, sky):
         relumine.Relighter(movable).drag("ball", np.eye(4))
 
 
+def test_a_group_takes_another_pose(arrays, names, movable, sky):
+    vertices, triangles = arrays
+    ball = np.unique(triangles[names == "ball"])
+    flat = vertices.copy()
+    flat[ball, 1] = 0.5 * flat[ball, 1] + 0.2
+    pose = relumine.Mesh(flat, triangles, groups=list(names))
+    posed = movable.pose("ball", pose)
+    assert np.allclose(posed.vertices, flat, atol=1e-6)
+    assert posed.report["receivers"] == len(ball)
+    relighter = lit_by(sky, movable)
+    before = relighter.radiance.copy()
+    assert relighter.pose("ball", pose).pairs_changed > 0
+    assert (relighter.radiance == lit_by(sky, posed).radiance).all()
+    assert relighter.undo_move() and (relighter.radiance == before).all()
+    with pytest.raises(ValueError, match="did you mean ball"):
+        movable.pose("bal", pose)
+    plate = triangles[names == "plate"]
+    with pytest.raises(ValueError, match="expected one of 1 groups, got 'ball'"):
+        movable.pose("ball", relumine.Mesh(vertices, plate, groups=["plate"] * len(plate)))
+    few = triangles[names == "ball"][:4]
+    with pytest.raises(ValueError, match="vertices of ball, got"):
+        movable.pose("ball", relumine.Mesh(vertices, few, groups=["ball"] * len(few)))
+    with pytest.raises(TypeError, match="mesh: expected"):
+        movable.pose("ball", vertices)
+
+
 def test_a_group_is_removed_and_restored(movable, sky, folder):
     before = lit_by(sky, movable).radiance.copy()
     without = movable.remove("ball")

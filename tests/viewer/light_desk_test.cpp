@@ -110,7 +110,7 @@ TEST_F(LightDeskTest, RotationAndBaseAreStepsOfUndoAndTheFilesNameFollows) {
     EXPECT_EQ(radiance(), turned);
     EXPECT_EQ(desk_->take_changed_texels(), cubemap::all_texels(64));
     desk_->undo();
-    EXPECT_EQ(lit_.state().rotation_degrees, 0.0);
+    EXPECT_EQ(lit_.environment().state().rotation_degrees, 0.0);
     EXPECT_EQ(radiance(), before);
     desk_->redo();
     desk_->redo();
@@ -212,8 +212,9 @@ LitScene lamp_over_floor() {
     mesh.triangle_groups = mesh.triangle_materials = {0, 0, 1, 1};
     LitScene lit(precompute(std::move(mesh),
                             {.tolerance = 0.2f, .no_refine = true, .bounce_tolerance = 0.0f}));
-    lit.edit({.base = base_of(Environment{
-                  .map = cubemap::CubeMap(8), .file = {}, .assumptions = {}, .path = {}})});
+    lit.environment().edit(
+        {.base = base_of(
+             Environment{.map = cubemap::CubeMap(8), .file = {}, .assumptions = {}, .path = {}})});
     return lit;
 }
 

@@ -18,6 +18,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mesh/normals.h"
 #include "prt/bounces/bounce_precompute.h"
 #include "prt/bounces/bounce_sampler.h"
 #include "prt/moves/met_boxes.h"
@@ -308,6 +309,92 @@ TEST(MovedScene, ASecondExchangeUndoesAMoveBitByBit) {
     EXPECT_FALSE(scene.settings.rim_step.has_value());
     exchange(scene, change);
     expect_same(scene.transfer, after);
+}
+
+/// The crate's vertices where it bends: the higher, the farther it leans and turns.
+std::vector<glm::dvec3> bent(const Scene& scene, double by) {
+    std::vector<glm::dvec3> result;
+    for (const std::uint32_t vertex : moved(scene, Crate, glm::dmat4(1.0)).vertices) {
+        const glm::dvec3 at(scene.mesh.positions[vertex]);
+        result.push_back(at + by * glm::dvec3(at.y, 0.0, 0.3 * at.y * at.y));
+    }
+    return result;
+}
+
+TEST(MovedScene, APoseHasTheCountsOfAPrecompute) {
+    for (const bool has_blockers : {false, true}) {
+        Scene scene = scene_of(things());
+        if (has_blockers)
+            scene.blockers = things();
+        const Scene before = scene;
+        std::optional<RayScene> rays;
+        std::optional<BeamScene> beams;
+        const auto follow = [&](std::uint32_t) -> const Blockers& {
+            rays.emplace(scene.blocking_mesh());
+            return beams.emplace(scene.blocking_mesh(), *rays);
+        };
+        SceneChange change = make(scene, posed(scene, Crate, bent(scene, 0.7)), follow);
+        expect_same(scene.transfer, fresh(scene));
+        EXPECT_EQ(scene.blocking_mesh().positions, scene.mesh.positions);
+        // Receivers stand where those of such a mesh do.
+        const Receivers expected = vertex_receivers(scene.mesh, *scene.settings.rim_step);
+        EXPECT_EQ(scene.receivers.positions, expected.positions);
+        EXPECT_EQ(scene.receivers.normals, scene.mesh.normals);
+        const std::vector<glm::vec3> smooth = mesh::smooth_normals(scene.mesh);
+        std::size_t num_turned = 0;
+        for (std::size_t i = 0; i < smooth.size(); ++i)
+            if (scene.mesh.normals[i] != before.mesh.normals[i]) {
+                ++num_turned;
+                EXPECT_GT(glm::dot(smooth[i], scene.mesh.normals[i]), 0.95f);
+                EXPECT_NEAR(glm::length(scene.mesh.normals[i]), 1.0f, 1e-6f);
+            }
+        EXPECT_GT(num_turned, 20u);
+        exchange(scene, change);
+        expect_same(scene.transfer, before.transfer);
+        EXPECT_EQ(scene.mesh.positions, before.mesh.positions);
+        EXPECT_EQ(scene.mesh.normals, before.mesh.normals);
+    }
+}
+
+TEST(MovedScene, AStiffPoseIsAMove) {
+    const Scene scene = scene_of(things());
+    const glm::dmat4 matrix = motion(scene, Crate, {0.5, 0.2, -0.4}, 0.5, {0.3, 1.0, 0.2});
+    const SceneChange move = moved(scene, Crate, matrix);
+    std::vector<glm::dvec3> vertices;
+    for (const std::uint32_t vertex : move.vertices)
+        vertices.emplace_back(matrix * glm::dvec4(scene.mesh.positions[vertex], 1.0));
+    const SceneChange pose = posed(scene, Crate, vertices);
+    EXPECT_EQ(pose.vertices, move.vertices);
+    EXPECT_EQ(pose.positions, move.positions);
+    EXPECT_EQ(pose.receivers, move.receivers);
+    for (std::size_t i = 0; i < move.normals.size(); ++i)
+        EXPECT_GT(glm::dot(pose.normals[i], move.normals[i]), 0.9f) << "round as it is";
+}
+
+TEST(MovedScene, RefusesPosesOfOtherMeshes) {
+    Scene scene = scene_of(things());
+    const auto refusal = [&](const std::vector<glm::dvec3>& vertices) -> std::string {
+        try {
+            static_cast<void>(posed(scene, Crate, vertices));
+        } catch (const std::invalid_argument& error) {
+            return error.what();
+        }
+        return "";
+    };
+    std::vector<glm::dvec3> vertices = bent(scene, 0.5);
+    EXPECT_EQ(refusal(vertices), "");
+    vertices.pop_back();
+    EXPECT_THAT(refusal(vertices), testing::HasSubstr("expected the 42 vertices of crate, got 41"));
+    vertices = bent(scene, std::numeric_limits<double>::quiet_NaN());
+    EXPECT_THAT(refusal(vertices), testing::HasSubstr("expected coordinates within"));
+    vertices = bent(scene, 0.5);
+    scene.blockers = things();
+    scene.blockers->positions[scene.blockers->triangles.front()[0]].x += 1.0f;
+    EXPECT_EQ(refusal(vertices), "") << "another group was refined";
+    for (std::size_t i = 0; i < scene.blockers->num_triangles(); ++i)
+        if (scene.blockers->triangle_groups[i] == Crate)
+            scene.blockers->positions[scene.blockers->triangles[i][0]].x += 1.0f;
+    EXPECT_THAT(refusal(vertices), testing::HasSubstr("got crate, which was refined"));
 }
 
 TEST(MovedScene, BlockersOfARefinedMeshMoveWithIt) {

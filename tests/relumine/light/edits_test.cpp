@@ -61,7 +61,7 @@ cubemap::LightLayer random_layer(std::mt19937& random) {
 /// What the editor must show: base and layers composited whole, lit afresh.
 std::vector<glm::vec3> lit_afresh(const LitScene& editor, const cubemap::CubeMap& base) {
     return relight::relight(editor.relighter().transfer(),
-                            cubemap::composite(base, editor.state().layers),
+                            cubemap::composite(base, editor.environment().state().layers),
                             editor.relighter().shadow_rays());
 }
 
@@ -110,7 +110,9 @@ TEST(LightEdits, RegionsThatComeBackAreFoundInBasesOfAnySize) {
         layer.on = edit % 7 != 6;
         set_layer(editor, static_cast<std::size_t>(edit % 2), layer);
         EXPECT_EQ(environment_of(editor).texels,
-                  cubemap::composite(*editor.state().base->map(), editor.state().layers).texels);
+                  cubemap::composite(*editor.environment().state().base->map(),
+                                     editor.environment().state().layers)
+                      .texels);
     }
 }
 
@@ -133,7 +135,7 @@ TEST(LightEdits, UndoAndRedoReturnBitwise) {
     LitScene editor = scenes::relit_clusters();
     editor.light(scenes::random_environment(32, 1));
     mark(editor);
-    EXPECT_FALSE(editor.history().can_undo(editor.state()));
+    EXPECT_FALSE(editor.environment().history().can_undo(editor.environment().state()));
     std::mt19937 random(11);
     std::vector<std::vector<glm::vec3>> states = {copy(editor.radiance())};
     std::vector<std::vector<glm::vec3>> environments = {environment_of(editor).texels};
@@ -150,19 +152,19 @@ TEST(LightEdits, UndoAndRedoReturnBitwise) {
         environments.push_back(environment_of(editor).texels);
     }
     for (std::size_t i = states.size() - 1; i-- > 0;) {
-        ASSERT_TRUE(editor.history().can_undo(editor.state()));
+        ASSERT_TRUE(editor.environment().history().can_undo(editor.environment().state()));
         undo(editor);
         EXPECT_EQ(copy(editor.radiance()), states[i]) << "undo to " << i;
         EXPECT_EQ(environment_of(editor).texels, environments[i]);
     }
-    EXPECT_FALSE(editor.history().can_undo(editor.state()));
+    EXPECT_FALSE(editor.environment().history().can_undo(editor.environment().state()));
     EXPECT_EQ(undo(editor).num_clusters, 0u);
     for (std::size_t i = 1; i < states.size(); ++i) {
-        ASSERT_TRUE(editor.history().can_redo());
+        ASSERT_TRUE(editor.environment().history().can_redo());
         redo(editor);
         EXPECT_EQ(copy(editor.radiance()), states[i]) << "redo to " << i;
     }
-    EXPECT_FALSE(editor.history().can_redo());
+    EXPECT_FALSE(editor.environment().history().can_redo());
 
     // An edit without a mark is undone to the last one.
     set_layers(editor, {});
@@ -173,7 +175,7 @@ TEST(LightEdits, UndoAndRedoReturnBitwise) {
     undo(editor);
     set_layers(editor, {});
     mark(editor);
-    EXPECT_FALSE(editor.history().can_redo());
+    EXPECT_FALSE(editor.environment().history().can_redo());
 }
 
 TEST(LightEdits, UndoBringsBackRotationAndBaseBitwise) {
@@ -201,22 +203,22 @@ TEST(LightEdits, UndoBringsBackRotationAndBaseBitwise) {
     keep();
     set_rotation(editor, 0.0);
     keep();
-    cubemap::CubeMap painted = *editor.state().base->map();
+    cubemap::CubeMap painted = *editor.environment().state().base->map();
     painted.at(cubemap::Face::NegativeX, 3, 4) = glm::vec3(20.0f);
     update(editor, environment(painted));
     keep();
     ASSERT_EQ(states.size(), 7u);
     for (int round = 0; round < 2; ++round) {
         for (std::size_t i = states.size() - 1; i-- > 0;) {
-            ASSERT_TRUE(editor.history().can_undo(editor.state()));
+            ASSERT_TRUE(editor.environment().history().can_undo(editor.environment().state()));
             undo(editor);
             EXPECT_EQ(copy(editor.radiance()), states[i]) << "undo to " << i;
             EXPECT_EQ(environment_of(editor).texels, environments[i]);
         }
-        EXPECT_FALSE(editor.history().can_undo(editor.state()));
-        EXPECT_EQ(editor.state().rotation_degrees, 0.0);
+        EXPECT_FALSE(editor.environment().history().can_undo(editor.environment().state()));
+        EXPECT_EQ(editor.environment().state().rotation_degrees, 0.0);
         for (std::size_t i = 1; i < states.size(); ++i) {
-            ASSERT_TRUE(editor.history().can_redo());
+            ASSERT_TRUE(editor.environment().history().can_redo());
             redo(editor);
             EXPECT_EQ(copy(editor.radiance()), states[i]) << "redo to " << i;
             EXPECT_EQ(environment_of(editor).texels, environments[i]);
@@ -229,37 +231,37 @@ TEST(LightEdits, TheHistoryKeepsNoMoreBasesThanItMay) {
     constexpr std::uint32_t Resolution = 8;
     constexpr std::size_t BytesOfBase =
         std::size_t{6} * Resolution * Resolution * sizeof(glm::vec3);
-    editor.history().limit(2 * BytesOfBase);
+    editor.environment().history().limit(2 * BytesOfBase);
     std::vector<std::weak_ptr<const cubemap::CubeMap>> bases;
     for (unsigned i = 0; i < 6; ++i) {
         editor.light(scenes::random_environment(Resolution, i));
         mark(editor);
-        bases.emplace_back(editor.state().base->map());
+        bases.emplace_back(editor.environment().state().base->map());
         set_layers(editor, {named_disc("lamp", {0.2, 0.5, 1.0 + i}, 12.0, glm::vec3(3.0f))});
         mark(editor);
     }
     for (std::size_t i = 0; i < bases.size(); ++i)
         EXPECT_EQ(bases[i].expired(), i + 3 < bases.size()) << "two and the present one: " << i;
     int num_steps = 0;
-    for (; editor.history().can_undo(editor.state()); ++num_steps)
+    for (; editor.environment().history().can_undo(editor.environment().state()); ++num_steps)
         undo(editor);
     EXPECT_EQ(num_steps, 5) << "three bases with two marks each";
-    EXPECT_EQ(editor.state().base->map(), bases[3].lock());
+    EXPECT_EQ(editor.environment().state().base->map(), bases[3].lock());
 
     // However small the limit, the last step can be undone.
-    editor.history().limit(0);
+    editor.environment().history().limit(0);
     editor.light(scenes::random_environment(Resolution, 7));
     mark(editor);
-    EXPECT_TRUE(editor.history().can_undo(editor.state()));
+    EXPECT_TRUE(editor.environment().history().can_undo(editor.environment().state()));
     undo(editor);
-    EXPECT_EQ(editor.state().base->map(), bases[3].lock());
+    EXPECT_EQ(editor.environment().state().base->map(), bases[3].lock());
 }
 
 TEST(LightEdits, RefusesABadBaseAndStaysAsItWas) {
     LitScene editor = scenes::relit_clusters();
     EXPECT_THROW(editor.light(cubemap::CubeMap()), std::invalid_argument);
     EXPECT_THROW(editor.light(cubemap::CubeMap(8, glm::vec3(-1.0f))), std::invalid_argument);
-    EXPECT_FALSE(editor.state().base);
+    EXPECT_FALSE(editor.environment().state().base);
     editor.light(scenes::random_environment(16, 2));
     set_rotation(editor, 30.0);
     set_layers(editor, {named_disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
@@ -299,7 +301,7 @@ TEST(LightEdits, ASharedMapIsNeitherCopiedNorChanged) {
     EXPECT_EQ(copy(shared.radiance()), copy(own.radiance()));
     const std::vector<glm::vec3> bright(4, glm::vec3(7.0f));
     for (LitScene* lit : {&shared, &own}) {
-        lit->update_region({cubemap::Face::PositiveY, 3, 4, 5, 6}, bright);
+        lit->environment().update_region({cubemap::Face::PositiveY, 3, 4, 5, 6}, bright);
         set_layers(*lit, {named_disc("lamp", {0.0, 1.0, 0.3}, 20.0, glm::vec3(3.0f))});
     }
     EXPECT_EQ(copy(shared.radiance()), copy(own.radiance()));
@@ -307,7 +309,7 @@ TEST(LightEdits, ASharedMapIsNeitherCopiedNorChanged) {
     shared.light(Light(map));
     own.light(*map);
     EXPECT_EQ(environment_of(shared).texels, environment_of(own).texels);
-    EXPECT_EQ(shared.state().base->map(), map);
+    EXPECT_EQ(shared.environment().state().base->map(), map);
     EXPECT_EQ(copy(shared.radiance()), copy(own.radiance()));
     EXPECT_EQ(map->texels, scenes::random_environment(16, 2).texels);
 }
@@ -328,7 +330,7 @@ TEST(LightEdits, AMovingTurnIsNearAndLeavesNoTrace) {
         set_rotation(moving, degrees, Ending::Moving);
         set_rotation(exact, degrees);
         EXPECT_EQ(environment_of(moving).resolution, MovingResolution);
-        EXPECT_EQ(moving.state().base->map()->resolution, 2 * MovingResolution);
+        EXPECT_EQ(moving.environment().state().base->map()->resolution, 2 * MovingResolution);
         EXPECT_LT(relative_difference(moving.radiance(), exact.radiance()), 0.01) << degrees;
     }
     // Whatever comes next, the whole map is back.
@@ -381,7 +383,7 @@ TEST(LightEdits, PaintingOnTouchesOnlyTheNewPieceAndLeavesNoTrace) {
             // scratch.
             LitScene afresh = scenes::relit_clusters();
             afresh.light(base);
-            set_rotation(afresh, editor.state().rotation_degrees);
+            set_rotation(afresh, editor.environment().state().rotation_degrees);
             set_layers(afresh, {layer});
             ASSERT_EQ(environment_of(editor).texels, environment_of(afresh).texels)
                 << trial << ", " << count;
@@ -466,7 +468,7 @@ TEST(LightEdits, RotationTurnsBaseAndLayersTogether) {
                 << i;
         set_rotation(editor, 0.0);
         EXPECT_EQ(environment_of(editor).texels,
-                  cubemap::composite(base, editor.state().layers).texels);
+                  cubemap::composite(base, editor.environment().state().layers).texels);
     }
 }
 
@@ -495,7 +497,7 @@ TEST(LightEdits, TurnsWithAndWithoutLayersWriteOverNothingThatIsShown) {
         mark(editor);
         mark(afresh);
         EXPECT_EQ(copy(editor.radiance()), copy(afresh.radiance())) << step.degrees;
-        EXPECT_EQ(editor.state().base->map()->texels, base.texels) << step.degrees;
+        EXPECT_EQ(editor.environment().state().base->map()->texels, base.texels) << step.degrees;
     }
 }
 
@@ -510,7 +512,7 @@ TEST(LightEdits, UpdateBaseTouchesOnlyWhatDiffers) {
     EXPECT_GT(report.num_clusters, 0u);
     EXPECT_LT(report.num_clusters, relit_scene().transfer.num_clusters() / 4);
     EXPECT_EQ(environment_of(editor).texels,
-              cubemap::composite(base, editor.state().layers).texels);
+              cubemap::composite(base, editor.environment().state().layers).texels);
     EXPECT_LT(relative_difference(editor.radiance(), lit_afresh(editor, base)), 1e-6);
 }
 
@@ -522,12 +524,12 @@ TEST(LightEdits, RefusesBadLayersAndStaysAsItWas) {
     const cubemap::LightLayer bad = named_disc("bad", {0.0, 0.0, 0.0}, 8.0, glm::vec3(3.0f));
     EXPECT_THROW(set_layers(editor, {bad}), std::invalid_argument);
     EXPECT_THROW(set_layer(editor, 0, bad), std::invalid_argument);
-    EXPECT_THROW(set_layer(editor, 1, editor.state().layers[0]), std::out_of_range);
+    EXPECT_THROW(set_layer(editor, 1, editor.environment().state().layers[0]), std::out_of_range);
     // Two lights that are too bright only together; a base that is too bright only under them.
     cubemap::LightLayer nearly = named_disc("nearly", {0.0, 1.0, 0.3}, 8.0, glm::vec3(0.9e30f));
     EXPECT_THROW(set_layers(editor, {nearly, nearly}), std::invalid_argument);
     EXPECT_EQ(copy(editor.radiance()), before);
-    EXPECT_EQ(editor.state().layers[0].name, "lamp");
+    EXPECT_EQ(editor.environment().state().layers[0].name, "lamp");
     const std::vector<glm::vec3> texels = environment_of(editor).texels;
     set_layers(editor, {nearly});
     EXPECT_THROW(update(editor, environment(cubemap::CubeMap(16, glm::vec3(0.5e30f)))),

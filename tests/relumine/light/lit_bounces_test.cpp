@@ -87,8 +87,8 @@ TEST_F(LitBounces, AnUpdateShowsItsDirectLightAtOnceAndStepsBringTheRest) {
     lit.bounce({.albedo = albedo});
     const Colors bounced = copy(lit.bounces().bounced());
     const glm::vec3 sun(9000.0f);
-    lit.update_region({.face = cubemap::Face::PositiveY, .x0 = 20, .y0 = 12, .x1 = 21, .y1 = 13},
-                      {&sun, 1});
+    lit.environment().update_region(
+        {.face = cubemap::Face::PositiveY, .x0 = 20, .y0 = 12, .x1 = 21, .y1 = 13}, {&sun, 1});
     EXPECT_EQ(copy(lit.bounces().bounced()), bounced);
     const Colors direct = copy(lit.relighter().diffuse_radiance());
     EXPECT_LT(relative_difference(direct, fresh.relighter().diffuse_radiance()), 1e-5);

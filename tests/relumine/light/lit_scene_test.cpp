@@ -78,7 +78,7 @@ TEST(LitScene, UpdatesARegionUnderLayersOrWithout) {
 
     LitScene scene(boulder_scene());
     scene.light(map);
-    EXPECT_GT(scene.update_region(rectangle, bright).num_clusters, 0u);
+    EXPECT_GT(scene.environment().update_region(rectangle, bright).num_clusters, 0u);
     EXPECT_EQ(environment_of(scene).texels, changed.texels);
     scenes::expect_close(scene.radiance(), lit(changed), 1e-5);
 
@@ -86,7 +86,7 @@ TEST(LitScene, UpdatesARegionUnderLayersOrWithout) {
     LitScene layered(boulder_scene());
     layered.light(map);
     set_layers(layered, layers);
-    layered.update_region(rectangle, bright);
+    layered.environment().update_region(rectangle, bright);
     LitScene expected(boulder_scene());
     expected.light(changed);
     set_layers(expected, layers);
@@ -98,14 +98,17 @@ TEST(LitScene, RefusesARegionThatDoesNotFit) {
     LitScene scene(boulder_scene());
     const std::vector<glm::vec3> four(4, glm::vec3(1.0f));
     const cubemap::TexelRectangle inside{cubemap::Face::PositiveY, 0, 0, 2, 2};
-    EXPECT_THROW(scene.update_region(inside, four), std::invalid_argument); // nothing to update
+    EXPECT_THROW(scene.environment().update_region(inside, four),
+                 std::invalid_argument); // nothing to update
     scene.light(scenes::random_environment(4, 1));
     for (int with_layers = 0; with_layers < 2; ++with_layers) {
-        EXPECT_THROW(scene.update_region({cubemap::Face::PositiveY, 3, 0, 5, 2}, four),
+        EXPECT_THROW(
+            scene.environment().update_region({cubemap::Face::PositiveY, 3, 0, 5, 2}, four),
+            std::invalid_argument);
+        EXPECT_THROW(scene.environment().update_region({cubemap::Face::PositiveY, 2, 0, 2, 2}, {}),
                      std::invalid_argument);
-        EXPECT_THROW(scene.update_region({cubemap::Face::PositiveY, 2, 0, 2, 2}, {}),
+        EXPECT_THROW(scene.environment().update_region(inside, std::span(four).first(3)),
                      std::invalid_argument);
-        EXPECT_THROW(scene.update_region(inside, std::span(four).first(3)), std::invalid_argument);
         set_layers(scene, {disc({1, 0, 0}, 1.0f)});
     }
 }
@@ -119,7 +122,7 @@ TEST(LitScene, KeepsItsLayersUnderANewEnvironment) {
     scene.light(first);
     set_layers(scene, {layers[0], disc({1, 0, 1}, 1.0f)});
     set_layer(scene, 1, layers[1]);
-    EXPECT_EQ(scene.state().layers, layers);
+    EXPECT_EQ(scene.environment().state().layers, layers);
     scene.light(second);
     EXPECT_EQ(environment_of(scene).texels, cubemap::composite(second, layers).texels);
     EXPECT_EQ(copy(scene.radiance()), lit(environment_of(scene)));

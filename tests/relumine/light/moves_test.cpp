@@ -12,9 +12,15 @@
 #include <gtest/gtest.h>
 
 #include "data_gen/environments.h"
+#include "prt/precompute.h"
+#include "prt/precompute_context.h"
+#include "prt/visibility/beam_scene.h"
+#include "prt/visibility/ray_scene.h"
 #include "relumine/in/drag.h"
-#include "relumine/in/move.h"
+#include "relumine/light/scene_moves.h"
 #include "relumine/relumine.h"
+#include "tests/own_folder.h"
+#include "tests/prt/same_transfer.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine {
@@ -103,10 +109,10 @@ void expect_that_light_follows(const Lit& how) {
     for (const GroupStep& step :
          {Step, GroupStep{.name = "lamp", .by = {1.0, -0.2, 0.5}, .degrees = 70.0},
           GroupStep{.name = "ball", .by = {0.1, -0.3, 0.0}}}) {
-        MoveReport report = lit.move(move_of(lit.scene(), step));
+        MoveReport report = lit.moves().move(move_of(lit.scene(), step));
         EXPECT_GT(report.num_moved, 0u);
         EXPECT_LT(report.counts.num_pairs, report.num_all);
-        EXPECT_EQ(lit.state().layers.size(), how.has_layer ? 1u : 0u);
+        EXPECT_EQ(lit.environment().state().layers.size(), how.has_layer ? 1u : 0u);
         move(scene, move_of(scene, step));
         LitScene anew(scene, options);
         light(anew, how);
@@ -120,11 +126,11 @@ void expect_that_light_follows(const Lit& how) {
     }
     for (std::size_t i = seen.size(); --i > 0;) {
         EXPECT_EQ(radiance_of(lit), seen[i]);
-        EXPECT_TRUE(lit.undo_move());
+        EXPECT_TRUE(lit.moves().undo());
     }
-    EXPECT_FALSE(lit.undo_move());
+    EXPECT_FALSE(lit.moves().undo());
     EXPECT_EQ(radiance_of(lit), seen[0]);
-    EXPECT_TRUE(lit.redo_move());
+    EXPECT_TRUE(lit.moves().redo());
     EXPECT_EQ(radiance_of(lit), seen[1]);
 }
 
@@ -161,7 +167,7 @@ TEST(Moves, LightThatWasUpdatedIsSummedAnew) {
     };
     LitScene lit(before());
     lit_after_edits(lit);
-    lit.move(move_of(lit.scene(), Step));
+    lit.moves().move(move_of(lit.scene(), Step));
     Scene scene = before();
     move(scene, move_of(scene, Step));
     LitScene anew(std::move(scene));
@@ -220,20 +226,20 @@ void expect_that_drags_are_moves(Lit how) {
     EXPECT_EQ(bounced_at_first.empty(), !how.has_bounces);
     for (const GroupStep& step : Way) {
         const GroupMove to = move_of(before(), step);
-        EXPECT_GT(lit.drag(to).num_moved, 0u);
+        EXPECT_GT(lit.moves().drag(to).num_moved, 0u);
         LitScene moved(before());
         light(moved, how);
-        moved.move(to);
+        moved.moves().move(to);
         EXPECT_LT(difference(direct_of(lit), direct_of(moved)), Most);
         EXPECT_GT(difference(direct_of(lit), direct_at_first), 2.0 * Most);
         EXPECT_EQ(relumine::bounced(lit), bounced_at_first);
     }
     const GroupMove last = move_of(before(), Way.back());
-    const MoveReport report = lit.drop();
+    const MoveReport report = lit.moves().drop();
     EXPECT_GT(report.counts.num_pairs, 0u);
     LitScene moved(before());
     light(moved, how);
-    moved.move(last);
+    moved.moves().move(last);
     EXPECT_EQ(radiance_of(lit), radiance_of(moved));
     EXPECT_TRUE(are_same(lit.scene().transfer.counts, moved.scene().transfer.counts));
     EXPECT_EQ(lit.scene().mesh.positions, moved.scene().mesh.positions);
@@ -242,9 +248,9 @@ void expect_that_drags_are_moves(Lit how) {
     LitScene anew(std::move(scene));
     light(anew, how);
     EXPECT_EQ(radiance_of(lit), radiance_of(anew));
-    EXPECT_TRUE(lit.undo_move());
+    EXPECT_TRUE(lit.moves().undo());
     EXPECT_EQ(radiance_of(lit), at_first);
-    EXPECT_FALSE(lit.undo_move());
+    EXPECT_FALSE(lit.moves().undo());
 }
 
 TEST(Moves, ADragIsAboutTheMoveAndADropIsTheMove) {
@@ -281,8 +287,8 @@ TEST(Moves, ADragKnowsItsPlaceAlone) {
     light(one, how);
     light(other, how);
     for (const GroupStep& step : Way)
-        one.drag(move_of(before(), step));
-    other.drag(move_of(before(), Way.back()));
+        one.moves().drag(move_of(before(), step));
+    other.moves().drag(move_of(before(), Way.back()));
     EXPECT_TRUE(are_same(one.scene().transfer.counts, other.scene().transfer.counts));
     EXPECT_EQ(radiance_of(one), radiance_of(other));
 }
@@ -292,7 +298,7 @@ TEST(Moves, ADragIsTakenBack) {
     light(lit);
     const std::vector<glm::vec3> at_first = radiance_of(lit);
     const auto drag = [&] {
-        lit.drag(move_of(before(), Way[1]));
+        lit.moves().drag(move_of(before(), Way[1]));
         EXPECT_NE(radiance_of(lit), at_first);
     };
     const auto expect_back = [&] {
@@ -301,32 +307,33 @@ TEST(Moves, ADragIsTakenBack) {
         EXPECT_EQ(lit.scene().mesh.positions, before().mesh.positions);
     };
     drag();
-    EXPECT_TRUE(lit.undo_move());
+    EXPECT_TRUE(lit.moves().undo());
     expect_back();
-    EXPECT_FALSE(lit.undo_move());
-    EXPECT_THROW(lit.drop(), std::logic_error);
+    EXPECT_FALSE(lit.moves().undo());
+    EXPECT_THROW(lit.moves().drop(), std::logic_error);
 
     // A matrix that is refused leaves the group where it was dragged to.
     drag();
-    EXPECT_THAT(refusal([&] { lit.drag({.name = "ball", .matrix = glm::dmat4(0.0)}); }),
+    EXPECT_THAT(refusal([&] { lit.moves().drag({.name = "ball", .matrix = glm::dmat4(0.0)}); }),
                 HasSubstr("last row"));
-    EXPECT_THAT(refusal([&] { lit.drag({.name = "bal"}); }), HasSubstr("did you mean ball?"));
+    EXPECT_THAT(refusal([&] { lit.moves().drag({.name = "bal"}); }),
+                HasSubstr("did you mean ball?"));
     std::stop_source stop;
     stop.request_stop();
     drag();
-    EXPECT_THROW(lit.drop({.stop = stop.get_token()}), prt::Cancelled);
+    EXPECT_THROW(lit.moves().drop({.stop = stop.get_token()}), prt::Cancelled);
     expect_back();
 
     // Another group's drag, and a move, begin where the group stood.
     drag();
     const GroupMove of_lamp =
         move_of(before(), {.name = "lamp", .by = {0.5, 0.0, 0.5}, .degrees = 20.0});
-    lit.drag(of_lamp);
+    lit.moves().drag(of_lamp);
     drag();
-    lit.move(of_lamp);
+    lit.moves().move(of_lamp);
     LitScene moved(before());
     light(moved);
-    moved.move(of_lamp);
+    moved.moves().move(of_lamp);
     EXPECT_EQ(radiance_of(lit), radiance_of(moved));
 }
 
@@ -341,7 +348,7 @@ TEST(Moves, TheLightIsThatWithoutWhatIsTakenAway) {
     for (const GroupStep& step : {GroupStep{.name = "ball", .going = Going::Away},
                                   GroupStep{.name = "lamp", .going = Going::Away},
                                   GroupStep{.name = "ball", .going = Going::Back}}) {
-        EXPECT_EQ(lit.move(move_of(lit.scene(), step)).num_moved, 0u);
+        EXPECT_EQ(lit.moves().move(move_of(lit.scene(), step)).num_moved, 0u);
         move(scene, move_of(scene, step));
         LitScene anew(scene);
         light(anew);
@@ -353,7 +360,7 @@ TEST(Moves, TheLightIsThatWithoutWhatIsTakenAway) {
         EXPECT_EQ(of_lamp, glm::vec3(0.0f));
     for (std::size_t i = seen.size(); --i > 0;) {
         EXPECT_EQ(radiance_of(lit), seen[i]);
-        EXPECT_TRUE(lit.undo_move());
+        EXPECT_TRUE(lit.moves().undo());
     }
     EXPECT_EQ(radiance_of(lit), at_first);
 
@@ -377,13 +384,13 @@ TEST(Moves, TheLightIsThatWithoutWhatIsTakenAway) {
     LitScene without(precompute(rest, options));
     light(without, Sky);
     light(lit, Sky);
-    lit.move({.name = "ball", .going = Going::Away});
+    lit.moves().move({.name = "ball", .going = Going::Away});
     const auto on_ground = [](const LitScene& of) {
         const std::vector<glm::vec3> all = radiance_of(of);
         return std::vector(all.begin(), all.begin() + 21 * 21);
     };
     const double wrong = difference(on_ground(lit), on_ground(without));
-    lit.undo_move();
+    lit.moves().undo();
     EXPECT_LT(1.5 * wrong, difference(on_ground(lit), on_ground(without)));
 }
 
@@ -392,30 +399,183 @@ TEST(Moves, TheLightIsAboutThatOfAPrecomputeAnew) {
     light(lit);
     for (const GroupStep& step :
          {Step, GroupStep{.name = "lamp", .by = {1.0, -0.2, 0.5}, .degrees = 70.0}})
-        lit.move(move_of(lit.scene(), step));
+        lit.moves().move(move_of(lit.scene(), step));
     mesh::TriangleMesh mesh = lit.scene().mesh;
     LitScene anew(precompute(std::move(mesh), Options));
     light(anew);
     EXPECT_LT(difference(radiance_of(lit), radiance_of(anew)), 0.05);
 }
 
+/// A floor, a crate that stands on it, and a ball with lifts that lead into the floor.
+mesh::TriangleMesh touching_things() {
+    mesh::TriangleMesh mesh = scenes::floor_grid(21, 6.0f);
+    const std::size_t num_floor = mesh.num_triangles();
+    const auto crate = scenes::box({-0.53f, 0.0f, -0.47f}, {0.49f, 1.0f, 0.51f});
+    mesh = scenes::joined(mesh, crate);
+    const std::size_t num_vertices = mesh.num_vertices();
+    mesh = scenes::joined(mesh, scenes::icosphere(3, 0.5f, {-2.0f, 0.505f, 0.0f}));
+    mesh.triangle_groups.resize(num_floor, 0);
+    mesh.triangle_groups.resize(num_floor + crate.num_triangles(), 1);
+    mesh.triangle_groups.resize(mesh.num_triangles(), 2);
+    mesh.groups = {"ground", "crate", "ball"};
+    mesh.lifts.resize(num_vertices, glm::vec3(0.0f));
+    for (std::size_t i = num_vertices; i < mesh.num_vertices(); ++i)
+        mesh.lifts.push_back(0.02f * mesh.normals[i]);
+    return mesh;
+}
+
+/// Expects places that are the same but for roundings. The bias is a hundred times as large.
+void expect_near(const std::vector<glm::vec3>& places, const std::vector<glm::vec3>& expected) {
+    ASSERT_EQ(places.size(), expected.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+        EXPECT_LT(glm::distance(places[i], expected[i]), 1e-5f) << i;
+}
+
+/// Moves a group and expects receivers where a precompute has them, and counts of such a one with
+/// the same clusters.
+void expect_places_of_a_precompute(Scene& scene, const PrecomputeOptions& options,
+                                   const GroupStep& step) {
+    move(scene, move_of(scene, step));
+    mesh::TriangleMesh mesh = touching_things();
+    mesh.uvs = scene.mesh.uvs;
+    mesh.positions = scene.mesh.positions;
+    PrecomputeOptions fixed = options;
+    fixed.bias = scene.settings.bias;
+    const Scene anew = precompute(std::move(mesh), fixed);
+    expect_near(scene.receivers.positions, anew.receivers.positions);
+    expect_near(scene.mesh.lifts, anew.mesh.lifts);
+    const prt::RayScene rays(scene.blocking_mesh());
+    const prt::BeamScene beams(scene.blocking_mesh(), rays);
+    const prt::PrecomputeOptions same{.tolerance = *options.tolerance,
+                                      .min_level = options.min_level,
+                                      .face_resolution = options.face_resolution,
+                                      .bias = scene.settings.bias};
+    prt::expect_same(scene.transfer,
+                     prt::precompute(scene.receivers, beams, same, {},
+                                     {.given = &scene.transfer, .has_clusters = true}));
+}
+
+PrecomputeOptions without_bounces() {
+    PrecomputeOptions options = Options;
+    options.bounce_tolerance = 0.0f;
+    return options;
+}
+
+/// Receivers that look from inside of the floor
+std::ptrdiff_t num_inside(const Scene& scene) {
+    return std::ranges::count_if(scene.receivers.positions,
+                                 [](const glm::vec3& place) { return place.y < 0.0f; });
+}
+
+TEST(Moves, WhatWasTouchedLooksFromItsOwnPlaceAgain) {
+    const PrecomputeOptions options = without_bounces();
+    Scene scene = precompute(touching_things(), options);
+    const std::vector<glm::vec3> places = scene.receivers.positions, lifts = scene.mesh.lifts;
+    EXPECT_EQ(num_inside(scene), 9) << "below the crate";
+    EXPECT_FALSE(scene.free_lifts.empty()) << "some of the ball's lead into the floor";
+    for (const GroupStep& step : {GroupStep{.name = "crate", .by = {1.53, 0.0, 0.22}},
+                                  GroupStep{.name = "ball", .by = {0.0, 0.5, 0.0}},
+                                  GroupStep{.name = "crate", .by = {-1.53, 0.0, -0.22}},
+                                  GroupStep{.name = "ball", .by = {0.0, -0.5, 0.0}}})
+        expect_places_of_a_precompute(scene, options, step);
+    expect_near(scene.receivers.positions, places);
+    expect_near(scene.mesh.lifts, lifts);
+    move(scene, {.name = "crate", .going = Going::Away});
+    EXPECT_EQ(num_inside(scene), 0);
+    move(scene, {.name = "crate", .going = Going::Back});
+    expect_near(scene.receivers.positions, places);
+}
+
+TEST(Moves, TexelsThatWereTouchedLookFromTheirOwnPlaceAgain) {
+    PrecomputeOptions options = without_bounces();
+    options.receivers = Texels{.width = 20, .height = 20};
+    mesh::TriangleMesh mesh = touching_things();
+    mesh.uvs.resize(mesh.num_vertices(), glm::vec2(0.0f));
+    for (std::size_t i = 0; i < 21 * 21; ++i)
+        mesh.uvs[i] = glm::vec2(mesh.positions[i].x, mesh.positions[i].z) / 6.0f + 0.5f;
+    Scene scene = precompute(mesh, options);
+    ASSERT_EQ(scene.receivers.size(), 400u);
+    EXPECT_GT(num_inside(scene), 8);
+    expect_places_of_a_precompute(scene, options, {.name = "crate", .by = {1.53, 0.0, 0.22}});
+    move(scene, {.name = "crate", .going = Going::Away});
+    EXPECT_EQ(num_inside(scene), 0);
+}
+
+TEST(Moves, WhatIsTouchedFollowsADrag) {
+    LitScene lit(precompute(touching_things(), without_bounces()));
+    lit.light(data_gen::sun_and_sky(64));
+    const Scene scene = lit.scene();
+    const std::vector<glm::vec3> light = radiance_of(lit);
+    constexpr std::size_t BelowTheCrate = 10 * 21 + 10;
+    EXPECT_EQ(light[BelowTheCrate], glm::vec3(0.0f));
+    for (const double x : {1.53, 2.53}) {
+        const MoveReport report =
+            lit.moves().drag(move_of(scene, {.name = "crate", .by = {x, 0.0, 0.22}}));
+        EXPECT_GT(lit.radiance()[BelowTheCrate].g, 0.1f);
+        EXPECT_EQ(report.num_moved, 8u) << "the crate's vertices, not those of the floor";
+        EXPECT_GT(num_inside(lit.scene()), 0);
+    }
+    EXPECT_TRUE(lit.moves().undo());
+    EXPECT_EQ(lit.scene().receivers.positions, scene.receivers.positions);
+    EXPECT_EQ(lit.scene().mesh.lifts, scene.mesh.lifts);
+    EXPECT_EQ(radiance_of(lit), light);
+}
+
+TEST(Moves, TheLightFollowsAPose) {
+    LitScene lit(before());
+    light(lit);
+    const std::vector<glm::vec3> at_first = radiance_of(lit);
+    mesh::TriangleMesh mesh = things();
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+        for (const std::uint32_t vertex : mesh.triangles[i])
+            if (mesh.triangle_groups[i] == 1) // flat, and on its way to the ground
+                mesh.positions[vertex].y = 0.4f * before().mesh.positions[vertex].y;
+    const GroupMove flat = pose_of("ball", mesh);
+    lit.moves().move(flat);
+    Scene scene = before();
+    move(scene, flat);
+    LitScene anew(scene);
+    light(anew);
+    EXPECT_EQ(radiance_of(lit), radiance_of(anew));
+    EXPECT_NE(radiance_of(lit), at_first);
+    EXPECT_TRUE(lit.moves().undo());
+    EXPECT_EQ(radiance_of(lit), at_first);
+    EXPECT_THAT(refusal([&] { lit.moves().drag(flat); }), HasSubstr("a place to drag a group to"));
+}
+
+class MovesFile : public tests::FolderTest {};
+
+TEST_F(MovesFile, KeepsWhereVerticesWouldLookFrom) {
+    Scene scene = precompute(touching_things(), without_bounces());
+    prt::save_scene(folder_ / "scene.prt", scene);
+    Scene loaded = prt::load_scene(folder_ / "scene.prt");
+    EXPECT_EQ(loaded.free_lifts, scene.free_lifts);
+    const GroupStep up{.name = "ball", .by = {0.0, 0.5, 0.0}};
+    move(loaded, move_of(loaded, up));
+    move(scene, move_of(scene, up));
+    EXPECT_EQ(loaded.receivers.positions, scene.receivers.positions);
+    prt::save_scene(folder_ / "scene.prt", loaded);
+    EXPECT_EQ(prt::load_scene(folder_ / "scene.prt").receivers.positions,
+              scene.receivers.positions);
+}
+
 TEST(Moves, RefusesNamesAndScenesThatAreShared) {
     LitScene lit(before());
     light(lit);
     const std::vector<glm::vec3> at_first = radiance_of(lit);
-    EXPECT_THAT(refusal([&] { lit.move({.name = "bal"}); }),
+    EXPECT_THAT(refusal([&] { lit.moves().move({.name = "bal"}); }),
                 HasSubstr("expected one of 3 groups, got 'bal'; did you mean ball?"));
     glm::dmat4 singular(1.0);
     singular[1] = glm::dvec4(0.0);
-    EXPECT_THAT(refusal([&] { lit.move({.name = "ball", .matrix = singular}); }),
+    EXPECT_THAT(refusal([&] { lit.moves().move({.name = "ball", .matrix = singular}); }),
                 HasSubstr("singular"));
-    EXPECT_THAT(refusal([&] { lit.move({.name = "ball", .going = Going::Back}); }),
+    EXPECT_THAT(refusal([&] { lit.moves().move({.name = "ball", .going = Going::Back}); }),
                 HasSubstr("expected a group that was taken away, got ball, which is there"));
-    EXPECT_THAT(refusal([&] { lit.drag({.name = "ball", .going = Going::Away}); }),
+    EXPECT_THAT(refusal([&] { lit.moves().drag({.name = "ball", .going = Going::Away}); }),
                 HasSubstr("a place to drag a group to"));
     EXPECT_EQ(radiance_of(lit), at_first);
     LitScene shared(std::make_shared<const Scene>(before()));
-    EXPECT_THAT(refusal([&] { shared.move({.name = "ball"}); }), HasSubstr("not shared"));
+    EXPECT_THAT(refusal([&] { shared.moves().move({.name = "ball"}); }), HasSubstr("not shared"));
     Scene without = before();
     without.mesh.triangle_groups.clear();
     EXPECT_THAT(refusal([&] { move(without, {.name = "ball"}); }), HasSubstr("--movable"));
