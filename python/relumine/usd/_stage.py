@@ -79,12 +79,12 @@ class Reader:
             lights,
         )
         self.glb, self.notes = Glb(), Notes()
-        self.materials = Materials(self.glb, self.notes)
         self.up = str(UsdGeom.GetStageUpAxis(stage))
         meters = _meters(stage)
         if not 0.0 < meters < 1e12:
             self.notes.add(f"metersPerUnit {meters:g} is taken as 1", "")
             meters = 1.0
+        self.materials = Materials(self.glb, self.notes, meters)
         axes = np.eye(3) if self.up == "Y" else np.array([[1.0, 0, 0], [0, 0, -1.0], [0, 1.0, 0]])
         self.world = np.eye(4)
         self.world[:3, :3] = meters * axes
