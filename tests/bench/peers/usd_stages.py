@@ -25,7 +25,7 @@ def cycles(environment, stage, camera, samples, output):
     import mathutils
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    bpy.ops.wm.usd_import(filepath=stage, import_lights=False, import_cameras=False, create_world_material=False)
+    bpy.ops.wm.usd_import(filepath=stage, import_lights=False, import_cameras=False, create_world_material=False, import_subdiv=True)
     scene = bpy.context.scene
     scene.frame_set(scene.frame_start if scene.frame_start > 0 else 1)
     world = scene.world = bpy.data.worlds.new("dome")
