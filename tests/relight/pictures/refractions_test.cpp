@@ -10,6 +10,7 @@
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <gtest/gtest.h>
 
 #include "cubemap/frame.h"
@@ -134,8 +135,8 @@ TEST(Refractions, PartColors) {
     for (const float dispersion : {0.0f, 0.36f, 4.0f}) {
         material.dispersion = dispersion;
         Scene scene(prism(), material, scenes::smooth_environment(128));
-        for (const float enters : {-10.0f, 15.0f, 40.0f}) {
-            // Degrees away from the normal of the face towards +Z, from the side of the edge.
+        for (const float enters : {-40.0f, -15.0f, 0.0f}) {
+            // Degrees from the normal of the face towards +Z, positive on the side of the edge.
             const float way = glm::radians(enters + Apex / 2.0f);
             const glm::vec3 direction(-std::sin(way), 0.0f, -std::cos(way));
             const glm::vec3 found =
