@@ -48,7 +48,7 @@ def cycles(environment, stage, camera, samples, output):
     scene.camera.rotation_quaternion = (target - eye).to_track_quat("-Z", "Y")
     scene.render.engine = "CYCLES"
     made = scene.cycles
-    made.samples, made.use_denoising, made.use_adaptive_sampling = samples, False, False
+    made.samples, made.use_denoising, made.use_adaptive_sampling = samples, True, False
     made.sample_clamp_indirect = 0.0
     made.max_bounces = made.diffuse_bounces = made.glossy_bounces = made.transmission_bounces = 16
     made.transparent_max_bounces = 64
