@@ -502,8 +502,7 @@ def test_a_colour_above_a_mesh_counts_as_an_array_of_one_or_without():
         assert loaded(text).mesh.colors == pytest.approx(np.broadcast_to([0.5, 0.25, 1], (3, 3)))
 
 
-def test_a_skin_stands_in_its_pose():
-    text = """
+SKIN = """
 def SkelRoot "R" (prepend apiSchemas = ["SkelBindingAPI"]) {
     rel skel:skeleton = </R/S>
     def Skeleton "S" (prepend apiSchemas = ["SkelBindingAPI"]) {
@@ -530,7 +529,21 @@ elementSize = 1)
     }
 }
 """
-    assert loaded(text, time=5).mesh.vertices[:, 2] == pytest.approx([5, 5, 5])
+
+
+def test_a_skin_stands_in_its_pose():
+    assert loaded(SKIN, time=5).mesh.vertices[:, 2] == pytest.approx([5, 5, 5])
+
+
+@pytest.mark.parametrize("name", ["normals", "primvars:normals"])
+def test_normals_of_a_skin_turn_with_it(name):
+    """By 90 degrees about X: OpenUSD's baking leaves primvars alone."""
+    text = SKIN.replace("quatf[] rotations = [(1, 0, 0, 0)]", "quatf[] rotations = [(0.7071068, 0.7071068, 0, 0)]")
+    normals = f"normal3f[] {name} = [(0, 0, 1), (0, 0, 1), (0, 0, 1)] (interpolation = \"vertex\"\n)\n"
+    text = text.replace("        int[] primvars:skel:jointIndices", normals + "        int[] primvars:skel:jointIndices")
+    mesh = loaded(text, time=0).mesh
+    assert mesh.vertices[2] == pytest.approx([0, 0, 1], abs=1e-5)
+    assert mesh.normals == pytest.approx(np.broadcast_to([0, -1, 0], (3, 3)), abs=1e-5)
 
 
 # Materials.
