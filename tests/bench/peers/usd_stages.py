@@ -19,15 +19,20 @@ SIZE = 192
 FOV = 35.0
 
 
-def cycles(environment, stage, camera, samples, output):
-    """Runs in a process of its own: this file with three arguments."""
+def cycles(environment, stage, camera, subdivides, samples, output):
+    """Runs in a process of its own: this file without --blender."""
     import bpy
     import mathutils
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    bpy.ops.wm.usd_import(filepath=stage, import_lights=False, import_cameras=False, create_world_material=False, import_subdiv=True)
+    bpy.ops.wm.usd_import(filepath=stage, import_lights=False, import_cameras=False, create_world_material=False, import_subdiv=subdivides)
     scene = bpy.context.scene
-    scene.frame_set(scene.frame_start if scene.frame_start > 0 else 1)
+    scene.frame_set(scene.frame_start)
+    # findings/blender_usd_shared_image.sh
+    for material in bpy.data.materials:
+        for link in material.node_tree.links if material.node_tree else ():
+            if link.to_socket.name == "Base Color" and link.from_node.type == "TEX_IMAGE" and link.from_node.image:
+                link.from_node.image.colorspace_settings.name = "sRGB"
     world = scene.world = bpy.data.worlds.new("dome")
     world.use_nodes = True
     nodes, links = world.node_tree.nodes, world.node_tree.links
@@ -102,7 +107,9 @@ def main():
             lit.bounce()
             ours = np.asarray(lit.picture(size=(SIZE, SIZE), eye=camera[0], target=camera[1], fov=FOV, background="none", exposure=0))
         output = folder / f"{stage.stem}.exr"
-        child = [options.blender, __file__, options.environment, stage, json.dumps(camera), options.samples, output]
+        # Where a mesh with normals names no scheme, ours are polygons.
+        subdivides = int(not any("scheme" in note for note in asset.notes))
+        child = [options.blender, __file__, options.environment, stage, json.dumps(camera), subdivides, options.samples, output]
         subprocess.run([str(part) for part in child], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         theirs = np.load(f"{output}.npy")
         # The brightest tenth of the surfaces is white.
@@ -116,7 +123,7 @@ def main():
     print(f"median {np.median(errors):.2f} of {len(errors)}")
 
 
-if len(sys.argv) == 6 and "--blender" not in sys.argv:
-    cycles(sys.argv[1], sys.argv[2], json.loads(sys.argv[3]), int(sys.argv[4]), sys.argv[5])
+if len(sys.argv) == 7 and "--blender" not in sys.argv:
+    cycles(sys.argv[1], sys.argv[2], json.loads(sys.argv[3]), bool(int(sys.argv[4])), int(sys.argv[5]), sys.argv[6])
 else:
     main()
