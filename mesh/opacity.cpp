@@ -124,6 +124,7 @@ Material passed_as(Material material, const Material& other) {
     material.thickness = other.thickness;
     material.attenuation_color = other.attenuation_color;
     material.attenuation_distance = other.attenuation_distance;
+    material.dispersion = other.dispersion;
     material.is_double_sided = other.is_double_sided;
     return material;
 }

@@ -71,7 +71,12 @@ public:
                 is_phong && m.specular != usual.specular ? fmt::format("{}", m.exponent) : "",
                 m.emission != usual.emission ? of(m.emission, m.emission_texture) : "",
                 m.normal_texture ? of(m.normal_scale, m.normal_texture) : "",
-                m.ior != usual.ior ? fmt::format("{}", m.ior) : "",
+                m.ior != usual.ior || m.dispersion != usual.dispersion
+                    ? fmt::format("{}{}", m.ior,
+                                  m.dispersion != usual.dispersion
+                                      ? fmt::format(", dispersion {}", m.dispersion)
+                                      : "")
+                    : "",
                 m.coat != 0.0f
                     ? fmt::format("{}, roughness {}{}", of(m.coat, m.coat_texture),
                                   of(m.coat_roughness, m.coat_roughness_texture),

@@ -197,6 +197,8 @@ files::Json material_of(const Material& material, std::set<std::string>& used) {
             volume.set("attenuationDistance", double{material.attenuation_distance});
         extensions.set("KHR_materials_volume", std::move(volume));
     }
+    if (material.dispersion > 0.0f)
+        extensions.set("KHR_materials_dispersion", {{"dispersion", double{material.dispersion}}});
     if (material.coat > 0.0f)
         extensions.set("KHR_materials_clearcoat",
                        {{"clearcoatFactor", double{material.coat}},

@@ -173,7 +173,8 @@ std::string lost_without(std::string_view extension) {
 #ifndef RELUMINE_HDR_PHOTOS
         {"EXT_texture_avif", Images, ". A build with RELUMINE_HDR_PHOTOS reads them"},
 #endif
-        {"KHR_texture_basisu", Images, ". gltf-transform ktxdecompress makes PNG of them"},
+        {"KHR_texture_basisu", Images,
+         ". python3 -m relumine reads them: pip install relumine[basis]"},
         {"KHR_xmp", "its metadata are left out"},
         {"KHR_xmp_json_ld", "its metadata are left out"},
         {"MSFT_lod", "the finest level of detail is shown"},

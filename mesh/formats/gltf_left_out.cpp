@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "files/counted.h"
+#include "mesh/formats/gltf_materials.h"
 #include "mesh/formats/gltf_variants.h"
 #include "mesh/formats/polygon_soup.h"
 #include "mesh/text_reader.h"
@@ -18,25 +19,11 @@ namespace relumine::mesh::gltf {
 
 namespace {
 
-/// An extension of materials that is not read.
-struct Extension {
-    std::string_view name;
-    /// The property that switches it off, or on, and its value that changes nothing.
-    const char* property;
-    double neutral;
-    std::string_view loss;
-};
-
-constexpr std::array<Extension, 2> Extensions = {{
-    {"KHR_materials_dispersion", "dispersion", 0.0, "glass bends all colours alike"},
-    {"KHR_materials_volume_scatter", "multiscatterColor", 0.0,
-     "bodies are clear inside, not milky"},
-}};
-
 /// Those that are read.
-constexpr std::array<std::string_view, 12> ReadExtensions = {"KHR_materials_anisotropy",
+constexpr std::array<std::string_view, 14> ReadExtensions = {"KHR_materials_anisotropy",
                                                              "KHR_materials_clearcoat",
                                                              "KHR_materials_diffuse_transmission",
+                                                             "KHR_materials_dispersion",
                                                              "KHR_materials_emissive_strength",
                                                              "KHR_materials_ior",
                                                              "KHR_materials_iridescence",
@@ -45,35 +32,14 @@ constexpr std::array<std::string_view, 12> ReadExtensions = {"KHR_materials_anis
                                                              "KHR_materials_specular",
                                                              "KHR_materials_transmission",
                                                              "KHR_materials_unlit",
-                                                             "KHR_materials_volume"};
+                                                             "KHR_materials_volume",
+                                                             "KHR_materials_volume_scatter"};
 
 /// Everything that glTF 2.0 gives a material and a texture of it.
 constexpr std::array<std::string_view, 11> MaterialProperties = {
     "name",           "extras",      "extensions",       "pbrMetallicRoughness",
     "normalTexture",  "alphaCutoff", "occlusionTexture", "emissiveTexture",
     "emissiveFactor", "alphaMode",   "doubleSided"};
-
-bool is_number(const Json& value, double number) {
-    return value.type() == Json::Type::Number && value.number() == number;
-}
-
-/// Whether an extension's object changes nothing: its property, a number or a colour, has the
-/// neutral value, which all extensions but two take by default.
-bool is_neutral(const Extension& extension, const Json& object) {
-    for (const auto& [name, value] : object.members())
-        if (extension.neutral != 0.0 && name != extension.property && name != "extras" &&
-            !(value.type() == Json::Type::Array &&
-              std::all_of(value.values().begin(), value.values().end(),
-                          [](const Json& item) { return is_number(item, 1.0); })))
-            return false; // a texture, or a colour that is not white
-    const Json* value = object.find(extension.property);
-    if (value == nullptr)
-        return true;
-    if (value->type() == Json::Type::Array)
-        return std::all_of(value->values().begin(), value->values().end(),
-                           [&](const Json& item) { return is_number(item, extension.neutral); });
-    return is_number(*value, extension.neutral);
-}
 
 class LeftOut {
 public:
@@ -124,15 +90,8 @@ void LeftOut::texture(const Json& info) {
 
 void LeftOut::material_extensions(const Json& extensions) {
     for (const auto& [name, value] : extensions.members()) {
-        if (std::find(ReadExtensions.begin(), ReadExtensions.end(), name) != ReadExtensions.end())
-            continue;
-        const auto* known =
-            std::find_if(Extensions.begin(), Extensions.end(),
-                         [&own = name](const Extension& one) { return one.name == own; });
-        if (known == Extensions.end())
+        if (std::find(ReadExtensions.begin(), ReadExtensions.end(), name) == ReadExtensions.end())
             count("with " + excerpt(name) + ", which is not read", "what it describes is left out");
-        else if (!is_neutral(*known, value))
-            count(fmt::format("with {}, which is not read", name), known->loss);
     }
 }
 
@@ -140,7 +99,12 @@ void LeftOut::material(const Json& description) {
     of_this_material_.clear();
     const Json& extensions = child(description, "extensions");
     const Json& volume = child(extensions, "KHR_materials_volume");
-    if (number(child(extensions, "KHR_materials_transmission"), "transmissionFactor", 0.0) > 0.0)
+    const bool milky = is_milky(description);
+    if (extensions.find("KHR_materials_volume_scatter"))
+        count("with KHR_materials_volume_scatter, a draft",
+              milky ? "light comes out where it goes in" : "bodies are clear inside, not milky");
+    if (!milky &&
+        number(child(extensions, "KHR_materials_transmission"), "transmissionFactor", 0.0) > 0.0)
         count("of glass (KHR_materials_transmission)",
               "light goes straight on and its shadows are grey; pictures of vertices refract");
     if (volume.find("thicknessTexture"))
@@ -161,6 +125,7 @@ void LeftOut::material(const Json& description) {
     const Json& film = child(extensions, "KHR_materials_iridescence");
     const Json& stretched = child(extensions, "KHR_materials_anisotropy");
     const Json& diffuse = child(extensions, "KHR_materials_diffuse_transmission");
+    const Json& milk = child(extensions, "KHR_materials_volume_scatter");
     for (const auto& [parent, key] : {std::pair{&pbr, "baseColorTexture"},
                                       {&pbr, "metallicRoughnessTexture"},
                                       {&old, "diffuseTexture"},
@@ -178,7 +143,8 @@ void LeftOut::material(const Json& description) {
                                       {&film, "iridescenceThicknessTexture"},
                                       {&stretched, "anisotropyTexture"},
                                       {&diffuse, "diffuseTransmissionTexture"},
-                                      {&diffuse, "diffuseTransmissionColorTexture"}})
+                                      {&diffuse, "diffuseTransmissionColorTexture"},
+                                      {&milk, "multiscatterColorTexture"}})
         texture(child(*parent, key));
 }
 

@@ -46,6 +46,7 @@ private:
     void read_film(const Json& extension, Material& material);
     void read_anisotropy(const Json& extension, Material& material);
     void read_diffuse_transmission(const Json& extension, Material& material);
+    void read_milk(const Json& extensions, Material& material);
     double in_range(const char* key, double value, double low, double high);
     float fraction(const Json& object, const char* key, float fallback);
     std::vector<double> factors(const Json& object, const char* key, std::vector<double> fallback,
@@ -312,7 +313,7 @@ void MaterialReader::read_alpha(const Json& description, double alpha, Material&
     }
 }
 
-/// Reads KHR_materials_transmission and KHR_materials_volume.
+/// Reads KHR_materials_transmission, KHR_materials_volume and KHR_materials_dispersion.
 void MaterialReader::read_glass(const Json& extensions, Material& material) {
     const Json& transmission = child(extensions, "KHR_materials_transmission");
     material.transmission = fraction(transmission, "transmissionFactor", 0.0f);
@@ -333,6 +334,10 @@ void MaterialReader::read_glass(const Json& extensions, Material& material) {
         std::max(length("attenuationDistance", Endless), std::numeric_limits<float>::min());
     const std::vector<double> color = factors(volume, "attenuationColor", {1.0, 1.0, 1.0});
     material.attenuation_color = glm::vec3(color[0], color[1], color[2]);
+    if (material.thickness > 0.0f)
+        material.dispersion = static_cast<float>(in_range(
+            "dispersion", number(child(extensions, "KHR_materials_dispersion"), "dispersion", 0.0),
+            0.0, std::numeric_limits<float>::max()));
 }
 
 /// Returns the alpha of a texture as grey.
@@ -424,6 +429,22 @@ void MaterialReader::read_anisotropy(const Json& extension, Material& material) 
     material.anisotropy_texture = slot(extension, "anisotropyTexture", false);
 }
 
+/// Reads KHR_materials_volume_scatter of what is_milky(): the light that goes in comes out where it
+/// went in, in the colour of a body without end.
+void MaterialReader::read_milk(const Json& extensions, Material& material) {
+    const Json& scattering = child(extensions, "KHR_materials_volume_scatter");
+    const char* const name =
+        scattering.find("multiscatterColor") ? "multiscatterColor" : "multiscatterColorFactor";
+    const std::vector<double> color = factors(scattering, name, {0.0, 0.0, 0.0});
+    const float part = glm::mix(material.diffuse_transmission, 1.0f, material.transmission);
+    material.base_color =
+        glm::mix(material.base_color, glm::vec3(color[0], color[1], color[2]), part);
+    if (part == 1.0f)
+        material.base_color_texture = slot(scattering, "multiscatterColorTexture", false);
+    material.transmission = material.diffuse_transmission = material.thickness = 0.0f;
+    material.dispersion = 0.0f;
+}
+
 /// Reads KHR_materials_diffuse_transmission.
 void MaterialReader::read_diffuse_transmission(const Json& extension, Material& material) {
     material.diffuse_transmission = fraction(extension, "diffuseTransmissionFactor", 0.0f);
@@ -471,6 +492,8 @@ Material MaterialReader::material(const Json& description, std::size_t index) {
     read_anisotropy(child(extensions, "KHR_materials_anisotropy"), material);
     read_diffuse_transmission(child(extensions, "KHR_materials_diffuse_transmission"), material);
     read_glass(extensions, material);
+    if (is_milky(description))
+        read_milk(extensions, material);
     return material;
 }
 
@@ -496,6 +519,27 @@ Materials MaterialReader::read() {
 }
 
 } // namespace
+
+bool is_milky(const Json& material) {
+    const Json& extensions = child(material, "extensions");
+    const Json& volume = child(extensions, "KHR_materials_volume");
+    const Json& glass = child(extensions, "KHR_materials_transmission");
+    const Json& leaf = child(extensions, "KHR_materials_diffuse_transmission");
+    if (extensions.find("KHR_materials_volume_scatter") == nullptr ||
+        glass.find("transmissionTexture") || leaf.find("diffuseTransmissionTexture"))
+        return false;
+    const double most_through = std::max(number(glass, "transmissionFactor", 0.0),
+                                         number(leaf, "diffuseTransmissionFactor", 0.0));
+    if (most_through < 1.0 &&
+        (most_through == 0.0 || child(material, "pbrMetallicRoughness").find("baseColorTexture")))
+        return false;
+    const std::vector<double> color = numbers(volume, "attenuationColor", {1.0, 1.0, 1.0});
+    const double brightest = *std::max_element(color.begin(), color.end());
+    const double lengths =
+        number(volume, "thicknessFactor", 0.0) / number(volume, "attenuationDistance", 1e30);
+    constexpr double MostPassed = 0.05;
+    return std::pow(std::max(brightest, 0.0), lengths) < MostPassed;
+}
 
 Materials read_materials(Document& document) {
     return MaterialReader(document).read();

@@ -26,9 +26,11 @@ struct Materials {
     std::vector<std::string> warnings;
 };
 
-/// Reads factors, textures, samplers, emission, KHR_texture_transform, EXT_texture_webp,
-/// KHR_materials_clearcoat, _emissive_strength, _ior, _pbrSpecularGlossiness, _sheen, _specular and
-/// _unlit;
+/// Whether a body spreads the light in it (KHR_materials_volume_scatter, a draft) and is so thick
+/// that less than a twentieth crosses it straight on: wax, skin, milk. Those read as opaque ones.
+[[nodiscard]] bool is_milky(const Json& material);
+
+/// Reads factors, textures, samplers, emission, and the extensions of docs/materials.md;
 /// left_out() names the rest. A material that cannot be read becomes grey, an image is left out,
 /// each with a warning.
 [[nodiscard]] Materials read_materials(Document& document);

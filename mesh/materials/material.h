@@ -113,6 +113,8 @@ struct Material {
     /// What is left of light on a way of attenuation_distance through the body.
     glm::vec3 attenuation_color{1.0f};
     float attenuation_distance = std::numeric_limits<float>::infinity();
+    /// How far such a body parts colours, >= 0: 20 over Abbe's number, KHR_materials_dispersion.
+    float dispersion = 0.0f;
     /// The part of the diffuse light that goes to the other side of the surface in place of being
     /// reflected, in [0, 1]: KHR_materials_diffuse_transmission.
     float diffuse_transmission = 0.0f;

@@ -89,6 +89,7 @@ inline constexpr auto MaterialMembers = [] {
         Member{"transmission_texture", &M::transmission_texture, Never, Glass},
         Member{"thickness", &M::thickness, Never, Glass, {}, 0.0f, Any},
         Member{"attenuation", &M::attenuation_color, Never, Glass},
+        Member{"dispersion", &M::dispersion, {}, {}, {}, 0.0f, Any},
         Member{"diffuse_transmission", &M::diffuse_transmission},
         Member{"diffuse_transmission_texture", &M::diffuse_transmission_texture, {}, LetsThrough},
         Member{"diffuse_transmission_color", &M::diffuse_transmission_color, LetsThrough,

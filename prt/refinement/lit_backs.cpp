@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "mesh/opacity.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/refinement/coarse_transfer.h"
@@ -55,12 +56,19 @@ Backs backs_of(const mesh::TriangleMesh& mesh, const std::vector<std::uint32_t>&
     return backs;
 }
 
+/// Null where the mesh has none.
+const mesh::Material* material_of(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
+    return mesh.triangle_materials.empty() ? nullptr
+                                           : &mesh.materials[mesh.triangle_materials[triangle]];
+}
+
 /// Pictures do not show the backs of single-sided faces, nor light on some. What passes light on
-/// gets its back later.
+/// gets its back later. The surface of a body of glass has the other side within the body.
 bool needs_no_back(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
+    const mesh::Material* const material = material_of(mesh, triangle);
     return !shows_light(mesh, triangle) || passes_light_on(mesh, triangle) ||
-           (!mesh.triangle_materials.empty() &&
-            !mesh.materials[mesh.triangle_materials[triangle]].is_double_sided);
+           (material != nullptr && (!material->is_double_sided ||
+                                    (material->transmission > 0.0f && material->thickness > 0.0f)));
 }
 
 /// Appends the backs of some triangles.
@@ -113,15 +121,28 @@ mesh::TriangleMesh with_lit_backs(const mesh::TriangleMesh& mesh, const Blockers
     std::erase_if(single, [&](std::uint32_t triangle) { return needs_no_back(mesh, triangle); });
     const auto [receivers, ends] = backs_of(mesh, single);
     const auto bits = CoarseDirections().trace(receivers, blockers, bias, Progress(work));
-    std::vector<std::uint32_t> lit;
+    std::vector<bool> is_lit(single.size()), is_parted(mesh.materials.size());
     for (std::size_t i = 0; i < single.size(); ++i) {
         const auto at = [&](std::size_t place) {
             return bits.begin() + static_cast<std::ptrdiff_t>(place);
         };
-        if (!std::all_of(at(i == 0 ? 0 : ends[i - 1]), at(ends[i]), CoarseDirections::is_hidden))
-            lit.push_back(single[i]);
+        is_lit[i] =
+            !std::all_of(at(i == 0 ? 0 : ends[i - 1]), at(ends[i]), CoarseDirections::is_hidden);
+        const mesh::Material* const material = material_of(mesh, single[i]);
+        if (is_lit[i] && material != nullptr && mesh::lets_light_pass(*material))
+            is_parted[mesh.triangle_materials[single[i]]] = true;
     }
-    return with_backs(mesh, lit);
+    // An eye that sees through a surface would meet both sides of it, one behind the other.
+    std::vector<std::uint32_t> backs;
+    for (std::size_t i = 0; i < single.size(); ++i)
+        if (is_lit[i] || (material_of(mesh, single[i]) != nullptr &&
+                          is_parted[mesh.triangle_materials[single[i]]]))
+            backs.push_back(single[i]);
+    mesh::TriangleMesh result = with_backs(mesh, backs);
+    for (std::size_t i = 0; i < is_parted.size(); ++i)
+        if (is_parted[i])
+            result.materials[i].is_double_sided = false;
+    return result;
 }
 
 mesh::TriangleMesh with_backs_of_sheets(const mesh::TriangleMesh& mesh) {

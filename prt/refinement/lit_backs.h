@@ -11,7 +11,9 @@ namespace relumine::prt {
 /// vertices of their own, with normals turned over. Vertices and triangles of the mesh come first.
 /// A leaf of one triangle has a back, too: it is seen from both sides. So has a closed surface that
 /// is wound the wrong way round. One that faces outwards gets none, nor do triangles that the mesh
-/// has for both sides (prt::TwinTriangles).
+/// has for both sides (prt::TwinTriangles), nor bodies of glass. Where an eye sees through a
+/// material, all of its triangles get their backs if one does, and the material has one side
+/// afterwards.
 ///
 /// Cost:    O(n log n), and four points to trace for each triangle, more where it is large in the
 ///          scene.

@@ -1,4 +1,4 @@
-"""python3 -m relumine: the program `relumine` of the same installation, with stages of USD."""
+"""python3 -m relumine: the program of the same installation, with USD and textures of Basis."""
 
 import os
 import shutil
@@ -7,6 +7,8 @@ import sys
 import sysconfig
 import tempfile
 from typing import List
+
+from . import _basis
 
 #: Commands whose first file is a mesh. For `relight` the stage's own light stands in for ENV.
 _OF_MESHES = ("relight", "precompute", "info")
@@ -47,8 +49,16 @@ def main() -> None:
     arguments = sys.argv[1:]
     if arguments and arguments[0] in _OF_MESHES:
         for index, argument in enumerate(arguments[1:], 1):
-            if argument.lower().endswith(_STAGES) and arguments[index - 1] != "-o":
+            if arguments[index - 1] == "-o":
+                continue
+            if argument.lower().endswith(_STAGES):
                 sys.exit(_with_stage(program, arguments, index))
+            with _basis.readable(argument) as (file, notes):
+                for line in notes:
+                    print(f"relumine: {argument}: {line}", file=sys.stderr)
+                if file != argument:
+                    given = [*arguments[:index], file, *arguments[index + 1 :]]
+                    sys.exit(subprocess.call([program, *given]))
     os.execv(program, [program, *arguments])
 
 

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import Floats, Indices, expect, floats, indices, view, whole, word
+from ._basis import readable
 from ._core import Mesh as CoreMesh
 from ._files import FileError, Path, errors, in_python
 
@@ -166,8 +167,9 @@ class Mesh:
             "floor_scale": floor_scale,
         }
         with errors(path):
-            core = _core.load_mesh(os.fspath(path), options)
-        warn(core.warnings)
+            with readable(os.fspath(path)) as (file, notes):
+                core = _core.load_mesh(file, options)
+        warn([*notes, *core.warnings])
         return cls._of(core, _loaded, os.path.abspath(path), core.source_hash, **options)
 
     @classmethod

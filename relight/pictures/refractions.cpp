@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
@@ -30,13 +31,23 @@ constexpr float LeastSpread = 1e-2f;
 /// Surfaces that a ray meets before it is let go where it is.
 constexpr int MostSurfaces = 16;
 
-/// glTF: 0 stands for an infinite index, which mirrors all.
-float index_of(const mesh::Material& material) {
-    return std::max(material.ior, 1.0f);
-}
-
 bool is_body(const mesh::Material& material) {
     return material.thickness > 0.0f;
+}
+
+/// Red, green or blue, where light of one colour goes a way of its own.
+using Color = std::optional<int>;
+
+bool parts_colors(const mesh::Material& material) {
+    return is_body(material) && material.ior > 1.0f && material.dispersion > 0.0f;
+}
+
+/// glTF: 0 stands for an infinite index, which mirrors all. Green light has the material's index,
+/// red and blue are half of nF - nC away from it, as renderers of KHR_materials_dispersion do.
+float index_of(const mesh::Material& material, Color color) {
+    const float index = std::max(material.ior, 1.0f);
+    const float half_spread = 0.025f * material.dispersion * (index - 1.0f);
+    return std::max(index + static_cast<float>(color.value_or(1) - 1) * half_spread, 1.0f);
 }
 
 /// Returns the part of the light that leaves a rough surface in a direction and meets no other
@@ -177,6 +188,8 @@ glm::vec3 passed_part(const Mirror& mirror) {
 struct Refractions::Ray {
     glm::vec3 origin{0.0f}, direction{0.0f};
     glm::vec3 throughput{1.0f};
+    /// None: all colours go this way.
+    Color color = std::nullopt;
     /// The body that the ray is in; null outside of all.
     const mesh::Material* body = nullptr;
     /// The ray's number among those of its pixel, and how these are shifted
@@ -189,6 +202,22 @@ struct Refractions::Ray {
     std::array<RayStep, 2> steps = {};
     bool has_steps = false;
 
+    /// Returns what is seen by a ray that meets a body: the sum of its colours where the body parts
+    /// them.
+    template<typename Follow>
+    static glm::vec3 parted(const Ray& ray, const mesh::Material& body, const Follow& follow) {
+        if (ray.color || !parts_colors(body))
+            return follow(ray);
+        glm::vec3 sum(0.0f);
+        for (const int color : {0, 1, 2}) {
+            Ray own = ray;
+            own.color = color;
+            own.throughput = glm::vec3(0.0f);
+            own.throughput[color] = ray.throughput[color];
+            sum += follow(own);
+        }
+        return sum;
+    }
     /// What chooses the facet of the surface that it meets
     [[nodiscard]] glm::vec2 point() const { return facet_point(shift, number, num_surfaces); }
     /// Follows the steps through a surface of a body that the ray met. `normal` is on its side.
@@ -213,8 +242,8 @@ bool Refractions::bends(const Mirror& mirror, const prt::MeshPoint& at) const {
     if (mesh_.triangle_materials.empty())
         return false;
     const mesh::Material& material = mesh_.materials[mesh_.triangle_materials[at.triangle]];
-    return material.transmission > 0.0f &&
-           ((is_body(material) && index_of(material) > 1.0f) || mirror.facet_alpha > SmoothAlpha);
+    return material.transmission > 0.0f && ((is_body(material) && index_of(material, {}) > 1.0f) ||
+                                            mirror.facet_alpha > SmoothAlpha);
 }
 
 glm::vec3 Refractions::light(const Mirror& mirror, const prt::MeshPoint& at, std::uint32_t sample,
@@ -227,29 +256,31 @@ glm::vec3 Refractions::light(const Mirror& mirror, const prt::MeshPoint& at, std
         passed_part(mirror) * mesh::glass_tint(mesh_, at.triangle, at.barycentric);
     const glm::vec3 position = prt::value_at(mesh_, mesh_.positions, at);
     const glm::vec3 face = prt::face_normal(mesh_, at.triangle);
-    glm::vec3 sum(0.0f);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        Ray ray{.throughput = through,
-                .number = sample * count + i,
-                .shift = shift,
-                .num_surfaces = 1,
-                .share = SeenShare / static_cast<float>(count)};
+    const auto entered = [&](Ray ray) {
+        const float ratio = 1.0f / index_of(material, ray.color);
         const glm::vec2 u = ray.point();
-        const Bent bent =
-            is_body(material)
-                ? into_body(-mirror.to_eye, mirror.normal, alpha, 1.0f / index_of(material), u)
-                : through_sheet(-mirror.to_eye, mirror.normal, alpha, u);
+        const Bent bent = is_body(material)
+                              ? into_body(-mirror.to_eye, mirror.normal, alpha, ratio, u)
+                              : through_sheet(-mirror.to_eye, mirror.normal, alpha, u);
         ray.direction = -mirror.to_eye;
         if (alpha <= SmoothAlpha)
             begin_steps(ray, position, face);
         if (is_body(material)) {
             ray.body = &material;
-            ray.step(mesh_, at.triangle, mirror.normal, bent, 1.0f / index_of(material));
+            ray.step(mesh_, at.triangle, mirror.normal, bent, ratio);
         }
         ray.spread = ray.share * bent.solid_angle;
         ray.go_on(position, bent.way, face, light_.bias);
-        sum += followed(ray);
-    }
+        return followed(ray);
+    };
+    glm::vec3 sum(0.0f);
+    for (std::uint32_t i = 0; i < count; ++i)
+        sum += Ray::parted({.throughput = through,
+                            .number = sample * count + i,
+                            .shift = shift,
+                            .num_surfaces = 1,
+                            .share = SeenShare / static_cast<float>(count)},
+                           material, entered);
     return sum / static_cast<float>(count);
 }
 
@@ -288,6 +319,11 @@ glm::vec3 Refractions::followed(Ray ray) const {
         };
         if (!hit)
             return sky(ray);
+        if (!ray.color && rays_.is_thin(hit->triangle)) {
+            const mesh::Material& met = mesh_.materials[mesh_.triangle_materials[hit->triangle]];
+            if (parts_colors(met))
+                return Ray::parted(ray, met, [&](const Ray& own) { return followed(own); });
+        }
         if (ray.has_steps)
             for (RayStep& step : ray.steps)
                 step.transfer(ray.direction, hit->distance, prt::face_normal(mesh_, hit->triangle));
@@ -340,7 +376,7 @@ bool Refractions::meet(Ray& ray, const prt::Hit& hit) const {
         ray.throughput *= tint;
         return true;
     }
-    const float index = index_of(material);
+    const float index = index_of(material, ray.color);
     const float ratio = leaves ? index : 1.0f / index;
     const Bent bent = into_body(ray.direction, normal, roughness, ratio, own);
     ray.step(mesh_, at.triangle, normal, bent, ratio);

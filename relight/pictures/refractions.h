@@ -1,7 +1,7 @@
 // What is seen through glass that bends or spreads it, found by rays.
 //
-// Based on: KHR_materials_transmission, KHR_materials_volume; B. Walter et al., "Microfacet Models
-// for Refraction through Rough Surfaces", EGSR 2007 (facets refract).
+// Based on: KHR_materials_transmission, KHR_materials_volume, KHR_materials_dispersion; B. Walter
+// et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007 (facets refract).
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,8 @@
 namespace relumine::relight {
 
 /// Follows the eye's rays through bodies of glass (KHR_materials_volume), which refract them by
-/// their index and take light on the way, and through rough sheets, which spread them. At each
+/// their index and take light on the way, and through rough sheets, which spread them. Where a body
+/// parts colours, red, green and blue go ways of their own from there on. At each
 /// surface a ray goes one way: on, or back where all of it is mirrored. What the inner side of a
 /// surface mirrors beyond that leaves elsewhere, and is taken to go on, so glass loses no light. A
 /// facet of rough glass that would send a ray against another facet gives way to others. The sky
@@ -41,7 +42,8 @@ public:
     /// points of a pixel; `shift` is that of the pixel, as in MirrorPoint.
     ///
     /// Cost:    some three rays for each time that light enters glass and leaves it; of rough
-    ///          glass, a quarter of the reflections' rays so often.
+    ///          glass, a quarter of the reflections' rays so often. Three times that where colours
+    ///          part.
     [[nodiscard]] glm::vec3 light(const Mirror& mirror, const prt::MeshPoint& at,
                                   std::uint32_t sample, const glm::vec2& shift) const;
 

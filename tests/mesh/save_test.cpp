@@ -216,6 +216,7 @@ TEST_F(SaveTest, GlbKeepsLayersAndGlassAndPrimitivesShareVertices) {
                    .thickness = 0.75f,
                    .attenuation_color = {0.5f, 1.0f, 0.25f},
                    .attenuation_distance = 2.0f,
+                   .dispersion = 0.5f,
                    .is_double_sided = false,
                    .ior = 1.25f};
     Material layered{.name = "layered",

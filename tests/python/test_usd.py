@@ -6,6 +6,7 @@ import json
 import math
 import os
 import re
+import struct
 import subprocess
 import sys
 import zipfile
@@ -501,8 +502,7 @@ def test_a_colour_above_a_mesh_counts_as_an_array_of_one_or_without():
         assert loaded(text).mesh.colors == pytest.approx(np.broadcast_to([0.5, 0.25, 1], (3, 3)))
 
 
-def test_a_skin_stands_in_its_pose():
-    text = """
+SKIN = """
 def SkelRoot "R" (prepend apiSchemas = ["SkelBindingAPI"]) {
     rel skel:skeleton = </R/S>
     def Skeleton "S" (prepend apiSchemas = ["SkelBindingAPI"]) {
@@ -529,7 +529,21 @@ elementSize = 1)
     }
 }
 """
-    assert loaded(text, time=5).mesh.vertices[:, 2] == pytest.approx([5, 5, 5])
+
+
+def test_a_skin_stands_in_its_pose():
+    assert loaded(SKIN, time=5).mesh.vertices[:, 2] == pytest.approx([5, 5, 5])
+
+
+@pytest.mark.parametrize("name", ["normals", "primvars:normals"])
+def test_normals_of_a_skin_turn_with_it(name):
+    """By 90 degrees about X: OpenUSD's baking leaves primvars alone."""
+    text = SKIN.replace("quatf[] rotations = [(1, 0, 0, 0)]", "quatf[] rotations = [(0.7071068, 0.7071068, 0, 0)]")
+    normals = f"normal3f[] {name} = [(0, 0, 1), (0, 0, 1), (0, 0, 1)] (interpolation = \"vertex\"\n)\n"
+    text = text.replace("        int[] primvars:skel:jointIndices", normals + "        int[] primvars:skel:jointIndices")
+    mesh = loaded(text, time=0).mesh
+    assert mesh.vertices[2] == pytest.approx([0, 0, 1], abs=1e-5)
+    assert mesh.normals == pytest.approx(np.broadcast_to([0, -1, 0], (3, 3)), abs=1e-5)
 
 
 # Materials.
@@ -733,7 +747,8 @@ def Material "Look" {
     }
 }"""))  # fmt: skip
     (material,) = asset.mesh.materials
-    assert material["base_color"] == pytest.approx([0.25, 0.125, 0.5])
+    # Half of it is white: the colour of subsurface, which comes out where it goes in.
+    assert material["base_color"] == pytest.approx([0.625, 0.5625, 0.75])
     assert material["roughness"] == pytest.approx(0.4) and material["metallic"] == pytest.approx(
         0.125
     )
@@ -802,6 +817,64 @@ def Material "Look" {{
     (material,) = document(thick)["materials"]
     assert "KHR_materials_diffuse_transmission" not in material.get("extensions", {})
     assert any("subsurface" in line for line in loaded(thick).notes)
+
+
+def glass_of(surface, text, meters=1.0):
+    look = f"""
+def Material "Look" {{
+    token outputs:mtlx:surface.connect = </Look/S.outputs:out>
+    def Shader "S" {{
+        uniform token info:id = "ND_{surface}_surfaceshader"
+{text}
+        token outputs:out
+    }}
+}}"""
+    stage = stage_of(bound(look), meters=meters)
+    data, reader = relumine.usd.convert(stage)
+    size = struct.unpack_from("<I", data, 12)[0]
+    (material,) = json.loads(data[20 : 20 + size])["materials"]
+    return material, reader.notes.lines()
+
+
+@pytest.mark.parametrize(
+    "surface, text, volume, dispersion, base",
+    [
+        ("standard_surface", "float inputs:transmission = 1\ncolor3f inputs:transmission_color = (1, 0.5, 0.25)\n"
+         "float inputs:transmission_dispersion = 40",
+         {"thicknessFactor": 1.0}, 0.5, (1, 0.5, 0.25)),
+        ("standard_surface", "float inputs:transmission = 1\ncolor3f inputs:transmission_color = (1, 0.5, 0.25)\n"
+         "float inputs:transmission_depth = 30",
+         {"thicknessFactor": 0.3, "attenuationDistance": 0.3, "attenuationColor": [1, 0.5, 0.25]}, 0, (1, 1, 1)),
+        ("standard_surface", "float inputs:transmission = 1\nbool inputs:thin_walled = 1", None, 0, (1, 1, 1)),
+        ("open_pbr_surface", "float inputs:transmission_weight = 1\n"
+         "float inputs:transmission_dispersion_scale = 0.5\nfloat inputs:transmission_dispersion_abbe_number = 40",
+         {"thicknessFactor": 1.0}, 0.25, (1, 1, 1)),
+        ("open_pbr_surface", "float inputs:transmission_weight = 1", {"thicknessFactor": 1.0}, 0, (1, 1, 1)),
+        ("gltf_pbr", "float inputs:transmission = 1\ncolor3f inputs:base_color = (1, 0.5, 0.25)", None, 0, (1, 0.5, 0.25)),
+        ("gltf_pbr", "float inputs:transmission = 1\nfloat inputs:thickness = 50\nfloat inputs:dispersion = 0.36\n"
+         "float inputs:attenuation_distance = 20\ncolor3f inputs:attenuation_color = (0.5, 1, 1)",
+         {"thicknessFactor": 0.5, "attenuationDistance": 0.2, "attenuationColor": [0.5, 1, 1]}, 0.36, (1, 1, 1)),
+    ],
+)  # fmt: skip
+def test_glass_is_a_body_unless_its_walls_are_thin(surface, text, volume, dispersion, base):
+    material, notes = glass_of(surface, text, meters=0.01)
+    extensions = material["extensions"]
+    assert extensions["KHR_materials_transmission"] == {"transmissionFactor": 1.0}
+    found = extensions.get("KHR_materials_volume")
+    assert (found is None) == (volume is None)
+    for name, value in (volume or {}).items():
+        assert found[name] == pytest.approx(value), name
+    assert extensions.get("KHR_materials_dispersion", {"dispersion": 0})["dispersion"] == pytest.approx(dispersion)
+    assert material["pbrMetallicRoughness"]["baseColorFactor"][:3] == pytest.approx(base)
+    assert not any("transmission" in line or "dispersion" in line or "thick" in line for line in notes)
+
+
+def test_the_subsurface_of_a_thick_body_is_its_colour():
+    text = ("float inputs:base = 1\ncolor3f inputs:base_color = (0.4, 0.2, 0)\nfloat inputs:subsurface = 0.5\n"
+            "color3f inputs:subsurface_color = (0.8, 0.4, 1)")  # fmt: skip
+    material, notes = glass_of("standard_surface", text)
+    assert material["pbrMetallicRoughness"]["baseColorFactor"][:3] == pytest.approx((0.6, 0.3, 0.5))
+    assert any("subsurface" in line for line in notes)
 
 
 def test_a_file_of_materialx(tmp_path):

@@ -327,8 +327,8 @@ def _clamped(values: Sequence[float]) -> List[float]:
 class Materials:
     """Materials of a stage, each once."""
 
-    def __init__(self, glb: Glb, notes: Notes) -> None:
-        self._glb, self._notes = glb, notes
+    def __init__(self, glb: Glb, notes: Notes, meters: float) -> None:
+        self._glb, self._notes, self._meters = glb, notes, meters
         self.images = Images(glb, notes)
         self._looks: Dict[Any, Look] = {}
 
@@ -667,8 +667,17 @@ class Materials:
             self._factor_and_texture(slots, glass, "transmission", passing, 0)
             extensions["KHR_materials_transmission"] = glass
             through = of("transmission_color")
-            if not isinstance(through, Image) and not isinstance(passing, Image) and passing == 1.0:
-                pbr["baseColorFactor"] = [*_clamped(_color(through)), pbr["baseColorFactor"][3]]
+            tint = (1.0, 1.0, 1.0) if isinstance(through, Image) else _color(through)
+            extensions.update(self._body(n, names, tint))
+            takes = "attenuationDistance" in extensions.get("KHR_materials_volume", {})
+            if (
+                names["transmission_color"][0]
+                and not isinstance(through, Image)
+                and not isinstance(passing, Image)
+                and passing == 1.0
+            ):
+                surface = (1.0, 1.0, 1.0) if takes else tint
+                pbr["baseColorFactor"] = [*_clamped(surface), pbr["baseColorFactor"][3]]
                 pbr.pop("baseColorTexture", None)
         glow = of("emission")
         if isinstance(glow, Image):
@@ -679,6 +688,7 @@ class Materials:
         self._normal(slots, material, _map_of(of("normal")), n.path)
         pairs = [pair for pair in names.values() if isinstance(pair, tuple)]
         known = {name for name, _ in pairs if name} | set(names["silent"][1]) | of_thin_walls
+        known |= set(names["glass"])
         for name in sorted(n.given() - known):
             value = n.input(name, None)
             if value in (0, 0.0, False, None, (0.0, 0.0, 0.0)) or name.endswith(("_IOR", "_ior")):
@@ -701,10 +711,17 @@ class Materials:
         """
         thin, scatter, fallback = names.get("thin_wall", ("", "", 0.0))
         part = n.input("subsurface_weight" if scatter else "subsurface", 0.0) if thin else 0.0
-        if not thin or not n.number(thin, 0.0) or isinstance(part, Image) or part <= 0.0:
+        if not thin or isinstance(part, Image) or part <= 0.0:
             return base, set()
         part = self._fraction(part)
         color = n.input("subsurface_color", fallback)
+        if not n.number(thin, 0.0):
+            # Of a thick body light comes out in that colour, here where it goes in.
+            if part == 1.0:
+                return color, set()
+            if isinstance(base, Image) or isinstance(color, Image):
+                return base, set()
+            return tuple((1.0 - part) * b + part * c for b, c in zip(_color(base), _color(color))), set()
         # standard_surface passes all of it on, OpenPBR a half, or more towards where it scatters.
         ahead = n.number(scatter, 0.0) if scatter else 1.0
         passed = part * min(max(0.5 * (1.0 + ahead), 0.0), 1.0)
@@ -732,6 +749,35 @@ class Materials:
             for b, c in zip(_color(base), _color(color))
         ]
         return tuple(mixed), used
+
+    def _body(self, n: Network, names: Dict[str, Any], tint: Tuple[float, ...]) -> Dict[str, Any]:
+        """Glass that is no thin wall: what it takes on the way, and how it parts colours."""
+        thin = names["thin_wall"][0] if "thin_wall" in names else ""
+        if thin and n.number(thin, 0.0):
+            return {}
+        volume: Dict[str, Any] = {"thicknessFactor": 1.0}
+        if names["depth"] is None:  # glTF's own
+            volume["thicknessFactor"] = n.number("thickness", 0.0) * self._meters
+            if volume["thicknessFactor"] <= 0.0:
+                return {}
+            depth, tint = n.number("attenuation_distance", 0.0), _color(n.input("attenuation_color", tint))
+        else:
+            depth = n.number(names["depth"], 0.0)
+        if depth > 0.0:
+            volume["attenuationDistance"] = depth * self._meters
+            volume["attenuationColor"] = _clamped(tint)
+            if names["depth"] is not None:
+                volume["thicknessFactor"] = depth * self._meters
+        body = {"KHR_materials_volume": volume}
+        # glTF has 20 over Abbe's number.
+        abbe, scale, own = names["dispersion"]
+        value = n.number(own, 0.0) if own else 0.0
+        if abbe is not None and n.number(*abbe) > 0.0:
+            part = n.number(*scale) if scale[0] else scale[1]
+            value = 20.0 / n.number(*abbe) * part
+        if value > 0.0:
+            body["KHR_materials_dispersion"] = {"dispersion": value}
+        return body
 
     def _film(self, n: Network, extensions: Dict[str, Any], names: Dict[str, Any]) -> None:
         """A thin film of one thickness; glTF has it in nanometres."""
@@ -762,6 +808,9 @@ class Materials:
             "normal": ("normal", None), "film": (None, 1.0),
             "film_thickness": ("thin_film_thickness", 0.0), "film_ior": ("thin_film_IOR", 1.5),
             "nanometres": 1.0, "thin_wall": ["thin_walled", "", one],
+            "depth": "transmission_depth",
+            "dispersion": [("transmission_dispersion", 0.0), (None, 1.0), None],
+            "glass": ["thin_walled", "transmission_depth", "transmission_dispersion"],
             "silent": (None, ("tangent",)),
         })  # fmt: skip
 
@@ -781,6 +830,11 @@ class Materials:
             "film_thickness": ("thin_film_thickness", 0.5), "film_ior": ("thin_film_ior", 1.4),
             "nanometres": 1000.0,
             "thin_wall": ["geometry_thin_walled", "subsurface_scatter_anisotropy", (0.8, 0.8, 0.8)],
+            "depth": "transmission_depth",
+            "dispersion": [("transmission_dispersion_abbe_number", 20.0),
+                           ("transmission_dispersion_scale", 0.0), None],
+            "glass": ["geometry_thin_walled", "transmission_depth",
+                      "transmission_dispersion_abbe_number", "transmission_dispersion_scale"],
             "silent": (None, ("geometry_tangent",)),
         })  # fmt: skip
 
@@ -796,7 +850,9 @@ class Materials:
             "transmission_color": (None, one), "emission": ("emissive_strength", 1.0),
             "emission_color": ("emissive", (0.0, 0.0, 0.0)), "normal": ("normal", None),
             "film": ("iridescence", 0.0), "film_thickness": ("iridescence_thickness", 100.0),
-            "film_ior": ("iridescence_ior", 1.3), "nanometres": 1.0,
+            "film_ior": ("iridescence_ior", 1.3), "nanometres": 1.0, "depth": None,
+            "dispersion": [None, None, "dispersion"],
+            "glass": ["thickness", "attenuation_distance", "attenuation_color", "dispersion"],
             "silent": (None, ("alpha_mode", "alpha_cutoff", "occlusion", "tangent")),
         })  # fmt: skip
 

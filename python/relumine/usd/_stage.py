@@ -79,12 +79,12 @@ class Reader:
             lights,
         )
         self.glb, self.notes = Glb(), Notes()
-        self.materials = Materials(self.glb, self.notes)
         self.up = str(UsdGeom.GetStageUpAxis(stage))
         meters = _meters(stage)
         if not 0.0 < meters < 1e12:
             self.notes.add(f"metersPerUnit {meters:g} is taken as 1", "")
             meters = 1.0
+        self.materials = Materials(self.glb, self.notes, meters)
         axes = np.eye(3) if self.up == "Y" else np.array([[1.0, 0, 0], [0, 0, -1.0], [0, 1.0, 0]])
         self.world = np.eye(4)
         self.world[:3, :3] = meters * axes
@@ -433,6 +433,18 @@ def _unit(normals: Array) -> Array:
     return np.where(lengths > 0.0, normals / np.where(lengths > 0.0, lengths, 1.0), [0.0, 1.0, 0.0])
 
 
+def _normals_as_attribute(mesh: UsdGeom.Mesh, moment: float) -> None:
+    """Moves primvars:normals to `normals`: OpenUSD's baking turns these alone."""
+    primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("normals")
+    if not primvar or not primvar.HasAuthoredValue():
+        return
+    values = primvar.ComputeFlattened(moment)
+    if values is not None:
+        mesh.GetNormalsAttr().Set(values)
+        mesh.SetNormalsInterpolation(primvar.GetInterpolation())
+        primvar.GetAttr().Block()
+
+
 def bake_skeletons(stage: Usd.Stage, time: Usd.TimeCode, notes: Notes) -> None:
     """Puts skinned meshes and blend shapes into their pose, in the session layer."""
     roots = [prim for prim in stage.Traverse() if prim.IsA(UsdSkel.Root)]
@@ -450,5 +462,8 @@ def bake_skeletons(stage: Usd.Stage, time: Usd.TimeCode, notes: Notes) -> None:
                 if value is not None:
                     attribute.Set(value, moment)
         for root in roots:
+            for prim in Usd.PrimRange(root):
+                if prim.IsA(UsdGeom.Mesh):
+                    _normals_as_attribute(UsdGeom.Mesh(prim), moment)
             if not UsdSkel.BakeSkinning(UsdSkel.Root(root), Gf.Interval(moment, moment)):
                 notes.add("a skeleton that cannot be posed: it is at rest", root.GetPath())

@@ -572,6 +572,27 @@ TEST(LitBacks, ALeafIsLitFromBothSides) {
     EXPECT_EQ(both.num_vertices(), leaf.num_vertices() + 3);
 }
 
+/// An eye that sees through a surface meets one of its sides, not both.
+TEST(LitBacks, WhatIsSeenThroughHasOneSideEach) {
+    mesh::TriangleMesh pane = scenes::floor_grid(2, 1.0f);
+    pane.triangle_materials = {0, 0};
+    const auto with = [&](const mesh::Material& material) {
+        pane.materials = {material};
+        return with_lit_backs(pane, RayScene(pane), automatic_bias(pane));
+    };
+    const mesh::TriangleMesh veil = with({.alpha_mode = mesh::AlphaMode::Blend, .alpha = 0.5f});
+    EXPECT_EQ(veil.num_triangles(), 4u);
+    EXPECT_FALSE(veil.materials[0].is_double_sided);
+    for (const float height : {-1.0f, 1.0f}) {
+        std::vector<RayScene::Layer> layers;
+        RayScene(veil).layers({0.1f, height, 0.2f}, {0.0f, -height, 0.0f}, layers);
+        ASSERT_EQ(layers.size(), 1u) << height;
+        EXPECT_EQ(layers[0].hit.triangle < 2, height > 0.0f);
+    }
+    EXPECT_TRUE(with({}).materials[0].is_double_sided) << "opaque";
+    EXPECT_EQ(with({.transmission = 1.0f, .thickness = 1.0f}).num_triangles(), 2u) << "a body";
+}
+
 TEST(LitBacks, WhatPassesLightOnGetsThemByItself) {
     mesh::TriangleMesh leaf = scenes::floor_grid(2, 1.0f);
     EXPECT_EQ(with_backs_of_sheets(leaf).num_triangles(), 2u) << "no material";

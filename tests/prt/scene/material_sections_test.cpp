@@ -153,6 +153,7 @@ TEST(MaterialSections, KeepWhatRaysPass) {
     scene.mesh.materials[0].thickness = 0.25f;
     scene.mesh.materials[0].attenuation_color = glm::vec3(0.5f);
     scene.mesh.materials[0].attenuation_distance = 3.0f;
+    scene.mesh.materials[0].dispersion = 0.36f;
     scene.mesh.materials[1].alpha = 0.75f;
     scene.mesh.materials[1].alpha_cutoff = 0.25f;
     scene.blockers = mesh::blockers_of(scene.mesh);
@@ -167,6 +168,7 @@ TEST(MaterialSections, KeepWhatRaysPass) {
     same.blockers->uvs.clear();
     MaterialSections.read(scenes::reader_of("scene.prt", scenes::made(sections)), same);
     EXPECT_FALSE(same.mesh.materials[0].is_double_sided);
+    EXPECT_EQ(same.mesh.materials[0].dispersion, 0.36f);
     for (const mesh::TriangleMesh& mesh : {same.mesh, *same.blockers})
         for (int i = 0; i < 100; ++i) {
             const auto triangle = static_cast<std::uint32_t>(i % 10);

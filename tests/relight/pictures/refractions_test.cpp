@@ -4,11 +4,13 @@
 #include <cmath>
 #include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <gtest/gtest.h>
 
 #include "cubemap/frame.h"
@@ -106,6 +108,86 @@ TEST(Refractions, BendAsABallOfGlass) {
             EXPECT_GT(glm::distance(expected, straight), 0.1f) << "it would show no bending";
         }
     }
+}
+
+/// A prism, upright, whose edge of 30 degrees points along +X.
+mesh::TriangleMesh prism() {
+    const float slope = std::tan(glm::radians(15.0f));
+    const glm::vec3 edge(1.0f, 0.0f, 0.0f), left(-1.0f, 0.0f, 2.0f * slope),
+        right(-1.0f, 0.0f, -2.0f * slope), high(0.0f, 9.0f, 0.0f);
+    mesh::TriangleMesh mesh;
+    for (const auto& [a, b] : {std::pair(edge, right), {right, left}, {left, edge}}) {
+        const auto first = static_cast<std::uint32_t>(mesh.num_vertices());
+        for (const glm::vec3& corner : {a - high, b - high, b + high, a + high}) {
+            mesh.positions.push_back(corner);
+            mesh.normals.push_back(glm::normalize(glm::cross(b - a, high)));
+        }
+        mesh.triangles.push_back({first, first + 1, first + 2});
+        mesh.triangles.push_back({first, first + 2, first + 3});
+    }
+    return mesh;
+}
+
+/// Red, green and blue leave a prism where Snell's law sends light of their index.
+TEST(Refractions, PartColors) {
+    constexpr float Index = 1.6f, Apex = 30.0f;
+    mesh::Material material = glass(0.0f, 1.0f, Index);
+    for (const float dispersion : {0.0f, 0.36f, 4.0f}) {
+        material.dispersion = dispersion;
+        Scene scene(prism(), material, scenes::smooth_environment(128));
+        for (const float enters : {-40.0f, -15.0f, 0.0f}) {
+            // Degrees from the normal of the face towards +Z, positive on the side of the edge.
+            const float way = glm::radians(enters + Apex / 2.0f);
+            const glm::vec3 direction(-std::sin(way), 0.0f, -std::cos(way));
+            const glm::vec3 found =
+                scene.seen(glm::vec3(0.5f, 0.0f, 0.1f) - 3.0f * direction, direction).value();
+            for (const int color : {0, 1, 2}) {
+                // KHR_materials_dispersion: 20 over (nd - 1) / (nF - nC).
+                const float index = Index + static_cast<float>(color - 1) * 0.5f * dispersion *
+                                                (Index - 1.0f) / 20.0f;
+                const float inside = std::asin(std::sin(glm::radians(enters)) / index);
+                const float behind = std::asin(index * std::sin(glm::radians(Apex) + inside));
+                const float leaves = behind - glm::radians(Apex / 2.0f);
+                const float expected =
+                    passed_part(std::cos(glm::radians(enters)), Index) *
+                    cubemap::sample(scene.sky, {-std::sin(leaves), 0.0f, -std::cos(leaves)})[color];
+                EXPECT_NEAR(found[color], expected, 0.005f * expected)
+                    << dispersion << " " << enters << " " << color;
+            }
+        }
+    }
+}
+
+/// A second body parts the colours of light that the first one did not.
+TEST(Refractions, PartColorsBehindOtherGlass) {
+    mesh::Material plain = glass(0.0f, 1.0f, 1.5f), flint = glass(0.0f, 1.0f, 1.6f);
+    flint.dispersion = 4.0f;
+    const auto seen = [&](const mesh::Material& behind) {
+        mesh::TriangleMesh shapes = prism();
+        for (glm::vec3& position : shapes.positions)
+            position.z -= 3.0f;
+        const auto num_behind = static_cast<std::uint32_t>(shapes.num_vertices());
+        const std::size_t num_triangles = shapes.num_triangles();
+        mesh::TriangleMesh slab = scenes::box({-9, -9, -1}, {9, 9, 0});
+        for (glm::vec3& normal : slab.normals)
+            normal = {0.0f, 0.0f, glm::sign(normal.z)};
+        shapes.positions.insert(shapes.positions.end(), slab.positions.begin(),
+                                slab.positions.end());
+        shapes.normals.insert(shapes.normals.end(), slab.normals.begin(), slab.normals.end());
+        for (const auto& [a, b, c] : slab.triangles)
+            shapes.triangles.push_back({a + num_behind, b + num_behind, c + num_behind});
+        Scene scene(shapes, plain, scenes::smooth_environment(128));
+        scene.mesh.materials = {plain, behind};
+        for (std::size_t i = 0; i < num_triangles; ++i)
+            scene.mesh.triangle_materials[i] = 1;
+        return scene.seen({0.3f, 0.0f, 5.0f}, {0.0f, 0.0f, -1.0f}).value();
+    };
+    mesh::Material one = flint;
+    one.dispersion = 0.0f;
+    const glm::vec3 parted = seen(flint), alike = seen(one);
+    EXPECT_NEAR(parted.g, alike.g, 1e-5f * alike.g) << "green has the index of the material";
+    EXPECT_GT(std::abs(parted.r - alike.r), 0.002f * alike.r);
+    EXPECT_GT(std::abs(parted.b - alike.b), 0.002f * alike.b);
 }
 
 TEST(Refractions, OfASlabAreStraightAndAbsorbed) {
