@@ -263,7 +263,7 @@ void require_options(const mesh::TriangleMesh& mesh, const Receivers& receivers,
 } // namespace
 
 float automatic_tolerance(std::size_t num_vertices, bool is_room) {
-    const float part = is_room ? 0.25f : 2.0f;
+    const float part = is_room ? 0.5f : 2.0f;
     const float fine = is_room ? 25'000.0f : 400'000.0f;
     return BounceOptions{}.tolerance * part *
            std::max(1.0f, std::sqrt(static_cast<float>(num_vertices) / fine));
