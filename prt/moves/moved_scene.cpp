@@ -400,7 +400,8 @@ SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& mat
     return change_of(scene, group, std::move(own), &motion, turn);
 }
 
-SceneChange posed(const Scene& scene, std::uint32_t group, std::span<const glm::dvec3> vertices) {
+SceneChange posed(const Scene& scene, std::uint32_t group, std::span<const glm::dvec3> vertices,
+                  std::span<const glm::vec3> normals) {
     if (!on_vertices(scene.layout))
         throw std::invalid_argument(
             "expected vertices as receivers where a group takes another pose, got others");
@@ -414,13 +415,16 @@ SceneChange posed(const Scene& scene, std::uint32_t group, std::span<const glm::
     if (vertices.size() != own.before.vertices.size())
         throw std::invalid_argument(fmt::format("expected the {} vertices of {}, got {}",
                                                 own.before.vertices.size(), name, vertices.size()));
+    if (!normals.empty() && normals.size() != vertices.size())
+        throw std::invalid_argument(fmt::format("expected normals of {} vertices, or none, got {}",
+                                                vertices.size(), normals.size()));
     for (std::size_t i = 0; i < vertices.size(); ++i)
         own.after.positions[i] = vertices[i] - scene.mesh.offset;
     if (scene.blockers)
         own.blockers_after = own.after.positions;
     const Turns turns(own.before.mesh, own.after);
     for (std::size_t i = 0; i < own.after.normals.size(); ++i)
-        own.after.normals[i] = turns(own.after.normals[i], i);
+        own.after.normals[i] = normals.empty() ? turns(own.after.normals[i], i) : normals[i];
     for (std::size_t i = 0; i < own.after.lifts.size(); ++i)
         own.after.lifts[i] = turns(own.after.lifts[i], i);
     return change_of(scene, group, std::move(own), nullptr, turns);

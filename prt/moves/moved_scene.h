@@ -28,14 +28,15 @@ void set_places(const Scene& scene, SceneChange& change);
 ///          receivers that belong to an eye; a group that was taken away.
 [[nodiscard]] SceneChange moved(const Scene& scene, std::uint32_t group, const glm::dmat4& matrix);
 
-/// Returns the same of a group that takes another pose: its vertices go each its own way, and its
-/// normals turn as its smooth normals do. `vertices` are the group's, by ascending number, in the
-/// coordinates of the mesh's file.
+/// Returns the same of a group that takes another pose: its vertices go each its own way.
+/// They are the group's, by ascending number, in the coordinates of the mesh's file, with their
+/// normals. Without these, normals turn as the group's smooth normals do.
 ///
 /// Throws:  as moved(); std::invalid_argument for receivers that are no vertices, another number of
-///          vertices, and a group that was refined.
+///          vertices or normals, and a group that was refined.
 [[nodiscard]] SceneChange posed(const Scene& scene, std::uint32_t group,
-                                std::span<const glm::dvec3> vertices);
+                                std::span<const glm::dvec3> vertices,
+                                std::span<const glm::vec3> normals = {});
 
 /// Returns the same of a scene whose group is taken away, or is brought back to where it stood.
 /// Its receivers stay, and see what they see without it.

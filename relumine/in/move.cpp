@@ -91,7 +91,7 @@ prt::SceneChange change_of(const Scene& scene, const GroupMove& to) {
     case Going::To:
         return prt::moved(scene, group, to.matrix);
     case Going::Pose:
-        return prt::posed(scene, group, to.vertices);
+        return prt::posed(scene, group, to.vertices, to.normals);
     case Going::Away:
         return prt::taken_away(scene, group);
     case Going::Back:
@@ -248,8 +248,11 @@ GroupMove pose_of(const std::string& name, const mesh::TriangleMesh& mesh) {
             is_own[vertex] = is_own[vertex] || mesh.triangle_groups[i] == group;
     GroupMove result{.name = name, .going = Going::Pose};
     for (std::size_t i = 0; i < is_own.size(); ++i)
-        if (is_own[i])
+        if (is_own[i]) {
             result.vertices.push_back(glm::dvec3(mesh.positions[i]) + mesh.offset);
+            if (!mesh.normals.empty())
+                result.normals.push_back(mesh.normals[i]);
+        }
     return result;
 }
 

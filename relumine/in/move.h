@@ -30,6 +30,8 @@ struct GroupMove {
     /// With Pose: the group's vertices, by ascending number, in the coordinates of the mesh's file
     /// with Y up
     std::vector<glm::dvec3> vertices = {};
+    /// Their normals. Empty: normals turn as the group's smooth normals do.
+    std::vector<glm::vec3> normals = {};
 };
 
 /// Returns the move of a group to the pose that it has in another mesh: that of the same file, as

@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 103> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 104> SectionNames = {"settings",
                                                                    "positions",
                                                                    "triangles",
                                                                    "normals",

@@ -383,6 +383,10 @@ TEST(MovedScene, RefusesPosesOfOtherMeshes) {
     };
     std::vector<glm::dvec3> vertices = bent(scene, 0.5);
     EXPECT_EQ(refusal(vertices), "");
+    const std::vector<glm::vec3> normals(vertices.size(), glm::vec3(0.0f, 1.0f, 0.0f));
+    EXPECT_EQ(posed(scene, Crate, vertices, normals).receiver_normals, normals);
+    EXPECT_THROW(static_cast<void>(posed(scene, Crate, vertices, std::span(normals).first(3))),
+                 std::invalid_argument);
     vertices.pop_back();
     EXPECT_THAT(refusal(vertices), testing::HasSubstr("expected the 42 vertices of crate, got 41"));
     vertices = bent(scene, std::numeric_limits<double>::quiet_NaN());

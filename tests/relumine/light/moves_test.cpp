@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "data_gen/environments.h"
+#include "mesh/normals.h"
 #include "prt/precompute.h"
 #include "prt/precompute_context.h"
 #include "prt/visibility/beam_scene.h"
@@ -530,10 +531,16 @@ TEST(Moves, TheLightFollowsAPose) {
         for (const std::uint32_t vertex : mesh.triangles[i])
             if (mesh.triangle_groups[i] == 1) // flat, and on its way to the ground
                 mesh.positions[vertex].y = 0.4f * before().mesh.positions[vertex].y;
+    mesh.normals = mesh::smooth_normals(mesh);
     const GroupMove flat = pose_of("ball", mesh);
     lit.moves().move(flat);
     Scene scene = before();
     move(scene, flat);
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+        if (mesh.triangle_groups[i] == 1) {
+            EXPECT_EQ(scene.receivers.normals[mesh.triangles[i][0]],
+                      mesh.normals[mesh.triangles[i][0]]);
+        }
     LitScene anew(scene);
     light(anew);
     EXPECT_EQ(radiance_of(lit), radiance_of(anew));
