@@ -13,6 +13,7 @@
 #include "prt/glossy/stretched_lobe.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/lit_position.h"
+#include "prt/receivers/reflecting_normal.h"
 #include "prt/receivers/texture_view.h"
 #include "relight/pictures/highlight_rays.h"
 #include "relight/pictures/other_side.h"
@@ -104,11 +105,15 @@ std::optional<Mirror> mirror_of(const mesh::TriangleMesh& mesh, const prt::MeshP
     if (!(glm::dot(prt::shading_normal(mesh, point), to_eye) > 0.0f))
         return std::nullopt;
     const prt::MappedNormal normal = prt::seen_normal(mesh, point, view);
-    Mirror mirror{surface, facing(normal.direction, to_eye), to_eye};
+    const auto turned = [&](const glm::vec3& mapped) {
+        const glm::vec3 own = prt::shading_normal(mesh, point);
+        return facing(glm::normalize(prt::reflecting_outwards(mapped, own, to_eye)), to_eye);
+    };
+    Mirror mirror{surface, turned(normal.direction), to_eye};
     float of_coat = 0.0f;
     if (prt::has_coat(mirror.surface)) {
         const prt::MappedNormal coat = prt::seen_coat_normal(mesh, point, view);
-        mirror.surface.coat_normal = facing(coat.direction, to_eye);
+        mirror.surface.coat_normal = turned(coat.direction);
         of_coat = coat.spread;
     }
     prt::widen(mirror.surface, normal.spread, of_coat);

@@ -38,7 +38,7 @@ def cycles(environment, stage, camera, subdivides, samples, output):
     nodes, links = world.node_tree.nodes, world.node_tree.links
     texture, mapping, place = (nodes.new(f"ShaderNode{name}") for name in ("TexEnvironment", "Mapping", "TexCoord"))
     texture.image = bpy.data.images.load(environment)
-    # The middle of a lat-long is +X of Blender's world, and -Y, our +Z, of the same picture here.
+    # The middle of a lat-long is +X in Blender, and here +Z, which is -Y there.
     mapping.inputs["Rotation"].default_value = (0.0, 0.0, np.pi / 2)
     links.new(place.outputs["Generated"], mapping.inputs["Vector"])
     links.new(mapping.outputs["Vector"], texture.inputs["Vector"])

@@ -1,7 +1,9 @@
 // What a pixel that stands for many normals mirrors.
 #include "relight/pictures/mirrors.h"
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -12,6 +14,20 @@
 
 namespace relumine::relight {
 namespace {
+
+/// Facets of a map that would mirror the eye into the surface turn until they do not.
+TEST(MirrorOf, MirrorsTheEyeToTheOutside) {
+    const prt::Surface metal{.specular = glm::vec3(1.0f), .highlight = prt::Highlight::GgxWhole};
+    const prt::MeshPoint at{.triangle = 0, .barycentric = {0.2f, 0.7f}};
+    const glm::vec3 to_eye = glm::normalize(glm::vec3(0, -3, 1));
+    const auto mirrored = [&](const std::array<std::uint8_t, 3>& color) {
+        const mesh::TriangleMesh square = scenes::mapped_square(color);
+        return -glm::reflect(to_eye, mirror_of(square, at, metal, to_eye).value().normal);
+    };
+    EXPECT_NEAR(mirrored({128, 127, 255}).z, to_eye.z, 1e-5f) << "flat";
+    EXPECT_GT(mirrored({128, 100, 255}).z, 0.1f);
+    EXPECT_NEAR(mirrored({128, 255, 64}).z, 0.1f, 1e-4f);
+}
 
 /// Normals that a sample does not tell apart make the surface rougher, and leave its coat alone.
 TEST(MirrorOf, IsRougherWhereNormalsDifferWithinASample) {
