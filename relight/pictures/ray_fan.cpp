@@ -141,8 +141,12 @@ FanDirections mirrored(const FanFrame& frame, FanVector u_x, FanVector cosine, F
     const FanVector facing = hn::MulAdd(hn::Mul(along, half.x), half.x,
                                         hn::MulAdd(hn::Mul(across, half.y), half.y,
                                                    hn::Mul(constant(a2), hn::Mul(half.z, half.z))));
-    density = hn::Div(constant(a2 * 0.5f / (std::numbers::pi_v<float> * frame.mask)),
-                      hn::Mul(facing, facing));
+    const float n_v = frame.to_eye.z;
+    const float mask = n_v + (frame.alphas.x == frame.alphas.y
+                                  ? std::sqrt(n_v * n_v * (1.0f - a2) + a2)
+                                  : glm::length(glm::vec3(frame.alphas, 1.0f) * frame.to_eye));
+    density =
+        hn::Div(constant(a2 * 0.5f / (std::numbers::pi_v<float> * mask)), hn::Mul(facing, facing));
 
     const FanDirections eye{constant(frame.to_eye.x), constant(frame.to_eye.y),
                             constant(frame.to_eye.z)};
@@ -222,12 +226,6 @@ FanFrame::FanFrame(const RayFan& fan)
     if (const float length2 = glm::dot(across, across); length2 > 0.0f)
         t1 = across / std::sqrt(length2);
     t2 = glm::cross(stretched_eye, t1);
-    const float n_v = to_eye.z, a2 = alphas.x * alphas.y;
-    mask = n_v + (alphas.x == alphas.y ? std::sqrt(n_v * n_v * (1.0f - a2) + a2)
-                                       : glm::length(glm::vec3(alphas, 1.0f) * to_eye));
-    // Seen from above, half of GGX's facets have `facing` below twice that of the middle one.
-    middle_density = fan.alpha > 0.0f ? 0.125f / (std::numbers::pi_v<float> * mask * a2)
-                                      : 0.5f / std::numbers::pi_v<float>;
 }
 
 FanRays fan_rays(const RayFan& fan, const FanFrame& frame, std::uint32_t first) {

@@ -44,10 +44,6 @@ struct FanFrame {
     glm::vec3 to_eye;
     /// The eye where the lobe is stretched until its facets are spread evenly, and two axes across.
     glm::vec3 stretched_eye, t1{1.0f, 0.0f, 0.0f}, t2;
-    /// Of a lobe: n.v, and what facets hide of the eye.
-    float mask;
-    /// Half of the rays are denser, 1/sr.
-    float middle_density;
 
     explicit FanFrame(const RayFan& fan);
 };

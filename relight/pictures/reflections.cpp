@@ -272,9 +272,6 @@ void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surface
                            behind.least_solid_angle == 0.0f && !levels_.empty();
     const std::uint32_t outermost = fan.num_rays - fan.num_rays / fan_columns(fan.num_rays);
     const float of_look = of_lobe * look_stretch(frame.alphas, fan.num_rays);
-    // In the lobe's tail rays lie far apart. Half of the lobe is not: where all is seen as wide as
-    // that, what is dark has the light of all of the sky.
-    const float half_lobe = SeenShare / frame.middle_density;
     for (std::uint32_t first = 0; first < fan.num_rays; first += prt::PacketSize) {
         const FanRays rays = fan_rays(fan, frame, first);
         if (rays.above == 0)
@@ -302,8 +299,7 @@ void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surface
                     surfaces({.hit = hits[lane],
                               .direction = w,
                               .solid_angle = seen,
-                              .half_lobe = std::max(std::min(SeenShare / dense, half_lobe),
-                                                    behind.least_solid_angle),
+                              .half_lobe = std::max(SeenShare / dense, behind.least_solid_angle),
                               .ray = ray,
                               .num_rays = fan.num_rays,
                               .fan_shift = fan.shift,

@@ -297,27 +297,6 @@ TEST(Reflections, ASurfaceInAMirrorMirrorsTheSky) {
     EXPECT_NEAR(mirrored_twice(without).g, 0.5f * reflected.g, 0.01f);
 }
 
-/// A rough metal looks at a polished ceiling, which mirrors a dark sky below. The rays of the
-/// lobe's tail, which lie far apart, see no more of the bright sky above than the others.
-TEST(Reflections, ADarkSkyInTwoMirrorsIsDark) {
-    cubemap::CubeMap sky(R, glm::vec3(0.0f));
-    for (const cubemap::Face face : cubemap::AllFaces)
-        for (std::uint32_t y = 0; y < R; ++y)
-            for (std::uint32_t x = 0; x < R; ++x)
-                if (cubemap::texel_direction(face, x, y, R).z > 0.5)
-                    sky.at(face, x, y) = glm::vec3(1.0f);
-    const prt::RayScene ceiling(scenes::box({-90.0f, -90.0f, 0.5f}, {90.0f, 90.0f, 1.0f}));
-    const Reflections reflections(ceiling, 1e-4f, 16, sky, {});
-    const auto below = [&](const MetSurface& met) {
-        const float distance = 0.5f / met.direction.z;
-        return reflections.in_mirror(met, metal(0.0f), distance * met.direction,
-                                     {0.0f, 0.0f, -1.0f}, glm::vec3(0.0f), NoSurface);
-    };
-    for (const float cosine : {1.0f, 0.8f, 0.6f})
-        EXPECT_LT(mirrored(reflections, metal(0.3f), seen_at(cosine), below).specular.g, 0.003f)
-            << cosine;
-}
-
 TEST(Reflections, LightsThatAreTracedAreNotMirrored) {
     cubemap::CubeMap sky(R, glm::vec3(0.5f));
     sky.at(cubemap::Face::PositiveZ, 20, 30) = glm::vec3(900.0f, 800.0f, 700.0f);
