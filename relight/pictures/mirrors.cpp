@@ -126,7 +126,7 @@ std::optional<Mirror> mirror_of(const mesh::TriangleMesh& mesh, const prt::MeshP
 }
 
 glm::vec3 seen_in_mirror(const Reflections& reflections, const MetSurface& met,
-                         const LitMirror& lit, const Reflections::Surfaces& matte) {
+                         const LitMirror& lit, const Reflections::Surfaces& surfaces) {
     const glm::vec3 as_matte = lit.light * prt::without_highlight(lit.surface).albedo;
     const std::uint32_t count = asked_for(met, lit.surface);
     if (count == 0)
@@ -136,7 +136,7 @@ glm::vec3 seen_in_mirror(const Reflections& reflections, const MetSurface& met,
         return as_matte;
     const glm::vec3 whole = reflections.in_mirror(
         met, mirror->surface, prt::value_at(lit.mesh, lit.mesh.positions, lit.at), mirror->normal,
-        lit.light, matte);
+        lit.light, surfaces);
     // What one ray says for several may be below 0: their mean is not.
     return as_matte + static_cast<float>(count) * (whole - as_matte);
 }
@@ -282,9 +282,9 @@ glm::vec3 Mirrors::seen(const MetSurface& met) const {
     if (floor_.has(mesh_.triangles[at.triangle]) || !colors.mirrors(at.triangle))
         return matte(at, met);
     const prt::Surface surface = colors.mirror(at);
-    return seen_in_mirror(
-               *light_.reflections, met, {mesh_, at, surface, colors.light(light_.mirrored, at)},
-               [this](const MetSurface& behind) { return matte(point_of(behind), behind); }) +
+    return seen_in_mirror(*light_.reflections, met,
+                          {mesh_, at, surface, colors.light(light_.mirrored, at)},
+                          [this](const MetSurface& behind) { return seen(behind); }) +
            passed_on(at) + light_.emission_gain(at.triangle) * surface.emission;
 }
 

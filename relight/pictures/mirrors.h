@@ -39,12 +39,12 @@ struct LitMirror {
 };
 
 /// Returns what such a surface sends to the ray of a highlight that met it, but for what it gives
-/// of its own. `matte`: what other surfaces send to it.
+/// of its own. `surfaces`: what others send to it.
 ///
 /// Cost:    none to 3 rays, as asked_for() says.
 /// Threads: any.
 [[nodiscard]] glm::vec3 seen_in_mirror(const Reflections& reflections, const MetSurface& met,
-                                       const LitMirror& lit, const Reflections::Surfaces& matte);
+                                       const LitMirror& lit, const Reflections::Surfaces& surfaces);
 
 /// The mirrors that the samples of a picture's pixels see. Samples of a pixel share their rays
 /// where they see nearly the same surface; so do neighbouring pixels, where the lobe is wide and
@@ -78,8 +78,8 @@ public:
     [[nodiscard]] glm::vec3 soft(const Mirror& mirror, const prt::MeshPoint& point,
                                  const glm::vec3& diffuse);
 
-    /// Returns the radiance of a surface that a ray meets, with what it mirrors itself. Surfaces
-    /// in that are matte. A floor that catches shadows shows what is behind it, as in the picture;
+    /// Returns the radiance of a surface that a ray meets, with what it mirrors itself, as
+    /// asked_for() says. A floor that catches shadows shows what is behind it, as in the picture;
     /// without a picture's backdrop, the mean of the sky over the ray's solid angle.
     [[nodiscard]] glm::vec3 seen(const MetSurface& met) const;
 

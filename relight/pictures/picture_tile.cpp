@@ -113,8 +113,9 @@ PictureTile::Pixel PictureTile::drawn(std::uint32_t x, std::uint32_t y,
     }
     const auto count = static_cast<float>(samples.size());
     Pixel pixel{.color = sum / count, .alpha = alpha / count};
-    // A light that few samples find is a speck, or a gap in a bright line.
-    constexpr double OverMean = 6.0;
+    // A light that few samples find is a speck, or a gap in a bright line. Edges between bright and
+    // dark have most of a picture's error, and are few pixels.
+    constexpr double OverMean = 2.0;
     if (brightest * num_seen > OverMean * cubemap::luminance(sum)) {
         const auto [more, num_more] = further(x, y);
         pixel.color = glm::mix(pixel.color, more, num_more / (num_more + count));

@@ -59,15 +59,24 @@ std::uint32_t number_of(const glm::vec2& shift) {
     return static_cast<std::uint32_t>((bits ^ bits >> 32) * 0x9e3779b97f4a7c15u >> 40);
 }
 
-/// Every so many rays of a fan ask.
-std::uint32_t every_of(const MetSurface& met, const prt::Surface& surface) {
-    constexpr float Asked = 32.0f, AlwaysAsked = 0.25f, OfLayers = 0.04f;
+/// Every ray asks what mirrors at least this part of the light.
+constexpr float AlwaysAsked = 0.25f;
+
+/// About which part of the light a surface mirrors.
+float mirrored_part(const prt::Surface& surface) {
+    constexpr float OfLayers = 0.04f;
     const auto most = [](const glm::vec3& color) {
         return std::max({color.r, color.g, color.b});
     };
-    const float part = std::max(
-        {most(surface.specular), prt::has_lobes_of_colors(surface) ? 1.0f : 0.0f,
-         prt::has_coat(surface) ? OfLayers : 0.0f, prt::has_sheen(surface) ? OfLayers : 0.0f});
+    return std::max({most(surface.specular), prt::has_lobes_of_colors(surface) ? 1.0f : 0.0f,
+                     prt::has_coat(surface) ? OfLayers : 0.0f,
+                     prt::has_sheen(surface) ? OfLayers : 0.0f});
+}
+
+/// Every so many rays of a fan ask.
+std::uint32_t every_of(const MetSurface& met, const prt::Surface& surface) {
+    constexpr float Asked = 32.0f;
+    const float part = mirrored_part(surface);
     // One ray that asks for several says much too much or too little where all is mirrored.
     if (part >= AlwaysAsked)
         return 1;
@@ -290,9 +299,12 @@ void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surface
                     surfaces({.hit = hits[lane],
                               .direction = w,
                               .solid_angle = seen,
+                              .half_lobe = std::max(SeenShare / dense, behind.least_solid_angle),
                               .ray = ray,
                               .num_rays = fan.num_rays,
-                              .fan_shift = fan.shift}));
+                              .fan_shift = fan.shift,
+                              .num_fans = behind.num_fans,
+                              .num_mirrors = behind.num_mirrors}));
         }
     }
 }
@@ -303,6 +315,9 @@ MirroredLight Reflections::light(const prt::Surface& surface, const MirrorPoint&
 }
 
 std::uint32_t asked_for(const MetSurface& met, const prt::Surface& surface) {
+    if (met.num_mirrors >= MostMirrors ||
+        (met.num_mirrors > 1 && mirrored_part(surface) < AlwaysAsked))
+        return 0;
     const std::uint32_t every = every_of(met, surface);
     return (met.ray + number_of(met.fan_shift)) % every == 0 ? every : 0;
 }
@@ -311,19 +326,18 @@ glm::vec3 Reflections::in_mirror(const MetSurface& met, const prt::Surface& surf
                                  const glm::vec3& position, const glm::vec3& normal,
                                  const glm::vec3& diffuse, const Surfaces& surfaces) const {
     // Rays of the same fan look into nearly the same lobe.
-    const float num_fans =
-        static_cast<float>(met.num_rays) / static_cast<float>(every_of(met, surface));
-    // As wide as about half of the lobe that the surface is seen through.
-    const float blur = met.solid_angle * static_cast<float>(met.num_rays);
+    const float num_fans = met.num_fans * static_cast<float>(met.num_rays) /
+                           static_cast<float>(every_of(met, surface));
     const MirrorPoint point{.position = position,
                             .normal = normal,
                             .to_eye = -met.direction,
                             .shift = glm::fract(met.fan_shift + ray_shift(met.ray))};
     const prt::EyeCosines n_v(surface, point.normal, point.to_eye);
-    prt::Lobes<glm::vec3> lobes = lobes_of(surface,
-                                           sum(surface, point, LobeRays::one_each(), surfaces,
-                                               {whole_.empty() ? levels_ : whole_, blur, num_fans}),
-                                           n_v);
+    prt::Lobes<glm::vec3> lobes = lobes_of(
+        surface,
+        sum(surface, point, LobeRays::one_each(), surfaces,
+            {whole_.empty() ? levels_ : whole_, met.half_lobe, num_fans, met.num_mirrors + 1}),
+        n_v);
     lobes.diffuse = diffuse;
     return prt::reflect(surface, lobes, n_v);
 }

@@ -61,15 +61,25 @@ struct MetSurface {
     const glm::vec3& direction;
     /// What the ray stands for, in sr.
     float solid_angle = 0.0f;
+    /// About half of the lobe that the surface is seen through, in sr.
+    float half_lobe = 0.0f;
     /// Which ray of a fan it is, of how many, and MirrorPoint::shift of the fan
     std::uint32_t ray = 0, num_rays = 1;
     glm::vec2 fan_shift{0.0f};
+    /// How many fans look into nearly the same lobe.
+    float num_fans = 1.0f;
+    /// How many mirrors the light comes by, from this surface to the eye.
+    std::uint32_t num_mirrors = 1;
 };
 
 /// Returns for how many rays of its fan this one asks what the surface mirrors that it met: those
 /// in between take it for matte. 0: it does not ask. A metal is asked by all rays, what mirrors
-/// little by fewer than 32.
+/// little by fewer than 32. What the first mirror shows asks, and behind that metals, until light
+/// has come by MostMirrors.
 [[nodiscard]] std::uint32_t asked_for(const MetSurface& met, const prt::Surface& surface);
+
+/// What so many mirrors show one in the other is matte.
+inline constexpr std::uint32_t MostMirrors = 4;
 
 class Reflections {
 public:
@@ -100,7 +110,7 @@ public:
     /// All lights of the environment are in it, blurred over half of the lobe that the surface is
     /// seen through.
     ///
-    /// Cost:    1 to 3 rays.
+    /// Cost:    1 to 3 rays, and what `surfaces` asks.
     /// Threads: any.
     [[nodiscard]] glm::vec3 in_mirror(const MetSurface& met, const prt::Surface& surface,
                                       const glm::vec3& position, const glm::vec3& normal,
@@ -135,11 +145,13 @@ private:
         Evenness(const cubemap::CubeMap& level, const cubemap::CubeMap& finer);
         [[nodiscard]] bool at(const glm::vec3& direction) const;
     };
-    /// What rays see that leave, how wide they are at least, and how many fans share a lobe.
+    /// What rays see that leave, how wide they are at least, how many fans share a lobe, and how
+    /// many mirrors the light comes by.
     struct Behind {
         const Levels& levels;
         float least_solid_angle = 0.0f;
         float num_fans = 1.0f;
+        std::uint32_t num_mirrors = 1;
     };
     [[nodiscard]] static std::size_t level_of(const Levels& levels, float solid_angle);
     [[nodiscard]] static glm::vec3 mean(const Levels& levels, const glm::vec3& direction,

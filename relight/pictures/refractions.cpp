@@ -315,6 +315,7 @@ glm::vec3 Refractions::followed(Ray ray) const {
             return ray.throughput * mirrors_.seen({.hit = *hit,
                                                    .direction = ray.direction,
                                                    .solid_angle = std::max(ray.spread, LeastSpread),
+                                                   .half_lobe = std::max(ray.spread, LeastSpread),
                                                    .fan_shift = ray.point()});
         };
         if (!hit)

@@ -56,7 +56,7 @@ public:
             prt::surface_at(mesh_, at.triangle, at.barycentric, prt::GgxForm::Whole);
         return relight::seen_in_mirror(
                    reflections_, met, {mesh_, at, surface, diffuse(at)},
-                   [this](const relight::MetSurface& behind) { return matte(point_of(behind)); }) +
+                   [this](const relight::MetSurface& behind) { return radiance(behind); }) +
                gain(at) * surface.emission;
     }
 

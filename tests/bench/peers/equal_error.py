@@ -84,10 +84,13 @@ def helmet(own, _):
             used, corners = np.unique(triangles[chosen], return_inverse=True)
             surface = scenes.material(kind, colors[chosen].mean(0).tolist(), roughness=0.3)
             shapes.append(scenes.shape(vertices[used], corners.reshape(-1, 3), surface, normals[used]))
-    return shapes, [((0, 0, 3), (0, 0, 0), 45), ((1.8, 0.6, 2.3), (0, 0, 0), 45)], (), 0
+    # All bounces: a metal that shows another one is not black.
+    return shapes, [((0, 0, 3), (0, 0, 0), 45), ((1.8, 0.6, 2.3), (0, 0, 0), 45)], (), None
 
 
 SCENES = {"bunny": bunny, "colonnade": colonnade, "room": room, "helmet": helmet}
+#: Scenes that Relumine has no matrix of bounces for: its metals mirror each other without one, and what is matte is dark.
+MIRRORED = ("helmet",)
 #: Who says what a picture should be, where it is not Mitsuba: its metals lose light.
 JUDGES = {"helmet": ("Cycles", "Mitsuba")}
 #: Peers that keep a picture for each lamp and one for the rest: groups().
@@ -226,7 +229,8 @@ def run(peers, quick, wanted):
         rows = events(domes, lamps)
         ours = {}
         for pixels in (True, False):
-            for event, spent in played(own, {**scene, "background": "none", "pixels": pixels}, rows[:-1] if pixels else rows, cameras[1]):
+            options = {"background": "none", "pixels": pixels, **({"bounces": 0} if name in MIRRORED else {})}
+            for event, spent in played(own, {**scene, **options}, rows[:-1] if pixels else rows, cameras[1]):
                 drawn = own.masked(16)
                 ours[event, pixels] = spent + own.processor, *drawn
         theirs, grouped = {}, {}

@@ -8,6 +8,7 @@
 
 #include "data_gen/environments.h"
 #include "prt/glossy/brdf.h"
+#include "relight/pictures/reflections.h"
 #include "relumine/in/precompute.h"
 #include "relumine/light/lit_scene.h"
 #include "relumine/out/output.h"
@@ -303,6 +304,31 @@ TEST(Highlights, AMirrorShowsWhatAMetalMirrors) {
         }
     ASSERT_GT(sum, 1.0);
     EXPECT_LT(difference, 0.05 * sum);
+}
+
+/// Two polished plates that face each other send a ray on until it leaves between them: what the
+/// eye sees is the sky there, however often the ray was mirrored.
+TEST(Highlights, PlatesMirrorEachOtherUntilTheSkyIsSeen) {
+    const cubemap::CubeMap sky = scenes::smooth_environment(64);
+    for (std::uint32_t count = 1; count <= relight::MostMirrors; ++count) {
+        // A ray that goes down by 45 degrees meets the plates at x = 0.5, 1.5, ..
+        const auto length = static_cast<float>(count);
+        mesh::TriangleMesh plates = scenes::joined(scenes::box({0, -2, -1}, {length, 2, 0}),
+                                                   scenes::box({0, -2, 1}, {length, 2, 2}));
+        for (std::size_t i = 0; i < plates.num_vertices(); ++i)
+            plates.normals[i] = {0, 0, i < plates.num_vertices() / 2 ? 1 : -1};
+        plates.materials = {metal(0.0f)};
+        plates.triangle_materials.assign(plates.num_triangles(), 0);
+        OutputOptions options{
+            .camera = Camera{.eye = {-3.5f, 0, 4}, .target = {0.5f, 0, 0}, .fov_degrees = 1},
+            .background = NothingBehind{}};
+        options.width = options.height = 16;
+        const LitScene lit = lit_under(plates, sky);
+        const glm::vec3 seen = middle(Painter(lit, options).draw(lit.lighting()));
+        const glm::vec3 expected =
+            cubemap::sample(sky, glm::normalize(glm::vec3(1, 0, count % 2 == 1 ? 1 : -1)));
+        EXPECT_LT(glm::distance(seen, expected), 0.03f * glm::length(expected)) << count;
+    }
 }
 
 TEST(Highlights, SurfacesOfOptionsHaveTheirs) {
