@@ -53,10 +53,10 @@ struct BounceOptions {
 
 /// Returns BounceOptions::tolerance where nothing is asked for: 0.02, with which pictures of houses
 /// are 0.1 of 255 from converged ones. A room has little light but that of bounces, in which their
-/// noise would be seen, so it asks for 0.005; pictures of rooms even it out
-/// (relight/pictures/gathered_light.h). The noise of vertices that share a pixel evens out:
-/// the tolerance grows as the root of their number, and the bounces of a fine mesh take no more
-/// rays than those of one with 400,000 vertices, or of a room with 25,000.
+/// noise would be seen, so it asks for 0.005; its pictures even it out. The noise of vertices that
+/// share a pixel evens out, too: the tolerance grows as the root of their number, and the bounces
+/// of a fine mesh take no more rays than those of one with 400,000 vertices, or of a room with
+/// 25,000.
 [[nodiscard]] float automatic_tolerance(std::size_t num_vertices, bool is_room);
 
 /// Memory for each hit of a ray: in its receiver's samples, in the matrix, and in the file that is

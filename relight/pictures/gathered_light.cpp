@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <mutex>
 #include <numbers>
 #include <span>
 
@@ -62,7 +63,8 @@ glm::vec3 direction_in(std::uint32_t cell, const glm::dvec2& place) {
                                                         (cell / Cells % Cells + place.y) / Cells)));
 }
 
-/// Solid angle of the cube's surface around a direction, over that of the whole [-1, 1] square.
+/// Returns the solid angle of a small piece of the cube [-1, 1]^3 around a direction, over its
+/// area.
 float stretch(const glm::vec3& direction) {
     const glm::vec3 size = glm::abs(direction);
     const float outwards = std::max({size.x, size.y, size.z});
@@ -218,26 +220,39 @@ private:
                 of_cosine / (NumCosine * of_cosine + NumGuided * of_guided) * ray.radiance;
         };
         std::array<Ray, NumCosine> cosine;
+        std::array<Ray, NumGuided> guided;
         const float distance = trace_cosine(point, cosine, NumLooks);
-        for (const Ray& ray : cosine)
-            add(ray);
         // What a step spans there
         const float step = glm::distance(point.record->position, scene_.eye) *
                            glm::length(scene_.grid.right()) *
                            static_cast<float>(scene_.grid.samples_per_axis() * own_.step_);
         point.record->reach = std::clamp(MostError * distance / step, LeastReach, MostReach);
-        if (!(whole > 0.0f))
-            return;
-        std::array<Ray, NumGuided> guided;
-        std::uint32_t cell = 0;
-        trace(point, guided, [&](std::uint32_t i) {
-            const auto along = static_cast<float>((i + point.guided_shift.x) / NumGuided) * whole;
-            while (cell + 1 < NumCells && sums_[cell] <= along)
-                ++cell;
-            return direction_in(cell, place(point.guided_shift, i));
-        });
-        for (const Ray& ray : guided)
-            add(ray);
+        const std::uint32_t rounds = rounds_of(point.record->reach);
+        for (std::uint32_t round = 0; round < rounds; ++round) {
+            if (round != 0)
+                trace_cosine(point, cosine, NumLooks + round * NumCosine);
+            for (const Ray& ray : cosine)
+                add(ray);
+            if (!(whole > 0.0f))
+                continue;
+            const glm::dvec2 start = place(point.guided_shift, round * NumGuided);
+            std::uint32_t cell = 0;
+            trace(point, guided, [&](std::uint32_t i) {
+                const auto along = static_cast<float>((i + start.x) / NumGuided) * whole;
+                while (cell + 1 < NumCells && sums_[cell] <= along)
+                    ++cell;
+                return direction_in(cell, place(start, i));
+            });
+            for (const Ray& ray : guided)
+                add(ray);
+        }
+        point.record->light /= static_cast<float>(rounds);
+    }
+
+    /// Returns how many times its rays a record has: in corners, few share them.
+    static std::uint32_t rounds_of(float reach) {
+        constexpr float Few = 3.0f, Fewest = 2.0f;
+        return reach < Fewest ? 4 : reach < Few ? 2 : 1;
     }
 
     /// What a ray sees of the sky, in sr: about its share of a cell.
@@ -263,6 +278,8 @@ GatheredLight::GatheredLight(const Scene& scene, const MeshLight& light, const p
     GatherGuide own;
     GatherGuide& guide = light.guide != nullptr ? *light.guide : own;
     guide.squares.resize(std::size_t{across} * squares(rows_));
+    std::mutex mutex;
+    std::uint32_t num_done = 0;
     files::parallel_for(std::uint32_t{0}, across * squares(rows_), [&](std::uint32_t i) {
         if (work.stop.stop_requested())
             return;
@@ -273,6 +290,8 @@ GatheredLight::GatheredLight(const Scene& scene, const MeshLight& light, const p
                  ++column)
                 square.start(column, row, records_[std::size_t{row} * columns_ + column]);
         square.finish(guide.squares[i]);
+        const std::scoped_lock lock(mutex);
+        work.tell(static_cast<double>(++num_done) / static_cast<double>(guide.squares.size()));
     });
     smooth();
 }

@@ -25,6 +25,13 @@
 
 namespace relumine::relight {
 
+/// Where rays look that gather light: mean luminance by square of the picture and cell of
+/// directions. Empty at first; the first light fills it, and further lights of the same view use it,
+/// so that what they gather is linear in the light.
+struct GatherGuide {
+    std::vector<std::vector<float>> squares = {};
+};
+
 /// What surfaces and sky send to the points of a mesh that a picture shows, gathered at every
 /// fourth pixel of every fourth row, or closer in small pictures. Between vertices that lie far
 /// apart, and at contacts, it has what they miss.
@@ -48,9 +55,10 @@ public:
     /// others go where rays of all records around found light: through windows, to places in the
     /// sun.
     ///
-    /// Cost:    192 rays for a record, of 16 pixels in pictures of 1024 x 768. Parallel; the result
-    /// is the same for any number of
-    ///          threads. After a wish to stop, records are missing.
+    /// Cost:    192 rays for a record, of 16 pixels in pictures of 1024 x 768; up to four times as
+    ///          many in corners.
+    /// Threads: parallel; the result is the same for any number of them. After a wish to stop,
+    ///          records are missing.
     GatheredLight(const Scene& scene, const MeshLight& light, const prt::Work& work);
 
     /// Returns what a point that a pixel shows has more of the light than MeshLight::replaced says:

@@ -69,11 +69,16 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
         light.blockers->prepare(picture.pixels.size() *
                                 (light.lights.size() + light.floor_lights.size()));
     const PictureTiles tiles{options_.width, options_.height};
+    // About the share of the time
+    const double of_gathered = light.sent.empty() ? 0.0 : 0.3;
     std::optional<GatheredLight> gathered;
     if (!light.sent.empty())
         gathered.emplace(GatheredLight::Scene{mesh_, rays_, *seen_, samples_->twins(), floor_, eye_,
                                               grid_, options_.width, options_.height},
-                         light, options_.work);
+                         light,
+                         prt::Work{.stop = options_.work.stop, .on_progress = [&](double part) {
+                                       options_.work.tell(of_gathered * part);
+                                   }});
     const TileScene scene{
         mesh_, rays_, *seen_,  eye_,  grid_,        floor_,   *samples_,
         tiles, light, packets, beams, floor_lights, backdrop, gathered ? &*gathered : nullptr};
@@ -84,7 +89,8 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
             return;
         PictureTile(scene).draw(tile, picture);
         const std::scoped_lock lock(mutex);
-        options_.work.tell(static_cast<double>(++num_drawn) / tiles.count());
+        options_.work.tell(of_gathered +
+                           (1.0 - of_gathered) * static_cast<double>(++num_drawn) / tiles.count());
     });
     return picture;
 }

@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -59,12 +58,7 @@ struct FadingFloor {
     [[nodiscard]] float opacity(const glm::vec3& position) const;
 };
 
-/// Where rays look that gather soft light (relight/pictures/gathered_light.h): mean luminance by
-/// square of the picture and cell of directions. Empty at first; the first light fills it, and
-/// further lights of the same view use it, so that what they gather is linear in the light.
-struct GatherGuide {
-    std::vector<std::vector<float>> squares = {};
-};
+struct GatherGuide;
 
 /// The light of a mesh that is drawn.
 struct MeshLight {

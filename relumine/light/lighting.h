@@ -16,15 +16,6 @@
 
 namespace relumine {
 
-/// Light that a picture may gather anew at the points that it shows
-/// (relight/pictures/gathered_light.h). In a room most light has bounced.
-struct SentLight {
-    /// [num_receivers] radiance that surfaces send.
-    std::vector<glm::vec3> sent = {};
-    /// [num_receivers] what receivers have of the soft light of surfaces and sky, for albedo 1.
-    std::vector<glm::vec3> replaced = {};
-};
-
 /// What a picture is drawn of.
 struct Lighting {
     /// [num_receivers], as LitScene::radiance().
@@ -62,8 +53,10 @@ struct Lighting {
     /// lights, as spherical harmonics and without bounces. Only of vertices of meshes with normal
     /// maps.
     std::vector<glm::vec3> harmonics = {};
-    /// What pictures gather by rays in place of what `radiance` has of it. Empty: nothing.
-    SentLight sent_light = {};
+    /// [num_receivers] radiance that surfaces send, and what receivers have of the soft light of
+    /// surfaces and sky, for albedo 1: pictures of rooms gather this anew at the points that they
+    /// show (relight/pictures/gathered_light.h). Empty: they do not.
+    std::vector<glm::vec3> sent = {}, replaced = {};
     /// The radiance, for albedo 1, of a level floor that nothing shades. Empty: unknown, and floors
     /// catch no shadows.
     std::optional<glm::vec3> open_floor = {};

@@ -471,7 +471,7 @@ void LitScene::Impl::take_floor_apart(Lighting& lighting) const {
 void LitScene::Impl::add_sent(Lighting& lighting, std::vector<glm::vec3> gathered) const {
     if (environment.is_lit())
         sum.terms().front()->add_soft(gathered);
-    lighting.sent_light = sent_light(*scene, bounces, lighting.radiance, gathered);
+    add_sent_light(*scene, bounces, gathered, lighting);
 }
 
 /// Gives the first process what all have.

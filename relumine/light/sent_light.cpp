@@ -18,19 +18,18 @@ glm::vec3 ratio(const glm::vec3& a, const glm::vec3& b) {
 
 } // namespace
 
-SentLight sent_light(const Scene& scene, const SceneBounces& bounces,
-                     std::span<const glm::vec3> radiance, std::span<const glm::vec3> gathered) {
+void add_sent_light(const Scene& scene, const SceneBounces& bounces,
+                    std::span<const glm::vec3> gathered, Lighting& lighting) {
     const std::vector<prt::Surface>& surfaces = scene.receivers.surfaces;
     const std::vector<prt::EyeCosines> cosines = prt::eye_cosines(scene.receivers);
-    SentLight result{{radiance.begin(), radiance.end()}, {gathered.begin(), gathered.end()}};
-    for (std::size_t i = 0; i < radiance.size(); ++i) {
+    lighting.sent.assign(lighting.radiance.begin(), lighting.radiance.end());
+    lighting.replaced.assign(gathered.begin(), gathered.end());
+    for (std::size_t i = 0; i < gathered.size(); ++i) {
         const glm::vec3 own = surfaces.empty() ? glm::vec3(1.0f) : surfaces[i].albedo;
-        result.sent[i] *= ratio(bounces.surfaces().albedo[i], own);
+        lighting.sent[i] *= ratio(bounces.surfaces().albedo[i], own);
         if (!surfaces.empty())
-            result.replaced[i] =
-                ratio(result.replaced[i], prt::diffuse_albedo(surfaces[i], cosines[i]));
+            lighting.replaced[i] = ratio(gathered[i], prt::diffuse_albedo(surfaces[i], cosines[i]));
     }
-    return result;
 }
 
 bool is_gathered(const Scene& scene) {

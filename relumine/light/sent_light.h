@@ -11,13 +11,12 @@
 
 namespace relumine {
 
-/// Returns the light of a room in which all bounces are there, given what receivers send,
-/// [num_receivers]: of all light, and of what is gathered.
+/// Sets Lighting::sent and Lighting::replaced of a room in which all bounces are there. `gathered`
+/// is what receivers send of the light that is gathered, [num_receivers].
 ///
 /// Cost:    O(receivers).
-[[nodiscard]] SentLight sent_light(const Scene& scene, const SceneBounces& bounces,
-                                   std::span<const glm::vec3> radiance,
-                                   std::span<const glm::vec3> gathered);
+void add_sent_light(const Scene& scene, const SceneBounces& bounces,
+                    std::span<const glm::vec3> gathered, Lighting& lighting);
 
 /// Whether pictures gather the light of a scene's surfaces: of a room of vertices
 /// (relight::inside_room()) without highlights that are stored for an eye.

@@ -21,7 +21,7 @@ public:
 
     relight::LayeredPicture run() {
         const std::vector<cubemap::LightLayer> all = cubemap::without_solo(state_.layers);
-        if (Lighting light = lit_.lighting(); !light.sent_light.sent.empty()) {
+        if (Lighting light = lit_.lighting(); !light.sent.empty()) {
             painter_.keep_guide(true);
             static_cast<void>(painter_.draw(light));
         }

@@ -15,6 +15,7 @@
 #include <glm/vec3.hpp>
 
 #include "relight/pictures/display_transform.h"
+#include "relight/pictures/gathered_light.h"
 #include "relight/pictures/picture_view.h"
 #include "relight/pictures/receiver_picture.h"
 #include "relight/pictures/reflections.h"
@@ -115,9 +116,9 @@ struct Painter::Impl {
         if (traces)
             light.lights = lighting.lights;
         light.blockers = &beams;
-        if (traces || lighting.lights.empty()) {
-            light.sent = lighting.sent_light.sent;
-            light.replaced = lighting.sent_light.replaced;
+        if (!lighting.sent.empty() && (traces || lighting.lights.empty())) {
+            light.sent = lighting.sent;
+            light.replaced = lighting.replaced;
             light.sends_from_backs = scene.settings.two_sided_bounces;
             light.guide = guide ? &*guide : nullptr;
         }

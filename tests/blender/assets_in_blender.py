@@ -450,10 +450,6 @@ def test_coarse_meshes_are_named():
              "the sharp edges, or use Lightmap"]  # fmt: skip
     assert all(f"Warning: {note}" in said for note in notes), said
     assert sorted(assets.notes_of(cube)) == notes
-    bpy.ops.object.modifier_add(type="EDGE_SPLIT")
-    bpy.ops.object.modifier_apply(modifier=cube.modifiers[0].name)
-    precompute(cube)
-    assert assets.notes_of(cube) == notes[:1], "each face has its own vertices"
     bpy.ops.object.shade_smooth()
     precompute(cube)
     assert assets.notes_of(cube) == ["cube: coarse: subdivide it, or use Lightmap"]
@@ -470,6 +466,17 @@ def test_coarse_meshes_are_named():
     scene.relumine.receivers = "VERTICES"
     precompute(low, other)
     assert assets.notes_of(other)[0].startswith("low, other: coarse: subdivide them")
+
+
+def test_split_faces_are_not_named():
+    clear()
+    bpy.ops.mesh.primitive_cube_add()
+    cube = bpy.context.object
+    cube.name = "cube"
+    bpy.ops.object.modifier_add(type="EDGE_SPLIT")
+    bpy.ops.object.modifier_apply(modifier=cube.modifiers[0].name)
+    precompute(cube)
+    assert assets.notes_of(cube) == ["cube: coarse: subdivide it, or use Lightmap"]
 
 
 def test_hidden_blockers_stay_named():

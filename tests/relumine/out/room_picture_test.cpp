@@ -23,8 +23,8 @@ cubemap::CubeMap sky() {
     for (const cubemap::Face face : cubemap::AllFaces)
         for (std::uint32_t y = 0; y < R; ++y)
             for (std::uint32_t x = 0; x < R; ++x) {
-                const auto up = static_cast<float>(
-                    cubemap::direction(face, (x + 0.5) / R, (y + 0.5) / R).y);
+                const auto up =
+                    static_cast<float>(cubemap::direction(face, (x + 0.5) / R, (y + 0.5) / R).y);
                 map.at(face, x, y) = up > 0.0f ? glm::vec3(1.0f, 1.5f, 2.0f) * (0.5f + up)
                                                : glm::vec3(0.4f, 0.35f, 0.3f);
             }
@@ -54,12 +54,12 @@ TEST(RoomPicture, OfACoarseMeshIsNearerToThatOfAFineOne) {
     const OutputOptions options{.width = 120, .height = 90, .samples_per_axis = 1};
     const LitScene fine = room(12'000, 0.02f), coarse = room(1'500, 0.05f);
     Lighting of_vertices = fine.lighting();
-    ASSERT_FALSE(of_vertices.sent_light.sent.empty()) << "it is a room";
-    of_vertices.sent_light = {};
+    ASSERT_FALSE(of_vertices.sent.empty()) << "it is a room";
+    of_vertices.sent = {};
     const Picture converged = Painter(fine, options).draw(of_vertices);
     Lighting light = coarse.lighting();
     const double gathered = distance(Painter(coarse, options).draw(light), converged);
-    light.sent_light = {};
+    light.sent = {};
     const double of_coarse = distance(Painter(coarse, options).draw(light), converged);
     EXPECT_LT(gathered, 0.06);
     EXPECT_LT(gathered, 0.8 * of_coarse) << gathered << " " << of_coarse;
@@ -67,12 +67,12 @@ TEST(RoomPicture, OfACoarseMeshIsNearerToThatOfAFineOne) {
 
 TEST(RoomPicture, GathersOnlyWhereAllBouncesAreThere) {
     LitScene lit = room(1'500, 0.05f);
-    EXPECT_FALSE(lit.lighting().sent_light.sent.empty());
-    EXPECT_TRUE(lit.lighting(false).sent_light.sent.empty()) << "nothing is drawn";
+    EXPECT_FALSE(lit.lighting().sent.empty());
+    EXPECT_TRUE(lit.lighting(false).sent.empty()) << "nothing is drawn";
     lit.bounce({.albedo = bounce_albedo(lit.scene()), .limits = {.num_bounces = 1}});
-    EXPECT_TRUE(lit.lighting().sent_light.sent.empty()) << "the next bounce is not asked for";
+    EXPECT_TRUE(lit.lighting().sent.empty()) << "the next bounce is not asked for";
     lit.light(cubemap::CubeMap(2));
-    EXPECT_TRUE(lit.lighting().sent_light.sent.empty()) << "no light bounces";
+    EXPECT_TRUE(lit.lighting().sent.empty()) << "no light bounces";
 }
 
 } // namespace
