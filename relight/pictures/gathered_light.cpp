@@ -31,7 +31,7 @@ namespace {
 constexpr std::uint32_t SquareSize = 16;
 /// Rays of a record: those that look where light is, and those whose light counts. What is found
 /// must not choose its own weight, or it is too dark.
-constexpr std::uint32_t NumLooks = 32, NumCosine = 64, NumGuided = 96;
+constexpr std::uint32_t NumLooks = 16, NumCosine = 48, NumGuided = 80;
 static_assert(NumLooks % prt::PacketSize == 0 && NumCosine % prt::PacketSize == 0 &&
               NumGuided % prt::PacketSize == 0);
 /// In steps between records. The least leaves some four of them around each point.
@@ -76,7 +76,7 @@ constexpr float CellSize = 4.0f / (Cells * Cells);
 
 /// Returns the pixels between records of a picture: 4 from 1024 x 768 on, fewer in small ones.
 std::uint32_t step_of(std::uint32_t width, std::uint32_t height) {
-    constexpr double Records = 222.0;
+    constexpr double Records = 160.0;
     const double records = std::sqrt(static_cast<double>(width) * height) / Records;
     return std::clamp(static_cast<std::uint32_t>(std::ceil(records)), 1u, 4u);
 }

@@ -55,7 +55,7 @@ public:
     /// others go where rays of all records around found light: through windows, to places in the
     /// sun.
     ///
-    /// Cost:    192 rays for a record, of 16 pixels in pictures of 1024 x 768; up to four times as
+    /// Cost:    144 rays for a record, of 16 pixels in pictures of 1024 x 768; up to four times as
     ///          many in corners.
     /// Threads: parallel; the result is the same for any number of them. After a wish to stop,
     ///          records are missing.
