@@ -26,8 +26,8 @@
 namespace relumine::relight {
 
 /// Where rays look that gather light: mean luminance by square of the picture and cell of
-/// directions. Empty at first; the first light fills it, and further lights of the same view use it,
-/// so that what they gather is linear in the light.
+/// directions. Empty at first; the first light fills it, and further lights of the same view use
+/// it, so that what they gather is linear in the light.
 struct GatherGuide {
     std::vector<std::vector<float>> squares = {};
 };

@@ -15,8 +15,8 @@ namespace relumine {
 /// them.
 ///
 /// Throws:  as Painter::draw(), and std::logic_error unless an environment lights the scene.
-/// Cost:    a picture and an edit for each part, of rooms one more picture; bounces, where there are
-///          any, for each.
+/// Cost:    a picture and an edit for each part, of rooms one more picture; bounces, where there
+///          are any, for each.
 [[nodiscard]] relight::LayeredPicture light_mix(LitScene& lit, Painter& painter);
 
 } // namespace relumine
