@@ -10,6 +10,7 @@
 
 #include "cubemap/face.h"
 #include "cubemap/frame.h"
+#include "cubemap/r2_sequence.h"
 #include "cubemap/split_mix64.h"
 #include "prt/clusters/lattice.h"
 #include "prt/receivers/mesh_point.h"
@@ -32,22 +33,14 @@ double choice_of(std::uint32_t receiver, std::uint32_t direction) {
 class CosineDirections {
 public:
     CosineDirections(const glm::vec3& normal, std::uint32_t receiver)
-        : normal_(normal),
-          shift_s_(cubemap::unit_interval(cubemap::SplitMix64(2 * std::uint64_t{receiver}).next())),
-          shift_t_(
+        : frame_(cubemap::frame_of(glm::dvec3(normal))),
+          shift_(
+              cubemap::unit_interval(cubemap::SplitMix64(2 * std::uint64_t{receiver}).next()),
               cubemap::unit_interval(cubemap::SplitMix64(2 * std::uint64_t{receiver} + 1).next())) {
-        const glm::dmat3 frame = cubemap::frame_of(normal_);
-        tangent_ = frame[0];
-        bitangent_ = frame[1];
     }
 
     [[nodiscard]] glm::dvec3 operator[](std::uint32_t i) const {
-        const double s = fraction(shift_s_ + StepS * i);
-        const double t = fraction(shift_t_ + StepT * i);
-        const double radius = std::sqrt(s);
-        const double angle = 2.0 * std::numbers::pi * t;
-        return radius * std::cos(angle) * tangent_ + radius * std::sin(angle) * bitangent_ +
-               std::sqrt(1.0 - s) * normal_;
+        return cubemap::cosine_direction(frame_, cubemap::r2_place(i, shift_));
     }
 
     /// Calls visit(i) for those of the first so many directions that lie in a cone, and for some
@@ -62,10 +55,8 @@ public:
         };
         std::vector<Local> local;
         for (const DirectionCone& cone : cones) {
-            const glm::dvec3 axis(cone.axis);
-            const Local own{static_cast<float>(glm::dot(axis, tangent_)),
-                            static_cast<float>(glm::dot(axis, bitangent_)),
-                            static_cast<float>(glm::dot(axis, normal_)), cone.cosine - Slack};
+            const glm::vec3 axis(glm::dvec3(cone.axis) * frame_);
+            const Local own{axis.x, axis.y, axis.z, cone.cosine - Slack};
             const bool is_below =
                 own.least > 0.0f && own.z < -std::sqrt(1.0f - own.least * own.least);
             if (!is_below)
@@ -73,8 +64,9 @@ public:
         }
         if (local.empty())
             return;
-        std::uint32_t s = fixed(shift_s_), t = fixed(shift_t_);
-        for (std::uint32_t i = 0; i < count; ++i, s += fixed(StepS), t += fixed(StepT)) {
+        std::uint32_t s = fixed(shift_.x), t = fixed(shift_.y);
+        for (std::uint32_t i = 0; i < count;
+             ++i, s += fixed(cubemap::R2StepS), t += fixed(cubemap::R2StepT)) {
             const float squared = 0x1p-32f * static_cast<float>(s);
             const float radius = std::sqrt(squared), height = std::sqrt(1.0f - squared);
             const glm::vec2& turn = turns()[t >> (32u - TurnBits)];
@@ -87,10 +79,8 @@ public:
     }
 
 private:
-    static constexpr double StepS = 0.7548776662466927, StepT = 0.5698402909980532;
     static constexpr std::uint32_t TurnBits = 12;
 
-    static double fraction(double value) { return value - std::floor(value); }
     /// Returns a part of 1 in 2^-32.
     static std::uint32_t fixed(double value) {
         return static_cast<std::uint32_t>(static_cast<std::uint64_t>(value * 0x1p32));
@@ -108,11 +98,8 @@ private:
         return values;
     }
 
-    glm::dvec3 normal_;
-    double shift_s_;
-    double shift_t_;
-    glm::dvec3 tangent_{};
-    glm::dvec3 bitangent_{};
+    glm::dmat3 frame_;
+    glm::dvec2 shift_;
 };
 
 } // namespace

@@ -135,11 +135,6 @@ void exchange(std::vector<Value>& all, const std::vector<std::uint32_t>& at,
         std::swap(all[at[i]], some[i]);
 }
 
-/// The step of vertex_receivers() before things moved
-float rim_step_of(const Scene& scene) {
-    return scene.settings.rim_step ? *scene.settings.rim_step : automatic_bias(scene.mesh);
-}
-
 /// Gives the change the receivers that differ, at their new places. `after` is the group there.
 /// `motion` takes receivers that are no vertices there.
 void move_receivers(const Scene& scene, const GroupMesh& before, const mesh::TriangleMesh& after,
@@ -222,6 +217,10 @@ void require_places(const std::vector<glm::vec3>& positions, float bias) {
 }
 
 } // namespace
+
+float rim_step_of(const Scene& scene) {
+    return scene.settings.rim_step ? *scene.settings.rim_step : automatic_bias(scene.mesh);
+}
 
 void set_places(const Scene& scene, SceneChange& change) {
     change.places.clear();

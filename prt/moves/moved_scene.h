@@ -15,6 +15,9 @@ namespace relumine::prt {
 /// Exchanges what a change has with what the scene has. A second call undoes the first.
 void exchange(Scene& scene, SceneChange& change);
 
+/// Returns the step of vertex_receivers() before things moved.
+[[nodiscard]] float rim_step_of(const Scene& scene);
+
 /// Gives a change the places of its receivers, and what they have.
 void set_places(const Scene& scene, SceneChange& change);
 

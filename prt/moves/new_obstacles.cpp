@@ -13,7 +13,6 @@
 #include "prt/receivers/lit_position.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/scene/absent_groups.h"
-#include "prt/visibility/bias.h"
 
 namespace relumine::prt {
 
@@ -96,8 +95,7 @@ private:
         std::vector<std::uint32_t> vertices;
         std::vector<bool> near;
         mesh::TriangleMesh own = surroundings(vertices, near);
-        const float rim_step =
-            scene_.settings.rim_step ? *scene_.settings.rim_step : automatic_bias(scene_.mesh);
+        const float rim_step = rim_step_of(scene_);
         std::vector<glm::vec3> free = own.lifts;
         prt::leave_obstacles(rays_, scene_.settings.bias, own, rim_step);
         own.lifts.resize(own.num_vertices(), glm::vec3(0.0f));

@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 
 #include "cubemap/face.h"
+#include "cubemap/r2_sequence.h"
 #include "cubemap/split_mix64.h"
 #include "files/parallel.h"
 #include "mesh/tangents.h"
@@ -25,7 +26,7 @@ namespace {
 /// neighbouring rays pass by nearly the right part. Places start anywhere, and triangles have
 /// lattices of their own, so that light behind two surfaces has the product of both parts.
 double chance(const SeeThrough::Meeting& meeting) {
-    constexpr double Cells = 2048.0, StepX = 0.7548776662466927, StepY = 0.5698402909980532;
+    constexpr double Cells = 2048.0;
     std::uint64_t seed = meeting.triangle;
     const std::uint64_t of_triangle = cubemap::SplitMix64(seed).next();
     for (int axis = 0; axis < 3; ++axis)
@@ -34,7 +35,7 @@ double chance(const SeeThrough::Meeting& meeting) {
     const cubemap::FacePoint at = cubemap::face_point(glm::dvec3(meeting.direction));
     const double x = Cells * at.s * static_cast<double>(1 + of_triangle % 16);
     const double y = Cells * at.t * static_cast<double>(1 + of_triangle / 16 % 16);
-    const double place = cubemap::unit_interval(seed) + StepX * x + StepY * y;
+    const double place = cubemap::unit_interval(seed) + cubemap::R2StepS * x + cubemap::R2StepT * y;
     return place - std::floor(place);
 }
 

@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "cubemap/r2_sequence.h"
 #include "cubemap/split_mix64.h"
 #include "files/parallel.h"
 #include "prt/visibility/blockers.h"
@@ -81,8 +82,7 @@ private:
                 while (at + 1 < seen_.size() && before + seen_[at].weight() <= place)
                     before += seen_[at++].weight();
                 // Kronecker sequences of the plastic number and of the golden ratio.
-                const glm::dvec2 square(glm::fract(shift_s + 0.7548776662466927 * i),
-                                        glm::fract(shift_t + 0.5698402909980532 * i));
+                const glm::dvec2 square = cubemap::r2_place(begin + lane, {shift_s, shift_t});
                 const EmitterTree::Glow& glow =
                     tree_.choose(seen_[at], glm::fract(shift_choice + 0.6180339887498949 * i));
                 const glm::dvec3 way = glow.at(in_triangle(square)) - glm::dvec3(origin);

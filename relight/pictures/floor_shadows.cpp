@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "cubemap/face.h"
+#include "cubemap/r2_sequence.h"
 #include "relight/sharp/light_packets.h"
 
 namespace relumine::relight {
@@ -59,7 +60,6 @@ std::uint64_t bits(std::size_t count) {
 FloorLights::FloorLights(std::span<const SharpLight> lights, std::size_t samples_per_pixel) {
     // Samples fill each cell evenly, and lights shift them by steps that fill the unit square
     // [Roberts 2018, "The unreasonable effectiveness of quasirandom sequences"].
-    constexpr double StepS = 0.7548776662466927, StepT = 0.5698402909980532;
     constexpr double Golden = 1.0 / std::numbers::phi;
     struct Part {
         prt::DirectionPatch patch;
@@ -91,9 +91,10 @@ FloorLights::FloorLights(std::span<const SharpLight> lights, std::size_t samples
                 corners.push_back(direction_in(light.cell, right, down));
             for (std::size_t s = 0; s < samples_per_pixel; ++s) {
                 const auto k = static_cast<double>(i), n = static_cast<double>(s);
-                beam.places[s].add(direction_in(
-                    light.cell, (n + fraction(StepS * k)) / static_cast<double>(samples_per_pixel),
-                    fraction(Golden * n + StepT * k)));
+                beam.places[s].add(direction_in(light.cell,
+                                                (n + fraction(cubemap::R2StepS * k)) /
+                                                    static_cast<double>(samples_per_pixel),
+                                                fraction(Golden * n + cubemap::R2StepT * k)));
             }
         }
         beam.border = spread(corners, glm::vec3(glm::normalize(sum)));

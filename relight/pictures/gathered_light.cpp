@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <mutex>
 #include <numbers>
@@ -19,6 +16,7 @@
 #include "cubemap/face.h"
 #include "cubemap/frame.h"
 #include "cubemap/luminance.h"
+#include "cubemap/r2_sequence.h"
 #include "cubemap/split_mix64.h"
 #include "files/parallel.h"
 #include "prt/receivers/lit_position.h"
@@ -38,12 +36,6 @@ static_assert(NumLooks % prt::PacketSize == 0 && NumCosine % prt::PacketSize == 
 constexpr float LeastReach = 1.6f, MostReach = 8.0f;
 /// Ward's error up to which a record holds: the way over the harmonic mean distance of surfaces.
 constexpr float MostError = 0.2f;
-
-/// A place in the unit square, or along it, i steps on: Roberts' R2 sequence.
-glm::dvec2 place(const glm::dvec2& shift, std::uint32_t i) {
-    return glm::fract(shift +
-                      static_cast<double>(i) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
-}
 
 /// The cells of the cube that guide rays.
 constexpr std::uint32_t Cells = 16, NumCells = 6 * Cells * Cells;
@@ -69,6 +61,17 @@ float stretch(const glm::vec3& direction) {
     const glm::vec3 size = glm::abs(direction);
     const float outwards = std::max({size.x, size.y, size.z});
     return outwards * outwards * outwards;
+}
+
+/// The middles of all cells
+const std::array<glm::vec3, NumCells>& middles() {
+    static const std::array<glm::vec3, NumCells> all = [] {
+        std::array<glm::vec3, NumCells> result;
+        for (std::uint32_t cell = 0; cell < NumCells; ++cell)
+            result[cell] = direction_in(cell, glm::dvec2(0.5));
+        return result;
+    }();
+    return all;
 }
 
 /// Solid angle of a cell at the middle of a face
@@ -123,6 +126,8 @@ public:
             guide.assign(found_.begin(), found_.end());
         else
             std::copy(guide.begin(), guide.end(), found_.begin());
+        for (std::uint32_t cell = 0; cell < NumCells; ++cell)
+            found_[cell] *= stretch(middles()[cell]);
         for (Point& point : points_)
             gather(point);
     }
@@ -174,10 +179,8 @@ private:
     float trace_cosine(const Point& point, std::span<Ray> rays, std::uint32_t first) const {
         const glm::dmat3 frame = cubemap::frame_of(glm::dvec3(point.record->normal));
         return trace(point, rays, [&](std::uint32_t i) {
-            const glm::dvec2 at = place(point.shift, first + i);
-            const double radius = std::sqrt(at.x), angle = 2.0 * std::numbers::pi * at.y;
-            return glm::vec3(frame * glm::dvec3(radius * std::cos(angle), radius * std::sin(angle),
-                                                std::sqrt(1.0 - at.x)));
+            return glm::vec3(
+                cubemap::cosine_direction(frame, cubemap::r2_place(first + i, point.shift)));
         });
     }
 
@@ -198,11 +201,7 @@ private:
             return;
         float whole = 0.0f;
         for (std::uint32_t cell = 0; cell < NumCells; ++cell) {
-            if (found_[cell] > 0.0f) {
-                const glm::vec3 middle = direction_in(cell, glm::dvec2(0.5));
-                whole += found_[cell] * stretch(middle) *
-                         std::max(glm::dot(middle, point.record->normal), 0.0f);
-            }
+            whole += found_[cell] * std::max(glm::dot(middles()[cell], point.record->normal), 0.0f);
             sums_[cell] = whole;
         }
         const auto chance = [&](std::uint32_t cell) {
@@ -235,13 +234,13 @@ private:
                 add(ray);
             if (!(whole > 0.0f))
                 continue;
-            const glm::dvec2 start = place(point.guided_shift, round * NumGuided);
+            const glm::dvec2 start = cubemap::r2_place(round * NumGuided, point.guided_shift);
             std::uint32_t cell = 0;
             trace(point, guided, [&](std::uint32_t i) {
                 const auto along = static_cast<float>((i + start.x) / NumGuided) * whole;
                 while (cell + 1 < NumCells && sums_[cell] <= along)
                     ++cell;
-                return direction_in(cell, place(start, i));
+                return direction_in(cell, cubemap::r2_place(i, start));
             });
             for (const Ray& ray : guided)
                 add(ray);
@@ -262,9 +261,12 @@ private:
     const Scene& scene_;
     const MeshLight& light_;
     std::vector<Point> points_;
-    /// Mean luminance that looks into each cell found, and their number
-    std::array<float, NumCells> found_{}, sums_{};
+    /// Mean luminance that looks into each cell found, in the end times its solid angle, and the
+    /// number of looks
+    std::array<float, NumCells> found_{};
     std::array<std::uint32_t, NumCells> num_looks_{};
+    /// Over the cells up to each, for a point
+    std::array<float, NumCells> sums_{};
 };
 
 GatheredLight::GatheredLight(const Scene& scene, const MeshLight& light, const prt::Work& work)

@@ -10,6 +10,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "cubemap/r2_sequence.h"
 #include "files/parallel.h"
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/ggx_energy.h"
@@ -106,8 +107,7 @@ glm::vec3 highlight_of(const prt::Surface& surface, const prt::Lobes<float>& lob
 } // namespace
 
 glm::vec2 ray_shift(std::uint64_t i) {
-    return glm::vec2(
-        glm::fract(static_cast<double>(i) * glm::dvec2(0.75487766624669276, 0.56984029099805327)));
+    return glm::vec2(cubemap::r2_place(i));
 }
 
 float lobe_alpha(const prt::Surface& surface) {

@@ -70,8 +70,9 @@ class Shape:
         with Evaluated(thing.evaluated_get(depsgraph)) as mesh:
             # Where a modifier makes vertices, the object's own have the light.
             shown = mesh if len(mesh.vertices) == len(thing.data.vertices) else thing.data
-            vertices, triangles = placed(*arrays_of(shown), thing.matrix_world)
-            self.is_flat = has_sharp_vertices(shown)
+            own, corners = arrays_of(shown)
+            self.is_flat = has_sharp_vertices(shown, corners)
+            vertices, triangles = placed(own, corners, thing.matrix_world)
         corners = vertices[triangles]
         sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
         self.longest = float(sides.max(initial=0.0))
@@ -103,8 +104,7 @@ def with_uvs(mesh, vertices, triangles):
     uvs = uvs_of(mesh)
     if not len(uvs):
         return None
-    corners = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
-    mesh.loop_triangles.foreach_get("loops", corners)
+    corners = loops_of_triangles(mesh)
     uv = uvs.reshape(-1, 2)[corners]
     normals = corner_normals(mesh)[corners]
     rows = np.column_stack([triangles.reshape(-1).astype(np.float64), uv, np.round(normals, 4)])
@@ -113,16 +113,20 @@ def with_uvs(mesh, vertices, triangles):
     return vertices[old], inverse.reshape(-1, 3), uv[first], normals[first], old
 
 
-def has_sharp_vertices(mesh):
+def loops_of_triangles(mesh):
+    """(3 M,): the loop of each corner of its triangles, which are there."""
+    loops = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
+    mesh.loop_triangles.foreach_get("loops", loops)
+    return loops
+
+
+def has_sharp_vertices(mesh, triangles):
     """Whether a face has another normal at a vertex than the mesh has there."""
-    corners = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
-    mesh.loop_triangles.foreach_get("loops", corners)
-    of_corner = np.empty(len(mesh.loops), dtype=np.int32)
-    mesh.loops.foreach_get("vertex_index", of_corner)
     normals = np.empty(3 * len(mesh.vertices), dtype=np.float32)
     mesh.vertices.foreach_get("normal", normals)
-    of_vertices = normals.reshape(-1, 3)[of_corner[corners]]
-    return bool((np.sum(corner_normals(mesh)[corners] * of_vertices, axis=1) < LIKE).any())
+    of_vertices = normals.reshape(-1, 3)[triangles.reshape(-1)]
+    of_corners = corner_normals(mesh)[loops_of_triangles(mesh)]
+    return bool((np.sum(of_corners * of_vertices, axis=1) < LIKE).any())
 
 
 def corner_normals(mesh):
