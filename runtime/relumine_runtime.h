@@ -145,9 +145,9 @@ RELUMINE_API RelumineResult relumine_places(const RelumineScene* scene, uint32_t
  *      +Z        -X            -Y
  *      -Z        +X            -Y
  *
- * Lat-long: [height][width][3], twice as wide as high; the top row is +Y. Column x lies at a = 2 pi (0.5 - (x + 0.5) /
- * width) from +Z towards +X: +Z in the middle, +X at a quarter, -X at three quarters. It becomes a
- * cube map of `resolution`, 0: as fine as the picture. */
+ * Lat-long: [height][width][3], twice as wide as high; the top row is +Y. Column x lies at a = 2 pi
+ * (0.5 - (x + 0.5) / width) from +Z towards +X: +Z in the middle, +X at a quarter, -X at three
+ * quarters. It becomes a cube map of `resolution`, 0: as fine as the picture. */
 RELUMINE_API RelumineResult relumine_light_cube_map(RelumineScene* scene, uint32_t resolution,
                                                     const float* rgb);
 RELUMINE_API RelumineResult relumine_light_lat_long(RelumineScene* scene, uint32_t width,
