@@ -91,6 +91,8 @@ std::uint32_t every_of(const MetSurface& met, const prt::Surface& surface) {
 /// blurs it little across.
 float look_stretch(const glm::vec2& alphas, std::uint32_t num_rays) {
     constexpr float MostAcross = 0.6f; // of the lobe's width
+    if (alphas.x == alphas.y)          // also 0: rays that are spread evenly have none
+        return 1.0f;
     const float step =
         std::sqrt(std::numbers::pi_v<float> / static_cast<float>(prt::PacketSize * num_rays));
     const float ratio = std::max(alphas.x, alphas.y) / std::min(alphas.x, alphas.y);

@@ -111,6 +111,26 @@ TEST(Reflections, OfCoatAndSheenAreTheirIntegral) {
         }
 }
 
+/// Where the sky has detail, rays of a sheen look into their parts, too.
+TEST(Reflections, SheenSeesWhereTheLightComesFrom) {
+    cubemap::CubeMap sky = scenes::smooth_environment(R);
+    for (const cubemap::Face face : cubemap::AllFaces)
+        for (std::uint32_t y = 0; y < R; ++y)
+            for (std::uint32_t x = 0; x < R; ++x) {
+                const glm::dvec3 w = cubemap::texel_direction(face, x, y, R);
+                sky.at(face, x, y) *= w.x < -0.3 && std::sin(40.0 * w.y) > 0.0 ? 20.0f : 0.1f;
+            }
+    const Reflections reflections(nothing(), 0.0f, 1024, sky, {});
+    for (const float roughness : {0.4f, 0.8f})
+        for (const float n_v : {0.9f, 0.4f}) {
+            const prt::Surface surface = layered(roughness);
+            const MirrorPoint point = seen_at(n_v);
+            const float expected = integrated(surface, point, sky).sheen.g;
+            EXPECT_NEAR(mirrored(reflections, surface, point).sheen.g, expected, 0.03f * expected)
+                << roughness << " " << n_v;
+        }
+}
+
 /// Each colour has its own highlight.
 TEST(Reflections, OfAFilmAreTheirIntegral) {
     const cubemap::CubeMap sky = scenes::smooth_environment(R);
