@@ -99,6 +99,24 @@ float look_stretch(const glm::vec2& alphas, std::uint32_t num_rays) {
     return std::clamp(ratio, 1.0f, std::max(MostAcross / step, 1.0f));
 }
 
+/// A ray of the tail may be below the surface where most of its part is not. Such a ray goes where
+/// its part begins.
+void raise_rays(const RayFan& fan, const FanFrame& frame, std::uint32_t first, FanRays& rays) {
+    for (std::uint32_t lane = 0; lane < rays.directions.num_directions; ++lane) {
+        if ((rays.above >> lane & 1u) != 0)
+            continue;
+        const FanRays part = fan_part(fan, frame, first + lane);
+        if (part.above == 0)
+            continue;
+        const auto look = static_cast<std::size_t>(std::countr_zero(part.above));
+        rays.directions.x[lane] = part.directions.x[look];
+        rays.directions.y[lane] = part.directions.y[look];
+        rays.directions.z[lane] = part.directions.z[look];
+        rays.densities[lane] = part.densities[look];
+        rays.above |= 1u << lane;
+    }
+}
+
 /// What a highlight sends, by colour.
 glm::vec3 highlight_of(const prt::Surface& surface, const prt::Lobes<float>& lobes) {
     return prt::has_lobes_of_colors(surface)
@@ -275,7 +293,9 @@ void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surface
     const std::uint32_t outermost = fan.num_rays - fan.num_rays / fan_columns(fan.num_rays);
     const float of_look = of_lobe * look_stretch(frame.alphas, fan.num_rays);
     for (std::uint32_t first = 0; first < fan.num_rays; first += prt::PacketSize) {
-        const FanRays rays = fan_rays(fan, frame, first);
+        FanRays rays = fan_rays(fan, frame, first);
+        if (has_parts)
+            raise_rays(fan, frame, first, rays);
         if (rays.above == 0)
             continue;
         std::array<prt::Hit, prt::PacketSize> hits;

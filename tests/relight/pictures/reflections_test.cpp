@@ -1,6 +1,7 @@
 // Rays against the integral over all texels.
 #include "relight/pictures/reflections.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -236,6 +237,21 @@ TEST(Reflections, AWindowHasNoGrain) {
         const double expected = integrated(metal(roughness), seen_at(0.95f), room).specular.g;
         EXPECT_NEAR(sum, expected, 0.05 * expected) << roughness;
     }
+}
+
+/// A ray of the lobe's tail that is below the surface has most of its part above it.
+TEST(Reflections, WhereverRaysAreTheTailIsThere) {
+    const Reflections reflections(nothing(), 1e-4f, 16, scenes::smooth_environment(R), {});
+    const prt::Surface paint = metal(0.3f);
+    double least = 1.0, most = 0.0;
+    for (std::uint32_t i = 0; i < 200; ++i) {
+        MirrorPoint point = seen_at(0.6f);
+        point.shift = ray_shift(i);
+        const double whole = reflections.light(paint, point, 16, NoSurface).whole;
+        least = std::min(least, whole);
+        most = std::max(most, whole);
+    }
+    EXPECT_LT(most - least, 0.01);
 }
 
 TEST(Reflections, AMirrorShowsWhatItLooksAt) {
