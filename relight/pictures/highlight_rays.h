@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/sheen_lobe.h"
@@ -23,15 +24,19 @@ struct LobeRays {
     LobeRays(const prt::Surface& surface, std::uint32_t num)
         : all(lobe_alpha(surface) > WideAlpha || prt::is_stretched(surface) ? 2 * num : num),
           coat((num + 1) / 2), sheen(2 * num) {}
-    static LobeRays one_each() {
+    /// One ray of as many.
+    static LobeRays one_of(std::uint32_t num, std::uint32_t ray) {
         LobeRays one;
-        one.all = one.coat = one.sheen = 1;
+        one.all = one.coat = one.sheen = num;
+        one.only = ray;
         return one;
     }
     static constexpr float WideAlpha = 0.25f;
     std::uint32_t all, coat;
     /// They are as dense everywhere.
     std::uint32_t sheen;
+    /// The number of one ray that is sent alone.
+    std::optional<std::uint32_t> only;
 
 private:
     LobeRays() = default;

@@ -195,7 +195,8 @@ void fan_rays(const RayFan& fan, const FanFrame& frame, std::uint32_t first, Fan
             hn::Div(hn::Add(hn::Floor(x), fraction(hn::Add(x, constant(fan.shift.x)))), columns);
         return points;
     });
-    const std::uint32_t count = std::min<std::uint32_t>(fan.num_rays - first, prt::PacketSize);
+    const std::uint32_t most = fan.only ? 1 : fan.num_rays - first;
+    const std::uint32_t count = std::min<std::uint32_t>(most, prt::PacketSize);
     rays.above &= (1u << count) - 1;
     rays.directions.num_directions = count;
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <optional>
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
@@ -27,6 +28,8 @@ struct RayFan {
     /// Of a stretched lobe: alpha along a tangent. 0: the lobe is round.
     float alpha_along = 0.0f;
     glm::vec3 tangent{0.0f};
+    /// The number of one ray that is sent alone.
+    std::optional<std::uint32_t> only = std::nullopt;
 };
 
 /// Into how many columns the points of a fan, which are Hammersley's, part the unit square from the
@@ -58,7 +61,8 @@ struct FanRays {
     std::uint32_t above = 0;
 };
 
-/// Returns up to 16 rays of a fan, from ray `first` on. Lanes behind the last ray repeat it.
+/// Returns up to 16 rays of a fan, from ray `first` on; one where one is sent alone. Lanes behind
+/// the last ray repeat it.
 [[nodiscard]] FanRays fan_rays(const RayFan& fan, const FanFrame& frame, std::uint32_t first);
 
 /// Returns 16 directions spread over the part of the lobe that one ray of a fan of 2^n stands for.

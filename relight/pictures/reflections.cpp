@@ -285,14 +285,14 @@ template<typename Add>
 void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surfaces& surfaces,
                        const Behind& behind, const Add& add) const {
     const FanFrame frame(fan);
-    const float of_lobe = SeenShare / (static_cast<float>(fan.num_rays) * behind.num_fans);
-    // Several rays that are not blurred beyond their parts. The outermost parts have the lobe's
-    // whole tail.
-    const bool has_parts = fan.num_rays > 1 && std::has_single_bit(fan.num_rays) &&
-                           behind.least_solid_angle == 0.0f && !levels_.empty();
+    const float of_lobe = SeenShare / static_cast<float>(fan.num_rays);
+    // The outermost parts have the lobe's whole tail.
+    const bool has_parts =
+        fan.num_rays > 1 && std::has_single_bit(fan.num_rays) && !levels_.empty();
     const std::uint32_t outermost = fan.num_rays - fan.num_rays / fan_columns(fan.num_rays);
     const float of_look = of_lobe * look_stretch(frame.alphas, fan.num_rays);
-    for (std::uint32_t first = 0; first < fan.num_rays; first += prt::PacketSize) {
+    const std::uint32_t begin = fan.only.value_or(0), end = fan.only ? begin + 1 : fan.num_rays;
+    for (std::uint32_t first = begin; first < end; first += prt::PacketSize) {
         FanRays rays = fan_rays(fan, frame, first);
         if (has_parts)
             raise_rays(fan, frame, first, rays);
@@ -304,15 +304,22 @@ void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surface
             const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
             const glm::vec3 w = rays.directions.direction(lane);
             const float dense = rays.densities[lane];
-            const float seen = std::max(of_lobe / dense, behind.least_solid_angle);
+            const float part = of_lobe / dense;
+            const float seen = std::max(part, behind.least_solid_angle);
             const std::uint32_t ray = first + static_cast<std::uint32_t>(lane);
-            if ((met >> lane & 1u) == 0 && has_parts && (ray >= outermost || has_detail(w, seen))) {
+            // Not where all is blurred more. What lights add to a map is known to no evenness.
+            const bool is_parted =
+                has_parts && part > behind.least_solid_angle &&
+                (ray >= outermost || &behind.levels != &levels_ || has_detail(w, seen));
+            if ((met >> lane & 1u) == 0 && is_parted) {
                 const FanRays looks = fan_part(fan, frame, ray);
                 for (std::uint32_t left = looks.above; left != 0; left &= left - 1) {
                     const auto look = static_cast<std::size_t>(std::countr_zero(left));
                     const glm::vec3 way = looks.directions.direction(look);
                     const float of_all = prt::PacketSize * looks.densities[look];
-                    add(way, of_all, mean(behind.levels, way, of_look / of_all));
+                    add(way, of_all,
+                        mean(behind.levels, way,
+                             std::max(of_look / of_all, behind.least_solid_angle)));
                 }
             } else if ((met >> lane & 1u) == 0)
                 add(w, dense, mean(behind.levels, w, seen));
@@ -325,7 +332,6 @@ void Reflections::send(const glm::vec3& origin, const RayFan& fan, const Surface
                               .ray = ray,
                               .num_rays = fan.num_rays,
                               .fan_shift = fan.shift,
-                              .num_fans = behind.num_fans,
                               .num_mirrors = behind.num_mirrors}));
         }
     }
@@ -347,19 +353,22 @@ std::uint32_t asked_for(const MetSurface& met, const prt::Surface& surface) {
 glm::vec3 Reflections::in_mirror(const MetSurface& met, const prt::Surface& surface,
                                  const glm::vec3& position, const glm::vec3& normal,
                                  const glm::vec3& diffuse, const Surfaces& surfaces) const {
-    // Rays of the same fan look into nearly the same lobe.
-    const float num_fans = met.num_fans * static_cast<float>(met.num_rays) /
-                           static_cast<float>(every_of(met, surface));
+    // Rays of one fan look into nearly the same lobe: each asks for one ray of a fan of as many.
+    // Which one has nothing to do with where it comes from.
+    const std::uint32_t num_asked =
+        std::max(met.num_rays / every_of(met, surface), std::uint32_t{1});
+    const std::uint32_t ray =
+        (5 * (met.ray / every_of(met, surface)) + number_of(met.fan_shift)) % num_asked;
     const MirrorPoint point{.position = position,
                             .normal = normal,
                             .to_eye = -met.direction,
-                            .shift = glm::fract(met.fan_shift + ray_shift(met.ray))};
+                            .shift = glm::fract(met.fan_shift + ray_shift(met.num_mirrors))};
     const prt::EyeCosines n_v(surface, point.normal, point.to_eye);
-    prt::Lobes<glm::vec3> lobes = lobes_of(
-        surface,
-        sum(surface, point, LobeRays::one_each(), surfaces,
-            {whole_.empty() ? levels_ : whole_, met.half_lobe, num_fans, met.num_mirrors + 1}),
-        n_v);
+    prt::Lobes<glm::vec3> lobes =
+        lobes_of(surface,
+                 sum(surface, point, LobeRays::one_of(num_asked, ray), surfaces,
+                     {whole_.empty() ? levels_ : whole_, met.half_lobe, met.num_mirrors + 1}),
+                 n_v);
     lobes.diffuse = diffuse;
     return prt::reflect(surface, lobes, n_v);
 }
@@ -378,7 +387,8 @@ MirroredLight Reflections::sum(const prt::Surface& surface, const MirrorPoint& p
                .to_eye = point.to_eye,
                .alpha = lobe_alpha(surface),
                .num_rays = rays.all,
-               .shift = point.shift};
+               .shift = point.shift,
+               .only = rays.only};
     if (prt::is_stretched(surface)) {
         fan.alpha_along = prt::alpha_along(surface.roughness_or_exponent, surface.anisotropy);
         fan.tangent = surface.tangent;
@@ -412,7 +422,7 @@ MirroredLight Reflections::sum(const prt::Surface& surface, const MirrorPoint& p
     }
     return {.all = all.mean(),
             .grazing = grazing.mean(),
-            .whole = all.weight.r / static_cast<float>(rays.all),
+            .whole = all.weight.r / static_cast<float>(rays.only ? 1 : rays.all),
             .coat = coat.mean(),
             .sheen = sheen.mean()};
 }

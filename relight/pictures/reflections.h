@@ -66,8 +66,6 @@ struct MetSurface {
     /// Which ray of a fan it is, of how many, and MirrorPoint::shift of the fan
     std::uint32_t ray = 0, num_rays = 1;
     glm::vec2 fan_shift{0.0f};
-    /// How many fans look into nearly the same lobe.
-    float num_fans = 1.0f;
     /// How many mirrors the light comes by, from this surface to the eye.
     std::uint32_t num_mirrors = 1;
 };
@@ -145,12 +143,11 @@ private:
         Evenness(const cubemap::CubeMap& level, const cubemap::CubeMap& finer);
         [[nodiscard]] bool at(const glm::vec3& direction) const;
     };
-    /// What rays see that leave, how wide they are at least, how many fans share a lobe, and how
-    /// many mirrors the light comes by.
+    /// What rays see that leave, how wide they are at least, and how many mirrors the light comes
+    /// by.
     struct Behind {
         const Levels& levels;
         float least_solid_angle = 0.0f;
-        float num_fans = 1.0f;
         std::uint32_t num_mirrors = 1;
     };
     [[nodiscard]] static std::size_t level_of(const Levels& levels, float solid_angle);
