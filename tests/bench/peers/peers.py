@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Relumine beside Mitsuba, Cycles, LuxCore and Radiance: `./dev bench peers`.
+"""Relumine beside Mitsuba, Cycles, LuxCore, Radiance and three-gpu-pathtracer: `./dev bench peers`.
 
     peers.py [--quick] [--only truth,time,gradients,skies] [--peers Mitsuba,Cycles] [--scenes bunny,room] [--folder DIR]
 
 The peers are Python packages of the versions below, in virtual environments in --folder, which the
-first run makes (2 GB). Each runs in a process of its own. Prints tables.
+first run makes (2 GB). Each runs in a process of its own. three-gpu-pathtracer runs where it is
+named, by npm and Debian's chromium, chromium-driver and python3-selenium. Prints tables.
 """
 import argparse
 import os
@@ -24,14 +25,16 @@ PEERS = {
     "Cycles": ("cycles_peer", {"python3.13": ["bpy==5.2.3", "OpenEXR==3.5.3"], "python3.11": ["bpy==5.0.1", "OpenEXR==3.5.3"]}),
     "LuxCore": ("luxcore_peer", ["pyluxcore==2.11.2", "numpy==1.26.4"]),
     "Radiance": ("radiance_peer", ["pyradiance==1.3.1", "numpy==1.26.4"]),
+    # Of packages/web-test.txt and of npm; for truth alone.
+    "three-gpu-pathtracer": ("three_peer", []),
 }
 
 
 def python_of(name, folder):
     """The Python that has a peer's packages; they are installed where they are not yet."""
-    if name == "Relumine":
-        return "/usr/bin/python3"
     packages = PEERS[name][1]
+    if not packages:
+        return "/usr/bin/python3"
     base = sys.executable
     if isinstance(packages, dict):
         base = next((found for each in packages if (found := shutil.which(each)) and works(found)), None)
@@ -98,7 +101,7 @@ def main():
     parser = argparse.ArgumentParser(prog="./dev bench peers", description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer rows and samples: ten minutes")
     parser.add_argument("--only", default=",".join(judges), help="judges, with commas between them")
-    parser.add_argument("--peers", default=",".join(PEERS), help="those to run, with commas between them")
+    parser.add_argument("--peers", default=",".join(name for name in PEERS if PEERS[name][1] or name == "Relumine"), help="those to run, with commas between them")
     parser.add_argument("--scenes", default=",".join(equal_error.SCENES), help="those of time, with commas between them")
     parser.add_argument("--folder", type=Path, default=ROOT / "build" / "peers", help="where environments and logs go (build/peers)")
     given = parser.parse_args()
