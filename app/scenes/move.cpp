@@ -1,13 +1,17 @@
 // `relumine move`: a scene in which things stand elsewhere.
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "app/commands.h"
 #include "app/options/output_options.h"
+#include "relumine/in/mesh.h"
 #include "relumine/in/move.h"
 
 namespace relumine::app {
@@ -17,12 +21,35 @@ namespace {
 struct MoveArguments {
     std::string scene;
     std::vector<GroupStep> steps;
+    /// How files of poses are read: PoseRows alone
+    MeshOptions mesh;
     std::string output;
 };
 
+/// What a file leaves open that shapes a pose.
+constexpr std::array PoseRows = {"--pose", "--up", "--crease"};
+
+GroupMove move_of_step(const Scene& scene, const GroupStep& step, const MeshOptions& read) {
+    if (step.going != Going::Pose)
+        return move_of(scene, step);
+    static_cast<void>(group_named(scene, step.name));
+    const Mesh mesh = load_mesh(step.file, read);
+    try {
+        return pose_of(step.name, mesh.geometry);
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(fmt::format("{}: {}", step.file, error.what()));
+    }
+}
+
 void move_groups(const MoveArguments& options, Session& session) {
     require_extension("--output", options.output, {".prt"});
-    check_output(options.output, {});
+    std::vector<std::string> poses;
+    for (const GroupStep& step : options.steps)
+        if (step.going == Going::Pose)
+            poses.push_back(step.file);
+    if (options.mesh.pose && poses.empty())
+        throw UsageError("--pose", "expected NAME=FILE among the steps, whose pose it is");
+    check_output(options.output, poses);
     Scene scene = load_scene(options.scene);
     session.poll();
     Report moves = Report::Array{};
@@ -30,16 +57,18 @@ void move_groups(const MoveArguments& options, Session& session) {
         MoveReport moved;
         const prt::Work own = session.work("moving " + step.name);
         try {
-            move(scene, move_of(scene, step), move_work(own), &moved);
+            move(scene, move_of_step(scene, step, options.mesh), move_work(own), &moved);
         } catch (const std::invalid_argument& error) {
             throw std::runtime_error(fmt::format("{}: {}", options.scene, error.what()));
         }
         session.end_progress();
         session.say(fmt::format(
-            "{}: {}, {:.2g} % of the light counted anew, {:.2f} s{}", step.name,
+            "{}: {}, {:.3g} % of the light counted anew, {:.2f} s{}", step.name,
             step.going == Going::Away   ? "taken away"
             : step.going == Going::Back ? "brought back"
-                                        : fmt::format("{} receivers moved", moved.num_moved),
+            : step.going == Going::Pose
+                ? fmt::format("posed as in {}, {} receivers moved", step.file, moved.num_moved)
+                : fmt::format("{} receivers moved", moved.num_moved),
             100.0 * static_cast<double>(moved.counts.num_pairs) /
                 static_cast<double>(moved.num_all),
             moved.seconds,
@@ -70,8 +99,11 @@ void add_move(Command& program, Session& session) {
         "STEP", options->steps,
         "NAME=X,Y,Z[,DEGREES]: a group of the mesh, how far it moves, and by how many degrees it "
         "turns about the vertical through its middle; NAME=away takes it away, NAME=back brings it "
-        "back; any number of them",
+        "back; NAME=FILE gives it the pose that it has in a mesh, see --pose; any number of them",
         {.required = true, .example = "chair=0.5,0,0,90"}));
+    for (OptionRow& each : options_of(options->mesh))
+        if (std::ranges::find(PoseRows, each.name) != PoseRows.end())
+            command.add(std::move(each));
     command.add(row("-o,--output", options->output, "the scene to write, .prt; SCENE itself, too",
                     {.file = true, .required = true}));
     session.add_common_options(command);

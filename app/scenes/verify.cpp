@@ -9,6 +9,7 @@
 #include "app/options/environment_options.h"
 #include "app/options/eye_options.h"
 #include "app/scenes/lit_scene.h"
+#include "relumine/in/move.h"
 #include "relumine/in/place_report.h"
 #include "relumine/in/shared_work.h"
 
@@ -83,6 +84,22 @@ void say_receivers(const Verification& check, const Scene& scene, std::uint32_t 
                             100.0 * error.bias, error.mean_radiance));
 }
 
+/// What a precompute of a scene whose groups move would choose now, for people and for --json.
+void report_clusters(const Scene& scene, Session& session, Report& report) {
+    const std::size_t own = scene.transfer.num_clusters();
+    const std::size_t fresh = fresh_clusters(scene, {.stop = session.stop()});
+    std::string_view hint;
+    if (3 * fresh <= 2 * own)
+        hint = ", a third less or more: it would be smaller and quicker";
+    else if (2 * fresh >= 3 * own)
+        hint = ", half more or more: it would be closer";
+    session.say(fmt::format("{} clusters; a precompute of the scene as it stands would choose "
+                            "about {}{}",
+                            own, fresh, hint));
+    report.set("clusters", own);
+    report.set("fresh_clusters", fresh);
+}
+
 void run(const VerifyArguments& options, Session& session) {
     LitScene lit = lit_scene(options.scene, session);
     if (options.eye)
@@ -144,6 +161,8 @@ void run(const VerifyArguments& options, Session& session) {
     const WorstError all = worst_of(check);
     report.set("worst",
                Report({{"relative_l2", all.relative_l2}, {"place", std::string(all.place)}}));
+    if (lit.scene().settings.is_movable)
+        report_clusters(lit.scene(), session, report);
     session.report(report);
 }
 

@@ -409,7 +409,7 @@ SceneChange posed(const Scene& scene, std::uint32_t group, std::span<const glm::
     if (scene.blockers && own.blockers_after != own.before.mesh.positions)
         throw std::invalid_argument(fmt::format(
             "expected a group that is lit as the mesh has it where it takes another pose, got {}, "
-            "which was refined: --no-refine leaves it as it is",
+            "which was refined: precompute --refine off leaves it as it is",
             name));
     if (vertices.size() != own.before.vertices.size())
         throw std::invalid_argument(fmt::format("expected the {} vertices of {}, got {}",

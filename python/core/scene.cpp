@@ -284,6 +284,11 @@ py::tuple moved(const std::shared_ptr<Scene>& scene, const std::string& name,
     return py::make_tuple(result.first, move_figures(result.second));
 }
 
+std::size_t fresh_clusters_of(const std::shared_ptr<Scene>& scene, const py::object& progress) {
+    return in_background(progress,
+                         [scene](const Reins& reins) { return fresh_clusters(*scene, reins); });
+}
+
 std::shared_ptr<Scene> recoloured(const std::shared_ptr<Scene>& scene, const py::dict& given) {
     const auto colors = options_from<SurfaceColors>(given);
     const Release release;
@@ -426,6 +431,7 @@ void bind_scenes(py::module_& module) {
     });
     module.def("recoloured", &recoloured);
     module.def("moved", &moved);
+    module.def("fresh_clusters", &fresh_clusters_of);
 }
 
 } // namespace relumine::python

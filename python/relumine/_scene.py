@@ -472,6 +472,18 @@ class Scene:
         """A scene in which a group that was removed stands again where it stood."""
         return self._moved(name, "back", progress)
 
+    def fresh_clusters(self, *, progress: Optional[Progress] = None) -> int:
+        """About how many clusters precompute() would choose for the scene as it stands.
+
+        Moves keep the clusters that there are. Far fewer: a precompute would make the scene
+        smaller. Far more: it would make it closer. Takes a quarter of the time of a precompute's
+        clusters, 1/16 with 260,000 receivers.
+
+        Raises ValueError for a scene that was precomputed without movable=True.
+        """
+        with errors():
+            return _core.fresh_clusters(self._core, progress)
+
     def _moved(
         self, name: str, to: Union[NDArray[Any], str, CoreMesh], progress: Optional[Progress]
     ) -> "Scene":

@@ -17,8 +17,10 @@
 #include "files/joined.h"
 #include "files/nearest_name.h"
 #include "files/seconds.h"
+#include "mesh/load.h"
 #include "prt/moves/new_obstacles.h"
 #include "prt/moves/resampled_bounces.h"
+#include "prt/parts/parts.h"
 #include "relight/relighter.h"
 #include "relumine/in/stages.h"
 #include "relumine/options/option_table.h"
@@ -202,17 +204,22 @@ std::uint32_t group_named(const Scene& scene, const std::string& name) {
 
 GroupStep GroupStepText::read(const std::string& text) {
     const std::size_t equals = text.rfind('=');
+    const std::string name = text.substr(0, equals);
+    const std::string to = equals == std::string::npos ? "" : text.substr(equals + 1);
     for (const auto& [word, going] : GoingWords)
-        if (equals != 0 && equals != std::string::npos && text.substr(equals + 1) == word)
-            return {.name = text.substr(0, equals), .going = going};
-    const auto numbers = parse_numbers(equals == std::string::npos ? "" : text.substr(equals + 1));
+        if (equals != 0 && to == word)
+            return {.name = name, .going = going};
+    if (equals != 0 && mesh::has_mesh_extension(to))
+        return {.name = name, .going = Going::Pose, .file = to};
+    const auto numbers = parse_numbers(to);
     const auto is_finite = [](double number) {
         return std::isfinite(number);
     };
     if (equals == 0 || !numbers || (numbers->size() != 3 && numbers->size() != 4) ||
         !std::all_of(numbers->begin(), numbers->end(), is_finite))
-        refuse_text("NAME=X,Y,Z, NAME=X,Y,Z,DEGREES, NAME=away or NAME=back", text);
-    return {.name = text.substr(0, equals),
+        refuse_text("NAME=X,Y,Z, NAME=X,Y,Z,DEGREES, NAME=away, NAME=back or NAME=FILE of a mesh",
+                    text);
+    return {.name = name,
             .by = {(*numbers)[0], (*numbers)[1], (*numbers)[2]},
             .degrees = numbers->size() == 4 ? numbers->back() : 0.0};
 }
@@ -221,6 +228,8 @@ std::string GroupStepText::show(const GroupStep& step) {
     for (const auto& [word, going] : GoingWords)
         if (step.going == going)
             return fmt::format("{}={}", step.name, word);
+    if (step.going == Going::Pose)
+        return fmt::format("{}={}", step.name, step.file);
     return fmt::format("{}={},{},{}{}", step.name, step.by.x, step.by.y, step.by.z,
                        step.degrees == 0.0 ? "" : fmt::format(",{}", step.degrees));
 }
@@ -241,11 +250,12 @@ GroupMove move_of(const GroupStep& step, const glm::dvec3& middle) {
 }
 
 GroupMove pose_of(const std::string& name, const mesh::TriangleMesh& mesh) {
-    const std::uint32_t group = number_of(mesh, name);
+    const bool is_whole = mesh.groups.empty();
+    const std::uint32_t group = is_whole ? 0 : number_of(mesh, name);
     std::vector<bool> is_own(mesh.num_vertices());
     for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
         for (const std::uint32_t vertex : mesh.triangles[i])
-            is_own[vertex] = is_own[vertex] || mesh.triangle_groups[i] == group;
+            is_own[vertex] = is_own[vertex] || is_whole || mesh.triangle_groups[i] == group;
     GroupMove result{.name = name, .going = Going::Pose};
     for (std::size_t i = 0; i < is_own.size(); ++i)
         if (is_own[i]) {
@@ -266,6 +276,21 @@ prt::SceneChange move(Scene& scene, const GroupMove& to, const PrecomputeWork& w
         own.emplace(scene);
     return Move(scene, to, rays != nullptr ? *rays : *own, work)
         .run(report != nullptr ? *report : local);
+}
+
+std::size_t fresh_clusters(const Scene& scene, const prt::Work& work) {
+    require_movable(scene);
+    const SceneRays rays(scene);
+    const prt::SceneSettings& settings = scene.settings;
+    // At the same tolerance, so without a limit that another tolerance would keep.
+    return prt::plan_clusters(scene.receivers, rays.beams(),
+                              {.tolerance = settings.tolerance,
+                               .epsilon = settings.epsilon,
+                               .min_level = settings.min_level,
+                               .face_resolution = settings.face_resolution,
+                               .bias = settings.bias},
+                              work)
+        .num_clusters();
 }
 
 } // namespace relumine

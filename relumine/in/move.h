@@ -35,18 +35,21 @@ struct GroupMove {
 };
 
 /// Returns the move of a group to the pose that it has in another mesh: that of the same file, as
-/// MeshOptions::pose reads it.
+/// MeshOptions::pose reads it, or one without groups, which is the group as a whole.
 ///
 /// Throws:  std::invalid_argument for a name that no group of the mesh has.
 [[nodiscard]] GroupMove pose_of(const std::string& name, const mesh::TriangleMesh& mesh);
 
 /// NAME=X,Y,Z[,DEGREES]: a step, and a turn about the vertical axis through the middle of the
-/// group's box. NAME=away and NAME=back: the group is taken away and brought back.
+/// group's box. NAME=away and NAME=back: the group is taken away and brought back. NAME=FILE: it
+/// takes the pose that it has in a file of a mesh, which pose_of() makes a move.
 struct GroupStep {
     std::string name = {};
     glm::dvec3 by{0.0};
     double degrees = 0.0;
     Going going = Going::To;
+    /// With Pose
+    std::string file = {};
     bool operator==(const GroupStep&) const = default;
 };
 struct GroupStepText {
@@ -102,5 +105,13 @@ struct MoveReport {
 ///          then.
 prt::SceneChange move(Scene& scene, const GroupMove& to, const PrecomputeWork& work = {},
                       MoveReport* report = nullptr, SceneRays* rays = nullptr);
+
+/// Returns about how many clusters a precompute of a scene as it stands would choose: moves keep
+/// those that there are.
+///
+/// Cost:    a quarter of the precompute's clusters, 1/16 with 260,000 receivers and more: it asks a
+///          sample of the receivers (prt::plan_clusters()).
+/// Throws:  as require_movable(); Cancelled.
+[[nodiscard]] std::size_t fresh_clusters(const Scene& scene, const prt::Work& work = {});
 
 } // namespace relumine

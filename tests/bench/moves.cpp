@@ -212,6 +212,7 @@ void run(const Settings& settings) {
     lit.moves().redo();
     const bool are_equal = are_fresh(lit.scene());
     const double error = error_of(lit, settings.num_verified);
+    const std::size_t num_expected = fresh_clusters(lit.scene());
 
     Mesh there = lit.scene().mesh;
     LitScene anew(precompute(std::move(there), options));
@@ -239,9 +240,10 @@ void run(const Settings& settings) {
                "anew (medians).\n",
                100.0 * bench::median(moved), 100.0 * bench::median(pairs));
     fmt::print("After all moves: counts {} those of a precompute with the same clusters; error "
-               "{:.4f}, of a precompute of the moved room {:.4f} ({} clusters), ratio {:.2f}.\n",
+               "{:.4f}, of a precompute of the moved room {:.4f} ({} clusters, expected {}), ratio "
+               "{:.2f}.\n",
                are_equal ? "equal" : "DIFFER FROM", error, error_anew,
-               anew.scene().transfer.num_clusters(), error / error_anew);
+               anew.scene().transfer.num_clusters(), num_expected, error / error_anew);
     fmt::print("Peak memory: {:.0f} MB, {:.0f} MB with a move.\n", memory_before, memory);
     if (!are_equal)
         throw std::runtime_error("expected the counts of a precompute with the same clusters");

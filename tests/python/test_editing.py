@@ -257,6 +257,15 @@ def test_a_drag_shows_the_group_and_a_drop_moves_it(movable, sky):
         relumine.Relighter(movable).drag("ball", np.eye(4))
 
 
+def test_a_scene_tells_what_a_precompute_would_choose(movable, scene):
+    own = movable.num_clusters
+    assert movable.fresh_clusters() == pytest.approx(own, rel=0.1)
+    moved = movable.move("ball", shift(0.0, 5.0, 0.0))
+    assert moved.num_clusters == own and moved.fresh_clusters() != own
+    with pytest.raises(ValueError, match="precomputed with movable"):
+        scene.fresh_clusters()
+
+
 def test_a_group_takes_another_pose(arrays, names, movable, sky):
     vertices, triangles = arrays
     ball = np.unique(triangles[names == "ball"])
@@ -271,6 +280,10 @@ def test_a_group_takes_another_pose(arrays, names, movable, sky):
     assert relighter.pose("ball", pose).pairs_changed > 0
     assert (relighter.radiance == lit_by(sky, posed).radiance).all()
     assert relighter.undo_move() and (relighter.radiance == before).all()
+    # A mesh without groups is the group as a whole.
+    own = np.searchsorted(ball, triangles[names == "ball"])
+    alone = movable.pose("ball", relumine.Mesh(flat[ball], own))
+    assert np.allclose(alone.vertices, flat, atol=1e-6)
     with pytest.raises(ValueError, match="did you mean ball"):
         movable.pose("bal", pose)
     plate = triangles[names == "plate"]

@@ -1,8 +1,12 @@
 // `relumine move`: things move in a scene's file, and what is refused.
+#include <cstdio>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+#include <glm/vec3.hpp>
 #include <gmock/gmock.h>
 
 #include "prt/scene/scene_file.h"
@@ -65,6 +69,56 @@ TEST_F(Move, TakesAwayAndBringsBack) {
     succeed("move away.prt mesh=back -o back.prt -q");
     EXPECT_EQ(light_of("back.prt"), before);
     fail("move back.prt mesh=back -o back.prt", {"back.prt: expected", "which is there"});
+}
+
+TEST_F(Move, TakesThePoseOfAFile) {
+    precompute({"--movable", "--bounces", "0.05"});
+    const std::vector<Rgb> before = light_of("scene.prt");
+    // As tall again. A file without groups is the group as a whole.
+    std::string tall;
+    std::istringstream lines(octahedron_obj());
+    for (std::string line; std::getline(lines, line);) {
+        glm::dvec3 at(0.0);
+        if (std::sscanf(line.c_str(), "v %lf %lf %lf", &at.x, &at.y, &at.z) == 3)
+            line = fmt::format("v {} {} {}", at.x, 2.0 * at.y, at.z);
+        tall += line + "\n";
+    }
+    write("tall.obj", tall);
+    const nlohmann::json report = succeed("move scene.prt mesh=tall.obj -o tall.prt --json").json();
+    EXPECT_GT(report["moves"][0]["receivers"], 0);
+    EXPECT_GT(report["moves"][0]["pairs_changed"], 0);
+    succeed("info tall.prt --check -q");
+    EXPECT_NE(light_of("tall.prt"), before);
+    EXPECT_THAT(succeed("move tall.prt mesh=mesh.obj -o back.prt").out,
+                testing::HasSubstr("mesh: posed as in mesh.obj"));
+    EXPECT_EQ(light_of("back.prt"), before);
+
+    write("few.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    fail("move scene.prt mesh=few.obj -o no.prt", {"scene.prt: expected the", "vertices of mesh"});
+    write("other.obj", "g other\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    fail("move scene.prt mesh=other.obj -o no.prt",
+         {"other.obj: expected one of 1 groups, got 'mesh'"});
+    fail("move scene.prt mash=tall.obj -o no.prt", {"scene.prt", "did you mean mesh?"});
+    fail("move scene.prt mesh=absent.obj -o no.prt", {"absent.obj: cannot read"});
+    fail("move scene.prt mesh=tall.obj -o no.prt --pose 0@1", {"tall.obj"});
+    misuse("move scene.prt mesh=1,0,0 -o no.prt --pose 0@1", "--pose");
+    EXPECT_FALSE(std::filesystem::exists(folder() / "no.prt"));
+}
+
+TEST_F(Move, VerifyTellsWhatAPrecomputeWouldChoose) {
+    precompute({"--movable"});
+    const nlohmann::json check = succeed("verify scene.prt white.hdr --samples 5 --json").json();
+    const auto own = check["clusters"].get<double>();
+    EXPECT_EQ(check["clusters"], prt::load_scene(folder() / "scene.prt").transfer.num_clusters());
+    EXPECT_NEAR(check["fresh_clusters"].get<double>(), own, 0.1 * own);
+    // Its shadow is wide and soft now.
+    succeed("move scene.prt mesh=0,3,0 -o high.prt -q");
+    const nlohmann::json high = succeed("verify high.prt white.hdr --samples 5 --json").json();
+    EXPECT_EQ(high["clusters"], check["clusters"]);
+    EXPECT_GT(high["fresh_clusters"].get<double>(), 1.2 * own);
+    precompute({});
+    EXPECT_FALSE(
+        succeed("verify scene.prt white.hdr --samples 5 --json").json().contains("clusters"));
 }
 
 TEST_F(Move, WhoDoesNotAskGetsTheSameFile) {
