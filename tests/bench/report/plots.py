@@ -105,7 +105,7 @@ def growth_plots(growth, folder):
     x_of = {"vertices": "receivers", "mesh_size": "receivers", "clusters": "clusters", "triangles": "triangles"}
     curves = {"precompute (processor)": "precompute", "relight": "relight"}
     for name, rows in growth.items():
-        points = {curve: [(row[x_of[name]], row[key], f"{row[key]:.3g} s") for row in rows] for curve, key in curves.items()}
+        points = {curve: [(row[x_of[name]], row[key], f"{row[key]:.3g} s") for row in rows if row[key] > 0] for curve, key in curves.items()}
         figure = log_plot(points, x_of[name], "seconds")
         start = figure.index("<svg ") + len("<svg ")
         svg = figure[start : figure.index("</svg>") + len("</svg>")]
