@@ -18,7 +18,7 @@ class RunEstimate {
 public:
     struct Stage {
         std::string name;
-        /// Of the seconds of a run, in any unit
+        /// How much of a run it takes, in any unit that all stages share
         double share = 0.0;
     };
 
@@ -81,7 +81,7 @@ private:
     std::vector<Stage> stages_;
     std::size_t present_ = 0;
     bool is_told_ = false;
-    /// Of the stages before the present one that were told of
+    /// The shares of the stages before the present one that were told of, summed
     double share_done_ = 0.0;
     /// When the present stage began: with the last word of the one before.
     double begin_ = 0.0, last_ = 0.0;

@@ -94,7 +94,8 @@ TurnedTexels::TurnedTexels(const CubeMap& map, const glm::dmat3& source_from_des
 void TurnedTexels::find_symmetries(const glm::dmat3& source_from_destination) {
     const std::uint32_t r = map_.resolution;
     symmetries_ = {{glm::dmat3(1.0), glm::dmat3(1.0)}};
-    for (const Face face : Faces)
+    // One face of each two that lie opposite each other.
+    for (const Face face : {Face::PositiveX, Face::PositiveY, Face::PositiveZ})
         parts_.push_back({.face = face, .x0 = 0, .y0 = 0, .x1 = r, .y1 = r});
     for (int axis = 0; axis < 3 && r % 2 == 0; ++axis) {
         const glm::dvec3 there = glm::abs(source_from_destination[axis]);
@@ -121,19 +122,11 @@ void TurnedTexels::find_symmetries(const glm::dmat3& source_from_destination) {
     }
 }
 
-TexelRectangle TurnedTexels::tile(Face face, std::uint32_t row, std::uint32_t column) const {
-    const std::uint32_t r = map_.resolution;
-    return tile_of({.face = face, .x0 = 0, .y0 = 0, .x1 = r, .y1 = r}, num_rows_, row, num_columns_,
-                   column);
-}
-
-void TurnedTexels::fill(const TexelRectangle& tile, std::size_t num_pairs, TurnedTile& sums,
-                        CubeMap& turned) const {
+void TurnedTexels::fill(const TexelRectangle& tile, TurnedTile& sums, CubeMap& turned) const {
     const std::uint32_t width = tile.x1 - tile.x0, height = tile.y1 - tile.y0;
     std::vector<TexelPair<glm::vec3>> tiles;
-    for (std::size_t i = 0; i < num_pairs; ++i)
-        tiles.push_back(
-            pair_at<glm::vec3>(turned, symmetries_[i].turned, tile.face, tile.x0, tile.y0));
+    for (const Symmetry& symmetry : symmetries_)
+        tiles.push_back(pair_at<glm::vec3>(turned, symmetry.turned, tile.face, tile.x0, tile.y0));
     std::vector<std::pair<std::size_t, TilePlace>> met;
     for (std::size_t from = 0; from < NumFaces; ++from) {
         TilePlace place = places_[static_cast<std::size_t>(tile.face)][from];
@@ -141,10 +134,10 @@ void TurnedTexels::fill(const TexelRectangle& tile, std::size_t num_pairs, Turne
         if (meets_face(place, width, height))
             met.emplace_back(from, place);
     }
-    sums.begin(width, height, num_pairs);
+    sums.begin(width, height, symmetries_.size());
     for (std::size_t i = 0; i < met.size(); ++i) {
         const auto& [from, place] = met[i];
-        sums.add(place, std::span(faces_[from]).first(num_pairs), map_.resolution,
+        sums.add(place, faces_[from], map_.resolution,
                  i + 1 == met.size() ? std::span(tiles) : std::span<TexelPair<glm::vec3>>());
     }
 }
@@ -163,7 +156,7 @@ void TurnedTexels::fill_all(CubeMap& turned) const {
                         [&](const auto& range) {
                             TurnedTile sums;
                             for (std::size_t i = range.begin(); i != range.end(); ++i)
-                                fill(tiles[i], symmetries_.size(), sums, turned);
+                                fill(tiles[i], sums, turned);
                         });
 }
 

@@ -1,4 +1,4 @@
-// Texels of a turned map, exactly.
+// Texels of a turned map.
 #pragma once
 
 #include <array>
@@ -18,27 +18,9 @@ namespace relumine::cubemap {
 class TurnedTexels {
 public:
     static constexpr std::uint32_t MinResolution = 128;
-    /// One face of each two that lie opposite each other.
-    static constexpr std::array<Face, NumFaces / 2> Faces = {Face::PositiveX, Face::PositiveY,
-                                                             Face::PositiveZ};
-
     /// The map needs R >= MinResolution, and the matrix to be orthogonal.
     TurnedTexels(const CubeMap& map, const glm::dmat3& source_from_destination);
 
-    /// Each face has as many rows and columns of tiles.
-    [[nodiscard]] std::uint32_t num_rows() const { return num_rows_; }
-    [[nodiscard]] std::uint32_t num_columns() const { return num_columns_; }
-    [[nodiscard]] TexelRectangle tile(Face face, std::uint32_t row, std::uint32_t column) const;
-    /// The column of tiles that has the texels of column x.
-    [[nodiscard]] std::uint32_t column_of(std::uint32_t x) const {
-        return ((x + 1) * num_columns_ - 1) / map_.resolution;
-    }
-
-    /// Writes the texels of a tile and those opposite. `sums` is the caller's memory, one for each
-    /// thread.
-    void fill(const TexelRectangle& tile, TurnedTile& sums, CubeMap& turned) const {
-        fill(tile, 1, sums, turned);
-    }
     /// Writes all texels. Parallel (TBB).
     void fill_all(CubeMap& turned) const;
 
@@ -50,10 +32,11 @@ private:
     };
 
     void find_symmetries(const glm::dmat3& source_from_destination);
-    void fill(const TexelRectangle& tile, std::size_t num_pairs, TurnedTile& sums,
-              CubeMap& turned) const;
+    /// Writes the texels of a tile and those that symmetries carry it to.
+    void fill(const TexelRectangle& tile, TurnedTile& sums, CubeMap& turned) const;
 
     const CubeMap& map_;
+    /// Of tiles on a face
     std::uint32_t num_rows_, num_columns_;
     /// [face of the turned map][face of the map] the former's first texel on the latter.
     std::array<std::array<TilePlace, NumFaces>, NumFaces> places_;

@@ -21,7 +21,7 @@ public:
 
     struct Head {
         std::uint32_t width = 0, height = 0;
-        /// Of each channel
+        /// Bits of each channel
         std::uint32_t num_bits = 8;
         bool has_alpha = false;
         /// The file turns or mirrors its picture, which decode() does not.

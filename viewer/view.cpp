@@ -14,7 +14,6 @@
 #include "relumine/light/layer_compositor.h"
 #include "viewer/cube_texture.h"
 #include "viewer/environment_renderer.h"
-#include "viewer/multisample_target.h"
 #include "viewer/panels.h"
 #include "viewer/refiner.h"
 #include "viewer/scene_renderer.h"

@@ -18,7 +18,7 @@ namespace relumine::app {
 enum class Turning { Camera, Object, Environment };
 
 struct Turntable {
-    /// Of one turn under one environment; 0: there is none.
+    /// Frames of one turn under one environment. 0: nothing turns.
     std::uint32_t num_frames = 0;
     Turning turns = Turning::Camera;
 };

@@ -15,7 +15,6 @@
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
 
-#include "cubemap/resample/kept_shares.h"
 #include "cubemap/resample/pixel_links.h"
 #include "cubemap/resample/pixel_points.h"
 #include "cubemap/resample/resample.h"
@@ -113,42 +112,21 @@ public:
     }
     /// Each target pixel is the mean over its footprint.
     [[nodiscard]] EnvironmentImage forth(const EnvironmentImage& image) const {
-        return averaged(image, {source_, kept_source_}, {target_, kept_target_},
-                        target_from_source_);
+        return averaged(image, source_, target_, target_from_source_);
     }
     [[nodiscard]] EnvironmentImage back(const EnvironmentImage& image) const {
-        return averaged(image, {target_, kept_target_}, {source_, kept_source_},
-                        glm::transpose(target_from_source_));
-    }
-    /// Finds now what forth() and back() have in common, for calls of both.
-    void keep_shares() {
-        const std::uint32_t resolution = resolution_between(source_, target_, finer_);
-        if (!has_faces(source_.layout))
-            kept_source_.emplace(source_, resolution);
-        if (!has_faces(target_.layout))
-            kept_target_.emplace(target_, resolution);
+        return averaged(image, target_, source_, glm::transpose(target_from_source_));
     }
 
 private:
-    using Kept = std::optional<detail::KeptShares>;
-    struct End {
-        const ImageShape& shape;
-        const Kept& kept;
-    };
-
-    [[nodiscard]] EnvironmentImage averaged(const EnvironmentImage& image, const End& from_end,
-                                            const End& to_end,
+    [[nodiscard]] EnvironmentImage averaged(const EnvironmentImage& image, const ImageShape& from,
+                                            const ImageShape& to,
                                             const glm::dmat3& target_from_source) const {
-        const ImageShape &from = from_end.shape, &to = to_end.shape;
         if (from.layout == Layout::LatLong && has_faces(to.layout) &&
             carries_axes_to_axes(target_from_source))
             return faces_from_lat_long(image, to, target_from_source);
-        const CubeMap map = turned(from_end.kept && from.layout != Layout::LatLong
-                                       ? from_end.kept->to_cube(image.pixels)
-                                       : resample(image, resolution_between(from, to, finer_)),
-                                   target_from_source);
-        if (to_end.kept)
-            return image_of(to, to_end.kept->to_pixels(map));
+        const CubeMap map =
+            turned(resample(image, resolution_between(from, to, finer_)), target_from_source);
         return to_image(map, to.layout, to.width, to.height, to.sampling);
     }
 
@@ -173,7 +151,6 @@ private:
     ImageShape source_, target_;
     glm::dmat3 target_from_source_;
     std::uint32_t finer_;
-    Kept kept_source_, kept_target_;
 };
 
 /// Interpolates bilinearly over the sphere at four points of each pixel. The result is a smooth
@@ -348,8 +325,7 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
     // less than 1e-5 after one round. So the cube map need not be finer than the pictures.
     constexpr std::size_t Large = std::size_t{1} << 22;
     if (std::max(image.pixels.size(), result.pixels.size()) > Large) {
-        Path path(source, target, target_from_source, 1);
-        path.keep_shares();
+        const Path path(source, target, target_from_source, 1);
         const auto average = [&](const ImageShape& shape, Pixels& from, auto along) {
             EnvironmentImage borrowed = image_of(shape, std::move(from));
             Pixels means = (path.*along)(borrowed).pixels;

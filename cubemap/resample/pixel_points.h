@@ -16,7 +16,6 @@
 
 #include "cubemap/image/image_layout.h"
 #include "cubemap/image/projection.h"
-#include "cubemap/resample/pixel_symmetry.h"
 #include "files/parallel.h"
 
 namespace relumine::cubemap {
@@ -83,47 +82,26 @@ void for_each_face_points(const ImageShape& shape, const Visit& visit) {
     });
 }
 
-/// for_each_pixel_points() for a Projection. The points of pixels that are images of each other
-/// under the picture's symmetries are found once.
+/// for_each_pixel_points() for a Projection.
 template<typename Visit>
 void for_each_projected_points(const ImageShape& shape, const Visit& visit) {
     const Projection& picture = *projection(shape.layout);
-    const std::vector<PixelSymmetry> symmetries = pixel_symmetries(shape, glm::dmat3(1.0), 1);
     const std::vector<double> columns = quarters_within(cell_borders(shape.width, shape.sampling)),
                               rows = quarters_within(cell_borders(shape.height, shape.sampling));
-    const auto visit_images = [&](std::uint32_t x, std::uint32_t y) {
-        std::array<glm::dvec3, 4> own;
-        std::array<bool, 4> shows{};
-        for (std::size_t i = 0; i < 4; ++i) {
-            const glm::dvec2 point(columns[std::size_t{2} * x + i % 2],
-                                   rows[std::size_t{2} * y + i / 2]);
-            shows[i] = !picture.is_disc() || glm::distance(point, glm::dvec2(0.5)) < 0.5;
-            if (shows[i])
-                own[i] = picture.direction(point);
-        }
-        const std::size_t pixel = symmetries.front().pixel(x, y);
-        for_each_image(symmetries, pixel, x, y, [&](std::size_t index, std::size_t image) {
-            const PixelSymmetry& symmetry = symmetries[index];
-            // In the order of the image's quarters.
-            std::array<glm::dvec3, 4> moved;
-            std::array<bool, 4> is_shown{};
-            for (std::size_t i = 0; i < 4; ++i) {
-                const std::size_t to = symmetry.quarter(i);
-                is_shown[to] = shows[i];
-                moved[to] = symmetry.direction(own[i]);
-            }
-            std::size_t count = 0;
-            for (std::size_t i = 0; i < 4; ++i)
-                if (is_shown[i])
-                    moved[count++] = moved[i];
-            if (count > 0)
-                visit(image, std::span<const glm::dvec3>(moved).first(count));
-        });
-    };
     files::parallel_for(std::uint32_t{0}, shape.height, [&](std::uint32_t y) {
-        for (std::uint32_t x = 0; x < shape.width; ++x)
-            if (is_first_of_images(symmetries, x, y))
-                visit_images(x, y);
+        for (std::uint32_t x = 0; x < shape.width; ++x) {
+            std::array<glm::dvec3, 4> directions;
+            std::size_t count = 0;
+            for (std::size_t i = 0; i < 4; ++i) {
+                const glm::dvec2 point(columns[std::size_t{2} * x + i % 2],
+                                       rows[std::size_t{2} * y + i / 2]);
+                if (!picture.is_disc() || glm::distance(point, glm::dvec2(0.5)) < 0.5)
+                    directions[count++] = picture.direction(point);
+            }
+            if (count > 0)
+                visit(std::size_t{y} * shape.width + x,
+                      std::span<const glm::dvec3>(directions).first(count));
+        }
     });
 }
 

@@ -102,17 +102,10 @@ public:
         : footprints_(shape), overlaps_(resolution), symmetries_(symmetries), turn_(turn),
           is_turned_(turn != glm::dmat3(1.0)), is_mirrored_(glm::determinant(turn) < 0.0) {}
 
-    /// The overlap of a pixel with a texel.
-    struct Found {
-        Face face;
-        std::uint32_t x, y;
-        double solid_angle;
-    };
-
-    /// Calls `take(pixel_index, x, std::span<const Found>)` for the pixels of a row that are the
-    /// first of their images and overlap texels. A texel may come more than once.
-    template<typename Take>
-    void find_first(std::uint32_t y, const Take& take) {
+    /// Puts the shares of a row into `shares`. All shares of a pixel follow each other; a texel may
+    /// come more than once.
+    void find(std::uint32_t y, std::vector<PixelShare>& shares) {
+        shares.clear();
         found_.clear();
         const auto is_first = [&](std::uint32_t x) {
             return is_first_of_images(symmetries_, x, y);
@@ -122,7 +115,7 @@ public:
         std::uint32_t column = 0;
         const auto flush = [&] {
             if (!found_.empty())
-                take(current, column, std::span<const Found>(found_));
+                add_images(current, column, y, shares);
             found_.clear();
         };
         footprints_.visit_row(
@@ -148,21 +141,19 @@ public:
         flush();
     }
 
-    /// Puts the shares of a row into `shares`. All shares of a pixel follow each other; a texel may
-    /// come more than once.
-    void find(std::uint32_t y, std::vector<PixelShare>& shares) {
-        shares.clear();
-        find_first(y, [&](std::size_t pixel, std::uint32_t x, std::span<const Found> found) {
-            add_images(pixel, x, y, found, shares);
-        });
-    }
-
 private:
-    /// Writes the shares of a pixel and of its images.
+    /// The overlap of a pixel with a texel.
+    struct Found {
+        Face face;
+        std::uint32_t x, y;
+        double solid_angle;
+    };
+
+    /// Writes the shares of a pixel, whose overlaps are found_, and of its images.
     void add_images(std::size_t pixel, std::uint32_t x, std::uint32_t y,
-                    std::span<const Found> found, std::vector<PixelShare>& shares) {
+                    std::vector<PixelShare>& shares) {
         for_each_image(symmetries_, pixel, x, y, [&](std::size_t i, std::size_t image) {
-            for (const Found& each : found)
+            for (const Found& each : found_)
                 shares.push_back(
                     {static_cast<std::uint32_t>(image), // MaxPixels is below 2^32
                      static_cast<std::uint32_t>(symmetries_[i].texel(each.face, each.x, each.y)),

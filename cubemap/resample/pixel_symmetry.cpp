@@ -62,7 +62,7 @@ std::optional<glm::dmat3> turn_of_sphere(const ImageShape& shape, const PixelSym
 
 PixelSymmetry::PixelSymmetry(const ImageShape& shape, const Move& move, const glm::dmat3& turn,
                              std::uint32_t resolution)
-    : move_(move), turn_(turn), width_(shape.width), height_(shape.height) {
+    : move_(move), width_(shape.width), height_(shape.height) {
     CubeMap layout; // for its indices only
     layout.resolution = resolution;
     // Where a point beside the middle of a face goes, and where one step in s or t leads from

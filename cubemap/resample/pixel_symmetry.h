@@ -38,16 +38,6 @@ public:
         x = x >= width_ ? x - width_ : x;
         return static_cast<std::size_t>(y) * width_ + x;
     }
-    /// Returns the number of the quarter of a pixel to which one of its quarters, 2 row + column,
-    /// moves.
-    [[nodiscard]] std::size_t quarter(std::size_t from) const {
-        const bool right = (from & 1) != 0, below = (from & 2) != 0;
-        const bool to_right = (move_.swaps ? below : right) != move_.mirrors_x,
-                   to_below = (move_.swaps ? right : below) != move_.mirrors_y;
-        return (to_below ? 2u : 0u) + (to_right ? 1u : 0u);
-    }
-    /// Returns the direction to which a direction moves.
-    [[nodiscard]] glm::dvec3 direction(const glm::dvec3& from) const { return turn_ * from; }
     /// Returns the index of the texel to which a texel moves.
     [[nodiscard]] std::size_t texel(Face face, std::uint32_t x, std::uint32_t y) const {
         const FaceMove& to = faces_[static_cast<std::size_t>(face)];
@@ -60,7 +50,6 @@ private:
         std::int64_t start, per_x, per_y;
     };
     Move move_;
-    glm::dmat3 turn_;
     std::uint32_t width_, height_;
     std::array<FaceMove, NumFaces> faces_{};
 };

@@ -1,5 +1,5 @@
 // Decodes PNG, JPEG, WebP, BMP and TGA files to bytes of RGB. The only user of stb_image;
-// files/jpeg_decoder.h decodes JPEG, webp_decoder.h WebP.
+// files/jpeg_decoder.h decodes JPEG. The only user of libwebp.
 #pragma once
 
 #include <cstddef>

@@ -1,9 +1,13 @@
-// What the file of a part says of itself, without the plan or the other parts.
+// What the files of parts say of themselves, without the plan, and what is missing before they can
+// be joined.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "prt/team.h"
 
@@ -41,5 +45,25 @@ struct PartFacts {
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y".
 [[nodiscard]] PartFacts part_facts(const std::filesystem::path& path);
+
+struct PartCheck {
+    /// Parts of the whole that the first sound file belongs to; 0 where no file is sound.
+    std::size_t num_parts = 0;
+    /// Indices, from 0 on.
+    std::vector<std::uint32_t> missing = {};
+    /// A line for each file that cannot be joined: "path: expected X, got Y".
+    std::vector<std::string> faults = {};
+
+    [[nodiscard]] bool is_whole() const {
+        return num_parts > 0 && missing.empty() && faults.empty();
+    }
+};
+
+/// Looks whether files are all parts of a planned precompute or of light, each whole and there
+/// once.
+///
+/// Memory:  the largest file.
+/// Cost:    reads each file once.
+[[nodiscard]] PartCheck check_parts(std::span<const std::filesystem::path> paths);
 
 } // namespace relumine::prt

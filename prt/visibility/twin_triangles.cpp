@@ -23,6 +23,8 @@ glm::vec3 normal_of(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
 } // namespace
 
 Hit TwinTriangles::facing(const Hit& hit, const glm::vec3& direction) const {
+    if (is_found_.load(std::memory_order_acquire) && !may_have_twin(hit.triangle))
+        return hit;
     if (!(glm::dot(normal_of(mesh_, hit.triangle), direction) > 0.0f))
         return hit;
     return other_side(hit).value_or(hit);
@@ -62,13 +64,30 @@ std::uint64_t TwinTriangles::key_of(std::uint32_t triangle) const {
     return key;
 }
 
-std::optional<std::uint32_t> TwinTriangles::twin_of(std::uint32_t triangle) const {
-    std::call_once(is_sorted_, [this] {
-        by_key_.reserve(mesh_.num_triangles());
+void TwinTriangles::find() const {
+    std::call_once(once_, [this] {
+        std::vector<std::pair<std::uint64_t, std::uint32_t>> all;
+        all.reserve(mesh_.num_triangles());
         for (std::uint32_t i = 0; i < mesh_.num_triangles(); ++i)
-            by_key_.emplace_back(key_of(i), i);
-        std::sort(by_key_.begin(), by_key_.end());
+            all.emplace_back(key_of(i), i);
+        std::sort(all.begin(), all.end());
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const bool as_before = i > 0 && all[i - 1].first == all[i].first;
+            if (as_before || (i + 1 < all.size() && all[i + 1].first == all[i].first))
+                by_key_.push_back(all[i]);
+        }
+        if (!by_key_.empty())
+            is_one_of_several_.resize(mesh_.num_triangles());
+        for (const auto& [key, triangle] : by_key_)
+            is_one_of_several_[triangle] = true;
+        is_found_.store(true, std::memory_order_release);
     });
+}
+
+std::optional<std::uint32_t> TwinTriangles::twin_of(std::uint32_t triangle) const {
+    find();
+    if (!may_have_twin(triangle))
+        return std::nullopt;
     const mesh::Triangle& own = mesh_.triangles[triangle];
     const glm::vec3 normal = normal_of(mesh_, triangle);
     const auto is_corner = [&](std::uint32_t corner) {

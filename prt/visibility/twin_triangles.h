@@ -1,6 +1,7 @@
 // Triangles that lie on one another and face opposite ways.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <mutex>
 #include <optional>
@@ -21,25 +22,41 @@ namespace relumine::prt {
 /// Threads: facing() may run from any number of threads at once.
 class TwinTriangles {
 public:
-    /// The mesh must outlive this object. Nothing is looked for before the first hit on a back.
+    /// The mesh must outlive this object. Nothing is looked for before find() or the first hit on a
+    /// back.
     explicit TwinTriangles(const mesh::TriangleMesh& mesh) : mesh_(mesh) {}
+
+    /// Finds which triangles lie on others. After it facing() is cheap for hits on all others.
+    ///
+    /// Cost:    O(n log n), once.
+    void find() const;
 
     /// Returns the same point on the triangle's twin if the ray meets the triangle from behind and
     /// it has one, otherwise the hit as it is.
     ///
-    /// Cost:    O(log triangles) for a hit on a back; the first one sorts all triangles.
+    /// Cost:    O(log triangles) for a hit on the back of a triangle that lies on another; the
+    /// first
+    ///          hit on a back calls find().
     [[nodiscard]] Hit facing(const Hit& hit, const glm::vec3& direction) const;
 
     /// Returns the same point on the triangle's twin; none where it has no twin.
     [[nodiscard]] std::optional<Hit> other_side(const Hit& hit) const;
 
 private:
+    /// Whether a triangle may have a twin, after find().
+    [[nodiscard]] bool may_have_twin(std::uint32_t triangle) const {
+        return !is_one_of_several_.empty() && is_one_of_several_[triangle];
+    }
     [[nodiscard]] std::optional<std::uint32_t> twin_of(std::uint32_t triangle) const;
     [[nodiscard]] std::uint64_t key_of(std::uint32_t triangle) const;
 
     const mesh::TriangleMesh& mesh_;
-    mutable std::once_flag is_sorted_;
-    /// A key of the corners, the same in any order of theirs, and the triangle; ascending.
+    mutable std::once_flag once_;
+    mutable std::atomic<bool> is_found_ = false;
+    /// [num_triangles] whether others have the same corners. Empty: no triangle is one of several.
+    mutable std::vector<bool> is_one_of_several_;
+    /// Triangles that are: a key of the corners, the same in any order of theirs, and the triangle;
+    /// ascending.
     mutable std::vector<std::pair<std::uint64_t, std::uint32_t>> by_key_;
 };
 

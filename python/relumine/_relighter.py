@@ -409,7 +409,7 @@ class Relighter(Moving):
         """Turns the environment and its layers about +Y: light from +Z comes from +X at 90.
 
         It stays for environments that are set later. `moving`, for a slider while it moves, turns a
-        map of at most 256 texels along a face's edge: some fifteen times as quick for fine maps, within
+        map of at most 128 texels along a face's edge: some fifteen times as quick for fine maps, within
         1 %. Any other edit, mark() included, brings the whole map back.
         """
         self._require_light()

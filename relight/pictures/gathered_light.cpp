@@ -280,6 +280,7 @@ GatheredLight::GatheredLight(const Scene& scene, const MeshLight& light, const p
     GatherGuide own;
     GatherGuide& guide = light.guide != nullptr ? *light.guide : own;
     guide.squares.resize(std::size_t{across} * squares(rows_));
+    scene.twins.find();
     std::mutex mutex;
     std::uint32_t num_done = 0;
     files::parallel_for(std::uint32_t{0}, across * squares(rows_), [&](std::uint32_t i) {

@@ -1,6 +1,7 @@
 #include "relight/pictures/picture_tile.h"
 
 #include <algorithm>
+#include <functional>
 
 #include <glm/common.hpp>
 
@@ -25,7 +26,8 @@ bool is_none(std::span<const std::uint16_t> lights) {
 PictureTile::PictureTile(const TileScene& scene)
     : scene_(scene), rays_{.blockers = &scene.rays, .bias = scene.light.bias},
       mirrors_(scene.mesh, scene.rays, scene.samples.twins(), scene.light, scene.floor,
-               scene.backdrop, texture_view_),
+               scene.backdrop != nullptr ? Mirrors::Behind(std::cref(*scene.backdrop)) : nullptr,
+               texture_view_),
       refractions_(scene.mesh, scene.rays, scene.light, mirrors_, texture_view_),
       shading_(scene.mesh, scene.light, scene.packets, scene.samples.twins(), texture_view_),
       lights_(scene.mesh, scene.rays,

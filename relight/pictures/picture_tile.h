@@ -16,14 +16,14 @@
 #include "relight/pictures/eye_samples.h"
 #include "relight/pictures/floor_shadows.h"
 #include "relight/pictures/gathered_light.h"
-#include "relight/pictures/mirrors.h"
 #include "relight/pictures/picture_view.h"
 #include "relight/pictures/pixel_lights.h"
-#include "relight/pictures/refractions.h"
-#include "relight/pictures/sample_shading.h"
 #include "relight/pictures/seen_mesh.h"
 #include "relight/sharp/light_packets.h"
 #include "relight/sharp/shadow_rays.h"
+#include "relight/surfaces/mirrors.h"
+#include "relight/surfaces/refractions.h"
+#include "relight/surfaces/sample_shading.h"
 
 namespace relumine::relight {
 

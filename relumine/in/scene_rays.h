@@ -29,7 +29,7 @@ public:
     [[nodiscard]] const prt::RayScene& blockers() const { return others_ ? *others_ : of_mesh_; }
     /// What blocks sharp lights, which may move with every frame: the mesh, or Scene::blockers.
     [[nodiscard]] const prt::Blockers& for_moving_lights() const { return moving_; }
-    /// The same, prepared for many rays.
+    /// What blocks sharp lights, prepared for many rays.
     [[nodiscard]] const prt::BeamScene& beams() const { return moving_.beams(); }
 
 private:

@@ -3,7 +3,6 @@
 
 // IWYU pragma: begin_exports
 #include "prt/arithmetic.h"
-#include "prt/parts/part_check.h"
 #include "prt/parts/part_facts.h"
 #include "prt/parts/part_file.h"
 #include "prt/scene/checkpoint_file.h"

@@ -118,7 +118,7 @@ EnvironmentChange EditedEnvironment::change(LightState next, Ending ending) {
     if (is_dark && (!next.base || !next.base->map()))
         throw std::invalid_argument("expected an environment before its layers");
     const bool is_moving = ending == Ending::Moving && !is_dark && next.rotation_degrees != 0.0 &&
-                           next.base->map()->resolution >= cubemap::QuickTurns::MinResolution;
+                           next.base->map()->resolution > MovingResolution;
     const bool is_whole = is_dark || coarse_.is_shown ||
                           next.rotation_degrees != state_.rotation_degrees ||
                           (next.base != state_.base &&
@@ -179,17 +179,14 @@ UpdateReport EditedEnvironment::relight_all(LayerCompositor compositor) {
 
 /// Relights by a map that is quick to turn.
 UpdateReport EditedEnvironment::relight_coarse(const LightState& next) {
-    if (coarse_.of != next.base || !coarse_.turns) {
-        const SharedMap& map = next.base->map();
+    if (coarse_.of != next.base) {
         coarse_.of = next.base;
-        coarse_.turns.emplace(map->resolution <= MovingResolution
-                                  ? map
-                                  : std::make_shared<const cubemap::CubeMap>(
-                                        cubemap::halved_to(*map, MovingResolution)));
+        coarse_.map = std::make_shared<const cubemap::CubeMap>(
+            cubemap::halved_to(*next.base->map(), MovingResolution));
     }
-    const UpdateReport report = relight_all(
-        LayerCompositor(next, std::make_shared<const cubemap::CubeMap>(coarse_.turns->turned(
-                                  cubemap::turn_about_y(next.rotation_degrees)))));
+    const UpdateReport report =
+        relight_all(LayerCompositor(next, std::make_shared<const cubemap::CubeMap>(cubemap::rotated(
+                                              *coarse_.map, next.rotation_degrees))));
     coarse_.is_shown = true;
     return report;
 }

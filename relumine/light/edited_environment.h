@@ -4,13 +4,11 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "cubemap/quick_turns.h"
 #include "cubemap/texel_rectangle.h"
 #include "relight/relighter.h"
 #include "relumine/light/layer_compositor.h"
@@ -26,8 +24,9 @@ using relight::UpdateReport;
 
 /// How an edit ends.
 enum class Ending {
-    /// As Quick, but a turn is near, as cubemap::QuickTurns, and that of a map of at most
-    /// MovingResolution: for a slider while it moves. Any other edit brings the whole map back.
+    /// For a slider while it moves: a turn is that of a map of at most MovingResolution. The rest
+    /// is
+    /// as Quick. Any other edit brings the whole map back.
     Moving,
     /// With what changed. The last bits may depend on the way to the state.
     Quick,
@@ -134,10 +133,10 @@ private:
     LayerCompositor compositor_;
     /// Room for the next turn's map.
     cubemap::CubeMap turning_memory_;
-    /// What turns while a slider moves: the map of `of`, with fewer texels where it has many.
+    /// What turns while a slider moves: the map of `of`, with fewer texels.
     struct Coarse {
         std::shared_ptr<const LightBase> of = {};
-        std::optional<cubemap::QuickTurns> turns = {};
+        std::shared_ptr<const cubemap::CubeMap> map = {};
         /// Whether its light is the present one.
         bool is_shown = false;
     };

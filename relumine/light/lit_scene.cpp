@@ -14,6 +14,7 @@
 #include "relight/receiver_light.h"
 #include "relight/sharp/light_packets.h"
 #include "relight/sharp/shadow_rays.h"
+#include "relight/surfaces/surface_colors.h"
 #include "relumine/in/scene_rays.h"
 #include "relumine/light/layer_compositor.h"
 #include "relumine/light/light_sum.h"
@@ -39,21 +40,47 @@ const cubemap::CubeMap* map_of(const Light& light) {
     return std::get_if<cubemap::CubeMap>(&light.environment);
 }
 
-relight::ShadowRays shadow_rays(const Scene& scene, const SharedReceivers& receivers,
-                                const SceneRays& rays, const LightOptions& options) {
+} // namespace
+
+/// What is lit: a scene, or the part of it that this process has.
+struct HeldScene {
+    HeldScene(std::shared_ptr<const Scene> whole, Scene* of_own,
+              std::unique_ptr<prt::ScenePart> part, const LightOptions& options)
+        : scene(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(whole)),
+          own(of_own), rays(*scene),
+          receivers(*scene, std::move(part), options.team, options.path) {}
+
+    std::shared_ptr<const Scene> scene;
+    /// What may be changed: the scene, where nobody else has it. Otherwise null.
+    Scene* own;
+    SceneRays rays;
+    SharedReceivers receivers;
+
+    [[nodiscard]] bool is_gathered() const {
+        if (!gathered_)
+            gathered_ = relumine::is_gathered(*scene);
+        return *gathered_;
+    }
+
+private:
+    mutable std::optional<bool> gathered_;
+};
+
+namespace {
+
+relight::ShadowRays shadow_rays(const HeldScene& held, const LightOptions& options) {
     if (options.clusters_only)
         return {};
-    return {.blockers = options.blockers ? options.blockers.get() : &rays.for_moving_lights(),
-            .positions = receivers.positions(),
-            .bias = scene.settings.bias,
-            .tolerance = rms_tolerance(scene)};
+    return {.blockers = options.blockers ? options.blockers.get() : &held.rays.for_moving_lights(),
+            .positions = held.receivers.positions(),
+            .bias = held.scene->settings.bias,
+            .tolerance = rms_tolerance(*held.scene)};
 }
 
 /// Returns what sums the clusters' light, or null.
-std::unique_ptr<relight::Relighter> relighter_of(const Scene& scene,
-                                                 const SharedReceivers& receivers,
-                                                 const SceneRays& rays,
+std::unique_ptr<relight::Relighter> relighter_of(const HeldScene& held,
                                                  const LightOptions& options) {
+    const Scene& scene = *held.scene;
     if (options.harmonics != 0)
         relight::require_order(options.harmonics);
     if (!has_clusters(scene)) {
@@ -66,7 +93,7 @@ std::unique_ptr<relight::Relighter> relighter_of(const Scene& scene,
                                                 scene.receivers.size(),
                                                 scene.transfer.num_receivers()));
     return std::make_unique<relight::Relighter>(
-        receivers.transfer(), shadow_rays(scene, receivers, rays, options),
+        held.receivers.transfer(), shadow_rays(held, options),
         options.harmonics == 0 && has_mapped_vertices(scene) ? relight::MaxHarmonicOrder
                                                              : options.harmonics);
 }
@@ -98,22 +125,11 @@ struct LitScene::Impl final : LightFollower {
     /// Whether all bounces of the present light are there, without a limit of their number.
     [[nodiscard]] bool has_all_bounces() const {
         return !bounces.bounced().empty() && bounces.is_settled() &&
-               !bounces.surfaces().limits.num_bounces && !receivers.are_in_others();
-    }
-    [[nodiscard]] bool is_room() const {
-        if (!gathers)
-            gathers = is_gathered(*scene);
-        return *gathers;
+               !bounces.surfaces().limits.num_bounces && !held.receivers.are_in_others();
     }
 
-    std::shared_ptr<const Scene> scene;
-    /// The same, where nobody else has it.
-    Scene* own_scene;
+    HeldScene held;
     LightOptions options;
-    SceneRays rays;
-    SharedReceivers receivers;
-    /// is_gathered(), when it is known.
-    mutable std::optional<bool> gathers;
     /// The environment's light, or a list's alone. Null without clusters.
     std::unique_ptr<relight::Relighter> relighter;
     EditedEnvironment environment;
@@ -127,20 +143,19 @@ struct LitScene::Impl final : LightFollower {
 
 LitScene::Impl::Impl(std::shared_ptr<const Scene> whole, Scene* own,
                      std::unique_ptr<prt::ScenePart> part, const LightOptions& of)
-    : scene(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(whole)),
-      own_scene(own), options(of), rays(*scene),
-      receivers(*scene, std::move(part), options.team, options.path),
-      relighter(relighter_of(*scene, receivers, rays, options)),
-      environment(relighter.get(), *this), lamps(*scene, rays),
-      mirrors(*scene, rays, options.highlight_rays), sum(*scene, receivers, relighter.get()),
-      moves(*scene, receivers.are_in_others() ? nullptr : own, rays, relighter.get(), *this) {
+    : held(std::move(whole), own, std::move(part), of), options(of),
+      relighter(relighter_of(held, options)), environment(relighter.get(), *this),
+      lamps(*held.scene, held.rays), mirrors(*held.scene, held.rays, options.highlight_rays),
+      sum(*held.scene, held.receivers, relighter.get()),
+      moves(*held.scene, held.receivers.are_in_others() ? nullptr : own, held.rays, relighter.get(),
+            *this) {
     if (relighter)
         sum.add(std::make_unique<ClusterTerm>(*relighter));
-    sum.add(std::make_unique<BounceTerm>(bounces, receivers));
-    sum.add(std::make_unique<LampTerm>(lamps, receivers));
+    sum.add(std::make_unique<BounceTerm>(bounces, held.receivers));
+    sum.add(std::make_unique<LampTerm>(lamps, held.receivers));
     sum.add(std::make_unique<ListTerm>(listed));
     if (relighter)
-        sum.add(std::make_unique<MirrorTerm>(mirrors, *relighter, bounces, lamps, receivers));
+        sum.add(std::make_unique<MirrorTerm>(mirrors, *relighter, bounces, lamps, held.receivers));
 }
 
 LitScene::LitScene(Scene scene, const LightOptions& options) {
@@ -162,11 +177,11 @@ LitScene::~LitScene() = default;
 // Parts
 
 const Scene& LitScene::scene() const {
-    return *impl_->scene;
+    return *impl_->held.scene;
 }
 
 const SceneRays& LitScene::rays() const {
-    return impl_->rays;
+    return impl_->held.rays;
 }
 
 const relight::Relighter& LitScene::relighter() const {
@@ -208,8 +223,8 @@ void LitScene::Impl::require_lit() const {
 /// Throws where the first process has other light.
 void LitScene::Impl::require_same(const Light& light) const {
     if (const cubemap::CubeMap* map = map_of(light))
-        receivers.require_same(std::as_bytes(std::span(map->texels)));
-    receivers.require_same(std::as_bytes(std::span(light.lights)));
+        held.receivers.require_same(std::as_bytes(std::span(map->texels)));
+    held.receivers.require_same(std::as_bytes(std::span(light.lights)));
 }
 
 void LitScene::Impl::forget_bounces() {
@@ -220,11 +235,11 @@ void LitScene::Impl::forget_bounces() {
 BounceReport LitScene::Impl::find_bounces(bool is_step) {
     std::span<const glm::vec3> direct = relighter->diffuse_radiance();
     std::vector<glm::vec3> all;
-    if (!listed.diffuse.empty() || receivers.are_in_others()) {
+    if (!listed.diffuse.empty() || held.receivers.are_in_others()) {
         all.assign(direct.begin(), direct.end());
         for (std::size_t i = 0; i < listed.diffuse.size(); ++i)
             all[i] += listed.diffuse[i];
-        all = receivers.of_all(all);
+        all = held.receivers.of_all(all);
         direct = all;
     }
     return is_step ? bounces.step(direct) : bounces.find(direct);
@@ -250,8 +265,8 @@ UpdateReport LitScene::Impl::light(Light light) {
     UpdateReport report;
     ListedLight next;
     if (!relighter) {
-        next = listed_light(light.lights, scene->receivers.normals,
-                            shadow_rays(*scene, receivers, rays, options));
+        next =
+            listed_light(light.lights, held.scene->receivers.normals, shadow_rays(held, options));
     } else if (!has_environment) {
         report = relighter->set_lights(light.lights);
     } else if (!light.lights.empty()) {
@@ -300,15 +315,15 @@ void LitScene::Impl::follow(EnvironmentChange& change, Ending ending) {
 
 BounceReport LitScene::Impl::bounce(const Bouncing& how) {
     std::optional<relight::SurfaceBounces> surfaces;
-    require_bounces(*scene);
+    require_bounces(*held.scene);
     if (!how.albedo.empty())
-        surfaces = bounces_of(*scene, how.albedo, how.limits);
+        surfaces = bounces_of(*held.scene, how.albedo, how.limits);
     require_lit();
     if (!surfaces && !bounces.is_set())
         throw std::logic_error("expected an albedo, as bounce_albedo() returns it");
-    const relight::SharedRows rows = receivers.rows();
+    const relight::SharedRows rows = held.receivers.rows();
     if (surfaces)
-        bounces.set(*scene, std::move(*surfaces), rows);
+        bounces.set(*held.scene, std::move(*surfaces), rows);
     lamps.set_bounces(bounces.surfaces(), rows);
     BounceReport report = find_bounces(how.is_step);
     UpdateReport update;
@@ -334,9 +349,9 @@ void LitScene::dim(std::vector<EmissionGain> gains) {
 }
 
 void LitScene::set_roughness(float roughness) {
-    if (impl_->own_scene == nullptr)
+    if (impl_->held.own == nullptr)
         throw std::logic_error("expected a scene that is not shared, to set its roughness");
-    relumine::set_roughness(*impl_->own_scene, roughness);
+    relumine::set_roughness(*impl_->held.own, roughness);
 }
 
 void LitScene::Impl::follow(const prt::SceneChange& change, bool is_quick) {
@@ -367,7 +382,7 @@ void LitScene::Impl::follow(const prt::SceneChange& change, bool is_quick) {
         light(std::move(again));
     }
     UpdateReport report;
-    const relight::SharedRows rows = receivers.rows();
+    const relight::SharedRows rows = held.receivers.rows();
     if (!kept.is_set()) {
         finish(report);
     } else if (is_quick) {
@@ -377,8 +392,8 @@ void LitScene::Impl::follow(const prt::SceneChange& change, bool is_quick) {
     } else {
         relight::SurfaceBounces surfaces = kept.surfaces();
         kept.unset(); // frees its memory
-        surfaces.matrix = &*scene->bounces;
-        bounces.set(*scene, std::move(surfaces), rows);
+        surfaces.matrix = &*held.scene->bounces;
+        bounces.set(*held.scene, std::move(surfaces), rows);
         bounce({});
     }
 }
@@ -396,11 +411,8 @@ void LitScene::Impl::bind_sent(ArrivingLight& arriving) const {
     for (std::size_t place = transfer.num_points; place < transfer.num_receivers(); ++place) {
         const std::uint32_t receiver = transfer.order[place];
         glm::dvec3 sent(arriving.sent[receiver]);
-        // Before the surfaces' colours.
-        for (int channel = 0; channel < 3 && !transfer.surfaces.empty(); ++channel) {
-            const float albedo = transfer.surfaces[place].albedo[channel];
-            sent[channel] = albedo > 0.0f ? sent[channel] / albedo : 0.0;
-        }
+        if (!transfer.surfaces.empty())
+            sent = relight::before_color(sent, transfer.surfaces[place].albedo);
         const std::span<glm::vec3> light =
             std::span(arriving.harmonics).subspan(receiver * width, width);
         const glm::vec3& normal = transfer.normals[place];
@@ -422,8 +434,9 @@ std::vector<glm::vec3> LitScene::harmonics() const {
             term->add_harmonics(arriving);
     if (!arriving.sent.empty())
         own.bind_sent(arriving);
-    return own.receivers.are_in_others() ? own.receivers.gathered(arriving.harmonics, width)
-                                         : std::move(arriving.harmonics);
+    return own.held.receivers.are_in_others()
+               ? own.held.receivers.gathered(arriving.harmonics, width)
+               : std::move(arriving.harmonics);
 }
 
 /// Adds what pictures draw with: the lights that are traced one by one, and the rest of the light.
@@ -438,9 +451,9 @@ void LitScene::Impl::take_apart(Lighting& lighting) const {
     }
     if (environment.is_lit())
         lighting.num_environment_lights = num_own;
-    if (relighter && scene->transfer.glossy && !scene->mesh.textures.empty())
+    if (relighter && held.scene->transfer.glossy && !held.scene->mesh.textures.empty())
         lighting.lobes = relighter->receiver_light().lobes(num_own == 0);
-    if (relighter && has_mapped_vertices(*scene))
+    if (relighter && has_mapped_vertices(*held.scene))
         lighting.harmonics = relighter->receiver_light().harmonics(num_own == 0);
     if (lights.empty())
         return;
@@ -453,9 +466,9 @@ void LitScene::Impl::take_apart(Lighting& lighting) const {
 /// Adds what pictures trace on an added floor.
 void LitScene::Impl::take_floor_apart(Lighting& lighting) const {
     constexpr glm::vec3 Up(0.0f, 1.0f, 0.0f);
-    const std::optional<std::size_t> first = first_floor_vertex(*scene);
-    const std::vector<prt::Surface>& surfaces = scene->receivers.surfaces;
-    if (!first || !environment.is_lit() || receivers.are_in_others() ||
+    const std::optional<std::size_t> first = first_floor_vertex(*held.scene);
+    const std::vector<prt::Surface>& surfaces = held.scene->receivers.surfaces;
+    if (!first || !environment.is_lit() || held.receivers.are_in_others() ||
         relighter->shadow_rays().blockers == nullptr ||
         !(surfaces.empty() || surfaces[*first] == prt::Surface()))
         return;
@@ -471,23 +484,23 @@ void LitScene::Impl::take_floor_apart(Lighting& lighting) const {
 void LitScene::Impl::add_sent(Lighting& lighting, std::vector<glm::vec3> gathered) const {
     if (environment.is_lit())
         sum.terms().front()->add_soft(gathered);
-    add_sent_light(*scene, bounces, gathered, lighting);
+    add_sent_light(*held.scene, bounces, gathered, lighting);
 }
 
 /// Gives the first process what all have.
 void LitScene::Impl::gather(Lighting& lighting) const {
     lighting.gathered =
-        std::make_shared<const std::vector<glm::vec3>>(receivers.gathered(lighting.radiance));
+        std::make_shared<const std::vector<glm::vec3>>(held.receivers.gathered(lighting.radiance));
     if (sum.passes_on()) {
-        lighting.gathered_reflected =
-            std::make_shared<const std::vector<glm::vec3>>(receivers.gathered(lighting.reflected));
+        lighting.gathered_reflected = std::make_shared<const std::vector<glm::vec3>>(
+            held.receivers.gathered(lighting.reflected));
         lighting.reflected = *lighting.gathered_reflected;
     }
     lighting.radiance = *lighting.gathered;
     if (!lighting.lights.empty())
-        lighting.soft = receivers.gathered(lighting.soft);
+        lighting.soft = held.receivers.gathered(lighting.soft);
     if (!lighting.harmonics.empty())
-        lighting.harmonics = receivers.gathered(
+        lighting.harmonics = held.receivers.gathered(
             lighting.harmonics,
             relight::num_harmonics(relighter->receiver_light().harmonic_order()));
 }
@@ -530,13 +543,13 @@ Lighting LitScene::lighting(bool is_drawn) const {
         result.reflected = own.sum.reflected();
     if (is_drawn)
         own.take_apart(result);
-    if (is_drawn && prt::on_vertices(own.scene->layout))
+    if (is_drawn && prt::on_vertices(own.held.scene->layout))
         own.take_floor_apart(result);
-    if (is_drawn && own.has_all_bounces() && own.is_room())
+    if (is_drawn && own.has_all_bounces() && own.held.is_gathered())
         own.add_sent(result, bounced(*this));
-    if (own.receivers.are_in_others()) {
+    if (own.held.receivers.are_in_others()) {
         own.gather(result);
-        if (!own.receivers.is_first())
+        if (!own.held.receivers.is_first())
             return {};
     } else if (own.relighter) {
         result.arriving = own.relighter->diffuse_radiance();

@@ -10,8 +10,8 @@
 #include "prt/glossy/surface_sampling.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/visibility/twin_triangles.h"
-#include "relight/pictures/highlight_rays.h"
-#include "relight/pictures/mirrors.h"
+#include "relight/surfaces/highlight_rays.h"
+#include "relight/surfaces/mirrors.h"
 
 namespace relumine {
 

@@ -2,21 +2,9 @@
 
 #include "prt/glossy/brdf.h"
 #include "relight/pictures/framing.h"
+#include "relight/surfaces/surface_colors.h"
 
 namespace relumine {
-
-namespace {
-
-/// Returns a over b, 0 where b is 0.
-glm::vec3 ratio(const glm::vec3& a, const glm::vec3& b) {
-    glm::vec3 result(0.0f);
-    for (int channel = 0; channel < 3; ++channel)
-        if (b[channel] > 0.0f)
-            result[channel] = a[channel] / b[channel];
-    return result;
-}
-
-} // namespace
 
 void add_sent_light(const Scene& scene, const SceneBounces& bounces,
                     std::span<const glm::vec3> gathered, Lighting& lighting) {
@@ -26,9 +14,10 @@ void add_sent_light(const Scene& scene, const SceneBounces& bounces,
     lighting.replaced.assign(gathered.begin(), gathered.end());
     for (std::size_t i = 0; i < gathered.size(); ++i) {
         const glm::vec3 own = surfaces.empty() ? glm::vec3(1.0f) : surfaces[i].albedo;
-        lighting.sent[i] *= ratio(bounces.surfaces().albedo[i], own);
+        lighting.sent[i] *= relight::before_color(bounces.surfaces().albedo[i], own);
         if (!surfaces.empty())
-            lighting.replaced[i] = ratio(gathered[i], prt::diffuse_albedo(surfaces[i], cosines[i]));
+            lighting.replaced[i] =
+                relight::before_color(gathered[i], prt::diffuse_albedo(surfaces[i], cosines[i]));
     }
 }
 

@@ -64,7 +64,7 @@ struct OptionFacts {
     bool shows_default = true;
     /// Files made under another value differ: the record of `animate --resume` has the option.
     bool shapes_frames = true;
-    /// Of the library and of Python alone: commands leave it out.
+    /// Whether the library and Python alone have it: commands leave it out.
     bool library_only = false;
     /// Scenes of other receivers have no use for it: "camera" is what they have not.
     unsigned receivers = OnAll;

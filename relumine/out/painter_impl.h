@@ -18,7 +18,7 @@
 #include "relight/pictures/gathered_light.h"
 #include "relight/pictures/picture_view.h"
 #include "relight/pictures/receiver_picture.h"
-#include "relight/pictures/reflections.h"
+#include "relight/surfaces/reflections.h"
 #include "relumine/light/lit_scene.h"
 #include "relumine/out/floor_picture.h"
 #include "relumine/out/output.h"
@@ -318,9 +318,9 @@ struct Painter::Impl {
     relight::SurfaceColors textures;
     std::vector<glm::vec3> shown;
     std::function<void(double)> on_progress;
-    /// Made when a second picture is drawn
-    /// Of pictures that are to be added up.
+    /// Where rays look, for pictures that are to be added up.
     std::optional<relight::GatherGuide> guide;
+    /// Made when a second picture is drawn
     std::optional<relight::PictureView> view;
     bool drew_one = false;
     /// The light meter's.

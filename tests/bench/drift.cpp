@@ -3,7 +3,6 @@
 // drift --help`.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <random>
 #include <stdexcept>
@@ -13,7 +12,6 @@
 #include <unistd.h>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
@@ -21,7 +19,6 @@
 #include "tests/bench/program.h"
 #include "tests/bench/times.h"
 
-namespace fs = std::filesystem;
 using namespace relumine;
 
 namespace {
@@ -31,7 +28,6 @@ struct Settings {
     std::size_t num_environments = 10'000;
     std::size_t num_vertices = 20'000;
     std::uint32_t resolution = 256;
-    fs::path json = "drift.json";
     /// As many vertices as that, with --tiny
     bool no_refine = false;
 };
@@ -169,14 +165,6 @@ void run(const Settings& settings) {
                "Radiance is "
                "at most {:.1e} of its largest value off a fresh relighting.\n",
                before, after, 100.0 * (after / before - 1.0), drift);
-    const nlohmann::json result = {{"megabytes_before", before},
-                                   {"megabytes_after", after},
-                                   {"drift", drift},
-                                   {"edit_median", of_edits.median},
-                                   {"edit_999", of_edits.percentile_999},
-                                   {"edit_worst", of_edits.worst},
-                                   {"environment_median", of_environments.median}};
-    std::ofstream(settings.json) << result.dump(2) << '\n';
 }
 
 } // namespace
@@ -184,12 +172,11 @@ void run(const Settings& settings) {
 int main(int argc, char** argv) {
     Settings settings;
     bench::Program program("bench_drift", "memory, drift and times over many edits and "
-                                          "environments; Markdown on stdout, JSON in a file");
+                                          "environments; Markdown on stdout");
     program.add("--edits", settings.num_edits, "1 or more");
     program.add("--environments", settings.num_environments, "1 or more");
     program.add("--vertices", settings.num_vertices, "of the generated boulder");
     program.add("--face-resolution", settings.resolution, "R");
-    program.add("--json", settings.json, "JSON file to write");
     return program.run(argc, argv, [&] {
         if (program.is_tiny()) {
             settings.num_edits = 40;

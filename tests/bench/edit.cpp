@@ -2,18 +2,14 @@
 // Lights", Section 6: the bunny under the beach, two discs of 5 % and 10 % of the map's width in
 // front of it and at its side grow brighter over 60 steps, then move over 60.
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
 #include "tests/bench/times.h"
 
-namespace fs = std::filesystem;
 using namespace relumine;
 
 namespace {
@@ -22,7 +18,6 @@ constexpr int NumSteps = 60;
 constexpr double PaperSeconds = 0.06; // average, Pentium 4
 
 struct Settings {
-    fs::path json = "edit.json";
     std::uint32_t resolution = 1024;
 };
 
@@ -81,26 +76,16 @@ void run(const Settings& settings, const bench::Inputs& inputs) {
     fmt::print("| paper, average | {:.0f} ms | - | - | about 100 x |\n", 1e3 * PaperSeconds);
     print_row("60 steps of rising intensity", rising, full_seconds);
     print_row("60 steps of moving", moving, full_seconds);
-    const auto json_of = [](const Figures& figures) {
-        return nlohmann::json{
-            {"average", figures.average}, {"worst", figures.worst}, {"clusters", figures.clusters}};
-    };
-    const nlohmann::json result = {{"clusters", lit.scene().transfer.num_clusters()},
-                                   {"seconds_full", full_seconds},
-                                   {"rising", json_of(rising)},
-                                   {"moving", json_of(moving)}};
-    std::ofstream(settings.json) << result.dump(2) << '\n';
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
     Settings settings;
-    bench::Program program("bench_edit", "Johan and Nishita's editing experiment; Markdown on "
-                                         "stdout, JSON in a file");
+    bench::Program program("bench_edit",
+                           "Johan and Nishita's editing experiment; Markdown on stdout");
     bench::Inputs inputs(program);
     inputs.add_scene();
-    program.add("--json", settings.json, "JSON file to write");
     program.add("--face-resolution", settings.resolution, "R");
     return program.run(argc, argv, [&] { run(settings, inputs); });
 }

@@ -1,4 +1,4 @@
-// How cost grows with vertices, clusters and blockers: measured, plotted, and a power law fitted.
+// How cost grows with vertices, clusters and blockers: measured, and a power law fitted.
 // See `./dev bench growth --help`.
 #include <cmath>
 #include <filesystem>
@@ -15,7 +15,6 @@
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
 #include "relight/relighter.h"
-#include "tests/bench/plot.h"
 #include "tests/bench/process_usage.h"
 #include "tests/bench/program.h"
 #include "tests/bench/times.h"
@@ -101,20 +100,8 @@ double exponent(const std::vector<Cost>& costs, double Cost::* y) {
     return xy / xx;
 }
 
-bench::Plot::Series series(const std::string& name, const std::vector<Cost>& costs,
-                           double Cost::* y) {
-    bench::Plot::Series result;
-    result.name = fmt::format("{}, exponent {:.2f}", name, exponent(costs, y));
-    for (const Cost& cost : costs) {
-        result.x.push_back(cost.x);
-        result.y.push_back(cost.*y);
-    }
-    return result;
-}
-
-/// A table on stdout and a plot in the folder.
-nlohmann::json report(const std::string& what, const std::vector<Cost>& costs,
-                      const fs::path& folder) {
+/// A table on stdout.
+nlohmann::json report(const std::string& what, const std::vector<Cost>& costs) {
     fmt::print("Against {}: precompute grows with exponent {:.2f}, relighting with {:.2f}.\n\n",
                what, exponent(costs, &Cost::precompute), exponent(costs, &Cost::relight));
     fmt::print("| receivers | triangles | clusters | sorting the blockers | precompute, processor "
@@ -134,14 +121,6 @@ nlohmann::json report(const std::string& what, const std::vector<Cost>& costs,
     }
     fmt::print("\n");
     std::fflush(stdout);
-    const bench::Plot plot{.title = fmt::format("Cost against {}", what),
-                           .x_label = what,
-                           .y_label = "seconds",
-                           .x_scale = bench::Scale::Log,
-                           .y_scale = bench::Scale::Log,
-                           .series = {series("precompute (processor)", costs, &Cost::precompute),
-                                      series("relight", costs, &Cost::relight)}};
-    std::ofstream(folder / fmt::format("growth_{}.svg", what)) << bench::svg(plot);
     return rows;
 }
 
@@ -219,8 +198,8 @@ int main(int argc, char** argv) {
     bench::Program program("bench_growth",
                            "how precompute and relighting grow with vertices, the size of a mesh "
                            "at the default tolerance, clusters and blockers; Markdown on stdout, "
-                           "plots and JSON in a folder");
-    program.add("--folder", folder, "where the plots go");
+                           "JSON in a folder");
+    program.add("--folder", folder, "where growth.json goes");
     program.add("--vertices", most_vertices, "at most so many");
     program.add("--triangles", most_triangles, "at most so many");
     program.add("--only", chosen, "which, with commas between them");
@@ -229,12 +208,11 @@ int main(int argc, char** argv) {
         fs::create_directories(folder);
         nlohmann::json result;
         for (const std::string& what : chosen)
-            result[what] = report(what,
-                                  what == "vertices"    ? against_vertices(steps, most_vertices)
-                                  : what == "mesh_size" ? against_mesh_size(steps, most_vertices)
-                                  : what == "clusters"  ? against_clusters(steps)
-                                                        : against_blockers(steps, most_triangles),
-                                  folder);
+            result[what] =
+                report(what, what == "vertices"    ? against_vertices(steps, most_vertices)
+                             : what == "mesh_size" ? against_mesh_size(steps, most_vertices)
+                             : what == "clusters"  ? against_clusters(steps)
+                                                   : against_blockers(steps, most_triangles));
         std::ofstream(folder / "growth.json") << result.dump(2) << '\n';
     });
 }

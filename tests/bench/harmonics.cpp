@@ -17,10 +17,10 @@
 #include "prt/receivers/point_receivers.h"
 #include "relight/harmonics/harmonics.h"
 #include "relight/reference/exact.h"
-#include "relight/reference/exact_harmonics.h"
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
 #include "tests/bench/times.h"
+#include "tests/relight/harmonics/exact_harmonics.h"
 
 using namespace relumine;
 

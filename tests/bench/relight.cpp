@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 
 #include "relight/kernels/band_sums.h"
 #include "relumine/relumine.h"
@@ -25,25 +24,14 @@ using namespace relumine;
 namespace {
 
 struct Settings {
-    fs::path json = "relight.json";
     std::uint32_t resolution = 1024;
     /// Receivers to verify
     std::size_t num_samples = 2000;
 };
 
-class Report {
-public:
-    void add(const std::string& key, const std::string& text, double milliseconds,
-             const std::string& remark) {
-        fmt::print("| {} | {:.3f} ms | {} |\n", text, milliseconds, remark);
-        json_[key] = milliseconds;
-    }
-    void add_value(const std::string& key, double value) { json_[key] = value; }
-    void save(const fs::path& path) const { std::ofstream(path) << json_.dump(2) << '\n'; }
-
-private:
-    nlohmann::json json_;
-};
+void print_row(const std::string& text, double milliseconds, const std::string& remark) {
+    fmt::print("| {} | {:.3f} ms | {} |\n", text, milliseconds, remark);
+}
 
 /// Median time of an edit that changes a disc's brightness.
 double edit_seconds(LitScene& lit, double part_of_face) {
@@ -57,11 +45,9 @@ double edit_seconds(LitScene& lit, double part_of_face) {
     return bench::median(seconds);
 }
 
-void measure_relighting(const Settings& settings, const bench::Inputs& inputs, LitScene& lit,
-                        Report& report) {
+void measure_relighting(const Settings& settings, const bench::Inputs& inputs, LitScene& lit) {
     const Scene& scene = lit.scene();
     const double bandwidth = bench::memory_bandwidth(inputs.is_tiny());
-    report.add_value("memory_bandwidth", bandwidth);
     const cubemap::CubeMap beach = inputs.environment("beach_cross.hdr", settings.resolution);
     lit.light(beach);
 
@@ -91,43 +77,40 @@ void measure_relighting(const Settings& settings, const bench::Inputs& inputs, L
         1e-9 * bandwidth, scene.mesh.num_vertices(), scene.transfer.num_clusters(),
         beach.resolution);
     fmt::print("| step | median | remark |\n|---|---|---|\n");
-    report.add("full_relight", "full relight of a binned map", 1e3 * full,
-               fmt::format("{:.0f} MB, {:.1f} times as fast as the dense table", 1e-6 * bytes,
-                           dense / full));
-    report.add("dense_relight", "the same with a dense table of bytes", 1e3 * dense,
-               fmt::format("{:.0f} MB at {:.1f} GB/s; radiance differs by {:.4f} (relative L2)",
-                           1e-6 * static_cast<double>(table.values.size()),
-                           1e-9 * static_cast<double>(table.values.size()) / dense,
-                           std::sqrt(difference / norm)));
+    print_row("full relight of a binned map", 1e3 * full,
+              fmt::format("{:.0f} MB, {:.1f} times as fast as the dense table", 1e-6 * bytes,
+                          dense / full));
+    print_row("the same with a dense table of bytes", 1e3 * dense,
+              fmt::format("{:.0f} MB at {:.1f} GB/s; radiance differs by {:.4f} (relative L2)",
+                          1e-6 * static_cast<double>(table.values.size()),
+                          1e-9 * static_cast<double>(table.values.size()) / dense,
+                          std::sqrt(difference / norm)));
 
     const relight::LightBinning binning(beach.resolution);
     const relight::BandSums bands(beach.resolution, scene.transfer.quadtree.leaves());
     const double map_bytes = static_cast<double>(beach.texels.size() * sizeof(glm::vec3));
     const double bin =
         bench::median_seconds([&] { static_cast<void>(binning.sums(beach, bands)); });
-    report.add("bin", "binning", 1e3 * bin,
-               fmt::format("{:.0f} MB at {:.1f} GB/s, {:.2f} of what memory gives",
-                           1e-6 * map_bytes, 1e-9 * map_bytes / bin, map_bytes / bin / bandwidth));
+    print_row("binning", 1e3 * bin,
+              fmt::format("{:.0f} MB at {:.1f} GB/s, {:.2f} of what memory gives", 1e-6 * map_bytes,
+                          1e-9 * map_bytes / bin, map_bytes / bin / bandwidth));
     for (const double part : {0.05, 0.10}) {
         const double edit = edit_seconds(lit, part);
-        report.add(fmt::format("edit_{:.0f}", 100 * part),
-                   fmt::format("an edit, disc of {:.0f} % of the map's width", 100 * part),
-                   1e3 * edit, fmt::format("{:.0f} times as fast as a full relight", full / edit));
+        print_row(fmt::format("an edit, disc of {:.0f} % of the map's width", 100 * part),
+                  1e3 * edit, fmt::format("{:.0f} times as fast as a full relight", full / edit));
     }
 }
 
-void measure_files(const Scene& scene, Report& report) {
+void measure_files(const Scene& scene) {
     const fs::path path = fs::temp_directory_path() / "relumine_bench_relight.prt";
     save_scene(path, scene);
     const double load = bench::median_seconds([&] { static_cast<void>(load_scene(path)); });
-    report.add("load", "loading the .prt", 1e3 * load,
-               fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(fs::file_size(path))));
-    report.add_value("prt_bytes", static_cast<double>(fs::file_size(path)));
+    print_row("loading the .prt", 1e3 * load,
+              fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(fs::file_size(path))));
     fs::remove(path);
 }
 
-void measure_errors(const Settings& settings, const bench::Inputs& inputs, LitScene& lit,
-                    Report& report) {
+void measure_errors(const Settings& settings, const bench::Inputs& inputs, LitScene& lit) {
     constexpr std::uint32_t Resolution = 256;
     set_layers(lit, {});
     std::size_t num_samples = 0;
@@ -141,17 +124,14 @@ void measure_errors(const Settings& settings, const bench::Inputs& inputs, LitSc
         }));
         num_samples = check.receivers.size();
         errors += fmt::format(" {} {:.5f}", name, check.error.relative_l2);
-        report.add_value("error_" + name, check.error.relative_l2);
         const Verification between =
             verify(lit, {.num_samples = 1, .num_surface_points = settings.num_samples});
         errors_between += fmt::format(" {} {:.5f}", name, between.surface->error.relative_l2);
-        report.add_value("surface_error_" + name, between.surface->error.relative_l2);
     }
-    report.add("verify",
-               fmt::format("exact radiance of {} receivers, R = {}", num_samples,
-                           environment_of(lit).resolution),
-               1e3 * bench::median(seconds),
-               "relative L2 of relighting:" + errors + "; between the vertices:" + errors_between);
+    print_row(fmt::format("exact radiance of {} receivers, R = {}", num_samples,
+                          environment_of(lit).resolution),
+              1e3 * bench::median(seconds),
+              "relative L2 of relighting:" + errors + "; between the vertices:" + errors_between);
 }
 
 } // namespace
@@ -159,20 +139,17 @@ void measure_errors(const Settings& settings, const bench::Inputs& inputs, LitSc
 int main(int argc, char** argv) {
     Settings settings;
     bench::Program program("bench_relight", "relighting and editing of the bunny against the plain "
-                                            "ways; Markdown on stdout, JSON in a file");
+                                            "ways; Markdown on stdout");
     bench::Inputs inputs(program);
     inputs.add_scene();
-    program.add("--json", settings.json, "JSON file to write");
     program.add("--face-resolution", settings.resolution, "R");
     program.add("--samples", settings.num_samples, "receivers to verify");
     return program.run(argc, argv, [&] {
         if (inputs.is_tiny())
             settings.num_samples = 50;
         LitScene lit(inputs.bunny());
-        Report report;
-        measure_relighting(settings, inputs, lit, report);
-        measure_files(lit.scene(), report);
-        measure_errors(settings, inputs, lit, report);
-        report.save(settings.json);
+        measure_relighting(settings, inputs, lit);
+        measure_files(lit.scene());
+        measure_errors(settings, inputs, lit);
     });
 }

@@ -45,7 +45,6 @@ constexpr PaperRow PaperBuddha = {"Buddha", "happy_vrip_res3.ply", 69577, 4701, 
 constexpr float Roughness = 0.3f;
 
 struct Settings {
-    fs::path json = "table1.json";
     std::size_t num_samples = 1000;
     bool with_4096 = true;
     /// Empty: all rows
@@ -280,11 +279,8 @@ void run(const Settings& settings, const bench::Inputs& inputs) {
         measured(buddha, [&] { return measure_buddha(settings, inputs); });
     if (!rows.empty())
         print_markdown(rows);
-    for (const nlohmann::json& row : buddha) {
+    for (const nlohmann::json& row : buddha)
         print_buddha(row);
-        rows.push_back(row);
-    }
-    std::ofstream(settings.json) << rows.dump(2) << '\n';
 }
 
 } // namespace
@@ -292,10 +288,8 @@ void run(const Settings& settings, const bench::Inputs& inputs) {
 int main(int argc, char** argv) {
     Settings settings;
     bool skip_4096 = false;
-    bench::Program program("bench_table1", "Table 1 of Johan and Nishita; Markdown on stdout, JSON "
-                                           "in a file");
+    bench::Program program("bench_table1", "Table 1 of Johan and Nishita; Markdown on stdout");
     bench::Inputs inputs(program);
-    program.add("--json", settings.json, "JSON file to write");
     program.add("--samples", settings.num_samples, "receivers to verify, and points between them");
     program.add_flag("--skip-4096", skip_4096, "leave out the Bunny at R = 4096");
     program.add("--only", settings.only, "one row: Bunny, Dragon or Buddha");

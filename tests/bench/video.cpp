@@ -4,15 +4,11 @@
 // turns.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "data_gen/sequences.h"
 #include "lights/light_clusters.h"
@@ -22,11 +18,9 @@
 #include "relight/sharp/shadow_rays.h"
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
-#include "tests/bench/plot.h"
 #include "tests/bench/times.h"
 #include "tests/lights/importance_lights.h"
 
-namespace fs = std::filesystem;
 using namespace relumine;
 
 namespace {
@@ -40,9 +34,6 @@ constexpr const char* FollowedClusters = "clusters, followed";
 constexpr double MeanLuminance = 0.25;
 
 struct Settings {
-    fs::path json = "video.json";
-    /// Folder, or none
-    fs::path plots;
     std::size_t num_frames = 100;
     std::size_t num_receivers = 300;
     std::uint32_t resolution = 128;
@@ -56,26 +47,6 @@ struct Sequence {
     std::string name;
     data_gen::FrameMaker map;
 };
-
-/// Returns an SVG document with the directions of the lights of some frames, by longitude and
-/// latitude, one colour for each frame [S, Fig. 4 and 5].
-std::string light_positions_plot(const lights::FrameLights& lights, std::size_t first_frame,
-                                 std::size_t num_frames, const std::string& title) {
-    constexpr double Degrees = 180.0 * std::numbers::inv_pi;
-    bench::Plot plot{
-        .title = title, .x_label = "longitude (degrees, from +Z to +X)", .y_label = "latitude"};
-    const std::size_t end = std::min(first_frame + num_frames, lights.num_frames());
-    for (std::size_t frame = first_frame; frame < end; ++frame) {
-        bench::Plot::Series series{
-            .name = fmt::format("frame {}", frame), .x = {}, .y = {}, .line = false};
-        for (const lights::DistantLight& light : lights.at(frame)) {
-            series.x.push_back(Degrees * std::atan2(light.direction.x, light.direction.z));
-            series.y.push_back(Degrees * std::asin(std::clamp(light.direction.y, -1.0, 1.0)));
-        }
-        plot.series.push_back(std::move(series));
-    }
-    return bench::svg(plot);
-}
 
 /// Those of `relumine generate sequence` that the tables of docs/measurements.md show.
 std::vector<Sequence> sequences(const Settings& settings, const bench::Inputs& inputs) {
@@ -165,8 +136,7 @@ public:
         const double seconds_clusters = (seconds_sample + clusters.k_means.seconds) * per_frame;
         add(EvenClusters, lights::frame_lights(clusters, {.strength = lights::Strength::Even}),
             seconds_clusters);
-        clusters_ = lights::frame_lights(clusters);
-        add(FollowedClusters, clusters_, seconds_clusters);
+        add(FollowedClusters, lights::frame_lights(clusters), seconds_clusters);
         add("clusters, followed, fade 2", lights::frame_lights(clusters, {.fade = 2}),
             seconds_clusters);
         if (settings_.variants) {
@@ -191,7 +161,6 @@ public:
         return rows_;
     }
 
-    [[nodiscard]] const lights::FrameLights& cluster_lights() const { return clusters_; }
     [[nodiscard]] std::size_t num_receivers() const { return sample_.size(); }
 
 private:
@@ -281,7 +250,6 @@ private:
     std::vector<std::vector<glm::dvec3>> exact_;
     double exposure_ = 1.0;
     Row prt_;
-    lights::FrameLights clusters_;
     std::vector<Row> rows_;
 };
 
@@ -304,61 +272,6 @@ void print_rows(const Sequence& sequence, const std::vector<Row>& rows) {
                    row.seconds_light > 0.0 ? fmt::format("{:.0f}", 1e3 * row.seconds_light) : "-");
 }
 
-nlohmann::json json_of(const Sequence& sequence, const std::vector<Row>& rows) {
-    nlohmann::json methods = nlohmann::json::array();
-    for (const Row& row : rows)
-        methods.push_back({{"method", row.method},
-                           {"lights_per_frame", row.lights},
-                           {"mean_inconsistency", row.report.mean_inconsistency},
-                           {"worst_inconsistency", row.report.worst_inconsistency},
-                           {"mean_relative_l2", row.report.mean_relative_l2},
-                           {"inconsistency", row.report.inconsistency},
-                           {"seconds_prepare", row.seconds_prepare},
-                           {"seconds_light", row.seconds_light}});
-    return {{"sequence", sequence.name}, {"methods", methods}};
-}
-
-/// Returns E(t) over frames as an SVG document, one curve for each method [S, Fig. 3].
-std::string inconsistency_plot(const std::vector<Row>& rows, const std::string& title) {
-    bench::Plot plot{.title = title,
-                     .x_label = "frame",
-                     .y_label = "temporal inconsistency",
-                     .y_scale = bench::Scale::Log};
-    for (const Row& row : rows) {
-        if (row.method != Importance && row.method != EvenClusters &&
-            row.method != FollowedClusters && row.method != "prt")
-            continue;
-        bench::Plot::Series series{
-            .name = fmt::format("{}: {:.2g}", row.method, row.report.mean_inconsistency),
-            .x = {},
-            .y = row.report.inconsistency};
-        for (std::size_t t = 0; t < series.y.size(); ++t)
-            series.x.push_back(static_cast<double>(t));
-        plot.series.push_back(std::move(series));
-    }
-    return bench::svg(plot);
-}
-
-void write_plots(const Settings& settings, std::size_t index, const Sequence& sequence,
-                 const std::vector<Row>& rows, const Experiment& experiment) {
-    fs::create_directories(settings.plots);
-    const auto write = [&](const char* what, const std::string& text) {
-        std::ofstream(settings.plots / fmt::format("video{}_{}.svg", index + 1, what)) << text;
-    };
-    write("inconsistency", inconsistency_plot(rows, sequence.name));
-    write("clusters", light_positions_plot(experiment.cluster_lights(), settings.num_frames / 2, 5,
-                                           fmt::format("{}: clusters", sequence.name)));
-    const lights::FrameLights jumping = lights::importance_lights(
-        [&](std::size_t frame) {
-            return lights::lat_long_of(sequence.map(settings.num_frames / 2 + frame));
-        },
-        std::min<std::size_t>(5, settings.num_frames / 2),
-        static_cast<std::size_t>(rows.front().lights),
-        {.seed = settings.seed, .seed_per_frame = true});
-    write("importance", light_positions_plot(
-                            jumping, 0, 5, fmt::format("{}: importance sampling", sequence.name)));
-}
-
 void run(const Settings& settings, const bench::Inputs& inputs) {
     LitScene lit(inputs.bunny());
     Experiment experiment(settings, lit);
@@ -366,28 +279,18 @@ void run(const Settings& settings, const bench::Inputs& inputs) {
                "vertices; {} clusters from {} samples a frame\n",
                lit.scene().mesh.num_vertices(), settings.num_frames, settings.resolution,
                experiment.num_receivers(), settings.num_clusters, settings.num_samples);
-    nlohmann::json result = nlohmann::json::array();
-    const std::vector<Sequence> all = sequences(settings, inputs);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const std::vector<Row> rows = experiment.run(all[i]);
-        print_rows(all[i], rows);
-        if (!settings.plots.empty())
-            write_plots(settings, i, all[i], rows, experiment);
-        result.push_back(json_of(all[i], rows));
-    }
-    std::ofstream(settings.json) << result.dump(2) << '\n';
+    for (const Sequence& sequence : sequences(settings, inputs))
+        print_rows(sequence, experiment.run(sequence));
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
     Settings settings;
-    bench::Program program("bench_video", "Staton et al.'s flicker experiment; Markdown on stdout, "
-                                          "JSON in a file");
+    bench::Program program("bench_video", "Staton et al.'s flicker experiment; Markdown on "
+                                          "stdout");
     bench::Inputs inputs(program);
     inputs.add_scene();
-    program.add("--json", settings.json, "JSON file to write");
-    program.add("--plots", settings.plots, "folder for plots as SVG");
     program.add("--frames", settings.num_frames, "of each sequence, 2 or more");
     program.add("--receivers", settings.num_receivers, "vertices that are integrated exactly");
     program.add("--face-resolution", settings.resolution, "R");

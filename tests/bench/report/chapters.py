@@ -188,7 +188,7 @@ CHAPTERS = [
     Chapter("glossy", "Highlights from a fixed eye", [], None, glossy),
     Chapter("moving_eye", "Highlights for an eye that moves", [], ["--eyes", "4", "--roughness", "0.3"], moving_eye),
     Chapter("frames", "Environments that change", BUNNY, None, frames),
-    Chapter("video", "Video without flicker", BUNNY + ["--plots", "{work}"], None, video),
+    Chapter("video", "Video without flicker", BUNNY, None, video),
     Chapter("light_lists", "Light lists", BUNNY, BUNNY + ["--receivers", "300", "--env", "grace_cross.hdr,sun_sky", "--numbers", "64"], light_lists),
     Chapter("layouts", "Layouts of environments", [], ["--tiny"], layouts),
     Chapter("harmonics", "Points and harmonics", BUNNY, BUNNY + ["--points", "300", "--parts", "grid,normals"], harmonics),

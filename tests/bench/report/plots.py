@@ -2,7 +2,10 @@
 apart (Okabe and Ito), with the page's own ink and paper."""
 
 import html
+import json
 import math
+import sys
+from pathlib import Path
 
 # Black stands for the page's ink, so the palette fits dark pages, too.
 PALETTE = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#b8a800", "#888888", "#9467bd"]
@@ -92,3 +95,23 @@ def log_plot(series, x_label, y_label, emphasised=(), names=()):
         legend.append(f"<span>{key}{html.escape(name)}</span>")
     out.append("</svg>")
     return f'<figure class="plot">{"".join(out)}<figcaption class="legend">{"".join(legend)}</figcaption></figure>'
+
+
+STYLE = "<style>text{font:12px sans-serif;fill:#222}.grid{stroke:#ddd;fill:none}</style>"
+
+
+def growth_plots(growth, folder):
+    """Writes growth_NAME.svg for each table of growth.json, which `./dev bench growth` writes."""
+    x_of = {"vertices": "receivers", "mesh_size": "receivers", "clusters": "clusters", "triangles": "triangles"}
+    curves = {"precompute (processor)": "precompute", "relight": "relight"}
+    for name, rows in growth.items():
+        points = {curve: [(row[x_of[name]], row[key], f"{row[key]:.3g} s") for row in rows if row[key] > 0] for curve, key in curves.items()}
+        figure = log_plot(points, x_of[name], "seconds")
+        start = figure.index("<svg ") + len("<svg ")
+        svg = figure[start : figure.index("</svg>") + len("</svg>")]
+        head, rest = svg.split(">", 1)
+        (folder / f"growth_{name}.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {head}>{STYLE}{rest}\n')
+
+
+if __name__ == "__main__":
+    growth_plots(json.loads(Path(sys.argv[1]).read_text()), Path(sys.argv[2]))

@@ -73,6 +73,15 @@ class Plots(unittest.TestCase):
         for title in ("a <b>, first", "a <b>, second", "c, third"):
             self.assertIn(title, titles)
 
+    def test_plots_of_growth_stand_alone(self):
+        rows = [{"receivers": n, "triangles": 2 * n, "clusters": 384, "precompute": n / 1e4, "relight": n / 1e7} for n in (1000, 10000)]
+        with tempfile.TemporaryDirectory() as folder:
+            plots.growth_plots({"vertices": rows}, Path(folder))
+            plot = xml.parse(Path(folder) / "growth_vertices.svg").getroot()
+        self.assertEqual(plot.tag, "{http://www.w3.org/2000/svg}svg")
+        titles = [element.text for element in plot.iter() if element.tag.endswith("title")]
+        self.assertIn("relight, 0.001 s", titles)
+
 
 class Baselines(unittest.TestCase):
     ROWS = [

@@ -49,19 +49,6 @@ prt::BounceSamples samples(const prt::Work& work, std::span<const std::uint32_t>
                                scene().rays, {.tolerance = 0.02f, .bias = scene().bias}, work);
 }
 
-TEST(SharedBounces, SamplesOfProcessesMakeTheMatrixOfOne) {
-    ASSERT_GT(scene().transfer.counts.num_tiles(), 3u);
-    for (const std::uint32_t count : {1u, 2u, 3u, 8u}) {
-        std::vector<prt::BounceSamples> parts(count);
-        prt::ThreadTeam::run(count, [&](prt::Team& team, std::uint32_t index) {
-            parts[index] = samples({.team = team});
-        });
-        EXPECT_EQ(prt::join_bounces(scene().receivers, scene().transfer, std::move(parts)),
-                  scene().matrix)
-            << count << " processes";
-    }
-}
-
 /// The tiles alone say how many rays a receiver needs; who shares them is found when all are there.
 TEST(SharedBounces, PartsThatKnowNothingOfEachOtherMakeOneMatrix) {
     std::vector<std::uint32_t> all(scene().transfer.num_receivers());

@@ -13,11 +13,11 @@
 #include "files/parallel.h"
 #include "relight/receiver_light.h"
 #include "relight/reference/exact.h"
-#include "relight/reference/exact_harmonics.h"
 #include "relight/relighter.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"
 #include "tests/relight/environments.h"
+#include "tests/relight/harmonics/exact_harmonics.h"
 #include "tests/relight/relit_scene.h"
 
 namespace relumine::relight {

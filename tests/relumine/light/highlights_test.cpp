@@ -8,7 +8,7 @@
 
 #include "data_gen/environments.h"
 #include "prt/glossy/brdf.h"
-#include "relight/pictures/reflections.h"
+#include "relight/surfaces/reflections.h"
 #include "relumine/in/precompute.h"
 #include "relumine/light/lit_scene.h"
 #include "relumine/out/output.h"

@@ -1,4 +1,4 @@
-#include "relight/pictures/reflections.h"
+#include "relight/surfaces/reflections.h"
 
 #include <algorithm>
 #include <array>
@@ -18,8 +18,8 @@
 #include "prt/glossy/sheen_lobe.h"
 #include "prt/glossy/stretched_lobe.h"
 #include "relight/kernels/cluster_lights.h"
-#include "relight/pictures/highlight_rays.h"
-#include "relight/pictures/ray_fan.h"
+#include "relight/surfaces/highlight_rays.h"
+#include "relight/surfaces/ray_fan.h"
 
 namespace relumine::relight {
 

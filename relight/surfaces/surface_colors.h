@@ -20,6 +20,16 @@ class MipMaps;
 
 namespace relumine::relight {
 
+/// Returns light before a surface of this colour reflected it; 0 in channels where that is black.
+template<typename Light>
+[[nodiscard]] Light before_color(const Light& light, const glm::vec3& color) {
+    Light result(0);
+    for (int channel = 0; channel < 3; ++channel)
+        if (color[channel] > 0.0f)
+            result[channel] = light[channel] / color[channel];
+    return result;
+}
+
 /// Takes the light from the vertices and the colours from the textures, so that a picture shows
 /// what is finer than the mesh. Highlights keep their shape and stay on top.
 class SurfaceColors {
@@ -43,7 +53,7 @@ public:
         return surface(point).albedo;
     }
     /// Whether a triangle's material has a highlight that the scene has not: pictures find it by
-    /// rays (relight/pictures/reflections.h).
+    /// rays (relight/surfaces/reflections.h).
     [[nodiscard]] bool mirrors(std::uint32_t triangle) const {
         return !mirrors_.empty() && mirrors_[triangle];
     }

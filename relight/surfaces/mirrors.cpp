@@ -1,4 +1,4 @@
-#include "relight/pictures/mirrors.h"
+#include "relight/surfaces/mirrors.h"
 
 #include <algorithm>
 #include <array>
@@ -15,8 +15,8 @@
 #include "prt/receivers/lit_position.h"
 #include "prt/receivers/reflecting_normal.h"
 #include "prt/receivers/texture_view.h"
-#include "relight/pictures/highlight_rays.h"
-#include "relight/pictures/other_side.h"
+#include "relight/surfaces/highlight_rays.h"
+#include "relight/surfaces/other_side.h"
 
 namespace relumine::relight {
 
@@ -185,6 +185,7 @@ Mirrors::Shared Mirrors::shared(const Mirror& mirror, const glm::vec3& position)
                 continue;
             sum.add(middle->traced.light, std::max(x, x_) - std::min(x, x_) <= of_coat &&
                                               std::max(y, y_) - std::min(y, y_) <= of_coat);
+            sum.has_own = sum.has_own || (x == x_ && y == y_);
         }
     return sum;
 }
@@ -245,7 +246,7 @@ MirroredLight Mirrors::light(const Mirror& mirror, const prt::MeshPoint& point) 
     if (!is_enough && !prt::is_stretched(mirror.surface))
         near = {};
     if (!is_enough && traced_.empty() && middle && are_alike(middle->traced.mirror, mirror)) {
-        if (near.num_coats == 0.0f)
+        if (!near.has_own)
             near.add(middle->traced.light, true);
     } else if (!is_enough) {
         // A pixel of several normals sums their rays.
@@ -316,8 +317,7 @@ glm::vec3 Mirrors::floor(const prt::MeshPoint& at, const MetSurface& met) const 
     const glm::vec3 radiance = prt::value_at(mesh_, light_.mirrored, at);
     if (!light_.open_floor)
         return glm::mix(sky(), radiance, opacity);
-    const glm::vec3 behind =
-        backdrop_ != nullptr ? (*backdrop_)(glm::normalize(position - *light_.eye)) : sky();
+    const glm::vec3 behind = behind_ ? behind_(glm::normalize(position - *light_.eye)) : sky();
     return caught(radiance, *light_.open_floor, opacity) * behind;
 }
 

@@ -1,4 +1,4 @@
-#include "relight/pictures/ray_fan.h"
+#include "relight/surfaces/ray_fan.h"
 
 #include <algorithm>
 #include <bit>
@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "cubemap/frame.h"
-#include "relight/pictures/visible_normals.h"
+#include "relight/surfaces/visible_normals.h"
 #include "tests/prt/every_target.h"
 
 namespace relumine::relight {

@@ -1,5 +1,5 @@
 // Rays against the integral over all texels.
-#include "relight/pictures/reflections.h"
+#include "relight/surfaces/reflections.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,16 +1,24 @@
-#include "relight/reference/exact_harmonics.h"
+// Exact integration of arriving light, for any normal: every light of the environment, every shadow
+// ray.
+#pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 #include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 
+#include "cubemap/cube_map.h"
 #include "files/parallel.h"
+#include "prt/receivers/receivers.h"
+#include "prt/visibility/blockers.h"
 #include "relight/harmonics/harmonics.h"
 
 namespace relumine::relight {
-
-namespace {
 
 /// Calls visit(i, direction, power) for the light that reaches chosen receiver i, texel by texel.
 template<class Visit>
@@ -50,13 +58,16 @@ void for_arriving(const prt::Receivers& receivers, std::span<const std::uint32_t
     });
 }
 
-} // namespace
-
-std::vector<glm::dvec3> exact_harmonics(const prt::Receivers& receivers,
-                                        std::span<const std::uint32_t> receiver_indices,
-                                        const prt::Blockers& blockers,
-                                        const cubemap::CubeMap& environment, std::uint32_t order,
-                                        float bias) {
+/// Returns the sums over all 6 R^2 texels of L_j dw_j V(w_j) Y(w_j) for chosen receivers, in
+/// double: V is 0 below a surface's horizon. `bias` lifts the rays' origins.
+///
+/// Shape:   [receiver_indices.size()][order^2].
+/// Cost:    a ray per receiver and texel that is not black; parallel over receivers.
+inline std::vector<glm::dvec3> exact_harmonics(const prt::Receivers& receivers,
+                                               std::span<const std::uint32_t> receiver_indices,
+                                               const prt::Blockers& blockers,
+                                               const cubemap::CubeMap& environment,
+                                               std::uint32_t order, float bias) {
     const std::size_t count = num_harmonics(order);
     std::vector<glm::dvec3> sums(receiver_indices.size() * count);
     for_arriving(receivers, receiver_indices, blockers, environment, bias,
@@ -68,11 +79,15 @@ std::vector<glm::dvec3> exact_harmonics(const prt::Receivers& receivers,
     return sums;
 }
 
-std::vector<glm::dvec3> exact_irradiance(const prt::Receivers& receivers,
-                                         std::span<const std::uint32_t> receiver_indices,
-                                         std::span<const glm::vec3> normals,
-                                         const prt::Blockers& blockers,
-                                         const cubemap::CubeMap& environment, float bias) {
+/// Returns the irradiance of other normals at the chosen receivers: the light that arrives there,
+/// above the receiver's own horizon, on a surface that is turned to normals[i].
+///
+/// Shape:   [receiver_indices.size()], as are the normals.
+inline std::vector<glm::dvec3> exact_irradiance(const prt::Receivers& receivers,
+                                                std::span<const std::uint32_t> receiver_indices,
+                                                std::span<const glm::vec3> normals,
+                                                const prt::Blockers& blockers,
+                                                const cubemap::CubeMap& environment, float bias) {
     std::vector<glm::dvec3> sums(receiver_indices.size());
     for_arriving(receivers, receiver_indices, blockers, environment, bias,
                  [&](std::size_t i, const glm::dvec3& direction, const glm::dvec3& power) {

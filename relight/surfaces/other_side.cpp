@@ -1,4 +1,4 @@
-#include "relight/pictures/other_side.h"
+#include "relight/surfaces/other_side.h"
 
 #include "prt/glossy/surface_sampling.h"
 

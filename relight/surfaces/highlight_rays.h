@@ -10,7 +10,7 @@
 
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/sheen_lobe.h"
-#include "relight/pictures/reflections.h"
+#include "relight/surfaces/reflections.h"
 
 namespace relumine::relight {
 

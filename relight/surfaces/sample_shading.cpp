@@ -1,4 +1,4 @@
-#include "relight/pictures/sample_shading.h"
+#include "relight/surfaces/sample_shading.h"
 
 #include <algorithm>
 #include <array>

@@ -13,8 +13,7 @@
 #include "prt/receivers/mesh_point.h"
 #include "prt/receivers/texture_view.h"
 #include "prt/visibility/ray_scene.h"
-#include "relight/pictures/mirrors.h"
-#include "relight/pictures/picture_view.h"
+#include "relight/surfaces/mirrors.h"
 
 namespace relumine::relight {
 

@@ -8,7 +8,7 @@
 #include "prt/receivers/mesh_point.h"
 #include "prt/receivers/texture_view.h"
 #include "prt/visibility/twin_triangles.h"
-#include "relight/pictures/picture_view.h"
+#include "relight/surfaces/mesh_light.h"
 
 namespace relumine::relight {
 

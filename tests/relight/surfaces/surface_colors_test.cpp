@@ -1,5 +1,5 @@
 #include "prt/glossy/brdf.h"
-#include "relight/pictures/surface_colors.h"
+#include "relight/surfaces/surface_colors.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "relight/pictures/ray_fan.h"
+#include "relight/surfaces/ray_fan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "relight/pictures/ray_fan.cpp"
+#define HWY_TARGET_INCLUDE "relight/surfaces/ray_fan.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

@@ -1,5 +1,5 @@
 // What a pixel that stands for many normals mirrors.
-#include "relight/pictures/mirrors.h"
+#include "relight/surfaces/mirrors.h"
 
 #include <array>
 #include <cmath>

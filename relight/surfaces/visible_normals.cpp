@@ -1,4 +1,4 @@
-#include "relight/pictures/visible_normals.h"
+#include "relight/surfaces/visible_normals.h"
 
 #include <algorithm>
 #include <cmath>

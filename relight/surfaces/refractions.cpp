@@ -1,4 +1,4 @@
-#include "relight/pictures/refractions.h"
+#include "relight/surfaces/refractions.h"
 
 #include <algorithm>
 #include <array>
@@ -15,8 +15,8 @@
 #include "cubemap/split_mix64.h"
 #include "mesh/opacity.h"
 #include "prt/glossy/brdf.h"
-#include "relight/pictures/highlight_rays.h"
-#include "relight/pictures/visible_normals.h"
+#include "relight/surfaces/highlight_rays.h"
+#include "relight/surfaces/visible_normals.h"
 
 namespace relumine::relight {
 

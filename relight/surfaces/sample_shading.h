@@ -11,10 +11,9 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/receivers/texture_view.h"
-#include "relight/pictures/mirrors.h"
-#include "relight/pictures/other_side.h"
-#include "relight/pictures/picture_view.h"
 #include "relight/sharp/light_packets.h"
+#include "relight/surfaces/mirrors.h"
+#include "relight/surfaces/other_side.h"
 
 namespace relumine::relight {
 

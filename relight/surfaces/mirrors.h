@@ -1,15 +1,17 @@
-// Surfaces of a picture whose highlights rays find: relight/pictures/reflections.h.
+// Surfaces of a picture whose highlights rays find: relight/surfaces/reflections.h.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/visibility/twin_triangles.h"
-#include "relight/pictures/picture_view.h"
+#include "relight/surfaces/mesh_light.h"
 
 namespace relumine::relight {
 
@@ -55,12 +57,16 @@ public:
     /// So many pixels around a tile share their rays with it.
     static constexpr std::uint32_t Reach = 3;
 
-    /// All must outlive this object. Null: there is nothing behind the mesh but the environment.
+    /// Returns the radiance behind the mesh, which a ray of a unit direction finds.
+    using Behind = std::function<glm::vec3(const glm::vec3& direction)>;
+
+    /// All must outlive this object. `behind` is empty where there is nothing behind the mesh but
+    /// the environment.
     Mirrors(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
             const prt::TwinTriangles& twins, const MeshLight& light, const FadingFloor& floor,
-            const Backdrop* backdrop, const prt::TextureView& view)
+            Behind behind, const prt::TextureView& view)
         : mesh_(mesh), rays_(rays), twins_(twins), light_(light), floor_(floor),
-          backdrop_(backdrop), view_(view) {}
+          behind_(std::move(behind)), view_(view) {}
 
     /// Traces the rays of the middles of pixels: a rectangle of them, `width` to a row, from (left,
     /// top) on. `middles` are what these see.
@@ -112,6 +118,8 @@ private:
     struct Shared {
         MirroredLight sum;
         float count = 0.0f, num_coats = 0.0f;
+        /// Whether the middle of this pixel is among them
+        bool has_own = false;
         void add(const MirroredLight& light, bool has_coat);
         [[nodiscard]] MirroredLight mean() const;
     };
@@ -124,7 +132,7 @@ private:
     const prt::TwinTriangles& twins_;
     const MeshLight& light_;
     const FadingFloor& floor_;
-    const Backdrop* backdrop_;
+    Behind behind_;
     const prt::TextureView& view_;
     glm::vec2 shift_{0.0f};
     // Where this tile begins, and its size

@@ -1,5 +1,5 @@
 // Rays through glass against Snell's law, and that glass loses no light.
-#include "relight/pictures/refractions.h"
+#include "relight/surfaces/refractions.h"
 
 #include <cmath>
 #include <optional>
@@ -16,7 +16,7 @@
 #include "cubemap/frame.h"
 #include "prt/glossy/surface_sampling.h"
 #include "relight/pictures/picture_view.h"
-#include "relight/pictures/visible_normals.h"
+#include "relight/surfaces/visible_normals.h"
 #include "tests/prt/scenes.h"
 #include "tests/relight/environments.h"
 

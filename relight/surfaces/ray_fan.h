@@ -25,7 +25,7 @@ struct RayFan {
     std::uint32_t num_rays;
     /// Shifts rays around their columns and around the height of the square.
     glm::vec2 shift;
-    /// Of a stretched lobe: alpha along a tangent. 0: the lobe is round.
+    /// Alpha along the tangent, where the lobe is stretched. 0: the lobe is round.
     float alpha_along = 0.0f;
     glm::vec3 tangent{0.0f};
     /// The number of one ray that is sent alone.

@@ -1,4 +1,4 @@
-#include "relight/pictures/surface_colors.h"
+#include "relight/surfaces/surface_colors.h"
 
 #include <algorithm>
 #include <array>
@@ -38,12 +38,8 @@ SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt
     if (is_textured_.empty() && mirrors_.empty())
         return;
     maps_ = std::make_shared<const mesh::MipMaps>(mesh.textures);
-    for (const prt::Surface& surface : surfaces) {
-        glm::vec3& factor = light_of_radiance_.emplace_back(0.0f);
-        for (int channel = 0; channel < 3; ++channel)
-            if (surface.albedo[channel] > 0.0f)
-                factor[channel] = 1.0f / surface.albedo[channel];
-    }
+    for (const prt::Surface& surface : surfaces)
+        light_of_radiance_.push_back(before_color(glm::vec3(1.0f), surface.albedo));
 }
 
 prt::Surface SurfaceColors::surface(const prt::MeshPoint& point,
