@@ -46,9 +46,6 @@ inline constexpr std::array<Layout, 8> AllLayouts = {
 /// Returns the layout's name as an option's value: one word.
 [[nodiscard]] std::string_view option_name(Layout layout);
 
-/// Returns the layout of an option's value; nothing for another word.
-[[nodiscard]] std::optional<Layout> layout_named(std::string_view option_name);
-
 /// Returns true for layouts made of six cube faces.
 [[nodiscard]] bool has_faces(Layout layout);
 

@@ -74,13 +74,6 @@ ImageSize squares_of(Layout layout) {
     return {facts(layout).columns, facts(layout).rows};
 }
 
-std::optional<Layout> layout_named(std::string_view option) {
-    const auto* const found =
-        std::find_if(AllLayouts.begin(), AllLayouts.end(),
-                     [&](Layout layout) { return option_name(layout) == option; });
-    return found == AllLayouts.end() ? std::nullopt : std::optional(*found);
-}
-
 bool has_faces(Layout layout) {
     return facts(layout).columns != 0;
 }

@@ -16,7 +16,7 @@ namespace relumine::mesh {
 [[nodiscard]] inline double clamped(const std::string& whose, std::string_view key, double value,
                                     double low, double high, std::vector<std::string>& warnings) {
     const double result = std::clamp(value, low, high);
-    constexpr double Rounding = 1e-4; // as is_fraction()
+    constexpr double Rounding = 1e-4; // of a float, or of four decimals
     if (std::abs(value - result) > Rounding)
         warnings.push_back(
             fmt::format("the {}: expected {:g} to {:g} as \"{}\", got {:g}: it counts as {:g}",

@@ -61,12 +61,6 @@ enum class AlphaMode : std::uint8_t {
     Blend,
 };
 
-/// Returns true for a number of 0 to 1. A little outside is a rounding: of a float, or of four
-/// decimals.
-[[nodiscard]] constexpr bool is_fraction(double value) {
-    return value >= -1e-4 && value <= 1.0 + 1e-4;
-}
-
 /// One material. Colours are linear RGB.
 struct Material {
     std::string name = {};
