@@ -272,11 +272,11 @@ std::shared_ptr<Scene> load_prt(const Path& path) {
 }
 
 /// Returns another scene, and figures.
-py::tuple moved(const std::shared_ptr<Scene>& scene, const std::string& name,
-                const py::object& matrix, const py::object& progress) {
+py::tuple moved(const std::shared_ptr<Scene>& scene, const py::dict& moves,
+                const py::object& progress) {
     using Result = std::pair<std::shared_ptr<Scene>, MoveReport>;
     const Result result =
-        in_background(progress, [scene, to = group_move(name, matrix)](const Reins& reins) {
+        in_background(progress, [scene, to = group_moves(moves)](const Reins& reins) {
             Result found{std::make_shared<Scene>(*scene), {}};
             move(*found.first, to, move_work(reins), &found.second);
             return found;
@@ -346,6 +346,14 @@ GroupMove group_move(const std::string& name, const py::object& to) {
     const std::vector<double> numbers = doubles(to.cast<py::buffer>());
     for (int i = 0; i < 16; ++i)
         result.matrix[i % 4][i / 4] = numbers.at(static_cast<std::size_t>(i));
+    return result;
+}
+
+std::vector<GroupMove> group_moves(const py::dict& moves) {
+    std::vector<GroupMove> result;
+    for (const auto& [name, to] : moves)
+        result.push_back(
+            group_move(name.cast<std::string>(), py::reinterpret_borrow<py::object>(to)));
     return result;
 }
 

@@ -46,6 +46,24 @@ class Lambert(NamedTuple):
 
 Material = Union[Ggx, Blinn, Lambert, Brdf]
 
+#: What becomes of groups: a matrix, "away", "back", or a mesh that has the pose.
+Moves = Dict[str, Union[NDArray[Any], str, CoreMesh]]
+
+
+def moves_of(
+    name: Union[str, Mapping[str, ArrayLike]], matrix: Optional[ArrayLike]
+) -> Moves:
+    """The moves of one group, or of several by a mapping."""
+    if isinstance(name, Mapping):
+        if matrix is not None:
+            raise TypeError("matrix: expected none beside {name: matrix, ...}")
+        return {
+            word("name", each): doubles(f"matrix of {each}", to, 4, 4) for each, to in name.items()
+        }
+    if matrix is None:
+        raise TypeError("matrix: expected shape (4, 4), got None")
+    return {word("name", name): doubles("matrix", matrix, 4, 4)}
+
 
 def _materials(material: Union[Material, Mapping[str, Material], None]) -> List[Any]:
     """Materials as --material has them, or a group's name and its table."""
@@ -411,11 +429,16 @@ class Scene:
         return self._core.groups
 
     def move(
-        self, name: str, matrix: ArrayLike, *, progress: Optional[Progress] = None
+        self,
+        name: Union[str, Mapping[str, ArrayLike]],
+        matrix: Optional[ArrayLike] = None,
+        *,
+        progress: Optional[Progress] = None,
     ) -> "Scene":
         """A scene in which a group of the mesh stands elsewhere, for the cost of what it changes.
 
-        name    a group of the mesh
+        name    a group of the mesh, or several at once, in less time than one after the other:
+                {name: matrix, ...} without `matrix`
         matrix  (4, 4): from its present place to the next one, for columns (x, y, z, 1), in the
                 coordinates of the mesh's file with Y up
 
@@ -434,7 +457,7 @@ class Scene:
         >>> scene.move("mesh", shifted)
         <relumine.Scene: vertices, ... receivers, ... clusters>
         """
-        return self._moved(name, doubles("matrix", matrix, 4, 4), progress)
+        return self._moved(moves_of(name, matrix), progress)
 
     def pose(self, name: str, mesh: Mesh, *, progress: Optional[Progress] = None) -> "Scene":
         """A scene in which a group takes another pose, for the cost of a move.
@@ -453,7 +476,7 @@ class Scene:
         <relumine.Scene: vertices, ... receivers, ... clusters>
         """
         expect("mesh", mesh, Mesh)
-        return self._moved(name, mesh._core, progress)
+        return self._moved({word("name", name): mesh._core}, progress)
 
     def remove(self, name: str, *, progress: Optional[Progress] = None) -> "Scene":
         """A scene from which a group is taken away, for the cost of a move. restore() undoes it.
@@ -466,17 +489,15 @@ class Scene:
         >>> scene.remove("mesh").restore("mesh")
         <relumine.Scene: vertices, ... receivers, ... clusters>
         """
-        return self._moved(name, "away", progress)
+        return self._moved({word("name", name): "away"}, progress)
 
     def restore(self, name: str, *, progress: Optional[Progress] = None) -> "Scene":
         """A scene in which a group that was removed stands again where it stood."""
-        return self._moved(name, "back", progress)
+        return self._moved({word("name", name): "back"}, progress)
 
-    def _moved(
-        self, name: str, to: Union[NDArray[Any], str, CoreMesh], progress: Optional[Progress]
-    ) -> "Scene":
+    def _moved(self, moves: Moves, progress: Optional[Progress]) -> "Scene":
         with errors():
-            core, report = _core.moved(self._core, word("name", name), to, progress)
+            core, report = _core.moved(self._core, moves, progress)
         scene = Scene._of(core)
         scene.report = report
         return scene
