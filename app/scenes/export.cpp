@@ -16,6 +16,7 @@
 #include "relumine/in/scene.h"
 #include "relumine/in/shared_work.h"
 #include "relumine/light/bounces.h"
+#include "relumine/out/drawn_mesh.h"
 #include "relumine/out/output.h"
 
 namespace relumine::app {
@@ -72,7 +73,7 @@ void export_for_three(const ExportArguments& options, Session& session) {
     std::filesystem::create_directories(folder);
     check_output(glb, {options.scene});
     const std::size_t num_receivers = scene.receivers.num_own();
-    for (const std::string& what : mesh::save(glb, prt::with_twins_drawn_once(scene.mesh)))
+    for (const std::string& what : mesh::save(glb, drawn_mesh(scene)))
         session.warn(fmt::format("{}: left out: {}", glb, what));
     const std::uint64_t size = save_lean(lean, options.scene, std::move(scene), session);
     session.say(fmt::format("{}, {}: {} vertices, {:.1f} and {:.1f} MB", glb, lean, num_receivers,

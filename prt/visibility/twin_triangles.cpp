@@ -87,27 +87,4 @@ std::optional<std::uint32_t> TwinTriangles::twin_of(std::uint32_t triangle) cons
     return std::nullopt;
 }
 
-mesh::TriangleMesh with_twins_drawn_once(mesh::TriangleMesh mesh) {
-    constexpr std::uint32_t None = ~std::uint32_t{0};
-    if (mesh.triangle_materials.empty()) {
-        mesh.materials = {mesh::Material{.name = "surface"}};
-        mesh.triangle_materials.assign(mesh.num_triangles(), 0);
-    }
-    const TwinTriangles twins(mesh);
-    std::vector<std::uint32_t> fronts(mesh.materials.size(), None);
-    for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i) {
-        std::uint32_t& material = mesh.triangle_materials[i];
-        if (!mesh.materials[material].is_double_sided || !twins.other_side({.triangle = i}))
-            continue;
-        std::uint32_t& front = fronts[material];
-        if (front == None) {
-            front = static_cast<std::uint32_t>(mesh.materials.size());
-            mesh.materials.push_back(mesh.materials[material]);
-            mesh.materials.back().is_double_sided = false;
-        }
-        material = front;
-    }
-    return mesh;
-}
-
 } // namespace relumine::prt

@@ -43,10 +43,4 @@ private:
     mutable std::vector<std::pair<std::uint64_t, std::uint32_t>> by_key_;
 };
 
-/// Returns the mesh with materials of which only the front is drawn, where a triangle has a twin:
-/// of two that show both sides, viewers draw now one and now the other.
-///
-/// Cost:    O(triangles log triangles).
-[[nodiscard]] mesh::TriangleMesh with_twins_drawn_once(mesh::TriangleMesh mesh);
-
 } // namespace relumine::prt

@@ -9,6 +9,7 @@
 #include "options.h"
 #include "relumine/in/material_report.h"
 #include "relumine/in/mesh_files.h"
+#include "relumine/out/drawn_mesh.h"
 #include "relumine/out/first_sight.h"
 #include "run.h"
 
@@ -420,6 +421,14 @@ void bind_scenes(py::module_& module) {
                              [parts, output](const Reins&) { return join(parts, output); });
     });
     module.def("load_scene", &load_prt);
+    module.def("save_mesh", [](const Path& path, const std::shared_ptr<Mesh>& mesh) {
+        const Release release;
+        return mesh::save(path, mesh->geometry);
+    });
+    module.def("save_mesh", [](const Path& path, const std::shared_ptr<Scene>& scene) {
+        const Release release;
+        return mesh::save(path, drawn_mesh(*scene));
+    });
     module.def("save_scene", [](const Path& path, const std::shared_ptr<Scene>& scene) {
         return in_background(py::none(),
                              [path, scene](const Reins&) { return save_scene(path, *scene); });

@@ -136,7 +136,7 @@ def precompute(
 ) -> "Scene":
     """Finds how much light from every direction reaches every receiver: once per mesh.
 
-    mesh       a Mesh, a mesh of trimesh or Open3D (Mesh.of()), or an array of vertices (N, 3) with
+    mesh       a Mesh, the name of its file, a mesh of trimesh or Open3D (Mesh.of()), or an array of vertices (N, 3) with
                `triangles` (M, 3)
     tolerance  RMS error of the transfer allowed within a cluster, in 1/sr (0.0135; 0.025 where
                vertices were added; 0.1 for points)
@@ -349,7 +349,21 @@ class Scene:
     def save(self, path: Path) -> int:
         """Writes a .prt file, whole or not at all. Returns its size in bytes."""
         with errors(path):
+            extension = os.path.splitext(os.fsdecode(path))[1].lower()
+            if extension in (".glb", ".gltf", ".obj", ".ply", ".png", ".exr", ".hdr", ".npy"):
+                raise ValueError(
+                    f"path: expected a .prt file, got '{extension}': save_mesh() writes the mesh, "
+                    "Relighter.save() what is lit"
+                )
             return _core.save_scene(os.fspath(path), self._core)
+
+    def save_mesh(self, path: Path) -> None:
+        """Writes the scene's mesh as Mesh.save(): its vertices are the receivers, where these are
+        vertices. As a .glb it is what three.js draws (docs/web.md).
+        """
+        with errors(path):
+            left_out = _core.save_mesh(os.fsdecode(path), self._core)
+        warn([f"{os.fsdecode(path)}: left out: {what}" for what in left_out])
 
     @property
     def num_receivers(self) -> int:
